@@ -1,0 +1,84 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "commands.hpp"
+#include "comparison_text.hpp"
+#include "json.hpp"
+#include "output.hpp"
+#include "scene_options.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> scenes;
+  SceneOptions overrides;
+  OutputOptions output;
+};
+
+std::string csv(const std::vector<compare::Comparison>& comparisons) {
+  std::string text =
+      "scene,law,bookkeeping,points,gamma,rms_m,max_m,tip_m,rms_over_length,rms_over_movement,"
+      "effective_modulus_ratio,rms_at_effective_modulus_m,optimum,c_b,c_c,budget_law_m,"
+      "budget_bookkeeping_m,budget_discretisation_m,budget_stretch_m,budget_not_at_rest_m,"
+      "force_steps,force_s,energy_evaluations,energy_s\n";
+  for (const compare::Comparison& c : comparisons) {
+    append(text,
+           "{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{:.10g},"
+           "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{:.4g},{},{:.4g}\n",
+           csv_field(c.scene), compare::to_string(c.settings.law),
+           compare::to_string(c.settings.bookkeeping), c.settings.points, c.gamma,
+           c.deviation.rms_m, c.deviation.max_m, c.deviation.tip_m, c.deviation.rms_over_length,
+           c.deviation.rms_over_movement, c.effective_modulus.ratio, c.effective_modulus.rms_m,
+           compare::to_string(c.effective_modulus.optimum), c.force.parameters.c_b,
+           c.force.parameters.c_c, c.budget.law, c.budget.bookkeeping, c.budget.discretisation,
+           c.budget.stretch, c.budget.not_at_rest, c.force.steps, c.force.seconds,
+           c.energy_evaluations, c.energy_seconds);
+  }
+  return text;
+}
+
+void run(const Options& options) {
+  std::vector<compare::Comparison> comparisons;
+  for (const std::string& path : options.scenes) {
+    comparisons.push_back(
+        compare::compare(options.overrides.load(path), options.overrides.solve()));
+  }
+  std::string content;
+  switch (options.output.kind()) {
+    case Format::json: {
+      Json cases = Json::array();
+      for (const compare::Comparison& comparison : comparisons)
+        cases.push_back(to_json(comparison));
+      content = Json{{"schema", "dlo/compare/1"}, {"cases", std::move(cases)}}.dump(2) + "\n";
+      break;
+    }
+    case Format::csv:
+      content = csv(comparisons);
+      break;
+    case Format::text:
+      for (const compare::Comparison& comparison : comparisons) {
+        content += comparison_text(comparison);
+      }
+      break;
+  }
+  write_output(options.output, content);
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("compare", "how far the force model is from the energy model, and why");
+  const auto options = std::make_shared<Options>();
+  command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
+  options->overrides.add_to(*command);
+  add_output_options(*command, options->output);
+  command->footer(
+      "Example:\n  dlo compare data/scenes/spring_steel_175.toml --law hooke --bookkeeping "
+      "consistent");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

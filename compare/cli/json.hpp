@@ -1,0 +1,20 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "dlo/compare/comparison.hpp"
+#include "dlo/compare/paper_report.hpp"
+
+namespace dlo::cli {
+
+using Json = nlohmann::ordered_json;
+
+[[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
+[[nodiscard]] Json points_json(const Eigen::Matrix3Xd& points);
+[[nodiscard]] Json parameters_json(const compare::Solution& force,
+                                   const compare::ForceModelSettings& settings);
+[[nodiscard]] Json to_json(const compare::Solution& solution, const compare::Scene& scene);
+[[nodiscard]] Json to_json(const compare::Comparison& comparison);
+[[nodiscard]] Json to_json(const compare::PaperReport& report);
+
+}  // namespace dlo::cli

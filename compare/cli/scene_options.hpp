@@ -1,0 +1,33 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solve.hpp"
+#include "output.hpp"
+
+namespace dlo::cli {
+
+/// Options that override a scene's [force_model] and steer the solvers.
+class SceneOptions {
+ public:
+  void add_to(CLI::App& command);
+
+  /// Loads a scene and applies the options. @throws compare::InputError
+  [[nodiscard]] compare::Scene load(const std::string& path) const;
+  [[nodiscard]] const compare::SolveOptions& solve() const { return solve_; }
+
+ private:
+  void apply(compare::Scene& scene) const;
+
+  std::string materials_;
+  int points_ = 0;
+  std::string law_, bookkeeping_, stepper_, bending_rule_;
+  std::string c_b_, c_c_, c_F_, c_h_, l_s_, design_curvature_;
+  compare::SolveOptions solve_;
+};
+
+void add_output_options(CLI::App& command, OutputOptions& options);
+
+}  // namespace dlo::cli

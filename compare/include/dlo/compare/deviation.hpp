@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <span>
+
+#include "dlo/compare/shape.hpp"
+#include "dlo/energy_model/problem.hpp"
+
+namespace dlo::compare {
+
+/// A continuous shape, as the energy model gives it.
+using Reference = std::function<energy_model::Samples(std::span<const double>)>;
+
+/// Distance of a shape from a reference at equal arc length. A polygon is measured at its points:
+/// between them it claims nothing. Integrals over the arc length are trapezoidal.
+struct Deviation {
+  double rms_m = 0;  ///< sqrt(1/l int |dr|^2 ds)
+  double max_m = 0;
+  double max_at_m = 0;  ///< arc length of the largest
+  double tip_m = 0;     ///< at the last arc length that is not held
+  double rms_over_length = 0;
+  double rms_over_movement = 0;    ///< against the RMS way of the reference from the straight rod
+  double angle_rms_rad = 0;        ///< of the segments against the tangent in their middle
+  double curvature_rms_per_m = 0;  ///< of turning angle over segment length against the curvature
+};
+
+/// @param straight  the undeformed rod at the shape's arc lengths [m], 3 x M
+/// @param tip       index of the tip: 0 or M-1
+[[nodiscard]] Deviation deviation(const Shape& shape, const Reference& reference,
+                                  const Eigen::Matrix3Xd& straight, Eigen::Index tip);
+
+/// sqrt(1/l int |difference|^2 ds) by the trapezoidal rule [m].
+/// @param difference  at the arc lengths, 3 x M
+[[nodiscard]] double rms(const std::vector<double>& arc_length, const Eigen::Matrix3Xd& difference);
+
+}  // namespace dlo::compare

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape.hpp"
+
+namespace dlo::compare {
+
+/// What the optimum of an effective modulus is worth.
+enum class Optimum {
+  clear,
+  flat,       ///< a modulus twice or half as large fits less than 10 % worse
+  one_sided,  ///< the fit still improves at the end of the range that was searched
+};
+
+[[nodiscard]] const char* to_string(Optimum optimum);
+
+/// The modulus E* at which the energy model comes nearest to a shape.
+struct EffectiveModulus {
+  double ratio = 0;  ///< E*/E
+  double rms_m = 0;  ///< what even E* does not explain
+  Optimum optimum = Optimum::clear;
+};
+
+/// Range of E*/E that is searched.
+inline constexpr double smallest_modulus_ratio = 1e-4;
+inline constexpr double largest_modulus_ratio = 1e4;
+
+/// Minimises the RMS distance at equal arc length over E*, everything else as in the scene: a scan
+/// over the range, then GSL's Brent minimiser.
+/// @throws InputError, ConvergenceError as solve_reference
+[[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape);
+
+}  // namespace dlo::compare

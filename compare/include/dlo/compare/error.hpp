@@ -1,0 +1,18 @@
+#pragma once
+
+#include <stdexcept>
+
+namespace dlo::compare {
+
+/// Bad input by the user: a file, a key, a value. The message is one line that names all of them
+/// and what is allowed.
+class InputError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// A solver did not converge; the message says which one and why.
+class ConvergenceError : public std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace dlo::compare

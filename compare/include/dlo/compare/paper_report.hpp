@@ -1,0 +1,70 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/comparison.hpp"
+
+namespace dlo::compare {
+
+/// A number the paper prints, beside what its formula gives.
+struct TableRow {
+  std::string table;
+  std::string quantity;
+  std::string unit;
+  std::string printed;  ///< digits as in the paper
+  double computed = 0;
+  std::string explanation;
+  bool agrees = false;  ///< computed, rounded to the printed digits, is what is printed
+};
+
+/// Tables 1 and 5 recomputed from the quantities they are said to follow from.
+[[nodiscard]] std::vector<TableRow> recompute_tables();
+
+/// E*/E of a shape that is still on its way to rest.
+struct ModulusAtTime {
+  double time_s = 0;  ///< simulated, at 4000 steps/s
+  long steps = 0;
+  EffectiveModulus modulus;
+  double rms_over_length = 0;            ///< against the energy model at E
+  double rest_distance_over_length = 0;  ///< RMS distance to the force model's own rest shape
+};
+
+/// One orientation of Figs. 12 and 13, with one choice of the points' weight.
+struct PaperCase {
+  Comparison rest;  ///< at rest, c_c as the paper used it
+  std::vector<ModulusAtTime> creep;
+  bool printed_weight = false;  ///< Table 5's 0.00892 N a point instead of rho A l g / N
+
+  /// Simulated time at which E*/E passes the paper's 1/3, between the times that were looked at
+  /// (power law); NaN if it does not [s].
+  [[nodiscard]] double time_at_one_third() const;
+};
+
+/// E*/E at rest for other loads, points, laws, rules and bookkeeping.
+struct ModulusVariant {
+  std::string what;
+  ForceModelSettings settings;
+  double load_factor = 1;  ///< on gravity
+  double gamma = 0;
+  EffectiveModulus modulus;
+  double rms_over_length = 0;  ///< against the energy model at E
+};
+
+struct PaperReport {
+  std::vector<TableRow> tables;
+  std::vector<PaperCase> cases;
+  std::vector<ModulusVariant> variants;
+  std::vector<std::string> assumptions;  ///< what the paper leaves open and how it was filled in
+  double c_c = 0;                        ///< used for the cases [N]
+  double c_F = 0;                        ///< used on the way to rest [m/N]
+  double steps_per_second = 0;
+};
+
+/// The paper's comparison on its own rod. @param progress  called with what is being done
+/// @throws ConvergenceError
+[[nodiscard]] PaperReport paper_report(
+    const std::function<void(const std::string&)>& progress = {});
+
+}  // namespace dlo::compare

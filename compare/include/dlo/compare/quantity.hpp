@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace dlo::compare {
+
+/// What a number in a scene file measures; it decides which units may follow.
+enum class Dimension {
+  number,
+  length,
+  angle,
+  pressure,
+  density,
+  force,
+  acceleration,
+  curvature,
+  line_stiffness,
+};
+
+/// The units that `dimension` knows, SI first, as a list for messages.
+[[nodiscard]] std::string known_units(Dimension dimension);
+
+/// Value in SI units of "210 GPa", "2 mm" or "-175 deg".
+/// @throws InputError without a file's name: what is wrong and what is allowed
+[[nodiscard]] double parse_quantity(std::string_view text, Dimension dimension);
+
+}  // namespace dlo::compare

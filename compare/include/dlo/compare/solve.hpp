@@ -1,0 +1,83 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dlo/compare/discretise.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
+
+namespace dlo::compare {
+
+enum class Model {
+  energy,  ///< minimiser of the continuous rod's energy
+  chain,   ///< minimiser over the force model's polygon
+  exact,   ///< boundary value problem of the elastica
+  force,   ///< the paper's model, stepped to rest
+};
+
+[[nodiscard]] const std::vector<std::string>& model_names();
+[[nodiscard]] const char* to_string(Model model);
+[[nodiscard]] Model model_from(const std::string& name);
+
+struct SolveOptions {
+  int terms = 0;                 ///< of the energy model, 0: as many as needed
+  int max_evaluations = 20000;   ///< of the minimisers
+  long max_steps = 20'000'000;   ///< of the force model
+  double rest_tolerance = 1e-7;  ///< of the force model, share of the rod's length
+};
+
+/// Energies [J]; gravity and loads are zero at the first gripper.
+struct SceneEnergies {
+  double bending = 0;
+  double gravity = 0;
+  double load = 0;
+  double stretch = 0;
+
+  [[nodiscard]] double total() const { return bending + gravity + load + stretch; }
+};
+
+/// What a gripper exerts on the rod, torque about its position.
+struct GripperLoad {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
+};
+
+/// A shape and what it cost. Only converged shapes are ever returned.
+struct Solution {
+  Model model = Model::energy;
+  std::string message;
+  Shape shape;
+  SceneEnergies energy;
+  std::vector<GripperLoad> grippers;
+  long evaluations = 0;
+  long steps = 0;
+  int terms = 0;
+  double seconds = 0;
+  Parameters parameters;  ///< of chain and force
+  double c_F = 0;         ///< of force, at its last step
+  double c_h = 0;
+  double remaining_error = 0;  ///< of force: estimated distance to rest [m]
+};
+
+/// The continuous reference of a scene: `energy` or `exact`.
+/// @throws InputError, ConvergenceError
+[[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
+                                                        const SolveOptions& options = {});
+
+/// Solves a scene. Continuous models are sampled at `arc_lengths` (or at 101 equal ones if empty);
+/// polygons keep their points, or are resampled on straight lines when `arc_lengths` are given.
+/// @throws InputError if the model does not know such a scene, ConvergenceError
+[[nodiscard]] Solution solve(const Scene& scene, Model model, const SolveOptions& options = {},
+                             const std::vector<double>& arc_lengths = {});
+
+/// The polygon of minimal energy. @throws InputError, ConvergenceError
+[[nodiscard]] Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
+                                   const SolveOptions& options = {});
+
+/// The force model at rest. @throws InputError, ConvergenceError
+[[nodiscard]] Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
+                                   const SolveOptions& options = {});
+
+}  // namespace dlo::compare

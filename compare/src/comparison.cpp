@@ -1,0 +1,73 @@
+#include "dlo/compare/comparison.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Difference of a polygon from the reference along the rod, so that polygons with other points can
+/// be set against each other: the difference is smooth where the polygon is not.
+Shape difference_field(const Shape& shape, const Reference& reference) {
+  return {shape.arc_length, shape.points - reference(shape.arc_length).points};
+}
+
+double field_distance(const Shape& a, const Shape& b, const std::vector<double>& s) {
+  return rms(s, resample(a, s).points - resample(b, s).points);
+}
+
+Budget error_budget(const Scene& scene, const Solution& force, const Reference& reference,
+                    const SolveOptions& options) {
+  ForceModelSettings settings = scene.force_model;
+  const auto chain = [&] { return solve_chain(scene, settings, options).shape; };
+  const Shape same = chain();
+  settings.law = Law::hooke;
+  const Shape hooke = settings.law == scene.force_model.law ? same : chain();
+  settings.bookkeeping = Bookkeeping::consistent;
+  const Shape consistent = settings.bookkeeping == scene.force_model.bookkeeping ? hooke : chain();
+
+  constexpr int field_points = 201;
+  const std::vector<double> s = equal_arc_lengths(scene.length, field_points);
+  const Shape force_field = difference_field(force.shape, reference);
+  const Shape same_field = difference_field(same, reference);
+  const Shape hooke_field = difference_field(hooke, reference);
+  const Shape consistent_field = difference_field(consistent, reference);
+  Budget budget;
+  budget.law = field_distance(same_field, hooke_field, s);
+  budget.bookkeeping = field_distance(hooke_field, consistent_field, s);
+  budget.discretisation = rms(s, resample(consistent_field, s).points);
+  budget.stretch = field_distance(force_field, same_field, s);
+  budget.not_at_rest = force.remaining_error;
+  return budget;
+}
+
+}  // namespace
+
+Eigen::Matrix3Xd straight_rod(const Scene& scene, const std::vector<double>& s) {
+  const Gripper& grip = scene.grippers.front();
+  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(s.size()));
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    points.col(static_cast<Eigen::Index>(i)) = grip.position + (s[i] - grip.at) * *grip.direction;
+  }
+  return points;
+}
+
+Comparison compare(const Scene& scene, const SolveOptions& options) {
+  Comparison result;
+  result.scene = scene.name;
+  result.gamma = scene.gamma();
+  result.settings = scene.force_model;
+  result.force = solve_force(scene, scene.force_model, options);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
+  const std::vector<double>& s = result.force.shape.arc_length;
+  result.reference = {s, energy.sample(s).points};
+  const Eigen::Matrix3Xd straight = straight_rod(scene, s);
+  const Eigen::Index tip =
+      scene.grippers.front().at == 0 ? static_cast<Eigen::Index>(s.size()) - 1 : 0;
+  result.deviation = deviation(result.force.shape, energy.sample, straight, tip);
+  result.undeformed_rms_over_length = rms(s, straight - result.reference.points) / scene.length;
+  result.effective_modulus = fit_effective_modulus(scene, result.force.shape);
+  result.budget = error_budget(scene, result.force, energy.sample, options);
+  result.energy_seconds = energy.seconds;
+  result.energy_evaluations = energy.evaluations;
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,82 @@
+#include "dlo/compare/deviation.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace dlo::compare {
+namespace {
+
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+double segment_angle_rms(const Shape& shape, const Reference& reference) {
+  const std::vector<double>& s = shape.arc_length;
+  std::vector<double> middle;
+  for (std::size_t i = 0; i + 1 < s.size(); ++i) middle.push_back((s[i] + s[i + 1]) / 2);
+  const energy_model::Samples samples = reference(middle);
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const double angle = angle_between(shape.points.col(column + 1) - shape.points.col(column),
+                                       samples.tangents.col(column));
+    sum += angle * angle * (s[i + 1] - s[i]);
+  }
+  return std::sqrt(sum / (s.back() - s.front()));
+}
+
+double curvature_rms(const Shape& shape, const energy_model::Samples& samples) {
+  const std::vector<double>& s = shape.arc_length;
+  double sum = 0;
+  double length = 0;
+  for (std::size_t i = 1; i + 1 < s.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const Eigen::Vector3d before = shape.points.col(column) - shape.points.col(column - 1);
+    const Eigen::Vector3d after = shape.points.col(column + 1) - shape.points.col(column);
+    const double share = (s[i + 1] - s[i - 1]) / 2;
+    // The binormal carries the sense of turning: a wrong side counts twice.
+    const Eigen::Vector3d turn = before.cross(after).normalized() * angle_between(before, after);
+    const Eigen::Vector3d expected =
+        samples.tangents.col(column).cross(samples.curvature.col(column));
+    sum += (turn / share - expected).squaredNorm() * share;
+    length += share;
+  }
+  return length > 0 ? std::sqrt(sum / length) : 0;
+}
+
+}  // namespace
+
+double rms(const std::vector<double>& arc_length, const Eigen::Matrix3Xd& difference) {
+  if (arc_length.size() < 2 || difference.cols() != static_cast<Eigen::Index>(arc_length.size())) {
+    throw std::invalid_argument("rms: needs two or more points, one per arc length");
+  }
+  double sum = 0;
+  for (std::size_t i = 0; i + 1 < arc_length.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    sum += (arc_length[i + 1] - arc_length[i]) / 2 *
+           (difference.col(column).squaredNorm() + difference.col(column + 1).squaredNorm());
+  }
+  return std::sqrt(sum / (arc_length.back() - arc_length.front()));
+}
+
+Deviation deviation(const Shape& shape, const Reference& reference,
+                    const Eigen::Matrix3Xd& straight, Eigen::Index tip) {
+  const energy_model::Samples samples = reference(shape.arc_length);
+  const Eigen::Matrix3Xd difference = shape.points - samples.points;
+  Deviation result;
+  result.rms_m = rms(shape.arc_length, difference);
+  Eigen::Index worst = 0;
+  result.max_m = std::sqrt(difference.colwise().squaredNorm().maxCoeff(&worst));
+  result.max_at_m = shape.arc_length[static_cast<std::size_t>(worst)];
+  result.tip_m = difference.col(tip).norm();
+  result.rms_over_length = result.rms_m / (shape.arc_length.back() - shape.arc_length.front());
+  const double movement = rms(shape.arc_length, samples.points - straight);
+  result.rms_over_movement = movement > 0 ? result.rms_m / movement : 0;
+  result.angle_rms_rad = segment_angle_rms(shape, reference);
+  result.curvature_rms_per_m = curvature_rms(shape, samples);
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,225 @@
+#include "dlo/compare/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "builtin_data.hpp"
+#include "dlo/compare/error.hpp"
+#include "strict_table.hpp"
+
+namespace dlo::compare {
+namespace {
+
+template <typename Choice>
+Choice choice_from(const std::string& name, const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InputError(
+        fmt::format("unknown choice \"{}\" (allowed: {})", name, fmt::join(names, ", ")));
+  }
+  return static_cast<Choice>(found - names.begin());
+}
+
+Material read_material(StrictTable& rod, const std::vector<Material>& known_materials) {
+  if (rod.is_table("material")) {
+    StrictTable own = rod.table("material");
+    Material material{.name = "own", .source = "scene file"};
+    material.youngs_modulus = own.number("youngs_modulus", Dimension::pressure, Range::positive());
+    material.density = own.number("density", Dimension::density, Range::not_negative());
+    own.finish();
+    return material;
+  }
+  const std::string name = rod.text("material");
+  std::vector<std::string> names;
+  for (const Material& material : known_materials) {
+    if (material.name == name) return material;
+    names.push_back(material.name);
+  }
+  rod.fail("material", fmt::format("unknown material (allowed: {}, or a table with youngs_modulus "
+                                   "and density)",
+                                   fmt::join(names, ", ")));
+}
+
+Eigen::Vector3d unit_vector(StrictTable& table, std::string_view key) {
+  const Eigen::Vector3d vector = table.vector(key, Dimension::number);
+  if (!(vector.norm() > 0)) table.fail(key, "must not be the zero vector");
+  return vector.normalized();
+}
+
+Eigen::Vector3d read_direction(StrictTable& table) {
+  if (table.is_array("direction")) return unit_vector(table, "direction");
+  const double angle = table.number("direction", Dimension::angle, Range::any());
+  return {std::cos(angle), std::sin(angle), 0};
+}
+
+double read_arc_length(StrictTable& table, double length) {
+  return table.number("at", Dimension::length, Range::between(0, length, " m, the rod's length"));
+}
+
+Gripper read_gripper(StrictTable& table, double length) {
+  Gripper gripper;
+  gripper.at = read_arc_length(table, length);
+  gripper.position = table.vector("position", Dimension::length);
+  const std::string hold = table.optional_choice("hold", {"clamp", "pin"}).value_or("clamp");
+  if (hold == "clamp") {
+    gripper.direction = read_direction(table);
+  } else if (table.has("direction")) {
+    table.fail("direction", "a pin has no direction (allowed: hold = \"clamp\", or no direction)");
+  }
+  table.finish();
+  return gripper;
+}
+
+Obstacle read_obstacle(StrictTable& table) {
+  Obstacle obstacle;
+  obstacle.point = table.vector("point", Dimension::length);
+  obstacle.normal = unit_vector(table, "normal");
+  obstacle.stiffness =
+      table.optional_number("stiffness", Dimension::line_stiffness, Range::positive())
+          .value_or(obstacle.stiffness);
+  table.finish();
+  return obstacle;
+}
+
+ForceModelSettings read_force_model(StrictTable& table) {
+  ForceModelSettings settings;
+  settings.points = table.optional_integer("points", 4, 1'000'000).value_or(settings.points);
+  if (const auto name = table.optional_choice("law", law_names())) settings.law = law_from(*name);
+  if (const auto name = table.optional_choice("bookkeeping", bookkeeping_names())) {
+    settings.bookkeeping = bookkeeping_from(*name);
+  }
+  if (const auto name = table.optional_choice("stepper", stepper_names())) {
+    settings.stepper = stepper_from(*name);
+  }
+  if (const auto name = table.optional_choice("bending_rule", bending_rule_names())) {
+    settings.bending_rule = bending_rule_from(*name);
+  }
+  settings.design_curvature =
+      table.optional_number("design_curvature", Dimension::curvature, Range::positive());
+  settings.point_weight =
+      table.optional_number("point_weight", Dimension::force, Range::not_negative());
+  if (settings.point_weight && settings.bookkeeping != Bookkeeping::paper) {
+    table.fail("point_weight",
+               "one weight for every point (allowed: with bookkeeping = \"paper\")");
+  }
+  settings.c_b = table.optional_number("c_b", Dimension::force, Range::positive());
+  settings.c_c = table.optional_number("c_c", Dimension::force, Range::positive());
+  settings.c_F = table.optional_number("c_F", Dimension::number, Range::positive());
+  settings.c_h =
+      table.optional_number("c_h", Dimension::number, {0, 0.999999999, false, "0 <= c_h < 1"});
+  settings.l_s = table.optional_number("l_s", Dimension::length, Range::positive());
+  table.finish();
+  return settings;
+}
+
+}  // namespace
+
+const std::vector<std::string>& law_names() {
+  static const std::vector<std::string> names = {"paper", "hooke"};
+  return names;
+}
+const std::vector<std::string>& bookkeeping_names() {
+  static const std::vector<std::string> names = {"paper", "consistent"};
+  return names;
+}
+const std::vector<std::string>& stepper_names() {
+  static const std::vector<std::string> names = {"basic", "limited", "relative", "dynamic", "auto"};
+  return names;
+}
+const std::vector<std::string>& bending_rule_names() {
+  static const std::vector<std::string> names = {"formula_21", "moment_matched"};
+  return names;
+}
+
+Law law_from(const std::string& name) { return choice_from<Law>(name, law_names()); }
+Bookkeeping bookkeeping_from(const std::string& name) {
+  return choice_from<Bookkeeping>(name, bookkeeping_names());
+}
+StepperName stepper_from(const std::string& name) {
+  return choice_from<StepperName>(name, stepper_names());
+}
+BendingRule bending_rule_from(const std::string& name) {
+  return choice_from<BendingRule>(name, bending_rule_names());
+}
+
+const char* to_string(Law law) { return law_names()[static_cast<std::size_t>(law)].c_str(); }
+const char* to_string(Bookkeeping bookkeeping) {
+  return bookkeeping_names()[static_cast<std::size_t>(bookkeeping)].c_str();
+}
+const char* to_string(StepperName stepper) {
+  return stepper_names()[static_cast<std::size_t>(stepper)].c_str();
+}
+const char* to_string(BendingRule rule) {
+  return bending_rule_names()[static_cast<std::size_t>(rule)].c_str();
+}
+
+double Scene::cross_section() const { return std::numbers::pi * diameter * diameter / 4; }
+double Scene::bending_stiffness() const {
+  return material.youngs_modulus * cross_section() * diameter * diameter / 16;
+}
+double Scene::axial_stiffness() const { return material.youngs_modulus * cross_section(); }
+double Scene::mass() const { return material.density * cross_section() * length; }
+Eigen::Vector3d Scene::weight_per_length() const {
+  return material.density * cross_section() * gravity;
+}
+double Scene::gamma() const {
+  return weight_per_length().norm() * length * length * length / bending_stiffness();
+}
+
+Scene parse_scene(const std::string& text, const std::string& file,
+                  const std::vector<Material>& known_materials) {
+  const toml::table root = parse_toml(text, file);
+  StrictTable table(root, "", file);
+  Scene scene;
+  scene.file = file;
+  scene.name = table.optional_text("name").value_or(file);
+  scene.gravity = table.optional_vector("gravity", Dimension::acceleration).value_or(scene.gravity);
+
+  StrictTable rod = table.table("rod");
+  scene.length = rod.number("length", Dimension::length, Range::positive());
+  scene.diameter = rod.number("diameter", Dimension::length, Range::positive());
+  scene.material = read_material(rod, known_materials);
+  rod.finish();
+
+  for (StrictTable& entry : table.tables("gripper")) {
+    scene.grippers.push_back(read_gripper(entry, scene.length));
+  }
+  if (scene.grippers.empty()) {
+    throw InputError(fmt::format(
+        "{}: gripper: none given, nothing would hold the rod (allowed: one or more [[gripper]])",
+        file));
+  }
+  for (StrictTable& entry : table.tables("load")) {
+    PointLoad load;
+    load.at = read_arc_length(entry, scene.length);
+    load.force = entry.vector("force", Dimension::force);
+    entry.finish();
+    scene.loads.push_back(load);
+  }
+  for (StrictTable& entry : table.tables("obstacle")) {
+    scene.obstacles.push_back(read_obstacle(entry));
+  }
+  if (auto settings = table.optional_table("force_model")) {
+    scene.force_model = read_force_model(*settings);
+  }
+  table.finish();
+  return scene;
+}
+
+Scene load_scene(const std::string& path, const std::vector<Material>& known_materials) {
+  return parse_scene(read_file(path), path, known_materials);
+}
+
+std::vector<Scene> paper_scenes() {
+  return {
+      parse_scene(std::string(builtin::spring_steel_135_toml), "data/scenes/spring_steel_135.toml"),
+      parse_scene(std::string(builtin::spring_steel_175_toml), "data/scenes/spring_steel_175.toml"),
+      parse_scene(std::string(builtin::spring_steel_215_toml),
+                  "data/scenes/spring_steel_215.toml")};
+}
+
+}  // namespace dlo::compare

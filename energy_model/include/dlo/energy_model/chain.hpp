@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+#include "dlo/energy_model/status.hpp"
+
+namespace dlo::energy_model {
+
+/// The potential of a joint that turns by alpha; L is the mean length of its two segments.
+enum class JointLaw {
+  paper,  ///< c_b L (8/3 - 4 cos(alpha/2) + 4/3 cos^3(alpha/2))
+  hooke,  ///< -4 (EI/L) ln cos(alpha/2), up to 3 rad and with constant moment beyond
+};
+
+/// A polygon of rigid segments in a plane, its first segment held. It is the force model's rod
+/// without stretch, so its minimum is where the force model comes to rest.
+struct ChainProblem {
+  Eigen::VectorXd segment_lengths;                  ///< [m], n >= 2, each > 0
+  Eigen::Vector2d start = Eigen::Vector2d::Zero();  ///< first point [m]
+  double held_angle = 0;                            ///< of the first segment, from +x [rad]
+  Eigen::Matrix2Xd node_forces;                     ///< dead force on each point [N], 2 x (n+1)
+  JointLaw law = JointLaw::hooke;
+  double stiffness = 0;  ///< c_b [N] or EI [N m^2], > 0
+};
+
+struct ChainOptions {
+  /// Angles of the segments to start from [rad], n; empty: from the moments of the straight chain.
+  Eigen::VectorXd start_angles;
+  double tolerance = 1e-12;  ///< of the gradient, over the moment of all forces about the grip; > 0
+  int max_evaluations = 20000;
+};
+
+struct [[nodiscard]] ChainResult {
+  SolveStatus status = SolveStatus::not_run;
+  std::string message = "never ran";
+  int evaluations = 0;
+  double seconds = 0;
+  double residual = -1;       ///< norm of the gradient by the segment angles [N m]
+  Eigen::VectorXd angles;     ///< of the segments, from +x [rad], n
+  Eigen::Matrix2Xd points;    ///< [m], 2 x (n+1)
+  double bending_energy = 0;  ///< [J]
+  double load_energy = 0;     ///< of all forces, zero with every point at `start` [J]
+};
+
+/// Minimises the joint potentials minus the work of the forces with NLopt's LD_LBFGS over the joint
+/// angles; Newton steps over the segment angles (a tridiagonal matrix) finish and prove the
+/// minimum.
+/// @throws std::invalid_argument if the problem or an option is out of range
+ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options = {});
+
+/// Energy [J] of a chain with these segment angles, and its gradient [N m]; the held segment's
+/// component is zero.
+[[nodiscard]] double chain_energy(const ChainProblem& problem,
+                                  const Eigen::Ref<const Eigen::VectorXd>& angles,
+                                  Eigen::Ref<Eigen::VectorXd> gradient);
+
+}  // namespace dlo::energy_model

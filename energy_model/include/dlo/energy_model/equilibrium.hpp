@@ -1,0 +1,27 @@
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dlo/energy_model/problem.hpp"
+
+namespace dlo::energy_model {
+
+/// Outcome of a solver for a continuous rod.
+struct [[nodiscard]] Equilibrium {
+  SolveStatus status = SolveStatus::not_run;
+  std::string message = "never ran";
+  int evaluations = 0;   ///< of the objective, with or without derivatives; shots for `exact`
+  int terms = 0;         ///< curvature coefficients; 0 for `exact`
+  double seconds = 0;    ///< wall time of the solver
+  double residual = -1;  ///< norm of the gradient over EI/l; for `exact` the clamp's angle [rad]
+  Energies energy;
+  std::vector<Reaction> grips;  ///< in the order of Problem::grips
+
+  /// The shape at arc lengths within [0, length], in any order [m].
+  std::function<Samples(std::span<const double>)> sample;
+};
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+namespace dlo::energy_model {
+
+/// A rod clamped at one end, in its plane and in its own units: lengths in l, forces in EI/l^2,
+/// energies in EI/l. The clamp is the origin and the rod leaves it along +x; s is the distance from
+/// the clamp along the rod.
+struct PlanarCantilever {
+  struct Load {
+    double at = 0;  ///< s, 0 < s <= 1
+    Eigen::Vector2d force = Eigen::Vector2d::Zero();
+  };
+  Eigen::Vector2d weight = Eigen::Vector2d::Zero();  ///< its norm is Gamma = w l^3 / (EI)
+  std::vector<Load> loads;                           ///< sorted by `at`
+};
+
+/// A right-handed frame of a plane in space.
+struct Plane {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+  Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+
+  [[nodiscard]] Eigen::Vector2d coordinates(const Eigen::Vector3d& vector) const {
+    return {x.dot(vector), y.dot(vector)};
+  }
+  [[nodiscard]] Eigen::Vector3d vector(const Eigen::Vector2d& coordinates) const {
+    return x * coordinates.x() + y * coordinates.y();
+  }
+};
+
+/// The plane of a rod that leaves `origin` along `direction` under `forces`: it holds them all.
+/// When they are all parallel any plane through them would do; the one towards global +x is taken
+/// (+y for a rod along x), which also decides to which side an upright rod buckles.
+/// @return nothing if the forces leave the plane by more than 1e-12 of the largest one
+[[nodiscard]] std::optional<Plane> find_plane(const Eigen::Vector3d& origin,
+                                              const Eigen::Vector3d& direction,
+                                              const std::vector<Eigen::Vector3d>& forces);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dlo/energy_model/status.hpp"
+
+namespace dlo::energy_model {
+
+/// Holds the rod at one arc length: a clamp (position and direction) or a pin (position).
+struct Grip {
+  double at = 0;                                       ///< arc length [m], 0 .. length
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+  std::optional<Eigen::Vector3d> direction;            ///< along growing arc length, any length > 0
+};
+
+/// A dead force.
+struct Load {
+  double at = 0;                                    ///< arc length [m], 0 .. length
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
+};
+
+/// A round, naturally straight, inextensible rod whose grips leave the twist free.
+struct Problem {
+  double length = 0;                                            ///< l [m], > 0
+  double bending_stiffness = 0;                                 ///< EI [N m^2], > 0
+  Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
+  std::vector<Grip> grips;
+  std::vector<Load> loads;
+};
+
+/// @throws std::invalid_argument naming the first member that is out of range
+void check(const Problem& problem);
+
+/// Energies [J]; gravity and loads are zero where their points sit at the first grip.
+struct Energies {
+  double bending = 0;
+  double gravity = 0;
+  double load = 0;
+
+  [[nodiscard]] double total() const { return bending + gravity + load; }
+};
+
+/// What a gripper exerts on the rod, the torque about the gripper's position.
+struct Reaction {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
+};
+
+/// A shape at given arc lengths.
+struct Samples {
+  std::vector<double> arc_length;  ///< [m], M
+  Eigen::Matrix3Xd points;         ///< [m], 3 x M
+  Eigen::Matrix3Xd tangents;       ///< unit, along growing arc length [-], 3 x M
+  Eigen::Matrix3Xd curvature;      ///< derivative of the tangent by arc length [1/m], 3 x M
+};
+
+/// M arc lengths from 0 to `length`, equally spaced [m]. @throws std::invalid_argument unless M >=
+/// 2
+[[nodiscard]] std::vector<double> equal_arc_lengths(double length, Eigen::Index count);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,38 @@
+#pragma once
+
+namespace dlo::energy_model {
+
+/// How a solver ended. All but `converged` and `roundoff_limited` are failures; the default of
+/// every result is one.
+enum class SolveStatus {
+  not_run,
+  converged,         ///< gradient below its tolerance at a minimum (positive second variation)
+  roundoff_limited,  ///< no further progress in double precision; the shape is usable
+  saddle,            ///< an equilibrium, but the second variation has a negative direction
+  evaluation_limit,
+  failed,  ///< the solver gave up, see the message
+};
+
+[[nodiscard]] constexpr bool succeeded(SolveStatus status) {
+  return status == SolveStatus::converged || status == SolveStatus::roundoff_limited;
+}
+
+[[nodiscard]] constexpr const char* to_string(SolveStatus status) {
+  switch (status) {
+    case SolveStatus::not_run:
+      return "not run";
+    case SolveStatus::converged:
+      return "converged";
+    case SolveStatus::roundoff_limited:
+      return "limited by roundoff";
+    case SolveStatus::saddle:
+      return "an unstable equilibrium (saddle)";
+    case SolveStatus::evaluation_limit:
+      return "evaluation limit reached";
+    case SolveStatus::failed:
+      break;
+  }
+  return "failed";
+}
+
+}  // namespace dlo::energy_model

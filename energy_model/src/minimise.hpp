@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+
+#include "dlo/energy_model/status.hpp"
+
+namespace dlo::energy_model {
+
+/// Value of an objective; writes the gradient into its second argument.
+using Objective =
+    std::function<double(const Eigen::Ref<const Eigen::VectorXd>&, Eigen::Ref<Eigen::VectorXd>)>;
+
+struct MinimiseOptions {
+  double gradient_tolerance = 0;  ///< stop at a Euclidean gradient norm below this
+  int max_evaluations = 0;
+};
+
+struct [[nodiscard]] MinimiseResult {
+  SolveStatus status = SolveStatus::not_run;
+  std::string message = "never ran";
+  int evaluations = 0;
+};
+
+/// NLopt's LD_LBFGS from and into `x`. NLopt itself cannot stop on the gradient, so the objective's
+/// wrapper stops it; the point with that gradient is what `x` then holds.
+MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
+                              const MinimiseOptions& options);
+
+}  // namespace dlo::energy_model

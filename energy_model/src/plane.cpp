@@ -1,0 +1,45 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "dlo/energy_model/planar.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr double planar_tolerance = 1e-12;
+
+/// The part of `vector` across the unit vector `direction`.
+Eigen::Vector3d across(const Eigen::Vector3d& vector, const Eigen::Vector3d& direction) {
+  return vector - vector.dot(direction) * direction;
+}
+
+}  // namespace
+
+std::optional<Plane> find_plane(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                const std::vector<Eigen::Vector3d>& forces) {
+  Plane plane;
+  plane.origin = origin;
+  plane.x = direction.normalized();
+  Eigen::Vector3d furthest = Eigen::Vector3d::Zero();
+  double largest = 0;
+  for (const Eigen::Vector3d& force : forces) {
+    largest = std::max(largest, force.norm());
+    const Eigen::Vector3d part = across(force, plane.x);
+    if (part.norm() > furthest.norm()) furthest = part;
+  }
+  if (furthest.norm() <= planar_tolerance * largest || largest == 0) {
+    furthest = across(Eigen::Vector3d::UnitX(), plane.x);
+    if (furthest.norm() < 1e-6) furthest = across(Eigen::Vector3d::UnitY(), plane.x);
+  }
+  plane.y = furthest.normalized();
+  // Once more, so that x and y are orthogonal to rounding even for a nearly parallel force.
+  plane.y = across(plane.y, plane.x).normalized();
+  const Eigen::Vector3d normal = plane.x.cross(plane.y);
+  for (const Eigen::Vector3d& force : forces) {
+    if (std::abs(normal.dot(force)) > planar_tolerance * largest) return std::nullopt;
+  }
+  return plane;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+
+namespace dlo::energy_model {
+
+/// Throws "function: argument = value, must be allowed".
+inline void require(bool good, std::string_view function, std::string_view argument, double value,
+                    std::string_view allowed) {
+  if (good) return;
+  std::ostringstream message;
+  message << function << ": " << argument << " = " << value << ", must be " << allowed;
+  throw std::invalid_argument(message.str());
+}
+
+inline void require_positive(std::string_view function, std::string_view argument, double value) {
+  require(value > 0 && std::isfinite(value), function, argument, value, "finite and > 0");
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace dlo::force_model {
+
+/// How the moment of a joint grows with its turning angle alpha (L: mean rest length of the two
+/// segments that meet there).
+enum class BendingLaw {
+  paper,  ///< M = 2 c_b L sin^3(alpha/2): cubic for small angles (paper, Formulas 3 and 4)
+  hooke,  ///< M = 2 (EI/L) tan(alpha/2): linear to second order, as a rod's
+};
+
+/// What resists bending.
+struct Bending {
+  BendingLaw law = BendingLaw::hooke;
+  double stiffness = 0;  ///< c_b [N] for `paper`, EI [N m^2] for `hooke`; >= 0
+};
+
+/// The `hooke` law's tangent is followed up to this angle [rad]; beyond it the moment stays
+/// constant, so that a full fold has a finite moment and a finite potential.
+inline constexpr double hooke_fold_angle = 3.0;
+
+/// Moment of one joint [N m] at turning angle `alpha` [rad], 0 <= alpha <= pi.
+[[nodiscard]] double joint_moment(const Bending& bending, double segment_length, double alpha);
+
+/// Potential of one joint [J]; its derivative by alpha is joint_moment.
+[[nodiscard]] double joint_potential(const Bending& bending, double segment_length, double alpha);
+
+/// Derivative of joint_moment by alpha [N m].
+[[nodiscard]] double joint_stiffness(const Bending& bending, double segment_length, double alpha);
+
+/// Adds the inner force of bending on every point.
+///
+/// With u, v the unit vectors of the two segments at P_i, F = c_b (1 - u.v) e, e the unit chord
+/// from P_{i-1} to P_{i+1}:
+///     paper:  P_{i+1}: F - (F.v) v      P_{i-1}: -(F - (F.u) u)      P_i: minus the sum of both
+/// The paper prints (Formula 4) the same parts with signs that leave a net force; Fig. 2 and
+/// equilibrium ask for these. Net force is zero; net torque is zero for equal segments.
+///
+/// With k = 2 (EI/L) / (1 + u.v), a and b the two segments:
+///     hooke:  P_{i+1}: k/|b| (u - (u.v) v)   P_{i-1}: -k/|a| (v - (u.v) u)   P_i: minus the sum
+/// Net force and net torque are zero for any segments.
+///
+/// At a full fold (u = -v) the direction of opening is not defined; a fixed one orthogonal to u is
+/// taken. A joint next to a segment of zero length has no angle and exerts no force.
+/// @param points        positions [m], 3 x (n+1), n >= 1
+/// @param rest_lengths  [m], n, > 0
+/// @param[in,out] forces  added to, not overwritten [N], 3 x (n+1)
+/// @throws std::invalid_argument if a shape or number is out of range
+void add_bending_forces(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                        const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,
+                        const Bending& bending, Eigen::Ref<Eigen::Matrix3Xd> forces);
+
+/// Sum of joint_potential over the inner points [J]. Arguments and errors as above.
+[[nodiscard]] double bending_energy(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                                    const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,
+                                    const Bending& bending);
+
+}  // namespace dlo::force_model

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace dlo::force_model {
+
+/// An obstacle's plane (paper, Formula 5, constraint 2). It acts on the side `normal` points away
+/// from, and it only pushes: the paper prints a force that grows with the distance on either side.
+struct Wall {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< a point of the plane [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< unit vector to the free side [-]
+  double stiffness = 0;                               ///< c_e [N/m], >= 0
+};
+
+/// Force of a wall on a point: c_e d N for a depth d > 0 behind the plane, else zero [N].
+[[nodiscard]] Eigen::Vector3d wall_force(const Wall& wall, const Eigen::Vector3d& position);
+
+/// Potential of wall_force, 1/2 c_e d^2 [J].
+[[nodiscard]] double wall_energy(const Wall& wall, const Eigen::Vector3d& position);
+
+/// Force of a spring that pulls `position` to `anchor` (Formula 5, constraint 3, with the restoring
+/// sign that the print lacks): c_e (anchor - position) [N].
+/// @param stiffness  c_e [N/m]
+[[nodiscard]] Eigen::Vector3d spring_force(double stiffness, const Eigen::Vector3d& anchor,
+                                           const Eigen::Vector3d& position);
+
+}  // namespace dlo::force_model

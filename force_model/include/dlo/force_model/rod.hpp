@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "dlo/force_model/bending.hpp"
+#include "dlo/force_model/environment.hpp"
+#include "dlo/force_model/grip.hpp"
+
+namespace dlo::force_model {
+
+/// Everything that makes forces on the points P_0 .. P_n of a rod.
+struct Rod {
+  Eigen::VectorXd rest_lengths;  ///< of the n segments [m], each > 0
+  double c_c = 0;                ///< stretch stiffness [N], >= 0
+  Bending bending;
+  Eigen::Matrix3Xd loads;  ///< constant force on each point: gravity and loads (Formula 5,
+                           ///< constraint 1) [N], 3 x (n+1)
+  std::vector<Wall> walls;
+  std::vector<Grip> grips;
+
+  [[nodiscard]] Eigen::Index points() const { return rest_lengths.size() + 1; }
+  [[nodiscard]] double length() const { return rest_lengths.sum(); }
+};
+
+/// @throws std::invalid_argument naming the first member that is out of range
+void check(const Rod& rod);
+
+/// Sum of all forces on each point (paper, Formula 6), those of spring grips included, those of
+/// rigid grips not: on rigidly held points the result is minus what the gripper has to exert.
+/// @param points  positions [m], 3 x (n+1)
+/// @param[out] forces  overwritten [N], 3 x (n+1)
+/// @throws std::invalid_argument if a shape or number is out of range
+void total_forces(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                  Eigen::Ref<Eigen::Matrix3Xd> forces);
+
+/// What each grip exerts on the rod in this shape, in the order of rod.grips.
+[[nodiscard]] std::vector<GripReaction> grip_reactions(
+    const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+
+/// Energies of a shape [J]; gravity and loads count as `load`, with their zero at the origin.
+struct RodEnergy {
+  double bending = 0;
+  double stretch = 0;
+  double load = 0;
+  double contact = 0;  ///< walls and spring grips
+
+  [[nodiscard]] double total() const { return bending + stretch + load + contact; }
+};
+
+[[nodiscard]] RodEnergy energy(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+
+}  // namespace dlo::force_model

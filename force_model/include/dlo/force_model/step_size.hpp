@@ -1,0 +1,44 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dlo/force_model/rod.hpp"
+
+namespace dlo::force_model {
+
+/// Stiffness [N/m] of the fastest and the slowest mode: the extreme eigenvalues of minus the
+/// derivative of the total force by the positions of the points that are free to move.
+struct ModeBounds {
+  double fastest = 0;  ///< upper bound in this shape
+  double slowest = 0;  ///< estimate, > 0
+};
+
+/// Bounds for a rod in a given shape.
+///
+/// `fastest` adds up what can act on one point: 4 c_c / L of contraction, 16 M'(alpha) / L^2 of
+/// bending (hooke: 16 EI / L^3 when straight; paper: 48 c_b sin^2(alpha/2) cos(alpha/2) / L), what
+/// turning the joint's forces adds (at most 4 M / L^2), walls and spring grips. L is the shortest
+/// segment as it is now, so that compressed segments count.
+///
+/// `slowest` is the first mode of a straight clamped-free rod of this length and these points,
+/// (1.8751 / l)^4 EI L. For the cubic law EI L is taken at the joint angle that the loads ask for.
+/// @param points  [m], 3 x rod.points()
+/// @throws std::invalid_argument if a shape or number is out of range
+[[nodiscard]] ModeBounds mode_bounds(const Rod& rod,
+                                     const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+
+/// Largest stable c_F [m/N] for a fastest mode [N/m]: Formula 15 solved by linear stability,
+/// 2 (1 + c_h) / fastest. Points oscillate above it; `c_h` = 0 means no dynamics.
+[[nodiscard]] double largest_step_factor(double fastest, double c_h);
+
+/// The constants of Formula 19 for these modes. It is Polyak's heavy ball, fastest with
+///     c_F = 4 / (sqrt(fastest) + sqrt(slowest))^2,
+///     c_h = ((sqrt(fastest) - sqrt(slowest)) / (sqrt(fastest) + sqrt(slowest)))^2
+struct HeavyBall {
+  double c_F = 0;  ///< [m/N]
+  double c_h = 0;  ///< [-]
+};
+
+[[nodiscard]] HeavyBall heavy_ball(const ModeBounds& modes);
+
+}  // namespace dlo::force_model

@@ -1,0 +1,110 @@
+#include "dlo/force_model/rod.hpp"
+
+#include <Eigen/Geometry>
+
+#include "dlo/force_model/contraction.hpp"
+#include "require.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
+
+void check_grip(const Grip& grip, Eigen::Index points) {
+  const auto held = static_cast<double>(grip.targets.cols());
+  require(held == 1 || held == 2, "Rod", "points held by a grip", held, "1 or 2");
+  require(grip.first_point >= 0 && grip.first_point + grip.targets.cols() <= points, "Rod",
+          "first point of a grip", static_cast<double>(grip.first_point),
+          "so that the grip's points exist");
+  require(grip.targets.allFinite(), "Rod", "targets of a grip", grip.targets.norm(), "finite");
+  if (grip.hold == GripHold::spring) require_positive("Rod", "grip stiffness", grip.stiffness);
+}
+
+Eigen::Vector3d on_held_point(const Grip& grip, Eigen::Index k, const Points& points,
+                              const Eigen::Matrix3Xd& forces) {
+  const Eigen::Index i = grip.first_point + k;
+  if (grip.hold == GripHold::rigid) return -forces.col(i);
+  return spring_force(grip.stiffness, grip.targets.col(k), points.col(i));
+}
+
+}  // namespace
+
+void check(const Rod& rod) {
+  const auto segments = static_cast<double>(rod.rest_lengths.size());
+  require(segments >= 1, "Rod", "number of segments", segments, ">= 1");
+  const double shortest = rod.rest_lengths.minCoeff();
+  require(shortest > 0 && rod.rest_lengths.allFinite(), "Rod", "smallest rest length", shortest,
+          "finite and > 0");
+  require_not_negative("Rod", "c_c", rod.c_c);
+  require_not_negative("Rod", "bending stiffness", rod.bending.stiffness);
+  require(rod.loads.cols() == rod.points(), "Rod", "columns of loads",
+          static_cast<double>(rod.loads.cols()), "the number of points");
+  require(rod.loads.allFinite(), "Rod", "loads", rod.loads.norm(), "finite");
+  for (const Wall& wall : rod.walls) {
+    require_not_negative("Rod", "wall stiffness", wall.stiffness);
+    const double length = wall.normal.norm();
+    require(std::abs(length - 1) < 1e-9, "Rod", "length of a wall's normal", length, "1");
+    require(wall.point.allFinite(), "Rod", "point of a wall", wall.point.norm(), "finite");
+  }
+  for (const Grip& grip : rod.grips) check_grip(grip, rod.points());
+}
+
+void total_forces(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matrix3Xd> forces) {
+  require(forces.cols() == rod.loads.cols(), "total_forces", "columns of forces",
+          static_cast<double>(forces.cols()), "the number of points");
+  forces = rod.loads;  // (6)
+  add_contraction_forces(points, rod.rest_lengths, rod.c_c, forces);
+  add_bending_forces(points, rod.rest_lengths, rod.bending, forces);
+  for (const Wall& wall : rod.walls) {
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      forces.col(i) += wall_force(wall, points.col(i));
+    }
+  }
+  for (const Grip& grip : rod.grips) {
+    if (grip.hold == GripHold::rigid) continue;
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+      const Eigen::Index i = grip.first_point + k;
+      forces.col(i) += spring_force(grip.stiffness, grip.targets.col(k), points.col(i));
+    }
+  }
+}
+
+std::vector<GripReaction> grip_reactions(const Rod& rod, const Points& points) {
+  Eigen::Matrix3Xd forces(3, points.cols());
+  total_forces(rod, points, forces);
+  std::vector<GripReaction> reactions;
+  reactions.reserve(rod.grips.size());
+  for (const Grip& grip : rod.grips) {
+    GripReaction reaction;
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+      const Eigen::Vector3d force = on_held_point(grip, k, points, forces);
+      const Eigen::Vector3d arm = points.col(grip.first_point + k) - grip.reference;
+      reaction.force += force;
+      reaction.torque += arm.cross(force);
+    }
+    reactions.push_back(reaction);
+  }
+  return reactions;
+}
+
+RodEnergy energy(const Rod& rod, const Points& points) {
+  RodEnergy energy;
+  energy.bending = bending_energy(points, rod.rest_lengths, rod.bending);
+  energy.stretch = contraction_energy(points, rod.rest_lengths, rod.c_c);
+  energy.load = -rod.loads.cwiseProduct(points).sum();
+  for (const Wall& wall : rod.walls) {
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      energy.contact += wall_energy(wall, points.col(i));
+    }
+  }
+  for (const Grip& grip : rod.grips) {
+    if (grip.hold == GripHold::rigid) continue;
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+      const Eigen::Vector3d offset = grip.targets.col(k) - points.col(grip.first_point + k);
+      energy.contact += grip.stiffness * offset.squaredNorm() / 2;
+    }
+  }
+  return energy;
+}
+
+}  // namespace dlo::force_model

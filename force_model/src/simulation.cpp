@@ -1,0 +1,225 @@
+#include "dlo/force_model/simulation.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "require.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+constexpr long block_steps = 16;      // between two looks at the modes
+constexpr double block_memory = 0.8;  // weight of older blocks
+
+void check(const StepOptions& options) {
+  const StepPolicy& policy = options.policy;
+  if (!policy.automatic) {
+    require_positive("Simulation", "c_F", options.c_F);
+    if (policy.limit != StepLimit::none) require_positive("Simulation", "l_s", options.l_s);
+    if (policy.momentum) {
+      require(options.c_h >= 0 && options.c_h < 1, "Simulation", "c_h", options.c_h, "in [0, 1)");
+    }
+  }
+  require_not_negative("Simulation", "l_s", options.l_s);
+  require_not_negative("Simulation", "c_s_change", options.c_s_change);
+}
+
+}  // namespace
+
+StepPolicy policy(Stepper stepper) {
+  switch (stepper) {
+    case Stepper::basic:
+      return {};
+    case Stepper::limited:
+      return {.limit = StepLimit::absolute, .damping = true};
+    case Stepper::relative:
+      return {.limit = StepLimit::relative, .damping = true};
+    case Stepper::dynamic:
+      return {.limit = StepLimit::relative, .momentum = true, .damping = true};
+    case Stepper::automatic:
+      break;
+  }
+  return {.limit = StepLimit::relative, .momentum = true, .automatic = true};
+}
+
+const char* to_string(RelaxStatus status) {
+  switch (status) {
+    case RelaxStatus::at_rest:
+      return "at rest";
+    case RelaxStatus::step_limit:
+      return "step limit";
+    case RelaxStatus::diverged:
+      break;
+  }
+  return "diverged";
+}
+
+Simulation::Simulation(Rod rod, Eigen::Matrix3Xd points, const StepOptions& options)
+    : rod_(std::move(rod)), options_(options), points_(std::move(points)) {
+  force_model::check(rod_);
+  check(options_);
+  require_polygon("Simulation", points_, rod_.rest_lengths);
+  const Eigen::Index n = points_.cols();
+  forces_.setZero(3, n);
+  movement_.setZero(3, n);
+  proposed_.setZero(3, n);
+  block_points_.setZero(3, n);
+  block_forces_.setZero(3, n);
+  turned_back_.setConstant(n, false);
+  free_.setOnes(n);
+  for (const Grip& grip : rod_.grips) {
+    if (grip.hold == GripHold::spring) continue;
+    free_.segment(grip.first_point, grip.targets.cols()).setZero();
+    points_.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
+  }
+  if (options_.policy.automatic && options_.l_s == 0) {
+    options_.l_s = rod_.rest_lengths.minCoeff() / 4;
+  }
+  modes_ = mode_bounds(rod_, points_);
+  if (options_.policy.automatic) {
+    const HeavyBall chosen = heavy_ball(modes_);
+    options_.c_F = chosen.c_F;
+    options_.c_h = chosen.c_h;
+  }
+}
+
+void Simulation::compute_forces() {
+  total_forces(rod_, points_, forces_);
+  forces_.array().rowwise() *= free_.transpose();
+}
+
+void Simulation::choose_step() {
+  const ModeBounds now = mode_bounds(rod_, points_);
+  modes_.fastest = now.fastest;
+  if (block_open_) {
+    block_forces_ -= forces_;
+    block_points_ = points_ - block_points_;
+    force_change_ = block_memory * force_change_ + block_forces_.cwiseProduct(block_points_).sum();
+    point_change_ = block_memory * point_change_ + block_points_.squaredNorm();
+    if (point_change_ > 0 && force_change_ > 0) modes_.slowest = force_change_ / point_change_;
+    modes_.slowest = std::clamp(modes_.slowest, 1e-10 * modes_.fastest, modes_.fastest);
+  }
+  block_points_ = points_;
+  block_forces_ = forces_;
+  block_open_ = true;
+  if (!options_.policy.automatic) return;
+  const HeavyBall chosen = heavy_ball(modes_);
+  options_.c_F = chosen.c_F;
+  options_.c_h = chosen.c_h;
+}
+
+double Simulation::largest_movement() const {
+  if (options_.policy.limit != StepLimit::relative) {
+    return std::sqrt(proposed_.colwise().squaredNorm().maxCoeff());  // (16)
+  }
+  double largest = 0;
+  for (Eigen::Index i = 0; i + 1 < proposed_.cols(); ++i) {
+    // (18); not std::max, which would drop a NaN
+    const double squared = (proposed_.col(i) - proposed_.col(i + 1)).squaredNorm();
+    if (!(squared <= largest)) largest = squared;
+  }
+  return std::sqrt(largest);
+}
+
+void Simulation::update_damping() {
+  long oscillating = 0;
+  for (Eigen::Index i = 0; i < proposed_.cols(); ++i) {
+    const bool turns = proposed_.col(i).dot(movement_.col(i)) < 0;
+    if (turns && turned_back_[i]) ++oscillating;
+    turned_back_[i] = turns;
+  }
+  const double change = options_.c_s_change;
+  c_s_ = oscillating > 0 ? c_s_ + change * static_cast<double>(oscillating)
+                         : std::max(1.0, c_s_ - change);
+}
+
+StepResult Simulation::step() {
+  compute_forces();
+  if (steps_ % block_steps == 0) choose_step();
+  const StepPolicy& policy = options_.policy;
+  proposed_ = options_.c_F * forces_;
+  if (policy.momentum) proposed_ += options_.c_h * movement_;  // (19)
+  StepResult result;
+  result.movement = largest_movement();
+  if (!std::isfinite(result.movement) || !std::isfinite(proposed_.sum())) return result;
+  if (policy.damping) update_damping();
+  result.status = StepStatus::good;
+  result.c_m = 1 / c_s_;
+  if (policy.limit != StepLimit::none && result.movement > options_.l_s) {
+    result.c_m *= options_.l_s / result.movement;  // (17), (18), (20)
+    result.limited = true;
+    ++limited_steps_;
+  }
+  movement_ = result.c_m * proposed_;
+  points_ += movement_;
+  ++steps_;
+  if (c_s_ > 1) ++damped_steps_;
+  return result;
+}
+
+StepResult Simulation::advance(double steps, long max_steps) {
+  require_positive("Simulation::advance", "steps", steps);
+  owed_steps_ += steps;
+  StepResult result{.status = StepStatus::good};
+  // Text 1 makes a step even when none is owed; calls for less than one step would run ahead. The
+  // c_m sum to whole numbers up to rounding, which is not worth another step either.
+  for (long i = 0; i < max_steps && owed_steps_ > 5e-7; ++i) {
+    result = step();
+    if (result.status == StepStatus::diverged) break;
+    owed_steps_ -= result.c_m;
+  }
+  return result;
+}
+
+RelaxResult Simulation::relax(const RelaxOptions& options) {
+  require_positive("Simulation::relax", "tolerance", options.tolerance);
+  RelaxResult result;
+  result.status = RelaxStatus::step_limit;
+  const double target = options.tolerance * rod_.length();
+  const double root_points = std::sqrt(static_cast<double>(points_.cols()));
+  int quiet_blocks = 0;
+  const auto look = [&] {
+    compute_forces();
+    const double from_force = forces_.norm() / modes_.slowest / root_points;
+    const double from_momentum =
+        options_.policy.momentum ? movement_.norm() / (1 - options_.c_h) / root_points : 0;
+    result.remaining_error = std::max(from_force, from_momentum);
+    result.residual_force = std::sqrt(forces_.colwise().squaredNorm().maxCoeff());
+  };
+  while (result.steps < options.max_steps) {
+    const StepResult last = step();
+    if (last.status == StepStatus::diverged) {
+      result.status = RelaxStatus::diverged;
+      break;
+    }
+    ++result.steps;
+    if (result.steps % block_steps != 0) continue;
+    look();
+    quiet_blocks = result.remaining_error < target ? quiet_blocks + 1 : 0;
+    if (quiet_blocks >= 2) {
+      result.status = RelaxStatus::at_rest;
+      break;
+    }
+  }
+  if (result.status == RelaxStatus::step_limit) look();
+  result.message = to_string(result.status);
+  return result;
+}
+
+void Simulation::move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
+                           const Eigen::Vector3d& reference) {
+  require(grip < rod_.grips.size(), "Simulation::move_grip", "grip", static_cast<double>(grip),
+          "smaller than the number of grips");
+  Grip& moved = rod_.grips[grip];
+  require(targets.cols() == moved.targets.cols(), "Simulation::move_grip", "columns of targets",
+          static_cast<double>(targets.cols()), "the number of points held");
+  require(targets.allFinite() && reference.allFinite(), "Simulation::move_grip", "targets",
+          targets.norm(), "finite");
+  moved.targets = targets;
+  moved.reference = reference;
+  if (moved.hold == GripHold::rigid) {
+    points_.middleCols(moved.first_point, targets.cols()) = targets;
+  }
+}
+
+}  // namespace dlo::force_model

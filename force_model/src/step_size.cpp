@@ -1,0 +1,89 @@
+#include "dlo/force_model/step_size.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "require.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
+
+/// First root of cos x cosh x = -1: the first mode of a clamped-free rod.
+constexpr double clamped_free_root = 1.8751040687119611;
+
+double fastest_inner_mode(const Rod& rod, const Points& points) {
+  const Eigen::VectorXd& L = rod.rest_lengths;
+  double contraction = 0;
+  double bending = 0;
+  double previous_length = 0;
+  Eigen::Vector3d previous = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < L.size(); ++i) {
+    const Eigen::Vector3d segment = points.col(i + 1) - points.col(i);
+    // A segment that is nearly gone would ask for steps of nearly nothing; what keeps its points
+    // from jumping is the limit l_s.
+    const double length = std::max(segment.norm(), 0.1 * L[i]);
+    contraction = std::max(contraction, 4 * rod.c_c / std::min(L[i], length));
+    if (i > 0) {
+      const double mean = (L[i - 1] + L[i]) / 2;
+      const double lever = std::min(length, previous_length);
+      const double alpha = std::atan2(previous.cross(segment).norm(), previous.dot(segment));
+      bending = std::max(bending, (16 * joint_stiffness(rod.bending, mean, alpha) +
+                                   4 * joint_moment(rod.bending, mean, alpha)) /
+                                      (lever * lever));
+    }
+    previous = segment;
+    previous_length = length;
+  }
+  return contraction + bending;
+}
+
+/// EI of a Hookean rod that would bend as far under these loads.
+double equivalent_rigidity(const Rod& rod) {
+  if (rod.bending.law == BendingLaw::hooke) return rod.bending.stiffness;
+  const double L = rod.rest_lengths.mean();
+  const double moment = rod.loads.colwise().norm().sum() * rod.length() / 2;
+  const double full = joint_moment(rod.bending, L, 3.0);
+  if (!(moment > 0 && full > 0)) return 0;
+  const double alpha = 2 * std::asin(std::cbrt(std::min(1.0, moment / full)));
+  return std::min(moment, full) * L / alpha;
+}
+
+}  // namespace
+
+ModeBounds mode_bounds(const Rod& rod, const Points& points) {
+  require_polygon("mode_bounds", points, rod.rest_lengths);
+  ModeBounds modes;
+  modes.fastest = fastest_inner_mode(rod, points);
+  for (const Wall& wall : rod.walls) modes.fastest += wall.stiffness;
+  double grip = 0;
+  for (const Grip& g : rod.grips) {
+    if (g.hold == GripHold::spring) grip = std::max(grip, g.stiffness);
+  }
+  modes.fastest += grip;
+  const double per_length = clamped_free_root / rod.length();
+  const double square = per_length * per_length;
+  modes.slowest = square * square * equivalent_rigidity(rod) * rod.rest_lengths.mean();
+  // Heavy ball constants lose their meaning when the two differ by more than rounding resolves.
+  modes.slowest = std::clamp(modes.slowest, 1e-10 * modes.fastest, modes.fastest);
+  return modes;
+}
+
+double largest_step_factor(double fastest, double c_h) {
+  require_positive("largest_step_factor", "fastest", fastest);
+  require(c_h >= 0 && c_h < 1, "largest_step_factor", "c_h", c_h, "in [0, 1)");
+  return 2 * (1 + c_h) / fastest;
+}
+
+HeavyBall heavy_ball(const ModeBounds& modes) {
+  require_positive("heavy_ball", "fastest", modes.fastest);
+  require_positive("heavy_ball", "slowest", modes.slowest);
+  const double high = std::sqrt(modes.fastest);
+  const double low = std::sqrt(std::min(modes.slowest, modes.fastest));
+  const double ratio = (high - low) / (high + low);
+  return {.c_F = 4 / ((high + low) * (high + low)), .c_h = ratio * ratio};
+}
+
+}  // namespace dlo::force_model

@@ -1,0 +1,258 @@
+// The command as a user runs it: exit status, standard output, standard error, files.
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+namespace {
+
+using nlohmann::json;
+
+struct Outcome {
+  int status = -1;
+  std::string out;
+  std::string err;
+};
+
+class Command : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("dlo_command_test_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
+
+  [[nodiscard]] static std::string read(const std::string& file) {
+    std::ifstream stream(file);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+
+  std::string scene(const std::string& text) {
+    std::ofstream(path("scene.toml")) << text;
+    return path("scene.toml");
+  }
+
+  [[nodiscard]] Outcome run(const std::string& arguments) const {
+    const std::string line = std::string(DLO_COMMAND) + " " + arguments + " 2>" + path("stderr");
+    std::FILE* pipe = ::popen(line.c_str(), "r");
+    Outcome result;
+    std::array<char, 4096> buffer{};
+    std::size_t count = 0;
+    while ((count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0) {
+      result.out.append(buffer.data(), count);
+    }
+    const int status = ::pclose(pipe);
+    result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    result.err = read(path("stderr"));
+    return result;
+  }
+
+  /// Bad input: this status, nothing on standard output, one line that names all of `names`.
+  void expect_error(const std::string& arguments, int status,
+                    const std::vector<std::string>& names) const {
+    const Outcome result = run(arguments);
+    EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
+    EXPECT_EQ(result.out, "") << arguments;
+    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+    for (const std::string& name : names) {
+      EXPECT_NE(result.err.find(name), std::string::npos)
+          << "no \"" << name << "\" in " << result.err;
+    }
+  }
+
+  static std::string steel() { return std::string(DLO_DATA) + "/scenes/spring_steel_175.toml"; }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+constexpr const char* good = R"([rod]
+length = "50 cm"
+diameter = "2 mm"
+material = "spring_steel"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "-175 deg"
+)";
+
+TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
+  for (const std::string model : {"energy", "chain", "exact", "force"}) {
+    const Outcome result =
+        run("solve " + steel() + " --model " + model + " --samples 11 --format json");
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    const json document = json::parse(result.out);
+    EXPECT_EQ(document.at("schema"), "dlo/solve/1");
+    EXPECT_EQ(document.at("model"), model);
+    EXPECT_EQ(document.at("converged"), true);
+    ASSERT_EQ(document.at("arc_length_m").size(), 11U);
+    ASSERT_EQ(document.at("points_m").size(), 11U);
+    EXPECT_EQ(document.at("arc_length_m").back(), 0.5);
+    const json& energy = document.at("energy_J");
+    EXPECT_NEAR(energy.at("total").get<double>(),
+                energy.at("bending").get<double>() + energy.at("gravity").get<double>() +
+                    energy.at("load").get<double>() + energy.at("stretch").get<double>(),
+                1e-15);
+    EXPECT_NEAR(document.at("grippers")[0].at("force_N")[1].get<double>(), 0.121735143, 1e-6);
+    EXPECT_GE(document.at("solver").at("wall_s").get<double>(), 0);
+    EXPECT_TRUE(document.contains("plan"));
+  }
+}
+
+TEST_F(Command, SolveMatchesTheReferenceValuesOfThePapersRod) {
+  std::ifstream stream(std::string(DLO_DATA) + "/reference/reference_values.json");
+  const json expected = json::parse(stream).at("paper_rod").at("E=210GPa,phi=-175");
+  const json document = json::parse(run("solve " + steel() + " --samples 17 --format json").out);
+  for (std::size_t i = 0; i < 17; ++i) {
+    EXPECT_NEAR(document.at("points_m")[i][0].get<double>(), expected.at("x_m")[i].get<double>(),
+                5e-9);
+    EXPECT_NEAR(document.at("points_m")[i][1].get<double>(), expected.at("y_m")[i].get<double>(),
+                5e-9);
+  }
+}
+
+TEST_F(Command, SolveWritesCsvThatStartsWithItsHeader) {
+  const Outcome result = run("solve " + steel() + " --samples 3 --format csv");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.out.substr(0, 8), "x,y,z,s\n");
+  EXPECT_EQ(std::count(result.out.begin(), result.out.end(), '\n'), 4);
+}
+
+TEST_F(Command, CompareWritesTheContractsJson) {
+  const Outcome result = run("compare " + steel() + " " + scene(good) + " --format json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json document = json::parse(result.out);
+  EXPECT_EQ(document.at("schema"), "dlo/compare/1");
+  ASSERT_EQ(document.at("cases").size(), 2U);
+  const json& paper = document.at("cases")[0];
+  EXPECT_EQ(paper.at("law"), "paper");
+  EXPECT_EQ(paper.at("bookkeeping"), "paper");
+  EXPECT_EQ(paper.at("points"), 16);
+  EXPECT_NEAR(paper.at("parameters").at("c_b").get<double>(), 3574.96, 0.005);
+  EXPECT_NEAR(paper.at("parameters").at("c_c").get<double>(), 659734, 0.5);
+  EXPECT_NEAR(paper.at("effective_modulus_ratio").get<double>(), 0.044, 0.001);
+  for (const char* key : {"rms_m", "max_m", "tip_m", "rms_over_length"}) {
+    EXPECT_GT(paper.at("deviation").at(key).get<double>(), 0) << key;
+  }
+  EXPECT_GT(paper.at("cost").at("force_s").get<double>(), 0);
+  const json& hooke = document.at("cases")[1];
+  EXPECT_EQ(hooke.at("law"), "hooke");
+  EXPECT_NEAR(hooke.at("effective_modulus_ratio").get<double>(), 1, 0.01);
+}
+
+TEST_F(Command, CompareIsReadableAsTextAndCsv) {
+  const Outcome text = run("compare " + steel());
+  EXPECT_NE(text.out.find("E*/E"), std::string::npos);
+  const Outcome csv = run("compare " + steel() + " --format csv");
+  EXPECT_EQ(csv.out.substr(0, 10), "scene,law,");
+  EXPECT_NE(csv.out.find("\"spring steel, -175 deg\""), std::string::npos);
+}
+
+TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
+  const Outcome text = run("paper");
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_EQ(text.err, "");
+  for (const char* expected :
+       {"3776.21457", "3574.96", "659734", "1/3", "spring steel, -215 deg"}) {
+    EXPECT_NE(text.out.find(expected), std::string::npos) << expected;
+  }
+  EXPECT_EQ(run("paper --format json -o " + path("paper.json")).status, 0);
+  const json document = json::parse(read(path("paper.json")));
+  EXPECT_EQ(document.at("schema"), "dlo/paper/1");
+  EXPECT_EQ(document.at("cases").size(), 6U);
+  EXPECT_EQ(run("paper --format csv").out.substr(0, 8), "section,");
+}
+
+TEST_F(Command, OptionsOverrideTheScene) {
+  const json document = json::parse(
+      run("compare " + steel() +
+          " --law hooke --bookkeeping consistent --points 24 --c-c \"5 kN\" " + "--format json")
+          .out);
+  const json& only = document.at("cases")[0];
+  EXPECT_EQ(only.at("law"), "hooke");
+  EXPECT_EQ(only.at("points"), 24);
+  EXPECT_EQ(only.at("parameters").at("c_c"), 5000);
+}
+
+TEST_F(Command, BadInputNamesFileLineKeyValueAndWhatIsAllowed) {
+  expect_error("solve " + path("missing.toml"), 2, {"missing.toml", "cannot be read"});
+  const std::string text = good;
+  expect_error("solve " + scene("colour = 3\n" + text), 2,
+               {"scene.toml:1", "colour", "3", "unknown key", "allowed"});
+  expect_error("solve " + scene("[rod]\nlength = -0.5\ndiameter = 0.002\nmaterial = \"copper\"\n"),
+               2, {"scene.toml:2", "rod.length", "-0.5", "> 0"});
+  expect_error(
+      "solve " + scene("[rod]\nlength = 1\ndiameter = 0.002\nmaterial = { youngs_modulus = "
+                       "\"210 GPA\", density = 1 }\n"),
+      2, {"scene.toml:4", "youngs_modulus", "210 GPA", "GPa"});
+  expect_error("solve " + scene("[rod]\nlength = nan\ndiameter = 0.002\nmaterial = \"copper\"\n"),
+               2, {"scene.toml:2", "rod.length", "nan", "finite"});
+  expect_error("solve " + scene("[rod]\nlength = 1\ndiameter = 0.002\nmaterial = \"copper\"\n"
+                                "[[gripper]]\nat = 2\nposition = [0, 0, 0]\ndirection = 0\n"),
+               2, {"scene.toml:6", "gripper.at", "2", "0 to 1"});
+}
+
+TEST_F(Command, BadUsageIsOneLineAndStatusTwo) {
+  expect_error("", 2, {"dlo"});
+  expect_error("slove", 2, {"dlo"});
+  expect_error("solve", 2, {"SCENE"});
+  expect_error("solve " + steel() + " --model fem", 2, {"fem", "energy"});
+  expect_error("solve " + steel() + " --points 1", 2, {"--points"});
+  expect_error("solve " + steel() + " --c-c nan", 2, {"--c-c", "nan"});
+  expect_error("solve " + steel() + " --c-c \"5 kg\"", 2, {"--c-c", "5 kg", "kN"});
+  expect_error("solve " + steel() + " --format xml", 2, {"xml", "json"});
+}
+
+TEST_F(Command, WhatDoesNotConvergeIsStatusThreeAndWritesNothing) {
+  const std::string output = path("result.json");
+  expect_error("solve " + steel() + " --max-evaluations 1 --format json -o " + output, 3,
+               {"energy model", "evaluation limit"});
+  EXPECT_FALSE(std::filesystem::exists(output));
+  expect_error("solve " + steel() + " --model chain --max-evaluations 1 -o " + output, 3,
+               {"chain"});
+  expect_error("solve " + steel() + " --model force --max-steps 5 -o " + output, 3,
+               {"force model", "5 steps"});
+  expect_error("solve " + steel() + " --model force --stepper basic --c-F 1 -o " + output, 3,
+               {"diverged"});
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
+TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
+  const std::string output = path("kept.json");
+  std::ofstream(output) << "old";
+  expect_error("solve " + steel() + " --max-evaluations 1 -o " + output, 3, {});
+  EXPECT_EQ(read(output), "old");
+  expect_error("solve " + steel() + " -o " + path("no/such/folder/x.json"), 2,
+               {"no/such/folder/x.json", "cannot be written"});
+  EXPECT_EQ(run("solve " + steel() + " -o " + output).status, 0);
+  EXPECT_NE(read(output).find("Gamma"), std::string::npos);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("")),
+                          std::filesystem::directory_iterator()),
+            2);  // kept.json and stderr: no temporary file is left
+}
+
+TEST_F(Command, HelpHasAnExampleThatWorks) {
+  for (const std::string command : {"solve", "compare", "paper"}) {
+    const Outcome help = run(command + " --help");
+    EXPECT_EQ(help.status, 0);
+    EXPECT_NE(help.out.find("Example:"), std::string::npos) << command;
+  }
+  EXPECT_EQ(run("--version").status, 0);
+}
+
+}  // namespace

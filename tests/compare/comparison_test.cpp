@@ -1,0 +1,180 @@
+#include "dlo/compare/comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dlo/compare/error.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using test::heavy_scene;
+
+class ChainAndForceModel : public testing::TestWithParam<Law> {};
+
+TEST_P(ChainAndForceModel, RestInTheSamePolygonWithThePhysicalStretchStiffness) {
+  for (Scene scene : paper_scenes()) {
+    scene.force_model.law = GetParam();
+    for (const Bookkeeping bookkeeping : {Bookkeeping::paper, Bookkeeping::consistent}) {
+      scene.force_model.bookkeeping = bookkeeping;
+      const Solution chain = solve_chain(scene, scene.force_model);
+      const Solution force = solve_force(scene, scene.force_model, {.rest_tolerance = 1e-8});
+      EXPECT_LT((chain.shape.points - force.shape.points).colwise().norm().maxCoeff(),
+                1e-6 * scene.length)
+          << scene.name << ", " << to_string(bookkeeping);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, ChainAndForceModel, testing::Values(Law::paper, Law::hooke),
+                         [](const auto& instance) {
+                           return std::string(to_string(instance.param));
+                         });
+
+TEST(HookeChain, ConvergesToTheElasticaAtSecondOrder) {
+  Scene scene = heavy_scene(2, 0);
+  const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);
+  double previous = 0;
+  double previous_segment = 0;
+  for (const int points : {8, 16, 32, 64}) {
+    scene.force_model.points = points;
+    const Solution solution = solve_chain(scene, scene.force_model);
+    const Shape& shape = solution.shape;
+    const double segment = solution.parameters.segment_length;
+    const double error =
+        rms(shape.arc_length, shape.points - exact.sample(shape.arc_length).points);
+    RecordProperty("rms_" + std::to_string(points), std::to_string(error));
+    if (points == 16) {
+      EXPECT_LT(error, 6e-4);
+    }
+    if (previous > 0) {
+      // L = l / (N - 3/2) does not halve when N doubles.
+      const double order = std::log(previous / error) / std::log(previous_segment / segment);
+      EXPECT_GT(order, 1.9) << points;
+      EXPECT_LT(order, 2.1) << points;
+    }
+    previous = error;
+    previous_segment = segment;
+  }
+}
+
+TEST(HookeChain, ConvergesAtFirstOrderWithThePapersBookkeeping) {
+  Scene scene = heavy_scene(2, 0);
+  scene.force_model.bookkeeping = Bookkeeping::paper;
+  const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);
+  const auto error = [&](int points) {
+    scene.force_model.points = points;
+    const Shape shape = solve_chain(scene, scene.force_model).shape;
+    return rms(shape.arc_length, shape.points - exact.sample(shape.arc_length).points);
+  };
+  EXPECT_NEAR(std::log2(error(64) / error(128)), 1, 0.1);
+}
+
+TEST(Deviation, OfAShiftedShapeIsTheShift) {
+  const Scene scene = heavy_scene(1, 0);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  Shape shape;
+  shape.arc_length = equal_arc_lengths(1, 21);
+  shape.points = energy.sample(shape.arc_length).points;
+  shape.points.row(2).array() += 0.01;
+  const Deviation d = deviation(shape, energy.sample, straight_rod(scene, shape.arc_length), 20);
+  EXPECT_NEAR(d.rms_m, 0.01, 1e-15);
+  EXPECT_NEAR(d.max_m, 0.01, 1e-15);
+  EXPECT_NEAR(d.tip_m, 0.01, 1e-15);
+  EXPECT_NEAR(d.rms_over_length, 0.01, 1e-15);
+  EXPECT_LT(d.angle_rms_rad, 1e-4);  // chords against tangents
+  EXPECT_LT(d.curvature_rms_per_m, 1e-2);
+}
+
+TEST(Deviation, CurvatureOfAFlatShapeIsTheReferencesOwn) {
+  // Gamma << 1: kappa = Gamma (1-s)^2 / 2, whose RMS over the rod is Gamma / sqrt 20
+  const Scene scene = heavy_scene(0.01, 0);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  Shape straight;
+  straight.arc_length = equal_arc_lengths(1, 401);
+  straight.points = straight_rod(scene, straight.arc_length);
+  const Deviation d = deviation(straight, energy.sample, straight.points, 400);
+  EXPECT_NEAR(d.curvature_rms_per_m, 0.01 / std::sqrt(20.0), 2e-5);
+  EXPECT_NEAR(d.rms_over_movement, 1, 1e-12);
+}
+
+TEST(EffectiveModulus, RecoversTheModulusOfAnEnergyShape) {
+  const Scene scene = heavy_scene(2, 15);
+  for (const double ratio : {0.03, 0.5, 1.0, 7.0}) {
+    Scene other = scene;
+    other.material.youngs_modulus *= ratio;
+    Shape shape;
+    shape.arc_length = equal_arc_lengths(1, 12);
+    shape.points = solve_reference(other, Model::exact).sample(shape.arc_length).points;
+    const EffectiveModulus fit = fit_effective_modulus(scene, shape);
+    EXPECT_NEAR(fit.ratio / ratio, 1, 1e-5);
+    EXPECT_LT(fit.rms_m, 1e-6);
+    EXPECT_EQ(fit.optimum, Optimum::clear);
+  }
+}
+
+TEST(EffectiveModulus, OfAnUnbentShapeIsOneSided) {
+  const Scene scene = heavy_scene(2, 15);
+  Shape shape;
+  shape.arc_length = equal_arc_lengths(1, 12);
+  shape.points = straight_rod(scene, shape.arc_length);
+  EXPECT_EQ(fit_effective_modulus(scene, shape).optimum, Optimum::one_sided);
+}
+
+TEST(EffectiveModulus, OfARodThatHangsStraightIsFlat) {
+  const Scene scene = heavy_scene(2, -90);
+  Shape shape;
+  shape.arc_length = equal_arc_lengths(1, 12);
+  shape.points = straight_rod(scene, shape.arc_length);
+  shape.points.row(0).array() += 1e-3;
+  EXPECT_NE(fit_effective_modulus(scene, shape).optimum, Optimum::clear);
+}
+
+TEST(Comparison, PaperRodIsFarFromItsModulusAndHookeIsNot) {
+  Scene scene = paper_scenes().front();
+  const Comparison paper = compare(scene);
+  EXPECT_NEAR(paper.effective_modulus.ratio, 0.0285, 0.0005);
+  EXPECT_GT(paper.budget.law, 10 * paper.budget.bookkeeping);
+  EXPECT_LT(paper.budget.stretch, 1e-6 * scene.length);
+  EXPECT_NEAR(paper.budget.law, paper.deviation.rms_m, 0.01 * paper.deviation.rms_m);
+  scene.force_model.law = Law::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  const Comparison hooke = compare(scene);
+  EXPECT_NEAR(hooke.effective_modulus.ratio, 1, 0.01);
+  EXPECT_LT(hooke.deviation.rms_over_length, 1e-4);
+  EXPECT_EQ(hooke.budget.law, 0);
+  EXPECT_EQ(hooke.budget.bookkeeping, 0);
+  EXPECT_NEAR(hooke.budget.discretisation, hooke.deviation.rms_m, 0.02 * hooke.deviation.rms_m);
+}
+
+TEST(Solve, AllModelsAgreeOnForcesAndEnergies) {
+  Scene scene = heavy_scene(1, -20);
+  scene.force_model.points = 64;
+  const Solution exact = solve(scene, Model::exact);
+  for (const Model model : {Model::energy, Model::chain, Model::force}) {
+    const Solution solution = solve(scene, model);
+    const double size = exact.energy.total();
+    const double tolerance = model == Model::energy ? 1e-9 : 2e-3;
+    EXPECT_NEAR(solution.energy.total(), size, tolerance * std::abs(size)) << to_string(model);
+    EXPECT_NEAR(solution.energy.bending, exact.energy.bending, 10 * tolerance * std::abs(size));
+    // The force model stops 1e-7 l from rest, where its stiff segments still pull at the grip.
+    const double force_tolerance = model == Model::force ? 1e-4 : 1e-12;
+    EXPECT_LT((solution.grippers[0].force - exact.grippers[0].force).norm(),
+              force_tolerance * exact.grippers[0].force.norm());
+    EXPECT_LT((solution.grippers[0].torque - exact.grippers[0].torque).norm(),
+              tolerance * exact.grippers[0].torque.norm())
+        << to_string(model);
+  }
+}
+
+TEST(Solve, WhatDoesNotConvergeIsAnError) {
+  const Scene scene = heavy_scene(10, 0);
+  EXPECT_THROW((void)solve(scene, Model::energy, {.max_evaluations = 2}), ConvergenceError);
+  EXPECT_THROW((void)solve(scene, Model::chain, {.max_evaluations = 2}), ConvergenceError);
+  EXPECT_THROW((void)solve(scene, Model::force, {.max_steps = 10}), ConvergenceError);
+}
+
+}  // namespace
+}  // namespace dlo::compare

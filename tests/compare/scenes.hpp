@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "dlo/compare/scene.hpp"
+
+namespace dlo::test {
+
+/// A rod 1 m long under its weight along -y, clamped at the origin.
+inline compare::Scene heavy_scene(double gamma, double degrees) {
+  compare::Scene scene;
+  scene.name = "heavy";
+  scene.file = "heavy.toml";
+  scene.length = 1;
+  scene.diameter = 0.002;
+  scene.material = {.name = "own", .youngs_modulus = 210e9, .density = 7900, .source = "test"};
+  scene.gravity = {0, -1, 0};
+  scene.gravity.y() = -gamma / scene.gamma();
+  const double angle = degrees * std::numbers::pi / 180;
+  scene.grippers = {{.at = 0,
+                     .position = Eigen::Vector3d::Zero(),
+                     .direction = Eigen::Vector3d(std::cos(angle), std::sin(angle), 0)}};
+  return scene;
+}
+
+}  // namespace dlo::test

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "dlo/energy_model/problem.hpp"
+
+namespace dlo::test {
+
+/// A rod of unit length and stiffness under its weight Gamma along -y, clamped at the origin.
+inline energy_model::Problem heavy_cantilever(double gamma, double degrees) {
+  energy_model::Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.weight_per_length = {0, -gamma, 0};
+  const double angle = degrees * std::numbers::pi / 180;
+  Eigen::Vector3d direction(std::cos(angle), std::sin(angle), 0);
+  // Exactly upright and exactly hanging, which the cosine of a rounded pi/2 is not.
+  if (std::abs(degrees) == 90) direction.x() = 0;
+  problem.grips = {{.at = 0, .position = Eigen::Vector3d::Zero(), .direction = direction}};
+  return problem;
+}
+
+/// data/reference/reference_values.json, which says where its numbers come from.
+inline nlohmann::json reference_values() {
+  std::ifstream stream(std::string(DLO_DATA) + "/reference/reference_values.json");
+  if (!stream) throw std::runtime_error("reference_values.json is missing");
+  return nlohmann::json::parse(stream);
+}
+
+}  // namespace dlo::test

@@ -1,0 +1,188 @@
+#include "dlo/force_model/bending.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "polygons.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+using std::numbers::pi;
+using test::difference_forces;
+using test::net_torque;
+using test::random_polygon;
+using test::random_rotation;
+
+Eigen::Matrix3Xd forces_of(const Eigen::Matrix3Xd& points, const Eigen::VectorXd& rest,
+                           const Bending& bending) {
+  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, points.cols());
+  add_bending_forces(points, rest, bending, forces);
+  return forces;
+}
+
+/// Two segments of length L in the plane that turn by alpha.
+Eigen::Matrix3Xd one_joint(double L, double alpha) {
+  Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, 3);
+  points.col(0) << -L, 0, 0;
+  points.col(2) << L * std::cos(alpha), L * std::sin(alpha), 0;
+  return points;
+}
+
+class BendingOfBothLaws : public testing::TestWithParam<BendingLaw> {
+ protected:
+  [[nodiscard]] static Bending bending() { return {GetParam(), 2.5}; }
+};
+
+TEST_P(BendingOfBothLaws, IsZeroForAStraightRod) {
+  Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, 5);
+  points.row(1).setLinSpaced(0, 4);
+  const Eigen::Matrix3Xd forces = forces_of(points, Eigen::VectorXd::Ones(4), bending());
+  EXPECT_EQ(forces.cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(bending_energy(points, Eigen::VectorXd::Ones(4), bending()), 0);
+}
+
+TEST_P(BendingOfBothLaws, OpensTheJoint) {
+  const Eigen::Matrix3Xd forces = forces_of(one_joint(1, 0.5), Eigen::Vector2d::Ones(), bending());
+  EXPECT_LT(forces(1, 2), 0);  // the last point is above the line of the first segment
+  EXPECT_LT(forces(1, 0), 0);
+  EXPECT_GT(forces(1, 1), 0);
+}
+
+TEST_P(BendingOfBothLaws, ForcesAndTorquesSumToZeroForEqualSegments) {
+  const Eigen::Matrix3Xd points = random_polygon(5, 15, 0.1, 0);
+  const Eigen::Matrix3Xd forces = forces_of(points, Eigen::VectorXd::Constant(15, 0.1), bending());
+  const double scale = forces.cwiseAbs().sum();
+  EXPECT_LT(forces.rowwise().sum().norm(), 1e-14 * scale);
+  EXPECT_LT(net_torque(points, forces).norm(), 1e-14 * scale);
+}
+
+TEST_P(BendingOfBothLaws, MomentIsWhatTheLawSays) {
+  for (const double alpha : {0.01, 0.2, 1.0, 2.0, 2.9}) {
+    const double L = 0.3;
+    const Eigen::Matrix3Xd points = one_joint(L, alpha);
+    const Eigen::Vector3d force = forces_of(points, Eigen::Vector2d::Constant(L), bending()).col(2);
+    const Eigen::Vector3d arm = points.col(2);
+    EXPECT_NEAR(-arm.cross(force).z(), joint_moment(bending(), L, alpha),
+                1e-14 * joint_moment(bending(), L, alpha) + 1e-16)
+        << "alpha = " << alpha;
+  }
+}
+
+TEST_P(BendingOfBothLaws, MomentIsTheDerivativeOfThePotentialAndStiffnessOfTheMoment) {
+  const double h = 1e-5;
+  for (const double alpha : {0.05, 0.5, 1.5, 2.5, 3.1}) {
+    const auto U = [&](double a) { return joint_potential(bending(), 0.3, a); };
+    const auto M = [&](double a) { return joint_moment(bending(), 0.3, a); };
+    const double scale = std::abs(M(alpha)) + joint_stiffness(bending(), 0.3, alpha);
+    EXPECT_NEAR((U(alpha + h) - U(alpha - h)) / (2 * h), M(alpha), 1e-7 * scale) << alpha;
+    EXPECT_NEAR((M(alpha + h) - M(alpha - h)) / (2 * h), joint_stiffness(bending(), 0.3, alpha),
+                1e-6 * scale)
+        << alpha;
+  }
+}
+
+TEST_P(BendingOfBothLaws, TurnsWithTheFrame) {
+  const Eigen::Matrix3Xd points = random_polygon(6, 9, 0.1, 0.3);
+  const Eigen::VectorXd rest = Eigen::VectorXd::Constant(9, 0.1);
+  const Eigen::Matrix3d R = random_rotation(7).toRotationMatrix();
+  const Eigen::Matrix3Xd forces = forces_of(points, rest, bending());
+  const Eigen::Matrix3Xd turned = forces_of(R * points, rest, bending());
+  EXPECT_LT((turned - R * forces).cwiseAbs().maxCoeff(), 1e-13 * forces.cwiseAbs().maxCoeff());
+}
+
+TEST_P(BendingOfBothLaws, FullFoldIsFiniteBalancedAndOpens) {
+  const Eigen::Matrix3Xd points = one_joint(1, pi);
+  Eigen::Matrix3Xd exact_fold = points;
+  exact_fold.col(2) = exact_fold.col(0);
+  const Eigen::Matrix3Xd forces = forces_of(exact_fold, Eigen::Vector2d::Ones(), bending());
+  ASSERT_TRUE(forces.allFinite());
+  EXPECT_GT(forces.col(2).norm(), bending().stiffness);
+  EXPECT_LT(forces.rowwise().sum().norm(), 1e-12);
+  EXPECT_LT(net_torque(exact_fold, forces).norm(), 1e-12);
+  EXPECT_TRUE(std::isfinite(joint_potential(bending(), 1, pi)));
+}
+
+TEST_P(BendingOfBothLaws, ZeroLengthSegmentExertsNothing) {
+  Eigen::Matrix3Xd points = one_joint(1, 0.5);
+  points.col(2) = points.col(1);
+  EXPECT_EQ(forces_of(points, Eigen::Vector2d::Ones(), bending()).cwiseAbs().maxCoeff(), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, BendingOfBothLaws,
+                         testing::Values(BendingLaw::paper, BendingLaw::hooke),
+                         [](const auto& instance) {
+                           return instance.param == BendingLaw::paper ? "paper" : "hooke";
+                         });
+
+TEST(HookeBending, BalancesForceAndTorqueForUnequalSegments) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Eigen::Matrix3Xd points = random_polygon(seed, 15, 0.1, 0.9);
+    const Eigen::Matrix3Xd forces =
+        forces_of(points, Eigen::VectorXd::Constant(15, 0.1), {BendingLaw::hooke, 2.5});
+    const double scale = forces.cwiseAbs().sum();
+    EXPECT_LT(forces.rowwise().sum().norm(), 1e-14 * scale);
+    EXPECT_LT(net_torque(points, forces).norm(), 1e-14 * scale);
+  }
+}
+
+TEST(HookeBending, IsTheGradientOfItsEnergy) {
+  const Eigen::Matrix3Xd points = random_polygon(8, 7, 0.1, 0.5);
+  const Eigen::VectorXd rest = Eigen::VectorXd::LinSpaced(7, 0.08, 0.12);
+  const Bending bending{BendingLaw::hooke, 2.5};
+  const Eigen::Matrix3Xd forces = forces_of(points, rest, bending);
+  const Eigen::Matrix3Xd expected = difference_forces(
+      [&](const Eigen::Matrix3Xd& p) { return bending_energy(p, rest, bending); }, points, 1e-6);
+  // Central differences at h = 1e-6 of L = 0.1: truncation (h/L)^2 = 1e-10, rounding eps L/h =
+  // 2e-11
+  EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 1e-8 * forces.cwiseAbs().maxCoeff());
+}
+
+TEST(HookeBending, MatchesAHookeanRodToSecondOrder) {
+  const Bending bending{BendingLaw::hooke, 2.5};
+  // 2 tan(alpha/2) = alpha + alpha^3/12 + ...
+  for (const double alpha : {0.1, 0.05}) {
+    const double linear = bending.stiffness / 0.3 * alpha;
+    EXPECT_NEAR(joint_moment(bending, 0.3, alpha) / linear - 1, alpha * alpha / 12,
+                alpha * alpha * alpha * alpha / 100);
+  }
+}
+
+TEST(PaperBending, MomentIsCubic) {
+  const Bending bending{BendingLaw::paper, 2.5};
+  const double alpha = 0.01;
+  EXPECT_NEAR(joint_moment(bending, 0.3, alpha), 2.5 * 0.3 * alpha * alpha * alpha / 4,
+              1e-5 * 2.5 * 0.3 * alpha * alpha * alpha);
+}
+
+TEST(PaperBending, ForceIsFormula3AndItsPartAcrossTheSegments) {
+  // alpha = 90 deg, L = 1: u = x, v = y, e = (1, 1)/sqrt 2, F = c_b e, across v: c_b x / sqrt 2
+  const Eigen::Matrix3Xd forces =
+      forces_of(one_joint(1, pi / 2), Eigen::Vector2d::Ones(), {BendingLaw::paper, 2.5});
+  const double part = 2.5 / std::numbers::sqrt2;
+  EXPECT_LT((forces.col(2) - Eigen::Vector3d(part, 0, 0)).norm(), 1e-15);
+  EXPECT_LT((forces.col(0) - Eigen::Vector3d(0, -part, 0)).norm(), 1e-15);
+  EXPECT_LT((forces.col(1) - Eigen::Vector3d(-part, part, 0)).norm(), 1e-15);
+}
+
+TEST(PaperBending, PotentialIsTheClosedForm) {
+  const double alpha = 1.3;
+  const double c = std::cos(alpha / 2);
+  EXPECT_NEAR(joint_potential({BendingLaw::paper, 2.5}, 0.3, alpha),
+              2.5 * 0.3 * (8.0 / 3 - 4 * c + 4.0 / 3 * c * c * c), 1e-15);
+}
+
+TEST(Bending, RefusesBadNumbers) {
+  EXPECT_THROW((void)joint_moment({BendingLaw::hooke, -1}, 1, 0.1), std::invalid_argument);
+  EXPECT_THROW((void)joint_moment({BendingLaw::hooke, 1}, 0, 0.1), std::invalid_argument);
+  EXPECT_THROW((void)joint_moment({BendingLaw::hooke, 1}, 1, 4), std::invalid_argument);
+  EXPECT_THROW((void)joint_moment({BendingLaw::hooke, 1}, 1, NAN), std::invalid_argument);
+  Eigen::Matrix3Xd points = one_joint(1, 0.5);
+  points(0, 0) = NAN;
+  EXPECT_THROW(forces_of(points, Eigen::Vector2d::Ones(), {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace dlo::force_model

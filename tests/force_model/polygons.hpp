@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <random>
+
+namespace dlo::test {
+
+/// A random walk of n segments with lengths around `length`, turning by moderate angles in space.
+inline Eigen::Matrix3Xd random_polygon(unsigned seed, Eigen::Index segments, double length,
+                                       double length_spread) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Eigen::Matrix3Xd points(3, segments + 1);
+  points.col(0).setZero();
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitX();
+  for (Eigen::Index i = 0; i < segments; ++i) {
+    const Eigen::Vector3d kick(normal(engine), normal(engine), normal(engine));
+    direction = (direction + 0.5 * kick).normalized();
+    points.col(i + 1) = points.col(i) + length * (1 + length_spread * uniform(engine)) * direction;
+  }
+  return points;
+}
+
+inline Eigen::Quaterniond random_rotation(unsigned seed) {
+  std::mt19937 engine(seed);
+  std::normal_distribution<double> normal;
+  return Eigen::Quaterniond(normal(engine), normal(engine), normal(engine), normal(engine))
+      .normalized();
+}
+
+inline Eigen::Vector3d net_torque(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& forces) {
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d arm = points.col(i);
+    torque += arm.cross(Eigen::Vector3d(forces.col(i)));
+  }
+  return torque;
+}
+
+/// Forces as minus the central difference of an energy.
+template <typename Energy>
+Eigen::Matrix3Xd difference_forces(const Energy& energy, Eigen::Matrix3Xd points, double h) {
+  Eigen::Matrix3Xd forces(3, points.cols());
+  for (Eigen::Index k = 0; k < points.size(); ++k) {
+    const double x = points.data()[k];
+    points.data()[k] = x + h;
+    const double above = energy(points);
+    points.data()[k] = x - h;
+    const double below = energy(points);
+    points.data()[k] = x;
+    forces.data()[k] = -(above - below) / (2 * h);
+  }
+  return forces;
+}
+
+}  // namespace dlo::test

@@ -1,0 +1,235 @@
+#include "dlo/force_model/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "rods.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+using test::SteelRod;
+
+Rod steel_rod(double c_c = 660) {
+  const SteelRod steel;
+  return steel.rod({BendingLaw::hooke, steel.EI}, c_c);
+}
+
+StepOptions options(Stepper stepper, double c_F, double l_s = 1e-4, double c_h = 0) {
+  StepOptions result;
+  result.policy = policy(stepper);
+  result.c_F = c_F;
+  result.l_s = l_s;
+  result.c_h = c_h;
+  return result;
+}
+
+Eigen::Matrix3Xd forces_on_free_points(const Simulation& simulation) {
+  Eigen::Matrix3Xd forces(3, simulation.points().cols());
+  total_forces(simulation.rod(), simulation.points(), forces);
+  forces.leftCols(2).setZero();
+  return forces;
+}
+
+TEST(BasicStepper, MovesByScaledForces) {
+  Simulation simulation(steel_rod(), SteelRod().straight(), options(Stepper::basic, 1e-5));
+  const Eigen::Matrix3Xd expected = simulation.points() + 1e-5 * forces_on_free_points(simulation);
+  const StepResult result = simulation.step();
+  EXPECT_EQ(result.status, StepStatus::good);
+  EXPECT_EQ(result.c_m, 1);
+  EXPECT_LT((simulation.points() - expected).cwiseAbs().maxCoeff(), 1e-18);
+}
+
+TEST(LimitedStepper, ScalesTheLargestMovementDownToTheLimit) {
+  const double l_s = 1e-9;
+  Simulation simulation(steel_rod(), SteelRod().straight(), options(Stepper::limited, 1e-5, l_s));
+  const Eigen::Matrix3Xd before = simulation.points();
+  const double d_m =
+      std::sqrt((1e-5 * forces_on_free_points(simulation)).colwise().squaredNorm().maxCoeff());
+  ASSERT_GT(d_m, l_s);
+  const StepResult result = simulation.step();
+  EXPECT_TRUE(result.limited);
+  EXPECT_DOUBLE_EQ(result.c_m, l_s / d_m);  // (17)
+  const double moved = std::sqrt((simulation.points() - before).colwise().squaredNorm().maxCoeff());
+  EXPECT_NEAR(moved, l_s, 1e-6 * l_s + 1e-16);
+  EXPECT_EQ(simulation.limited_steps(), 1);
+}
+
+TEST(RelativeStepper, LimitsMovementAgainstTheNeighbourOnly) {
+  // All free points fall alike: only the one next to the grip moves against its neighbour.
+  Simulation limited(steel_rod(), SteelRod().straight(), options(Stepper::limited, 1e-5));
+  Simulation relative(steel_rod(), SteelRod().straight(), options(Stepper::relative, 1e-5));
+  const Eigen::Matrix3Xd dP = 1e-5 * forces_on_free_points(relative);
+  double expected = 0;
+  for (Eigen::Index i = 0; i + 1 < dP.cols(); ++i) {
+    expected = std::max(expected, (dP.col(i) - dP.col(i + 1)).norm());
+  }
+  EXPECT_DOUBLE_EQ(relative.step().movement, expected);  // (18)
+  EXPECT_GE(limited.step().movement, expected * (1 - 1e-12));
+}
+
+TEST(DynamicStepper, AddsAShareOfTheLastMovement) {
+  Simulation simulation(steel_rod(), SteelRod().straight(),
+                        options(Stepper::dynamic, 1e-5, 1e-2, 0.8));
+  const Eigen::Matrix3Xd start = simulation.points();
+  (void)simulation.step();
+  const Eigen::Matrix3Xd first = simulation.points() - start;
+  const Eigen::Matrix3Xd expected =
+      simulation.points() + 0.8 * first + 1e-5 * forces_on_free_points(simulation);  // (19)
+  (void)simulation.step();
+  EXPECT_LT((simulation.points() - expected).cwiseAbs().maxCoeff(), 1e-16);
+}
+
+TEST(OscillationDamping, GrowsWhilePointsTurnBackAndFallsToOneAfterwards) {
+  // Twice the stable step: the contraction modes turn back in every step.
+  const double c_F = 2.2 / mode_bounds(steel_rod(), SteelRod().straight()).fastest * 2;
+  Eigen::Matrix3Xd start = SteelRod().straight();
+  start(0, 8) += 1e-4;
+  Simulation simulation(steel_rod(), start, options(Stepper::limited, c_F, 1e-3));
+  double smallest = 1;
+  for (int i = 0; i < 200; ++i) {
+    const StepResult result = simulation.step();
+    ASSERT_EQ(result.status, StepStatus::good);
+    smallest = std::min(smallest, result.c_m);
+  }
+  EXPECT_LT(smallest, 0.9);
+  EXPECT_GT(simulation.damped_steps(), 0);
+  EXPECT_LT(simulation.damped_steps(), 200);
+}
+
+TEST(CatchUpLoop, RepeatsUntilTheSumOfScalingsIsReached) {
+  Simulation simulation(steel_rod(), SteelRod().straight(), options(Stepper::limited, 1e-5, 2e-8));
+  const StepResult last = simulation.advance(10);
+  EXPECT_EQ(last.status, StepStatus::good);
+  EXPECT_GT(simulation.steps(), 10);  // movements were scaled down, so more steps were needed
+  Simulation free(steel_rod(), SteelRod().straight(), options(Stepper::basic, 1e-5));
+  (void)free.advance(10);
+  EXPECT_EQ(free.steps(), 10);
+}
+
+TEST(CatchUpLoop, CarriesTheOvershootToTheNextCall) {
+  Simulation simulation(steel_rod(), SteelRod().straight(), options(Stepper::basic, 1e-5));
+  for (int i = 0; i < 10; ++i) (void)simulation.advance(0.5);
+  EXPECT_EQ(simulation.steps(), 5);
+}
+
+TEST(Step, BeyondTheStabilityLimitDivergesAndSaysSo) {
+  const double c_F = 10 / mode_bounds(steel_rod(), SteelRod().straight()).fastest * 4;
+  Simulation simulation(steel_rod(), SteelRod().straight(), options(Stepper::basic, c_F));
+  bool diverged = false;
+  Eigen::Matrix3Xd last = simulation.points();
+  for (int i = 0; i < 100000 && !diverged; ++i) {
+    last = simulation.points();
+    diverged = simulation.step().status == StepStatus::diverged;
+  }
+  EXPECT_TRUE(diverged);
+  EXPECT_TRUE(simulation.points().allFinite());
+  EXPECT_EQ((simulation.points() - last).cwiseAbs().maxCoeff(), 0);
+}
+
+TEST(Relax, ReportsRestStepLimitAndDivergence) {
+  Simulation rests(steel_rod(), SteelRod().straight(), {});
+  const RelaxResult good = rests.relax();
+  EXPECT_EQ(good.status, RelaxStatus::at_rest);
+  EXPECT_LT(good.remaining_error, 1e-7 * 0.5);
+  Simulation stopped(steel_rod(), SteelRod().straight(), {});
+  const RelaxResult limited = stopped.relax({.max_steps = 50});
+  EXPECT_EQ(limited.status, RelaxStatus::step_limit);
+  EXPECT_EQ(limited.steps, 50);
+  EXPECT_GT(limited.remaining_error, 1e-7 * 0.5);
+  Simulation wild(steel_rod(), SteelRod().straight(), options(Stepper::basic, 1));
+  EXPECT_EQ(wild.relax().status, RelaxStatus::diverged);
+}
+
+TEST(Relax, CreepingIsNotRest) {
+  // A slow basic stepper moves by less than 1e-9 m a step and is still millimetres from rest.
+  Simulation creeping(steel_rod(), SteelRod().straight(), options(Stepper::basic, 1e-7));
+  const RelaxResult result = creeping.relax({.tolerance = 1e-5, .max_steps = 20000});
+  EXPECT_EQ(result.status, RelaxStatus::step_limit);
+  EXPECT_GT(result.remaining_error, 1e-5);
+}
+
+class StepsToRest : public testing::TestWithParam<double> {};
+
+/// Steps after which every point stays within 1e-4 l of the rest shape.
+long steps_to_rest(double c_c, double angle) {
+  SteelRod steel;
+  steel.angle = angle;
+  const Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, c_c);
+  Simulation reference(rod, steel.straight(), {});
+  const RelaxResult rest = reference.relax({.tolerance = 1e-8});
+  EXPECT_EQ(rest.status, RelaxStatus::at_rest);
+  Simulation simulation(rod, steel.straight(), {});
+  long last_outside = 0;
+  for (long i = 1; i <= rest.steps; ++i) {
+    EXPECT_EQ(simulation.step().status, StepStatus::good);
+    const double distance =
+        std::sqrt((simulation.points() - reference.points()).colwise().squaredNorm().maxCoeff());
+    if (distance > 1e-4 * steel.length) last_outside = i;
+  }
+  return last_outside + 1;
+}
+
+TEST_P(StepsToRest, StayBelowTheirLimits) {
+  const double angle = GetParam() * 3.14159265358979323846 / 180;
+  const long soft = steps_to_rest(660, angle);
+  const long physical = steps_to_rest(SteelRod().AE, angle);
+  RecordProperty("steps_c_c_660", static_cast<int>(soft));
+  RecordProperty("steps_c_c_AE", static_cast<int>(physical));
+  EXPECT_LE(soft, 2500);
+  EXPECT_LE(physical, 60000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Angles, StepsToRest, testing::Values(0.0, -135.0, -175.0, -215.0),
+                         [](const auto& instance) {
+                           return "minus" + std::to_string(static_cast<int>(-instance.param));
+                         });
+
+TEST(Simulation, MovedGripperTakesItsPointsAlong) {
+  Simulation simulation(steel_rod(), SteelRod().straight(), {});
+  const Eigen::Matrix3Xd targets =
+      grip_targets({0, 0.1, 0}, {1, 0, 0}, SteelRod().segment(), SteelRod().segment() / 2);
+  simulation.move_grip(0, targets, {0, 0.1, 0});
+  EXPECT_EQ(simulation.points().leftCols(2), targets);
+  EXPECT_EQ(simulation.relax().status, RelaxStatus::at_rest);
+  EXPECT_THROW(simulation.move_grip(1, targets, {0, 0, 0}), std::invalid_argument);
+}
+
+TEST(Simulation, SpringGripYieldsByWeightOverStiffness) {
+  SteelRod steel;
+  steel.angle = -1.5707963267948966;
+  Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
+  rod.grips.front().hold = GripHold::spring;
+  rod.grips.front().stiffness = 50;
+  Simulation simulation(rod, steel.straight(), {});
+  ASSERT_EQ(simulation.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest);
+  const GripReaction reaction = grip_reactions(rod, simulation.points()).front();
+  EXPECT_NEAR(reaction.force.y(), steel.weight_per_length * steel.length, 1e-7);
+}
+
+TEST(Simulation, WallHoldsTheRodUp) {
+  SteelRod steel;
+  Rod rod = steel.rod({BendingLaw::hooke, steel.EI / 100}, 660);
+  rod.walls = {{.point = {0, -0.05, 0}, .normal = {0, 1, 0}, .stiffness = 1000}};
+  Simulation simulation(rod, steel.straight(), {});
+  ASSERT_EQ(simulation.relax({.tolerance = 1e-7}).status, RelaxStatus::at_rest);
+  EXPECT_GT(simulation.points().row(1).minCoeff(), -0.0502);
+  EXPECT_LT(simulation.points().row(1).minCoeff(), -0.05);
+}
+
+TEST(Simulation, RefusesMissingConstants) {
+  EXPECT_THROW(Simulation(steel_rod(), SteelRod().straight(), options(Stepper::basic, 0)),
+               std::invalid_argument);
+  EXPECT_THROW(Simulation(steel_rod(), SteelRod().straight(), options(Stepper::limited, 1, 0)),
+               std::invalid_argument);
+  EXPECT_THROW(Simulation(steel_rod(), SteelRod().straight(), options(Stepper::dynamic, 1, 1, 1)),
+               std::invalid_argument);
+  EXPECT_THROW(Simulation(steel_rod(), Eigen::Matrix3Xd::Zero(3, 4), {}), std::invalid_argument);
+  Eigen::Matrix3Xd points = SteelRod().straight();
+  points(2, 2) = NAN;
+  EXPECT_THROW(Simulation(steel_rod(), points, {}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace dlo::force_model
