@@ -1,5 +1,7 @@
 #include "comparison_text.hpp"
 
+#include <cmath>
+
 #include "output.hpp"
 
 namespace dlo::cli {
@@ -14,22 +16,25 @@ std::string comparison_text(const compare::Comparison& c) {
   if (p.c_b > 0) append(out, ", c_b = {:.6g} N", p.c_b);
   append(out, "\n");
   const compare::Deviation& d = c.deviation;
-  append(out, "  deviation       RMS {:.4f} mm = {:.4f} % of l = {:.1f} % of the movement\n",
-         d.rms_m * 1e3, d.rms_over_length * 100, d.rms_over_movement * 100);
-  append(out, "                  largest {:.4f} mm at s = {:.4f} m, tip {:.4f} mm\n", d.max_m * 1e3,
-         d.max_at_m, d.tip_m * 1e3);
-  append(out, "                  tangent RMS {:.4f} deg, curvature RMS {:.4g} 1/m\n",
+  append(out, "  deviation       RMS {:.4g} mm = {:.4g} % of l", d.rms_m * 1e3,
+         d.rms_over_length * 100);
+  if (std::isfinite(d.rms_over_movement)) {
+    append(out, " = {:.4g} % of the movement", d.rms_over_movement * 100);
+  }
+  append(out, "\n                  largest {:.4g} mm at s = {:.4f} m, tip {:.4g} mm\n",
+         d.max_m * 1e3, d.max_at_m, d.tip_m * 1e3);
+  append(out, "                  tangent RMS {:.4g} deg, curvature RMS {:.4g} 1/m\n",
          d.angle_rms_rad * 57.29577951308232, d.curvature_rms_per_m);
-  append(out, "                  (the unbent rod would be {:.4f} % of l off)\n",
+  append(out, "                  (the unbent rod would be {:.4g} % of l off)\n",
          c.undeformed_rms_over_length * 100);
-  append(out, "  E*/E            {:.4f}, where the RMS is {:.4f} mm ({} optimum)\n",
+  append(out, "  E*/E            {:.4f}, where the RMS is {:.4g} mm ({} optimum)\n",
          c.effective_modulus.ratio, c.effective_modulus.rms_m * 1e3,
          compare::to_string(c.effective_modulus.optimum));
   const compare::Budget& b = c.budget;
   append(
       out,
-      "  error budget    law {:.4f} mm, bookkeeping {:.4f} mm, discretisation {:.4f} mm, stretch "
-      "{:.4f} mm, not at rest {:.5f} mm\n",
+      "  error budget    law {:.4g} mm, bookkeeping {:.4g} mm, discretisation {:.4g} mm, stretch "
+      "{:.3g} mm, not at rest {:.2g} mm\n",
       b.law * 1e3, b.bookkeeping * 1e3, b.discretisation * 1e3, b.stretch * 1e3,
       b.not_at_rest * 1e3);
   append(out, "  cost            force {} steps, {:.3g} ms; energy {} evaluations, {:.3g} ms\n\n",

@@ -1,5 +1,7 @@
 #include "json.hpp"
 
+#include <algorithm>
+
 namespace dlo::cli {
 namespace {
 
@@ -61,32 +63,46 @@ Json to_json(const compare::Solution& solution, const compare::Scene& scene) {
     grippers.push_back({{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}});
   }
   const compare::SceneEnergies& energy = solution.energy;
-  Json result = {
-      {"schema", "dlo/solve/1"},
-      {"scene", scene.name},
-      {"model", compare::to_string(solution.model)},
-      {"converged", true},
-      {"gamma", scene.gamma()},
-      {"arc_length_m", solution.shape.arc_length},
-      {"points_m", points_json(solution.shape.points)},
-      {"energy_J",
-       {{"bending", energy.bending},
-        {"gravity", energy.gravity},
-        {"load", energy.load},
-        {"stretch", energy.stretch},
-        {"total", energy.total()}}},
-      {"grippers", std::move(grippers)},
-      {"solver",
-       {{"message", solution.message},
-        {"evaluations", solution.evaluations},
-        {"steps", solution.steps},
-        {"terms", solution.terms},
-        {"wall_s", solution.seconds}}},
-      {"plan",
-       {{"geometry", "planar"},
-        {"spans", 1},
-        {"neglected_stretch_bound_m", scene.weight_per_length().norm() * scene.length *
-                                          scene.length / (2 * scene.axial_stiffness())}}}};
+  Json result = {{"schema", "dlo/solve/1"},
+                 {"scene", scene.name},
+                 {"model", compare::to_string(solution.model)},
+                 {"converged", true},
+                 {"arc_length_m", solution.shape.arc_length},
+                 {"points_m", points_json(solution.shape.points)},
+                 {"energy_J",
+                  {{"bending", energy.bending},
+                   {"gravity", energy.gravity},
+                   {"load", energy.load},
+                   {"stretch", energy.stretch},
+                   {"contact", energy.contact},
+                   {"total", energy.total()}}},
+                 {"grippers", std::move(grippers)},
+                 {"solver",
+                  {{"message", solution.message},
+                   {"evaluations", solution.evaluations},
+                   {"steps", solution.steps},
+                   {"terms", solution.terms},
+                   {"wall_s", solution.seconds}}},
+                 {"plan",
+                  {{"geometry", scene.planar() ? "planar" : "spatial"},
+                   {"spans", scene.spans()},
+                   {"gamma", scene.gamma()}}}};
+  if (solution.model != compare::Model::force) {
+    // The tension of what hangs on the rod, had it all to be carried along its whole length.
+    double pull = scene.weight_per_length().norm() * scene.length;
+    for (const compare::PointLoad& load : scene.loads) pull += load.force.norm();
+    for (const compare::GripperLoad& load : solution.grippers) {
+      pull = std::max(pull, load.force.norm());
+    }
+    result["plan"]["neglected_stretch_bound_m"] = pull * scene.length / scene.axial_stiffness();
+  }
+  if (!solution.obstacles.empty()) {
+    Json obstacles = Json::array();
+    for (const Eigen::Vector3d& force : solution.obstacles) {
+      obstacles.push_back({{"force_N", to_json(force)}});
+    }
+    result["obstacles"] = std::move(obstacles);
+  }
   if (solution.model == compare::Model::chain || solution.model == compare::Model::force) {
     result["parameters"] = parameters_json(solution, scene.force_model);
   }

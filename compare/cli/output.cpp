@@ -33,19 +33,29 @@ void write_output(const OutputOptions& options, const std::string& content) {
     }
     return;
   }
-  const std::string temporary = fmt::format("{}.{}.tmp", options.file, ::getpid());
+  namespace fs = std::filesystem;
+  std::error_code error;
+  // A link stays a link, and a device or pipe is written to, not replaced.
+  fs::path target = fs::weakly_canonical(options.file, error);
+  if (error) target = options.file;
+  const fs::file_status existing = fs::status(target, error);
+  const bool replace = !fs::exists(existing) || fs::is_regular_file(existing);
+  const fs::path written =
+      replace ? fs::path(fmt::format("{}.{}.tmp", target.string(), ::getpid())) : target;
   const auto fail = [&](const std::string& why) {
     std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
+    if (replace) fs::remove(written, ignored);
     throw compare::InputError(fmt::format("{}: cannot be written ({})", options.file, why));
   };
+  if (fs::is_directory(existing)) fail("it is a directory");
   errno = 0;
-  std::ofstream stream(temporary, std::ios::binary);
+  std::ofstream stream(written, std::ios::binary);
   stream << content;
   stream.close();
   if (!stream) fail(std::strerror(errno));
-  std::error_code error;
-  std::filesystem::rename(temporary, options.file, error);
+  if (!replace) return;
+  if (fs::exists(existing)) fs::permissions(written, existing.permissions(), error);
+  fs::rename(written, target, error);
   if (error) fail(error.message());
 }
 

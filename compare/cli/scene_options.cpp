@@ -108,6 +108,7 @@ void SceneOptions::apply(compare::Scene& scene) const {
   if (!c_F_.empty()) settings.c_F = option_quantity("--c-F", c_F_, Dimension::number);
   if (!c_h_.empty()) settings.c_h = option_quantity("--c-h", c_h_, Dimension::number, 1);
   if (!l_s_.empty()) settings.l_s = option_quantity("--l-s", l_s_, Dimension::length);
+  compare::check(settings, scene.file + ", with the command line's options");
 }
 
 compare::Scene SceneOptions::load(const std::string& path) const {

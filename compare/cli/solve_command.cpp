@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/solve.hpp"
 #include "json.hpp"
 #include "output.hpp"
@@ -15,6 +16,7 @@ struct Options {
   std::string scene;
   std::string model = "energy";
   int samples = 0;
+  bool all = false;
   SceneOptions overrides;
   OutputOptions output;
 };
@@ -46,6 +48,10 @@ std::string text(const compare::Solution& solution, const compare::Scene& scene)
   const compare::SceneEnergies& e = solution.energy;
   append(out, "energy     bending {:.9g} J, gravity {:.9g} J, load {:.9g} J, stretch {:.3g} J\n",
          e.bending, e.gravity, e.load, e.stretch);
+  for (const Eigen::Vector3d& force : solution.obstacles) {
+    append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
+           force.z());
+  }
   for (const compare::GripperLoad& load : solution.grippers) {
     append(out,
            "gripper    force [{:.6g}, {:.6g}, {:.6g}] N, torque [{:.6g}, {:.6g}, {:.6g}] Nm on the "
@@ -62,6 +68,35 @@ std::string text(const compare::Solution& solution, const compare::Scene& scene)
   return out;
 }
 
+/// The first of several equilibria in full, then what tells them apart.
+Json json(const std::vector<compare::Solution>& solutions, const compare::Scene& scene, bool all) {
+  Json document = to_json(solutions.front(), scene);
+  if (!all) return document;
+  Json equilibria = Json::array();
+  for (const compare::Solution& solution : solutions) {
+    equilibria.push_back({{"stable", solution.smallest_curvature >= -1e-7},
+                          {"smallest_curvature", solution.smallest_curvature},
+                          {"energy_J", solution.energy.total()},
+                          {"points_m", points_json(solution.shape.points)}});
+  }
+  document["equilibria"] = std::move(equilibria);
+  return document;
+}
+
+std::string equilibria_text(const std::vector<compare::Solution>& solutions) {
+  std::string out;
+  append(out, "\n{} equilibria found\n{:>16} {:>10} {:>20} {:>13} {:>13} {:>13}\n",
+         solutions.size(), "energy [J]", "", "smallest curvature", "x(l) [m]", "y(l) [m]",
+         "z(l) [m]");
+  for (const compare::Solution& solution : solutions) {
+    const Eigen::Vector3d tip = solution.shape.points.rightCols<1>();
+    append(out, "{:16.9g} {:>10} {:20.6g} {:13.6f} {:13.6f} {:13.6f}\n", solution.energy.total(),
+           solution.smallest_curvature >= -1e-7 ? "stable" : "unstable",
+           solution.smallest_curvature, tip.x(), tip.y(), tip.z());
+  }
+  return out;
+}
+
 void run(const Options& options) {
   const compare::Scene scene = options.overrides.load(options.scene);
   const compare::Model model = compare::model_from(options.model);
@@ -71,18 +106,25 @@ void run(const Options& options) {
   if (samples == 0 && continuous && options.output.kind() == Format::text) samples = text_samples;
   const std::vector<double> arc_lengths =
       samples > 0 ? compare::equal_arc_lengths(scene.length, samples) : std::vector<double>{};
-  const compare::Solution solution =
-      compare::solve(scene, model, options.overrides.solve(), arc_lengths);
+  if (options.all && model != compare::Model::energy) {
+    throw compare::InputError("--all: only model energy searches for all equilibria");
+  }
+  const std::vector<compare::Solution> solutions =
+      options.all ? compare::solve_all(scene, options.overrides.solve(), arc_lengths)
+                  : std::vector<compare::Solution>{
+                        compare::solve(scene, model, options.overrides.solve(), arc_lengths)};
+  const compare::Solution& solution = solutions.front();
   std::string content;
   switch (options.output.kind()) {
     case Format::json:
-      content = to_json(solution, scene).dump(2) + "\n";
+      content = json(solutions, scene, options.all).dump(2) + "\n";
       break;
     case Format::csv:
       content = csv(solution);
       break;
     case Format::text:
       content = text(solution, scene);
+      if (options.all) content += equilibria_text(solutions);
       break;
   }
   write_output(options.output, content);
@@ -99,6 +141,7 @@ void add_solve(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--samples", options->samples, "M points at equal arc lengths from 0 to l")
       ->check(CLI::Range(2, 10000000));
+  command->add_flag("--all", options->all, "every equilibrium that is found, with its stability");
   options->overrides.add_to(*command);
   add_output_options(*command, options->output);
   command->footer(

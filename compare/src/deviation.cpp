@@ -73,7 +73,9 @@ Deviation deviation(const Shape& shape, const Reference& reference,
   result.tip_m = difference.col(tip).norm();
   result.rms_over_length = result.rms_m / (shape.arc_length.back() - shape.arc_length.front());
   const double movement = rms(shape.arc_length, samples.points - straight);
-  result.rms_over_movement = movement > 0 ? result.rms_m / movement : 0;
+  // A rod that stays where it was has no movement to compare with.
+  const double length = shape.arc_length.back() - shape.arc_length.front();
+  result.rms_over_movement = movement > 1e-9 * length ? result.rms_m / movement : NAN;
   result.angle_rms_rad = segment_angle_rms(shape, reference);
   result.curvature_rms_per_m = curvature_rms(shape, samples);
   return result;

@@ -93,14 +93,20 @@ void distribute_forces(const Scene& scene, const ForceModelSettings& settings,
 }
 
 const Gripper& single_end_clamp(const Scene& scene) {
-  if (scene.grippers.size() != 1 || !scene.grippers.front().direction ||
-      (scene.grippers.front().at != 0 && scene.grippers.front().at != scene.length)) {
-    throw InputError(
-        fmt::format("{}: gripper: {} given (allowed here: one with hold = \"clamp\" at = 0 or at "
-                    "the rod's end)",
-                    scene.file, scene.grippers.size()));
+  const auto refuse = [&](const Gripper& gripper, const std::string& what) {
+    throw InputError(fmt::format(
+        "{}: {} (allowed for the models force and chain: one clamp at = 0 or at = {} m)",
+        gripper.where.empty() ? scene.file : gripper.where, what, scene.length));
+  };
+  const Gripper& first = scene.grippers.front();
+  if (scene.grippers.size() > 1) {
+    refuse(scene.grippers[1], fmt::format("gripper: {} are given", scene.grippers.size()));
   }
-  return scene.grippers.front();
+  if (!first.direction) refuse(first, "gripper.hold = \"pin\"");
+  if (first.at != 0 && first.at != scene.length) {
+    refuse(first, fmt::format("gripper.at = {} m", first.at));
+  }
+  return first;
 }
 
 }  // namespace
@@ -157,7 +163,7 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
   for (const Obstacle& obstacle : scene.obstacles) {
     // A rigid wall as stiff as the rod's own segments: stiffer ones would only slow the steps down.
     const double stiffness =
-        std::isfinite(obstacle.stiffness) ? obstacle.stiffness : result.parameters.c_c / L;
+        std::isfinite(obstacle.stiffness) ? obstacle.stiffness * L : result.parameters.c_c / L;
     result.rod.walls.push_back({obstacle.point, obstacle.normal, stiffness});
   }
   return result;
@@ -180,7 +186,7 @@ ChainScene chain_scene(const Scene& scene, const Discretisation& discretisation,
   if (!scene.obstacles.empty()) {
     throw InputError(
         fmt::format("{}: obstacle: the chain model knows no obstacles (allowed: models "
-                    "force)",
+                    "force and energy)",
                     scene.file));
   }
   const bool reversed = grip.at != 0;
@@ -228,6 +234,9 @@ energy_model::Problem energy_problem(const Scene& scene) {
     problem.grips.push_back({grip.at, grip.position, grip.direction});
   }
   for (const PointLoad& load : scene.loads) problem.loads.push_back({load.at, load.force});
+  for (const Obstacle& obstacle : scene.obstacles) {
+    problem.walls.push_back({obstacle.point, obstacle.normal, obstacle.stiffness});
+  }
   return problem;
 }
 

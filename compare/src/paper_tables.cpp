@@ -92,6 +92,10 @@ void add_table_5(std::vector<TableRow>& rows) {
       fmt::format("Formula 21 with alpha_l = l k/(N-1) = {:.5f} rad; moment-matched at the "
                   "same bending it would be {:.2f}",
                   L * k, paper_bending_stiffness(BendingRule::moment_matched, EI, k, L))));
+  rows.push_back(table.row("c_e_gripper_N", "c_e (gripper)", "N", 3, rho * A * l * gravity,
+                           fmt::format("m g; printed as in Table 1. Over 5 % of a segment it is "
+                                       "{:.1f} N/m",
+                                       rho * A * l * gravity / (0.05 * L))));
   rows.push_back(table.row("c_e_gravity_N", "c_e (grav)", "N", 5, -rho * A * l * gravity / N,
                            "rho A l g / 16; the printed number is Table 1's, of another rod"));
 }

@@ -24,7 +24,7 @@ constexpr Unit densities[] = {{"kg/m^3", 1}, {"kg/dm^3", 1e3}, {"g/cm^3", 1e3}};
 constexpr Unit forces[] = {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}};
 constexpr Unit accelerations[] = {{"m/s^2", 1}};
 constexpr Unit curvatures[] = {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}};
-constexpr Unit line_stiffnesses[] = {{"N/m", 1}, {"N/mm", 1e3}};
+constexpr Unit foundations[] = {{"N/m^2", 1}, {"N/mm^2", 1e6}};
 
 std::span<const Unit> units(Dimension dimension) {
   switch (dimension) {
@@ -42,8 +42,8 @@ std::span<const Unit> units(Dimension dimension) {
       return accelerations;
     case Dimension::curvature:
       return curvatures;
-    case Dimension::line_stiffness:
-      return line_stiffnesses;
+    case Dimension::foundation:
+      return foundations;
     case Dimension::number:
       break;
   }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +14,9 @@
 
 namespace dlo::compare {
 namespace {
+
+/// Beyond it no solver resolves the layer at a clamp, and no rod looks any different.
+constexpr double largest_gamma = 1e12;
 
 template <typename Choice>
 Choice choice_from(const std::string& name, const std::vector<std::string>& names) {
@@ -52,7 +56,10 @@ Eigen::Vector3d unit_vector(StrictTable& table, std::string_view key) {
 
 Eigen::Vector3d read_direction(StrictTable& table) {
   if (table.is_array("direction")) return unit_vector(table, "direction");
-  const double angle = table.number("direction", Dimension::angle, Range::any());
+  // A bare number is in radians; -175 is a forgotten unit.
+  const Range turn{-2 * std::numbers::pi, 2 * std::numbers::pi, false,
+                   "-2 pi to 2 pi rad, or a string such as \"-175 deg\", or a vector"};
+  const double angle = table.number("direction", Dimension::angle, turn);
   return {std::cos(angle), std::sin(angle), 0};
 }
 
@@ -70,6 +77,7 @@ Gripper read_gripper(StrictTable& table, double length) {
   } else if (table.has("direction")) {
     table.fail("direction", "a pin has no direction (allowed: hold = \"clamp\", or no direction)");
   }
+  gripper.where = table.where();
   table.finish();
   return gripper;
 }
@@ -78,9 +86,8 @@ Obstacle read_obstacle(StrictTable& table) {
   Obstacle obstacle;
   obstacle.point = table.vector("point", Dimension::length);
   obstacle.normal = unit_vector(table, "normal");
-  obstacle.stiffness =
-      table.optional_number("stiffness", Dimension::line_stiffness, Range::positive())
-          .value_or(obstacle.stiffness);
+  obstacle.stiffness = table.optional_number("stiffness", Dimension::foundation, Range::positive())
+                           .value_or(obstacle.stiffness);
   table.finish();
   return obstacle;
 }
@@ -102,10 +109,6 @@ ForceModelSettings read_force_model(StrictTable& table) {
       table.optional_number("design_curvature", Dimension::curvature, Range::positive());
   settings.point_weight =
       table.optional_number("point_weight", Dimension::force, Range::not_negative());
-  if (settings.point_weight && settings.bookkeeping != Bookkeeping::paper) {
-    table.fail("point_weight",
-               "one weight for every point (allowed: with bookkeeping = \"paper\")");
-  }
   settings.c_b = table.optional_number("c_b", Dimension::force, Range::positive());
   settings.c_c = table.optional_number("c_c", Dimension::force, Range::positive());
   settings.c_F = table.optional_number("c_F", Dimension::number, Range::positive());
@@ -170,6 +173,46 @@ double Scene::gamma() const {
   return weight_per_length().norm() * length * length * length / bending_stiffness();
 }
 
+bool Scene::planar() const {
+  std::vector<Eigen::Vector3d> vectors = {gravity};
+  for (const Gripper& gripper : grippers) {
+    if (gripper.direction) vectors.push_back(*gripper.direction);
+    vectors.emplace_back(gripper.position - grippers.front().position);
+  }
+  for (const PointLoad& load : loads) vectors.push_back(load.force);
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& v : vectors) {
+    if (v.norm() > 0) moments += v.normalized() * v.normalized().transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvalues()[0] < 1e-18;
+}
+
+int Scene::spans() const {
+  int count = 1;
+  for (const Gripper& gripper : grippers) {
+    if (gripper.direction && gripper.at > 0 && gripper.at < length) ++count;
+  }
+  return count;
+}
+
+void check(const ForceModelSettings& settings, const std::string& where) {
+  const auto refuse = [&](const char* key, const char* allowed) {
+    throw InputError(
+        fmt::format("{}: {} would have no effect (allowed: with {})", where, key, allowed));
+  };
+  const bool automatic = settings.stepper == StepperName::automatic;
+  const bool dynamic = settings.stepper == StepperName::dynamic;
+  if (settings.c_F && automatic) refuse("c_F", "a stepper other than auto, which chooses its own");
+  if (settings.c_h && !dynamic) refuse("c_h", "stepper dynamic");
+  if (settings.l_s && settings.stepper == StepperName::basic) {
+    refuse("l_s", "a stepper other than basic");
+  }
+  if (settings.c_b && settings.law == Law::hooke) refuse("c_b", "law paper");
+  if (settings.point_weight && settings.bookkeeping != Bookkeeping::paper) {
+    refuse("point_weight", "bookkeeping paper");
+  }
+}
+
 Scene parse_scene(const std::string& text, const std::string& file,
                   const std::vector<Material>& known_materials) {
   const toml::table root = parse_toml(text, file);
@@ -180,13 +223,20 @@ Scene parse_scene(const std::string& text, const std::string& file,
   scene.gravity = table.optional_vector("gravity", Dimension::acceleration).value_or(scene.gravity);
 
   StrictTable rod = table.table("rod");
-  scene.length = rod.number("length", Dimension::length, Range::positive());
-  scene.diameter = rod.number("diameter", Dimension::length, Range::positive());
+  scene.length = rod.number("length", Dimension::length, Range::between(1e-6, 1e6, " m"));
+  scene.diameter = rod.number("diameter", Dimension::length, Range::between(1e-9, 1e3, " m"));
   scene.material = read_material(rod, known_materials);
   rod.finish();
 
+  for (StrictTable& entry : table.tables("obstacle")) {
+    scene.obstacles.push_back(read_obstacle(entry));
+  }
   for (StrictTable& entry : table.tables("gripper")) {
     scene.grippers.push_back(read_gripper(entry, scene.length));
+    for (const Obstacle& obstacle : scene.obstacles) {
+      if ((scene.grippers.back().position - obstacle.point).dot(obstacle.normal) >= 0) continue;
+      entry.fail("position", "behind an obstacle (allowed: the side its normal points to)");
+    }
   }
   if (scene.grippers.empty()) {
     throw InputError(fmt::format(
@@ -200,13 +250,16 @@ Scene parse_scene(const std::string& text, const std::string& file,
     entry.finish();
     scene.loads.push_back(load);
   }
-  for (StrictTable& entry : table.tables("obstacle")) {
-    scene.obstacles.push_back(read_obstacle(entry));
-  }
   if (auto settings = table.optional_table("force_model")) {
     scene.force_model = read_force_model(*settings);
+    check(scene.force_model, settings->where());
   }
   table.finish();
+  if (!(scene.bending_stiffness() > 0) || !std::isfinite(scene.gamma()) ||
+      scene.gamma() > largest_gamma) {
+    throw InputError(fmt::format("{}: rod: w l^3 / (EI) = {:g} (allowed: 0 to {:g})", file,
+                                 scene.gamma(), largest_gamma));
+  }
   return scene;
 }
 

@@ -21,6 +21,7 @@ SceneEnergies polygon_energies(const Discretisation& discretisation,
   SceneEnergies energy;
   energy.bending = inner.bending;
   energy.stretch = inner.stretch;
+  energy.contact = inner.contact;
   energy.gravity = -discretisation.weights.cwiseProduct(offset).sum();
   energy.load = -(discretisation.rod.loads - discretisation.weights).cwiseProduct(offset).sum();
   return energy;
@@ -40,11 +41,48 @@ GripperLoad balancing_load(const Discretisation& discretisation, const Eigen::Ma
   return result;
 }
 
-void require_no_obstacles(const Scene& scene, Model model) {
-  if (scene.obstacles.empty()) return;
-  throw InputError(
-      fmt::format("{}: obstacle: the {} model knows no obstacles (allowed: model force)",
-                  scene.file, to_string(model)));
+/// The exact model's scenes, said in the scene's own words.
+void require_exact_scene(const Scene& scene) {
+  const auto refuse = [&](const std::string& where, const std::string& what) {
+    throw InputError(fmt::format(
+        "{}: {} (allowed for model exact: one clamp at = 0 or at = {} m, forces in one plane, no "
+        "obstacle; model energy takes every scene)",
+        where, what, scene.length));
+  };
+  const Gripper& first = scene.grippers.front();
+  const std::string where = first.where.empty() ? scene.file : first.where;
+  if (scene.grippers.size() > 1) {
+    refuse(where, fmt::format("gripper: {} are given", scene.grippers.size()));
+  }
+  if (!first.direction) refuse(where, "gripper.hold = \"pin\"");
+  if (first.at != 0 && first.at != scene.length) {
+    refuse(where, fmt::format("gripper.at = {} m", first.at));
+  }
+  if (!scene.obstacles.empty()) refuse(scene.file, "obstacle: given");
+  if (!scene.planar()) refuse(scene.file, "gripper.direction, gravity and loads span the space");
+}
+
+Solution sampled(const Scene& scene, Model model, const energy_model::Equilibrium& equilibrium,
+                 const std::vector<double>& arc_lengths) {
+  constexpr int default_samples = 101;
+  const std::vector<double> samples =
+      arc_lengths.empty() ? equal_arc_lengths(scene.length, default_samples) : arc_lengths;
+  Solution solution;
+  solution.model = model;
+  solution.message = equilibrium.message;
+  solution.shape = {samples, equilibrium.sample(samples).points};
+  solution.energy = {.bending = equilibrium.energy.bending,
+                     .gravity = equilibrium.energy.gravity,
+                     .load = equilibrium.energy.load};
+  for (const energy_model::Reaction& reaction : equilibrium.grips) {
+    solution.grippers.push_back({reaction.force, reaction.torque});
+  }
+  solution.obstacles = equilibrium.walls;
+  solution.smallest_curvature = equilibrium.smallest_curvature;
+  solution.evaluations = equilibrium.evaluations;
+  solution.terms = equilibrium.terms;
+  solution.seconds = equilibrium.seconds;
+  return solution;
 }
 
 }  // namespace
@@ -70,7 +108,7 @@ Model model_from(const std::string& name) {
 
 energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                           const SolveOptions& options) {
-  require_no_obstacles(scene, model);
+  if (model == Model::exact) require_exact_scene(scene);
   const energy_model::Problem problem = energy_problem(scene);
   energy_model::Equilibrium result;
   try {
@@ -121,16 +159,27 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                      const SolveOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   const Discretisation discretisation = discretise(scene, settings);
-  force_model::Simulation simulation(discretisation.rod, discretisation.straight,
+  const auto simulation_of = [&] {
+    try {
+      return force_model::Simulation(discretisation.rod, discretisation.straight,
                                      step_options(settings, discretisation));
+    } catch (const std::invalid_argument& error) {
+      throw InputError(fmt::format("{}: the force model: {}", scene.file, error.what()));
+    }
+  };
+  force_model::Simulation simulation = simulation_of();
   const force_model::RelaxResult result =
       simulation.relax({.tolerance = options.rest_tolerance, .max_steps = options.max_steps});
   if (result.status != force_model::RelaxStatus::at_rest) {
     throw ConvergenceError(fmt::format(
         "{}: the force model did not come to rest: {} after {} steps, about {:.2g} m from it "
-        "(stepper {}, c_F = {:.4g} m/N)",
+        "(stepper {}, c_F = {:.4g} m/N, c_c = {:.4g} N{})",
         scene.file, result.message, result.steps, result.remaining_error,
-        to_string(settings.stepper), simulation.options().c_F));
+        to_string(settings.stepper), simulation.options().c_F, discretisation.parameters.c_c,
+        settings.stepper == StepperName::automatic
+            ? ""
+            : "; stepper auto chooses its constants, a lower c_c lets the others take larger "
+              "steps"));
   }
   Solution solution;
   solution.model = Model::force;
@@ -159,24 +208,29 @@ Solution solve(const Scene& scene, Model model, const SolveOptions& options,
     if (!arc_lengths.empty()) solution.shape = resample(solution.shape, arc_lengths);
     return solution;
   }
-  const energy_model::Equilibrium equilibrium = solve_reference(scene, model, options);
-  constexpr int default_samples = 101;
-  const std::vector<double> samples =
-      arc_lengths.empty() ? equal_arc_lengths(scene.length, default_samples) : arc_lengths;
-  Solution solution;
-  solution.model = model;
-  solution.message = equilibrium.message;
-  solution.shape = {samples, equilibrium.sample(samples).points};
-  solution.energy = {.bending = equilibrium.energy.bending,
-                     .gravity = equilibrium.energy.gravity,
-                     .load = equilibrium.energy.load};
-  for (const energy_model::Reaction& reaction : equilibrium.grips) {
-    solution.grippers.push_back({reaction.force, reaction.torque});
+  return sampled(scene, model, solve_reference(scene, model, options), arc_lengths);
+}
+
+std::vector<Solution> solve_all(const Scene& scene, const SolveOptions& options,
+                                const std::vector<double>& arc_lengths) {
+  std::vector<Solution> solutions;
+  try {
+    for (const energy_model::Equilibrium& equilibrium : energy_model::all_energy(
+             energy_problem(scene),
+             {.terms = options.terms, .max_evaluations = options.max_evaluations})) {
+      const bool equilibrium_found = energy_model::succeeded(equilibrium.status) ||
+                                     equilibrium.status == energy_model::SolveStatus::saddle;
+      if (equilibrium_found) {
+        solutions.push_back(sampled(scene, Model::energy, equilibrium, arc_lengths));
+      }
+    }
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }
-  solution.evaluations = equilibrium.evaluations;
-  solution.terms = equilibrium.terms;
-  solution.seconds = equilibrium.seconds;
-  return solution;
+  if (solutions.empty()) {
+    throw ConvergenceError(fmt::format("{}: the energy model found no equilibrium", scene.file));
+  }
+  return solutions;
 }
 
 }  // namespace dlo::compare

@@ -36,6 +36,22 @@ std::string shown(const toml::node& node) {
   return line;
 }
 
+/// Levenshtein's distance of two words.
+std::size_t distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
 }  // namespace
 
 Range Range::any() { return {-infinity, infinity, false, "any number"}; }
@@ -79,7 +95,15 @@ const toml::node* StrictTable::find(std::string_view key) {
 
 const toml::node& StrictTable::need(std::string_view key) {
   const toml::node* node = find(key);
-  if (node == nullptr) fail(key, "missing, it is required");
+  if (node == nullptr) {
+    // A slip of the pen is both a missing and an unknown key.
+    for (const auto& [present, value] : table_) {
+      if (distance(key, present.str()) <= 2) {
+        fail(present.str(), fmt::format("unknown key, did you mean {}?", key));
+      }
+    }
+    fail(key, "missing, it is required");
+  }
   return *node;
 }
 

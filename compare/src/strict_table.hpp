@@ -59,6 +59,9 @@ class StrictTable {
   /// @throws InputError naming the first key that nobody asked for and the keys that exist
   void finish() const;
 
+  /// "file:line" of this table
+  [[nodiscard]] std::string where() const { return where(nullptr); }
+
   /// "file:line: key = value: problem"
   [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
 

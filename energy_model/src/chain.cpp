@@ -100,7 +100,7 @@ Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
   const double turned = std::abs(turns.sum());
   if (turned > limit) turns *= limit / turned;
   // An upright chain has no moment at all; a hair's turn lets it find its buckled shape.
-  if (turned == 0 && total.dot(tangent) < 0) turns[1] = 1e-3;
+  if (turned < 1e-6 && total.dot(tangent) < 0) turns[1] = 1e-3;
   Eigen::VectorXd angles(n);
   double angle = problem.held_angle;
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -178,7 +178,8 @@ void polish(const ChainProblem& problem, const ChainOptions& options, double mom
       4 * std::numeric_limits<double>::epsilon() * std::numbers::pi *
       std::sqrt(static_cast<double>(free)) *
       second_derivative(problem, forces, result.angles).diagonal.cwiseAbs().maxCoeff();
-  const double tolerance = std::max(options.tolerance * moment_scale, rounding_moment);
+  const double tolerance =
+      std::max(options.tolerance * moment_scale, std::min(rounding_moment, 1e-6 * moment_scale));
   double damping = 0;
   while (result.evaluations < options.max_evaluations) {
     result.residual = gradient.norm();

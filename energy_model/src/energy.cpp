@@ -1,161 +1,117 @@
 #include "dlo/energy_model/energy.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <memory>
 #include <string>
 
-#include "cantilever.hpp"
 #include "legendre.hpp"
-#include "minimise.hpp"
 #include "require.hpp"
+#include "span_solver.hpp"
+#include "split.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-/// Gradient norm at which L-BFGS hands over: two Newton steps square it to below rounding, while
-/// its own line search, which compares energies, would stall near the root of the rounding error.
-constexpr double handover_gradient = 1e-5;
+/// Most combinations of the spans' equilibria that are put together.
+constexpr std::size_t most_combinations = 64;
 
-/// Above this sum of weight and loads (in EI/l^2) a rod is nearer to its soft limit than to
-/// straight.
-constexpr double soft_load = 12;
-
-struct Found {
-  SolveStatus status = SolveStatus::not_run;
-  std::string message;
-  int evaluations = 0;
-  double gradient = -1;
-  Eigen::VectorXd coefficients;
-};
-
-double total_load(const PlanarCantilever& rod) {
-  double total = rod.weight.norm();
-  for (const PlanarCantilever::Load& load : rod.loads) total += load.force.norm();
-  return total;
-}
-
-/// Coefficients of each piece that resolve a rod under this load to about 1e-10 of its length. A
-/// softer rod has its clamp's layer in pieces of its own.
-int first_terms(double load) {
-  const double needed = 8 * std::pow(std::clamp(load, 1.0, 1000.0), 0.24);
-  return static_cast<int>(std::ceil(needed));
-}
-
-/// Newton steps from a point near a minimum; they also tell a minimum from a saddle.
-void polish(CantileverEnergy& energy, Found& found, double load) {
-  Eigen::VectorXd gradient(energy.size());
-  Eigen::MatrixXd hessian;
-  const double tolerance = 1e-13 * (1 + load);
-  double previous = HUGE_VAL;
-  for (int step = 0; step < 8; ++step) {
-    (void)energy.value(found.coefficients, gradient);
-    ++found.evaluations;
-    found.gradient = gradient.norm();
-    energy.hessian(hessian);
-    const Eigen::LLT<Eigen::MatrixXd> factor(hessian);
-    if (factor.info() != Eigen::Success) {
-      found.status = SolveStatus::saddle;
-      found.message = to_string(found.status);
-      return;
-    }
-    // A gradient below 1e-8 is squared by the step that follows, so no evaluation has to prove it.
-    found.coefficients -= factor.solve(gradient);
-    if (found.gradient <= std::max(tolerance, 1e-8)) {
-      found.status = SolveStatus::converged;
-      found.message = to_string(found.status);
-      return;
-    }
-    if (found.gradient > 0.5 * previous) break;
-    previous = found.gradient;
-  }
-  found.status = SolveStatus::failed;
-  found.message = "Newton's method did not reduce the gradient below rounding";
-}
-
-Found minimise(CantileverEnergy& energy, Eigen::VectorXd start, const EnergyOptions& options,
-               double load) {
-  Found found;
-  const MinimiseResult result = minimise_lbfgs(
-      [&energy](
-          const Eigen::Ref<const Eigen::VectorXd>& x,
-          Eigen::Ref<Eigen::VectorXd> gradient) {  // NOLINT(performance-unnecessary-value-param)
-        return energy.value(x, gradient);
-      },
-      start, {handover_gradient * (1 + load), options.max_evaluations});
-  found.evaluations = result.evaluations;
-  found.coefficients = std::move(start);
-  found.status = result.status;
-  found.message = result.message;
-  if (succeeded(result.status)) polish(energy, found, load);
-  return found;
-}
-
-Found minimise_from_starts(CantileverEnergy& energy, const EnergyOptions& options, double load) {
-  Found found;
-  if (load < soft_load) {
-    found = minimise(energy, Eigen::VectorXd::Zero(energy.size()), options, load);
-    if (found.status != SolveStatus::saddle) return found;
-  }
-  // The soft start breaks the symmetry that kept the straight start on the saddle.
-  const int spent = found.evaluations;
-  found = minimise(energy, energy.soft_start(), options, load);
-  found.evaluations += spent;
-  return found;
-}
-
-}  // namespace
-
-Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options) {
-  const auto begin = std::chrono::steady_clock::now();
+void check(const EnergyOptions& options) {
   require(options.terms >= 0 && options.terms <= max_terms, "solve_energy", "terms", options.terms,
           "0 to " + std::to_string(max_terms));
   require_positive("solve_energy", "tolerance", options.tolerance);
   require(options.max_evaluations >= 1, "solve_energy", "max_evaluations", options.max_evaluations,
           ">= 1");
-  const ReducedCantilever reduced = reduce_cantilever(problem);
-  const double load = total_load(reduced.rod);
+}
 
-  int terms = options.terms > 0 ? options.terms : first_terms(load);
-  auto energy = std::make_shared<CantileverEnergy>(reduced.rod, terms);
-  Found found = minimise_from_starts(*energy, options, load);
-  // The angle that the last coefficient a_K adds is a_K / (2K); positions feel it as little again.
-  const auto resolved = [&] {
-    return energy->tail(found.coefficients) <= options.tolerance * 4 * terms * terms;
+/// Tangents of an equilibrium as a span sees them.
+TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double length) {
+  return [&start, &placed, length](const Eigen::VectorXd& s) {
+    std::vector<double> arc_lengths;
+    for (const double at : s) {
+      const double arc = placed.start + (placed.reversed ? -at : at) * length;
+      arc_lengths.push_back(std::clamp(arc, 0.0, length));
+    }
+    const Eigen::Matrix3Xd tangents = start.sample(arc_lengths).tangents;
+    return Eigen::Matrix3Xd((placed.reversed ? -1.0 : 1.0) * (placed.frame * tangents));
   };
-  while (options.terms == 0 && succeeded(found.status) && !resolved() && terms < max_terms) {
-    const int more = std::min(max_terms, terms + std::max(4, terms / 2));
-    const Eigen::VectorXd start = CantileverEnergy::refine(found.coefficients, terms, more);
-    const int spent = found.evaluations;
-    terms = more;
-    energy = std::make_shared<CantileverEnergy>(reduced.rod, terms);
-    found = minimise(*energy, start, options, load);
-    found.evaluations += spent;
-  }
-  if (options.terms == 0 && succeeded(found.status) && !resolved()) {
-    found.status = SolveStatus::failed;
-    found.message = "the curvature is not resolved by " + std::to_string(terms) + " terms";
-  }
+}
 
-  Equilibrium result;
-  result.status = found.status;
-  result.message = found.message;
-  result.evaluations = found.evaluations;
-  result.terms = terms;
-  result.residual = found.gradient;
-  result.energy = restore(problem, energy->energies(found.coefficients));
-  const double clamp_curvature = energy->sample(found.coefficients, {0.0}).curvature[0];
-  result.grips = {clamp_reaction(problem, reduced, clamp_curvature)};
-  result.sample = [problem, reduced, energy,
-                   coefficients = found.coefficients](std::span<const double> arc_lengths) {
-    const std::vector<double> distances =
-        distances_from_clamp(problem, reduced.reversed, arc_lengths);
-    return restore(problem, reduced, arc_lengths, energy->sample(coefficients, distances));
+std::vector<SpanSolution> solve_placed(PlacedSpan& placed, const Problem& problem,
+                                       const EnergyOptions& options, bool all) {
+  SpanOptions span_options;
+  span_options.terms = options.terms;
+  span_options.tolerance = options.tolerance;
+  span_options.max_evaluations = options.max_evaluations;
+  span_options.all = all;
+  if (options.start != nullptr) {
+    span_options.start = field_of(*options.start, placed, problem.length);
+  }
+  std::vector<SpanSolution> solutions = solve_span(placed.span, span_options);
+  SpanSolution& best = solutions.front();
+  // The search may have left the plane.
+  if (!best.model->span().planar) placed.span.planar = false;
+  if (placed.span.planar || all || best.model->elevation() < largest_elevation) return solutions;
+  const Eigen::VectorXd nodes = best.model->nodes();
+  const Eigen::Matrix3Xd tangents =
+      best.model->sample(best.x, std::vector<double>(nodes.begin(), nodes.end())).tangents;
+  const Eigen::Matrix3d before = placed.frame;
+  turn_axis(placed, tangents);
+  const Eigen::Matrix3d turn = placed.frame * before.transpose();
+  const auto old_model = best.model;
+  const Eigen::VectorXd old_x = best.x;
+  span_options.start = [&](const Eigen::VectorXd& s) {
+    return Eigen::Matrix3Xd(
+        turn * old_model->sample(old_x, std::vector<double>(s.begin(), s.end())).tangents);
   };
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  span_options.least_terms = best.terms;
+  std::vector<SpanSolution> turned = solve_span(placed.span, span_options);
+  turned.front().evaluations += best.evaluations;
+  return turned;
+}
+
+std::vector<Equilibrium> solve(const Problem& problem, const EnergyOptions& options, bool all) {
+  const auto begin = std::chrono::steady_clock::now();
+  check(options);
+  std::vector<PlacedSpan> placed = split(problem);
+  std::vector<std::vector<SpanSolution>> solutions;
+  for (PlacedSpan& span : placed) {
+    solutions.push_back(solve_placed(span, problem, options, all));
+  }
+  std::vector<Equilibrium> result;
+  std::vector<std::size_t> choice(placed.size(), 0);
+  for (bool more = true; more && result.size() < most_combinations;) {
+    std::vector<SpanSolution> chosen;
+    std::vector<PlacedSpan> chosen_places = placed;
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      chosen.push_back(solutions[i][choice[i]]);
+      chosen_places[i].span.planar = chosen.back().model->span().planar;
+    }
+    result.push_back(assemble(problem, chosen_places, chosen));
+    more = false;
+    for (std::size_t i = 0; i < choice.size() && !more; ++i) {
+      more = ++choice[i] < solutions[i].size();
+      if (!more) choice[i] = 0;
+    }
+  }
+  std::stable_sort(result.begin(), result.end(), [](const Equilibrium& a, const Equilibrium& b) {
+    if (succeeded(a.status) != succeeded(b.status)) return succeeded(a.status);
+    return a.energy.total() < b.energy.total();
+  });
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
   return result;
+}
+
+}  // namespace
+
+Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options) {
+  return std::move(solve(problem, options, false).front());
+}
+
+std::vector<Equilibrium> all_energy(const Problem& problem, const EnergyOptions& options) {
+  return solve(problem, options, true);
 }
 
 }  // namespace dlo::energy_model

@@ -37,6 +37,11 @@ struct Frame {
   double axis_angle = 0;  // of the last force against the clamp's tangent
   Eigen::Vector2d weight = Eigen::Vector2d::Zero();
   std::vector<PlanarCantilever::Load> loads;  // by growing sigma; `at` is sigma here
+
+  [[nodiscard]] bool parallel() const {
+    return weight.y() == 0 && std::all_of(loads.begin(), loads.end(),
+                                          [](const auto& load) { return load.force.y() == 0; });
+  }
 };
 
 struct Section {
@@ -99,10 +104,7 @@ bool shoot(const Frame& frame, double start, double tolerance, const std::vector
       gsl_odeiv2_evolve_alloc(n), gsl_odeiv2_evolve_free);
   // psi may start exponentially small, and its relative error is what counts then.
   const double small = std::max(std::min(std::abs(start), 1.0), 1e-300);
-  const bool follows_axis =
-      frame.weight.y() == 0 && std::all_of(frame.loads.begin(), frame.loads.end(),
-                                           [](const auto& load) { return load.force.y() == 0; });
-  const double angle_scale = follows_axis ? small : 1.0;
+  const double angle_scale = frame.parallel() ? small : 1.0;
   const std::array<double, components> scale = {angle_scale, angle_scale, 1, 1, 1, 1};
   const std::unique_ptr<gsl_odeiv2_control, decltype(&gsl_odeiv2_control_free)> control(
       gsl_odeiv2_control_scaled_new(tolerance, tolerance, 1, 0, scale.data(), n),
@@ -168,17 +170,20 @@ double refine_root(Shooter& shooter, double low, double high) {
   return gsl_root_fsolver_root(solver.get());
 }
 
-/// Starts psi at the tip, growing from -pi to pi, closer towards zero because the clamp magnifies
-/// them by up to exp(2/3 sqrt(Gamma)).
-std::vector<double> scan_grid(const PlanarCantilever& rod) {
+/// Starts psi at the tip, growing from -pi to pi. Where all forces are parallel the tip's angle
+/// against them is exponentially small and the grid goes down to it. Where they are not, the tip's
+/// angle has no known limit and is found to rounding only, so the rod must not magnify it too much.
+std::vector<double> scan_grid(const PlanarCantilever& rod, bool parallel) {
   double load = rod.weight.norm();
   for (const auto& l : rod.loads) load += l.force.norm();
-  require(load <= 5e5, "solve_exact", "sum of weight and loads over EI/l^2", load,
-          "<= 5e5, or the tip's angle against them is smaller than the smallest number");
+  const double largest = parallel ? 4e5 : 60;
+  require(load <= largest, "solve_exact", "sum of weight and loads over EI/l^2", load,
+          parallel ? "<= 4e5, or the tip's angle against them is below the smallest number"
+                   : "<= 60 for forces that are not parallel, or rounding at the tip is magnified");
   std::vector<double> positive;
-  const double smallest = std::exp(-0.7 * std::sqrt(load) - 6);
+  const double smallest = std::exp(-std::sqrt(load) - 6);
   for (double start = smallest; start < 0.1; start *= 1.5) positive.push_back(start);
-  const int uniform = 120;
+  const int uniform = parallel ? 120 : 600;
   for (int i = 0; i <= uniform; ++i) positive.push_back(0.1 + (pi - 0.1) * i / uniform);
   std::vector<double> grid;
   for (auto start = positive.rbegin(); start != positive.rend(); ++start) grid.push_back(-*start);
@@ -261,7 +266,8 @@ std::vector<Equilibrium> all_exact(const Problem& problem, const ExactOptions& o
   require_positive("solve_exact", "tolerance", options.tolerance);
   const ReducedCantilever reduced = reduce_cantilever(problem);
   Shooter shooter{make_frame(reduced.rod), options.tolerance, 0, {}};
-  const std::vector<double> starts = find_starts(shooter, scan_grid(reduced.rod));
+  const std::vector<double> starts =
+      find_starts(shooter, scan_grid(reduced.rod, shooter.frame.parallel()));
 
   std::vector<Equilibrium> equilibria;
   for (const double start : starts) {

@@ -12,6 +12,9 @@ namespace dlo::energy_model {
 using Objective =
     std::function<double(const Eigen::Ref<const Eigen::VectorXd>&, Eigen::Ref<Eigen::VectorXd>)>;
 
+/// Residuals of equality constraints and their Jacobian at the point of the objective's last call.
+using Constraints = std::function<void(Eigen::Ref<Eigen::VectorXd>, Eigen::Ref<Eigen::MatrixXd>)>;
+
 struct MinimiseOptions {
   double gradient_tolerance = 0;  ///< stop at a Euclidean gradient norm below this
   int max_evaluations = 0;
@@ -27,5 +30,10 @@ struct [[nodiscard]] MinimiseResult {
 /// wrapper stops it; the point with that gradient is what `x` then holds.
 MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
                               const MinimiseOptions& options);
+
+/// NLopt's LD_SLSQP under `count` equality constraints, from and into `x`, to a relative change of
+/// x of 1e-5: near enough for Newton's method.
+MinimiseResult minimise_slsqp(const Objective& objective, const Constraints& constraints,
+                              Eigen::Index count, Eigen::VectorXd& x, int max_evaluations);
 
 }  // namespace dlo::energy_model

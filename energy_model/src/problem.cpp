@@ -28,6 +28,11 @@ void check(const Problem& problem) {
       require_positive("Problem", "|direction| of a clamp", grip.direction->norm());
     }
   }
+  for (const Wall& wall : problem.walls) {
+    require(wall.point.allFinite(), "Problem", "point of a wall", wall.point.norm(), "finite");
+    require_positive("Problem", "|normal| of a wall", wall.normal.norm());
+    require(wall.stiffness > 0, "Problem", "stiffness of a wall", wall.stiffness, "> 0");
+  }
   for (const Load& load : problem.loads) {
     require_on_rod("arc length of a load", load.at, problem.length);
     require(load.force.allFinite(), "Problem", "force of a load", load.force.norm(), "finite");

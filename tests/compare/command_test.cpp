@@ -195,7 +195,7 @@ TEST_F(Command, BadInputNamesFileLineKeyValueAndWhatIsAllowed) {
   expect_error("solve " + scene("colour = 3\n" + text), 2,
                {"scene.toml:1", "colour", "3", "unknown key", "allowed"});
   expect_error("solve " + scene("[rod]\nlength = -0.5\ndiameter = 0.002\nmaterial = \"copper\"\n"),
-               2, {"scene.toml:2", "rod.length", "-0.5", "> 0"});
+               2, {"scene.toml:2", "rod.length", "-0.5", "1e-06 to"});
   expect_error(
       "solve " + scene("[rod]\nlength = 1\ndiameter = 0.002\nmaterial = { youngs_modulus = "
                        "\"210 GPA\", density = 1 }\n"),

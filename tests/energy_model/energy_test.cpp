@@ -32,7 +32,7 @@ TEST_P(EnergyAgainstExact, AgreesAtEveryClampAngle) {
     EXPECT_LT(largest_distance(energy, exact, 1), tolerance) << degrees << " deg";
     EXPECT_NEAR(energy.energy.total(), exact.energy.total(), 1e-10 * (1 + gamma)) << degrees;
     EXPECT_NEAR(energy.energy.bending, exact.energy.bending, 1e-9 * (1 + gamma)) << degrees;
-    EXPECT_LT((energy.grips[0].torque - exact.grips[0].torque).norm(), 1e-6 * (1 + gamma));
+    EXPECT_LT((energy.grips[0].torque - exact.grips[0].torque).norm(), 1e-9 * (1 + gamma));
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "dlo/force_model/tangent_stiffness.hpp"
 #include "rods.hpp"
 
 namespace dlo::force_model {
@@ -148,6 +149,47 @@ TEST(Relax, CreepingIsNotRest) {
   const RelaxResult result = creeping.relax({.tolerance = 1e-5, .max_steps = 20000});
   EXPECT_EQ(result.status, RelaxStatus::step_limit);
   EXPECT_GT(result.remaining_error, 1e-5);
+}
+
+TEST(Relax, IsNotFooledByManyPointsOrFastModes) {
+  // With many points the first steps only shake the fastest modes; nothing has fallen yet.
+  SteelRod steel;
+  steel.points = 400;
+  Simulation simulation(steel.rod({BendingLaw::hooke, steel.EI}, 660), steel.straight(), {});
+  const RelaxResult result = simulation.relax({.max_steps = 2000});
+  EXPECT_EQ(result.status, RelaxStatus::step_limit);
+  EXPECT_GT(result.remaining_error, 1e-3);
+}
+
+TEST(Relax, LeavesAnUprightEquilibriumThatDoesNotHold) {
+  SteelRod steel;
+  steel.angle = 1.5707963267948966;
+  const double gamma_unit = steel.weight_per_length * 0.125;  // w l^3: EI = gamma_unit / Gamma
+  for (const double gamma : {6.0, 20.0}) {
+    const Rod rod = steel.rod({BendingLaw::hooke, gamma_unit / gamma}, 660);
+    Simulation simulation(rod, steel.straight(), {});
+    ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest) << gamma;
+    const double tip_x = simulation.points()(0, 15);
+    if (gamma < 7.8) {
+      EXPECT_LT(std::abs(tip_x), 1e-5);
+    } else {
+      EXPECT_GT(tip_x, 0.3 * steel.length);
+    }
+  }
+}
+
+TEST(EquilibriumCheck, GivesNewtonsStepAndTheSignOfTheStiffness) {
+  SteelRod steel;
+  const Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
+  Simulation simulation(rod, steel.straight(), {});
+  ASSERT_EQ(simulation.relax({.tolerance = 1e-10}).status, RelaxStatus::at_rest);
+  Eigen::Matrix3Xd moved = simulation.points();
+  for (Eigen::Index i = 2; i < 16; ++i) moved(2, i) += 1e-6 * static_cast<double>(i * i);
+  const double distance =
+      (moved - simulation.points()).norm() / std::sqrt(static_cast<double>(moved.cols()));
+  const EquilibriumCheck check = check_equilibrium(rod, moved);
+  EXPECT_TRUE(check.stable);
+  EXPECT_NEAR(check.remaining_error / distance, 1, 1e-2);
 }
 
 class StepsToRest : public testing::TestWithParam<double> {};

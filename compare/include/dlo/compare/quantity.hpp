@@ -15,7 +15,7 @@ enum class Dimension {
   force,
   acceleration,
   curvature,
-  line_stiffness,
+  foundation,  ///< force per depth and per length of rod
 };
 
 /// The units that `dimension` knows, SI first, as a list for messages.

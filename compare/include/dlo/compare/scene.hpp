@@ -31,6 +31,7 @@ struct Gripper {
   double at = 0;                                       ///< arc length [m]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< unit; a clamp has one, a pin has none
+  std::string where;                                   ///< "file:line", for messages
 };
 
 struct PointLoad {
@@ -39,9 +40,10 @@ struct PointLoad {
 };
 
 struct Obstacle {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();             ///< of the plane [m]
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();           ///< unit, to the free side
-  double stiffness = std::numeric_limits<double>::infinity();  ///< [N/m]; infinite: rigid
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< of the plane [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< unit, to the free side
+  /// Force per depth and per length of rod [N/m^2]; infinite: rigid.
+  double stiffness = std::numeric_limits<double>::infinity();
 };
 
 /// Settings of the force model. Zeros are derived.
@@ -59,6 +61,10 @@ struct ForceModelSettings {
   std::optional<double> c_h;               ///< [-]
   std::optional<double> l_s;               ///< [m]
 };
+
+/// @throws InputError, beginning with `where`, if settings contradict each other, such as a c_F for
+/// a stepper that chooses its own
+void check(const ForceModelSettings& settings, const std::string& where);
 
 /// A physical scene in SI units.
 struct Scene {
@@ -79,6 +85,8 @@ struct Scene {
   [[nodiscard]] Eigen::Vector3d weight_per_length() const;  ///< rho A g [N/m]
   [[nodiscard]] double mass() const;                        ///< [kg]
   [[nodiscard]] double gamma() const;                       ///< w l^3 / (EI) [-]
+  [[nodiscard]] bool planar() const;  ///< grips, gravity and loads lie in one plane
+  [[nodiscard]] int spans() const;    ///< parts that the clamps cut the rod into
 };
 
 /// Reads a scene. @param file  its name, for messages and Scene::file

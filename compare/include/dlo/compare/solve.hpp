@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -34,8 +35,9 @@ struct SceneEnergies {
   double gravity = 0;
   double load = 0;
   double stretch = 0;
+  double contact = 0;  ///< of obstacles that yield
 
-  [[nodiscard]] double total() const { return bending + gravity + load + stretch; }
+  [[nodiscard]] double total() const { return bending + gravity + load + stretch + contact; }
 };
 
 /// What a gripper exerts on the rod, torque about its position.
@@ -51,6 +53,9 @@ struct Solution {
   Shape shape;
   SceneEnergies energy;
   std::vector<GripperLoad> grippers;
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod, of energy [N]
+  /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
+  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   long evaluations = 0;
   long steps = 0;
   int terms = 0;
@@ -71,6 +76,11 @@ struct Solution {
 /// @throws InputError if the model does not know such a scene, ConvergenceError
 [[nodiscard]] Solution solve(const Scene& scene, Model model, const SolveOptions& options = {},
                              const std::vector<double>& arc_lengths = {});
+
+/// Every equilibrium that the energy model finds, stable ones first, by energy; an unstable one has
+/// a negative smallest_curvature. @throws InputError, ConvergenceError
+[[nodiscard]] std::vector<Solution> solve_all(const Scene& scene, const SolveOptions& options = {},
+                                              const std::vector<double>& arc_lengths = {});
 
 /// The polygon of minimal energy. @throws InputError, ConvergenceError
 [[nodiscard]] Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,

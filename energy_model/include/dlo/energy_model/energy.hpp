@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
 
@@ -9,20 +11,35 @@ struct EnergyOptions {
   /// Curvature coefficients K of each smooth piece of the rod; 0 chooses them so that the last ones
   /// have fallen below `tolerance`.
   int terms = 0;
-  double tolerance = 1e-10;  ///< of the shape, in units of l; > 0
-  int max_evaluations = 2000;
+  double tolerance = 1e-10;     ///< of the shape, in units of l; > 0
+  int max_evaluations = 20000;  ///< per descent
+  /// A known equilibrium of a similar problem to start from instead of searching: it is followed,
+  /// so that snapping shows where the branch ends. Same length and same clamps.
+  const Equilibrium* start = nullptr;
 };
 
 /// Minimises bending plus gravity plus load energy of an inextensible Hookean rod,
-///     E = int 1/2 EI kappa^2 ds - int w . r ds - sum_j F_j . r(s_j),
-/// over the curvature, expanded in orthonormal Legendre polynomials on each piece between loads:
-/// kappa = sum a_k p_k, so that bending is |a|^2 / 2 and the Hessian is the identity plus a compact
-/// part. NLopt's LD_LBFGS comes near the minimum, Newton steps finish, and their Hessian proves
-/// that it is one.
+///     E = int 1/2 EI |t'|^2 ds - int w . r ds - sum_j F_j . r(s_j),
+/// over its curvature. Clamps cut the rod into independent spans; each lies in a plane if its grips
+/// and forces do. The tangent's angle (in space: azimuth and elevation against an axis that the
+/// tangent stays away from) has a derivative expanded in orthonormal Legendre polynomials on each
+/// piece between loads and grips, so that planar bending is |a|^2 / 2 and the Hessian the identity
+/// plus a compact part. NLopt's LD_LBFGS (LD_SLSQP where grips are constraints) comes near the
+/// minimum, Newton steps finish, and their projected Hessian proves that it is one.
 ///
-/// Planar problems with one clamp at either end. Of several minima it returns the one that turns
-/// towards the load by the shorter way, which is the lowest under gravity alone.
-/// @throws std::invalid_argument if the problem or an option is out of range
+/// Of several minima the lowest that the search finds is returned: one clamp turns towards the load
+/// by the shorter way, which is the lowest of all under parallel forces; other spans start from the
+/// two of their arches, S-shapes and loops that have the lowest energy, and a planar shape that
+/// cannot hold itself sideways is followed into space.
+///
+/// Rigid walls are met by an augmented Lagrangian to 1e-9 l; the curvature has kinks where contact
+/// begins, so shapes on walls are right to about 1e-4 l only.
+/// @throws std::invalid_argument if the problem or an option is out of range, with the numbers
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
+
+/// Every equilibrium that the search's starts lead to, stable ones first, by energy; unstable ones
+/// have the status `saddle`. Never empty.
+[[nodiscard]] std::vector<Equilibrium> all_energy(const Problem& problem,
+                                                  const EnergyOptions& options = {});
 
 }  // namespace dlo::energy_model

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,8 +19,12 @@ struct [[nodiscard]] Equilibrium {
   int terms = 0;         ///< curvature coefficients; 0 for `exact`
   double seconds = 0;    ///< wall time of the solver
   double residual = -1;  ///< norm of the gradient over EI/l; for `exact` the clamp's angle [rad]
+  /// Smallest eigenvalue of the second variation over EI/l, with the constraints and, for planar
+  /// shapes, with bending out of the plane; NaN where a solver did not look. Negative: unstable.
+  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   Energies energy;
-  std::vector<Reaction> grips;  ///< in the order of Problem::grips
+  std::vector<Eigen::Vector3d> walls;  ///< force of each wall on the rod [N]
+  std::vector<Reaction> grips;         ///< in the order of Problem::grips
 
   /// The shape at arc lengths within [0, length], in any order [m].
   std::function<Samples(std::span<const double>)> sample;

@@ -16,7 +16,8 @@ struct ExactOptions {
 /// stays well posed when that angle is exponentially small (Gamma >> 1). All starts are scanned;
 /// the equilibrium of lowest energy is returned.
 ///
-/// Planar problems with one clamp at either end.
+/// Planar problems with one clamp at either end; sum of weight and loads over EI/l^2 up to 4e5 if
+/// they are parallel, up to 60 if not.
 /// @throws std::invalid_argument if the problem or an option is out of range
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 

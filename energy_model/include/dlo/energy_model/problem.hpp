@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,6 +23,14 @@ struct Load {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
 };
 
+/// A half-space that the rod may not enter.
+struct Wall {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< of the plane [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< to the free side, any length > 0
+  /// Force per depth and per length of rod behind the plane [N/m^2], > 0; infinite: rigid.
+  double stiffness = std::numeric_limits<double>::infinity();
+};
+
 /// A round, naturally straight, inextensible rod whose grips leave the twist free.
 struct Problem {
   double length = 0;                                            ///< l [m], > 0
@@ -29,6 +38,7 @@ struct Problem {
   Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
   std::vector<Grip> grips;
   std::vector<Load> loads;
+  std::vector<Wall> walls;
 };
 
 /// @throws std::invalid_argument naming the first member that is out of range

@@ -11,7 +11,7 @@ namespace dlo::force_model {
 
 struct RelaxOptions {
   /// Stop when the estimated distance to the rest shape falls below this share of the rod's length
-  /// [-], > 0.
+  /// [-], > 0; or below what rounding of stiff segments' forces leaves, if that is more.
   double tolerance = 1e-7;
   long max_steps = 2'000'000;
 };
@@ -29,7 +29,7 @@ struct [[nodiscard]] RelaxResult {
   double remaining_error = -1;  ///< estimated RMS distance of the points to rest [m]
 };
 
-/// A rod and its points in simulated time. Nothing is allocated after construction.
+/// A rod and its points in simulated time. Steps allocate nothing.
 class Simulation {
  public:
   /// @param points  start [m], 3 x rod.points(); rigidly held points are set to their targets
@@ -45,9 +45,11 @@ class Simulation {
   /// @return the last step's result (c_m = 0 if none was owed); `diverged` if one diverged
   [[nodiscard]] StepResult advance(double steps, long max_steps = 10'000'000);
 
-  /// Steps until the rod rests. A shape is at rest when both what the residual force would still
-  /// move the slowest mode and the momentum that is left are below the tolerance: a small movement
-  /// per step alone proves nothing, as the paper's creeping shapes show.
+  /// Steps until the rod rests. A shape is at rest when its tangent stiffness is positive definite
+  /// and both Newton's step to the equilibrium and the momentum that is left are below the
+  /// tolerance: a small force or movement alone proves nothing, as the paper's creeping shapes
+  /// show. A rod that balances in an unstable equilibrium is nudged by 1e-6 of its length.
+  /// Allocates.
   RelaxResult relax(const RelaxOptions& options = {});
 
   /// Moves a gripper. @throws std::invalid_argument if the grip or the shape does not exist
@@ -68,6 +70,7 @@ class Simulation {
   void choose_step();
   [[nodiscard]] double largest_movement() const;
   void update_damping();
+  void nudge();
 
   Rod rod_;
   StepOptions options_;
@@ -86,6 +89,7 @@ class Simulation {
   // Estimate of the slowest mode that still moves: -dF.dP / dP.dP over blocks of steps, older
   // blocks fading out.
   ModeBounds modes_;
+  double slowest_expected_ = 0;  // before anything moved
   Eigen::Matrix3Xd block_points_;
   Eigen::Matrix3Xd block_forces_;
   double force_change_ = 0;

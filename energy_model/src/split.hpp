@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "dlo/energy_model/equilibrium.hpp"
+#include "span.hpp"
+#include "span_solver.hpp"
+
+namespace dlo::energy_model {
+
+/// A span and where it lies in its problem.
+struct PlacedSpan {
+  Span span;
+  bool reversed = false;                                ///< s runs against the arc length
+  double start = 0;                                     ///< arc length of s = 0 [m]
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: the span's axes in space
+  std::size_t anchor_grip = 0;
+  std::vector<std::size_t> hold_grips;                        ///< of span.holds
+  Eigen::Vector3d anchor_position = Eigen::Vector3d::Zero();  ///< [m]
+
+  [[nodiscard]] double s_of(double arc_length, double length) const {
+    return (reversed ? start - arc_length : arc_length - start) / length;
+  }
+};
+
+/// Cuts a problem at its clamps and puts every span into its units and its frame.
+/// @throws std::invalid_argument if the problem is out of range or grips are further apart than the
+/// rod between them
+[[nodiscard]] std::vector<PlacedSpan> split(const Problem& problem);
+
+/// Turns a spatial span so that these tangents (in its frame) stay away from its z axis.
+void turn_axis(PlacedSpan& placed, const Eigen::Matrix3Xd& tangents);
+
+/// One solution of each span, put together in space and SI units.
+[[nodiscard]] Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& placed,
+                                   const std::vector<SpanSolution>& solutions);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,89 @@
+#include "dlo/force_model/tangent_stiffness.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <cmath>
+
+#include "require.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+constexpr Eigen::Index coupling = 2;  // points to either side that a point's force depends on
+constexpr Eigen::Index stride = 2 * coupling + 1;
+
+/// Index of each point among the free ones, -1 for rigidly held points.
+std::vector<Eigen::Index> free_indices(const Rod& rod, Eigen::Index& count) {
+  std::vector<Eigen::Index> indices(static_cast<std::size_t>(rod.points()), 0);
+  for (const Grip& grip : rod.grips) {
+    if (grip.hold == GripHold::spring) continue;
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+      indices[static_cast<std::size_t>(grip.first_point + k)] = -1;
+    }
+  }
+  count = 0;
+  for (Eigen::Index& index : indices) {
+    if (index == 0) index = count++;
+  }
+  return indices;
+}
+
+}  // namespace
+
+EquilibriumCheck check_equilibrium(const Rod& rod,
+                                   const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  require_polygon("check_equilibrium", points, rod.rest_lengths);
+  const Eigen::Index N = points.cols();
+  Eigen::Index count = 0;
+  const std::vector<Eigen::Index> index = free_indices(rod, count);
+  EquilibriumCheck result;
+  if (count == 0) return {.stable = true, .remaining_error = 0};
+
+  const double h = 1e-6 * rod.rest_lengths.minCoeff();
+  Eigen::Matrix3Xd moved = points;
+  Eigen::Matrix3Xd above(3, N);
+  Eigen::Matrix3Xd below(3, N);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(9 * stride * count));
+  for (Eigen::Index first = 0; first < stride; ++first) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      for (Eigen::Index i = first; i < N; i += stride) moved(axis, i) = points(axis, i) + h;
+      total_forces(rod, moved, above);
+      for (Eigen::Index i = first; i < N; i += stride) moved(axis, i) = points(axis, i) - h;
+      total_forces(rod, moved, below);
+      for (Eigen::Index i = first; i < N; i += stride) {
+        moved(axis, i) = points(axis, i);
+        const Eigen::Index column = index[static_cast<std::size_t>(i)];
+        if (column < 0) continue;
+        const Eigen::Index end = std::min(N, i + coupling + 1);
+        for (Eigen::Index j = std::max<Eigen::Index>(0, i - coupling); j < end; ++j) {
+          const Eigen::Index row = index[static_cast<std::size_t>(j)];
+          if (row < 0) continue;
+          for (Eigen::Index k = 0; k < 3; ++k) {
+            // Half to either side of the diagonal: the paper's law is not quite symmetric.
+            const double value = (below(k, j) - above(k, j)) / (4 * h);
+            entries.emplace_back(3 * row + k, 3 * column + axis, value);
+            entries.emplace_back(3 * column + axis, 3 * row + k, value);
+          }
+        }
+      }
+    }
+  }
+  Eigen::SparseMatrix<double> stiffness(3 * count, 3 * count);
+  stiffness.setFromTriplets(entries.begin(), entries.end());
+  total_forces(rod, points, above);
+  Eigen::VectorXd force(3 * count);
+  for (Eigen::Index i = 0; i < N; ++i) {
+    const Eigen::Index row = index[static_cast<std::size_t>(i)];
+    if (row >= 0) force.segment<3>(3 * row) = above.col(i);
+  }
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower,
+                              Eigen::NaturalOrdering<int>>
+      factor(stiffness);
+  if (factor.info() != Eigen::Success) return result;
+  const double remaining = factor.solve(force).norm() / std::sqrt(static_cast<double>(N));
+  result.stable = factor.vectorD().minCoeff() > 0 && std::isfinite(remaining);
+  result.remaining_error = remaining;
+  return result;
+}
+
+}  // namespace dlo::force_model
