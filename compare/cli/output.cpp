@@ -36,8 +36,10 @@ void write_output(const OutputOptions& options, const std::string& content) {
   namespace fs = std::filesystem;
   std::error_code error;
   // A link stays a link, and a device or pipe is written to, not replaced.
-  fs::path target = fs::weakly_canonical(options.file, error);
-  if (error) target = options.file;
+  fs::path target = options.file;
+  for (int links = 0; links < 40 && fs::is_symlink(target, error); ++links) {
+    target = target.parent_path() / fs::read_symlink(target, error);
+  }
   const fs::file_status existing = fs::status(target, error);
   const bool replace = !fs::exists(existing) || fs::is_regular_file(existing);
   const fs::path written =

@@ -52,7 +52,10 @@ std::string text(const compare::Solution& solution, const compare::Scene& scene)
     append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
            force.z());
   }
-  for (const compare::GripperLoad& load : solution.grippers) {
+  for (compare::GripperLoad load : solution.grippers) {
+    // Adding zero turns -0 into 0.
+    load.force.array() += 0.0;
+    load.torque.array() += 0.0;
     append(out,
            "gripper    force [{:.6g}, {:.6g}, {:.6g}] N, torque [{:.6g}, {:.6g}, {:.6g}] Nm on the "
            "rod\n",

@@ -15,7 +15,8 @@ namespace dlo::compare {
 namespace {
 
 /// The curvature that a straight rod's load would bend into the clamp: what a moment-matched c_b
-/// should be right at when nobody says otherwise.
+/// should be right at when nobody says otherwise. No less than a tenth of what the load could do
+/// across the rod, since a rod along its load bends into other shapes than the straight one.
 double clamp_curvature(const Scene& scene) {
   const Gripper& grip = scene.grippers.front();
   const bool at_start = grip.at == 0;
@@ -25,7 +26,9 @@ double clamp_curvature(const Scene& scene) {
   for (const PointLoad& load : scene.loads) {
     moment += direction.cross(load.force) * std::abs(load.at - grip.at);
   }
-  return moment.norm() / scene.bending_stiffness();
+  double most = scene.weight_per_length().norm() * scene.length * scene.length / 2;
+  for (const PointLoad& load : scene.loads) most += load.force.norm() * std::abs(load.at - grip.at);
+  return std::max(moment.norm(), most / 10) / scene.bending_stiffness();
 }
 
 double segment_length(const Scene& scene, const ForceModelSettings& settings) {

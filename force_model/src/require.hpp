@@ -35,9 +35,11 @@ template <typename Points, typename Lengths>
 void require_polygon(std::string_view function, const Points& points, const Lengths& rest_lengths) {
   const auto segments = rest_lengths.size();
   require(segments >= 1, function, "number of segments", static_cast<double>(segments), ">= 1");
-  require(points.cols() == segments + 1, function, "number of points",
-          static_cast<double>(points.cols()),
-          std::to_string(segments + 1) + ", one more than segments");
+  // The message is built only when it is needed: steps may not allocate.
+  if (points.cols() != segments + 1) {
+    reject(function, "number of points", static_cast<double>(points.cols()),
+           std::to_string(segments + 1) + ", one more than segments");
+  }
   if (!points.allFinite()) {
     throw std::invalid_argument(std::string(function) +
                                 ": points hold a number that is not finite");

@@ -241,6 +241,11 @@ TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
                {"no/such/folder/x.json", "cannot be written"});
   EXPECT_EQ(run("solve " + steel() + " -o " + output).status, 0);
   EXPECT_NE(read(output).find("Gamma"), std::string::npos);
+  std::filesystem::create_symlink("kept.json", path("link.json"));
+  EXPECT_EQ(run("solve " + steel() + " --format csv -o " + path("link.json")).status, 0);
+  EXPECT_TRUE(std::filesystem::is_symlink(path("link.json")));
+  EXPECT_EQ(read(output).substr(0, 2), "x,");
+  std::filesystem::remove(path("link.json"));
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("")),
                           std::filesystem::directory_iterator()),
             2);  // kept.json and stderr: no temporary file is left

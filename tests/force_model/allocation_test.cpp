@@ -1,0 +1,59 @@
+// A real-time loop may not wait for the allocator: steps must not call it.
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+
+#include "dlo/force_model/simulation.hpp"
+#include "rods.hpp"
+
+// The sanitizers bring an allocator of their own.
+#if !defined(__SANITIZE_ADDRESS__)
+
+namespace {
+long allocations = 0;
+}
+
+extern "C" {
+// NOLINTNEXTLINE(bugprone-reserved-identifier): glibc's name
+void* __libc_malloc(std::size_t size);
+
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+}
+
+namespace dlo::force_model {
+namespace {
+
+TEST(Simulation, StepsDoNotAllocate) {
+  const test::SteelRod steel;
+  Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
+  rod.walls = {{.point = {0, -0.01, 0}, .normal = {0, 1, 0}, .stiffness = 100}};
+  for (const Stepper stepper : {Stepper::basic, Stepper::limited, Stepper::relative,
+                                Stepper::dynamic, Stepper::automatic}) {
+    StepOptions options;
+    options.policy = policy(stepper);
+    options.c_F = 1e-5;
+    options.c_h = 0.5;
+    options.l_s = 1e-3;
+    Simulation simulation(rod, steel.straight(), options);
+    const long before = allocations;
+    for (int i = 0; i < 100; ++i) {
+      if (simulation.step().status != StepStatus::good) break;
+    }
+    EXPECT_EQ(allocations, before) << "stepper " << static_cast<int>(stepper);
+    EXPECT_EQ(simulation.steps(), 100);
+  }
+  // The counter counts.
+  const long before = allocations;
+  const Eigen::VectorXd vector = Eigen::VectorXd::Zero(steel.points);
+  EXPECT_EQ(vector.size(), steel.points);
+  EXPECT_GT(allocations, before);
+}
+
+}  // namespace
+}  // namespace dlo::force_model
+
+#endif
