@@ -75,6 +75,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const EnergyOptions& opti
   check(options);
   std::vector<PlacedSpan> placed = split(problem);
   std::vector<std::vector<SpanSolution>> solutions;
+  solutions.reserve(placed.size());
   for (PlacedSpan& span : placed) {
     solutions.push_back(solve_placed(span, problem, options, all));
   }

@@ -68,8 +68,8 @@ double smallest_eigenvalue(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd
 
 class Search {
  public:
-  Search(const Span& span, const SpanOptions& options)
-      : span_(span), options_(options), load_(span.total_load()) {}
+  Search(Span span, SpanOptions options)
+      : span_(std::move(span)), options_(std::move(options)), load_(span_.total_load()) {}
 
   [[nodiscard]] std::vector<SpanSolution> run() {
     if (options_.start) {
@@ -194,7 +194,7 @@ class Search {
     SpanEnergy& model = *solution.model;
     const Objective objective = [&model](const Eigen::Ref<const Eigen::VectorXd>& x,
                                          Eigen::Ref<Eigen::VectorXd> gradient) {
-      return model.value(x, gradient);  // NOLINT(performance-unnecessary-value-param)
+      return model.value(x, gradient);
     };
     MinimiseResult result;
     if (model.constraints() == 0) {
@@ -220,7 +220,7 @@ class Search {
 
   /// Newton's method on the gradient of E - mu . c and on the constraints; the projected Hessian
   /// then tells a minimum from a saddle.
-  void polish(SpanSolution& solution) {
+  void polish(SpanSolution& solution) const {
     SpanEnergy& model = *solution.model;
     const Eigen::Index n = model.size();
     const Eigen::Index m = model.constraints();
@@ -362,20 +362,18 @@ class Search {
     const bool equilibrium = succeeded(solution.status) || solution.status == SolveStatus::saddle;
     if (!equilibrium) return found.empty();
     measure_stability(solution);
-    for (const SpanSolution& other : found) {
-      if (!succeeded(other.status) && other.status != SolveStatus::saddle) continue;
-      const double scale = 1e-8 * (1 + load_);
-      if (std::abs(other.energy - solution.energy) > scale) continue;
+    return std::none_of(found.begin(), found.end(), [&](const SpanSolution& other) {
+      const bool same_kind = succeeded(other.status) || other.status == SolveStatus::saddle;
+      if (!same_kind || std::abs(other.energy - solution.energy) > 1e-8 * (1 + load_)) return false;
       const std::vector<double> s = {0.3 * span_.length, 0.6 * span_.length, span_.length};
       const double distance =
           (other.model->sample(other.x, s).points - solution.model->sample(solution.x, s).points)
               .norm();
-      if (distance < 1e-6 * span_.length) return false;
-    }
-    return true;
+      return distance < 1e-6 * span_.length;
+    });
   }
 
-  void measure_stability(SpanSolution& solution) const {
+  static void measure_stability(SpanSolution& solution) {
     SpanEnergy& model = *solution.model;
     Eigen::VectorXd gradient(model.size());
     solution.energy = model.value(solution.x, gradient);
