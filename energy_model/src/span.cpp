@@ -518,8 +518,6 @@ double SpanEnergy::update_contact() {
   return violation;
 }
 
-void SpanEnergy::reset_contact() { contact_.setZero(); }
-
 std::vector<Eigen::Vector3d> SpanEnergy::wall_forces() const {
   std::vector<Eigen::Vector3d> forces;
   for (std::size_t i = 0; i < span_.walls.size(); ++i) {

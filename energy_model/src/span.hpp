@@ -96,7 +96,6 @@ class SpanEnergy {
   [[nodiscard]] bool has_walls() const { return !span_.walls.empty(); }
   /// Moves the multipliers of rigid walls towards complementarity. @return largest violation, in l
   double update_contact();
-  void reset_contact();
   /// Force of each wall on this span, at the point of the last value().
   [[nodiscard]] std::vector<Eigen::Vector3d> wall_forces() const;
 
@@ -115,7 +114,6 @@ class SpanEnergy {
 
   void cut(const std::vector<double>& more_cuts);
   void add_wall_terms(double& energy);
-  [[nodiscard]] double base_theta() const { return start_theta_; }
 
   Span span_;
   int terms_;
