@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "assemble.hpp"
 #include "legendre.hpp"
 #include "require.hpp"
 #include "span_solver.hpp"
@@ -28,6 +29,7 @@ void check(const EnergyOptions& options) {
 TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double length) {
   return [&start, &placed, length](const Eigen::VectorXd& s) {
     std::vector<double> arc_lengths;
+    arc_lengths.reserve(static_cast<std::size_t>(s.size()));
     for (const double at : s) {
       const double arc = placed.start + (placed.reversed ? -at : at) * length;
       arc_lengths.push_back(std::clamp(arc, 0.0, length));
@@ -37,58 +39,21 @@ TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double
   };
 }
 
-std::vector<SpanSolution> solve_placed(PlacedSpan& placed, const Problem& problem,
-                                       const EnergyOptions& options, bool all) {
-  SpanOptions span_options;
-  span_options.terms = options.terms;
-  span_options.tolerance = options.tolerance;
-  span_options.max_evaluations = options.max_evaluations;
-  span_options.all = all;
-  if (options.start != nullptr) {
-    span_options.start = field_of(*options.start, placed, problem.length);
-  }
-  std::vector<SpanSolution> solutions = solve_span(placed.span, span_options);
-  SpanSolution& best = solutions.front();
-  // The search may have left the plane.
-  if (!best.model->span().planar) placed.span.planar = false;
-  if (placed.span.planar || all || best.model->elevation() < largest_elevation) return solutions;
-  const Eigen::VectorXd nodes = best.model->nodes();
-  const Eigen::Matrix3Xd tangents =
-      best.model->sample(best.x, std::vector<double>(nodes.begin(), nodes.end())).tangents;
-  const Eigen::Matrix3d before = placed.frame;
-  turn_axis(placed, tangents);
-  const Eigen::Matrix3d turn = placed.frame * before.transpose();
-  const auto old_model = best.model;
-  const Eigen::VectorXd old_x = best.x;
-  span_options.start = [&](const Eigen::VectorXd& s) {
-    return Eigen::Matrix3Xd(
-        turn * old_model->sample(old_x, std::vector<double>(s.begin(), s.end())).tangents);
-  };
-  span_options.least_terms = best.terms;
-  std::vector<SpanSolution> turned = solve_span(placed.span, span_options);
-  turned.front().evaluations += best.evaluations;
-  return turned;
-}
+/// A span's tangents in space at its nodes, to go on from.
+struct Remembered {
+  int terms = 0;
+  Eigen::VectorXd nodes;
+  Eigen::Matrix3Xd tangents;
+};
 
-std::vector<Equilibrium> solve(const Problem& problem, const EnergyOptions& options, bool all) {
-  const auto begin = std::chrono::steady_clock::now();
-  check(options);
-  std::vector<PlacedSpan> placed = split(problem);
-  std::vector<std::vector<SpanSolution>> solutions;
-  solutions.reserve(placed.size());
-  for (PlacedSpan& span : placed) {
-    solutions.push_back(solve_placed(span, problem, options, all));
-  }
+std::vector<Equilibrium> combine(const Problem& problem, const std::vector<PlacedSpan>& placed,
+                                 const std::vector<std::vector<SpanSolution>>& solutions) {
   std::vector<Equilibrium> result;
   std::vector<std::size_t> choice(placed.size(), 0);
   for (bool more = true; more && result.size() < most_combinations;) {
-    std::vector<SpanSolution> chosen;
-    std::vector<PlacedSpan> chosen_places = placed;
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-      chosen.push_back(solutions[i][choice[i]]);
-      chosen_places[i].span.planar = chosen.back().model->span().planar;
-    }
-    result.push_back(assemble(problem, chosen_places, chosen));
+    std::vector<const SpanSolution*> chosen;
+    for (std::size_t i = 0; i < placed.size(); ++i) chosen.push_back(&solutions[i][choice[i]]);
+    result.push_back(assemble(problem, placed, chosen));
     more = false;
     for (std::size_t i = 0; i < choice.size() && !more; ++i) {
       more = ++choice[i] < solutions[i].size();
@@ -99,20 +64,127 @@ std::vector<Equilibrium> solve(const Problem& problem, const EnergyOptions& opti
     if (succeeded(a.status) != succeeded(b.status)) return succeeded(a.status);
     return a.energy.total() < b.energy.total();
   });
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
   return result;
 }
 
 }  // namespace
 
+class EnergySolver::State {
+ public:
+  explicit State(const EnergyOptions& options) : options_(options) { check(options); }
+
+  std::vector<Equilibrium> solve(const Problem& problem, bool all, bool follow) {
+    const auto begin = std::chrono::steady_clock::now();
+    std::vector<PlacedSpan> placed = split(problem);
+    const bool warm = follow && remembered_.size() == placed.size();
+    remembered_.resize(placed.size());
+    std::vector<std::vector<SpanSolution>> solutions;
+    solutions.reserve(placed.size());
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      Remembered* last = warm ? &remembered_[i] : nullptr;
+      solutions.push_back(solve_placed(placed[i], problem, all, last));
+      remember(placed[i], solutions.back().front(), remembered_[i]);
+    }
+    std::vector<Equilibrium> result = combine(problem, placed, solutions);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
+    return result;
+  }
+
+ private:
+  std::vector<SpanSolution> solve_placed(PlacedSpan& placed, const Problem& problem, bool all,
+                                         const Remembered* last) {
+    SpanOptions options;
+    options.terms = options_.terms;
+    options.tolerance = options_.tolerance;
+    options.max_evaluations = options_.max_evaluations;
+    options.all = all;
+    if (options_.start != nullptr) {
+      options.start = field_of(*options_.start, placed, problem.length);
+    } else if (last != nullptr && last->terms > 0) {
+      options.least_terms = last->terms;
+      options.start = [&placed, last](const Eigen::VectorXd& s) {
+        return follow_field(placed, *last, s);
+      };
+    }
+    std::vector<SpanSolution> solutions = solve_span(placed.span, options, workspace_);
+    SpanSolution& best = solutions.front();
+    // The search may have left the plane.
+    if (!best.model->span().planar) placed.span.planar = false;
+    if (placed.span.planar || all || best.model->elevation() < largest_elevation) return solutions;
+    return {with_axis_turned(placed, best, options)};
+  }
+
+  /// Once more, with an axis from which this solution's tangents stay away.
+  SpanSolution with_axis_turned(PlacedSpan& placed, const SpanSolution& solution,
+                                SpanOptions options) {
+    const SpanShape shape = solution.model->shape(solution.x);
+    const Eigen::Matrix3d before = placed.frame;
+    turn_axis(placed, sample_tangents(shape, solution.model->nodes()));
+    const Eigen::Matrix3d turn = placed.frame * before.transpose();
+    options.start = [shape, turn](const Eigen::VectorXd& s) {
+      return Eigen::Matrix3Xd(turn * sample_tangents(shape, s));
+    };
+    options.least_terms = solution.terms;
+    SpanSolution turned = std::move(solve_span(placed.span, options, workspace_).front());
+    turned.evaluations += solution.evaluations;
+    return turned;
+  }
+
+  static Eigen::Matrix3Xd sample_tangents(const SpanShape& shape, const Eigen::VectorXd& s) {
+    return shape.sample({s.data(), static_cast<std::size_t>(s.size())}).tangents;
+  }
+
+  /// The nodes are where they were, unless grips or loads have moved along the rod.
+  static Eigen::Matrix3Xd follow_field(const PlacedSpan& placed, const Remembered& last,
+                                       const Eigen::VectorXd& s) {
+    if (s.size() == last.nodes.size() && s == last.nodes) return placed.frame * last.tangents;
+    Eigen::Matrix3Xd nearest(3, s.size());
+    for (Eigen::Index q = 0; q < s.size(); ++q) {
+      Eigen::Index at = 0;
+      (last.nodes.array() - s[q]).abs().minCoeff(&at);
+      nearest.col(q) = placed.frame * last.tangents.col(at);
+    }
+    return nearest;
+  }
+
+  static void remember(const PlacedSpan& placed, const SpanSolution& solution, Remembered& last) {
+    last.terms = succeeded(solution.status) ? solution.terms : 0;
+    if (last.terms == 0) return;
+    last.nodes = solution.model->nodes();
+    last.tangents = placed.frame.transpose() * solution.model->tangents();
+  }
+
+  EnergyOptions options_;
+  SpanWorkspace workspace_;
+  std::vector<Remembered> remembered_;
+};
+
+EnergySolver::EnergySolver(const EnergyOptions& options)
+    : state_(std::make_unique<State>(options)) {}
+EnergySolver::~EnergySolver() = default;
+EnergySolver::EnergySolver(EnergySolver&&) noexcept = default;
+EnergySolver& EnergySolver::operator=(EnergySolver&&) noexcept = default;
+
+Equilibrium EnergySolver::solve(const Problem& problem) {
+  return std::move(state_->solve(problem, false, false).front());
+}
+
+Equilibrium EnergySolver::follow(const Problem& problem) {
+  return std::move(state_->solve(problem, false, true).front());
+}
+
+std::vector<Equilibrium> EnergySolver::solve_all(const Problem& problem) {
+  return state_->solve(problem, true, false);
+}
+
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options) {
-  return std::move(solve(problem, options, false).front());
+  return EnergySolver(options).solve(problem);
 }
 
 std::vector<Equilibrium> all_energy(const Problem& problem, const EnergyOptions& options) {
-  return solve(problem, options, true);
+  return EnergySolver(options).solve_all(problem);
 }
 
 }  // namespace dlo::energy_model

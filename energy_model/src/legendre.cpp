@@ -1,5 +1,6 @@
 #include "legendre.hpp"
 
+#include <Eigen/QR>
 #include <array>
 #include <cmath>
 #include <mutex>
@@ -46,20 +47,25 @@ void gauss_legendre(Eigen::VectorXd& nodes, Eigen::VectorXd& weights) {
 }
 
 LegendreTable make_table(int terms) {
-  const Eigen::Index count = terms + extra_nodes;
+  const Eigen::Index Q = terms + extra_nodes;
   LegendreTable table;
-  table.nodes.resize(count);
-  table.weights.resize(count);
+  table.nodes.resize(Q);
+  table.weights.resize(Q);
   gauss_legendre(table.nodes, table.weights);
-  table.values.resize(count, terms);
-  table.integrals.resize(count, terms);
-  Eigen::VectorXd values(terms);
-  Eigen::VectorXd integrals(terms);
-  for (Eigen::Index q = 0; q < count; ++q) {
+  table.values.resize(Q, Q);
+  table.integrals.resize(Q, Q);
+  Eigen::VectorXd values(Q);
+  Eigen::VectorXd integrals(Q);
+  for (Eigen::Index q = 0; q < Q; ++q) {
     legendre(table.nodes[q], values, integrals);
     table.values.row(q) = values;
     table.integrals.row(q) = integrals;
   }
+  table.integration = table.integrals * table.values.transpose() * table.weights.asDiagonal();
+  const Eigen::VectorXd root = table.weights.cwiseSqrt();
+  Eigen::MatrixXd basis(Q, terms + 1);
+  basis << root, root.asDiagonal() * table.integrals.leftCols(terms);
+  table.fit = basis.householderQr().solve(Eigen::MatrixXd(root.asDiagonal()));
   return table;
 }
 

@@ -4,20 +4,24 @@
 
 namespace dlo::energy_model {
 
-/// Orthonormal Legendre polynomials p_k on [0, 1] at the nodes of a Gauss-Legendre rule.
+/// Orthonormal Legendre polynomials p_k on [0, 1] at the Q = K + 6 nodes of a Gauss-Legendre rule:
+/// for a tangent angle of degree K the sines and cosines of the integrand are then resolved as far
+/// as the angle itself is. All Q polynomials are tabulated, the first K are the unknowns' own.
 struct LegendreTable {
-  Eigen::VectorXd nodes;      ///< Q
-  Eigen::VectorXd weights;    ///< Q, sum 1
-  Eigen::MatrixXd values;     ///< p_k at the nodes, Q x K
-  Eigen::MatrixXd integrals;  ///< int_0^node p_k, Q x K
+  Eigen::VectorXd nodes;        ///< Q
+  Eigen::VectorXd weights;      ///< Q, sum 1
+  Eigen::MatrixXd values;       ///< p_k at the nodes, Q x Q
+  Eigen::MatrixXd integrals;    ///< int_0^node p_k, Q x Q
+  Eigen::MatrixXd integration;  ///< from values at the nodes to int_0^node, Q x Q
+  /// From values f at the nodes to c and a_k with c + sum_{k < K} a_k int_0^node p_k nearest to f,
+  /// (K + 1) x Q.
+  Eigen::MatrixXd fit;
 };
 
 /// Values p_k(xi) and integrals int_0^xi p_k for k = 0 .. K-1 into `values` and `integrals`.
 void legendre(double xi, Eigen::Ref<Eigen::VectorXd> values, Eigen::Ref<Eigen::VectorXd> integrals);
 
 /// Table of K terms, made once and kept. Safe to call from several threads.
-/// The rule has K + 6 nodes: for a tangent angle of degree K the sines and cosines of the integrand
-/// are then resolved as far as the angle itself is.
 [[nodiscard]] const LegendreTable& legendre_table(int terms);
 
 /// Largest number of terms that legendre_table knows.

@@ -7,11 +7,13 @@
 #include <vector>
 
 #include "dlo/energy_model/status.hpp"
-#include "span.hpp"
+#include "newton.hpp"
+#include "span_energy.hpp"
+#include "span_solution.hpp"
 
 namespace dlo::energy_model {
 
-/// Tangents at arc lengths of a span, as a start.
+/// Tangents at arc lengths of a span, as a start, 3 x M.
 using TangentField = std::function<Eigen::Matrix3Xd(const Eigen::VectorXd&)>;
 
 /// Elevation beyond which the tangent is too near to its axis for the polynomials to be smooth
@@ -27,22 +29,20 @@ struct SpanOptions {
   int least_terms = 0;  ///< what resolves the start
 };
 
-struct [[nodiscard]] SpanSolution {
-  SolveStatus status = SolveStatus::not_run;
-  std::string message = "never ran";
-  int evaluations = 0;
-  int terms = 0;
-  double residual = -1;  ///< of the gradient and the constraints
-  double energy = 0;     ///< in EI/l
-  double smallest_curvature =
-      0;  ///< eigenvalue of the projected second variation, sideways included
-  std::shared_ptr<SpanEnergy> model;
-  Eigen::VectorXd x;
-  Eigen::VectorXd multipliers;
+/// Buffers that survive a solve: models that no solution holds any more are used again.
+class SpanWorkspace {
+ public:
+  [[nodiscard]] std::shared_ptr<SpanEnergy> model(const Span& span, int terms);
+  [[nodiscard]] Newton& newton() { return newton_; }
+
+ private:
+  std::vector<std::shared_ptr<SpanEnergy>> models_;
+  Newton newton_;
 };
 
 /// Equilibria of a span, lowest energy first: the search's best one, or all of them. Never empty; a
 /// failure is a single solution that says so.
-[[nodiscard]] std::vector<SpanSolution> solve_span(const Span& span, const SpanOptions& options);
+[[nodiscard]] std::vector<SpanSolution> solve_span(const Span& span, const SpanOptions& options,
+                                                   SpanWorkspace& workspace);
 
 }  // namespace dlo::energy_model

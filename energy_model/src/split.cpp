@@ -3,13 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <sstream>
 #include <stdexcept>
 
 #include "dlo/energy_model/planar.hpp"
-#include "require.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -224,113 +222,6 @@ void turn_axis(PlacedSpan& placed, const Eigen::Matrix3Xd& tangents) {
   const Eigen::Matrix3d rotation = frame_about(best, tangents.col(0));
   placed.frame = (rotation * placed.frame).eval();
   turn_vectors(placed.span, rotation);
-}
-
-Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& placed,
-                     const std::vector<SpanSolution>& solutions) {
-  const double l = problem.length;
-  const double energy_unit = problem.bending_stiffness / l;
-  const double force_unit = energy_unit / l;
-  const Eigen::Vector3d origin = problem.grips.front().position;
-  Equilibrium result;
-  result.status = SolveStatus::converged;
-  result.message = to_string(result.status);
-  result.residual = 0;
-  result.grips.resize(problem.grips.size());
-  result.walls.assign(problem.walls.size(), Eigen::Vector3d::Zero());
-  result.smallest_curvature = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    const PlacedSpan& place = placed[i];
-    const SpanSolution& solution = solutions[i];
-    result.evaluations += solution.evaluations;
-    result.terms = std::max(result.terms, solution.terms);
-    result.residual = std::max(result.residual, solution.residual);
-    result.smallest_curvature = std::min(result.smallest_curvature, solution.smallest_curvature);
-    if (solution.status != SolveStatus::converged && succeeded(result.status)) {
-      result.status = solution.status;
-      result.message = solution.message;
-    }
-    if (solution.x.size() == 0) continue;
-    const Energies own = solution.model->energies(solution.x);
-    result.energy.bending += own.bending * energy_unit;
-    const Eigen::Vector3d lift = place.anchor_position - origin;
-    const Eigen::Vector3d weight = problem.weight_per_length * place.span.length * l;
-    result.energy.gravity += own.gravity * energy_unit - weight.dot(lift);
-    Eigen::Vector3d carried = place.frame * weight / force_unit;
-    result.energy.load += own.load * energy_unit;
-    for (const Span::Load& load : place.span.loads) {
-      carried += load.force;
-      result.energy.load -= force_unit * (place.frame.transpose() * load.force).dot(lift);
-    }
-    const std::vector<Eigen::Vector3d> walls = solution.model->wall_forces();
-    for (std::size_t w = 0; w < walls.size(); ++w) {
-      carried += walls[w];
-      result.walls[w] += force_unit * (place.frame.transpose() * walls[w]);
-    }
-    const Eigen::Index axes = place.span.planar ? 2 : 3;
-    for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
-      Eigen::Vector3d force = Eigen::Vector3d::Zero();
-      force.head(axes) = solution.multipliers.segment(static_cast<Eigen::Index>(j) * axes, axes);
-      carried += force;
-      result.grips[place.hold_grips[j]].force += force_unit * (place.frame.transpose() * force);
-    }
-    result.grips[place.anchor_grip].force -= force_unit * (place.frame.transpose() * carried);
-    const auto to_space = [&](const Eigen::Vector3d& torque) {
-      return Eigen::Vector3d(energy_unit * (place.frame.transpose() * torque));
-    };
-    result.grips[place.anchor_grip].torque +=
-        to_space(solution.model->start_torque(solution.multipliers));
-    if (place.span.end_direction) {
-      result.grips[place.hold_grips.back()].torque +=
-          to_space(solution.model->end_torque(solution.multipliers));
-    }
-  }
-  for (const Load& load : problem.loads) {
-    for (std::size_t g = 0; g < problem.grips.size(); ++g) {
-      const Grip& grip = problem.grips[g];
-      if (!grip.direction || grip.at != load.at) continue;
-      result.grips[g].force -= load.force;
-      result.energy.load -= load.force.dot(grip.position - origin);
-      break;
-    }
-  }
-  struct Piece {
-    PlacedSpan place;
-    std::shared_ptr<const SpanEnergy> model;
-    Eigen::VectorXd x;
-  };
-  std::vector<Piece> pieces;
-  for (std::size_t i = 0; i < placed.size(); ++i) {
-    if (solutions[i].x.size() > 0) {
-      pieces.push_back({placed[i], solutions[i].model, solutions[i].x});
-    }
-  }
-  result.sample = [l, pieces](std::span<const double> arc_lengths) {
-    const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-    Samples samples;
-    samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
-    samples.points.resize(3, count);
-    samples.tangents.resize(3, count);
-    samples.curvature.resize(3, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const double at = arc_lengths[static_cast<std::size_t>(i)];
-      require(at >= 0 && at <= l, "sample", "arc length", at, "in [0, " + std::to_string(l) + "]");
-      std::size_t p = 0;
-      const auto ends = [&](const Piece& piece) {
-        return piece.place.reversed ? piece.place.start
-                                    : piece.place.start + piece.place.span.length * l;
-      };
-      while (p + 1 < pieces.size() && at > ends(pieces[p])) ++p;
-      const Piece& piece = pieces[p];
-      const SpanSamples own = piece.model->sample(piece.x, {piece.place.s_of(at, l)});
-      const Eigen::Matrix3d back = piece.place.frame.transpose();
-      samples.points.col(i) = piece.place.anchor_position + l * (back * own.points.col(0));
-      samples.tangents.col(i) = (piece.place.reversed ? -1.0 : 1.0) * (back * own.tangents.col(0));
-      samples.curvature.col(i) = back * own.curvature.col(0) / l;
-    }
-    return samples;
-  };
-  return result;
 }
 
 }  // namespace dlo::energy_model

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <span>
 #include <vector>
 
-#include "dlo/energy_model/equilibrium.hpp"
+#include "dlo/energy_model/problem.hpp"
 #include "span.hpp"
-#include "span_solver.hpp"
 
 namespace dlo::energy_model {
 
@@ -32,9 +30,5 @@ struct PlacedSpan {
 
 /// Turns a spatial span so that these tangents (in its frame) stay away from its z axis.
 void turn_axis(PlacedSpan& placed, const Eigen::Matrix3Xd& tangents);
-
-/// One solution of each span, put together in space and SI units.
-[[nodiscard]] Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& placed,
-                                   const std::vector<SpanSolution>& solutions);
 
 }  // namespace dlo::energy_model

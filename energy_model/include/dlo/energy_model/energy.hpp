@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "dlo/energy_model/equilibrium.hpp"
@@ -25,15 +26,18 @@ struct EnergyOptions {
 /// tangent stays away from) has a derivative expanded in orthonormal Legendre polynomials on each
 /// piece between loads and grips, so that planar bending is |a|^2 / 2 and the Hessian the identity
 /// plus a compact part. NLopt's LD_LBFGS (LD_SLSQP where grips are constraints) comes near the
-/// minimum, Newton steps finish, and their projected Hessian proves that it is one.
+/// minimum with few terms, Newton steps with all of them finish, and their projected Hessian proves
+/// that it is one.
 ///
 /// Of several minima the lowest that the search finds is returned: one clamp turns towards the load
 /// by the shorter way, which is the lowest of all under parallel forces; other spans start from the
-/// two of their arches, S-shapes and loops that have the lowest energy, and a planar shape that
-/// cannot hold itself sideways is followed into space.
+/// two of their arches, S-shapes and loops that have the lowest energy (from the others where these
+/// lead to nothing stable), and what cannot hold itself is followed to where it falls, also out of
+/// its plane.
 ///
-/// Rigid walls are met by an augmented Lagrangian to 1e-9 l; the curvature has kinks where contact
-/// begins, so shapes on walls are right to about 1e-4 l only.
+/// Rigid walls are met by an augmented Lagrangian whose multipliers settle to 1e-9 l; the curvature
+/// has kinks where contact begins, so shapes on walls are right to 1e-4 l and their forces to 1e-3
+/// of the weight only (a lying rod against its exact solution: 5e-5 l, 5e-4).
 /// @throws std::invalid_argument if the problem or an option is out of range, with the numbers
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 
@@ -41,5 +45,29 @@ Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = 
 /// have the status `saddle`. Never empty.
 [[nodiscard]] std::vector<Equilibrium> all_energy(const Problem& problem,
                                                   const EnergyOptions& options = {});
+
+/// The same with buffers that survive a solve, for loops. One thread at a time.
+class EnergySolver {
+ public:
+  /// @throws std::invalid_argument if an option is out of range
+  explicit EnergySolver(const EnergyOptions& options = {});
+  ~EnergySolver();
+  EnergySolver(EnergySolver&&) noexcept;
+  EnergySolver& operator=(EnergySolver&&) noexcept;
+  EnergySolver(const EnergySolver&) = delete;
+  EnergySolver& operator=(const EnergySolver&) = delete;
+
+  /// solve_energy().
+  Equilibrium solve(const Problem& problem);
+  /// From the shape of the last call instead of a search, if it had one: for a gripper that has
+  /// moved a little. Follows its branch, so that snapping shows where it ends.
+  Equilibrium follow(const Problem& problem);
+  /// all_energy().
+  [[nodiscard]] std::vector<Equilibrium> solve_all(const Problem& problem);
+
+ private:
+  class State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace dlo::energy_model

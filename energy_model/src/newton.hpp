@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "span_solution.hpp"
+
+namespace dlo::energy_model {
+
+/// Newton's method on the gradient of E - mu . c and on the constraints, with its buffers. Without
+/// constraints and walls it allocates nothing once they have their size.
+class Newton {
+ public:
+  /// From solution.x to a residual at rounding. Without constraints the Hessian then tells a
+  /// minimum (`converged`) from a `saddle`; with them the caller has to look. Ends as `failed`
+  /// where the residual does not fall.
+  /// @param load  sum of weight and loads, the scale of the residuals
+  void polish(SpanSolution& solution, double load);
+
+  /// The same for a start that is too far away: the residual there is taken off by degrees, each
+  /// one's solution the start of the next. What it finds may be a saddle.
+  void lead(SpanSolution& solution, double load, int max_evaluations);
+
+ private:
+  void begin(SpanSolution& solution);
+  [[nodiscard]] double evaluate(SpanSolution& solution);
+  void factor(SpanSolution& solution);
+  void solve();
+  void move(SpanSolution& solution, double length);
+  [[nodiscard]] double step_length(SpanSolution& solution, double size);
+  [[nodiscard]] double step_length_by_energy(SpanSolution& solution);
+
+  double load_ = 0;
+  Eigen::VectorXd gradient_, residual_, right_, step_;
+  Eigen::MatrixXd jacobian_, hessian_, system_;
+  Eigen::LLT<Eigen::MatrixXd> llt_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  bool definite_ = false;  // llt_ is what the system is solved with
+  Eigen::VectorXd trial_x_, trial_multipliers_, trial_gradient_;
+};
+
+}  // namespace dlo::energy_model

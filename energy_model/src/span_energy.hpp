@@ -1,0 +1,106 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "dlo/energy_model/problem.hpp"
+#include "span_shape.hpp"
+#include "wall_contact.hpp"
+
+namespace dlo::energy_model {
+
+/// Bending plus load energy of a span over its unknowns, with constraints. Unknowns x: for theta
+/// the start angle (if no clamp fixes it) and the curvature coefficients of every piece; then the
+/// same for beta unless the span is planar.
+///
+/// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of end angles)
+/// that the grips exert on the rod. value(), constraint() and hessian() allocate nothing, but for
+/// walls.
+class SpanEnergy {
+ public:
+  SpanEnergy() = default;
+  SpanEnergy(const Span& span, int terms) { reset(span, terms); }
+  /// Takes on another span; buffers of the same size are kept.
+  void reset(const Span& span, int terms);
+
+  [[nodiscard]] const Span& span() const { return span_; }
+  [[nodiscard]] Eigen::Index size() const { return fields_ * columns_; }
+  [[nodiscard]] Eigen::Index constraints() const { return constraints_; }
+  [[nodiscard]] int terms() const { return terms_; }
+  [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
+
+  /// Energy in EI/l and its gradient.
+  [[nodiscard]] double value(const Eigen::Ref<const Eigen::VectorXd>& x,
+                             Eigen::Ref<Eigen::VectorXd> gradient);
+  /// Residuals of the constraints at the point of the last value(), and their Jacobian.
+  void constraint(Eigen::Ref<Eigen::VectorXd> residual, Eigen::Ref<Eigen::MatrixXd> jacobian);
+  /// Second derivatives of E - mu . c at the point of the last value().
+  void hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& result);
+  /// For a planar span: the same for bending out of the plane, with its constraints' Jacobian.
+  void sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& hessian,
+                Eigen::MatrixXd& jacobian);
+
+  /// Arc lengths of the nodes, and tangents there at the point of the last value(), 3 x nodes.
+  [[nodiscard]] const Eigen::VectorXd& nodes() const { return s_; }
+  [[nodiscard]] Eigen::Matrix3Xd tangents() const { return t_.transpose(); }
+  /// Unknowns whose tangents at the nodes come nearest to the given ones (3 x nodes); a planar span
+  /// drops what leaves its plane. Also turns the end clamp's angle to the winding of these
+  /// tangents.
+  [[nodiscard]] Eigen::VectorXd fit(const Eigen::Matrix3Xd& tangents);
+
+  /// Unknowns of a shape that was found with fewer terms, or in the plane.
+  [[nodiscard]] Eigen::VectorXd adopt(const SpanEnergy& coarse, const Eigen::VectorXd& x);
+
+  /// Size of the last coefficients, which tells whether the curvature is resolved.
+  [[nodiscard]] double tail(const Eigen::VectorXd& x) const;
+  [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
+  [[nodiscard]] Energies energies(const Eigen::VectorXd& x);
+  /// Largest elevation |beta| at the nodes of the last value() [rad].
+  [[nodiscard]] double elevation() const { return beta_.cwiseAbs().maxCoeff(); }
+
+  [[nodiscard]] bool has_walls() const { return walls_.any(); }
+  [[nodiscard]] WallContact& walls() { return walls_; }
+  [[nodiscard]] const WallContact& walls() const { return walls_; }
+
+  /// Torque of the grip at the span's end and of the clamp at its start, at the point of the last
+  /// value(): the weak forms, from the end angles' multipliers and from the balance about the
+  /// start. They converge with the energy, the curvature at the very end only with its last
+  /// coefficients.
+  [[nodiscard]] Eigen::Vector3d end_torque(const Eigen::VectorXd& multipliers) const;
+  [[nodiscard]] Eigen::Vector3d start_torque(const Eigen::VectorXd& multipliers) const;
+
+ private:
+  void tabulate_angles();
+  void tabulate_forces();
+  void carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
+  [[nodiscard]] Eigen::VectorXd fit_field(const Eigen::VectorXd& angles, double start) const;
+
+  Span span_;
+  int terms_ = 0;
+  Eigen::Index fields_ = 1;   // 1 planar, 2 spatial
+  Eigen::Index columns_ = 0;  // unknowns of one field
+  Eigen::Index free_start_ = 0;
+  Eigen::Index constraints_ = 0;
+  Eigen::Index axes_ = 2;  // position components that are constrained, 2 or 3
+  double start_theta_ = 0, start_beta_ = 0, end_theta_ = 0, end_beta_ = 0;
+  std::vector<Piece> pieces_;
+  Eigen::VectorXd s_, weights_;
+  Eigen::MatrixXd angle_;      // of the nodes by unknown
+  Eigen::MatrixXd slope_;      // its derivative by s; only in space
+  Eigen::VectorXd end_angle_;  // of the span's end by unknown
+  Eigen::MatrixX3d force_;     // weight of the node times the sum of weight and loads beyond it
+  Eigen::MatrixXd reach_;      // per hold, weight of the node times -1, 0, 1
+  WallContact walls_;
+
+  // At the point of the last value(), nodes x 3
+  Eigen::VectorXd theta_, beta_, kappa_;
+  Eigen::MatrixX3d t_, t_theta_, t_beta_, total_;
+  Eigen::VectorXd x_;
+
+  // Scratch
+  Eigen::MatrixX3d carried_;
+  Eigen::VectorXd along_, turning_;
+  Eigen::MatrixXd scaled_;
+};
+
+}  // namespace dlo::energy_model

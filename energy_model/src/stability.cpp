@@ -1,0 +1,41 @@
+#include "stability.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+namespace dlo::energy_model {
+
+Eigen::MatrixXd free_directions(const Eigen::MatrixXd& jacobian, Eigen::Index size) {
+  if (jacobian.rows() == 0) return Eigen::MatrixXd::Identity(size, size);
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian.transpose());
+  const Eigen::MatrixXd Q = qr.householderQ();
+  return Q.rightCols(size - jacobian.rows());
+}
+
+double smallest_eigenvalue(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
+  const Eigen::MatrixXd Z = free_directions(jacobian, hessian.rows());
+  if (Z.cols() == 0) return 1;
+  const Eigen::MatrixXd projected = Z.transpose() * hessian * Z;
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected, Eigen::EigenvaluesOnly)
+      .eigenvalues()[0];
+}
+
+bool is_minimum(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
+  const Eigen::MatrixXd Z = free_directions(jacobian, hessian.rows());
+  if (Z.cols() == 0) return true;
+  Eigen::MatrixXd projected = Z.transpose() * hessian * Z;
+  projected.diagonal().array() += neutral;
+  return projected.llt().info() == Eigen::Success;
+}
+
+std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
+                                                 const Eigen::MatrixXd& jacobian) {
+  const Eigen::MatrixXd Z = free_directions(jacobian, hessian.rows());
+  if (Z.cols() == 0) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Z.transpose() * hessian * Z);
+  if (eigen.eigenvalues()[0] > -neutral) return std::nullopt;
+  return Eigen::VectorXd((Z * eigen.eigenvectors().col(0)).normalized());
+}
+
+}  // namespace dlo::energy_model

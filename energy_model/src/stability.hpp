@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace dlo::energy_model {
+
+/// Eigenvalues closer to zero than this are neutral: a rod that may turn about an axis for nothing.
+inline constexpr double neutral = 1e-7;
+
+/// Orthonormal basis of what the constraints leave free.
+[[nodiscard]] Eigen::MatrixXd free_directions(const Eigen::MatrixXd& jacobian, Eigen::Index size);
+
+/// Smallest eigenvalue of the Hessian on these directions; 1 if the constraints leave none.
+[[nodiscard]] double smallest_eigenvalue(const Eigen::MatrixXd& hessian,
+                                         const Eigen::MatrixXd& jacobian);
+
+/// Whether no eigenvalue there is negative.
+[[nodiscard]] bool is_minimum(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
+
+/// The direction in which an unstable equilibrium gives way first; none if it is stable.
+[[nodiscard]] std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
+                                                               const Eigen::MatrixXd& jacobian);
+
+}  // namespace dlo::energy_model

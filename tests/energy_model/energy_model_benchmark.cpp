@@ -1,0 +1,185 @@
+// Time and evaluations of the energy model. `plain_steps` is the time in units of one step of the
+// plain force model (Eigen, N = 16, hooke law, heavy ball) measured in the same run; `one_clamp` in
+// units of a cold solve of one horizontal clamp at Gamma = 10; `error` the largest distance from
+// the independent exact solution over l.
+//
+//     dlo_energy_model_benchmark --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "dlo/force_model/rod.hpp"
+
+namespace {
+
+using dlo::energy_model::EnergyOptions;
+using dlo::energy_model::EnergySolver;
+using dlo::energy_model::Equilibrium;
+using dlo::energy_model::Problem;
+using dlo::energy_model::solve_energy;
+using dlo::energy_model::solve_exact;
+
+template <typename Work>
+double median_seconds(int runs, int repeats, const Work& work) {
+  std::vector<double> seconds;
+  for (int run = 0; run < runs; ++run) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < repeats; ++i) work();
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+    seconds.push_back(taken.count() / repeats);
+  }
+  std::nth_element(seconds.begin(), seconds.begin() + runs / 2, seconds.end());
+  return seconds[static_cast<std::size_t>(runs / 2)];
+}
+
+/// One step of the plain force model at N = 16: all forces, momentum, movement.
+double plain_step() {
+  static const double seconds = [] {
+    dlo::force_model::Rod rod;
+    const Eigen::Index n = 16;
+    rod.rest_lengths = Eigen::VectorXd::Constant(n - 1, 1.0 / (n - 1));
+    rod.c_c = 660;
+    rod.bending = {dlo::force_model::BendingLaw::hooke, 1};
+    rod.loads = Eigen::Vector3d(0, -1.0 / n, 0).replicate(1, n);
+    Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, n);
+    points.row(0).setLinSpaced(n, 0, 1);
+    Eigen::Matrix3Xd forces(3, n);
+    Eigen::Matrix3Xd movement = Eigen::Matrix3Xd::Zero(3, n);
+    return median_seconds(7, 5000, [&] {
+      dlo::force_model::total_forces(rod, points, forces);
+      forces.leftCols(2).setZero();
+      movement = 1e-5 * forces + 0.9 * movement;
+      points += movement;
+      benchmark::DoNotOptimize(points.data());
+    });
+  }();
+  return seconds;
+}
+
+Problem clamp(double gamma, double degrees = 0) {
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.weight_per_length = {0, -gamma, 0};
+  const double angle = degrees * std::numbers::pi / 180;
+  problem.grips = {{.at = 0, .direction = Eigen::Vector3d(std::cos(angle), std::sin(angle), 0)}};
+  return problem;
+}
+
+/// Clamps `apart` l along x, each leaning by `out` [rad] out of the plane.
+Problem two_clamps(double gamma, double apart, double out) {
+  Problem problem = clamp(gamma);
+  problem.grips[0].direction = Eigen::Vector3d(1, 0, out);
+  problem.grips.push_back({.at = 1,
+                           .position = Eigen::Vector3d(apart, 0, 0),
+                           .direction = Eigen::Vector3d(1, 0, -out)});
+  return problem;
+}
+
+double one_clamp() {
+  static const double seconds =
+      median_seconds(7, 200, [] { benchmark::DoNotOptimize(solve_energy(clamp(10))); });
+  return seconds;
+}
+
+benchmark::Counter in_units_of(double seconds) {
+  return {seconds, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert};
+}
+
+double error(const Equilibrium& energy, const Equilibrium& exact) {
+  const std::vector<double> s = {0.1, 0.25, 0.5, 0.75, 1};
+  const Eigen::Matrix3Xd difference = energy.sample(s).points - exact.sample(s).points;
+  return std::sqrt(difference.colwise().squaredNorm().maxCoeff());
+}
+
+void report(benchmark::State& state, const Equilibrium& result) {
+  if (!succeeded(result.status)) state.SkipWithError(result.message.c_str());
+  state.counters["evaluations"] = result.evaluations;
+  state.counters["terms"] = result.terms;
+  state.counters["plain_steps"] = in_units_of(plain_step());
+}
+
+void cold_clamp(benchmark::State& state, double gamma) {
+  const Problem problem = clamp(gamma);
+  EnergySolver solver;
+  (void)plain_step();
+  for (auto _ : state) benchmark::DoNotOptimize(solver.solve(problem));
+  const Equilibrium result = solver.solve(problem);
+  report(state, result);
+  state.counters["error"] = error(result, solve_exact(problem));
+}
+BENCHMARK_CAPTURE(cold_clamp, gamma_0 .18, 0.18);
+BENCHMARK_CAPTURE(cold_clamp, gamma_0 .2, 0.2);
+BENCHMARK_CAPTURE(cold_clamp, gamma_1, 1);
+BENCHMARK_CAPTURE(cold_clamp, gamma_10, 10);
+BENCHMARK_CAPTURE(cold_clamp, gamma_18, 18);
+BENCHMARK_CAPTURE(cold_clamp, gamma_100, 100);
+BENCHMARK_CAPTURE(cold_clamp, gamma_1000, 1000);
+
+/// The gripper turns by 1 degree to and fro.
+void warm_clamp(benchmark::State& state, double gamma) {
+  const std::array<Problem, 2> problems = {clamp(gamma), clamp(gamma, 1)};
+  EnergySolver solver;
+  (void)plain_step();
+  (void)solver.solve(problems[0]);
+  std::size_t i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(solver.follow(problems[i = 1 - i]));
+  report(state, solver.follow(problems[1 - i]));
+}
+BENCHMARK_CAPTURE(warm_clamp, gamma_0 .2, 0.2);
+BENCHMARK_CAPTURE(warm_clamp, gamma_10, 10);
+BENCHMARK_CAPTURE(warm_clamp, gamma_100, 100);
+BENCHMARK_CAPTURE(warm_clamp, gamma_1000, 1000);
+
+void cold(benchmark::State& state, const Problem& problem) {
+  EnergySolver solver;
+  (void)plain_step();
+  (void)one_clamp();
+  for (auto _ : state) benchmark::DoNotOptimize(solver.solve(problem));
+  report(state, solver.solve(problem));
+  state.counters["one_clamp"] = in_units_of(one_clamp());
+}
+BENCHMARK_CAPTURE(cold, two_clamps_planar, two_clamps(10, 0.8, 0))->Unit(benchmark::kMicrosecond);
+BENCHMARK_CAPTURE(cold, two_clamps_spatial, two_clamps(10, 0.8, 0.3))
+    ->Unit(benchmark::kMicrosecond);
+
+Problem on_a_floor() {
+  Problem problem = clamp(20);
+  problem.walls = {{.point = {0, -0.3, 0}, .normal = {0, 1, 0}}};
+  return problem;
+}
+BENCHMARK_CAPTURE(cold, clamp_above_a_floor, on_a_floor())->Unit(benchmark::kMicrosecond);
+
+Problem sideways_load() {
+  Problem problem = clamp(10);
+  problem.loads = {{.at = 1, .force = {0, 0, 5}}};
+  return problem;
+}
+BENCHMARK_CAPTURE(cold, clamp_spatial, sideways_load())->Unit(benchmark::kMicrosecond);
+
+/// Error and time against K.
+void terms(benchmark::State& state, double gamma) {
+  const Problem problem = clamp(gamma);
+  EnergySolver solver({.terms = static_cast<int>(state.range(0))});
+  (void)plain_step();
+  for (auto _ : state) benchmark::DoNotOptimize(solver.solve(problem));
+  const Equilibrium result = solver.solve(problem);
+  report(state, result);
+  state.counters["error"] = error(result, solve_exact(problem));
+}
+BENCHMARK_CAPTURE(terms, gamma_1, 1)->DenseRange(2, 12, 2);
+BENCHMARK_CAPTURE(terms, gamma_18, 18)->DenseRange(2, 22, 2);
+BENCHMARK_CAPTURE(terms, gamma_100, 100)->DenseRange(4, 40, 4);
+BENCHMARK_CAPTURE(terms, gamma_1000, 1000)->DenseRange(8, 40, 4);
+
+}  // namespace
+
+BENCHMARK_MAIN();

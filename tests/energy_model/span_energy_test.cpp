@@ -1,0 +1,141 @@
+// The objective of the energy model: its derivatives, and that it never waits for the allocator.
+
+#include "span_energy.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstddef>
+#include <random>
+
+// The sanitizers bring an allocator of their own.
+#if !defined(__SANITIZE_ADDRESS__)
+#define DLO_COUNTS_ALLOCATIONS
+
+namespace {
+long allocations = 0;
+}
+
+extern "C" {
+// NOLINTNEXTLINE(bugprone-reserved-identifier): glibc's name
+void* __libc_malloc(std::size_t size);
+
+void* malloc(std::size_t size) {
+  ++allocations;
+  return __libc_malloc(size);
+}
+}
+#endif
+
+namespace dlo::energy_model {
+namespace {
+
+/// Two clamps and a pin between them, weight and loads; soft enough for layers at the clamps.
+Span gripped_span(bool planar) {
+  const double z = planar ? 0 : 1;
+  Span span;
+  span.planar = planar;
+  span.start_direction = Eigen::Vector3d(1, 0.2, 0.1 * z).normalized();
+  span.end_direction = Eigen::Vector3d(1, -0.4, 0.3 * z).normalized();
+  span.holds = {{0.6, {0.4, -0.1, 0.1 * z}}, {1, {0.7, 0.1, 0}}};
+  span.weight = {1, -30, 5 * z};
+  span.loads = {{0.3, {1, 2, -z}}};
+  return span;
+}
+
+Span free_span(bool planar) {
+  Span span = gripped_span(planar);
+  span.start_direction.reset();
+  span.end_direction.reset();
+  span.anchor = 0.2;
+  return span;
+}
+
+Span span_on_wall(bool planar) {
+  Span span = gripped_span(planar);
+  span.walls = {{.normal = {0, 1, 0}, .offset = -0.02, .stiffness = 500}};
+  return span;
+}
+
+/// Makes a span, planar or not.
+struct Case {
+  Span (*make)(bool planar);
+  bool planar;
+
+  [[nodiscard]] Span span() const { return make(planar); }
+};
+
+class Objective : public testing::TestWithParam<Case> {};
+
+TEST_P(Objective, HasTheDerivativesOfItsValue) {
+  const Span span = GetParam().span();
+  SpanEnergy model(span, 6);
+  const Eigen::Index n = model.size();
+  const Eigen::Index m = model.constraints();
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(-0.5, 0.5);
+  Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(n, [&] { return uniform(random); });
+  const Eigen::VectorXd mu = Eigen::VectorXd::NullaryExpr(m, [&] { return uniform(random); });
+
+  struct Point {
+    double value;
+    Eigen::VectorXd gradient, residual;
+    Eigen::MatrixXd jacobian, hessian;
+  };
+  const auto at = [&](const Eigen::VectorXd& where) {
+    Point point{0, Eigen::VectorXd(n), Eigen::VectorXd(m), Eigen::MatrixXd(m, n), {}};
+    point.value = model.value(where, point.gradient);
+    model.constraint(point.residual, point.jacobian);
+    model.hessian(mu, point.hessian);
+    return point;
+  };
+  const Point here = at(x);
+  const double h = 1e-5;
+  const double scale = 1 + here.hessian.norm();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::VectorXd aside = x;
+    aside[k] += h;
+    const Point after = at(aside);
+    aside[k] -= 2 * h;
+    const Point before = at(aside);
+    EXPECT_NEAR((after.value - before.value) / (2 * h), here.gradient[k], 1e-8 * scale);
+    const Eigen::VectorXd slope = (after.residual - before.residual) / (2 * h);
+    EXPECT_LT((slope - here.jacobian.col(k)).norm(), 1e-8 * scale);
+    const Eigen::VectorXd lagrangian_after = after.gradient - after.jacobian.transpose() * mu;
+    const Eigen::VectorXd lagrangian_before = before.gradient - before.jacobian.transpose() * mu;
+    const Eigen::VectorXd curve = (lagrangian_after - lagrangian_before) / (2 * h);
+    EXPECT_LT((curve - here.hessian.col(k)).norm(), 1e-7 * scale) << "unknown " << k;
+  }
+}
+
+#ifdef DLO_COUNTS_ALLOCATIONS
+class ObjectiveWithoutWalls : public Objective {};
+
+TEST_P(ObjectiveWithoutWalls, DoesNotAllocate) {
+  SpanEnergy model(GetParam().span(), 12);
+  const Eigen::VectorXd x = Eigen::VectorXd::Zero(model.size());
+  Eigen::VectorXd gradient(model.size());
+  Eigen::VectorXd residual(model.constraints());
+  Eigen::MatrixXd jacobian(model.constraints(), model.size());
+  const Eigen::VectorXd mu = Eigen::VectorXd::Ones(model.constraints());
+  Eigen::MatrixXd hessian(model.size(), model.size());
+  const long before = allocations;
+  for (int i = 0; i < 3; ++i) {
+    (void)model.value(x, gradient);
+    model.constraint(residual, jacobian);
+    model.hessian(mu, hessian);
+  }
+  EXPECT_EQ(allocations, before);
+}
+
+INSTANTIATE_TEST_SUITE_P(Spans, ObjectiveWithoutWalls,
+                         testing::Values(Case{gripped_span, true}, Case{gripped_span, false},
+                                         Case{free_span, true}, Case{free_span, false}));
+#endif
+
+INSTANTIATE_TEST_SUITE_P(Spans, Objective,
+                         testing::Values(Case{gripped_span, true}, Case{gripped_span, false},
+                                         Case{free_span, true}, Case{free_span, false},
+                                         Case{span_on_wall, true}, Case{span_on_wall, false}));
+
+}  // namespace
+}  // namespace dlo::energy_model
