@@ -39,11 +39,10 @@ TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double
   };
 }
 
-/// A span's tangents in space at its nodes, to go on from.
+/// A span's last solution, to go on from.
 struct Remembered {
-  int terms = 0;
-  Eigen::VectorXd nodes;
-  Eigen::Matrix3Xd tangents;
+  std::shared_ptr<const SpanEnergy> model;  // none after a failure
+  Eigen::Matrix3d frame;
 };
 
 std::vector<Equilibrium> combine(const Problem& problem, const std::vector<PlacedSpan>& placed,
@@ -102,10 +101,10 @@ class EnergySolver::State {
     options.all = all;
     if (options_.start != nullptr) {
       options.start = field_of(*options_.start, placed, problem.length);
-    } else if (last != nullptr && last->terms > 0) {
-      options.least_terms = last->terms;
-      options.start = [&placed, last](const Eigen::VectorXd& s) {
-        return follow_field(placed, *last, s);
+    } else if (last != nullptr && last->model) {
+      options.least_terms = last->model->terms();
+      options.start = [&placed, last = *last](const Eigen::VectorXd& s) {
+        return follow_field(placed, last, s);
       };
     }
     std::vector<SpanSolution> solutions = solve_span(placed.span, options, workspace_);
@@ -139,21 +138,22 @@ class EnergySolver::State {
   /// The nodes are where they were, unless grips or loads have moved along the rod.
   static Eigen::Matrix3Xd follow_field(const PlacedSpan& placed, const Remembered& last,
                                        const Eigen::VectorXd& s) {
-    if (s.size() == last.nodes.size() && s == last.nodes) return placed.frame * last.tangents;
+    const Eigen::Matrix3Xd tangents =
+        placed.frame * last.frame.transpose() * last.model->tangents();
+    const Eigen::VectorXd& nodes = last.model->nodes();
+    if (s.size() == nodes.size() && s == nodes) return tangents;
     Eigen::Matrix3Xd nearest(3, s.size());
     for (Eigen::Index q = 0; q < s.size(); ++q) {
       Eigen::Index at = 0;
-      (last.nodes.array() - s[q]).abs().minCoeff(&at);
-      nearest.col(q) = placed.frame * last.tangents.col(at);
+      (nodes.array() - s[q]).abs().minCoeff(&at);
+      nearest.col(q) = tangents.col(at);
     }
     return nearest;
   }
 
   static void remember(const PlacedSpan& placed, const SpanSolution& solution, Remembered& last) {
-    last.terms = succeeded(solution.status) ? solution.terms : 0;
-    if (last.terms == 0) return;
-    last.nodes = solution.model->nodes();
-    last.tangents = placed.frame.transpose() * solution.model->tangents();
+    last.model = succeeded(solution.status) ? solution.model : nullptr;
+    last.frame = placed.frame;
   }
 
   EnergyOptions options_;

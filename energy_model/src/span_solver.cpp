@@ -28,8 +28,9 @@ constexpr std::size_t followed_starts = 2;
 /// Newton's method factors a dense matrix of this size at most.
 constexpr int most_unknowns = 320;
 
-/// Coefficients below which a coarser start is not worth its set-up.
-constexpr int few_terms = 8;
+/// Coefficients up to which a coarser start is not worth its set-up, and the fewest of one.
+constexpr int few_terms = 10;
+constexpr int least_terms = 7;
 
 /// Unknowns with which SLSQP looks for a minimum between grips.
 constexpr int coarse_unknowns = 100;
@@ -107,7 +108,7 @@ class Search {
       const int pieces = static_cast<int>(pieces_of(span_).size());
       coarse = std::min(coarse, coarse_unknowns / (fields * pieces));
     }
-    return std::max(few_terms, coarse);
+    return std::max(least_terms, coarse);
   }
 
   [[nodiscard]] SpanSolution empty_solution(int terms) {
