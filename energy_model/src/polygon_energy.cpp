@@ -61,8 +61,14 @@ double joint_length(const PolygonProblem& problem, Eigen::Index i) {
   return (problem.rest_lengths[i - 1] + problem.rest_lengths[i]) / 2;
 }
 
-double depth(const PointWall& wall, const Eigen::Vector3d& point) {
-  return std::max(0.0, (wall.point - point).dot(wall.normal));
+/// How far a free point is behind a wall; a held one does not feel it [m].
+double depth(const PolygonProblem& problem, const PointWall& wall, const Points& points,
+             Eigen::Index i) {
+  const double behind = (wall.point - points.col(i)).dot(wall.normal);
+  if (!(behind > 0)) return 0;
+  const bool held = std::any_of(problem.held.begin(), problem.held.end(),
+                                [i](const HeldPoint& point) { return point.point == i; });
+  return held ? 0 : behind;
 }
 
 /// Adds the Hessian H of a function of the differences d_p = P_(p+1) - P_p, d_q likewise.
@@ -103,7 +109,7 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
   }
   for (const PointWall& wall : problem.walls) {
     for (Eigen::Index i = 0; i <= n; ++i) {
-      const double d = depth(wall, points.col(i));
+      const double d = depth(problem, wall, points, i);
       energy += wall.stiffness * d * d / 2;
       gradient.col(i) -= wall.stiffness * d * wall.normal;
     }
@@ -148,7 +154,7 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, const 
   }
   for (const PointWall& wall : problem.walls) {
     for (Eigen::Index i = 0; i <= n; ++i) {
-      if (depth(wall, points.col(i)) <= 0) continue;
+      if (depth(problem, wall, points, i) <= 0) continue;
       add(i, i, wall.stiffness * wall.normal * wall.normal.transpose());
     }
   }

@@ -56,7 +56,7 @@ TEST(Discretise, ConsistentBookkeepingHoldsTheMiddleOfASegment) {
   EXPECT_NEAR(d.rod.loads.row(1).sum(), scene.weight_per_length().y(), 1e-15);
   EXPECT_EQ(d.rod.loads.col(0).norm(), 0);
   EXPECT_NEAR(d.rod.loads(1, 15) / d.rod.loads(1, 14), 0.5, 1e-14);
-  const Shape shape = d.shape(d.straight);
+  const Shape shape = d.shape(d.starts.front());
   EXPECT_EQ(shape.arc_length.front(), 0);
   EXPECT_LT(shape.points.col(0).norm(), 1e-16);
 }
