@@ -134,12 +134,17 @@ Solution solve_elastic_chain(const Scene& scene, const Discretisation& discretis
   return solution;
 }
 
-/// Where the simulation starts. Of several starts, the one from which the chain comes lowest: the
-/// two are to be compared in the same state.
-const Eigen::Matrix3Xd& simulation_start(const Scene& scene, const Discretisation& discretisation,
-                                         const SolveOptions& options) {
+/// Where the simulation starts. Of several starts it is the one from which the chain comes lowest,
+/// since the two are to be compared in the same state; and it is moved by a thousandth of the way
+/// to the chain's shape, for starts are as symmetric as their scene and may lead to a saddle, on
+/// which a simulation would balance.
+Eigen::Matrix3Xd simulation_start(const Scene& scene, const Discretisation& discretisation,
+                                  const SolveOptions& options) {
   if (discretisation.starts.size() == 1) return discretisation.starts.front();
-  return discretisation.starts[lowest_polygon(scene, discretisation, options).start];
+  constexpr double nudge = 1e-3;
+  const LowestPolygon lowest = lowest_polygon(scene, discretisation, options);
+  const Eigen::Matrix3Xd& start = discretisation.starts[lowest.start];
+  return start + nudge * (lowest.result.points - start);
 }
 
 }  // namespace
@@ -157,7 +162,7 @@ Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
 Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                      const SolveOptions& options) {
   const Discretisation discretisation = discretise(scene, settings);
-  const Eigen::Matrix3Xd& start = simulation_start(scene, discretisation, options);
+  const Eigen::Matrix3Xd start = simulation_start(scene, discretisation, options);
   const auto begin = std::chrono::steady_clock::now();
   const auto simulation_of = [&] {
     try {

@@ -8,6 +8,8 @@ namespace dlo::compare {
 namespace {
 
 constexpr int curve_points = 400;
+/// How far an arch leaves its plane, in rod lengths.
+constexpr double lean = 1e-6;
 
 /// A grip as the curve sees it.
 struct Knot {
@@ -73,6 +75,7 @@ class Arch {
     if (up_.norm() == 0) up_ = across(begin.direction - end.direction, axis_);
     up_ = up_.norm() > 0 ? up_.normalized() : any_across(axis_);
     if (side == Side::against_load) up_ = -up_;
+    lean_ = lean * rod * axis_.cross(up_);
     if (length() > rod) {
       solve(slope_, 0, slope_, rod);
     } else {
@@ -104,12 +107,10 @@ class Arch {
     const double w = 1 - u;
     const double bump = 16 * u * u * w * w;
     // A high arch is also wide, so that its two sides stay apart.
-    constexpr double widest = 56;  // one over the largest value of u^2 w^2 (w - u)
-    const double width =
-        0.5 * height_ * height_ / (end_.at - begin_.at) * widest * u * u * w * w * (w - u);
+    const double width = 1.7 * height_ * height_ / (end_.at - begin_.at);
     return begin_.position * (w * w * (1 + 2 * u)) + end_.position * (u * u * (1 + 2 * w)) +
            slope_ * (u * w * w * begin_.direction - u * u * w * end_.direction) +
-           height_ * bump * up_ - width * axis_;
+           bump * (height_ * up_ + lean_) - width * bump * (w - u) * axis_;
   }
 
   [[nodiscard]] double length() const {
@@ -128,7 +129,7 @@ class Arch {
   }
 
   Knot begin_, end_;
-  Eigen::Vector3d axis_, up_;
+  Eigen::Vector3d axis_, up_, lean_;
   double slope_;  // of the cubic's directions [m]
   double height_ = 0;
 };

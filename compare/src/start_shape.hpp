@@ -18,7 +18,9 @@ enum class Side {
 /// grips' directions (a pin's is that of the line between its neighbours) and, while that is
 /// shorter than the rod, an arch with no slope at the grips towards the load across their line. Of
 /// a rod without such a load the arch follows the clamps' directions, or else +x (+y if the grips
-/// lie along x). Points of different arc lengths between 0 and l are never in the same place.
+/// lie along x). Every arch
+/// leaves its plane by a millionth of its length, so that what cannot hold itself sideways falls.
+/// No two neighbouring points coincide.
 /// @param along  the grippers in the order of their arc lengths
 [[nodiscard]] Eigen::Matrix3Xd start_shape(const Scene& scene,
                                            const std::vector<std::size_t>& along,
