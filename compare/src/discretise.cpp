@@ -153,6 +153,23 @@ force_model::Grip grip_of(const Gripper& gripper, const Layout& layout, Eigen::I
   return hold;
 }
 
+/// Few points have long held segments, which may leave too little rod between two grips.
+void require_within_reach(const Scene& scene, const ForceModelSettings& settings,
+                          const Layout& layout, const force_model::Rod& rod) {
+  for (std::size_t k = 0; k + 1 < layout.along.size(); ++k) {
+    const force_model::Grip& a = rod.grips[layout.along[k]];
+    const force_model::Grip& b = rod.grips[layout.along[k + 1]];
+    const Eigen::Index last = a.first_point + a.targets.cols() - 1;
+    const double apart = (b.targets.col(0) - a.targets.rightCols<1>()).norm();
+    const double between = rod.rest_lengths.segment(last, b.first_point - last).sum();
+    if (apart <= between * (1 + 1e-9)) continue;
+    throw InputError(fmt::format(
+        "{}: force_model.points = {}: held segments of {:g} m leave {:g} m of rod between points "
+        "that two grippers hold {:g} m apart (allowed: more points)",
+        scene.file, settings.points, layout.segment_length, between, apart));
+  }
+}
+
 }  // namespace
 
 double paper_bending_stiffness(BendingRule rule, double bending_stiffness, double curvature,
@@ -182,6 +199,7 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     result.rod.grips.push_back(grip_of(scene.grippers[i], layout, layout.first_held[i]));
   }
+  require_within_reach(scene, settings, layout, result.rod);
   const std::vector<Side> sides = scene.grippers.size() == 1
                                       ? std::vector<Side>{Side::along_load}
                                       : std::vector<Side>{Side::along_load, Side::against_load};

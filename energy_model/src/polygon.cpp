@@ -78,7 +78,7 @@ class Descent {
         gradient_(3, problem.node_forces.cols()),
         trial_gradient_(3, problem.node_forces.cols()) {
     for (const HeldPoint& held : problem.held) index_[static_cast<std::size_t>(held.point)] = -1;
-    for (int& index : index_) {
+    for (Eigen::Index& index : index_) {
       if (index == 0) index = free_++;
     }
   }
@@ -167,12 +167,13 @@ class Descent {
     entries_.clear();
     polygon_hessian(problem_, result_.points,
                     [&](Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
-                      const int r = index_[static_cast<std::size_t>(row)];
-                      const int c = index_[static_cast<std::size_t>(column)];
+                      const Eigen::Index r = index_[static_cast<std::size_t>(row)];
+                      const Eigen::Index c = index_[static_cast<std::size_t>(column)];
                       if (r < 0 || c < 0 || r < c) return;
                       for (int i = 0; i < 3; ++i) {
                         for (int j = 0; j < 3; ++j) {
-                          entries_.emplace_back(3 * r + i, 3 * c + j, block(i, j));
+                          entries_.emplace_back(static_cast<int>(3 * r + i),
+                                                static_cast<int>(3 * c + j), block(i, j));
                         }
                       }
                     });
@@ -191,7 +192,7 @@ class Descent {
   [[nodiscard]] Eigen::VectorXd free_part(const Eigen::Matrix3Xd& vectors) const {
     Eigen::VectorXd result(3 * free_);
     for (Eigen::Index i = 0; i < vectors.cols(); ++i) {
-      const int k = index_[static_cast<std::size_t>(i)];
+      const Eigen::Index k = index_[static_cast<std::size_t>(i)];
       if (k >= 0) result.segment<3>(3 * k) = vectors.col(i);
     }
     return result;
@@ -200,7 +201,7 @@ class Descent {
   [[nodiscard]] Eigen::Matrix3Xd moved(const Eigen::VectorXd& step) const {
     Eigen::Matrix3Xd points = result_.points;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      const int k = index_[static_cast<std::size_t>(i)];
+      const Eigen::Index k = index_[static_cast<std::size_t>(i)];
       if (k >= 0) points.col(i) += step.segment<3>(3 * k);
     }
     return points;
@@ -230,8 +231,8 @@ class Descent {
   PolygonResult& result_;
   double length_;
   double tolerance_ = 0;
-  std::vector<int> index_;  // of each point among the free ones, -1 for held points
-  int free_ = 0;
+  std::vector<Eigen::Index> index_;  // of each point among the free ones, -1 for held points
+  Eigen::Index free_ = 0;
   double energy_ = 0;
   double largest_ = 0;
   Eigen::Matrix3Xd gradient_;

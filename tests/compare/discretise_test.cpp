@@ -185,6 +185,14 @@ TEST(Discretise, RefusesGripsThatNoRodReaches) {
   EXPECT_NE(refusal(scene).find("0.6 m from the gripper"), std::string::npos) << refusal(scene);
   scene.grippers[1] = {.at = 0, .position = {0.6, 0, 0}};
   EXPECT_NE(refusal(scene).find("two grippers"), std::string::npos) << refusal(scene);
+  // The rod leaves its clamps outwards: half a held segment at each end makes the way longer.
+  scene = heavy_scene(1, 180);
+  scene.grippers.push_back(
+      {.at = 1, .position = {0.9, 0, 0}, .direction = -Eigen::Vector3d::UnitX()});
+  scene.force_model.points = 8;
+  EXPECT_NE(refusal(scene).find("more points"), std::string::npos) << refusal(scene);
+  scene.force_model.points = 64;
+  EXPECT_EQ(refusal(scene), "taken");
 }
 
 }  // namespace

@@ -73,7 +73,8 @@ struct Discretisation {
 /// obstacle gets c_c / L: as stiff as the rod's own segments, so that points enter it by the weight
 /// of a segment over c_c / L; stiffer ones would only slow the steps down.
 /// @throws InputError if there are too few points for the grippers (with the number needed), two
-/// grippers hold the same arc length or are further apart than the rod between them
+/// grippers hold the same arc length, or grippers, or the segments that they hold, are further
+/// apart than the rod between them
 [[nodiscard]] Discretisation discretise(const Scene& scene, const ForceModelSettings& settings);
 
 /// The same polygon for the rigid chain solver.
