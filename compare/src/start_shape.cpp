@@ -85,14 +85,15 @@ class Arch {
 
   /// Points at these shares of the curve's length.
   [[nodiscard]] Eigen::Matrix3Xd at(const std::vector<double>& shares) const {
-    std::vector<double> lengths = {0};
-    for (int i = 0; i < curve_points; ++i) {
-      const double step = (point(i + 1) - point(i)).norm();
-      lengths.push_back(lengths.back() + step);
+    std::vector<double> lengths(curve_points + 1, 0);
+    double total = 0;
+    for (std::size_t i = 0; i < curve_points; ++i) {
+      total += (point(static_cast<double>(i + 1)) - point(static_cast<double>(i))).norm();
+      lengths[i + 1] = total;
     }
     Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(shares.size()));
     for (std::size_t k = 0; k < shares.size(); ++k) {
-      const double wanted = shares[k] * lengths.back();
+      const double wanted = shares[k] * total;
       const auto above = std::upper_bound(lengths.begin() + 1, lengths.end() - 1, wanted);
       const double part = (wanted - *(above - 1)) / (*above - *(above - 1));
       const double i = static_cast<double>(above - 1 - lengths.begin());

@@ -37,16 +37,16 @@ Joint joint(JointLaw law, double stiffness, double L, double h) {
 
 /// The two segments that meet at a joint.
 struct Corner {
-  double a, b;           // lengths
   Eigen::Vector3d u, v;  // directions
+  double a, b;           // lengths
   double h;
   Eigen::Vector3d by_a, by_b;  // derivative of cos alpha = u.v by either segment
 
-  Corner(const Points& points, Eigen::Index i) {
-    u = points.col(i) - points.col(i - 1);
-    v = points.col(i + 1) - points.col(i);
-    a = u.norm();
-    b = v.norm();
+  Corner(const Points& points, Eigen::Index i)
+      : u(points.col(i) - points.col(i - 1)),
+        v(points.col(i + 1) - points.col(i)),
+        a(u.norm()),
+        b(v.norm()) {
     u /= a;
     v /= b;
     const Eigen::Vector3d turn = v - u;
