@@ -138,8 +138,7 @@ class EnergySolver::State {
   /// The nodes are where they were, unless grips or loads have moved along the rod.
   static Eigen::Matrix3Xd follow_field(const PlacedSpan& placed, const Remembered& last,
                                        const Eigen::VectorXd& s) {
-    const Eigen::Matrix3Xd tangents =
-        placed.frame * last.frame.transpose() * last.model->tangents();
+    Eigen::Matrix3Xd tangents = placed.frame * last.frame.transpose() * last.model->tangents();
     const Eigen::VectorXd& nodes = last.model->nodes();
     if (s.size() == nodes.size() && s == nodes) return tangents;
     Eigen::Matrix3Xd nearest(3, s.size());
@@ -164,8 +163,8 @@ class EnergySolver::State {
 EnergySolver::EnergySolver(const EnergyOptions& options)
     : state_(std::make_unique<State>(options)) {}
 EnergySolver::~EnergySolver() = default;
-EnergySolver::EnergySolver(EnergySolver&&) noexcept = default;
-EnergySolver& EnergySolver::operator=(EnergySolver&&) noexcept = default;
+EnergySolver::EnergySolver(EnergySolver&& other) noexcept = default;
+EnergySolver& EnergySolver::operator=(EnergySolver&& other) noexcept = default;
 
 Equilibrium EnergySolver::solve(const Problem& problem) {
   return std::move(state_->solve(problem, false, false).front());

@@ -184,7 +184,7 @@ void Simulation::nudge() {
   for (Eigen::Index k = 0; k < points_.cols(); ++k) {
     const Eigen::Index i = from_start ? k : points_.cols() - 1 - k;
     shift += size * free_[i];
-    points_(axis, i) += shift;
+    points_(axis, i) += free_[i] * shift;
   }
 }
 

@@ -22,11 +22,9 @@
 
 namespace {
 
-using dlo::energy_model::EnergyOptions;
 using dlo::energy_model::EnergySolver;
 using dlo::energy_model::Equilibrium;
 using dlo::energy_model::Problem;
-using dlo::energy_model::solve_energy;
 using dlo::energy_model::solve_exact;
 
 template <typename Work>
@@ -98,7 +96,7 @@ benchmark::Counter in_units_of(double seconds) {
 double error(const Equilibrium& energy, double gamma) {
   static std::map<double, Eigen::Matrix3Xd> exact;
   const std::vector<double> s = {0.1, 0.25, 0.5, 0.75, 1};
-  if (exact.count(gamma) == 0) exact[gamma] = solve_exact(clamp(gamma)).sample(s).points;
+  if (!exact.contains(gamma)) exact[gamma] = solve_exact(clamp(gamma)).sample(s).points;
   const Eigen::Matrix3Xd difference = energy.sample(s).points - exact[gamma];
   return std::sqrt(difference.colwise().squaredNorm().maxCoeff());
 }

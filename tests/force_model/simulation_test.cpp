@@ -178,6 +178,27 @@ TEST(Relax, LeavesAnUprightEquilibriumThatDoesNotHold) {
   }
 }
 
+TEST(Relax, BucklesAColumnBetweenGripsThatStayWhereTheyAre) {
+  SteelRod steel;
+  Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
+  rod.loads.setZero();
+  Eigen::Matrix3Xd start = steel.straight();
+  const Eigen::Index end = start.cols() - 1;
+  for (Eigen::Index i = 0; i <= end; ++i) {
+    start.col(i) = start.col(0) + 0.95 * (start.col(i) - start.col(0));
+  }
+  Grip far;
+  far.first_point = end - 1;
+  far.targets = start.rightCols(2);
+  far.reference = start.col(end);
+  rod.grips.push_back(far);
+  Simulation simulation(rod, start, {});
+  ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest);
+  const Eigen::Matrix3Xd moved = simulation.points() - start;
+  EXPECT_GT(moved.colwise().norm().maxCoeff(), 0.05 * steel.length);
+  EXPECT_EQ(moved.rightCols(2).norm(), 0);
+}
+
 TEST(EquilibriumCheck, GivesNewtonsStepAndTheSignOfTheStiffness) {
   SteelRod steel;
   const Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
