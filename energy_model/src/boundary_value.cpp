@@ -6,13 +6,15 @@
 #include <Eigen/SparseQR>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_turn = 0.5;       // of a tangent in one Newton step [rad]
-constexpr double last_step = 1e-9;         // Newton's next one is of the size of rounding
-constexpr double largest_residual = 1e-9;  // of a result
+constexpr double largest_turn = 0.5;        // of a tangent in one Newton step [rad]
+constexpr double smallest_part = 1e-3;      // of a Newton step
+constexpr double last_step = 1e-9;          // Newton's next one is of the size of rounding
+constexpr double largest_residual = 1e-11;  // of a result
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
@@ -262,9 +264,79 @@ double largest_force(const RodSpan& span, const std::vector<RodState>& nodes) {
   return force;
 }
 
+using Solver = Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>>;
+
+Eigen::SparseMatrix<double> matrix_of(const Triplets& triplets, Eigen::Index rows,
+                                      Eigen::Index columns) {
+  Eigen::SparseMatrix<double> matrix(rows, columns);
+  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  matrix.makeCompressed();
+  return matrix;
+}
+
+/// Newton's step, as much of it as makes the next simplified one shorter.
+/// @return its largest component; nothing if there is no such part or it does not close the gaps
+std::optional<double> newton_step(const System& system, const Triplets& derivatives,
+                                  const Eigen::VectorXd& equations, std::vector<Node>& nodes,
+                                  int& shots) {
+  Solver solver(matrix_of(derivatives, system.size(), system.size()));
+  if (solver.info() != Eigen::Success) return std::nullopt;
+  const Eigen::VectorXd step = -solver.solve(equations);
+  const double largest = step.lpNorm<Eigen::Infinity>();
+  Eigen::VectorXd trial_equations;
+  if (largest < last_step) {
+    nodes = system.moved(nodes, step);
+    ++shots;
+    const bool closed = system.evaluate(nodes, trial_equations, nullptr) &&
+                        trial_equations.norm() < largest_residual;
+    return closed ? std::optional(largest) : std::nullopt;
+  }
+  double part = std::min(1.0, largest_turn / std::max(system.turn(step), 1e-300));
+  for (; part > smallest_part; part /= 2) {
+    const std::vector<Node> trial = system.moved(nodes, part * step);
+    ++shots;
+    if (!system.evaluate(trial, trial_equations, nullptr)) continue;
+    const Eigen::VectorXd next = solver.solve(trial_equations);
+    if (next.norm() > (1 - part / 4) * step.norm()) continue;
+    nodes = trial;
+    return part * largest;
+  }
+  return std::nullopt;
+}
+
+/// Levenberg's step with a weight of the order of the gaps: it makes them smaller and moves nothing
+/// that can move for nothing, where Newton's step is not defined.
+std::optional<double> levenberg_step(const System& system, Triplets derivatives,
+                                     const Eigen::VectorXd& equations, std::vector<Node>& nodes,
+                                     int& shots) {
+  const Eigen::Index size = system.size();
+  const std::size_t own = derivatives.size();
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
+  right.head(size) = -equations;
+  Eigen::VectorXd trial_equations;
+  for (double weight = equations.norm(); weight < 1e6; weight *= 8) {
+    derivatives.resize(own);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      derivatives.emplace_back(static_cast<int>(size + i), static_cast<int>(i), std::sqrt(weight));
+    }
+    Solver solver(matrix_of(derivatives, 2 * size, size));
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    const Eigen::VectorXd step = solver.solve(right);
+    ++shots;
+    const std::vector<Node> trial = system.moved(nodes, step);
+    if (system.turn(step) > largest_turn || !system.evaluate(trial, trial_equations, nullptr) ||
+        trial_equations.norm() > equations.norm()) {
+      continue;
+    }
+    nodes = trial;
+    return step.lpNorm<Eigen::Infinity>();
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, std::vector<RodState> start,
+ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector<RodState>& start,
                      const ShootingOptions& options) {
   const System system(span, mesh, options, largest_force(span, start));
   std::vector<Node> nodes;
@@ -273,43 +345,20 @@ ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, std::vector<RodSt
   ShootingResult result;
   result.message = "Newton's method took too many steps";
   Eigen::VectorXd equations;
-  Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::COLAMDOrdering<int>> solver;
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+  for (int iteration = 0; iteration < options.max_iterations && !result.converged; ++iteration) {
     Triplets derivatives;
     ++result.shots;
     if (!system.evaluate(nodes, equations, &derivatives)) {
       result.message = "the integrator gave up";
       break;
     }
-    Eigen::SparseMatrix<double> matrix(system.size(), system.size());
-    matrix.setFromTriplets(derivatives.begin(), derivatives.end());
-    matrix.makeCompressed();
-    solver.compute(matrix);
-    if (solver.info() != Eigen::Success) {
-      result.message = "the linearised rod could not be solved";
-      break;
-    }
-    const Eigen::VectorXd step = -solver.solve(equations);
-    const double length = step.norm();
-    double part = std::min(1.0, largest_turn / std::max(system.turn(step), 1e-300));
-    if (part == 1 && step.lpNorm<Eigen::Infinity>() < last_step) {
-      nodes = system.moved(nodes, step);
-      result.converged = true;
-      break;
-    }
-    bool shorter = false;
-    for (; !shorter && part > 1e-4; part /= 2) {
-      const std::vector<Node> trial = system.moved(nodes, part * step);
-      ++result.shots;
-      if (!system.evaluate(trial, equations, nullptr)) continue;
-      const Eigen::VectorXd next = solver.solve(equations);
-      shorter = next.norm() <= (1 - part / 4) * length;
-      if (shorter) nodes = trial;
-    }
-    if (!shorter) {
+    std::optional<double> step = newton_step(system, derivatives, equations, nodes, result.shots);
+    if (!step) step = levenberg_step(system, derivatives, equations, nodes, result.shots);
+    if (!step) {
       result.message = "Newton's method found no shorter step";
       break;
     }
+    result.converged = *step < last_step;
   }
   result.residual = system.gap(nodes);
   for (const Node& node : nodes) result.nodes.push_back(node.state);

@@ -28,12 +28,13 @@ struct [[nodiscard]] ShootingResult {
 /// and n free instead; at a clamp t is given, at a free end v = n = 0. At each node Newton moves in
 /// minimal coordinates: r and n, a turn of t and a change of v across t, which makes the system
 /// square. Steps are damped until the next simplified step is shorter (Deuflhard's natural
-/// monotonicity); a direction in which the rod moves for nothing is left alone.
+/// monotonicity); where there is no such step, because the rod can move for nothing or nearly so, a
+/// Levenberg step makes the gaps smaller.
 ///
 /// Well posed for soft rods as long as the intervals are not much longer than |n|^(-1/2), over
 /// which errors grow e-fold.
-/// @param nodes  the start, one for each node of the mesh
-ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, std::vector<RodState> nodes,
+/// @param start  one for each node of the mesh
+ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector<RodState>& start,
                      const ShootingOptions& options);
 
 }  // namespace dlo::energy_model

@@ -1,6 +1,7 @@
 #include "relaxed_polygon.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -13,18 +14,25 @@ using std::numbers::pi;
 
 constexpr int most_rounds = 200;  // of the augmented Lagrangian
 constexpr int sweeps = 20;        // over the rod in a round
-constexpr double at_rest = 1e-4;  // change of a tangent in a round, and gap over the length
+constexpr double at_rest = 1e-4;  // change of a tangent in a round, and gap at a grip
 constexpr double same_shape = 0.02;
 
-/// A closure: the intervals between two neighbouring grips.
+/// The intervals between two neighbouring grips.
 struct Closure {
-  Eigen::Index first = 0;
-  Eigen::Index end = 0;
-  Eigen::Vector3d chord = Eigen::Vector3d::Zero();
+  Eigen::Index first;
+  Eigen::VectorXd h;                                // widths
+  Eigen::Vector3d chord;                            // from grip to grip
+  double slack;                                     // rod to spare
+  double penalty;                                   // force per gap
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  // multiplier
+
+  [[nodiscard]] Eigen::Index end() const { return first + h.size(); }
+  [[nodiscard]] Eigen::Vector3d gap(const Eigen::Matrix3Xd& tangents) const {
+    return tangents.middleCols(first, h.size()) * h - chord;
+  }
 };
 
-std::vector<Closure> closures_of(const RodMesh& mesh) {
+std::vector<Closure> closures_of(const RodSpan& span, const RodMesh& mesh) {
   std::vector<Closure> closures;
   const RodSpan::Hold* previous = nullptr;
   Eigen::Index first = 0;
@@ -33,7 +41,12 @@ std::vector<Closure> closures_of(const RodMesh& mesh) {
     if (hold == nullptr) continue;
     const auto end = static_cast<Eigen::Index>(i);
     if (previous != nullptr) {
-      closures.push_back({first, end, hold->position - previous->position, {0, 0, 0}});
+      const Eigen::Index size = end - first;
+      const Eigen::VectorXd h = mesh.s.segment(first + 1, size) - mesh.s.segment(first, size);
+      const Eigen::Vector3d chord = hold->position - previous->position;
+      const double length = h.sum();
+      const double penalty = (100 / (length * length) + 4 * total_load(span)) / length;
+      closures.push_back({first, h, chord, length - chord.norm(), penalty});
     }
     previous = hold;
     first = end;
@@ -43,6 +56,33 @@ std::vector<Closure> closures_of(const RodMesh& mesh) {
 
 double middle_distance(const RodMesh& mesh, Eigen::Index i) {
   return (mesh.s[i + 2] - mesh.s[i]) / 2;
+}
+
+/// Sum of the tangents that an interval's bends to, over their distances: it pulls the interval.
+Eigen::Vector3d bending_pull(const RodSpan& span, const RodMesh& mesh, const Eigen::Matrix3Xd& t,
+                             Eigen::Index i) {
+  Eigen::Vector3d pull = Eigen::Vector3d::Zero();
+  const double h = mesh.s[i + 1] - mesh.s[i];
+  if (i > 0) pull += t.col(i - 1) / middle_distance(mesh, i - 1);
+  if (i + 1 < t.cols()) pull += t.col(i + 1) / middle_distance(mesh, i);
+  if (i == 0 && span.start_direction) pull += 2 / h * *span.start_direction;
+  if (i + 1 == t.cols() && span.end_direction) pull += 2 / h * *span.end_direction;
+  return pull;
+}
+
+/// The multiplier with which a shape is as near to equilibrium as it can be, by least squares. A
+/// flat arch would otherwise be straight before its thrust has grown.
+Eigen::Vector3d fitting_force(const RodSpan& span, const RodMesh& mesh, const Eigen::Matrix3Xd& t,
+                              const Eigen::Matrix3Xd& carried, const Closure& closure) {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  for (Eigen::Index i = closure.first; i < closure.end(); ++i) {
+    const double h = closure.h[i - closure.first];
+    const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - t.col(i) * t.col(i).transpose();
+    matrix += h * h * across;
+    right -= h * across * (bending_pull(span, mesh, t, i) + h * carried.col(i));
+  }
+  return matrix.completeOrthogonalDecomposition().solve(right);
 }
 
 double energy_of(const RodSpan& span, const RodMesh& mesh, const RelaxedPolygon& polygon,
@@ -141,23 +181,23 @@ std::vector<Eigen::Matrix3Xd> starts_of(const RodSpan& span, const RodMesh& mesh
 RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh, Eigen::Matrix3Xd tangents,
                              bool planar) {
   const Eigen::Matrix3Xd carried = carried_force(span, mesh).on_interval;
-  std::vector<Closure> closures = closures_of(mesh);
+  std::vector<Closure> closures = closures_of(span, mesh);
   const Eigen::Index count = mesh.intervals();
   const Eigen::Vector3d normal =
       planar ? span.plane->x.cross(span.plane->y).eval() : Eigen::Vector3d::Zero();
   RelaxedPolygon polygon;
   Eigen::Matrix3Xd& t = polygon.tangents;
   t = std::move(tangents);
+  for (Closure& closure : closures) {
+    closure.force = fitting_force(span, mesh, t, carried, closure);
+  }
   polygon.force = carried;
   for (int round = 0; round < most_rounds; ++round) {
     const Eigen::Matrix3Xd before = t;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       const auto lay = [&](Eigen::Index i, Eigen::Vector3d pull) {
-        if (i > 0) pull += t.col(i - 1) / middle_distance(mesh, i - 1);
-        if (i + 1 < count) pull += t.col(i + 1) / middle_distance(mesh, i);
         const double h = mesh.s[i + 1] - mesh.s[i];
-        if (i == 0 && span.start_direction) pull += 2 / h * *span.start_direction;
-        if (i + 1 == count && span.end_direction) pull += 2 / h * *span.end_direction;
+        pull += bending_pull(span, mesh, t, i);
         pull += h * carried.col(i);
         pull -= pull.dot(normal) * normal;
         if (pull.norm() > 0) t.col(i) = pull.normalized();
@@ -165,34 +205,25 @@ RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh, Eigen::Ma
       Eigen::Index i = 0;
       for (const Closure& closure : closures) {
         for (; i < closure.first; ++i) lay(i, Eigen::Vector3d::Zero());
-        const Eigen::Index size = closure.end - closure.first;
-        const Eigen::VectorXd h =
-            mesh.s.segment(closure.first + 1, size) - mesh.s.segment(closure.first, size);
-        const double penalty = (100 / (h.sum() * h.sum()) + 4 * total_load(span)) / h.sum();
-        Eigen::Vector3d gap = t.middleCols(closure.first, size) * h - closure.chord;
-        for (; i < closure.end; ++i) {
-          const double own = h[i - closure.first];
+        Eigen::Vector3d gap = closure.gap(t);
+        for (; i < closure.end(); ++i) {
+          const double own = closure.h[i - closure.first];
           gap -= own * t.col(i);
-          lay(i, own * (closure.force - penalty * gap));
+          lay(i, own * (closure.force - closure.penalty * gap));
           gap += own * t.col(i);
         }
       }
       for (; i < count; ++i) lay(i, Eigen::Vector3d::Zero());
     }
-    polygon.gap = 0;
+    bool closed = true;
     for (Closure& closure : closures) {
-      const Eigen::Index size = closure.end - closure.first;
-      const Eigen::VectorXd h =
-          mesh.s.segment(closure.first + 1, size) - mesh.s.segment(closure.first, size);
-      const double penalty = (100 / (h.sum() * h.sum()) + 4 * total_load(span)) / h.sum();
-      const Eigen::Vector3d gap = t.middleCols(closure.first, size) * h - closure.chord;
-      closure.force -= penalty * gap;
-      polygon.gap = std::max(polygon.gap, gap.norm());
-      polygon.force.middleCols(closure.first, size) =
-          carried.middleCols(closure.first, size).colwise() + closure.force;
+      const Eigen::Vector3d gap = closure.gap(t);
+      closure.force -= closure.penalty * gap;
+      closed = closed && gap.norm() < at_rest * std::min(1.0, 100 * closure.slack);
+      polygon.force.middleCols(closure.first, closure.h.size()) =
+          carried.middleCols(closure.first, closure.h.size()).colwise() + closure.force;
     }
-    const double change = (t - before).colwise().norm().maxCoeff();
-    if (change < at_rest && polygon.gap < at_rest * span.length) break;
+    if (closed && (t - before).colwise().norm().maxCoeff() < at_rest) break;
   }
   polygon.energy = energy_of(span, mesh, polygon, carried);
   return polygon;

@@ -15,7 +15,6 @@ struct RelaxedPolygon {
   Eigen::Matrix3Xd tangents;  ///< 3 x intervals
   Eigen::Matrix3Xd force;     ///< n_i with the grips' part
   double energy = 0;
-  double gap = 0;  ///< largest distance of a grip from where it should be
 };
 
 /// Every tangent in turn is laid along the sum of what pulls it (neighbours, forces), which is its

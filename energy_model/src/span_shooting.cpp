@@ -60,7 +60,7 @@ SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh, std::vector<RodSta
                            const ShootingOptions& options) {
   SpanEquilibrium equilibrium;
   for (int level = 0; level < 3; ++level) {
-    ShootingResult result = shoot(span, mesh, std::move(start), options);
+    ShootingResult result = shoot(span, mesh, start, options);
     equilibrium.converged = result.converged;
     equilibrium.message = result.message;
     equilibrium.residual = result.residual;
