@@ -11,10 +11,9 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_turn = 0.5;        // of a tangent in one Newton step [rad]
-constexpr double smallest_part = 1e-3;      // of a Newton step
-constexpr double last_step = 1e-9;          // Newton's next one is of the size of rounding
-constexpr double largest_residual = 1e-11;  // of a result
+constexpr double largest_turn = 0.5;    // of a tangent in one Newton step [rad]
+constexpr double smallest_part = 1e-3;  // of a Newton step
+constexpr double last_step = 1e-9;      // Newton's next one is of the size of rounding
 
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
@@ -56,6 +55,10 @@ class System {
   }
 
   [[nodiscard]] Eigen::Index size() const { return layout_.size() * mesh_.s.size(); }
+
+  /// Gaps that count as closed: steps of the integrator come and go as the nodes move, so that
+  /// they cannot be closed to less than its tolerance.
+  [[nodiscard]] double closed() const { return std::max(1e-11, 10 * tolerance_); }
 
   /// Into the plane, onto |t| = 1 and v.t = 0, with directions across t.
   [[nodiscard]] Node make_node(const RodState& state) const {
@@ -288,7 +291,7 @@ std::optional<double> newton_step(const System& system, const Triplets& derivati
     nodes = system.moved(nodes, step);
     ++shots;
     const bool closed = system.evaluate(nodes, trial_equations, nullptr) &&
-                        trial_equations.norm() < largest_residual;
+                        trial_equations.norm() < system.closed();
     return closed ? std::optional(largest) : std::nullopt;
   }
   double part = std::min(1.0, largest_turn / std::max(system.turn(step), 1e-300));
@@ -363,7 +366,7 @@ ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector
   result.residual = system.gap(nodes);
   for (const Node& node : nodes) result.nodes.push_back(node.state);
   if (!result.converged) return result;
-  result.converged = result.residual <= largest_residual;
+  result.converged = result.residual <= system.closed();
   result.message = result.converged ? "converged" : "the rod does not close at a node";
   return result;
 }
