@@ -26,12 +26,13 @@ struct RelaxedPolygon {
 [[nodiscard]] RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh,
                                            Eigen::Matrix3Xd tangents, bool planar);
 
-/// Local minima of the polygon, lowest first, from a documented set of starts: with the tangent at
-/// an angle a(x) to a line, x in [0, 1] along the span, towards each of several normals,
-///     a = 0,  A cos(pi x) (arch),  A sin(2 pi x) (arch with straight ends),  A cos(2 pi x) (S),
+/// Local minima of the polygon, lowest first, from these starts: the tangents along the force that
+/// is carried, straight along a line, and at an angle a(x) to it, x in [0, 1] along the span,
+/// towards each of several normals,
+///     a = A cos(pi x) (arch),  A sin(2 pi x) (arch with straight ends),  A cos(2 pi x) (S),
 ///     2 pi x (loop),
-/// where A fits the distance of the outermost grips; the line is theirs, or a clamp's direction, or
-/// the force along the rod. In the plane the normals are its two, in space six around the line.
+/// where A fits the distance of the outermost grips. The line is theirs, or a clamp's direction. In
+/// the plane the normals are its two, in space six around the line.
 [[nodiscard]] std::vector<RelaxedPolygon> polygon_minima(const RodSpan& span, const RodMesh& mesh,
                                                          bool planar);
 

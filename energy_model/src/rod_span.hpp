@@ -53,8 +53,8 @@ struct RodMesh {
 /// @param longest  no interval is longer
 [[nodiscard]] RodMesh make_mesh(const RodSpan& span, double longest);
 
-/// The inner force that weight, loads and the first grip alone would cause, before and after every
-/// node: the force on what lies before s.
+/// The inner force n, of what lies beyond on what lies before, if the first grip alone carried
+/// weight and loads.
 struct ForceField {
   Eigen::Matrix3Xd on_interval;  ///< in the middle of each interval
   Eigen::Matrix3Xd after_node;
