@@ -122,8 +122,8 @@ TEST(MultipleShooting, FindsWhatTheScanOfOneClampFinds) {
       const Equilibrium right = solve_exact(half);
       half.grips[0].at = 0.5;
       const Equilibrium left = solve_exact(half);
-      std::vector<double> beyond;
-      for (const double at : s) beyond.push_back(0.5 + at);
+      std::vector<double> beyond = s;
+      for (double& at : beyond) at += 0.5;
       EXPECT_LT((result.sample(beyond).points - right.sample(s).points).norm(), 1e-9)
           << gamma << ", " << degrees;
       EXPECT_LT((result.sample(s).points - left.sample(s).points).norm(), 1e-9)
