@@ -43,6 +43,8 @@ TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double
 struct Remembered {
   std::shared_ptr<const SpanEnergy> model;  // none after a failure
   Eigen::Matrix3d frame;
+
+  [[nodiscard]] bool planar() const { return !model || model->span().planar; }
 };
 
 std::vector<Equilibrium> combine(const Problem& problem, const std::vector<PlacedSpan>& placed,
@@ -107,12 +109,45 @@ class EnergySolver::State {
         return follow_field(placed, last, s);
       };
     }
+    const bool may_leave_plane = options_.start != nullptr || (last && !last->planar());
+    if (placed.span.planar && options.start && may_leave_plane) leave_plane(placed, options.start);
+    const PlacedSpan as_placed = placed;
+    int spent = 0;
+    constexpr std::size_t attempts = 3;
+    for (std::size_t attempt = 0;; ++attempt) {
+      options.first_start = attempt * followed_starts;
+      std::vector<SpanSolution> solutions = search(placed, options);
+      SpanSolution& best = solutions.front();
+      spent = best.evaluations += spent;
+      if (all || options.start || best.is_equilibrium() || attempt + 1 == attempts)
+        return solutions;
+      placed = as_placed;
+    }
+  }
+
+  /// solve_span(), again about another axis while the solution comes too near to its own.
+  std::vector<SpanSolution> search(PlacedSpan& placed, SpanOptions options) {
     std::vector<SpanSolution> solutions = solve_span(placed.span, options, workspace_);
-    SpanSolution& best = solutions.front();
     // The search may have left the plane.
-    if (!best.model->span().planar) placed.span.planar = false;
-    if (placed.span.planar || all || best.model->elevation() < largest_elevation) return solutions;
-    return {with_axis_turned(placed, best, options)};
+    if (!solutions.front().model->span().planar) placed.span.planar = false;
+    if (placed.span.planar || options.all) return solutions;
+    constexpr int most_turns = 3;
+    for (int turn = 1; turn <= most_turns; ++turn) {
+      if (solutions.front().model->elevation() < largest_elevation) break;
+      options.past_poles = turn == most_turns;
+      solutions = {with_axis_turned(placed, solutions.front(), options)};
+    }
+    return solutions;
+  }
+
+  /// A span that could lie in its plane is spatial if its start has left it.
+  static void leave_plane(PlacedSpan& placed, const TangentField& start) {
+    const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(17, 0, placed.span.length);
+    const Eigen::Matrix3Xd tangents = start(s);
+    constexpr double flat = 1e-6;
+    if (tangents.row(2).cwiseAbs().maxCoeff() < flat) return;
+    placed.span.planar = false;
+    turn_axis(placed, tangents);
   }
 
   /// Once more, with an axis from which this solution's tangents stay away.

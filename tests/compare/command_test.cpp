@@ -182,6 +182,53 @@ TEST_F(Command, TooFewPointsForTheGrippersIsBadInput) {
   EXPECT_EQ(run("solve " + scene(text) + " --model chain --points 14").status, 0);
 }
 
+TEST_F(Command, SolveGivesOneShapeByBothReferenceModelsForClampsInSpace) {
+  const std::string rope = scene(R"(gravity = [0, -9.81, 0]
+[rod]
+length = "1 m"
+diameter = "4 mm"
+material = { youngs_modulus = "5 GPa", density = 1200 }
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = [1, 0, 0]
+[[gripper]]
+at = "1 m"
+position = [0.6, 0.1, 0.3]
+direction = [1, 0.2, -0.4]
+[[load]]
+at = "40 cm"
+force = [0, 0, "50 mN"]
+)");
+  const auto solve = [&](const std::string& model) {
+    const Outcome result = run("solve " + rope + " --samples 21 --format json --model " + model);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return json::parse(result.out);
+  };
+  const json energy = solve("energy");
+  const json exact = solve("exact");
+  for (std::size_t i = 0; i < 21; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(exact.at("points_m")[i][k].get<double>(),
+                  energy.at("points_m")[i][k].get<double>(), 1e-8);
+    }
+  }
+  for (std::size_t g = 0; g < 2; ++g) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(exact.at("grippers")[g].at("torque_Nm")[k].get<double>(),
+                  energy.at("grippers")[g].at("torque_Nm")[k].get<double>(), 1e-8);
+    }
+  }
+}
+
+TEST_F(Command, SolveExactRefusesObstacles) {
+  const std::string text = std::string(good) + R"([[obstacle]]
+point = [0, -0.2, 0]
+normal = [0, 1, 0]
+)";
+  expect_error("solve " + scene(text) + " --model exact", 2, {"obstacle", "energy"});
+}
+
 TEST_F(Command, SolveMatchesTheReferenceValuesOfThePapersRod) {
   std::ifstream stream(std::string(DLO_DATA) + "/reference/reference_values.json");
   const json expected = json::parse(stream).at("paper_rod").at("E=210GPa,phi=-175");

@@ -14,7 +14,7 @@ namespace dlo::compare {
 enum class Model {
   energy,  ///< minimiser of the continuous rod's energy
   chain,   ///< minimiser over the force model's polygon
-  exact,   ///< boundary value problem of the elastica
+  exact,   ///< boundary value problem of the rod, shot with GSL
   force,   ///< the paper's model, stepped to rest
 };
 
