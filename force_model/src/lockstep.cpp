@@ -1,0 +1,176 @@
+#include "lockstep.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "require.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+std::vector<Rod> checked_rods(std::span<const StartingRod> start) {
+  std::vector<Rod> rods;
+  for (const StartingRod& one : start) {
+    check(one.rod);
+    require_polygon("Simulation", one.points, one.rod.rest_lengths);
+    rods.push_back(one.rod);
+  }
+  return rods;
+}
+
+Eigen::Matrix3Xd with_held_points(const StartingRod& start) {
+  Eigen::Matrix3Xd points = start.points;
+  for (const Grip& grip : start.rod.grips) {
+    if (grip.hold == GripHold::spring) continue;
+    points.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
+  }
+  return points;
+}
+
+}  // namespace
+
+Lockstep::Lockstep(std::span<const StartingRod> start, bool together)
+    : together_(together),
+      rods_(checked_rods(start)),
+      block_(rods_, together, start.front().options.instruction_set) {
+  for (std::size_t lane = 0; lane < block_lanes; ++lane) {
+    const std::size_t rod = lane < start.size() ? lane : 0;
+    if (!together && rod != lane) break;
+    const Eigen::Matrix3Xd points = with_held_points(start[rod]);
+    block_.set(positions, lane, points);
+    if (rod == lane) controls_.emplace_back(rods_[rod], points, start[rod].options);
+  }
+  for (std::size_t rod = 0; rod < start.size(); ++rod) {
+    set_active(rod, true);
+    set_constants(rod);
+  }
+  block_.update_dimension(rods_);
+  points_.resize(3, rods_.front().points());
+  forces_.resize(3, rods_.front().points());
+}
+
+void Lockstep::set_lane(PerLane& values, std::size_t rod, double value) const {
+  if (together_) {
+    values.lane[rod] = value;
+  } else {
+    std::fill(std::begin(values.lane), std::end(values.lane), value);
+  }
+}
+
+void Lockstep::set_active(std::size_t rod, bool active) { set_lane(active_, rod, active ? 1 : 0); }
+
+void Lockstep::set_constants(std::size_t rod) {
+  set_lane(c_F_, rod, controls_[rod].options().c_F);
+  set_lane(c_h_, rod, controls_[rod].kept());
+}
+
+void Lockstep::step(Results& results) {
+  block_.compute_forces(rods_, active_);
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    if (!active(rod) || !controls_[rod].looks_at_modes()) continue;
+    points_ = block_.view(positions, rod);
+    forces_ = block_.view(forces, rod);
+    controls_[rod].look_at_modes(rods_[rod], points_, forces_);
+    set_constants(rod);
+  }
+  const ProposedStep proposed = block_.propose(c_F_, c_h_, controls_.front().relative());
+  PerLane c_m;
+  bool moves = false;
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    if (!active(rod)) continue;
+    results[rod] =
+        controls_[rod].decide(proposed.largest_squared.lane[rod], proposed.sum_squared.lane[rod],
+                              proposed.oscillating.lane[rod]);
+    if (results[rod].status == StepStatus::diverged) continue;
+    set_lane(c_m, rod, results[rod].c_m);
+    moves = true;
+  }
+  if (moves) block_.move(c_m);
+}
+
+MovingShape Lockstep::shape(std::size_t rod) {
+  points_ = block_.view(positions, rod);
+  forces_ = block_.view(forces, rod);
+  const double momentum = block_.view(movements, rod).norm() / (1 - controls_[rod].kept()) /
+                          std::sqrt(static_cast<double>(points_.cols()));
+  return {points_, forces_, controls_[rod].options().policy.momentum ? momentum : 0};
+}
+
+void Lockstep::nudge(std::size_t rod) {
+  // Far below any tolerance, and towards +x as an upright rod's plane opens (+y for a rod along x).
+  points_ = block_.view(positions, rod);
+  const Eigen::Index last = points_.cols() - 1;
+  const Eigen::Vector3d chord = points_.col(last) - points_.col(0);
+  const Eigen::Index axis = std::abs(chord.x()) < 0.9 * chord.norm() ? 0 : 1;
+  const double size = 1e-6 * rods_[rod].length() / static_cast<double>(points_.cols());
+  double shift = 0;
+  const bool from_start = block_.held(0, rod);
+  for (Eigen::Index k = 0; k <= last; ++k) {
+    const Eigen::Index i = from_start ? k : last - k;
+    if (!block_.held(i, rod)) shift += size;
+    points_(axis, i) += shift;
+  }
+  block_.set(positions, rod, points_);
+}
+
+std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
+  std::vector<RestSearch> searches;
+  searches.reserve(rods_.size());
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    searches.emplace_back(rods_[rod], controls_[rod].estimate(), options, points(rod));
+  }
+  const PerLane active_before = active_;
+  const auto any_active = [&] {
+    return std::any_of(std::begin(active_.lane), std::end(active_.lane),
+                       [](double lane) { return lane != 0; });
+  };
+  const auto stop_if_done = [&](std::size_t rod) {
+    if (!searches[rod].open()) set_active(rod, false);
+  };
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) stop_if_done(rod);
+  std::array<bool, block_lanes> due{};
+  while (any_active()) {
+    Results results;
+    step(results);
+    for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+      due[rod] = active(rod) && searches[rod].count(results[rod]);
+    }
+    if (std::find(due.begin(), due.end(), true) != due.end()) {
+      block_.compute_forces(rods_, active_);
+      for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+        if (due[rod] && searches[rod].look(shape(rod))) nudge(rod);
+      }
+    }
+    for (std::size_t rod = 0; rod < rods_.size(); ++rod) stop_if_done(rod);
+  }
+  active_ = active_before;
+  block_.compute_forces(rods_, active_);
+  std::vector<RelaxResult> results;
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    results.push_back(searches[rod].finish(shape(rod)));
+  }
+  return results;
+}
+
+void Lockstep::move_grip(std::size_t rod, std::size_t grip,
+                         const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
+                         const Eigen::Vector3d& reference) {
+  Rod& held = rods_[rod];
+  require(grip < held.grips.size(), "Simulation::move_grip", "grip", static_cast<double>(grip),
+          "smaller than the number of grips");
+  Grip& moved = held.grips[grip];
+  require(targets.cols() == moved.targets.cols(), "Simulation::move_grip", "columns of targets",
+          static_cast<double>(targets.cols()), "the number of points held");
+  require(targets.allFinite() && reference.allFinite(), "Simulation::move_grip", "targets",
+          targets.norm(), "finite");
+  moved.targets = targets;
+  moved.reference = reference;
+  if (moved.hold == GripHold::rigid) {
+    points_ = block_.view(positions, rod);
+    points_.middleCols(moved.first_point, targets.cols()) = targets;
+    block_.set(positions, rod, points_);
+  }
+  block_.update_dimension(rods_);
+}
+
+}  // namespace dlo::force_model

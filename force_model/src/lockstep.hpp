@@ -1,0 +1,69 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <span>
+#include <vector>
+
+#include "rest_search.hpp"
+#include "rod_block.hpp"
+#include "step_control.hpp"
+
+namespace dlo::force_model {
+
+/// A rod, where its points start, and how it steps.
+struct StartingRod {
+  Rod rod;
+  Eigen::Matrix3Xd points;  ///< [m], 3 x rod.points()
+  StepOptions options;
+};
+
+/// One rod, or up to eight of the same size, bending law and step policy that step together: what
+/// Simulation and Batch share.
+class Lockstep {
+ public:
+  using Results = std::array<StepResult, block_lanes>;
+
+  /// @param together  false: one rod, vectorised over its points; true: 1 to 8, one per lane
+  /// @throws std::invalid_argument if rods, points or options are out of range
+  Lockstep(std::span<const StartingRod> start, bool together);
+
+  /// A step of each active rod. Allocates nothing.
+  void step(Results& results);
+
+  /// Steps until each active rod rests, see Simulation::relax. Allocates.
+  std::vector<RelaxResult> relax(const RelaxOptions& options);
+
+  /// As Simulation::move_grip.
+  void move_grip(std::size_t rod, std::size_t grip,
+                 const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
+                 const Eigen::Vector3d& reference);
+
+  [[nodiscard]] const Rod& rod(std::size_t rod) const { return rods_[rod]; }
+  [[nodiscard]] const StepControl& control(std::size_t rod) const { return controls_[rod]; }
+  [[nodiscard]] Eigen::Matrix3Xd points(std::size_t rod) const {
+    return block_.view(positions, rod);
+  }
+
+  /// Rods that are not active stand still.
+  void set_active(std::size_t rod, bool active);
+  [[nodiscard]] bool active(std::size_t rod) const { return active_.lane[rod] != 0; }
+
+ private:
+  void set_lane(PerLane& values, std::size_t rod, double value) const;
+  void set_constants(std::size_t rod);
+  MovingShape shape(std::size_t rod);
+  void nudge(std::size_t rod);
+
+  bool together_ = false;
+  std::vector<Rod> rods_;
+  RodBlock block_;
+  std::vector<StepControl> controls_;
+  PerLane c_F_;
+  PerLane c_h_;
+  PerLane active_;
+  Eigen::Matrix3Xd points_;  // of the rod that is looked at
+  Eigen::Matrix3Xd forces_;
+};
+
+}  // namespace dlo::force_model
