@@ -1,6 +1,7 @@
 #include "lockstep.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "require.hpp"
@@ -30,9 +31,7 @@ Eigen::Matrix3Xd with_held_points(const StartingRod& start) {
 }  // namespace
 
 Lockstep::Lockstep(std::span<const StartingRod> start, bool together)
-    : together_(together),
-      rods_(checked_rods(start)),
-      block_(rods_, together, start.front().options.instruction_set) {
+    : rods_(checked_rods(start)), block_(rods_, together, start.front().options.instruction_set) {
   for (std::size_t lane = 0; lane < block_lanes; ++lane) {
     const std::size_t rod = lane < start.size() ? lane : 0;
     if (!together && rod != lane) break;
@@ -49,43 +48,43 @@ Lockstep::Lockstep(std::span<const StartingRod> start, bool together)
   forces_.resize(3, rods_.front().points());
 }
 
-void Lockstep::set_lane(PerLane& values, std::size_t rod, double value) const {
-  if (together_) {
-    values.lane[rod] = value;
-  } else {
-    std::fill(std::begin(values.lane), std::end(values.lane), value);
-  }
-}
-
-void Lockstep::set_active(std::size_t rod, bool active) { set_lane(active_, rod, active ? 1 : 0); }
+void Lockstep::set_active(std::size_t rod, bool active) { active_.lane[rod] = active ? 1 : 0; }
 
 void Lockstep::set_constants(std::size_t rod) {
-  set_lane(c_F_, rod, controls_[rod].options().c_F);
-  set_lane(c_h_, rod, controls_[rod].kept());
+  c_F_.lane[rod] = controls_[rod].options().c_F;
+  c_h_.lane[rod] = controls_[rod].kept();
 }
 
-void Lockstep::step(Results& results) {
-  block_.compute_forces(rods_, active_);
+void Lockstep::look_at_modes() {
+  bool due = false;
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
-    if (!active(rod) || !controls_[rod].looks_at_modes()) continue;
-    points_ = block_.view(positions, rod);
-    forces_ = block_.view(forces, rod);
-    controls_[rod].look_at_modes(rods_[rod], points_, forces_);
-    set_constants(rod);
+    due = due || (active(rod) && controls_[rod].looks_at_modes());
   }
-  const ProposedStep proposed = block_.propose(c_F_, c_h_, controls_.front().relative());
-  PerLane c_m;
-  bool moves = false;
+  if (!due) return;
+  block_.look_at_modes(look_);
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
     if (!active(rod)) continue;
-    results[rod] =
-        controls_[rod].decide(proposed.largest_squared.lane[rod], proposed.sum_squared.lane[rod],
-                              proposed.oscillating.lane[rod]);
+    controls_[rod].update_modes(look_.contraction.lane[rod] + look_.bending.lane[rod],
+                                look_.force_change.lane[rod], look_.point_change.lane[rod]);
+    set_constants(rod);
+  }
+}
+
+void Lockstep::step(std::span<StepResult> results) {
+  block_.compute_forces(rods_, active_);
+  look_at_modes();
+  block_.propose(c_F_, c_h_, controls_.front().relative(), proposed_);
+  bool moves = false;
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    c_m_.lane[rod] = 0;
+    if (!active(rod)) continue;
+    controls_[rod].decide(proposed_.largest_squared.lane[rod], proposed_.sum_squared.lane[rod],
+                          proposed_.oscillating.lane[rod], results[rod]);
     if (results[rod].status == StepStatus::diverged) continue;
-    set_lane(c_m, rod, results[rod].c_m);
+    c_m_.lane[rod] = results[rod].c_m;
     moves = true;
   }
-  if (moves) block_.move(c_m);
+  if (moves) block_.move(c_m_);
 }
 
 MovingShape Lockstep::shape(std::size_t rod) {
@@ -130,7 +129,7 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) stop_if_done(rod);
   std::array<bool, block_lanes> due{};
   while (any_active()) {
-    Results results;
+    std::array<StepResult, block_lanes> results;
     step(results);
     for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
       due[rod] = active(rod) && searches[rod].count(results[rod]);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <span>
 #include <vector>
 
@@ -22,14 +21,13 @@ struct StartingRod {
 /// Simulation and Batch share.
 class Lockstep {
  public:
-  using Results = std::array<StepResult, block_lanes>;
-
   /// @param together  false: one rod, vectorised over its points; true: 1 to 8, one per lane
   /// @throws std::invalid_argument if rods, points or options are out of range
   Lockstep(std::span<const StartingRod> start, bool together);
 
   /// A step of each active rod. Allocates nothing.
-  void step(Results& results);
+  /// @param[out] results  one per rod; those of others are left alone
+  void step(std::span<StepResult> results);
 
   /// Steps until each active rod rests, see Simulation::relax. Allocates.
   std::vector<RelaxResult> relax(const RelaxOptions& options);
@@ -50,18 +48,20 @@ class Lockstep {
   [[nodiscard]] bool active(std::size_t rod) const { return active_.lane[rod] != 0; }
 
  private:
-  void set_lane(PerLane& values, std::size_t rod, double value) const;
+  void look_at_modes();
   void set_constants(std::size_t rod);
   MovingShape shape(std::size_t rod);
   void nudge(std::size_t rod);
 
-  bool together_ = false;
   std::vector<Rod> rods_;
   RodBlock block_;
   std::vector<StepControl> controls_;
   PerLane c_F_;
   PerLane c_h_;
+  PerLane c_m_;
   PerLane active_;
+  ProposedStep proposed_;
+  ModeLook look_;
   Eigen::Matrix3Xd points_;  // of the rod that is looked at
   Eigen::Matrix3Xd forces_;
 };

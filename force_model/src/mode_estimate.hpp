@@ -12,9 +12,11 @@ class ModeEstimate {
  public:
   ModeEstimate(const Rod& rod, const Eigen::Matrix3Xd& points);
 
-  /// After a block of steps. Allocates nothing.
-  /// @param forces  on the free points [N], zero on rigidly held ones
-  void update(const Rod& rod, const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& forces);
+  /// After a block of steps.
+  /// @param inner_mode    bound of the fastest mode of contraction and bending [N/m]
+  /// @param force_change  -dF.dP of the block [N m]
+  /// @param point_change  dP.dP [m^2]. Those of the first call mean nothing.
+  void update(double inner_mode, double force_change, double point_change);
 
   [[nodiscard]] const ModeBounds& modes() const { return modes_; }
   [[nodiscard]] double slowest_expected() const { return slowest_expected_; }
@@ -22,11 +24,10 @@ class ModeEstimate {
  private:
   ModeBounds modes_;
   double slowest_expected_ = 0;  // before anything moved
-  Eigen::Matrix3Xd last_points_;
-  Eigen::Matrix3Xd last_forces_;
+  double constraints_ = 0;
   double force_change_ = 0;
   double point_change_ = 0;
-  bool has_last_ = false;
+  bool block_open_ = false;
 };
 
 }  // namespace dlo::force_model

@@ -1,13 +1,10 @@
 #include "rod_block.hpp"
 
 #include <algorithm>
-#include <iterator>
 
 namespace dlo::force_model {
 namespace {
 
-constexpr std::ptrdiff_t front = block_lanes;     // elements before the first: point -1
-constexpr std::ptrdiff_t back = 2 * block_lanes;  // and behind the last: points N and N + 1
 constexpr int axes = 3;
 
 /// Whether no force can leave the plane z = 0 that all points lie in.
@@ -34,7 +31,7 @@ RodBlock::RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set)
     : points_(rods.front().points()),
       stride_(lockstep ? block_lanes : 1),
       size_(round_up(points_ * stride_)),
-      pitch_(front + size_ + back),
+      pitch_(size_ + block_lanes),
       set_(set),
       law_(rods.front().bending.law),
       spring_grips_(std::any_of(rods.begin(), rods.end(), has_spring_grips)),
@@ -52,7 +49,7 @@ RodBlock::RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set)
 }
 
 PointBlock RodBlock::block() {
-  return {.first = memory_.front().lane + front, .pitch = pitch_, .size = size_};
+  return {.first = memory_.front().lane, .pitch = pitch_, .size = size_};
 }
 
 std::ptrdiff_t RodBlock::element(Eigen::Index point, std::size_t rod) const {
@@ -60,12 +57,12 @@ std::ptrdiff_t RodBlock::element(Eigen::Index point, std::size_t rod) const {
 }
 
 double& RodBlock::at(int array, std::ptrdiff_t element) {
-  const std::ptrdiff_t k = array * pitch_ + front + element;
+  const std::ptrdiff_t k = array * pitch_ + element;
   return memory_[static_cast<std::size_t>(k / block_lanes)].lane[k % block_lanes];
 }
 
 const double& RodBlock::at(int array, std::ptrdiff_t element) const {
-  const std::ptrdiff_t k = array * pitch_ + front + element;
+  const std::ptrdiff_t k = array * pitch_ + element;
   return memory_[static_cast<std::size_t>(k / block_lanes)].lane[k % block_lanes];
 }
 
@@ -81,9 +78,9 @@ void RodBlock::set(PointArray array, std::size_t rod, const Eigen::Matrix3Xd& ve
 
 void RodBlock::set_padding() {
   // Points far away, a metre from each other, that neither move nor pull.
-  for (std::ptrdiff_t k = -front; k < size_ + back; ++k) {
-    at(positions, k) = 1000. + static_cast<double>((k + front) / stride_);
-    at(lengths, k) = 1;
+  for (std::ptrdiff_t k = 0; k < size_ + block_lanes; ++k) {
+    at(positions, k) = 1000. + static_cast<double>(k / stride_);
+    at(last_positions, k) = at(positions, k);
     at(rest_lengths, k) = 1;
   }
 }
@@ -174,33 +171,14 @@ void RodBlock::compute_forces(std::span<const Rod> rods, const PerLane& active) 
   if (!walls_.empty()) kernel_->add_walls(block(), walls_.data(), std::ssize(walls_));
   if (spring_grips_) add_spring_grips(rods);
   const bool only_loads = walls_.empty() && !spring_grips_;
-  PerLane regular;
-  kernel_->compute_forces(block(), only_loads ? loads : external_forces, regular);
-  if (stride_ == 1) {
-    const bool all = std::find(std::begin(regular.lane), std::end(regular.lane), 0.0) ==
-                     std::end(regular.lane);
-    if (!all) compute_plain_forces(0, rods.front());
-    return;
-  }
+  kernel_->compute_forces(block(), only_loads ? loads : external_forces, regular_);
   for (std::size_t lane = 0; lane < rods.size(); ++lane) {
-    if (regular.lane[lane] == 0 && active.lane[lane] != 0) compute_plain_forces(lane, rods[lane]);
+    if (regular_.lane[lane] == 0 && active.lane[lane] != 0) compute_plain_forces(lane, rods[lane]);
   }
 }
 
-ProposedStep RodBlock::propose(const PerLane& c_F, const PerLane& c_h, bool relative) {
-  ProposedStep step;
+void RodBlock::propose(const PerLane& c_F, const PerLane& c_h, bool relative, ProposedStep& step) {
   (relative ? kernel_->propose_relative : kernel_->propose_absolute)(block(), c_F, c_h, step);
-  if (stride_ != 1) return step;
-  // Halves, quarters and eighths of a single rod's lanes.
-  for (std::ptrdiff_t half = block_lanes / 2; half > 0; half /= 2) {
-    for (std::ptrdiff_t i = 0; i < half; ++i) {
-      step.largest_squared.lane[i] =
-          std::max(step.largest_squared.lane[i], step.largest_squared.lane[i + half]);
-      step.sum_squared.lane[i] += step.sum_squared.lane[i + half];
-      step.oscillating.lane[i] += step.oscillating.lane[i + half];
-    }
-  }
-  return step;
 }
 
 }  // namespace dlo::force_model

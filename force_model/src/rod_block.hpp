@@ -37,8 +37,11 @@ class RodBlock {
   /// Total forces on the free points; rods that are not `active` may be left out.
   void compute_forces(std::span<const Rod> rods, const PerLane& active);
 
-  /// Proposed movements and what they look like, of each rod (a single one: in lane 0).
-  [[nodiscard]] ProposedStep propose(const PerLane& c_F, const PerLane& c_h, bool relative);
+  /// Looks at the modes of the present shape; its forces have been computed.
+  void look_at_modes(ModeLook& look) { kernel_->look_at_modes(block(), look); }
+
+  /// Proposes movements and says what they look like.
+  void propose(const PerLane& c_F, const PerLane& c_h, bool relative, ProposedStep& step);
 
   /// Moves the points of each rod by c_m times their proposed movement.
   void move(const PerLane& c_m) { kernel_->move(block(), c_m); }
@@ -68,6 +71,7 @@ class RodBlock {
   std::vector<Line> memory_;
   std::vector<WallLanes> walls_;
   bool spring_grips_ = false;
+  PerLane regular_;
   Eigen::Matrix3Xd plain_points_;
   Eigen::Matrix3Xd plain_forces_;
 };

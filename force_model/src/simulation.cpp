@@ -1,5 +1,6 @@
 #include "dlo/force_model/simulation.hpp"
 
+#include <span>
 #include <utility>
 
 #include "lockstep.hpp"
@@ -25,9 +26,9 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
 StepResult Simulation::step() {
-  Lockstep::Results results;
-  lockstep_->step(results);
-  return results.front();
+  StepResult result;
+  lockstep_->step(std::span(&result, 1));
+  return result;
 }
 
 StepResult Simulation::advance(double steps, long max_steps) {

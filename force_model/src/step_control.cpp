@@ -39,17 +39,19 @@ StepControl::StepControl(const Rod& rod, const Eigen::Matrix3Xd& points, const S
   choose_constants(estimate_.modes(), options_);
 }
 
-void StepControl::look_at_modes(const Rod& rod, const Eigen::Matrix3Xd& points,
-                                const Eigen::Matrix3Xd& forces) {
-  estimate_.update(rod, points, forces);
+void StepControl::update_modes(double inner_mode, double force_change, double point_change) {
+  estimate_.update(inner_mode, force_change, point_change);
   choose_constants(estimate_.modes(), options_);
 }
 
-StepResult StepControl::decide(double largest_squared, double sum_squared, double oscillating) {
+void StepControl::decide(double largest_squared, double sum_squared, double oscillating,
+                         StepResult& result) {
   const StepPolicy& policy = options_.policy;
-  StepResult result;
+  result.status = StepStatus::diverged;
+  result.c_m = 0;
+  result.limited = false;
   result.movement = std::sqrt(largest_squared);  // (16), (18)
-  if (!std::isfinite(result.movement) || !std::isfinite(sum_squared)) return result;
+  if (!std::isfinite(result.movement) || !std::isfinite(sum_squared)) return;
   if (policy.damping) {
     const double change = options_.c_s_change;
     c_s_ = oscillating > 0 ? c_s_ + change * oscillating : std::max(1.0, c_s_ - change);
@@ -63,7 +65,6 @@ StepResult StepControl::decide(double largest_squared, double sum_squared, doubl
   }
   ++steps_;
   if (c_s_ > 1) ++damped_steps_;
-  return result;
 }
 
 }  // namespace dlo::force_model

@@ -20,14 +20,14 @@ class StepControl {
   [[nodiscard]] bool looks_at_modes() const { return steps_ % block_steps == 0; }
 
   /// Updates the modes and, for the automatic policy, c_F and c_h. Arguments as ModeEstimate's.
-  void look_at_modes(const Rod& rod, const Eigen::Matrix3Xd& points,
-                     const Eigen::Matrix3Xd& forces);
+  void update_modes(double inner_mode, double force_change, double point_change);
 
   /// Scaling of a proposed step.
   /// @param largest_squared  of the movements that the limit compares [m^2]
   /// @param sum_squared      not finite if a movement is not [m^2]
   /// @param oscillating      points that turned back in two consecutive steps
-  [[nodiscard]] StepResult decide(double largest_squared, double sum_squared, double oscillating);
+  /// @param[out] result      of the step
+  void decide(double largest_squared, double sum_squared, double oscillating, StepResult& result);
 
   /// c_h, or 0 for policies without momentum.
   [[nodiscard]] double kept() const { return options_.policy.momentum ? options_.c_h : 0; }

@@ -24,179 +24,293 @@ namespace {
 constexpr double fold_cosine = -0.98999249660044546;
 constexpr double no_area = 1e-60;
 
-Lanes load(PointBlock block, PointArray array, std::ptrdiff_t k) {
-  return read_lanes(block.first + array * block.pitch + k);
-}
+/// tan^2(hooke_fold_angle / 2)
+constexpr double fold_tangent_squared = 198.85004452649244;
 
-void store(PointBlock block, PointArray array, std::ptrdiff_t k, Lanes value) {
-  write_lanes(block.first + array * block.pitch + k, value);
-}
-
-/// Of one number per lane those that belong to element k.
-Lanes load(const PerLane& values, std::ptrdiff_t k) {
-  return read_lanes(values.lane + k % block_lanes);
-}
-
-/// Reads and writes the vectors of a block; `stride` elements lie between neighbours.
+/// The elements of a block as registers. Those of a single rod (`stride` 1) hold neighbouring
+/// points; those of rods in lockstep (`stride` 8) hold the same point of several rods, and a block
+/// has a column for each register that its eight rods fill.
 template <int dimension, std::ptrdiff_t stride>
-struct Vectors {
-  using Vector = LaneVector<dimension>;
-  const PointBlock& block;
+struct Registers {
+  static constexpr std::ptrdiff_t columns = stride == 1 ? 1 : block_lanes / lane_count;
+  /// From one register of a column to the next.
+  static constexpr std::ptrdiff_t next = stride == 1 ? lane_count : block_lanes;
 
-  Vector load(PointArray array, std::ptrdiff_t k) const {
+  using Vector = LaneVector<dimension>;
+  PointBlock block;
+
+  Lanes load(int array, std::ptrdiff_t k) const {
+    return read_lanes(block.first + array * block.pitch + k);
+  }
+  void store(int array, std::ptrdiff_t k, Lanes value) const {
+    write_lanes(block.first + array * block.pitch + k, value);
+  }
+  Vector load_vector(PointArray array, std::ptrdiff_t k) const {
     Vector result;
-    for (int i = 0; i < dimension; ++i) {
-      result.axis[i] = read_lanes(block.first + (array + i) * block.pitch + k);
-    }
+    for (int i = 0; i < dimension; ++i) result.axis[i] = load(array + i, k);
     return result;
   }
-  void store(PointArray array, std::ptrdiff_t k, const Vector& value) const {
-    for (int i = 0; i < dimension; ++i) {
-      write_lanes(block.first + (array + i) * block.pitch + k, value.axis[i]);
+  void store_vector(PointArray array, std::ptrdiff_t k, const Vector& value) const {
+    for (int i = 0; i < dimension; ++i) store(array + i, k, value.axis[i]);
+  }
+
+  /// A rod's number in all lanes that belong to it, and back.
+  static Lanes of_rods(const PerLane& values, std::ptrdiff_t column) {
+    return stride == 1 ? all_lanes(values.lane[0]) : read_lanes(values.lane + column * lane_count);
+  }
+  template <Lanes combine(Lanes, Lanes)>
+  static void gather(Lanes a, std::ptrdiff_t column, PerLane& values) {
+    if constexpr (stride == 1) {
+      values.lane[0] = reduce<combine>(a);
+    } else {
+      write_lanes(values.lane + column * lane_count, a);
     }
   }
-  Vector segment(std::ptrdiff_t k) const {
-    return load(positions, k + stride) - load(positions, k);
+
+  /// What belongs to the points before those of a register, given the register before it.
+  static Lanes before(Lanes previous, Lanes here) {
+    return stride == 1 ? window<lane_count - 1>(previous, here) : previous;
+  }
+  /// And to the points after.
+  static Lanes after(Lanes here, Lanes following) {
+    return stride == 1 ? window<1>(here, following) : following;
+  }
+  static Vector before(Vector previous, const Vector& here) {
+    for (int i = 0; i < dimension; ++i) previous.axis[i] = before(previous.axis[i], here.axis[i]);
+    return previous;
+  }
+  static Vector after(Vector here, const Vector& following) {
+    for (int i = 0; i < dimension; ++i) here.axis[i] = after(here.axis[i], following.axis[i]);
+    return here;
   }
 };
 
-/// A number per lane, gathered over all elements.
-struct Gathered {
-  Lanes part[block_lanes / lane_count] = {};
-
-  Lanes& at(std::ptrdiff_t k) { return part[k % block_lanes / lane_count]; }
-  void write(PerLane& to) const {
-    for (int i = 0; i < block_lanes / lane_count; ++i) {
-      write_lanes(to.lane + i * lane_count, part[i]);
-    }
-  }
-};
-
+/// Segments k and the joints at P_k where they begin.
 template <int dimension>
-void add_walls(PointBlock block, const WallLanes* walls, std::ptrdiff_t count) {
-  const Vectors<dimension, 1> vectors{block};
-  for (std::ptrdiff_t k = 0; k < block.size; k += lane_count) {
-    const LaneVector<dimension> P = vectors.load(positions, k);
-    LaneVector<dimension> F = vectors.load(loads, k);
-    for (std::ptrdiff_t w = 0; w < count; ++w) {
-      LaneVector<dimension> point;
-      LaneVector<dimension> normal;
-      for (int i = 0; i < dimension; ++i) {
-        point.axis[i] = load(walls[w].point[i], k);
-        normal.axis[i] = load(walls[w].normal[i], k);
+struct Segments {
+  LaneVector<dimension> s = {};
+  LaneVector<dimension> s_before = {};
+  Lanes length = all_lanes(1);
+  Lanes inverse_length = all_lanes(1);
+  Lanes m = {};
+};
+
+template <BendingLaw law, int dimension, std::ptrdiff_t stride>
+void compute_forces(const PointBlock& block, PointArray applied, PerLane& regular) {
+  using All = Registers<dimension, stride>;
+  using Vector = LaneVector<dimension>;
+  const All all{block};
+  for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
+    const std::ptrdiff_t first = column * lane_count;
+    Vector P = all.load_vector(positions, first);
+    Lanes good = all_lanes(1);
+    const auto segments_at = [&](std::ptrdiff_t k, const Segments<dimension>& previous) {
+      Segments<dimension> here;
+      const Vector P_next = all.load_vector(positions, k + All::next);
+      here.s = All::after(P, P_next) - P;
+      P = P_next;
+      here.s_before = All::before(previous.s, here.s);
+      here.length = sqrt(dot(here.s, here.s));
+      const Lanes a = All::before(previous.length, here.length);
+      const Lanes ab = a * here.length;
+      const Lanes product = all.load(is_joint, k) * dot(here.s_before, here.s);
+      const Lanes opening = ab + product;  // a b (1 + c)
+      good = opening >= (1 + fold_cosine) * ab + no_area ? good : Lanes{};
+      // One division serves both 1/b and m.
+      if constexpr (law == BendingLaw::hooke) {
+        const Lanes inverse = 1 / (here.length * opening);
+        here.inverse_length = opening * inverse;
+        here.m = all.load(bend, k) * (here.length * inverse);  // (a)
+      } else {
+        const Lanes chord = sqrt(a * a + here.length * here.length + 2 * product);
+        const Lanes inverse = 1 / (ab * chord);
+        here.inverse_length = a * chord * inverse;
+        here.m = all.load(bend, k) * ((ab - product) * inverse);  // (b)
       }
-      const Lanes depth = max(dot(point - P, normal), Lanes{});
-      F = F + (load(walls[w].stiffness, k) * depth) * normal;
+      return here;
+    };
+    Segments<dimension> here = segments_at(first, {});
+    Vector T_previous = {};
+    for (std::ptrdiff_t k = first; k < block.size; k += All::next) {
+      const bool last = k + All::next >= block.size;
+      const Segments<dimension> following =
+          last ? Segments<dimension>() : segments_at(k + All::next, here);
+      const Lanes inverse = here.inverse_length;
+      const Lanes tension =
+          all.load(stretch, k) * (here.length - all.load(rest_lengths, k));  // (1)
+      const Vector h = here.m * here.s_before +
+                       All::after(here.m, following.m) * All::after(here.s, following.s);
+      const Lanes along = (tension + dot(h, here.s) * inverse) * inverse;
+      const Vector T = along * here.s - h;                   // (c)
+      const Vector inner = T - All::before(T_previous, T);   // (2), (4)
+      const Vector F = inner + all.load_vector(applied, k);  // (6)
+      all.store_vector(forces, k, all.load(is_free, k) * F);
+      T_previous = T;
+      here = following;
     }
-    vectors.store(external_forces, k, F);
+    All::template gather<min>(good, column, regular);
+  }
+}
+
+/// (16 M' + 4 M) / lever^2 of joints that turn by alpha, with ab = |s_{k-1}| |s_k|,
+/// product = s_{k-1}.s_k = ab cos(alpha) and L their mean rest length. A joint next to a segment
+/// without direction counts as straight.
+template <BendingLaw law>
+Lanes joint_mode(Lanes stiffness, Lanes ab, Lanes product, Lanes L, Lanes lever) {
+  const Lanes cosine = ab > no_area ? product / ab : all_lanes(1);
+  const Lanes opening = max(1 + cosine, all_lanes(1 + fold_cosine));
+  const Lanes closing = max(1 - cosine, Lanes{});
+  if constexpr (law == BendingLaw::hooke) {
+    const Lanes moment = stiffness * sqrt(min(closing / opening, all_lanes(fold_tangent_squared)));
+    const Lanes slope = cosine < fold_cosine ? Lanes{} : stiffness / opening;
+    return (16 * slope + 4 * moment) / (lever * lever);
+  } else {
+    const Lanes sine = sqrt(closing / 2);
+    const Lanes square = stiffness * L * sine * sine;
+    const Lanes moment = 2 * square * sine;
+    const Lanes slope = 3 * square * sqrt(max(1 + cosine, Lanes{}) / 2);
+    return (16 * slope + 4 * moment) / (lever * lever);
   }
 }
 
 template <BendingLaw law, int dimension, std::ptrdiff_t stride>
-void compute_forces(PointBlock block, PointArray applied, PerLane& regular) {
+void look_at_modes(const PointBlock& block, ModeLook& look) {
+  using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
-  const Vectors<dimension, stride> vectors{block};
-  for (std::ptrdiff_t k = 0; k < block.size; k += lane_count) {
-    const Vector s = vectors.segment(k);
-    store(block, lengths, k, sqrt(dot(s, s)));
-  }
-  LaneMask good[block_lanes / lane_count];
-  for (LaneMask& lanes : good) lanes = ~LaneMask{};
-  for (std::ptrdiff_t k = 0; k < block.size; k += lane_count) {
-    const Lanes a = load(block, lengths, k - stride);
-    const Lanes b = load(block, lengths, k);
-    const Lanes ab = a * b;
-    const Lanes product =
-        load(block, is_joint, k) * dot(vectors.segment(k - stride), vectors.segment(k));
-    const Lanes opening = ab + product;  // a b (1 + c)
-    good[k % block_lanes / lane_count] &= opening >= (1 + fold_cosine) * ab + no_area;
-    // One division serves both 1/b and m.
-    if constexpr (law == BendingLaw::hooke) {
-      const Lanes inverse = 1 / (b * opening);
-      store(block, inverse_lengths, k, opening * inverse);
-      store(block, joint_factors, k, load(block, bend, k) * b * inverse);  // (a)
-    } else {
-      const Lanes chord = sqrt(a * a + b * b + 2 * product);
-      const Lanes inverse = 1 / (ab * chord);
-      store(block, inverse_lengths, k, a * chord * inverse);
-      store(block, joint_factors, k, load(block, bend, k) * (ab - product) * inverse);  // (b)
+  const All all{block};
+  for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
+    const std::ptrdiff_t first = column * lane_count;
+    Lanes contraction = {};
+    Lanes bending = {};
+    Lanes force_change = {};
+    Lanes point_change = {};
+    Vector P = all.load_vector(positions, first);
+    Vector s_previous = {};
+    Lanes length_previous = all_lanes(1);
+    Lanes rest_previous = all_lanes(1);
+    Lanes bounded_previous = all_lanes(1);
+    for (std::ptrdiff_t k = first; k < block.size; k += All::next) {
+      const Vector P_next = all.load_vector(positions, k + All::next);
+      const Vector s = All::after(P, P_next) - P;
+      const Lanes length = sqrt(dot(s, s));
+      const Lanes rest = all.load(rest_lengths, k);
+      const Lanes bounded = max(length, 0.1 * rest);
+      contraction = max(4 * all.load(stretch, k) * rest / min(rest, bounded), contraction);
+      const Lanes product = dot(All::before(s_previous, s), s);
+      const Lanes mean = (All::before(rest_previous, rest) + rest) / 2;
+      const Lanes lever = min(All::before(bounded_previous, bounded), bounded);
+      const Lanes joint = joint_mode<law>(
+          all.load(bend, k), All::before(length_previous, length) * length, product, mean, lever);
+      bending = max(all.load(is_joint, k) > 0 ? joint : Lanes{}, bending);
+
+      const Vector F = all.load_vector(forces, k);
+      const Vector dF = all.load_vector(last_forces, k) - F;
+      const Vector dP = P - all.load_vector(last_positions, k);
+      force_change += dot(dF, dP);
+      point_change += dot(dP, dP);
+      all.store_vector(last_forces, k, F);
+      all.store_vector(last_positions, k, P);
+      P = P_next;
+      s_previous = s;
+      length_previous = length;
+      rest_previous = rest;
+      bounded_previous = bounded;
     }
+    All::template gather<max>(contraction, column, look.contraction);
+    All::template gather<max>(bending, column, look.bending);
+    All::template gather<sum>(force_change, column, look.force_change);
+    All::template gather<sum>(point_change, column, look.point_change);
   }
-  for (std::ptrdiff_t k = 0; k < block.size; k += lane_count) {
-    const Vector s = vectors.segment(k);
-    const Lanes inverse = load(block, inverse_lengths, k);
-    const Lanes extension = load(block, lengths, k) - load(block, rest_lengths, k);
-    const Vector h = load(block, joint_factors, k) * vectors.segment(k - stride) +
-                     load(block, joint_factors, k + stride) * vectors.segment(k + stride);
-    const Lanes along =
-        load(block, stretch, k) * extension * inverse + dot(h, s) * inverse * inverse;
-    vectors.store(segment_forces, k, along * s - h);  // (c)
-  }
-  for (std::ptrdiff_t k = 0; k < block.size; k += lane_count) {
-    const Vector inner = vectors.load(segment_forces, k) - vectors.load(segment_forces, k - stride);
-    vectors.store(forces, k, load(block, is_free, k) * (inner + vectors.load(applied, k)));  // (6)
-  }
-  for (int i = 0; i < block_lanes / lane_count; ++i) {
-    write_lanes(regular.lane + i * lane_count, good[i] ? 1 - Lanes{} : Lanes{});
+}
+
+template <int dimension, std::ptrdiff_t stride>
+void add_walls(const PointBlock& block, const WallLanes* walls, std::ptrdiff_t count) {
+  using All = Registers<dimension, stride>;
+  using Vector = LaneVector<dimension>;
+  const All all{block};
+  for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
+    for (std::ptrdiff_t k = column * lane_count; k < block.size; k += All::next) {
+      const Vector P = all.load_vector(positions, k);
+      Vector F = all.load_vector(loads, k);
+      for (const WallLanes* wall = walls; wall != walls + count; ++wall) {
+        Vector point;
+        Vector normal;
+        for (int i = 0; i < dimension; ++i) {
+          point.axis[i] = All::of_rods(wall->point[i], column);
+          normal.axis[i] = All::of_rods(wall->normal[i], column);
+        }
+        const Lanes depth = max(dot(point - P, normal), Lanes{});
+        F = F + (All::of_rods(wall->stiffness, column) * depth) * normal;
+      }
+      all.store_vector(external_forces, k, F);
+    }
   }
 }
 
 template <bool relative, int dimension, std::ptrdiff_t stride>
-void propose(PointBlock block, const PerLane& c_F, const PerLane& c_h, ProposedStep& step) {
+void propose(const PointBlock& block, const PerLane& c_F, const PerLane& c_h, ProposedStep& step) {
+  using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
-  const Vectors<dimension, stride> vectors{block};
-  Gathered largest;
-  Gathered sum;
-  Gathered oscillating;
-  for (std::ptrdiff_t k = 0; k < block.size; k += lane_count) {
-    const Lanes step_factor = load(c_F, k);
-    const Lanes kept = load(c_h, k);
-    const Vector last = vectors.load(movements, k);
-    const Vector dP = step_factor * vectors.load(forces, k) + kept * last;  // (7), (19)
-    vectors.store(proposals, k, dP);
-    Lanes squared = dot(dP, dP);  // (16)
-    if constexpr (relative) {
-      const Vector difference = step_factor * vectors.load(forces, k + stride) +
-                                kept * vectors.load(movements, k + stride) - dP;  // (18)
-      squared = load(block, is_segment, k) * dot(difference, difference);
+  const All all{block};
+  for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
+    const Lanes per_force = All::of_rods(c_F, column);
+    const Lanes kept = All::of_rods(c_h, column);
+    const auto movement_at = [&](std::ptrdiff_t k) {
+      return per_force * all.load_vector(forces, k) + kept * all.load_vector(movements, k);
+    };
+    Lanes largest = {};
+    Lanes total = {};
+    Lanes oscillating = {};
+    Vector dP = movement_at(column * lane_count);
+    for (std::ptrdiff_t k = column * lane_count; k < block.size; k += All::next) {
+      const Vector last = all.load_vector(movements, k);
+      all.store_vector(proposals, k, dP);  // (7), (19)
+      const Lanes turned = all.load(turned_back, k);
+      oscillating += dot(dP, last) < 0 ? turned : Lanes{};
+      const Vector following = movement_at(k + All::next);
+      Lanes squared = dot(dP, dP);  // (16)
+      if constexpr (relative) {
+        const Vector difference = All::after(dP, following) - dP;  // (18)
+        squared = all.load(is_segment, k) * dot(difference, difference);
+      }
+      largest = max(squared, largest);
+      total += squared;
+      dP = following;
     }
-    largest.at(k) = max(squared, largest.at(k));
-    sum.at(k) += squared;
-    const Lanes turns = dot(dP, last) < 0 ? load(block, turned_back, k) : Lanes{};
-    oscillating.at(k) += turns;
+    All::template gather<max>(largest, column, step.largest_squared);
+    All::template gather<sum>(total, column, step.sum_squared);
+    All::template gather<sum>(oscillating, column, step.oscillating);
   }
-  largest.write(step.largest_squared);
-  sum.write(step.sum_squared);
-  oscillating.write(step.oscillating);
 }
 
-template <int dimension>
-void move(PointBlock block, const PerLane& c_m) {
+template <int dimension, std::ptrdiff_t stride>
+void move(const PointBlock& block, const PerLane& c_m) {
+  using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
-  const Vectors<dimension, 1> vectors{block};
-  for (std::ptrdiff_t k = 0; k < block.size; k += lane_count) {
-    const Lanes scale = load(c_m, k);
-    const LaneMask moves = scale > 0;
-    const Vector dP = vectors.load(proposals, k);
-    const Vector last = vectors.load(movements, k);
-    const Lanes turns = dot(dP, last) < 0 ? 1 - Lanes{} : Lanes{};
-    store(block, turned_back, k, turns);
-    Vector movement = scale * dP;
-    for (int i = 0; i < dimension; ++i) {
-      movement.axis[i] = moves ? movement.axis[i] : Lanes{};
+  const All all{block};
+  for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
+    const Lanes scale = All::of_rods(c_m, column);
+    for (std::ptrdiff_t k = column * lane_count; k < block.size; k += All::next) {
+      const Vector dP = all.load_vector(proposals, k);
+      const Lanes turned = dot(dP, all.load_vector(movements, k)) < 0 ? all_lanes(1) : Lanes{};
+      all.store(turned_back, k, turned);
+      Vector movement = scale * dP;
+      // What diverged may not be a number.
+      for (Lanes& axis : movement.axis) axis = scale > 0 ? axis : Lanes{};
+      all.store_vector(movements, k, movement);
+      all.store_vector(positions, k, all.load_vector(positions, k) + movement);
     }
-    vectors.store(movements, k, movement);
-    vectors.store(positions, k, vectors.load(positions, k) + movement);
   }
 }
 
 template <BendingLaw law, int dimension, std::ptrdiff_t stride>
 constexpr StepKernel kernel = {
-    .add_walls = add_walls<dimension>,
+    .add_walls = add_walls<dimension, stride>,
     .compute_forces = compute_forces<law, dimension, stride>,
+    .look_at_modes = look_at_modes<law, dimension, stride>,
     .propose_relative = propose<true, dimension, stride>,
     .propose_absolute = propose<false, dimension, stride>,
-    .move = move<dimension>,
+    .move = move<dimension, stride>,
 };
 
 template <BendingLaw law, int dimension>

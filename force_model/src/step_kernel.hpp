@@ -12,7 +12,7 @@ namespace dlo::force_model {
 /// Elements are handled eight at a time, however many a register holds.
 inline constexpr std::ptrdiff_t block_lanes = 8;
 
-/// One number for each of eight rods, or eight times that of a single rod.
+/// One number for each of eight rods; that of a single rod stands in lane 0.
 struct alignas(64) PerLane {
   double lane[block_lanes] = {};
 };
@@ -25,23 +25,21 @@ enum PointArray : int {
   forces = 9,            ///< on free points, 0 on rigidly held ones [N], 3 axes
   loads = 12,            ///< constant forces [N], 3 axes
   external_forces = 15,  ///< loads, walls and spring grips [N], 3 axes
-  segment_forces = 18,   ///< of segment k on P_k; the opposite acts on P_{k+1} [N], 3 axes
-  lengths = 21,          ///< of segment k, from P_k to P_{k+1} [m]
-  inverse_lengths = 22,  ///< [1/m]
-  joint_factors = 23,    ///< m_k in step_kernel.cpp [N/m]
-  rest_lengths = 24,     ///< L_k [m]
-  stretch = 25,          ///< c_c / L_k [N/m], 0 where there is no segment
-  bend = 26,             ///< hooke: 2 EI / L [N m], paper: c_b [N]; 0 where there is no joint
-  is_joint = 27,         ///< 1 where two segments meet, else 0
-  is_segment = 28,       ///< 1 for a rod's segments, else 0
-  is_free = 29,          ///< 1 for points that move, 0 for rigidly held ones and padding
-  turned_back = 30,      ///< 1 where the last step went against the one before
+  rest_lengths = 18,     ///< L_k of the segment from P_k to P_{k+1} [m]
+  stretch = 19,          ///< c_c / L_k [N/m], 0 where there is no segment
+  bend = 20,             ///< hooke: 2 EI / L [N m], paper: c_b [N]; 0 where there is no joint
+  is_joint = 21,         ///< 1 where two segments meet, else 0
+  is_segment = 22,       ///< 1 where a segment begins, else 0
+  is_free = 23,          ///< 1 for points that move, 0 for rigidly held ones and padding
+  turned_back = 24,      ///< 1 where the last step went against the one before
+  last_positions = 25,   ///< when the modes were last looked at [m], 3 axes
+  last_forces = 28,      ///< then [N], 3 axes
   point_array_count = 31
 };
 
 /// Structure of arrays. Element k of a single rod is point k (`stride` 1); of eight rods in
-/// lockstep it is point k / 8 of rod k % 8 (`stride` 8). Before its `size` elements, a multiple of
-/// eight, and two strides behind them each array has more that are read but change nothing.
+/// lockstep it is point k / 8 of rod k % 8 (`stride` 8). `size` is a multiple of eight. What is
+/// left of it, and eight elements more, is padding: points that lie apart and do nothing.
 struct PointBlock {
   double* first = nullptr;   ///< element 0 of array 0
   std::ptrdiff_t pitch = 0;  ///< from one array to the next
@@ -55,29 +53,39 @@ struct WallLanes {
   PerLane stiffness;
 };
 
-/// What a proposed step looks like, for each lane; the lanes of a single rod are parts of it.
+/// What a proposed step looks like.
 struct ProposedStep {
   PerLane largest_squared;  ///< of the movements that the limit compares [m^2]
   PerLane sum_squared;      ///< of them; not finite if any movement is not [m^2]
   PerLane oscillating;      ///< points that turn back for the second time
 };
 
+/// What a look at the modes finds, see mode_bounds and ModeEstimate.
+struct ModeLook {
+  PerLane contraction;   ///< 4 c_c / L, the largest [N/m]
+  PerLane bending;       ///< (16 M' + 4 M) / L^2, the largest [N/m]
+  PerLane force_change;  ///< -dF.dP since the last look [N m]
+  PerLane point_change;  ///< dP.dP [m^2]
+};
+
 /// The parts of a step for one bending law, dimension, stride and instruction set.
 struct StepKernel {
   /// external_forces = loads + walls
-  void (*add_walls)(PointBlock block, const WallLanes* walls, std::ptrdiff_t count);
-  /// forces = contraction + bending + `applied` (loads or external_forces). `regular` is 1 in
-  /// lanes where the formulas hold for every joint, 0 where a segment has no direction or a joint
-  /// is folded beyond hooke_fold_angle: there `forces` means nothing.
-  void (*compute_forces)(PointBlock block, PointArray applied, PerLane& regular);
+  void (*add_walls)(const PointBlock& block, const WallLanes* walls, std::ptrdiff_t count);
+  /// forces = contraction + bending + `applied` (loads or external_forces). `regular` is 1 for
+  /// rods where the formulas hold for every joint, 0 where a segment has no direction or a joint is
+  /// folded beyond hooke_fold_angle: there `forces` means nothing.
+  void (*compute_forces)(const PointBlock& block, PointArray applied, PerLane& regular);
+  /// Compares positions and forces with the last look's and takes their place.
+  void (*look_at_modes)(const PointBlock& block, ModeLook& look);
   /// proposals = c_F forces + c_h movements, compared with their neighbours (18)
-  void (*propose_relative)(PointBlock block, const PerLane& c_F, const PerLane& c_h,
+  void (*propose_relative)(const PointBlock& block, const PerLane& c_F, const PerLane& c_h,
                            ProposedStep& step);
   /// the same, each on its own (16)
-  void (*propose_absolute)(PointBlock block, const PerLane& c_F, const PerLane& c_h,
+  void (*propose_absolute)(const PointBlock& block, const PerLane& c_F, const PerLane& c_h,
                            ProposedStep& step);
-  /// movements = c_m proposals, positions += movements; lanes with c_m = 0 stay as they are
-  void (*move)(PointBlock block, const PerLane& c_m);
+  /// movements = c_m proposals, positions += movements; rods with c_m = 0 stay where they are
+  void (*move)(const PointBlock& block, const PerLane& c_m);
 };
 
 /// @param stride  1 or 8; @param dimension  2 (z stays 0) or 3

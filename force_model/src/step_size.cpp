@@ -56,19 +56,23 @@ double equivalent_rigidity(const Rod& rod) {
 ModeBounds mode_bounds(const Rod& rod, const Points& points) {
   require_polygon("mode_bounds", points, rod.rest_lengths);
   ModeBounds modes;
-  modes.fastest = fastest_inner_mode(rod, points);
-  for (const Wall& wall : rod.walls) modes.fastest += wall.stiffness;
-  double grip = 0;
-  for (const Grip& g : rod.grips) {
-    if (g.hold == GripHold::spring) grip = std::max(grip, g.stiffness);
-  }
-  modes.fastest += grip;
+  modes.fastest = fastest_inner_mode(rod, points) + constraint_stiffness(rod);
   const double per_length = clamped_free_root / rod.length();
   const double square = per_length * per_length;
   modes.slowest = square * square * equivalent_rigidity(rod) * rod.rest_lengths.mean();
   // Heavy ball constants lose their meaning when the two differ by more than rounding resolves.
   modes.slowest = std::clamp(modes.slowest, 1e-10 * modes.fastest, modes.fastest);
   return modes;
+}
+
+double constraint_stiffness(const Rod& rod) {
+  double walls = 0;
+  for (const Wall& wall : rod.walls) walls += wall.stiffness;
+  double grip = 0;
+  for (const Grip& g : rod.grips) {
+    if (g.hold == GripHold::spring) grip = std::max(grip, g.stiffness);
+  }
+  return walls + grip;
 }
 
 double largest_step_factor(double fastest, double c_h) {

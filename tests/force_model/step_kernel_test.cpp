@@ -1,0 +1,129 @@
+// The kernel against steps written with total_forces and Eigen, on every instruction set that this
+// machine has.
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <tuple>
+
+#include "dlo/force_model/simulation.hpp"
+#include "plain_simulation.hpp"
+#include "polygons.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+constexpr double length = 0.5;
+
+enum class Walls { none, two };
+enum class Space { plane, full };
+
+using Variant = std::tuple<BendingLaw, Stepper, GripHold, Walls, Space>;
+
+/// A rod with forces of the order of 1 N, so that forces can be compared with 1 N.
+Rod random_rod(unsigned seed, Eigen::Index points, const Variant& variant) {
+  const auto& [law, stepper, hold, walls, space] = variant;
+  std::mt19937 engine(seed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const double L = length / static_cast<double>(points - 1);
+  Rod rod;
+  rod.rest_lengths.resize(points - 1);
+  for (double& rest : rod.rest_lengths) rest = L * (1 + 0.2 * uniform(engine));
+  rod.c_c = 1;
+  rod.bending = {law, law == BendingLaw::hooke ? 0.1 * L * L : 0.1};
+  rod.loads.resize(3, points);
+  for (double& load : rod.loads.reshaped()) load = 0.1 * uniform(engine);
+  Grip first{.first_point = 0, .hold = hold, .stiffness = 3};
+  first.targets.setRandom(3, std::min<Eigen::Index>(2, points));
+  first.targets *= 0.01;
+  first.targets.rightCols(1).row(0).array() += L;
+  Grip last{.first_point = points - 1, .hold = hold, .stiffness = 2};
+  last.targets.setConstant(3, 1, 0.4 * length);
+  rod.grips = {first};
+  if (points > 3) rod.grips.push_back(last);
+  if (walls == Walls::two) {
+    rod.walls = {{.point = {0, 0.01, 0}, .normal = {0.6, 0.8, 0}, .stiffness = 5},
+                 {.point = {0.1, 0, 0}, .normal = {0, -1, 0}, .stiffness = 2}};
+  }
+  if (space == Space::plane) {
+    rod.loads.row(2).setZero();
+    for (Grip& grip : rod.grips) grip.targets.row(2).setZero();
+  }
+  return rod;
+}
+
+Eigen::Matrix3Xd random_points(unsigned seed, Eigen::Index points, Space space) {
+  const double L = length / static_cast<double>(points - 1);
+  Eigen::Matrix3Xd result = test::random_polygon(seed, points - 1, L, 0.2);
+  if (space == Space::plane) result.row(2).setZero();
+  return result;
+}
+
+StepOptions options_for(Stepper stepper, const Rod& rod) {
+  StepOptions options;
+  options.policy = policy(stepper);
+  const double L = rod.rest_lengths.minCoeff();
+  options.c_F = 0.02 * L;  // of order 1 N: movements of a fiftieth of a segment
+  options.c_h = 0.7;
+  options.l_s = 0.01 * L;
+  return options;
+}
+
+/// Steps both and compares positions [l], scalings and movements step by step.
+void expect_agreement(const Rod& rod, const Eigen::Matrix3Xd& start, const StepOptions& options,
+                      int steps) {
+  test::PlainSimulation plain(rod, start, options);
+  Simulation simulation(rod, start, options);
+  for (int i = 0; i < steps; ++i) {
+    const StepResult expected = plain.step();
+    const StepResult result = simulation.step();
+    ASSERT_EQ(result.status, expected.status);
+    ASSERT_EQ(result.limited, expected.limited);
+    // Rounding grows from step to step like the shape's own sensitivity; the steps here are small.
+    const double allowed = 1e-12 * (i + 1);
+    ASSERT_NEAR(result.c_m, expected.c_m, allowed * expected.c_m);
+    ASSERT_NEAR(result.movement, expected.movement, allowed * length);
+    ASSERT_LT((simulation.points() - plain.points()).cwiseAbs().maxCoeff(), allowed * length)
+        << "step " << i;
+  }
+}
+
+class StepKernel : public testing::TestWithParam<Variant> {};
+
+TEST_P(StepKernel, AgreesWithThePlainStepOnEveryInstructionSet) {
+  const auto& [law, stepper, hold, walls, space] = GetParam();
+  std::vector<Eigen::Index> sizes = {64, 200};
+  for (Eigen::Index points = 2; points <= 40; ++points) sizes.push_back(points);
+  for (const InstructionSet set : available_instruction_sets()) {
+    for (const Eigen::Index points : sizes) {
+      SCOPED_TRACE(std::string(to_string(set)) + ", " + std::to_string(points) + " points");
+      const auto seed = static_cast<unsigned>(points);
+      const Rod rod = random_rod(seed, points, GetParam());
+      StepOptions options = options_for(stepper, rod);
+      options.instruction_set = set;
+      expect_agreement(rod, random_points(seed, points, space), options, 20);
+    }
+  }
+}
+
+std::string name(const testing::TestParamInfo<Variant>& instance) {
+  const auto& [law, stepper, hold, walls, space] = instance.param;
+  constexpr const char* steppers[] = {"basic", "limited", "relative", "dynamic", "automatic"};
+  return std::string(law == BendingLaw::paper ? "paper_" : "hooke_") +
+         steppers[static_cast<std::size_t>(stepper)] +
+         (hold == GripHold::rigid ? "_rigid" : "_spring") + (walls == Walls::none ? "" : "_walls") +
+         (space == Space::plane ? "_plane" : "_space");
+}
+
+INSTANTIATE_TEST_SUITE_P(Variants, StepKernel,
+                         testing::Combine(testing::Values(BendingLaw::paper, BendingLaw::hooke),
+                                          testing::Values(Stepper::basic, Stepper::limited,
+                                                          Stepper::relative, Stepper::dynamic,
+                                                          Stepper::automatic),
+                                          testing::Values(GripHold::rigid, GripHold::spring),
+                                          testing::Values(Walls::none, Walls::two),
+                                          testing::Values(Space::plane, Space::full)),
+                         name);
+
+}  // namespace
+}  // namespace dlo::force_model
