@@ -165,6 +165,10 @@ void RodBlock::compute_plain_forces(std::size_t lane, const Rod& rod) {
   total_forces(rod, plain_points_, plain_forces_);
   for (Eigen::Index i = 0; i < points_; ++i) plain_forces_.col(i) *= at(is_free, element(i, lane));
   set(forces, lane, plain_forces_);
+  // Padding next to a segment without direction may hold what is not a number.
+  for (int axis = 0; axis < axes; ++axis) {
+    for (std::ptrdiff_t k = points_ * stride_; k < size_; ++k) at(forces + axis, k) = 0;
+  }
 }
 
 void RodBlock::compute_forces(std::span<const Rod> rods, const PerLane& active) {
