@@ -9,9 +9,9 @@
 namespace dlo::force_model {
 namespace {
 
-std::vector<Rod> checked_rods(std::span<const StartingRod> start) {
+std::vector<Rod> checked_rods(std::span<const BatchRod> start) {
   std::vector<Rod> rods;
-  for (const StartingRod& one : start) {
+  for (const BatchRod& one : start) {
     check(one.rod);
     require_polygon("Simulation", one.points, one.rod.rest_lengths);
     rods.push_back(one.rod);
@@ -19,7 +19,7 @@ std::vector<Rod> checked_rods(std::span<const StartingRod> start) {
   return rods;
 }
 
-Eigen::Matrix3Xd with_held_points(const StartingRod& start) {
+Eigen::Matrix3Xd with_held_points(const BatchRod& start) {
   Eigen::Matrix3Xd points = start.points;
   for (const Grip& grip : start.rod.grips) {
     if (grip.hold == GripHold::spring) continue;
@@ -30,7 +30,7 @@ Eigen::Matrix3Xd with_held_points(const StartingRod& start) {
 
 }  // namespace
 
-Lockstep::Lockstep(std::span<const StartingRod> start, bool together)
+Lockstep::Lockstep(std::span<const BatchRod> start, bool together)
     : rods_(checked_rods(start)), block_(rods_, together, start.front().options.instruction_set) {
   for (std::size_t lane = 0; lane < block_lanes; ++lane) {
     const std::size_t rod = lane < start.size() ? lane : 0;
@@ -49,6 +49,11 @@ Lockstep::Lockstep(std::span<const StartingRod> start, bool together)
 }
 
 void Lockstep::set_active(std::size_t rod, bool active) { active_.lane[rod] = active ? 1 : 0; }
+
+bool Lockstep::any_active() const {
+  return std::any_of(std::begin(active_.lane), std::end(active_.lane),
+                     [](double lane) { return lane != 0; });
+}
 
 void Lockstep::set_constants(std::size_t rod) {
   c_F_.lane[rod] = controls_[rod].options().c_F;
@@ -119,17 +124,16 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
     searches.emplace_back(rods_[rod], controls_[rod].estimate(), options, points(rod));
   }
   const PerLane active_before = active_;
-  const auto any_active = [&] {
-    return std::any_of(std::begin(active_.lane), std::end(active_.lane),
-                       [](double lane) { return lane != 0; });
-  };
   const auto stop_if_done = [&](std::size_t rod) {
     if (!searches[rod].open()) set_active(rod, false);
   };
-  for (std::size_t rod = 0; rod < rods_.size(); ++rod) stop_if_done(rod);
+  std::array<StepResult, block_lanes> results;  // diverged, for rods that are not active
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    if (!active(rod)) (void)searches[rod].count(results[rod]);
+    stop_if_done(rod);
+  }
   std::array<bool, block_lanes> due{};
   while (any_active()) {
-    std::array<StepResult, block_lanes> results;
     step(results);
     for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
       due[rod] = active(rod) && searches[rod].count(results[rod]);
@@ -144,11 +148,11 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
   }
   active_ = active_before;
   block_.compute_forces(rods_, active_);
-  std::vector<RelaxResult> results;
+  std::vector<RelaxResult> outcomes;
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
-    results.push_back(searches[rod].finish(shape(rod)));
+    outcomes.push_back(searches[rod].finish(shape(rod)));
   }
-  return results;
+  return outcomes;
 }
 
 void Lockstep::move_grip(std::size_t rod, std::size_t grip,

@@ -4,18 +4,12 @@
 #include <span>
 #include <vector>
 
+#include "dlo/force_model/batch.hpp"
 #include "rest_search.hpp"
 #include "rod_block.hpp"
 #include "step_control.hpp"
 
 namespace dlo::force_model {
-
-/// A rod, where its points start, and how it steps.
-struct StartingRod {
-  Rod rod;
-  Eigen::Matrix3Xd points;  ///< [m], 3 x rod.points()
-  StepOptions options;
-};
 
 /// One rod, or up to eight of the same size, bending law and step policy that step together: what
 /// Simulation and Batch share.
@@ -23,7 +17,7 @@ class Lockstep {
  public:
   /// @param together  false: one rod, vectorised over its points; true: 1 to 8, one per lane
   /// @throws std::invalid_argument if rods, points or options are out of range
-  Lockstep(std::span<const StartingRod> start, bool together);
+  Lockstep(std::span<const BatchRod> start, bool together);
 
   /// A step of each active rod. Allocates nothing.
   /// @param[out] results  one per rod; those of others are left alone
@@ -43,9 +37,12 @@ class Lockstep {
     return block_.view(positions, rod);
   }
 
+  [[nodiscard]] std::size_t size() const { return rods_.size(); }
+
   /// Rods that are not active stand still.
   void set_active(std::size_t rod, bool active);
   [[nodiscard]] bool active(std::size_t rod) const { return active_.lane[rod] != 0; }
+  [[nodiscard]] bool any_active() const;
 
  private:
   void look_at_modes();

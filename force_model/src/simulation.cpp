@@ -9,7 +9,7 @@
 namespace dlo::force_model {
 
 Simulation::Simulation(Rod rod, Eigen::Matrix3Xd points, const StepOptions& options) {
-  const StartingRod start{std::move(rod), std::move(points), options};
+  const BatchRod start{std::move(rod), std::move(points), options};
   lockstep_ = std::make_unique<Lockstep>(std::span(&start, 1), false);
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -13,66 +12,18 @@
 
 #include "dlo/force_model/simulation.hpp"
 #include "plain_simulation.hpp"
-#include "polygons.hpp"
+#include "random_rods.hpp"
 
 namespace dlo::force_model {
 namespace {
 
-constexpr double length = 0.5;
-
-enum class Walls { none, two };
-enum class Space { plane, full };
-
-using Variant = std::tuple<BendingLaw, Stepper, GripHold, Walls, Space>;
-
-/// A rod with forces of the order of 1 N, so that forces can be compared with 1 N.
-Rod random_rod(unsigned seed, Eigen::Index points, const Variant& variant) {
-  const auto& [law, stepper, hold, walls, space] = variant;
-  std::mt19937 engine(seed);
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  const double L = length / static_cast<double>(points - 1);
-  Rod rod;
-  rod.rest_lengths.resize(points - 1);
-  for (double& rest : rod.rest_lengths) rest = L * (1 + 0.2 * uniform(engine));
-  rod.c_c = 1;
-  rod.bending = {law, law == BendingLaw::hooke ? 0.1 * L * L : 0.1};
-  rod.loads.resize(3, points);
-  for (double& load : rod.loads.reshaped()) load = 0.1 * uniform(engine);
-  Grip first{.first_point = 0, .hold = hold, .stiffness = 3};
-  first.targets.setRandom(3, std::min<Eigen::Index>(2, points));
-  first.targets *= 0.01;
-  first.targets.rightCols(1).row(0).array() += L;
-  Grip last{.first_point = points - 1, .hold = hold, .stiffness = 2};
-  last.targets.setConstant(3, 1, 0.4 * length);
-  rod.grips = {first};
-  if (points > 3) rod.grips.push_back(last);
-  if (walls == Walls::two) {
-    rod.walls = {{.point = {0, 0.01, 0}, .normal = {0.6, 0.8, 0}, .stiffness = 5},
-                 {.point = {0.1, 0, 0}, .normal = {0, -1, 0}, .stiffness = 2}};
-  }
-  if (space == Space::plane) {
-    rod.loads.row(2).setZero();
-    for (Grip& grip : rod.grips) grip.targets.row(2).setZero();
-  }
-  return rod;
-}
-
-Eigen::Matrix3Xd random_points(unsigned seed, Eigen::Index points, Space space) {
-  const double L = length / static_cast<double>(points - 1);
-  Eigen::Matrix3Xd result = test::random_polygon(seed, points - 1, L, 0.2);
-  if (space == Space::plane) result.row(2).setZero();
-  return result;
-}
-
-StepOptions options_for(Stepper stepper, const Rod& rod) {
-  StepOptions options;
-  options.policy = policy(stepper);
-  const double L = rod.rest_lengths.minCoeff();
-  options.c_F = 0.02 * L;  // of order 1 N: movements of a fiftieth of a segment
-  options.c_h = 0.7;
-  options.l_s = 0.01 * L;
-  return options;
-}
+using test::length;
+using test::options_for;
+using test::random_points;
+using test::random_rod;
+using test::Space;
+using test::Variant;
+using test::Walls;
 
 /// Steps both and compares positions [l], scalings and movements step by step.
 void expect_agreement(const Rod& rod, const Eigen::Matrix3Xd& start, const StepOptions& options,

@@ -22,6 +22,8 @@ struct StepPolicy {
   bool momentum = false;   ///< adds c_h times the last movement
   bool damping = false;    ///< divides by c_s once points oscillate
   bool automatic = false;  ///< overwrites c_F and c_h
+
+  bool operator==(const StepPolicy&) const = default;
 };
 
 [[nodiscard]] StepPolicy policy(Stepper stepper);
