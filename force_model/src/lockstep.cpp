@@ -41,7 +41,7 @@ Lockstep::Lockstep(std::span<const BatchRod> start, bool together)
   }
   for (std::size_t rod = 0; rod < start.size(); ++rod) {
     set_active(rod, true);
-    set_constants(rod);
+    c_F_.lane[rod] = controls_[rod].options().c_F;
   }
   block_.update_dimension(rods_);
   points_.resize(3, rods_.front().points());
@@ -55,11 +55,6 @@ bool Lockstep::any_active() const {
                      [](double lane) { return lane != 0; });
 }
 
-void Lockstep::set_constants(std::size_t rod) {
-  c_F_.lane[rod] = controls_[rod].options().c_F;
-  c_h_.lane[rod] = controls_[rod].kept();
-}
-
 void Lockstep::look_at_modes() {
   bool due = false;
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
@@ -71,31 +66,36 @@ void Lockstep::look_at_modes() {
     if (!active(rod)) continue;
     controls_[rod].update_modes(look_.contraction.lane[rod] + look_.bending.lane[rod],
                                 look_.force_change.lane[rod], look_.point_change.lane[rod]);
-    set_constants(rod);
+    c_F_.lane[rod] = controls_[rod].options().c_F;
   }
 }
 
 void Lockstep::step(std::span<StepResult> results) {
   block_.compute_forces(rods_, active_);
   look_at_modes();
-  block_.propose(c_F_, c_h_, controls_.front().relative(), proposed_);
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    kept_.lane[rod] = controls_[rod].kept() * c_m_.lane[rod];
+  }
+  block_.propose(c_F_, kept_, controls_.front().relative(), proposed_);
+  PerLane c_m;
   bool moves = false;
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
-    c_m_.lane[rod] = 0;
     if (!active(rod)) continue;
     controls_[rod].decide(proposed_.largest_squared.lane[rod], proposed_.sum_squared.lane[rod],
                           proposed_.oscillating.lane[rod], results[rod]);
-    if (results[rod].status == StepStatus::diverged) continue;
-    c_m_.lane[rod] = results[rod].c_m;
-    moves = true;
+    c_m.lane[rod] = results[rod].c_m;  // 0 if diverged
+    moves = moves || results[rod].status == StepStatus::good;
   }
-  if (moves) block_.move(c_m_);
+  if (!moves) return;
+  block_.move(c_m);
+  c_m_ = c_m;
 }
 
 MovingShape Lockstep::shape(std::size_t rod) {
   points_ = block_.view(positions, rod);
   forces_ = block_.view(forces, rod);
-  const double momentum = block_.view(movements, rod).norm() / (1 - controls_[rod].kept()) /
+  const double momentum = c_m_.lane[rod] * block_.last_proposals(rod).norm() /
+                          (1 - controls_[rod].kept()) /
                           std::sqrt(static_cast<double>(points_.cols()));
   return {points_, forces_, controls_[rod].options().policy.momentum ? momentum : 0};
 }

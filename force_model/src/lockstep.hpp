@@ -46,7 +46,6 @@ class Lockstep {
 
  private:
   void look_at_modes();
-  void set_constants(std::size_t rod);
   MovingShape shape(std::size_t rod);
   void nudge(std::size_t rod);
 
@@ -54,8 +53,8 @@ class Lockstep {
   RodBlock block_;
   std::vector<StepControl> controls_;
   PerLane c_F_;
-  PerLane c_h_;
-  PerLane c_m_;
+  PerLane c_m_;   // of the last step: its movements were c_m times the proposed ones
+  PerLane kept_;  // c_h c_m
   PerLane active_;
   ProposedStep proposed_;
   ModeLook look_;

@@ -66,7 +66,7 @@ const double& RodBlock::at(int array, std::ptrdiff_t element) const {
   return memory_[static_cast<std::size_t>(k / block_lanes)].lane[k % block_lanes];
 }
 
-RodBlock::View RodBlock::view(PointArray array, std::size_t rod) const {
+RodBlock::View RodBlock::view(int array, std::size_t rod) const {
   return {&at(array, element(0, rod)), axes, points_, {stride_, pitch_}};
 }
 
@@ -124,15 +124,15 @@ void RodBlock::set_walls(std::span<const Rod> rods) {
 }
 
 void RodBlock::update_dimension(std::span<const Rod> rods) {
-  const auto flat = [this](PointArray array) {
+  const auto flat = [this](int array) {
     const auto zero = [&](std::ptrdiff_t k) { return at(array + 2, k) == 0; };
     for (std::ptrdiff_t k = 0; k < size_; ++k) {
       if (!zero(k)) return false;
     }
     return true;
   };
-  const bool planar =
-      std::all_of(rods.begin(), rods.end(), is_planar) && flat(positions) && flat(movements);
+  const bool planar = std::all_of(rods.begin(), rods.end(), is_planar) && flat(positions) &&
+                      flat(proposals) && flat(proposals + axes);
   kernel_ = &step_kernel(set_, law_, planar ? 2 : 3, stride_);
 }
 
@@ -181,8 +181,18 @@ void RodBlock::compute_forces(std::span<const Rod> rods, const PerLane& active) 
   }
 }
 
-void RodBlock::propose(const PerLane& c_F, const PerLane& c_h, bool relative, ProposedStep& step) {
-  (relative ? kernel_->propose_relative : kernel_->propose_absolute)(block(), c_F, c_h, step);
+void RodBlock::propose(const PerLane& c_F, const PerLane& kept, bool relative, ProposedStep& step) {
+  const auto propose = relative ? kernel_->propose_relative : kernel_->propose_absolute;
+  propose(block(), turn_, c_F, kept, step);
+}
+
+void RodBlock::move(const PerLane& c_m) {
+  kernel_->move(block(), turn_, c_m);
+  turn_ = 1 - turn_;
+}
+
+RodBlock::View RodBlock::last_proposals(std::size_t rod) const {
+  return view(proposals + axes * (1 - turn_), rod);
 }
 
 }  // namespace dlo::force_model

@@ -14,15 +14,15 @@ namespace dlo::force_model {
 /// constructor allocates.
 class RodBlock {
  public:
-  /// Positions, movements or forces of one rod, as a matrix.
+  /// Positions or forces of one rod, as a matrix.
   using View = Eigen::Map<const Eigen::Matrix3Xd, Eigen::Unaligned,
                           Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>;
 
   /// @param rods  1 to 8, checked; @param lockstep  false: one rod, vectorised over its points
   RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set);
 
-  /// `array` (positions, movements, forces) of one rod; 3 x points.
-  [[nodiscard]] View view(PointArray array, std::size_t rod) const;
+  /// An array with three axes, of one rod; 3 x points.
+  [[nodiscard]] View view(int array, std::size_t rod) const;
   void set(PointArray array, std::size_t rod, const Eigen::Matrix3Xd& vectors);
 
   /// Whether a rigid grip holds the point.
@@ -40,11 +40,15 @@ class RodBlock {
   /// Looks at the modes of the present shape; its forces have been computed.
   void look_at_modes(ModeLook& look) { kernel_->look_at_modes(block(), look); }
 
-  /// Proposes movements and says what they look like.
-  void propose(const PerLane& c_F, const PerLane& c_h, bool relative, ProposedStep& step);
+  /// Proposes movements, c_F forces + `kept` times the last ones proposed, and says what they look
+  /// like.
+  void propose(const PerLane& c_F, const PerLane& kept, bool relative, ProposedStep& step);
 
-  /// Moves the points of each rod by c_m times their proposed movement.
-  void move(const PerLane& c_m) { kernel_->move(block(), c_m); }
+  /// Moves the points of each rod by c_m times its proposed movements.
+  void move(const PerLane& c_m);
+
+  /// The proposed movements of a rod's last step.
+  [[nodiscard]] View last_proposals(std::size_t rod) const;
 
  private:
   struct alignas(64) Line {
@@ -71,6 +75,7 @@ class RodBlock {
   std::vector<Line> memory_;
   std::vector<WallLanes> walls_;
   bool spring_grips_ = false;
+  int turn_ = 0;  // which set of proposals the next step writes
   PerLane regular_;
   Eigen::Matrix3Xd plain_points_;
   Eigen::Matrix3Xd plain_forces_;

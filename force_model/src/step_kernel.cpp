@@ -45,12 +45,12 @@ struct Registers {
   void store(int array, std::ptrdiff_t k, Lanes value) const {
     write_lanes(block.first + array * block.pitch + k, value);
   }
-  Vector load_vector(PointArray array, std::ptrdiff_t k) const {
+  Vector load_vector(int array, std::ptrdiff_t k) const {
     Vector result;
     for (int i = 0; i < dimension; ++i) result.axis[i] = load(array + i, k);
     return result;
   }
-  void store_vector(PointArray array, std::ptrdiff_t k, const Vector& value) const {
+  void store_vector(int array, std::ptrdiff_t k, const Vector& value) const {
     for (int i = 0; i < dimension; ++i) store(array + i, k, value.axis[i]);
   }
 
@@ -248,26 +248,32 @@ void add_walls(const PointBlock& block, const WallLanes* walls, std::ptrdiff_t c
 }
 
 template <bool relative, int dimension, std::ptrdiff_t stride>
-void propose(const PointBlock& block, const PerLane& c_F, const PerLane& c_h, ProposedStep& step) {
+void propose(const PointBlock& block, int turn, const PerLane& c_F, const PerLane& kept,
+             ProposedStep& step) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
   const All all{block};
+  const int proposed = proposals + 3 * turn;
+  const int last_proposed = proposals + 3 * (1 - turn);
   for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
     const Lanes per_force = All::of_rods(c_F, column);
-    const Lanes kept = All::of_rods(c_h, column);
-    const auto movement_at = [&](std::ptrdiff_t k) {
-      return per_force * all.load_vector(forces, k) + kept * all.load_vector(movements, k);
-    };
+    const Lanes per_movement = All::of_rods(kept, column);
     Lanes largest = {};
     Lanes total = {};
     Lanes oscillating = {};
-    Vector dP = movement_at(column * lane_count);
+    const auto movement_at = [&](std::ptrdiff_t k, const Vector& last) {
+      return per_force * all.load_vector(forces, k) + per_movement * last;  // (7), (19)
+    };
+    Vector last = all.load_vector(last_proposed, column * lane_count);
+    Vector dP = movement_at(column * lane_count, last);
     for (std::ptrdiff_t k = column * lane_count; k < block.size; k += All::next) {
-      const Vector last = all.load_vector(movements, k);
-      all.store_vector(proposals, k, dP);  // (7), (19)
-      const Lanes turned = all.load(turned_back, k);
-      oscillating += dot(dP, last) < 0 ? turned : Lanes{};
-      const Vector following = movement_at(k + All::next);
+      all.store_vector(proposed, k, dP);
+      const Lanes turned = all.load(turned_back + 1 - turn, k);
+      const Lanes turns = dot(dP, last) < 0 ? all_lanes(1) : Lanes{};
+      all.store(turned_back + turn, k, turns);
+      oscillating += turns * turned;
+      last = all.load_vector(last_proposed, k + All::next);
+      const Vector following = movement_at(k + All::next, last);
       Lanes squared = dot(dP, dP);  // (16)
       if constexpr (relative) {
         const Vector difference = All::after(dP, following) - dP;  // (18)
@@ -284,20 +290,16 @@ void propose(const PointBlock& block, const PerLane& c_F, const PerLane& c_h, Pr
 }
 
 template <int dimension, std::ptrdiff_t stride>
-void move(const PointBlock& block, const PerLane& c_m) {
+void move(const PointBlock& block, int turn, const PerLane& c_m) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
   const All all{block};
   for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
     const Lanes scale = All::of_rods(c_m, column);
     for (std::ptrdiff_t k = column * lane_count; k < block.size; k += All::next) {
-      const Vector dP = all.load_vector(proposals, k);
-      const Lanes turned = dot(dP, all.load_vector(movements, k)) < 0 ? all_lanes(1) : Lanes{};
-      all.store(turned_back, k, turned);
-      Vector movement = scale * dP;
+      Vector movement = scale * all.load_vector(proposals + 3 * turn, k);
       // What diverged may not be a number.
       for (Lanes& axis : movement.axis) axis = scale > 0 ? axis : Lanes{};
-      all.store_vector(movements, k, movement);
       all.store_vector(positions, k, all.load_vector(positions, k) + movement);
     }
   }

@@ -20,8 +20,7 @@ struct alignas(64) PerLane {
 /// The arrays of a PointBlock by number; those with three axes take three numbers.
 enum PointArray : int {
   positions = 0,         ///< P [m], 3 axes
-  movements = 3,         ///< of the last step [m], 3 axes
-  proposals = 6,         ///< movements of this step before scaling [m], 3 axes
+  proposals = 3,         ///< movements before scaling [m], 3 axes, of this step and of the last
   forces = 9,            ///< on free points, 0 on rigidly held ones [N], 3 axes
   loads = 12,            ///< constant forces [N], 3 axes
   external_forces = 15,  ///< loads, walls and spring grips [N], 3 axes
@@ -31,10 +30,10 @@ enum PointArray : int {
   is_joint = 21,         ///< 1 where two segments meet, else 0
   is_segment = 22,       ///< 1 where a segment begins, else 0
   is_free = 23,          ///< 1 for points that move, 0 for rigidly held ones and padding
-  turned_back = 24,      ///< 1 where the last step went against the one before
-  last_positions = 25,   ///< when the modes were last looked at [m], 3 axes
-  last_forces = 28,      ///< then [N], 3 axes
-  point_array_count = 31
+  turned_back = 24,      ///< 1 where a step goes against the one before; of this step and the last
+  last_positions = 26,   ///< when the modes were last looked at [m], 3 axes
+  last_forces = 29,      ///< then [N], 3 axes
+  point_array_count = 32
 };
 
 /// Structure of arrays. Element k of a single rod is point k (`stride` 1); of eight rods in
@@ -78,14 +77,15 @@ struct StepKernel {
   void (*compute_forces)(const PointBlock& block, PointArray applied, PerLane& regular);
   /// Compares positions and forces with the last look's and takes their place.
   void (*look_at_modes)(const PointBlock& block, ModeLook& look);
-  /// proposals = c_F forces + c_h movements, compared with their neighbours (18)
-  void (*propose_relative)(const PointBlock& block, const PerLane& c_F, const PerLane& c_h,
-                           ProposedStep& step);
-  /// the same, each on its own (16)
-  void (*propose_absolute)(const PointBlock& block, const PerLane& c_F, const PerLane& c_h,
-                           ProposedStep& step);
-  /// movements = c_m proposals, positions += movements; rods with c_m = 0 stay where they are
-  void (*move)(const PointBlock& block, const PerLane& c_m);
+  /// proposals = c_F forces + kept * those of the last step, compared with their neighbours (18).
+  /// @param turn  which of the two sets is this step's, 0 or 1; the other is the last step's
+  void (*propose_relative)(const PointBlock& block, int turn, const PerLane& c_F,
+                           const PerLane& kept, ProposedStep& step);
+  /// The same, each on its own (16).
+  void (*propose_absolute)(const PointBlock& block, int turn, const PerLane& c_F,
+                           const PerLane& kept, ProposedStep& step);
+  /// positions += c_m proposals; rods with c_m = 0 stay where they are.
+  void (*move)(const PointBlock& block, int turn, const PerLane& c_m);
 };
 
 /// @param stride  1 or 8; @param dimension  2 (z stays 0) or 3

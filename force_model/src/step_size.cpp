@@ -29,7 +29,10 @@ double fastest_inner_mode(const Rod& rod, const Points& points) {
     if (i > 0) {
       const double mean = (L[i - 1] + L[i]) / 2;
       const double lever = std::min(length, previous_length);
-      const double alpha = std::atan2(previous.cross(segment).norm(), previous.dot(segment));
+      // A joint next to a segment of zero length has no angle; atan2(0, -0) would be pi.
+      const bool directed = !previous.isZero(0) && !segment.isZero(0);
+      const double alpha =
+          directed ? std::atan2(previous.cross(segment).norm(), previous.dot(segment)) : 0;
       bending = std::max(bending, (16 * joint_stiffness(rod.bending, mean, alpha) +
                                    4 * joint_moment(rod.bending, mean, alpha)) /
                                       (lever * lever));
