@@ -41,8 +41,8 @@ Batch::Batch(std::vector<BatchRod> rods) : size_(rods.size()) {
   }
 }
 
-Batch::Batch(Batch&&) noexcept = default;
-Batch& Batch::operator=(Batch&&) noexcept = default;
+Batch::Batch(Batch&& other) noexcept = default;
+Batch& Batch::operator=(Batch&& other) noexcept = default;
 Batch::~Batch() = default;
 
 std::size_t Batch::blocks() const { return blocks_.size(); }

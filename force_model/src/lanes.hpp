@@ -4,7 +4,7 @@
 #include <utility>
 
 // Arithmetic on as many numbers as one register of the instruction set holds that the including
-// file is compiled for. Only step_kernel.cpp includes this.
+// file is compiled for. Only step_kernel.cpp and its registers.hpp include this.
 
 namespace dlo::force_model::DLO_KERNEL {
 

@@ -79,7 +79,8 @@ void RodBlock::set(PointArray array, std::size_t rod, const Eigen::Matrix3Xd& ve
 void RodBlock::set_padding() {
   // Points far away, a metre from each other, that neither move nor pull.
   for (std::ptrdiff_t k = 0; k < size_ + block_lanes; ++k) {
-    at(positions, k) = 1000. + static_cast<double>(k / stride_);
+    const std::ptrdiff_t point = k / stride_;
+    at(positions, k) = 1000 + static_cast<double>(point);
     at(last_positions, k) = at(positions, k);
     at(rest_lengths, k) = 1;
   }

@@ -21,8 +21,8 @@ Simulation& Simulation::operator=(const Simulation& other) {
   return *this;
 }
 
-Simulation::Simulation(Simulation&&) noexcept = default;
-Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::Simulation(Simulation&& other) noexcept = default;
+Simulation& Simulation::operator=(Simulation&& other) noexcept = default;
 Simulation::~Simulation() = default;
 
 StepResult Simulation::step() {

@@ -1,19 +1,21 @@
 #include "step_kernel.hpp"
 
-#include "lanes.hpp"
+#include "registers.hpp"
 
-// Compiled once for each instruction set, DLO_KERNEL naming the namespace (see CMakeLists.txt). No
-// header with inline functions of a library may come in here: of those the linker keeps one copy,
+// Compiled once for each instruction set, DLO_KERNEL naming the namespace (see CMakeLists.txt).
+// Nothing inline from a library may be used in here: of such a function the linker keeps one copy,
 // perhaps one with instructions that the machine lacks.
 //
 // This is what total_forces and Formulas 7 to 20 say, arranged so that neighbours meet once. With
-// s_k the segment from P_k to P_{k+1}, u_k its direction, a = |s_{k-1}|, b = |s_k| and c = u_{k-1}.
-// u_k both bending laws have the form
-//     on P_{k+1}: m_k (s_{k-1} - (s_{k-1}.u_k) u_k)   on P_{k-1}: -m_k (s_k - (s_k.u_{k-1})
-//     u_{k-1}) hooke:  m_k = (2 EI/L) / (a b (1 + c)) = (2 EI/L) / (a b + s_{k-1}.s_k) (a) paper:
-//     m_k = c_b (1 - c) / |s_{k-1} + s_k|                                               (b)
+// s_k the segment from P_k to P_{k+1}, u_k its direction, a = |s_{k-1}|, b = |s_k| and c the cosine
+// of the joint's angle, both bending laws have the form
+//     on P_{k+1}:   m_k (s_{k-1} - (s_{k-1}.u_k) u_k)
+//     on P_{k-1}:  -m_k (s_k - (s_k.u_{k-1}) u_{k-1})
+//     hooke:  m_k = (2 EI/L) / (a b (1 + c))                      (a)
+//     paper:  m_k = c_b (1 - c) / |s_{k-1} + s_k|                 (b)
 // so what acts through segment k, contraction and the joints at its ends, is one force
-//     T_k = c_c (1/L_k - 1/|s_k|) s_k - (h - (h.u_k) u_k),   h = m_k s_{k-1} + m_{k+1} s_{k+1}  (c)
+//     T_k = c_c (1/L_k - 1/|s_k|) s_k - (h - (h.u_k) u_k)         (c)
+//     h = m_k s_{k-1} + m_{k+1} s_{k+1}
 // on P_k and its opposite on P_{k+1}; the inner force of a point is T_k - T_{k-1}.
 
 namespace dlo::force_model::DLO_KERNEL {
@@ -23,67 +25,6 @@ namespace {
 /// those next to segments so short that a b is below `no_area` [m^2].
 constexpr double fold_cosine = -0.98999249660044546;
 constexpr double no_area = 1e-60;
-
-/// tan^2(hooke_fold_angle / 2)
-constexpr double fold_tangent_squared = 198.85004452649244;
-
-/// The elements of a block as registers. Those of a single rod (`stride` 1) hold neighbouring
-/// points; those of rods in lockstep (`stride` 8) hold the same point of several rods, and a block
-/// has a column for each register that its eight rods fill.
-template <int dimension, std::ptrdiff_t stride>
-struct Registers {
-  static constexpr std::ptrdiff_t columns = stride == 1 ? 1 : block_lanes / lane_count;
-  /// From one register of a column to the next.
-  static constexpr std::ptrdiff_t next = stride == 1 ? lane_count : block_lanes;
-
-  using Vector = LaneVector<dimension>;
-  PointBlock block;
-
-  Lanes load(int array, std::ptrdiff_t k) const {
-    return read_lanes(block.first + array * block.pitch + k);
-  }
-  void store(int array, std::ptrdiff_t k, Lanes value) const {
-    write_lanes(block.first + array * block.pitch + k, value);
-  }
-  Vector load_vector(int array, std::ptrdiff_t k) const {
-    Vector result;
-    for (int i = 0; i < dimension; ++i) result.axis[i] = load(array + i, k);
-    return result;
-  }
-  void store_vector(int array, std::ptrdiff_t k, const Vector& value) const {
-    for (int i = 0; i < dimension; ++i) store(array + i, k, value.axis[i]);
-  }
-
-  /// A rod's number in all lanes that belong to it, and back.
-  static Lanes of_rods(const PerLane& values, std::ptrdiff_t column) {
-    return stride == 1 ? all_lanes(values.lane[0]) : read_lanes(values.lane + column * lane_count);
-  }
-  template <Lanes combine(Lanes, Lanes)>
-  static void gather(Lanes a, std::ptrdiff_t column, PerLane& values) {
-    if constexpr (stride == 1) {
-      values.lane[0] = reduce<combine>(a);
-    } else {
-      write_lanes(values.lane + column * lane_count, a);
-    }
-  }
-
-  /// What belongs to the points before those of a register, given the register before it.
-  static Lanes before(Lanes previous, Lanes here) {
-    return stride == 1 ? window<lane_count - 1>(previous, here) : previous;
-  }
-  /// And to the points after.
-  static Lanes after(Lanes here, Lanes following) {
-    return stride == 1 ? window<1>(here, following) : following;
-  }
-  static Vector before(Vector previous, const Vector& here) {
-    for (int i = 0; i < dimension; ++i) previous.axis[i] = before(previous.axis[i], here.axis[i]);
-    return previous;
-  }
-  static Vector after(Vector here, const Vector& following) {
-    for (int i = 0; i < dimension; ++i) here.axis[i] = after(here.axis[i], following.axis[i]);
-    return here;
-  }
-};
 
 /// Segments k and the joints at P_k where they begin.
 template <int dimension>
@@ -158,18 +99,19 @@ void compute_forces(const PointBlock& block, PointArray applied, PerLane& regula
 template <BendingLaw law>
 Lanes joint_mode(Lanes stiffness, Lanes ab, Lanes product, Lanes L, Lanes lever) {
   const Lanes cosine = ab > no_area ? product / ab : all_lanes(1);
-  const Lanes opening = max(1 + cosine, all_lanes(1 + fold_cosine));
-  const Lanes closing = max(1 - cosine, Lanes{});
   if constexpr (law == BendingLaw::hooke) {
-    const Lanes moment = stiffness * sqrt(min(closing / opening, all_lanes(fold_tangent_squared)));
-    const Lanes slope = cosine < fold_cosine ? Lanes{} : stiffness / opening;
-    return (16 * slope + 4 * moment) / (lever * lever);
+    // M = k sin / (1 + cos), M' = k / (1 + cos) with k = 2 EI / L; M stays beyond the fold angle.
+    const Lanes followed = max(cosine, all_lanes(fold_cosine));
+    const Lanes opening = 1 + followed;
+    const Lanes slope = cosine < fold_cosine ? Lanes{} : all_lanes(1);
+    const Lanes sine = sqrt(max(1 - followed, Lanes{}) * opening);
+    return stiffness * (16 * slope + 4 * sine) / (opening * lever * lever);
   } else {
-    const Lanes sine = sqrt(closing / 2);
-    const Lanes square = stiffness * L * sine * sine;
-    const Lanes moment = 2 * square * sine;
-    const Lanes slope = 3 * square * sqrt(max(1 + cosine, Lanes{}) / 2);
-    return (16 * slope + 4 * moment) / (lever * lever);
+    // M = 2 c_b L sin^3(alpha/2), M' = 3 c_b L sin^2(alpha/2) cos(alpha/2)
+    const Lanes sine_squared = max(1 - cosine, Lanes{}) / 2;
+    const Lanes half_cosine = sqrt(max(1 + cosine, Lanes{}) / 2);
+    return stiffness * L * sine_squared * (48 * half_cosine + 8 * sqrt(sine_squared)) /
+           (lever * lever);
   }
 }
 
@@ -298,8 +240,10 @@ void move(const PointBlock& block, int turn, const PerLane& c_m) {
     const Lanes scale = All::of_rods(c_m, column);
     for (std::ptrdiff_t k = column * lane_count; k < block.size; k += All::next) {
       Vector movement = scale * all.load_vector(proposals + 3 * turn, k);
-      // What diverged may not be a number.
-      for (Lanes& axis : movement.axis) axis = scale > 0 ? axis : Lanes{};
+      // A rod that diverged among others proposes what may not be a number.
+      if constexpr (stride != 1) {
+        for (Lanes& axis : movement.axis) axis = scale > 0 ? axis : Lanes{};
+      }
       all.store_vector(positions, k, all.load_vector(positions, k) + movement);
     }
   }

@@ -2,31 +2,31 @@
 // rod takes to come to rest. Ratios (`speedup`) are taken within one benchmark, the two sides
 // taking turns.
 //
-// The arithmetic limit. A step of one point (hooke, plane, stepper `dynamic`) does, counted in the
-// kernel's source with a fused multiplication and addition as one operation,
-//     segment     2 differences, 2 products, 1 root
-//     joint       ab, s.s', opening, bound and its comparison with the selection, b opening,
-//                 1 division, 1/b, m: 12
-//     force       extension, tension, h (4), h.s (2), along (2), T (4), inner (2), load (2),
-//                 free (2): 20
-//     proposal    dP (4), dP.last (2), its comparison and selection (2), turned (1), difference
-//                 (2), square (3), maximum and sum (2), |dP|^2 is not needed: 16
-//     movement    scale (2), selection (2), addition (2): 6
-// that is 58 operations, one division and one root; in space 16 more. A core that does two of them
-// at a time on 256 bits (AVX2) or one on 512 bits (AVX-512 on a Zen 4, whose multipliers are 256
-// bits wide) needs 58/8 = 7.3 cycles a point; the divider, which works beside them, 5 cycles for
-// four divisions and 9 for four roots, 3.5 cycles a point. So the limit is about 7.3 cycles a point
-// and 116 cycles, 35 ns at 3.3 GHz, for N = 16. The counter `share_of_limit` compares with that
-// at the clock that DLO_BENCHMARK_GHZ names (3.3 if it does not). Loads and stores, about 25 of 64
-// bytes a point and eight rods, are as many again as the operations and explain most of the rest;
-// for one rod of 16 points it is the latency of the chain root, division, products, largest
-// movement, c_m, of about 200 cycles that no width hides.
+// The arithmetic limit. Counted in the kernel's source, with a product and the sum it goes into as
+// one operation, a step of one point (hooke, in the plane, stepper `dynamic`) does
+//     segment    2 differences, 2 for the square, 1 root                                      4
+//     joint      a b, s.s' (2), opening, its bound, comparison and selection, 1 division of
+//                1 / (b opening), product before it, 1/b, m (2)                              12
+//     force      tension (2), h (4), h.s (2), along (2), T (4), inner (2), load, held (4)    20
+//     proposal   dP (4), its product with the last, comparison, selection, count (5),
+//                difference, square, segment (5), largest, sum (2)                           16
+//     movement   scale, selection, addition                                                   6
+// that is 58 operations, a division and a root; a third axis adds 22. A core that does two
+// operations on 256 bits in a cycle, or one on 512 (Zen 4 splits those), needs 58/8 = 7.3 cycles a
+// point. The divider works beside it, and about 1.3 cycles a division and 2.3 a root are less. So
+// N = 16 cannot take less than 116 cycles, 35 ns at 3.3 GHz; `share_of_limit` compares with that,
+// at the clock that DLO_BENCHMARK_GHZ gives if it is another. What is above it: of a batch, loads
+// and stores, some 40 registers for 58 operations; of one rod, the way from the first root to the
+// scaling of the last movement, which no width shortens, and the registers that 16 points leave
+// empty; with SSE2 the limit is four times as high.
 
 #include <benchmark/benchmark.h>
 
-#include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
+#include <vector>
 
 #include "dlo/force_model/batch.hpp"
 #include "dlo/force_model/simulation.hpp"
@@ -36,13 +36,13 @@
 namespace dlo::force_model {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr double operations_per_point = 58;
+constexpr double operations_in_plane = 58;
+constexpr double operations_in_space = 80;
 constexpr double operations_per_cycle = 8;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
+/// Processor time: what other programs on the machine take away does not count.
+double seconds_since(std::clock_t start) {
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
 }
 
 double clock_hertz() {
@@ -66,7 +66,8 @@ BatchRod steel_rod(int points, Stepper stepper, double side_force = 0) {
 
 void report(benchmark::State& state, double plain, double kernel, double rods) {
   const auto points = static_cast<double>(state.range(0));
-  const double limit = points * operations_per_point / operations_per_cycle / clock_hertz();
+  const double operations = state.range(3) == 0 ? operations_in_plane : operations_in_space;
+  const double limit = points * operations / operations_per_cycle / clock_hertz();
   state.counters["plain_ns"] = 1e9 * plain;
   state.counters["kernel_ns"] = 1e9 * kernel / rods;
   state.counters["steps_per_s"] = rods / kernel;
@@ -74,20 +75,19 @@ void report(benchmark::State& state, double plain, double kernel, double rods) {
   state.counters["share_of_limit"] = limit / (kernel / rods);
 }
 
-/// Steps both in turns, `steps` at a time, and keeps the fastest turn of each: what other programs
-/// on the machine take away does not count.
+/// Steps both in turns, `steps` at a time, and keeps the fastest turn of each.
 template <typename StepKernel>
 void compare_with_plain(benchmark::State& state, const BatchRod& one, double rods,
                         const StepKernel& step_kernel) {
-  constexpr int steps = 500;
+  constexpr int steps = 1000;
   test::PlainSimulation plain(one.rod, one.points, one.options);
   double fastest_plain = 1;
   double fastest_kernel = 1;
   for ([[maybe_unused]] const auto& turn : state) {
-    const Clock::time_point start = Clock::now();
+    const std::clock_t start = std::clock();
     for (int i = 0; i < steps; ++i) (void)plain.step();
     fastest_plain = std::min(fastest_plain, seconds_since(start) / steps);
-    const Clock::time_point middle = Clock::now();
+    const std::clock_t middle = std::clock();
     step_kernel(steps);
     fastest_kernel = std::min(fastest_kernel, seconds_since(middle) / steps);
   }
@@ -153,7 +153,7 @@ void straight_to_rest(benchmark::State& state) {
   double fastest = 1;
   for ([[maybe_unused]] const auto& run : state) {
     Simulation simulation(rod, steel.straight(), {});
-    const Clock::time_point start = Clock::now();
+    const std::clock_t start = std::clock();
     for (long i = 0; i < needed; ++i) (void)simulation.step();
     fastest = std::min(fastest, seconds_since(start));
   }
@@ -166,11 +166,11 @@ BENCHMARK(straight_to_rest)->ArgName("E_over")->Arg(1)->Arg(100)->Unit(benchmark
 void many_points(benchmark::State& state) {
   const BatchRod one = steel_rod(static_cast<int>(state.range(0)), Stepper::dynamic);
   Simulation simulation(one.rod, one.points, one.options);
+  const std::clock_t start = std::clock();
   for ([[maybe_unused]] const auto& step : state) (void)simulation.step();
+  const auto points = static_cast<double>(state.iterations() * state.range(0));
+  state.counters["ns_per_point"] = 1e9 * seconds_since(start) / points;
   state.SetComplexityN(state.range(0));
-  state.counters["ns_per_point"] =
-      benchmark::Counter(1e-9 * static_cast<double>(state.iterations() * state.range(0)),
-                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 BENCHMARK(many_points)->RangeMultiplier(10)->Range(10, 100000)->Complexity(benchmark::oN);
 

@@ -33,10 +33,10 @@ class Batch {
   /// @throws std::invalid_argument if there are no rods, if they differ in what they have to share,
   ///         or as Simulation
   explicit Batch(std::vector<BatchRod> rods);
-  Batch(const Batch&) = delete;
-  Batch& operator=(const Batch&) = delete;
-  Batch(Batch&&) noexcept;
-  Batch& operator=(Batch&&) noexcept;
+  Batch(const Batch& other) = delete;
+  Batch& operator=(const Batch& other) = delete;
+  Batch(Batch&& other) noexcept;
+  Batch& operator=(Batch&& other) noexcept;
   ~Batch();
 
   [[nodiscard]] std::size_t size() const { return size_; }

@@ -21,8 +21,8 @@ class Simulation {
   Simulation(Rod rod, Eigen::Matrix3Xd points, const StepOptions& options);
   Simulation(const Simulation& other);
   Simulation& operator=(const Simulation& other);
-  Simulation(Simulation&&) noexcept;
-  Simulation& operator=(Simulation&&) noexcept;
+  Simulation(Simulation&& other) noexcept;
+  Simulation& operator=(Simulation&& other) noexcept;
   ~Simulation();
 
   /// One simulation step.
