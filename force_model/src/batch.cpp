@@ -32,7 +32,7 @@ void require_alike(const std::vector<BatchRod>& rods) {
 
 }  // namespace
 
-Batch::Batch(std::vector<BatchRod> rods) : size_(rods.size()) {
+Batch::Batch(const std::vector<BatchRod>& rods) : size_(rods.size()) {
   require_alike(rods);
   const std::span<const BatchRod> all = rods;
   blocks_.reserve((size_ + rods_per_block - 1) / rods_per_block);

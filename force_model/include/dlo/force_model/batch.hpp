@@ -25,14 +25,15 @@ struct BatchRod {
 /// from rod to rod. Each rod does what its own Simulation would do, up to rounding.
 ///
 /// Blocks share nothing. Different threads may work on different blocks at the same time:
-///     tbb::parallel_for(std::size_t{0}, batch.blocks(), [&](auto b) { batch.step_block(b, 1000); });
+///     tbb::parallel_for(std::size_t{0}, batch.blocks(), [&](auto b) { batch.step_block(b, 1000);
+///     });
 class Batch {
  public:
   static constexpr std::size_t rods_per_block = 8;
 
   /// @throws std::invalid_argument if there are no rods, if they differ in what they have to share,
   ///         or as Simulation
-  explicit Batch(std::vector<BatchRod> rods);
+  explicit Batch(const std::vector<BatchRod>& rods);
   Batch(const Batch& other) = delete;
   Batch& operator=(const Batch& other) = delete;
   Batch(Batch&& other) noexcept;
