@@ -36,6 +36,7 @@ std::vector<BatchRod> random_rods(std::size_t count, Eigen::Index points, const 
 void expect_agreement(const std::vector<BatchRod>& rods, int steps) {
   Batch batch(rods);
   std::vector<Simulation> simulations;
+  simulations.reserve(rods.size());
   for (const BatchRod& one : rods) simulations.emplace_back(one.rod, one.points, one.options);
   for (int i = 0; i < steps; ++i) {
     batch.step(1);
