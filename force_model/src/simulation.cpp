@@ -12,6 +12,8 @@ namespace {
 
 constexpr long block_steps = 16;      // between two looks at the modes
 constexpr double block_memory = 0.8;  // weight of older blocks
+// Movements below this share of the coordinates are rounding, which turns back and forth at rest.
+constexpr double rounding_share = 1024 * std::numeric_limits<double>::epsilon();
 
 void check(const StepOptions& options) {
   const StepPolicy& policy = options.policy;
@@ -94,6 +96,7 @@ void Simulation::compute_forces() {
 void Simulation::choose_step() {
   const ModeBounds now = mode_bounds(rod_, points_);
   modes_.fastest = now.fastest;
+  rounding_ = rounding_share * points_.cwiseAbs().maxCoeff();
   if (block_open_) {
     block_forces_ -= forces_;
     block_points_ = points_ - block_points_;
@@ -127,7 +130,7 @@ double Simulation::largest_movement() const {
 void Simulation::update_damping() {
   long oscillating = 0;
   for (Eigen::Index i = 0; i < proposed_.cols(); ++i) {
-    const bool turns = proposed_.col(i).dot(movement_.col(i)) < 0;
+    const bool turns = proposed_.col(i).dot(movement_.col(i)) < -rounding_ * rounding_;
     if (turns && turned_back_[i]) ++oscillating;
     turned_back_[i] = turns;
   }

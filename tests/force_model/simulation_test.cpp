@@ -82,6 +82,17 @@ TEST(DynamicStepper, AddsAShareOfTheLastMovement) {
   EXPECT_LT((simulation.points() - expected).cwiseAbs().maxCoeff(), 1e-16);
 }
 
+TEST(OscillationDamping, LeavesOutMovementsOfRoundingSize) {
+  SteelRod hanging;
+  hanging.angle = -1.5707963267948966;
+  for (const double c_h : {0.0, 0.9}) {
+    Simulation simulation(hanging.rod({BendingLaw::hooke, hanging.EI}, 660), hanging.straight(),
+                          options(Stepper::dynamic, 1e-5, 1e-2, c_h));
+    for (int i = 0; i < 50000; ++i) ASSERT_EQ(simulation.step().status, StepStatus::good);
+    EXPECT_EQ(simulation.damped_steps(), 0) << "c_h = " << c_h;
+  }
+}
+
 TEST(OscillationDamping, GrowsWhilePointsTurnBackAndFallsToOneAfterwards) {
   // Twice the stable step: the contraction modes turn back in every step.
   const double c_F = 2.2 / mode_bounds(steel_rod(), SteelRod().straight()).fastest * 2;

@@ -81,6 +81,7 @@ class Simulation {
   Eigen::ArrayXd free_;        // 1 for points that move, 0 for rigidly held ones
   Eigen::ArrayX<bool> turned_back_;
   double c_s_ = 1;
+  double rounding_ = 0;    // smallest movement that counts as oscillation [m]
   double owed_steps_ = 0;  // expected minus reached sum of c_m (Text 1)
   long steps_ = 0;
   long damped_steps_ = 0;
