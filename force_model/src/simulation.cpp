@@ -254,4 +254,15 @@ void Simulation::move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matri
   }
 }
 
+void Simulation::move_wall(std::size_t wall, const Wall& moved) {
+  require(wall < rod_.walls.size(), "Simulation::move_wall", "wall", static_cast<double>(wall),
+          "smaller than the number of walls");
+  force_model::check(moved);
+  rod_.walls[wall] = moved;
+  // Forces before and after do not compare, so the block that estimates the slowest mode is void.
+  block_open_ = false;
+  choose_step();
+  block_open_ = false;
+}
+
 }  // namespace dlo::force_model

@@ -56,6 +56,11 @@ class Simulation {
   void move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
                  const Eigen::Vector3d& reference);
 
+  /// Replaces a wall, whatever it does to the rod: a wall that is not there yet has stiffness 0.
+  /// Automatic steps suit it from the next step on.
+  /// @throws std::invalid_argument if there is no such wall or the new one is out of range
+  void move_wall(std::size_t wall, const Wall& moved);
+
   [[nodiscard]] const Rod& rod() const { return rod_; }
   [[nodiscard]] const Eigen::Matrix3Xd& points() const { return points_; }
   [[nodiscard]] const StepOptions& options() const { return options_; }
