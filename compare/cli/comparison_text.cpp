@@ -21,12 +21,15 @@ std::string comparison_text(const compare::Comparison& c) {
   if (std::isfinite(d.rms_over_movement)) {
     append(out, " = {:.4g} % of the movement", d.rms_over_movement * 100);
   }
-  append(out, "\n                  largest {:.4g} mm at s = {:.4f} m, tip {:.4g} mm\n",
-         d.max_m * 1e3, d.max_at_m, d.tip_m * 1e3);
+  append(out, "\n                  largest {:.4g} mm at s = {:.4f} m", d.max_m * 1e3, d.max_at_m);
+  if (std::isfinite(d.tip_m)) append(out, ", tip {:.4g} mm", d.tip_m * 1e3);
+  append(out, "\n");
   append(out, "                  tangent RMS {:.4g} deg, curvature RMS {:.4g} 1/m\n",
          d.angle_rms_rad * 57.29577951308232, d.curvature_rms_per_m);
-  append(out, "                  (the unbent rod would be {:.4g} % of l off)\n",
-         c.undeformed_rms_over_length * 100);
+  if (std::isfinite(c.undeformed_rms_over_length)) {
+    append(out, "                  (the unbent rod would be {:.4g} % of l off)\n",
+           c.undeformed_rms_over_length * 100);
+  }
   append(out, "  E*/E            {:.4f}, where the RMS is {:.4g} mm ({} optimum)\n",
          c.effective_modulus.ratio, c.effective_modulus.rms_m * 1e3,
          compare::to_string(c.effective_modulus.optimum));

@@ -1,5 +1,8 @@
 #include "dlo/compare/comparison.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace dlo::compare {
 namespace {
 
@@ -16,6 +19,8 @@ double field_distance(const Shape& a, const Shape& b, const std::vector<double>&
 Budget error_budget(const Scene& scene, const Solution& force, const Reference& reference,
                     const SolveOptions& options) {
   ForceModelSettings settings = scene.force_model;
+  // The chain stretches as the material does, so that what a lower c_c adds shows as stretch.
+  settings.c_c.reset();
   const auto chain = [&] { return solve_chain(scene, settings, options).shape; };
   const Shape same = chain();
   settings.law = Law::hooke;
@@ -38,10 +43,22 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   return budget;
 }
 
+/// The end that no gripper holds; of two the one at arc length l.
+std::optional<Eigen::Index> free_end(const Scene& scene, const std::vector<double>& s) {
+  const auto held = [&](double at) {
+    return std::any_of(scene.grippers.begin(), scene.grippers.end(),
+                       [at](const Gripper& gripper) { return gripper.at == at; });
+  };
+  if (!held(scene.length)) return static_cast<Eigen::Index>(s.size()) - 1;
+  if (!held(0)) return 0;
+  return std::nullopt;
+}
+
 }  // namespace
 
-Eigen::Matrix3Xd straight_rod(const Scene& scene, const std::vector<double>& s) {
+std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene, const std::vector<double>& s) {
   const Gripper& grip = scene.grippers.front();
+  if (scene.grippers.size() > 1 || !grip.direction) return std::nullopt;
   Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(s.size()));
   for (std::size_t i = 0; i < s.size(); ++i) {
     points.col(static_cast<Eigen::Index>(i)) = grip.position + (s[i] - grip.at) * *grip.direction;
@@ -58,11 +75,10 @@ Comparison compare(const Scene& scene, const SolveOptions& options) {
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
   const std::vector<double>& s = result.force.shape.arc_length;
   result.reference = {s, energy.sample(s).points};
-  const Eigen::Matrix3Xd straight = straight_rod(scene, s);
-  const Eigen::Index tip =
-      scene.grippers.front().at == 0 ? static_cast<Eigen::Index>(s.size()) - 1 : 0;
-  result.deviation = deviation(result.force.shape, energy.sample, straight, tip);
-  result.undeformed_rms_over_length = rms(s, straight - result.reference.points) / scene.length;
+  const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
+  result.deviation = deviation(result.force.shape, energy.sample, straight, free_end(scene, s));
+  result.undeformed_rms_over_length =
+      straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
   result.effective_modulus = fit_effective_modulus(scene, result.force.shape);
   result.budget = error_budget(scene, result.force, energy.sample, options);
   result.energy_seconds = energy.seconds;

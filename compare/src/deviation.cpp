@@ -62,7 +62,8 @@ double rms(const std::vector<double>& arc_length, const Eigen::Matrix3Xd& differ
 }
 
 Deviation deviation(const Shape& shape, const Reference& reference,
-                    const Eigen::Matrix3Xd& straight, Eigen::Index tip) {
+                    const std::optional<Eigen::Matrix3Xd>& straight,
+                    std::optional<Eigen::Index> tip) {
   const energy_model::Samples samples = reference(shape.arc_length);
   const Eigen::Matrix3Xd difference = shape.points - samples.points;
   Deviation result;
@@ -70,9 +71,9 @@ Deviation deviation(const Shape& shape, const Reference& reference,
   Eigen::Index worst = 0;
   result.max_m = std::sqrt(difference.colwise().squaredNorm().maxCoeff(&worst));
   result.max_at_m = shape.arc_length[static_cast<std::size_t>(worst)];
-  result.tip_m = difference.col(tip).norm();
+  result.tip_m = tip ? difference.col(*tip).norm() : NAN;
   result.rms_over_length = result.rms_m / (shape.arc_length.back() - shape.arc_length.front());
-  const double movement = rms(shape.arc_length, samples.points - straight);
+  const double movement = straight ? rms(shape.arc_length, samples.points - *straight) : 0;
   // A rod that stays where it was has no movement to compare with.
   const double length = shape.arc_length.back() - shape.arc_length.front();
   result.rms_over_movement = movement > 1e-9 * length ? result.rms_m / movement : NAN;

@@ -10,34 +10,67 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/planar.hpp"
+#include "layout.hpp"
+#include "start_shape.hpp"
 
 namespace dlo::compare {
 namespace {
 
-/// The curvature that a straight rod's load would bend into the clamp: what a moment-matched c_b
-/// should be right at when nobody says otherwise. No less than a tenth of what the load could do
-/// across the rod, since a rod along its load bends into other shapes than the straight one.
-double clamp_curvature(const Scene& scene) {
-  const Gripper& grip = scene.grippers.front();
-  const bool at_start = grip.at == 0;
-  const Eigen::Vector3d direction = at_start ? *grip.direction : Eigen::Vector3d(-*grip.direction);
-  Eigen::Vector3d moment =
-      direction.cross(scene.weight_per_length()) * scene.length * scene.length / 2;
+/// The moment of a straight rod's load at a point, of the side on which it is larger [N m].
+struct RootMoment {
+  double along = 0;  ///< as the rod points
+  double most = 0;   ///< were every force across the rod
+};
+
+RootMoment root_moment(const Scene& scene, const Gripper& grip, double side) {
+  const double rod = side > 0 ? scene.length - grip.at : grip.at;
+  const Eigen::Vector3d direction = side * *grip.direction;
+  Eigen::Vector3d moment = direction.cross(scene.weight_per_length()) * rod * rod / 2;
+  double most = scene.weight_per_length().norm() * rod * rod / 2;
   for (const PointLoad& load : scene.loads) {
-    moment += direction.cross(load.force) * std::abs(load.at - grip.at);
+    const double arm = side * (load.at - grip.at);
+    if (!(arm > 0)) continue;
+    moment += direction.cross(load.force) * arm;
+    most += load.force.norm() * arm;
   }
-  double most = scene.weight_per_length().norm() * scene.length * scene.length / 2;
-  for (const PointLoad& load : scene.loads) most += load.force.norm() * std::abs(load.at - grip.at);
-  return std::max(moment.norm(), most / 10) / scene.bending_stiffness();
+  return {moment.norm(), most};
 }
 
-double segment_length(const Scene& scene, const ForceModelSettings& settings) {
-  const double segments = settings.points - 1;
-  return settings.bookkeeping == Bookkeeping::paper ? scene.length / segments
-                                                    : scene.length / (segments - 0.5);
+/// What a moment-matched c_b should be right at when nobody says otherwise. One clamp: the
+/// curvature that a straight rod's load would bend into the clamp; no less than a tenth of what the
+/// load could do across the rod, since a rod along its load bends into other shapes than the
+/// straight one. Other grips: that of the start shape (RMS), to which the load adds no more than it
+/// would bend into a straight rod between two clamps.
+double design_curvature(const Scene& scene, const Layout& layout, const Eigen::Matrix3Xd& start) {
+  const Gripper& grip = scene.grippers.front();
+  if (scene.grippers.size() == 1 && grip.direction) {
+    double curvature = 0;
+    for (const double side : {-1.0, 1.0}) {
+      const RootMoment moment = root_moment(scene, grip, side);
+      curvature = std::max(curvature, std::max(moment.along, moment.most / 10));
+    }
+    return curvature / scene.bending_stiffness();
+  }
+  double turned = 0;
+  for (Eigen::Index i = 1; i + 1 < start.cols(); ++i) {
+    const Eigen::Vector3d u = (start.col(i) - start.col(i - 1)).normalized();
+    const Eigen::Vector3d v = (start.col(i + 1) - start.col(i)).normalized();
+    const double share = (layout.rest_lengths[i - 1] + layout.rest_lengths[i]) / 2;
+    turned += std::pow(2 * std::asin(std::min(1.0, (v - u).norm() / 2)), 2) / share;
+  }
+  double longest = 0;
+  double begin = 0;
+  for (const std::size_t index : layout.along) {
+    longest = std::max(longest, scene.grippers[index].at - begin);
+    begin = scene.grippers[index].at;
+  }
+  longest = std::max(longest, scene.length - begin);
+  double moment = scene.weight_per_length().norm() * longest * longest / 12;
+  for (const PointLoad& load : scene.loads) moment += load.force.norm() * longest / 8;
+  return std::sqrt(turned / scene.length) + moment / scene.bending_stiffness();
 }
 
-void derive_bending(const Scene& scene, const ForceModelSettings& settings,
+void derive_bending(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
                     Discretisation& result) {
   if (settings.law == Law::hooke) {
     result.rod.bending = {force_model::BendingLaw::hooke, scene.bending_stiffness()};
@@ -47,7 +80,9 @@ void derive_bending(const Scene& scene, const ForceModelSettings& settings,
   if (settings.c_b) {
     parameters.c_b = *settings.c_b;
   } else {
-    parameters.design_curvature = settings.design_curvature.value_or(clamp_curvature(scene));
+    parameters.design_curvature = settings.design_curvature
+                                      ? *settings.design_curvature
+                                      : design_curvature(scene, layout, result.starts.front());
     const double alpha = parameters.design_curvature * parameters.segment_length;
     if (!(alpha > 0 && alpha < std::numbers::pi)) {
       throw InputError(
@@ -63,53 +98,76 @@ void derive_bending(const Scene& scene, const ForceModelSettings& settings,
   result.rod.bending = {force_model::BendingLaw::paper, parameters.c_b};
 }
 
-/// Weights and loads on the points. Loads between two points go to both by the lever rule.
-void distribute_forces(const Scene& scene, const ForceModelSettings& settings,
-                       Eigen::Index held_begin, Discretisation& result) {
+/// The part of a segment that weighs on its first or second point [m].
+double weighing_half(const Scene& scene, const Layout& layout, Eigen::Index segment, bool second) {
+  const std::size_t at_point = static_cast<std::size_t>(segment) + (second ? 1 : 0);
+  const double s = layout.arc_length[at_point];
+  const bool beyond_rod = s < 0 || s > scene.length;
+  return beyond_rod ? 0 : layout.rest_lengths[segment] / 2;
+}
+
+void add_weights(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
+                 Discretisation& result) {
   const Eigen::Index N = settings.points;
-  const double L = result.parameters.segment_length;
-  result.rod.loads.setZero(3, N);
-  const Eigen::Index free_end = held_begin == 0 ? N - 1 : 0;
+  result.weights.setZero(3, N);
   for (Eigen::Index i = 0; i < N; ++i) {
-    const bool inside_gripper = i == (held_begin == 0 ? 0 : N - 1);
     double share = 0;
     if (settings.bookkeeping == Bookkeeping::paper) {
       share = scene.length / static_cast<double>(N);
-    } else if (!inside_gripper) {
-      share = i == free_end ? L / 2 : L;
+    } else {
+      if (i > 0) share += weighing_half(scene, layout, i - 1, true);
+      if (i < N - 1) share += weighing_half(scene, layout, i, false);
     }
-    result.rod.loads.col(i) = share * scene.weight_per_length();
+    result.weights.col(i) = share * scene.weight_per_length();
     if (settings.bookkeeping == Bookkeeping::paper && settings.point_weight) {
-      result.rod.loads.col(i) = *settings.point_weight * scene.gravity.normalized();
+      result.weights.col(i) = *settings.point_weight * scene.gravity.normalized();
     }
   }
-  result.weights = result.rod.loads;
-  result.parameters.point_weight = result.rod.loads.col(N / 2).norm();
+  result.parameters.point_weight = result.weights.col(N / 2).norm();
+}
+
+void add_loads(const Scene& scene, const Layout& layout, Discretisation& result) {
+  const std::vector<double>& s = layout.arc_length;
+  result.rod.loads = result.weights;
   for (const PointLoad& load : scene.loads) {
-    const double position = (load.at - result.arc_length.front()) / L;
-    const auto left =
-        std::clamp(static_cast<Eigen::Index>(std::floor(position)), Eigen::Index{0}, N - 2);
-    const double right_share = std::clamp(position - static_cast<double>(left), 0.0, 1.0);
-    result.rod.loads.col(left) += (1 - right_share) * load.force;
-    result.rod.loads.col(left + 1) += right_share * load.force;
+    const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, load.at);
+    const Eigen::Index right = above - s.begin();
+    const double share =
+        std::clamp((load.at - *(above - 1)) / layout.rest_lengths[right - 1], 0.0, 1.0);
+    result.rod.loads.col(right - 1) += (1 - share) * load.force;
+    result.rod.loads.col(right) += share * load.force;
   }
 }
 
-const Gripper& single_end_clamp(const Scene& scene) {
-  const auto refuse = [&](const Gripper& gripper, const std::string& what) {
+force_model::Grip grip_of(const Gripper& gripper, const Layout& layout, Eigen::Index first) {
+  force_model::Grip hold;
+  hold.first_point = first;
+  hold.reference = gripper.position;
+  if (gripper.direction) {
+    hold.targets =
+        force_model::grip_targets(gripper.position, *gripper.direction, layout.segment_length,
+                                  gripper.at - layout.arc_length[static_cast<std::size_t>(first)]);
+  } else {
+    hold.targets = gripper.position;
+  }
+  return hold;
+}
+
+/// Few points have long held segments, which may leave too little rod between two grips.
+void require_within_reach(const Scene& scene, const ForceModelSettings& settings,
+                          const Layout& layout, const force_model::Rod& rod) {
+  for (std::size_t k = 0; k + 1 < layout.along.size(); ++k) {
+    const force_model::Grip& a = rod.grips[layout.along[k]];
+    const force_model::Grip& b = rod.grips[layout.along[k + 1]];
+    const Eigen::Index last = a.first_point + a.targets.cols() - 1;
+    const double apart = (b.targets.col(0) - a.targets.rightCols<1>()).norm();
+    const double between = rod.rest_lengths.segment(last, b.first_point - last).sum();
+    if (apart <= between * (1 + 1e-9)) continue;
     throw InputError(fmt::format(
-        "{}: {} (allowed for the models force and chain: one clamp at = 0 or at = {} m)",
-        gripper.where.empty() ? scene.file : gripper.where, what, scene.length));
-  };
-  const Gripper& first = scene.grippers.front();
-  if (scene.grippers.size() > 1) {
-    refuse(scene.grippers[1], fmt::format("gripper: {} are given", scene.grippers.size()));
+        "{}: force_model.points = {}: held segments of {:g} m leave {:g} m of rod between points "
+        "that two grippers hold {:g} m apart (allowed: more points)",
+        scene.file, settings.points, layout.segment_length, between, apart));
   }
-  if (!first.direction) refuse(first, "gripper.hold = \"pin\"");
-  if (first.at != 0 && first.at != scene.length) {
-    refuse(first, fmt::format("gripper.at = {} m", first.at));
-  }
-  return first;
 }
 
 }  // namespace
@@ -129,42 +187,33 @@ double paper_bending_stiffness(BendingRule rule, double bending_stiffness, doubl
 }
 
 Discretisation discretise(const Scene& scene, const ForceModelSettings& settings) {
-  const Gripper& grip = single_end_clamp(scene);
-  const Eigen::Index N = settings.points;
+  const Layout layout = lay_out(scene, settings);
+  const double L = layout.segment_length;
   Discretisation result;
-  const double L = segment_length(scene, settings);
   result.length = scene.length;
+  result.arc_length = layout.arc_length;
   result.parameters.segment_length = L;
   result.parameters.c_c = settings.c_c.value_or(scene.axial_stiffness());
-  result.rod.rest_lengths = Eigen::VectorXd::Constant(N - 1, L);
+  result.rod.rest_lengths = layout.rest_lengths;
   result.rod.c_c = result.parameters.c_c;
-  derive_bending(scene, settings, result);
-
-  const bool at_start = grip.at == 0;
-  const Eigen::Index held_begin = at_start ? 0 : N - 2;
-  const double inside = settings.bookkeeping == Bookkeeping::paper ? 0 : L / 2;
-  const double first = at_start ? -inside : 0;
-  for (Eigen::Index i = 0; i < N; ++i) {
-    result.arc_length.push_back(first + L * static_cast<double>(i));
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    result.rod.grips.push_back(grip_of(scene.grippers[i], layout, layout.first_held[i]));
   }
-  // The free end is the rod's end to the last digit, not to rounding.
-  (at_start ? result.arc_length.back() : result.arc_length.front()) = at_start ? scene.length : 0;
-  result.straight.resize(3, N);
-  for (Eigen::Index i = 0; i < N; ++i) {
-    result.straight.col(i) =
-        grip.position +
-        (result.arc_length[static_cast<std::size_t>(i)] - grip.at) * *grip.direction;
+  require_within_reach(scene, settings, layout, result.rod);
+  const std::vector<Side> sides = scene.grippers.size() == 1
+                                      ? std::vector<Side>{Side::along_load}
+                                      : std::vector<Side>{Side::along_load, Side::against_load};
+  for (const Side side : sides) {
+    Eigen::Matrix3Xd start = start_shape(scene, layout.along, layout.arc_length, side);
+    for (const force_model::Grip& grip : result.rod.grips) {
+      start.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
+    }
+    result.starts.push_back(std::move(start));
   }
-  distribute_forces(scene, settings, held_begin, result);
-
-  force_model::Grip hold;
-  hold.first_point = held_begin;
-  hold.targets =
-      force_model::grip_targets(grip.position, *grip.direction, L, at_start ? inside : L - inside);
-  hold.reference = grip.position;
-  result.rod.grips = {hold};
+  derive_bending(scene, settings, layout, result);
+  add_weights(scene, settings, layout, result);
+  add_loads(scene, layout, result);
   for (const Obstacle& obstacle : scene.obstacles) {
-    // A rigid wall as stiff as the rod's own segments: stiffer ones would only slow the steps down.
     const double stiffness =
         std::isfinite(obstacle.stiffness) ? obstacle.stiffness * L : result.parameters.c_c / L;
     result.rod.walls.push_back({obstacle.point, obstacle.normal, stiffness});
@@ -173,37 +222,33 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
 }
 
 Shape Discretisation::shape(const Eigen::Matrix3Xd& points) const {
-  const bool at_start = rod.grips.front().first_point == 0;
-  const Eigen::Index inside = at_start ? 0 : points.cols() - 1;
-  Shape result;
-  result.arc_length = arc_length;
-  result.points = points;
-  result.arc_length[static_cast<std::size_t>(inside)] = at_start ? 0 : length;
-  result.points.col(inside) = rod.grips.front().reference;
+  Shape result{arc_length, points};
+  for (const force_model::Grip& grip : rod.grips) {
+    if (arc_length.front() < 0 && grip.first_point == 0) {
+      result.arc_length.front() = 0;
+      result.points.leftCols<1>() = grip.reference;
+    }
+    if (arc_length.back() > length && grip.first_point == points.cols() - 2) {
+      result.arc_length.back() = length;
+      result.points.rightCols<1>() = grip.reference;
+    }
+  }
   return result;
 }
 
-ChainScene chain_scene(const Scene& scene, const Discretisation& discretisation,
-                       const ForceModelSettings& settings) {
-  const Gripper& grip = single_end_clamp(scene);
-  if (!scene.obstacles.empty()) {
-    throw InputError(
-        fmt::format("{}: obstacle: the chain model knows no obstacles (allowed: models "
-                    "force and energy)",
-                    scene.file));
-  }
+std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& discretisation,
+                                      const ForceModelSettings& settings) {
+  const Gripper& grip = scene.grippers.front();
+  const bool end_clamp =
+      scene.grippers.size() == 1 && grip.direction && (grip.at == 0 || grip.at == scene.length);
+  if (!end_clamp || !scene.obstacles.empty()) return std::nullopt;
   const bool reversed = grip.at != 0;
   const Eigen::Index N = settings.points;
   std::vector<Eigen::Vector3d> forces = {scene.weight_per_length() * scene.length};
   for (const PointLoad& load : scene.loads) forces.push_back(load.force);
   const std::optional<energy_model::Plane> plane = energy_model::find_plane(
       grip.position, reversed ? Eigen::Vector3d(-*grip.direction) : *grip.direction, forces);
-  if (!plane) {
-    throw InputError(
-        fmt::format("{}: gripper.direction, gravity and loads do not lie in one plane "
-                    "(allowed for the chain model: planar scenes)",
-                    scene.file));
-  }
+  if (!plane) return std::nullopt;
   ChainScene result;
   result.origin = plane->origin;
   result.x = plane->x;
@@ -219,13 +264,32 @@ ChainScene chain_scene(const Scene& scene, const Discretisation& discretisation,
     const Eigen::Index from = reversed ? N - 1 - i : i;
     problem.node_forces.col(i) = plane->coordinates(discretisation.rod.loads.col(from));
   }
-  const Eigen::Vector3d first = discretisation.straight.col(reversed ? N - 1 : 0);
+  const Eigen::Vector3d first = discretisation.starts.front().col(reversed ? N - 1 : 0);
   problem.start = plane->coordinates(first - plane->origin);
   return result;
 }
 
 Eigen::Matrix3Xd ChainScene::to_space(const Eigen::Matrix2Xd& points) const {
   return (x * points.row(0) + y * points.row(1)).colwise() + origin;
+}
+
+energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod) {
+  energy_model::PolygonProblem problem;
+  problem.rest_lengths = rod.rest_lengths;
+  problem.stretch_stiffness = rod.c_c;
+  problem.node_forces = rod.loads;
+  problem.law = rod.bending.law == force_model::BendingLaw::paper ? energy_model::JointLaw::paper
+                                                                  : energy_model::JointLaw::hooke;
+  problem.stiffness = rod.bending.stiffness;
+  for (const force_model::Grip& grip : rod.grips) {
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+      problem.held.push_back({grip.first_point + k, grip.targets.col(k)});
+    }
+  }
+  for (const force_model::Wall& wall : rod.walls) {
+    problem.walls.push_back({wall.point, wall.normal, wall.stiffness});
+  }
+  return problem;
 }
 
 energy_model::Problem energy_problem(const Scene& scene) {

@@ -4,6 +4,7 @@
 #include <gsl/gsl_min.h>
 
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -26,13 +27,18 @@ struct Fit {
   }
 };
 
-double rms_for_gsl(double log_ratio, void* data) {
-  // No exception may cross GSL; NaN makes it stop.
+/// A modulus at which the energy model finds no shape is infinitely far.
+double rms_or_infinity(Fit& fit, double log_ratio) {
   try {
-    return static_cast<Fit*>(data)->rms_at(log_ratio);
+    return fit.rms_at(log_ratio);
   } catch (const ConvergenceError&) {
-    return NAN;
+    return std::numeric_limits<double>::infinity();
   }
+}
+
+// No exception may cross GSL; what is not finite makes it stop.
+double rms_for_gsl(double log_ratio, void* data) {
+  return rms_or_infinity(*static_cast<Fit*>(data), log_ratio);
 }
 
 }  // namespace
@@ -58,9 +64,11 @@ EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape) {
   std::vector<double> scan;
   std::size_t best = 0;
   for (int i = 0; i <= steps; ++i) {
-    scan.push_back(fit.rms_at(low + step * i));
+    scan.push_back(rms_or_infinity(fit, low + step * i));
     if (scan.back() < scan[best]) best = scan.size() - 1;
   }
+  // Not one shape: the scene's own modulus says why.
+  if (!std::isfinite(scan[best])) scan[best] = fit.rms_at(0);
   EffectiveModulus result;
   if (best == 0 || best + 1 == scan.size()) {
     result.ratio = best == 0 ? smallest_modulus_ratio : largest_modulus_ratio;
@@ -91,8 +99,8 @@ EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape) {
     result.rms_m = gsl_min_fminimizer_f_minimum(minimiser.get());
   }
   result.ratio = std::exp(log_ratio);
-  const double around =
-      std::min(fit.rms_at(log_ratio + std::log(2.0)), fit.rms_at(log_ratio - std::log(2.0)));
+  const double around = std::min(rms_or_infinity(fit, log_ratio + std::log(2.0)),
+                                 rms_or_infinity(fit, log_ratio - std::log(2.0)));
   if (around < 1.1 * result.rms_m) result.optimum = Optimum::flat;
   return result;
 }

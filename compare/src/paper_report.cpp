@@ -22,7 +22,7 @@ std::vector<ModulusAtTime> creep(const Scene& scene, const Shape& rest, double& 
   const Discretisation discretisation = discretise(scene, settings);
   const force_model::StepOptions options = step_options(settings, discretisation);
   c_F = options.c_F;
-  force_model::Simulation simulation(discretisation.rod, discretisation.straight, options);
+  force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(), options);
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
   std::vector<ModulusAtTime> result;
   for (const double time : creep_times) {

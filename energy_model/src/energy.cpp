@@ -39,11 +39,12 @@ TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double
   };
 }
 
-/// A span's tangents in space at its nodes, to go on from.
+/// A span's last solution, to go on from.
 struct Remembered {
-  int terms = 0;
-  Eigen::VectorXd nodes;
-  Eigen::Matrix3Xd tangents;
+  std::shared_ptr<const SpanEnergy> model;  // none after a failure
+  Eigen::Matrix3d frame;
+
+  [[nodiscard]] bool planar() const { return !model || model->span().planar; }
 };
 
 std::vector<Equilibrium> combine(const Problem& problem, const std::vector<PlacedSpan>& placed,
@@ -102,18 +103,51 @@ class EnergySolver::State {
     options.all = all;
     if (options_.start != nullptr) {
       options.start = field_of(*options_.start, placed, problem.length);
-    } else if (last != nullptr && last->terms > 0) {
-      options.least_terms = last->terms;
-      options.start = [&placed, last](const Eigen::VectorXd& s) {
-        return follow_field(placed, *last, s);
+    } else if (last != nullptr && last->model) {
+      options.least_terms = last->model->terms();
+      options.start = [&placed, last = *last](const Eigen::VectorXd& s) {
+        return follow_field(placed, last, s);
       };
     }
+    const bool may_leave_plane = options_.start != nullptr || (last && !last->planar());
+    if (placed.span.planar && options.start && may_leave_plane) leave_plane(placed, options.start);
+    const PlacedSpan as_placed = placed;
+    int spent = 0;
+    constexpr std::size_t attempts = 3;
+    for (std::size_t attempt = 0;; ++attempt) {
+      options.first_start = attempt * followed_starts;
+      std::vector<SpanSolution> solutions = search(placed, options);
+      SpanSolution& best = solutions.front();
+      spent = best.evaluations += spent;
+      if (all || options.start || best.is_equilibrium() || attempt + 1 == attempts)
+        return solutions;
+      placed = as_placed;
+    }
+  }
+
+  /// solve_span(), again about another axis while the solution comes too near to its own.
+  std::vector<SpanSolution> search(PlacedSpan& placed, SpanOptions options) {
     std::vector<SpanSolution> solutions = solve_span(placed.span, options, workspace_);
-    SpanSolution& best = solutions.front();
     // The search may have left the plane.
-    if (!best.model->span().planar) placed.span.planar = false;
-    if (placed.span.planar || all || best.model->elevation() < largest_elevation) return solutions;
-    return {with_axis_turned(placed, best, options)};
+    if (!solutions.front().model->span().planar) placed.span.planar = false;
+    if (placed.span.planar || options.all) return solutions;
+    constexpr int most_turns = 3;
+    for (int turn = 1; turn <= most_turns; ++turn) {
+      if (solutions.front().model->elevation() < largest_elevation) break;
+      options.past_poles = turn == most_turns;
+      solutions = {with_axis_turned(placed, solutions.front(), options)};
+    }
+    return solutions;
+  }
+
+  /// A span that could lie in its plane is spatial if its start has left it.
+  static void leave_plane(PlacedSpan& placed, const TangentField& start) {
+    const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(17, 0, placed.span.length);
+    const Eigen::Matrix3Xd tangents = start(s);
+    constexpr double flat = 1e-6;
+    if (tangents.row(2).cwiseAbs().maxCoeff() < flat) return;
+    placed.span.planar = false;
+    turn_axis(placed, tangents);
   }
 
   /// Once more, with an axis from which this solution's tangents stay away.
@@ -139,21 +173,21 @@ class EnergySolver::State {
   /// The nodes are where they were, unless grips or loads have moved along the rod.
   static Eigen::Matrix3Xd follow_field(const PlacedSpan& placed, const Remembered& last,
                                        const Eigen::VectorXd& s) {
-    if (s.size() == last.nodes.size() && s == last.nodes) return placed.frame * last.tangents;
+    Eigen::Matrix3Xd tangents = placed.frame * last.frame.transpose() * last.model->tangents();
+    const Eigen::VectorXd& nodes = last.model->nodes();
+    if (s.size() == nodes.size() && s == nodes) return tangents;
     Eigen::Matrix3Xd nearest(3, s.size());
     for (Eigen::Index q = 0; q < s.size(); ++q) {
       Eigen::Index at = 0;
-      (last.nodes.array() - s[q]).abs().minCoeff(&at);
-      nearest.col(q) = placed.frame * last.tangents.col(at);
+      (nodes.array() - s[q]).abs().minCoeff(&at);
+      nearest.col(q) = tangents.col(at);
     }
     return nearest;
   }
 
   static void remember(const PlacedSpan& placed, const SpanSolution& solution, Remembered& last) {
-    last.terms = succeeded(solution.status) ? solution.terms : 0;
-    if (last.terms == 0) return;
-    last.nodes = solution.model->nodes();
-    last.tangents = placed.frame.transpose() * solution.model->tangents();
+    last.model = succeeded(solution.status) ? solution.model : nullptr;
+    last.frame = placed.frame;
   }
 
   EnergyOptions options_;
@@ -164,8 +198,8 @@ class EnergySolver::State {
 EnergySolver::EnergySolver(const EnergyOptions& options)
     : state_(std::make_unique<State>(options)) {}
 EnergySolver::~EnergySolver() = default;
-EnergySolver::EnergySolver(EnergySolver&&) noexcept = default;
-EnergySolver& EnergySolver::operator=(EnergySolver&&) noexcept = default;
+EnergySolver::EnergySolver(EnergySolver&& other) noexcept = default;
+EnergySolver& EnergySolver::operator=(EnergySolver&& other) noexcept = default;
 
 Equilibrium EnergySolver::solve(const Problem& problem) {
   return std::move(state_->solve(problem, false, false).front());

@@ -7,15 +7,11 @@
 
 namespace dlo::energy_model {
 
-ReducedCantilever reduce_cantilever(const Problem& problem) {
+std::optional<ReducedCantilever> reduce_cantilever(const Problem& problem) {
   check(problem);
-  require(problem.grips.size() == 1, "reduce_cantilever", "number of grips",
-          static_cast<double>(problem.grips.size()), "1");
   const Grip& grip = problem.grips.front();
-  require(grip.direction.has_value(), "reduce_cantilever", "number of clamps", 0, "1");
-  require(grip.at == 0 || grip.at == problem.length, "reduce_cantilever", "arc length of the clamp",
-          grip.at, "0 or " + std::to_string(problem.length));
-
+  const bool at_end = grip.at == 0 || grip.at == problem.length;
+  if (problem.grips.size() != 1 || !grip.direction || !at_end) return std::nullopt;
   ReducedCantilever reduced;
   reduced.reversed = grip.at != 0;
   std::vector<Eigen::Vector3d> forces = {problem.weight_per_length * problem.length};
@@ -23,10 +19,7 @@ ReducedCantilever reduce_cantilever(const Problem& problem) {
   const std::optional<Plane> plane =
       find_plane(grip.position,
                  reduced.reversed ? Eigen::Vector3d(-*grip.direction) : *grip.direction, forces);
-  if (!plane) {
-    throw std::invalid_argument(
-        "reduce_cantilever: clamp direction, gravity and loads do not lie in one plane");
-  }
+  if (!plane) return std::nullopt;
   reduced.plane = *plane;
   const double unit = problem.bending_stiffness / (problem.length * problem.length);
   reduced.rod.weight = plane->coordinates(forces.front()) / unit;

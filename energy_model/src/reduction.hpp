@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,15 +11,16 @@
 namespace dlo::energy_model {
 
 /// A problem with one clamp at either end, reduced to its plane and its own units. Only geometry
-/// and units live here; `energy` and `exact` share it and nothing else.
+/// and units live here.
 struct ReducedCantilever {
   PlanarCantilever rod;
   Plane plane;            ///< origin at the clamp, x along the rod as it leaves the clamp
   bool reversed = false;  ///< the clamp is at the end: s = 1 - arc length / l
 };
 
-/// @throws std::invalid_argument if the problem is not planar or not held by one clamp at an end
-[[nodiscard]] ReducedCantilever reduce_cantilever(const Problem& problem);
+/// @return nothing if the problem is not planar or not held by one clamp at an end
+/// @throws std::invalid_argument if the problem is out of range
+[[nodiscard]] std::optional<ReducedCantilever> reduce_cantilever(const Problem& problem);
 
 /// Distances from the clamp in units of l.
 [[nodiscard]] std::vector<double> distances_from_clamp(const Problem& problem, bool reversed,

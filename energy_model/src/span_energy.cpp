@@ -11,6 +11,9 @@ namespace {
 
 using std::numbers::pi;
 
+/// Up to this size a product of plain sums is faster than Eigen's, which packs its operands first.
+constexpr Eigen::Index few_columns = 12;
+
 double angle_of(const Eigen::Vector3d& direction) {
   return std::atan2(direction.y(), direction.x());
 }
@@ -204,7 +207,11 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
   const auto add = [&](const Eigen::VectorXd& by_node, const Eigen::MatrixXd& left,
                        const Eigen::MatrixXd& right, Eigen::Index row, Eigen::Index column) {
     scaled_.noalias() = by_node.asDiagonal() * right;
-    result.block(row, column, columns_, columns_).noalias() += left.transpose() * scaled_;
+    if (columns_ <= few_columns) {
+      result.block(row, column, columns_, columns_) += left.transpose().lazyProduct(scaled_);
+    } else {
+      result.block(row, column, columns_, columns_).noalias() += left.transpose() * scaled_;
+    }
   };
   if (fields_ == 1) {
     add(along_, angle_, angle_, 0, 0);
@@ -295,19 +302,20 @@ Eigen::VectorXd SpanEnergy::fit(const Eigen::Matrix3Xd& tangents) {
   return x;
 }
 
-Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& coarse, const Eigen::VectorXd& x) {
-  end_theta_ = coarse.end_theta_;
-  Eigen::VectorXd padded = Eigen::VectorXd::Zero(size());
-  for (Eigen::Index field = 0; field < coarse.fields_; ++field) {
+Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd& x) {
+  end_theta_ = other.end_theta_;
+  const Eigen::Index shared = std::min(terms_, other.terms_);
+  Eigen::VectorXd adopted = Eigen::VectorXd::Zero(size());
+  for (Eigen::Index field = 0; field < other.fields_; ++field) {
     const Eigen::Index to = field * columns_;
-    const Eigen::Index from = field * coarse.columns_;
-    if (free_start_ == 1) padded[to] = x[from];
+    const Eigen::Index from = field * other.columns_;
+    if (free_start_ == 1) adopted[to] = x[from];
     for (Eigen::Index e = 0; e < pieces(); ++e) {
-      padded.segment(to + free_start_ + e * terms_, coarse.terms_) =
-          x.segment(from + free_start_ + e * coarse.terms_, coarse.terms_);
+      adopted.segment(to + free_start_ + e * terms_, shared) =
+          x.segment(from + free_start_ + e * other.terms_, shared);
     }
   }
-  return padded;
+  return adopted;
 }
 
 double SpanEnergy::tail(const Eigen::VectorXd& x) const {

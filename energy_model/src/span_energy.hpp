@@ -48,8 +48,8 @@ class SpanEnergy {
   /// tangents.
   [[nodiscard]] Eigen::VectorXd fit(const Eigen::Matrix3Xd& tangents);
 
-  /// Unknowns of a shape that was found with fewer terms, or in the plane.
-  [[nodiscard]] Eigen::VectorXd adopt(const SpanEnergy& coarse, const Eigen::VectorXd& x);
+  /// Unknowns of a shape that was found with another number of terms, or in the plane.
+  [[nodiscard]] Eigen::VectorXd adopt(const SpanEnergy& other, const Eigen::VectorXd& x);
 
   /// Size of the last coefficients, which tells whether the curvature is resolved.
   [[nodiscard]] double tail(const Eigen::VectorXd& x) const;

@@ -22,20 +22,21 @@ constexpr double handover_gradient = 1e-5;
 /// straight.
 constexpr double soft_load = 12;
 
-/// Starts, in the order of their energy, that the search for the lowest minimum follows.
-constexpr std::size_t followed_starts = 2;
-
 /// Newton's method factors a dense matrix of this size at most.
-constexpr int most_unknowns = 320;
+constexpr int most_unknowns = 480;
 
-/// Coefficients below which a coarser start is not worth its set-up.
-constexpr int few_terms = 8;
+/// Coefficients up to which a coarser start is not worth its set-up, and the fewest of one.
+constexpr int few_terms = 10;
+constexpr int least_terms = 7;
 
 /// Unknowns with which SLSQP looks for a minimum between grips.
 constexpr int coarse_unknowns = 100;
 
 /// Evaluations with which NLopt looks for a minimum between grips.
 constexpr int most_slsqp_evaluations = 300;
+
+/// Gradient over the load that a shape may have in more terms than its own.
+constexpr double largest_residual = 1e-5;
 
 /// SLSQP's work grows with the cube of the unknowns in every iteration.
 constexpr Eigen::Index most_descended = 120;
@@ -72,10 +73,11 @@ class Search {
     }
     if (span_.is_plain_cantilever() && !options_.all) return {plain_cantilever()};
     const std::vector<TangentField> fields = ranked_fields();
-    const std::size_t followed = options_.all ? fields.size() : followed_starts;
+    const std::size_t followed =
+        options_.all ? fields.size() : options_.first_start + followed_starts;
     std::vector<SpanSolution> found;
     std::vector<SpanSolution> coarse;
-    for (std::size_t i = 0; i < fields.size(); ++i) {
+    for (std::size_t i = options_.first_start; i < fields.size(); ++i) {
       // The other starts only where the first ones and what they fall to do not hold.
       if (i >= followed && has_stable_lowest(found)) break;
       SpanSolution solution = from_field(fields[i]);
@@ -107,7 +109,7 @@ class Search {
       const int pieces = static_cast<int>(pieces_of(span_).size());
       coarse = std::min(coarse, coarse_unknowns / (fields * pieces));
     }
-    return std::max(few_terms, coarse);
+    return std::max(least_terms, coarse);
   }
 
   [[nodiscard]] SpanSolution empty_solution(int terms) {
@@ -237,7 +239,8 @@ class Search {
     const int most_terms = span_.walls.empty() ? std::min(max_terms, affordable) : 32;
     while (options_.terms == 0 && solution.is_equilibrium() && !resolved(solution)) {
       // Near the poles polynomials need many terms; the caller turns the axis instead.
-      if (fields == 2 && !options_.all && solution.model->elevation() > largest_elevation) break;
+      const bool near_pole = fields == 2 && solution.model->elevation() > largest_elevation;
+      if (near_pole && !options_.all && !options_.past_poles) break;
       if (solution.terms >= most_terms) {
         if (!span_.walls.empty()) break;
         solution.fail("the curvature is not resolved by " + std::to_string(solution.terms) +
@@ -262,15 +265,35 @@ class Search {
     workspace_.newton().polish(finer, load_);
     const bool descends = finer.model->size() <= most_descended;
     if (descends && (!finer.is_equilibrium() || finer.model->has_walls())) descend(finer);
+    if (!finer.is_equilibrium() && !finer.model->has_walls()) {
+      finer.x = finer.model->adopt(*solution.model, solution.x);
+      workspace_.newton().lead(finer, load_, options_.max_evaluations);
+    }
     finer.evaluations += solution.evaluations;
     return finer;
   }
 
-  [[nodiscard]] bool resolved(const SpanSolution& solution) const {
+  [[nodiscard]] bool resolved(const SpanSolution& solution) {
     if (span_.is_plain_cantilever() && solution.terms < terms()) return false;
     const double K = solution.terms;
     // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
-    return solution.model->tail(solution.x) <= options_.tolerance * 4 * K * K;
+    if (solution.model->tail(solution.x) > options_.tolerance * 4 * K * K) return false;
+    if (span_.is_plain_cantilever() || !span_.walls.empty()) return true;
+    return residual_with_more_terms(solution) < largest_residual * (1 + load_);
+  }
+
+  /// Gradient of the shape in twice as many terms, with the quadrature of these. Near a pole of the
+  /// angles the shape's own terms can all look small around something that is no equilibrium.
+  [[nodiscard]] double residual_with_more_terms(const SpanSolution& solution) {
+    const std::shared_ptr<SpanEnergy> model =
+        workspace_.model(span_, std::min(max_terms, 2 * solution.terms));
+    const Eigen::VectorXd x = model->adopt(*solution.model, solution.x);
+    Eigen::VectorXd gradient(model->size());
+    (void)model->value(x, gradient);
+    Eigen::VectorXd residual(model->constraints());
+    Eigen::MatrixXd jacobian(model->constraints(), model->size());
+    model->constraint(residual, jacobian);
+    return (gradient - jacobian.transpose() * solution.multipliers).norm();
   }
 
   /// Keeps an equilibrium that is not known yet, or the first failure until there is one.
@@ -356,8 +379,10 @@ class Search {
   [[nodiscard]] SpanSolution fallen_from(const Span& span, const SpanSolution& solution,
                                          const Eigen::VectorXd& disturbance) {
     Search search(span, options_, workspace_);
-    SpanSolution fallen = search.empty_solution(solution.terms);
-    fallen.x = fallen.model->adopt(*solution.model, solution.x) + disturbance;
+    const std::shared_ptr<SpanEnergy> model = workspace_.model(span, solution.terms);
+    const Eigen::VectorXd pushed = model->adopt(*solution.model, solution.x) + disturbance;
+    SpanSolution fallen = search.empty_solution(std::min(solution.terms, search.coarse_terms()));
+    fallen.x = fallen.model->adopt(*model, pushed);
     search.descend(fallen);
     return search.refined(std::move(fallen));
   }

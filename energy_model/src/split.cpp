@@ -4,37 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
-#include <stdexcept>
 
 #include "dlo/energy_model/planar.hpp"
+#include "ordered_grips.hpp"
+#include "require.hpp"
 
 namespace dlo::energy_model {
 namespace {
-
-struct OrderedGrip {
-  std::size_t index;
-  const Grip* grip;
-};
-
-std::vector<OrderedGrip> ordered_grips(const Problem& problem) {
-  std::vector<OrderedGrip> grips;
-  for (std::size_t i = 0; i < problem.grips.size(); ++i) grips.push_back({i, &problem.grips[i]});
-  std::stable_sort(grips.begin(), grips.end(), [](const OrderedGrip& a, const OrderedGrip& b) {
-    return a.grip->at < b.grip->at;
-  });
-  for (std::size_t i = 0; i + 1 < grips.size(); ++i) {
-    const double rod = grips[i + 1].grip->at - grips[i].grip->at;
-    const double apart = (grips[i + 1].grip->position - grips[i].grip->position).norm();
-    if (rod > 1e-9 * problem.length && apart < rod) continue;
-    std::ostringstream message;
-    message << "Problem: grips at arc lengths " << grips[i].grip->at << " m and "
-            << grips[i + 1].grip->at << " m are " << apart << " m apart, must be less than the "
-            << rod << " m of rod between them";
-    throw std::invalid_argument(message.str());
-  }
-  return grips;
-}
 
 /// What a span's frame has to reckon with: directions of grips, chords and forces, in space.
 struct Directions {

@@ -116,6 +116,7 @@ bool run(int points, const Settings& settings) {
   const auto frames = static_cast<std::size_t>(settings.seconds * frames_per_second);
   std::vector<double> computing(frames);
   std::vector<double> elapsed(frames);
+  Eigen::Matrix3Xd positions(3, points);
   Eigen::Matrix3Xd forces(3, points);
   std::array<GripReaction, 1> felt;
   double largest_force = 0;
@@ -133,7 +134,8 @@ bool run(int points, const Settings& settings) {
     for (int i = 0; i < settings.steps_per_frame; ++i) {
       if (simulation.step().status == StepStatus::diverged) return false;
     }
-    grip_reactions(simulation.rod(), simulation.points(), forces, felt);
+    simulation.copy_points(positions);
+    grip_reactions(simulation.rod(), positions, forces, felt);
     computing[frame] = computing_time() - start_computing;
     elapsed[frame] = elapsed_time() - start;
     largest_force = std::max(largest_force, felt[0].force.norm());

@@ -29,7 +29,10 @@ double fastest_inner_mode(const Rod& rod, const Points& points) {
     if (i > 0) {
       const double mean = (L[i - 1] + L[i]) / 2;
       const double lever = std::min(length, previous_length);
-      const double alpha = std::atan2(previous.cross(segment).norm(), previous.dot(segment));
+      // A joint next to a segment of zero length has no angle; atan2(0, -0) would be pi.
+      const bool directed = !previous.isZero(0) && !segment.isZero(0);
+      const double alpha =
+          directed ? std::atan2(previous.cross(segment).norm(), previous.dot(segment)) : 0;
       bending = std::max(bending, (16 * joint_stiffness(rod.bending, mean, alpha) +
                                    4 * joint_moment(rod.bending, mean, alpha)) /
                                       (lever * lever));
@@ -56,19 +59,23 @@ double equivalent_rigidity(const Rod& rod) {
 ModeBounds mode_bounds(const Rod& rod, const Points& points) {
   require_polygon("mode_bounds", points, rod.rest_lengths);
   ModeBounds modes;
-  modes.fastest = fastest_inner_mode(rod, points);
-  for (const Wall& wall : rod.walls) modes.fastest += wall.stiffness;
-  double grip = 0;
-  for (const Grip& g : rod.grips) {
-    if (g.hold == GripHold::spring) grip = std::max(grip, g.stiffness);
-  }
-  modes.fastest += grip;
+  modes.fastest = fastest_inner_mode(rod, points) + constraint_stiffness(rod);
   const double per_length = clamped_free_root / rod.length();
   const double square = per_length * per_length;
   modes.slowest = square * square * equivalent_rigidity(rod) * rod.rest_lengths.mean();
   // Heavy ball constants lose their meaning when the two differ by more than rounding resolves.
   modes.slowest = std::clamp(modes.slowest, 1e-10 * modes.fastest, modes.fastest);
   return modes;
+}
+
+double constraint_stiffness(const Rod& rod) {
+  double walls = 0;
+  for (const Wall& wall : rod.walls) walls += wall.stiffness;
+  double grip = 0;
+  for (const Grip& g : rod.grips) {
+    if (g.hold == GripHold::spring) grip = std::max(grip, g.stiffness);
+  }
+  return walls + grip;
 }
 
 double largest_step_factor(double fastest, double c_h) {

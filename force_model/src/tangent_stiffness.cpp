@@ -27,6 +27,32 @@ std::vector<Eigen::Index> free_indices(const Rod& rod, Eigen::Index& count) {
   return indices;
 }
 
+using Factor =
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
+
+/// With K = L D L^T and D_j < 0, the d with L^T d = e_j has d^T K d = D_j.
+Eigen::Matrix3Xd falling_direction(const Factor& factor, const std::vector<Eigen::Index>& index) {
+  const Eigen::VectorXd pivots = factor.vectorD();
+  // The first of equals, as an upright rod has: it falls in the plane of x.
+  const double lowest = pivots.minCoeff();
+  Eigen::Index pivot = 0;
+  while (!(pivots[pivot] <= 0.999 * lowest)) ++pivot;
+  Eigen::VectorXd movement = factor.matrixU().solve(Eigen::VectorXd::Unit(pivots.size(), pivot));
+  Eigen::Matrix3Xd direction = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(index.size()));
+  for (std::size_t i = 0; i < index.size(); ++i) {
+    if (index[i] < 0) continue;
+    direction.col(static_cast<Eigen::Index>(i)) = movement.segment<3>(3 * index[i]);
+  }
+  direction /= std::sqrt(direction.colwise().squaredNorm().maxCoeff());
+  const Eigen::Vector3d whole = direction.rowwise().sum();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (std::abs(whole[axis]) < 1e-6) continue;
+    if (whole[axis] < 0) direction = -direction;
+    break;
+  }
+  return direction;
+}
+
 }  // namespace
 
 EquilibriumCheck check_equilibrium(const Rod& rod,
@@ -76,13 +102,12 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
     const Eigen::Index row = index[static_cast<std::size_t>(i)];
     if (row >= 0) force.segment<3>(3 * row) = above.col(i);
   }
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower,
-                              Eigen::NaturalOrdering<int>>
-      factor(stiffness);
+  const Factor factor(stiffness);
   if (factor.info() != Eigen::Success) return result;
   const double remaining = factor.solve(force).norm() / std::sqrt(static_cast<double>(N));
   result.stable = factor.vectorD().minCoeff() > 0 && std::isfinite(remaining);
   result.remaining_error = remaining;
+  if (factor.vectorD().minCoeff() < 0) result.falling_direction = falling_direction(factor, index);
   return result;
 }
 

@@ -114,6 +114,121 @@ TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
   }
 }
 
+constexpr const char* two_grippers = R"(
+gravity = [0, -9.81, 0]
+[rod]
+length = "50 cm"
+diameter = "2 mm"
+material = "spring_steel"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "30 deg"
+[[gripper]]
+at = "40 cm"
+position = [0.3, 0.05, 0.1]
+hold = "pin"
+[[load]]
+at = "20 cm"
+force = [0, -0.5, 0]
+[[obstacle]]
+point = [0, -0.3, 0]
+normal = [0, 1, 0]
+[force_model]
+points = 40
+)";
+
+TEST_F(Command, SolvesSeveralGrippersWithTheModelsForAnyScene) {
+  std::vector<double> middle;
+  for (const std::string model : {"energy", "chain", "force"}) {
+    const Outcome result =
+        run("solve " + scene(two_grippers) + " --model " + model + " --samples 11 --format json");
+    ASSERT_EQ(result.status, 0) << result.err;
+    const json document = json::parse(result.out);
+    EXPECT_EQ(document.at("arc_length_m").back(), 0.5);
+    ASSERT_EQ(document.at("grippers").size(), 2U);
+    ASSERT_EQ(document.at("obstacles").size(), 1U);
+    // Weight and load, and nothing touches the floor
+    EXPECT_NEAR(document.at("grippers")[0].at("force_N")[1].get<double>() +
+                    document.at("grippers")[1].at("force_N")[1].get<double>(),
+                0.5 + 0.121735143, 1e-4);
+    EXPECT_EQ(document.at("obstacles")[0].at("force_N")[1].get<double>(), 0);
+    const json& pin = document.at("points_m")[8];
+    EXPECT_NEAR(pin[0].get<double>(), 0.3, 1e-9);
+    EXPECT_NEAR(pin[2].get<double>(), 0.1, 1e-9);
+    middle.push_back(document.at("points_m")[4][1].get<double>());
+  }
+  EXPECT_NEAR(middle[1], middle[0], 5e-4);
+  EXPECT_NEAR(middle[2], middle[1], 1e-6);
+}
+
+TEST_F(Command, CompareTakesSeveralGrippers) {
+  const Outcome result = run("compare " + scene(two_grippers) + " --format json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json entry = json::parse(result.out).at("cases")[0];
+  EXPECT_LT(entry.at("deviation").at("rms_over_length").get<double>(), 1e-3);
+  EXPECT_TRUE(entry.at("undeformed_rms_over_length").is_null());
+  const Outcome text = run("compare " + scene(two_grippers));
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_EQ(text.out.find("nan"), std::string::npos) << text.out;
+}
+
+TEST_F(Command, TooFewPointsForTheGrippersIsBadInput) {
+  // Half a segment on the pin's far side is 2 cm at most.
+  std::string text = two_grippers;
+  text.replace(text.find("40 cm"), 5, "48 cm");
+  expect_error("solve " + scene(text) + " --model chain --points 13", 2,
+               {"force_model.points = 13", "at least 14 points"});
+  EXPECT_EQ(run("solve " + scene(text) + " --model chain --points 14").status, 0);
+}
+
+TEST_F(Command, SolveGivesOneShapeByBothReferenceModelsForClampsInSpace) {
+  const std::string rope = scene(R"(gravity = [0, -9.81, 0]
+[rod]
+length = "1 m"
+diameter = "4 mm"
+material = { youngs_modulus = "5 GPa", density = 1200 }
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = [1, 0, 0]
+[[gripper]]
+at = "1 m"
+position = [0.6, 0.1, 0.3]
+direction = [1, 0.2, -0.4]
+[[load]]
+at = "40 cm"
+force = [0, 0, "50 mN"]
+)");
+  const auto solve = [&](const std::string& model) {
+    const Outcome result = run("solve " + rope + " --samples 21 --format json --model " + model);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return json::parse(result.out);
+  };
+  const json energy = solve("energy");
+  const json exact = solve("exact");
+  for (std::size_t i = 0; i < 21; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(exact.at("points_m")[i][k].get<double>(),
+                  energy.at("points_m")[i][k].get<double>(), 1e-8);
+    }
+  }
+  for (std::size_t g = 0; g < 2; ++g) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(exact.at("grippers")[g].at("torque_Nm")[k].get<double>(),
+                  energy.at("grippers")[g].at("torque_Nm")[k].get<double>(), 1e-8);
+    }
+  }
+}
+
+TEST_F(Command, SolveExactRefusesObstacles) {
+  const std::string text = std::string(good) + R"([[obstacle]]
+point = [0, -0.2, 0]
+normal = [0, 1, 0]
+)";
+  expect_error("solve " + scene(text) + " --model exact", 2, {"obstacle", "energy"});
+}
+
 TEST_F(Command, SolveMatchesTheReferenceValuesOfThePapersRod) {
   std::ifstream stream(std::string(DLO_DATA) + "/reference/reference_values.json");
   const json expected = json::parse(stream).at("paper_rod").at("E=210GPa,phi=-175");

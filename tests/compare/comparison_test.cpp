@@ -94,7 +94,7 @@ TEST(Deviation, CurvatureOfAFlatShapeIsTheReferencesOwn) {
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
   Shape straight;
   straight.arc_length = equal_arc_lengths(1, 401);
-  straight.points = straight_rod(scene, straight.arc_length);
+  straight.points = straight_rod(scene, straight.arc_length).value();
   const Deviation d = deviation(straight, energy.sample, straight.points, 400);
   EXPECT_NEAR(d.curvature_rms_per_m, 0.01 / std::sqrt(20.0), 2e-5);
   EXPECT_NEAR(d.rms_over_movement, 1, 1e-12);
@@ -119,7 +119,7 @@ TEST(EffectiveModulus, OfAnUnbentShapeIsOneSided) {
   const Scene scene = heavy_scene(2, 15);
   Shape shape;
   shape.arc_length = equal_arc_lengths(1, 12);
-  shape.points = straight_rod(scene, shape.arc_length);
+  shape.points = straight_rod(scene, shape.arc_length).value();
   EXPECT_EQ(fit_effective_modulus(scene, shape).optimum, Optimum::one_sided);
 }
 
@@ -127,7 +127,7 @@ TEST(EffectiveModulus, OfARodThatHangsStraightIsFlat) {
   const Scene scene = heavy_scene(2, -90);
   Shape shape;
   shape.arc_length = equal_arc_lengths(1, 12);
-  shape.points = straight_rod(scene, shape.arc_length);
+  shape.points = straight_rod(scene, shape.arc_length).value();
   shape.points.row(0).array() += 1e-3;
   EXPECT_NE(fit_effective_modulus(scene, shape).optimum, Optimum::clear);
 }

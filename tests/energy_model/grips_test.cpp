@@ -120,18 +120,18 @@ TEST(Grips, BalanceWeightAndLoadsInEveryArrangement) {
   problems.push_back(two_clamps(gamma, 0.7));
   problems.back().loads = {{1.0, {0.5, 0.5, 0}}};
   for (std::size_t i = 0; i < problems.size(); ++i) {
-    const Equilibrium result = solve_energy(problems[i]);
-    ASSERT_EQ(result.status, SolveStatus::converged) << i << ": " << result.message;
-    const Balance rest = balance(problems[i], result);
-    EXPECT_LT(rest.force.norm(), 1e-8 * gamma) << "problem " << i;
-    EXPECT_LT(rest.torque.norm(), 1e-8 * gamma) << "problem " << i;
-    for (std::size_t g = 0; g < problems[i].grips.size(); ++g) {
-      const Grip& grip = problems[i].grips[g];
-      const std::vector<double> at = {grip.at};
-      const Samples samples = result.sample(at);
-      EXPECT_LT((samples.points.col(0) - grip.position).norm(), 1e-10) << "problem " << i;
-      if (!grip.direction) continue;
-      EXPECT_LT((samples.tangents.col(0) - grip.direction->normalized()).norm(), 1e-10);
+    for (const Equilibrium& result : {solve_energy(problems[i]), solve_exact(problems[i])}) {
+      ASSERT_EQ(result.status, SolveStatus::converged) << i << ": " << result.message;
+      const Balance rest = balance(problems[i], result);
+      EXPECT_LT(rest.force.norm(), 1e-8 * gamma) << "problem " << i;
+      EXPECT_LT(rest.torque.norm(), 1e-8 * gamma) << "problem " << i;
+      for (const Grip& grip : problems[i].grips) {
+        const std::vector<double> at = {grip.at};
+        const Samples samples = result.sample(at);
+        EXPECT_LT((samples.points.col(0) - grip.position).norm(), 1e-10) << "problem " << i;
+        if (!grip.direction) continue;
+        EXPECT_LT((samples.tangents.col(0) - grip.direction->normalized()).norm(), 1e-10);
+      }
     }
   }
 }

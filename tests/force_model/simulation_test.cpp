@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "dlo/force_model/tangent_stiffness.hpp"
 #include "rods.hpp"
@@ -189,6 +191,27 @@ TEST(Relax, LeavesAnUprightEquilibriumThatDoesNotHold) {
   }
 }
 
+TEST(Relax, BucklesAColumnBetweenGripsThatStayWhereTheyAre) {
+  SteelRod steel;
+  Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
+  rod.loads.setZero();
+  Eigen::Matrix3Xd start = steel.straight();
+  const Eigen::Index end = start.cols() - 1;
+  for (Eigen::Index i = 0; i <= end; ++i) {
+    start.col(i) = start.col(0) + 0.95 * (start.col(i) - start.col(0));
+  }
+  Grip far;
+  far.first_point = end - 1;
+  far.targets = start.rightCols(2);
+  far.reference = start.col(end);
+  rod.grips.push_back(far);
+  Simulation simulation(rod, start, {});
+  ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest);
+  const Eigen::Matrix3Xd moved = simulation.points() - start;
+  EXPECT_GT(moved.colwise().norm().maxCoeff(), 0.05 * steel.length);
+  EXPECT_EQ(moved.rightCols(2).norm(), 0);
+}
+
 TEST(EquilibriumCheck, GivesNewtonsStepAndTheSignOfTheStiffness) {
   SteelRod steel;
   const Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
@@ -247,6 +270,32 @@ TEST(Simulation, MovedGripperTakesItsPointsAlong) {
   EXPECT_EQ(simulation.points().leftCols(2), targets);
   EXPECT_EQ(simulation.relax().status, RelaxStatus::at_rest);
   EXPECT_THROW(simulation.move_grip(1, targets, {0, 0, 0}), std::invalid_argument);
+}
+
+TEST(Relax, LeavesThePlaneWhereAShapeHoldsInItOnly) {
+  // A tall arch, up from one clamp and down into the other, heavy enough to lean over sideways.
+  const Eigen::Index n = 31;
+  const double L = 1.0 / (n - 2);
+  const double radius = 0.05;
+  const double height = (1 - std::numbers::pi * radius) / 2;
+  Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double s = (static_cast<double>(i) - 0.5) * L;
+    const double turned = std::clamp((s - height) / radius, 0.0, std::numbers::pi);
+    points(0, i) = radius * (1 - std::cos(turned));
+    points(1, i) = std::min(s, height) + radius * std::sin(turned) -
+                   std::max(0.0, s - height - std::numbers::pi * radius);
+  }
+  Rod rod;
+  rod.rest_lengths = Eigen::VectorXd::Constant(n - 1, L);
+  rod.c_c = 1e4;
+  rod.bending = {BendingLaw::hooke, 1};
+  rod.loads = Eigen::Vector3d(0, -200 * L, 0).replicate(1, n);
+  rod.grips = {{.first_point = 0, .targets = points.leftCols(2)},
+               {.first_point = n - 2, .targets = points.rightCols(2)}};
+  Simulation simulation(rod, points, {});
+  ASSERT_EQ(simulation.relax({.tolerance = 1e-6}).status, RelaxStatus::at_rest);
+  EXPECT_GT(simulation.points().row(2).cwiseAbs().maxCoeff(), 0.1);
 }
 
 TEST(Simulation, SpringGripYieldsByWeightOverStiffness) {

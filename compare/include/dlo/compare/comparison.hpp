@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ struct Budget {
   double law = 0;             ///< chain with this law against chain with hooke
   double bookkeeping = 0;     ///< hooke chain with this bookkeeping against the consistent one
   double discretisation = 0;  ///< consistent hooke chain against the continuous rod
-  double stretch = 0;         ///< force model at rest against the chain: what c_c leaves of it
+  double stretch = 0;         ///< force model at rest against the chain, whose own c_c is AE
   double not_at_rest = 0;     ///< estimated distance of the force model from rest
 };
 
@@ -27,7 +28,8 @@ struct Comparison {
   Solution force;
   Shape reference;  ///< the energy model at the force model's arc lengths
   Deviation deviation;
-  double undeformed_rms_over_length = 0;  ///< the straight rod's own deviation from the reference
+  /// The straight rod's own deviation from the reference; NaN without a straight rod.
+  double undeformed_rms_over_length = 0;
   EffectiveModulus effective_modulus;
   Budget budget;
   double energy_seconds = 0;
@@ -38,7 +40,9 @@ struct Comparison {
 /// @throws InputError, ConvergenceError
 [[nodiscard]] Comparison compare(const Scene& scene, const SolveOptions& options = {});
 
-/// The straight rod of a scene with one clamp, at arc lengths s [m], 3 x M.
-[[nodiscard]] Eigen::Matrix3Xd straight_rod(const Scene& scene, const std::vector<double>& s);
+/// The straight rod of a scene with a single clamp, at arc lengths s [m], 3 x M. Several grips, or
+/// a pin, leave no straight shape to start from: nothing.
+[[nodiscard]] std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene,
+                                                           const std::vector<double>& s);
 
 }  // namespace dlo::compare

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <span>
 
 #include "dlo/compare/shape.hpp"
@@ -18,17 +19,19 @@ struct Deviation {
   double rms_m = 0;  ///< sqrt(1/l int |dr|^2 ds)
   double max_m = 0;
   double max_at_m = 0;  ///< arc length of the largest
-  double tip_m = 0;     ///< at the last arc length that is not held
+  double tip_m = 0;     ///< at the free end; NaN without one
   double rms_over_length = 0;
-  double rms_over_movement = 0;    ///< against the RMS way of the reference from the straight rod
+  /// Against the RMS way of the reference from the straight rod; NaN without one.
+  double rms_over_movement = 0;
   double angle_rms_rad = 0;        ///< of the segments against the tangent in their middle
   double curvature_rms_per_m = 0;  ///< of turning angle over segment length against the curvature
 };
 
-/// @param straight  the undeformed rod at the shape's arc lengths [m], 3 x M
-/// @param tip       index of the tip: 0 or M-1
+/// @param straight  the undeformed rod at the shape's arc lengths [m], 3 x M, if there is one
+/// @param tip       index of the free end, 0 or M-1, if there is one
 [[nodiscard]] Deviation deviation(const Shape& shape, const Reference& reference,
-                                  const Eigen::Matrix3Xd& straight, Eigen::Index tip);
+                                  const std::optional<Eigen::Matrix3Xd>& straight,
+                                  std::optional<Eigen::Index> tip);
 
 /// sqrt(1/l int |difference|^2 ds) by the trapezoidal rule [m].
 /// @param difference  at the arc lengths, 3 x M

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/energy_model/chain.hpp"
+#include "dlo/energy_model/polygon.hpp"
 #include "dlo/energy_model/problem.hpp"
 #include "dlo/force_model/rod.hpp"
 #include "dlo/force_model/stepper.hpp"
@@ -22,7 +24,7 @@ namespace dlo::compare {
 
 /// Parameters of the force model as they follow from a scene.
 struct Parameters {
-  double segment_length = 0;    ///< L [m]
+  double segment_length = 0;    ///< L, nominal where segments differ [m]
   double c_b = 0;               ///< [N]; 0 for hooke
   double c_c = 0;               ///< [N]
   double design_curvature = 0;  ///< k of Formula 21 [1/m]; 0 for hooke or a given c_b
@@ -32,31 +34,64 @@ struct Parameters {
 /// A scene as points and segments.
 struct Discretisation {
   force_model::Rod rod;
-  Eigen::Matrix3Xd weights;        ///< the part of rod.loads that is gravity [N]
-  Eigen::Matrix3Xd straight;       ///< straight from the gripper, where a simulation starts [m]
-  std::vector<double> arc_length;  ///< of the points; a point inside the gripper is negative, or
+  Eigen::Matrix3Xd weights;  ///< the part of rod.loads that is gravity [N]
+  /// Where a simulation may start [m]: straight from a single gripper; two shapes for several
+  /// grippers, whose slack hangs along or against the load.
+  std::vector<Eigen::Matrix3Xd> starts;
+  std::vector<double> arc_length;  ///< of the points; a point inside an end gripper is negative, or
                                    ///< beyond the rod's length [m]
   double length = 0;               ///< l, the rod's own part [m]
   Parameters parameters;
 
-  /// The rod's own part, arc length 0 to l: points inside the gripper give way to the point where
+  /// The rod's own part, arc length 0 to l: points inside end grippers give way to the point where
   /// the gripper holds the rod.
   [[nodiscard]] Shape shape(const Eigen::Matrix3Xd& points) const;
 };
 
-/// Derives the force model of a scene with one clamp at either end.
-/// @throws InputError if the force model does not know such a scene
+/// Derives the force model of a scene.
+///
+/// A clamp holds two points, a pin one. `consistent`: the middle of the held segment is the clamp's
+/// arc length, a segment held at the rod's end reaches L/2 beyond it, and a point weighs w times
+/// half of each of its segments, of which the parts inside end grippers weigh nothing. `paper`: a
+/// clamp holds the point at its arc length and the next one (at the rod's end the one before), and
+/// every point weighs m g / N. Loads between two points go to both by the lever rule, which keeps
+/// their force and moment: the rod's own moment differs by no more than F L/4 over one segment,
+/// which is second order like everything else.
+///
+/// With c clamps of which e are at ends, L = l/(N - 1 - e/2) (`paper`: l/(N-1)). Held segments are
+/// L long. The rod between two of them, or to a pin or a free end, has a whole number of equal
+/// segments: one, and then one more wherever they are longest until all N - 1 - c are given away.
+/// So they differ from L by a share of about one over their number, and only where the grips do not
+/// fit a grid of N points. No such part may be shorter than L/2.
+///
+/// Where neighbouring segments differ, the hooke law still balances force and torque. The paper's
+/// law has a net torque there, so that the gripper of a `paper` rod carries a little more or less
+/// than what hangs on it; with several grippers or one inside the rod, say so with every number.
+///
+/// A wall acts on points, each with L times the obstacle's stiffness, as the force model's walls
+/// have one stiffness for all points (the last point of a free end has twice its share). A rigid
+/// obstacle gets c_c / L: as stiff as the rod's own segments, so that points enter it by the weight
+/// of a segment over c_c / L; stiffer ones would only slow the steps down.
+/// @throws InputError if there are too few points for the grippers (with the number needed), two
+/// grippers hold the same arc length, or grippers, or the segments that they hold, are further
+/// apart than the rod between them
 [[nodiscard]] Discretisation discretise(const Scene& scene, const ForceModelSettings& settings);
 
-/// The same polygon for the chain solver. @throws InputError unless the scene is planar
+/// The same polygon for the rigid chain solver.
 struct ChainScene {
   energy_model::ChainProblem problem;
   Eigen::Vector3d origin, x, y;  ///< frame of its plane
 
   [[nodiscard]] Eigen::Matrix3Xd to_space(const Eigen::Matrix2Xd& points) const;
 };
-[[nodiscard]] ChainScene chain_scene(const Scene& scene, const Discretisation& discretisation,
-                                     const ForceModelSettings& settings);
+
+/// Nothing unless the scene has one clamp at an end, forces in one plane and no obstacle.
+[[nodiscard]] std::optional<ChainScene> chain_scene(const Scene& scene,
+                                                    const Discretisation& discretisation,
+                                                    const ForceModelSettings& settings);
+
+/// The same polygon for the solver of elastic ones, which takes every scene.
+[[nodiscard]] energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod);
 
 /// The scene as the energy model sees it.
 [[nodiscard]] energy_model::Problem energy_problem(const Scene& scene);

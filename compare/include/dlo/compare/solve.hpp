@@ -14,7 +14,7 @@ namespace dlo::compare {
 enum class Model {
   energy,  ///< minimiser of the continuous rod's energy
   chain,   ///< minimiser over the force model's polygon
-  exact,   ///< boundary value problem of the elastica
+  exact,   ///< boundary value problem of the rod, shot with GSL
   force,   ///< the paper's model, stepped to rest
 };
 
@@ -53,7 +53,8 @@ struct Solution {
   Shape shape;
   SceneEnergies energy;
   std::vector<GripperLoad> grippers;
-  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod, of energy [N]
+  std::vector<Eigen::Vector3d>
+      obstacles;  ///< force of each on the rod; of all models but exact [N]
   /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   long evaluations = 0;
@@ -82,11 +83,14 @@ struct Solution {
 [[nodiscard]] std::vector<Solution> solve_all(const Scene& scene, const SolveOptions& options = {},
                                               const std::vector<double>& arc_lengths = {});
 
-/// The polygon of minimal energy. @throws InputError, ConvergenceError
+/// The polygon of minimal energy: one clamp at an end, forces in a plane and no obstacle, of rigid
+/// segments; else of segments with the force model's c_c, of several starts' shapes the lowest.
+/// @throws InputError, ConvergenceError
 [[nodiscard]] Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
                                    const SolveOptions& options = {});
 
-/// The force model at rest. @throws InputError, ConvergenceError
+/// The force model at rest. Between several grippers it starts where the chain's lowest shape came
+/// from, so that both are in the same state. @throws InputError, ConvergenceError
 [[nodiscard]] Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                                    const SolveOptions& options = {});
 

@@ -52,10 +52,10 @@ class EnergySolver {
   /// @throws std::invalid_argument if an option is out of range
   explicit EnergySolver(const EnergyOptions& options = {});
   ~EnergySolver();
-  EnergySolver(EnergySolver&&) noexcept;
-  EnergySolver& operator=(EnergySolver&&) noexcept;
-  EnergySolver(const EnergySolver&) = delete;
-  EnergySolver& operator=(const EnergySolver&) = delete;
+  EnergySolver(EnergySolver&& other) noexcept;
+  EnergySolver& operator=(EnergySolver&& other) noexcept;
+  EnergySolver(const EnergySolver& other) = delete;
+  EnergySolver& operator=(const EnergySolver& other) = delete;
 
   /// solve_energy().
   Equilibrium solve(const Problem& problem);

@@ -15,10 +15,11 @@ namespace dlo::energy_model {
 struct [[nodiscard]] Equilibrium {
   SolveStatus status = SolveStatus::not_run;
   std::string message = "never ran";
-  int evaluations = 0;   ///< of the objective, with or without derivatives; shots for `exact`
-  int terms = 0;         ///< curvature coefficients; 0 for `exact`
-  double seconds = 0;    ///< wall time of the solver
-  double residual = -1;  ///< norm of the gradient over EI/l; for `exact` the clamp's angle [rad]
+  int evaluations = 0;  ///< of the objective, with or without derivatives; shots for `exact`
+  int terms = 0;        ///< curvature coefficients; 0 for `exact`
+  double seconds = 0;   ///< wall time of the solver
+  /// Norm of the gradient over EI/l; for `exact` the largest gap that a shot leaves [-].
+  double residual = -1;
   /// Smallest eigenvalue of the second variation over EI/l, with the constraints and, for planar
   /// shapes, with bending out of the plane; NaN where a solver did not look. Negative: unstable.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();

@@ -7,21 +7,31 @@ namespace dlo::energy_model {
 
 struct ExactOptions {
   double tolerance = 1e-13;  ///< local error of the integrator per step, > 0
+  /// A shape to confirm or correct, of this problem or a similar one, with its grips' reactions:
+  /// Newton's method starts from it, without a search. Has to outlive the call.
+  const Equilibrium* start = nullptr;
 };
 
-/// The elastica as a boundary value problem, by GSL and without any basis or minimiser:
-///     theta' = kappa,  EI kappa' = n_x sin theta - n_y cos theta,  theta(0) given, kappa(l) = 0,
-/// n(s) the sum of weight and loads beyond s. It is shot from the free end, where the solution that
-/// grows towards the clamp is the one that is wanted, in the angle against the last force: so it
-/// stays well posed when that angle is exponentially small (Gamma >> 1). All starts are scanned;
-/// the equilibrium of lowest energy is returned.
+/// Equilibrium of the inextensible, naturally straight rod as a boundary value problem, by GSL and
+/// without any basis or minimiser,
+///     r' = t,  EI t'' = -(n - (n.t) t) - EI |t'|^2 t,  n' = -w, n falls by F at a load F,
+/// n the force of what lies beyond s on what lies before.
 ///
-/// Planar problems with one clamp at either end; sum of weight and loads over EI/l^2 up to 4e5 if
+/// A planar rod with one clamp at an end is shot from its tip and all of the tip's angles are
+/// scanned, so that no equilibrium is missed; for sums of weight and loads over EI/l^2 up to 4e5 if
 /// they are parallel, up to 60 if not.
-/// @throws std::invalid_argument if the problem or an option is out of range
+///
+/// All others (any clamps and pins, in the plane or in space, up to 1e6 EI/l^2) are cut at their
+/// clamps and solved by multiple shooting: Newton's method closes the gaps between integrations
+/// over short intervals. It starts from `start`, or from the six lowest minima that a coarse
+/// polygon finds when it is relaxed from straight, arched, S-shaped and looped shapes, in the plane
+/// and out of it. The equilibrium of lowest energy is returned; its second variation is not
+/// looked at.
+/// @throws std::invalid_argument if the problem or an option is out of range, or has walls
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
-/// Every equilibrium that the scan finds, lowest energy first, unstable ones included.
+/// Every equilibrium that the scan or the search finds, lowest energy first, unstable ones
+/// included.
 [[nodiscard]] std::vector<Equilibrium> all_exact(const Problem& problem,
                                                  const ExactOptions& options = {});
 

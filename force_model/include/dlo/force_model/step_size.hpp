@@ -27,6 +27,9 @@ struct ModeBounds {
 [[nodiscard]] ModeBounds mode_bounds(const Rod& rod,
                                      const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
+/// What walls and spring grips add to the bound of the fastest mode [N/m].
+[[nodiscard]] double constraint_stiffness(const Rod& rod);
+
 /// Largest stable c_F [m/N] for a fastest mode [N/m]: Formula 15 solved by linear stability,
 /// 2 (1 + c_h) / fastest. Points oscillate above it; `c_h` = 0 means no dynamics.
 [[nodiscard]] double largest_step_factor(double fastest, double c_h);

@@ -1,7 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <string>
+#include "dlo/force_model/instruction_set.hpp"
 
 namespace dlo::force_model {
 
@@ -23,6 +22,8 @@ struct StepPolicy {
   bool momentum = false;   ///< adds c_h times the last movement
   bool damping = false;    ///< divides by c_s once points oscillate
   bool automatic = false;  ///< overwrites c_F and c_h
+
+  bool operator==(const StepPolicy&) const = default;
 };
 
 [[nodiscard]] StepPolicy policy(Stepper stepper);
@@ -38,6 +39,8 @@ struct StepOptions {
   /// after each step without such a point, to no less than 1 [-]. Movements of rounding size do not
   /// count: a rod at rest would seem to oscillate.
   double c_s_change = 0.1;
+  /// What the steps run on; any other than the fastest serves tests and measurements only.
+  InstructionSet instruction_set = fastest_instruction_set();
 };
 
 enum class StepStatus {

@@ -11,6 +11,9 @@ namespace dlo::force_model {
 struct [[nodiscard]] EquilibriumCheck {
   bool stable = false;          ///< the stiffness of the free points is positive definite
   double remaining_error = -1;  ///< RMS over the points of Newton's step to the equilibrium [m]
+  /// A movement of the free points that the stiffness does not resist, the furthest by 1 and on the
+  /// whole towards +x, else +y, else +z [-], 3 x rod.points(); empty if stable.
+  Eigen::Matrix3Xd falling_direction;
 };
 
 /// Solves K dx = F, K minus the derivative of the total forces by the free points' positions, taken

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+
+namespace dlo::compare {
+
+/// Where the points of a scene's polygon lie along its rod.
+struct Layout {
+  double segment_length = 0;  ///< L, of the held segments and about that of all others [m]
+  Eigen::VectorXd rest_lengths;
+  std::vector<double> arc_length;        ///< of the points [m]
+  std::vector<Eigen::Index> first_held;  ///< first point that each of the scene's grippers holds
+  std::vector<std::size_t> along;        ///< the grippers in the order of their arc lengths
+};
+
+/// Lays out points as `discretise` says. @throws InputError as it does
+[[nodiscard]] Layout lay_out(const Scene& scene, const ForceModelSettings& settings);
+
+}  // namespace dlo::compare

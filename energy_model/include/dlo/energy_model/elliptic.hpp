@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace dlo::energy_model {
+
+/// What a dead force at the tip does to a weightless rod that is clamped at the origin along +x.
+/// Lengths in l, energies in EI/l.
+struct TipDeflection {
+  Eigen::Vector2d tip = Eigen::Vector2d::Zero();
+  double tip_angle = 0;        ///< of the tangent, from +x [rad]
+  double clamp_curvature = 0;  ///< d angle / ds, counter-clockwise positive
+  double bending_energy = 0;
+};
+
+/// The elastica in elliptic integrals, with GSL. With phi the tangent's angle against the reversed
+/// force, phi'' = -P sin phi is a pendulum: sin(phi/2) = k sin u, u' = sqrt(P) (1 - k^2 sin^2
+/// u)^1/2, and the tip, where phi' = 0, is at u = pi/2. The modulus k follows from the length,
+///     sqrt(P) = K(k) - F(u_0, k),   k sin u_0 = sin(phi_0/2),
+/// and, along and across the reversed force,
+///     X = 2 (E(k) - E(u_0, k)) / sqrt(P) - 1,   Y = 2 k cos u_0 / sqrt(P)
+/// (Love, Mathematical Theory of Elasticity, art. 262). Of several equilibria it is the one without
+/// inflection, which has the lowest energy; a rod pressed along its axis beyond pi^2/4 buckles
+/// towards +y.
+/// @param load   P l^2 / (EI), >= 0 and <= 4e4
+/// @param angle  of the force against +x, any [rad]
+/// @throws std::invalid_argument if an argument is out of range
+[[nodiscard]] TipDeflection tip_deflection(double load, double angle);
+
+}  // namespace dlo::energy_model

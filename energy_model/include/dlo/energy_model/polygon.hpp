@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "dlo/energy_model/chain.hpp"
+#include "dlo/energy_model/status.hpp"
+
+namespace dlo::energy_model {
+
+/// A point of a polygon that does not move.
+struct HeldPoint {
+  Eigen::Index point = 0;                              ///< 0 .. n
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
+};
+
+/// A half-space that pushes every free point behind its plane back.
+struct PointWall {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< of the plane [m]
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< to the free side, unit
+  double stiffness = 0;                               ///< force on a point per depth [N/m], >= 0
+};
+
+/// A polygon of elastic segments in space, held at any of its points: the force model's rod with
+/// the force model's own stretch stiffness, so that its minimum is where the force model comes to
+/// rest. (ChainProblem is its limit of rigid segments for one clamp in a plane. Between several
+/// grips rigid segments would be constraints, which a taut rod cannot meet to the last digit and
+/// which hide the tension; a physical stretch stiffness is stiff enough to change nothing else.)
+///
+///     E = sum c_c (|d_i| - L_i)^2 / (2 L_i) + sum joints - sum F_i . P_i + sum c_e depth_i^2 / 2
+///
+/// The joints' potentials are those of JointLaw, L the mean of the two rest lengths. For the hooke
+/// law the force model's forces are this energy's derivative. For the paper's law they are that
+/// between segments of equal length only: elsewhere the paper's joint has a net torque, belongs to
+/// no potential, and rests in a slightly different shape.
+struct PolygonProblem {
+  Eigen::VectorXd rest_lengths;  ///< L_i [m], n >= 2, each > 0
+  double stretch_stiffness = 0;  ///< c_c [N], > 0
+  Eigen::Matrix3Xd node_forces;  ///< dead force on each point [N], 3 x (n+1)
+  JointLaw law = JointLaw::hooke;
+  double stiffness = 0;         ///< c_b [N] or EI [N m^2], > 0
+  std::vector<HeldPoint> held;  ///< one or more, each point once
+  std::vector<PointWall> walls;
+};
+
+struct PolygonOptions {
+  double tolerance = 1e-12;  ///< of Newton's step, RMS over the points, in polygon lengths; > 0
+  int max_evaluations = 20000;
+};
+
+struct [[nodiscard]] PolygonResult {
+  SolveStatus status = SolveStatus::not_run;
+  std::string message = "never ran";
+  int evaluations = 0;
+  double seconds = 0;
+  double residual = -1;          ///< largest force on a free point [N]
+  Eigen::Matrix3Xd points;       ///< [m], 3 x (n+1)
+  Eigen::Matrix3Xd grip_forces;  ///< what holds each of PolygonProblem::held exerts [N]
+  double energy = 0;             ///< E [J]
+};
+
+/// Minimises E by damped Newton steps over the free points (a banded matrix, sparse LDL^T), each of
+/// which must lower E. NLopt's L-BFGS, which the rigid chain starts with, would need about N^2
+/// iterations here: over positions the Hessian's condition grows like N^4. The stretch stiffness
+/// starts so low that forces stretch the rod by about a hundredth, and grows tenfold a stage: a
+/// stiff rod's steps would be confined to a narrow curved valley.
+///
+/// `converged` and `roundoff_limited` mean that the Hessian over all free points, in space, is
+/// positive definite (to rounding: a shape that is free to turn is not called unstable). At a
+/// saddle the solver leaves along the lowest curvature and goes on.
+/// @param start  positions to start from [m], 3 x (n+1), no segment of zero length; held points
+///               are put where they are held
+/// @throws std::invalid_argument if the problem, an option or the start is out of range
+PolygonResult solve_polygon(const PolygonProblem& problem,
+                            const Eigen::Ref<const Eigen::Matrix3Xd>& start,
+                            const PolygonOptions& options = {});
+
+/// Energy [J] of these points and its gradient [N], held points included.
+/// @param[out] gradient  overwritten, 3 x (n+1)
+[[nodiscard]] double polygon_energy(const PolygonProblem& problem,
+                                    const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                                    Eigen::Ref<Eigen::Matrix3Xd> gradient);
+
+}  // namespace dlo::energy_model

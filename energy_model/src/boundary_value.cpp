@@ -1,0 +1,132 @@
+#include "boundary_value.hpp"
+
+#include <Eigen/OrderingMethods>
+#include <Eigen/SparseCore>
+#include <Eigen/SparseQR>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "shooting_system.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr double largest_turn = 0.5;    // of a tangent in one Newton step [rad]
+constexpr double smallest_part = 1e-3;  // of a Newton step
+constexpr double last_step = 1e-9;      // Newton's next one is of the size of rounding
+
+double largest_force(const RodSpan& span, const std::vector<RodState>& nodes) {
+  double force = std::max(1.0, total_load(span));
+  for (const RodState& node : nodes) {
+    force = std::max({force, node.n.norm(), node.v.squaredNorm()});
+  }
+  return force;
+}
+
+using Solver = Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>>;
+
+Eigen::SparseMatrix<double> matrix_of(const Triplets& triplets, Eigen::Index rows,
+                                      Eigen::Index columns) {
+  Eigen::SparseMatrix<double> matrix(rows, columns);
+  matrix.setFromTriplets(triplets.begin(), triplets.end());
+  matrix.makeCompressed();
+  return matrix;
+}
+
+/// Newton's step, as much of it as makes the next simplified one shorter.
+/// @return its largest component; nothing if there is no such part or it does not close the gaps
+std::optional<double> newton_step(const ShootingSystem& system, const Triplets& derivatives,
+                                  const Eigen::VectorXd& equations,
+                                  std::vector<ShootingNode>& nodes, int& shots) {
+  Solver solver(matrix_of(derivatives, system.size(), system.size()));
+  if (solver.info() != Eigen::Success) return std::nullopt;
+  const Eigen::VectorXd step = -solver.solve(equations);
+  const double largest = step.lpNorm<Eigen::Infinity>();
+  Eigen::VectorXd trial_equations;
+  if (largest < last_step) {
+    nodes = system.moved(nodes, step);
+    ++shots;
+    const bool closed = system.evaluate(nodes, trial_equations, nullptr) &&
+                        trial_equations.norm() < system.closed();
+    return closed ? std::optional(largest) : std::nullopt;
+  }
+  double part = std::min(1.0, largest_turn / std::max(system.turn(step), 1e-300));
+  for (; part > smallest_part; part /= 2) {
+    const std::vector<ShootingNode> trial = system.moved(nodes, part * step);
+    ++shots;
+    if (!system.evaluate(trial, trial_equations, nullptr)) continue;
+    const Eigen::VectorXd next = solver.solve(trial_equations);
+    if (next.norm() > (1 - part / 4) * step.norm()) continue;
+    nodes = trial;
+    return part * largest;
+  }
+  return std::nullopt;
+}
+
+/// Levenberg's step with a weight of the order of the gaps: it makes them smaller and moves nothing
+/// that can move for nothing, where Newton's step is not defined.
+std::optional<double> levenberg_step(const ShootingSystem& system, Triplets derivatives,
+                                     const Eigen::VectorXd& equations,
+                                     std::vector<ShootingNode>& nodes, int& shots) {
+  const Eigen::Index size = system.size();
+  const std::size_t own = derivatives.size();
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
+  right.head(size) = -equations;
+  Eigen::VectorXd trial_equations;
+  for (double weight = equations.norm(); weight < 1e6; weight *= 8) {
+    derivatives.resize(own);
+    for (Eigen::Index i = 0; i < size; ++i) {
+      derivatives.emplace_back(static_cast<int>(size + i), static_cast<int>(i), std::sqrt(weight));
+    }
+    Solver solver(matrix_of(derivatives, 2 * size, size));
+    if (solver.info() != Eigen::Success) return std::nullopt;
+    const Eigen::VectorXd step = solver.solve(right);
+    ++shots;
+    const std::vector<ShootingNode> trial = system.moved(nodes, step);
+    if (system.turn(step) > largest_turn || !system.evaluate(trial, trial_equations, nullptr) ||
+        trial_equations.norm() > equations.norm()) {
+      continue;
+    }
+    nodes = trial;
+    return step.lpNorm<Eigen::Infinity>();
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector<RodState>& start,
+                     const ShootingOptions& options) {
+  const ShootingSystem system(span, mesh, options.planar, options.tolerance,
+                              largest_force(span, start));
+  std::vector<ShootingNode> nodes;
+  nodes.reserve(start.size());
+  for (const RodState& state : start) nodes.push_back(system.make_node(state));
+  ShootingResult result;
+  result.message = "Newton's method took too many steps";
+  Eigen::VectorXd equations;
+  for (int iteration = 0; iteration < options.max_iterations && !result.converged; ++iteration) {
+    Triplets derivatives;
+    ++result.shots;
+    if (!system.evaluate(nodes, equations, &derivatives)) {
+      result.message = "the integrator gave up";
+      break;
+    }
+    std::optional<double> step = newton_step(system, derivatives, equations, nodes, result.shots);
+    if (!step) step = levenberg_step(system, derivatives, equations, nodes, result.shots);
+    if (!step) {
+      result.message = "Newton's method found no shorter step";
+      break;
+    }
+    result.converged = *step < last_step;
+  }
+  result.residual = system.gap(nodes);
+  for (const ShootingNode& node : nodes) result.nodes.push_back(node.state);
+  if (!result.converged) return result;
+  result.converged = result.residual <= system.closed();
+  result.message = result.converged ? "converged" : "the rod does not close at a node";
+  return result;
+}
+
+}  // namespace dlo::energy_model

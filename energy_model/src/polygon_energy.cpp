@@ -1,0 +1,163 @@
+#include "polygon_energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dlo::energy_model {
+namespace {
+
+using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
+
+/// Beyond this angle the moment of a `hooke` joint stays constant, as the force model's does [rad].
+constexpr double fold_angle = 3.0;
+
+/// Potential of a joint and its first two derivatives by h = sin^2(alpha/2) = |u - v|^2 / 4, u and
+/// v the segments' directions. Unlike alpha, h is smooth where the segments are in line.
+struct Joint {
+  double energy, first, second;
+};
+
+Joint joint(JointLaw law, double stiffness, double L, double h) {
+  const double rest = 1 - h;  // cos^2(alpha/2)
+  if (law == JointLaw::paper) {
+    const double q = std::sqrt(rest);
+    const double m = h / (1 + q);  // 1 - cos(alpha/2), without cancellation
+    const double scale = stiffness * L;
+    return {scale * 4 * m * m * (1 - m / 3), scale * 2 * h / q, scale * (2 / q + h / (rest * q))};
+  }
+  const double k = stiffness / L;
+  static const double fold = std::pow(std::sin(fold_angle / 2), 2);
+  if (h <= fold) return {-2 * k * std::log1p(-h), 2 * k / rest, 2 * k / (rest * rest)};
+  const double moment = 2 * k * std::tan(fold_angle / 2);
+  const double root = std::sqrt(h * rest);  // d alpha / d h = 1 / root
+  const double alpha = 2 * std::atan2(std::sqrt(h), std::sqrt(rest));
+  return {-2 * k * std::log1p(-fold) + moment * (alpha - fold_angle), moment / root,
+          -moment * (1 - 2 * h) / (2 * root * root * root)};
+}
+
+/// The two segments that meet at a joint.
+struct Corner {
+  Eigen::Vector3d u, v;  // directions
+  double a, b;           // lengths
+  double h;
+  Eigen::Vector3d by_a, by_b;  // derivative of cos alpha = u.v by either segment
+
+  Corner(const Points& points, Eigen::Index i)
+      : u(points.col(i) - points.col(i - 1)),
+        v(points.col(i + 1) - points.col(i)),
+        a(u.norm()),
+        b(v.norm()) {
+    u /= a;
+    v /= b;
+    const Eigen::Vector3d turn = v - u;
+    // Rounding may carry a full fold beyond one.
+    h = std::min(turn.squaredNorm() / 4, 1.0);
+    by_a = (turn - turn.dot(u) * u) / a;
+    by_b = -(turn - turn.dot(v) * v) / b;
+  }
+};
+
+double joint_length(const PolygonProblem& problem, Eigen::Index i) {
+  return (problem.rest_lengths[i - 1] + problem.rest_lengths[i]) / 2;
+}
+
+/// How far a free point is behind a wall; a held one does not feel it [m].
+double depth(const PolygonProblem& problem, const PointWall& wall, const Points& points,
+             Eigen::Index i) {
+  const double behind = (wall.point - points.col(i)).dot(wall.normal);
+  if (!(behind > 0)) return 0;
+  const bool held = std::any_of(problem.held.begin(), problem.held.end(),
+                                [i](const HeldPoint& point) { return point.point == i; });
+  return held ? 0 : behind;
+}
+
+/// Adds the Hessian H of a function of the differences d_p = P_(p+1) - P_p, d_q likewise.
+void add_difference_block(Eigen::Index p, Eigen::Index q, const Eigen::Matrix3d& H,
+                          const AddBlock& add) {
+  add(p + 1, q + 1, H);
+  add(p + 1, q, -H);
+  add(p, q + 1, -H);
+  add(p, q, H);
+}
+
+}  // namespace
+
+double polygon_energy(const PolygonProblem& problem, const Points& points,
+                      Eigen::Ref<Eigen::Matrix3Xd> gradient) {
+  const Eigen::Index n = problem.rest_lengths.size();
+  gradient = -problem.node_forces;
+  double energy = -problem.node_forces.cwiseProduct(points).sum();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Vector3d d = points.col(i + 1) - points.col(i);
+    const double L = problem.rest_lengths[i];
+    const double longer = d.norm() - L;
+    energy += problem.stretch_stiffness * longer * longer / (2 * L);
+    const Eigen::Vector3d pull = problem.stretch_stiffness * longer / L * d.normalized();
+    gradient.col(i + 1) += pull;
+    gradient.col(i) -= pull;
+  }
+  for (Eigen::Index i = 1; i < n; ++i) {
+    const Corner corner(points, i);
+    const Joint j = joint(problem.law, problem.stiffness, joint_length(problem, i), corner.h);
+    energy += j.energy;
+    // h = (1 - cos alpha) / 2
+    const Eigen::Vector3d by_a = -j.first / 2 * corner.by_a;
+    const Eigen::Vector3d by_b = -j.first / 2 * corner.by_b;
+    gradient.col(i - 1) -= by_a;
+    gradient.col(i) += by_a - by_b;
+    gradient.col(i + 1) += by_b;
+  }
+  for (const PointWall& wall : problem.walls) {
+    for (Eigen::Index i = 0; i <= n; ++i) {
+      const double d = depth(problem, wall, points, i);
+      energy += wall.stiffness * d * d / 2;
+      gradient.col(i) -= wall.stiffness * d * wall.normal;
+    }
+  }
+  return energy;
+}
+
+void polygon_hessian(const PolygonProblem& problem, const Points& points, const AddBlock& add) {
+  const Eigen::Index n = problem.rest_lengths.size();
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Vector3d d = points.col(i + 1) - points.col(i);
+    const double L = problem.rest_lengths[i];
+    const double length = d.norm();
+    const Eigen::Vector3d u = d / length;
+    const double along = problem.stretch_stiffness / L;
+    const double across = along * (length - L) / length;
+    add_difference_block(i, i, across * one + (along - across) * u * u.transpose(), add);
+  }
+  for (Eigen::Index i = 1; i < n; ++i) {
+    const Corner c(points, i);
+    const Joint j = joint(problem.law, problem.stiffness, joint_length(problem, i), c.h);
+    const double curved = j.second / 4;
+    const double slope = -j.first / 2;  // by cos alpha
+    const double cosine = 1 - 2 * c.h;
+    const Eigen::Matrix3d beside_u = one - c.u * c.u.transpose();
+    const Eigen::Matrix3d beside_v = one - c.v * c.v.transpose();
+    const Eigen::Matrix3d aa =
+        curved * c.by_a * c.by_a.transpose() -
+        slope / c.a *
+            (c.u * c.by_a.transpose() + c.by_a * c.u.transpose() + cosine / c.a * beside_u);
+    const Eigen::Matrix3d bb =
+        curved * c.by_b * c.by_b.transpose() -
+        slope / c.b *
+            (c.v * c.by_b.transpose() + c.by_b * c.v.transpose() + cosine / c.b * beside_v);
+    const Eigen::Matrix3d ab =
+        curved * c.by_a * c.by_b.transpose() + slope / (c.a * c.b) * beside_u * beside_v;
+    add_difference_block(i - 1, i - 1, aa, add);
+    add_difference_block(i, i, bb, add);
+    add_difference_block(i - 1, i, ab, add);
+    add_difference_block(i, i - 1, ab.transpose(), add);
+  }
+  for (const PointWall& wall : problem.walls) {
+    for (Eigen::Index i = 0; i <= n; ++i) {
+      if (depth(problem, wall, points, i) <= 0) continue;
+      add(i, i, wall.stiffness * wall.normal * wall.normal.transpose());
+    }
+  }
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <vector>
+
+#include "rod_flow.hpp"
+#include "rod_span.hpp"
+
+namespace dlo::energy_model {
+
+/// A coarse equilibrium: unit tangents t_i of the intervals h_i of a mesh, at a local minimum of
+///     sum (1 - t_i.t_(i+1)) / h_(i,i+1) - sum h_i n_i.t_i
+/// with h_(i,i+1) the distance of the intervals' middles and n_i the force that they carry, while
+/// sum h_i t_i between two grips is the grips' distance.
+struct RelaxedPolygon {
+  Eigen::Matrix3Xd tangents;  ///< 3 x intervals
+  Eigen::Matrix3Xd force;     ///< n_i with the grips' part
+  double energy = 0;
+};
+
+/// Every tangent in turn is laid along the sum of what pulls it (neighbours, forces), which is its
+/// own minimum, over and over; an augmented Lagrangian closes the gaps at the grips. Of first order
+/// and slow, but it goes downhill from any shape, so that Newton's method starts near a minimum
+/// instead of near a saddle.
+/// @param tangents  where it starts
+/// @param planar    stay in the span's plane
+[[nodiscard]] RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh,
+                                           Eigen::Matrix3Xd tangents, bool planar);
+
+/// Local minima of the polygon, lowest first, from these starts: the tangents along the force that
+/// is carried, straight along a line, and at an angle a(x) to it, x in [0, 1] along the span,
+/// towards each of several normals,
+///     a = A cos(pi x) (arch),  A sin(2 pi x) (arch with straight ends),  A cos(2 pi x) (S),
+///     2 pi x (loop),
+/// where A fits the distance of the outermost grips. The line is theirs, or a clamp's direction. In
+/// the plane the normals are its two, in space six around the line.
+[[nodiscard]] std::vector<RelaxedPolygon> polygon_minima(const RodSpan& span, const RodMesh& mesh,
+                                                         bool planar);
+
+/// Cross-sections at the nodes of a mesh.
+[[nodiscard]] std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
+                                              const RelaxedPolygon& polygon);
+
+}  // namespace dlo::energy_model

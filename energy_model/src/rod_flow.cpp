@@ -1,0 +1,124 @@
+#include "rod_flow.hpp"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_odeiv2.h>
+
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include "silence_gsl.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Layout of the integrated vector: r, t, v, bending, gravity, then r, t, v of each parameter.
+constexpr Eigen::Index state_size = 11;
+constexpr Eigen::Index variation_size = 9;
+constexpr int most_steps = 20000;
+
+struct Piece {
+  Eigen::Vector3d weight;
+  Eigen::Vector3d n;                 // at its beginning
+  const Eigen::Matrix3Xd* n_change;  // derivatives of n, constant along the piece
+};
+
+int right_hand_side(double s, const double* y, double* rate, void* data) {
+  using Vector = Eigen::Map<const Eigen::Vector3d>;
+  using Rate = Eigen::Map<Eigen::Vector3d>;
+  const auto& piece = *static_cast<const Piece*>(data);
+  const Vector r(y);
+  const Vector t(y + 3);
+  const Vector v(y + 6);
+  const Eigen::Vector3d n = piece.n - s * piece.weight;
+  const double pull = n.dot(t) - v.squaredNorm();
+  Rate(rate + 0) = t;
+  Rate(rate + 3) = v;
+  Rate(rate + 6) = pull * t - n;
+  rate[9] = v.squaredNorm() / 2;
+  rate[10] = -piece.weight.dot(r);
+  for (Eigen::Index k = 0; k < piece.n_change->cols(); ++k) {
+    const double* change = y + state_size + k * variation_size;
+    double* change_rate = rate + state_size + k * variation_size;
+    const Vector dt(change + 3);
+    const Vector dv(change + 6);
+    const Eigen::Vector3d dn = piece.n_change->col(k);
+    const double dpull = dn.dot(t) + n.dot(dt) - 2 * v.dot(dv);
+    Rate(change_rate + 0) = dt;
+    Rate(change_rate + 3) = dv;
+    Rate(change_rate + 6) = dpull * t + pull * dt - dn;
+  }
+  return GSL_SUCCESS;
+}
+
+template <class T, void (*release)(T*)>
+struct Release {
+  void operator()(T* pointer) const { release(pointer); }
+};
+template <class T, void (*release)(T*)>
+using Owned = std::unique_ptr<T, Release<T, release>>;
+
+bool integrate(Piece& piece, double length, double tolerance, std::vector<double>& y) {
+  silence_gsl();
+  const std::size_t size = y.size();
+  gsl_odeiv2_system system{right_hand_side, nullptr, size, &piece};
+  const Owned<gsl_odeiv2_step, gsl_odeiv2_step_free> step(
+      gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, size));
+  const Owned<gsl_odeiv2_control, gsl_odeiv2_control_free> control(
+      gsl_odeiv2_control_y_new(tolerance, tolerance));
+  const Owned<gsl_odeiv2_evolve, gsl_odeiv2_evolve_free> evolve(gsl_odeiv2_evolve_alloc(size));
+  double s = 0;
+  double h = length / 4;
+  for (int i = 0; i < most_steps && s < length; ++i) {
+    if (gsl_odeiv2_evolve_apply(evolve.get(), control.get(), step.get(), &system, &s, length, &h,
+                                y.data()) != GSL_SUCCESS) {
+      return false;
+    }
+  }
+  if (s < length) return false;
+  double sum = 0;
+  for (const double component : y) sum += component;
+  return std::isfinite(sum);
+}
+
+}  // namespace
+
+RodVariation::RodVariation(Eigen::Index parameters)
+    : r(Eigen::Matrix3Xd::Zero(3, parameters)),
+      t(Eigen::Matrix3Xd::Zero(3, parameters)),
+      v(Eigen::Matrix3Xd::Zero(3, parameters)),
+      n(Eigen::Matrix3Xd::Zero(3, parameters)) {}
+
+bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance, RodState& state,
+                RodVariation& variation, RodIntegrals& integrals) {
+  const Eigen::Index parameters = variation.n.cols();
+  Piece piece{weight, state.n, &variation.n};
+  std::vector<double> y(static_cast<std::size_t>(state_size + parameters * variation_size), 0.0);
+  Eigen::Map<Eigen::VectorXd> all(y.data(), static_cast<Eigen::Index>(y.size()));
+  all.head<9>() << state.r, state.t, state.v;
+  for (Eigen::Index k = 0; k < parameters; ++k) {
+    all.segment<variation_size>(state_size + k * variation_size) << variation.r.col(k),
+        variation.t.col(k), variation.v.col(k);
+  }
+  if (length > 0 && !integrate(piece, length, tolerance, y)) return false;
+  state.r = all.segment<3>(0);
+  state.t = all.segment<3>(3);
+  state.v = all.segment<3>(6);
+  state.n -= length * weight;
+  integrals = {all[9], all[10]};
+  for (Eigen::Index k = 0; k < parameters; ++k) {
+    const Eigen::Index at = state_size + k * variation_size;
+    variation.r.col(k) = all.segment<3>(at);
+    variation.t.col(k) = all.segment<3>(at + 3);
+    variation.v.col(k) = all.segment<3>(at + 6);
+  }
+  return true;
+}
+
+bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance, RodState& state,
+                RodIntegrals& integrals) {
+  RodVariation none;
+  return follow_rod(weight, length, tolerance, state, none, integrals);
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace dlo::energy_model {
+
+/// Cross-section of an inextensible, twist-free, naturally straight Kirchhoff rod in units of its
+/// length and stiffness (l, EI/l^2).
+struct RodState {
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();  ///< position
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();  ///< unit tangent
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< dt/ds, across t; the moment is t x v
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< force of what lies beyond s on what lies before
+};
+
+/// Derivatives of a RodState by some parameters, one a column; those of r, t, v and n.
+struct RodVariation {
+  Eigen::Matrix3Xd r;
+  Eigen::Matrix3Xd t;
+  Eigen::Matrix3Xd v;
+  Eigen::Matrix3Xd n;
+
+  explicit RodVariation(Eigen::Index parameters = 0);
+};
+
+/// Integrals over a piece of the rod.
+struct RodIntegrals {
+  double bending = 0;  ///< of |v|^2 / 2
+  double gravity = 0;  ///< of -w . r
+};
+
+/// Follows the rod's equations over `length`,
+///     r' = t,   t' = v,   v' = -(n - (n.t) t) - |v|^2 t,   n' = -w,
+/// which follow from m' + t x n = 0 with m = t x v, and their linearisation, with GSL's rk8pd.
+/// No angles, so no chart that could end. Along a piece without weight n and |v|^2/2 + n.t stay.
+/// @param weight     w
+/// @param tolerance  local error per step, relative to 1 + |component|
+/// @param[in,out] state, variation  from the beginning of the piece to its end
+/// @param[out] integrals  of the piece
+/// @return false if the integrator gave up
+[[nodiscard]] bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance,
+                              RodState& state, RodVariation& variation, RodIntegrals& integrals);
+
+/// The same without linearisation.
+[[nodiscard]] bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance,
+                              RodState& state, RodIntegrals& integrals);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "dlo/energy_model/planar.hpp"
+#include "dlo/energy_model/problem.hpp"
+
+namespace dlo::energy_model {
+
+/// A piece of rod between two clamps, or between a clamp and a free end, or the whole of a rod
+/// without clamps. Lengths in l, forces in EI/l^2; s runs along the arc length from the piece's
+/// beginning, positions are relative to the problem's first grip.
+struct RodSpan {
+  struct Hold {
+    double at = 0;  ///< s
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    std::size_t grip = 0;  ///< in Problem::grips
+  };
+  struct Load {
+    double at = 0;  ///< s
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  };
+  double begin = 0;  ///< arc length of s = 0
+  double length = 1;
+  Eigen::Vector3d weight = Eigen::Vector3d::Zero();
+  std::optional<Eigen::Vector3d> start_direction;  ///< unit; free if not given
+  std::optional<Eigen::Vector3d> end_direction;
+  std::vector<Hold> holds;     ///< by growing s, those of the clamps at the ends included
+  std::vector<Load> loads;     ///< by growing s; those on clamps are the gripper's alone
+  std::optional<Plane> plane;  ///< if grips and forces lie in one
+};
+
+/// Arc lengths that differ by less than 1e-9 l.
+[[nodiscard]] bool same_arc_length(double a, double b, double length);
+
+/// Cuts a problem at its clamps. Grips within 1e-9 l of an end of the rod are at that end.
+/// @throws std::invalid_argument if the problem is out of range, has walls, or grips are further
+/// apart than the rod between them
+[[nodiscard]] std::vector<RodSpan> cut_at_clamps(const Problem& problem);
+
+/// The nodes of a span: ends, grips and loads, and as many between them as are asked for.
+struct RodMesh {
+  Eigen::VectorXd s;                       ///< growing, at least 2
+  Eigen::Matrix3Xd load;                   ///< on each node
+  std::vector<const RodSpan::Hold*> hold;  ///< at each node, null for none; of the span
+
+  [[nodiscard]] Eigen::Index intervals() const { return s.size() - 1; }
+};
+
+/// @param longest  no interval is longer
+[[nodiscard]] RodMesh make_mesh(const RodSpan& span, double longest);
+
+/// The inner force n, of what lies beyond on what lies before, if the first grip alone carried
+/// weight and loads.
+struct ForceField {
+  Eigen::Matrix3Xd on_interval;  ///< in the middle of each interval
+  Eigen::Matrix3Xd after_node;
+};
+[[nodiscard]] ForceField carried_force(const RodSpan& span, const RodMesh& mesh);
+
+/// Sum of the norms of weight and loads.
+[[nodiscard]] double total_load(const RodSpan& span);
+
+}  // namespace dlo::energy_model

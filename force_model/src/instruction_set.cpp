@@ -1,0 +1,87 @@
+#include "dlo/force_model/instruction_set.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+#include "step_kernel.hpp"
+
+namespace dlo::force_model {
+
+using KernelOfSet = const StepKernel& (*)(BendingLaw law, int dimension, std::ptrdiff_t stride);
+
+// One for each time that step_kernel.cpp is compiled.
+namespace kernel_baseline {
+const StepKernel& step_kernel(BendingLaw law, int dimension, std::ptrdiff_t stride);
+}
+#if defined(__x86_64__)
+namespace kernel_avx2 {
+const StepKernel& step_kernel(BendingLaw law, int dimension, std::ptrdiff_t stride);
+}
+namespace kernel_avx512 {
+const StepKernel& step_kernel(BendingLaw law, int dimension, std::ptrdiff_t stride);
+}
+#endif
+
+namespace {
+
+/// Null if this machine cannot run the set.
+KernelOfSet kernel_of(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::baseline:
+      return kernel_baseline::step_kernel;
+#if defined(__x86_64__)
+    case InstructionSet::avx2: {
+      const bool runs = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+      return runs ? kernel_avx2::step_kernel : nullptr;
+    }
+    case InstructionSet::avx512: {
+      const bool runs = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                        __builtin_cpu_supports("avx512vl");
+      return runs ? kernel_avx512::step_kernel : nullptr;
+    }
+#endif
+    default:
+      return nullptr;
+  }
+}
+
+}  // namespace
+
+const char* to_string(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx2:
+      return "AVX2";
+    case InstructionSet::avx512:
+      return "AVX-512";
+    case InstructionSet::baseline:
+      break;
+  }
+  return "baseline";
+}
+
+std::vector<InstructionSet> available_instruction_sets() {
+  std::vector<InstructionSet> sets;
+  for (const InstructionSet set :
+       {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512}) {
+    if (kernel_of(set) != nullptr) sets.push_back(set);
+  }
+  return sets;
+}
+
+InstructionSet fastest_instruction_set() {
+  static const InstructionSet fastest = available_instruction_sets().back();
+  return fastest;
+}
+
+const StepKernel& step_kernel(InstructionSet set, BendingLaw law, int dimension,
+                              std::ptrdiff_t stride) {
+  const KernelOfSet kernel = kernel_of(set);
+  if (kernel == nullptr) {
+    throw std::invalid_argument(std::string("step_kernel: instruction set = ") + to_string(set) +
+                                ", must be one that this machine has");
+  }
+  return kernel(law, dimension, stride);
+}
+
+}  // namespace dlo::force_model

@@ -1,0 +1,196 @@
+#include "lockstep.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "require.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+// Movements below this share of the coordinates are rounding, which turns back and forth at rest.
+constexpr double rounding_share = 1024 * std::numeric_limits<double>::epsilon();
+
+std::vector<Rod> checked_rods(std::span<const BatchRod> start) {
+  std::vector<Rod> rods;
+  for (const BatchRod& one : start) {
+    check(one.rod);
+    require_polygon("Simulation", one.points, one.rod.rest_lengths);
+    rods.push_back(one.rod);
+  }
+  return rods;
+}
+
+Eigen::Matrix3Xd with_held_points(const BatchRod& start) {
+  Eigen::Matrix3Xd points = start.points;
+  for (const Grip& grip : start.rod.grips) {
+    if (grip.hold == GripHold::spring) continue;
+    points.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
+  }
+  return points;
+}
+
+}  // namespace
+
+Lockstep::Lockstep(std::span<const BatchRod> start, bool together)
+    : rods_(checked_rods(start)), block_(rods_, together, start.front().options.instruction_set) {
+  for (std::size_t lane = 0; lane < block_lanes; ++lane) {
+    const std::size_t rod = lane < start.size() ? lane : 0;
+    if (!together && rod != lane) break;
+    const Eigen::Matrix3Xd points = with_held_points(start[rod]);
+    block_.set(positions, lane, points);
+    if (rod == lane) controls_.emplace_back(rods_[rod], points, start[rod].options);
+  }
+  for (std::size_t rod = 0; rod < start.size(); ++rod) {
+    set_active(rod, true);
+    c_F_.lane[rod] = controls_[rod].options().c_F;
+  }
+  block_.update_dimension(rods_);
+  points_.resize(3, rods_.front().points());
+  forces_.resize(3, rods_.front().points());
+  for (std::size_t rod = 0; rod < start.size(); ++rod) update_rounding(rod);
+}
+
+void Lockstep::update_rounding(std::size_t rod) {
+  const double rounding = rounding_share * block_.view(positions, rod).cwiseAbs().maxCoeff();
+  rounding_squared_.lane[rod] = rounding * rounding;
+}
+
+void Lockstep::set_active(std::size_t rod, bool active) { active_.lane[rod] = active ? 1 : 0; }
+
+bool Lockstep::any_active() const {
+  return std::any_of(std::begin(active_.lane), std::end(active_.lane),
+                     [](double lane) { return lane != 0; });
+}
+
+void Lockstep::look_at_modes() {
+  bool due = false;
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    due = due || (active(rod) && controls_[rod].looks_at_modes());
+  }
+  if (!due) return;
+  block_.look_at_modes(look_);
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    if (!active(rod)) continue;
+    controls_[rod].update_modes(look_.contraction.lane[rod] + look_.bending.lane[rod],
+                                look_.force_change.lane[rod], look_.point_change.lane[rod]);
+    c_F_.lane[rod] = controls_[rod].options().c_F;
+  }
+}
+
+void Lockstep::step(std::span<StepResult> results) {
+  block_.compute_forces(rods_, active_);
+  look_at_modes();
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    kept_.lane[rod] = controls_[rod].kept() * c_m_.lane[rod];
+  }
+  block_.propose(c_F_, kept_, rounding_squared_, controls_.front().relative(), proposed_);
+  PerLane c_m;
+  bool moves = false;
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    if (!active(rod)) continue;
+    controls_[rod].decide(proposed_.largest_squared.lane[rod], proposed_.sum_squared.lane[rod],
+                          proposed_.oscillating.lane[rod], results[rod]);
+    c_m.lane[rod] = results[rod].c_m;  // 0 if diverged
+    moves = moves || results[rod].status == StepStatus::good;
+  }
+  if (!moves) return;
+  block_.move(c_m);
+  c_m_ = c_m;
+}
+
+MovingShape Lockstep::shape(std::size_t rod) {
+  points_ = block_.view(positions, rod);
+  forces_ = block_.view(forces, rod);
+  const double momentum = c_m_.lane[rod] * block_.last_proposals(rod).norm() /
+                          (1 - controls_[rod].kept()) /
+                          std::sqrt(static_cast<double>(points_.cols()));
+  return {points_, forces_, controls_[rod].options().policy.momentum ? momentum : 0};
+}
+
+void Lockstep::nudge(std::size_t rod, const Eigen::Matrix3Xd& direction) {
+  constexpr double share = 1e-6;  // of the length: far below any tolerance
+  block_.set(positions, rod, block_.view(positions, rod) + share * rods_[rod].length() * direction);
+  block_.update_dimension(rods_);
+}
+
+std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
+  std::vector<RestSearch> searches;
+  searches.reserve(rods_.size());
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    searches.emplace_back(rods_[rod], controls_[rod].estimate(), options, points(rod));
+  }
+  const PerLane active_before = active_;
+  const auto stop_if_done = [&](std::size_t rod) {
+    if (!searches[rod].open()) set_active(rod, false);
+  };
+  std::array<StepResult, block_lanes> results;  // diverged, for rods that are not active
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    if (!active(rod)) (void)searches[rod].count(results[rod]);
+    stop_if_done(rod);
+  }
+  std::array<bool, block_lanes> due{};
+  while (any_active()) {
+    step(results);
+    for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+      due[rod] = active(rod) && searches[rod].count(results[rod]);
+    }
+    if (std::find(due.begin(), due.end(), true) != due.end()) {
+      block_.compute_forces(rods_, active_);
+      for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+        if (!due[rod]) continue;
+        // An equilibrium that does not hold, as an upright rod's: whatever disturbs it lets it
+        // fall.
+        const Eigen::Matrix3Xd falling = searches[rod].look(shape(rod));
+        if (falling.cols() > 0) nudge(rod, falling);
+      }
+    }
+    for (std::size_t rod = 0; rod < rods_.size(); ++rod) stop_if_done(rod);
+  }
+  active_ = active_before;
+  block_.compute_forces(rods_, active_);
+  std::vector<RelaxResult> outcomes;
+  for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
+    outcomes.push_back(searches[rod].finish(shape(rod)));
+  }
+  return outcomes;
+}
+
+void Lockstep::move_grip(std::size_t rod, std::size_t grip,
+                         const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
+                         const Eigen::Vector3d& reference) {
+  Rod& held = rods_[rod];
+  require(grip < held.grips.size(), "Simulation::move_grip", "grip", static_cast<double>(grip),
+          "smaller than the number of grips");
+  Grip& moved = held.grips[grip];
+  require(targets.cols() == moved.targets.cols(), "Simulation::move_grip", "columns of targets",
+          static_cast<double>(targets.cols()), "the number of points held");
+  require(targets.allFinite() && reference.allFinite(), "Simulation::move_grip", "targets",
+          targets.norm(), "finite");
+  moved.targets = targets;
+  moved.reference = reference;
+  if (moved.hold == GripHold::rigid) {
+    points_ = block_.view(positions, rod);
+    points_.middleCols(moved.first_point, targets.cols()) = targets;
+    block_.set(positions, rod, points_);
+  }
+  update_rounding(rod);
+  block_.update_dimension(rods_);
+}
+
+void Lockstep::move_wall(std::size_t rod, std::size_t wall, const Wall& moved) {
+  Rod& held = rods_[rod];
+  require(wall < held.walls.size(), "Simulation::move_wall", "wall", static_cast<double>(wall),
+          "smaller than the number of walls");
+  check(moved);
+  held.walls[wall] = moved;
+  block_.set_walls(rods_);
+  block_.update_dimension(rods_);
+  copy_points(rod, points_);
+  controls_[rod].change_environment(held, points_);
+  c_F_.lane[rod] = controls_[rod].options().c_F;
+}
+
+}  // namespace dlo::force_model

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "dlo/force_model/batch.hpp"
+#include "rest_search.hpp"
+#include "rod_block.hpp"
+#include "step_control.hpp"
+
+namespace dlo::force_model {
+
+/// One rod, or up to eight of the same size, bending law and step policy that step together: what
+/// Simulation and Batch share.
+class Lockstep {
+ public:
+  /// @param together  false: one rod, vectorised over its points; true: 1 to 8, one per lane
+  /// @throws std::invalid_argument if rods, points or options are out of range
+  Lockstep(std::span<const BatchRod> start, bool together);
+
+  /// A step of each active rod. Allocates nothing.
+  /// @param[out] results  one per rod; those of others are left alone
+  void step(std::span<StepResult> results);
+
+  /// Steps until each active rod rests, see Simulation::relax. Allocates.
+  std::vector<RelaxResult> relax(const RelaxOptions& options);
+
+  /// As Simulation::move_grip.
+  void move_grip(std::size_t rod, std::size_t grip,
+                 const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
+                 const Eigen::Vector3d& reference);
+
+  /// As Simulation::move_wall.
+  void move_wall(std::size_t rod, std::size_t wall, const Wall& moved);
+
+  [[nodiscard]] const Rod& rod(std::size_t rod) const { return rods_[rod]; }
+  [[nodiscard]] const StepControl& control(std::size_t rod) const { return controls_[rod]; }
+  [[nodiscard]] Eigen::Matrix3Xd points(std::size_t rod) const {
+    return block_.view(positions, rod);
+  }
+  void copy_points(std::size_t rod, Eigen::Matrix3Xd& points) const {
+    points = block_.view(positions, rod);
+  }
+
+  [[nodiscard]] std::size_t size() const { return rods_.size(); }
+
+  /// Rods that are not active stand still.
+  void set_active(std::size_t rod, bool active);
+  [[nodiscard]] bool active(std::size_t rod) const { return active_.lane[rod] != 0; }
+  [[nodiscard]] bool any_active() const;
+
+ private:
+  void look_at_modes();
+  void update_rounding(std::size_t rod);
+  MovingShape shape(std::size_t rod);
+  void nudge(std::size_t rod, const Eigen::Matrix3Xd& direction);
+
+  std::vector<Rod> rods_;
+  RodBlock block_;
+  std::vector<StepControl> controls_;
+  PerLane c_F_;
+  PerLane c_m_;   // of the last step: its movements were c_m times the proposed ones
+  PerLane kept_;  // c_h c_m
+  PerLane active_;
+  PerLane rounding_squared_;  // of the smallest movement that counts as oscillation [m^2]
+  ProposedStep proposed_;
+  ModeLook look_;
+  Eigen::Matrix3Xd points_;  // of the rod that is looked at
+  Eigen::Matrix3Xd forces_;
+};
+
+}  // namespace dlo::force_model

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dlo/force_model/step_size.hpp"
+
+namespace dlo::force_model {
+
+/// The fastest mode's bound in the present shape and an estimate of the slowest mode that still
+/// moves, -dF.dP / dP.dP over blocks of steps, older blocks fading out.
+class ModeEstimate {
+ public:
+  ModeEstimate(const Rod& rod, const Eigen::Matrix3Xd& points);
+
+  /// After a block of steps.
+  /// @param inner_mode    bound of the fastest mode of contraction and bending [N/m]
+  /// @param force_change  -dF.dP of the block [N m]
+  /// @param point_change  dP.dP [m^2]. Those of the first call mean nothing.
+  void update(double inner_mode, double force_change, double point_change);
+
+  /// After a change of the rod's walls. The next update starts a new block: its changes mean
+  /// nothing.
+  void change_environment(const Rod& rod, const Eigen::Matrix3Xd& points);
+
+  [[nodiscard]] const ModeBounds& modes() const { return modes_; }
+  [[nodiscard]] double slowest_expected() const { return slowest_expected_; }
+
+ private:
+  ModeBounds modes_;
+  double slowest_expected_ = 0;  // before anything moved
+  double constraints_ = 0;
+  double force_change_ = 0;
+  double point_change_ = 0;
+  bool block_open_ = false;
+};
+
+}  // namespace dlo::force_model

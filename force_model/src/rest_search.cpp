@@ -1,0 +1,76 @@
+#include "rest_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "require.hpp"
+
+namespace dlo::force_model {
+
+const char* to_string(RelaxStatus status) {
+  switch (status) {
+    case RelaxStatus::at_rest:
+      return "at rest";
+    case RelaxStatus::step_limit:
+      return "step limit";
+    case RelaxStatus::diverged:
+      break;
+  }
+  return "diverged";
+}
+
+RestSearch::RestSearch(const Rod& rod, const ModeEstimate& estimate, const RelaxOptions& options,
+                       const Eigen::Matrix3Xd& points)
+    : rod_(rod), estimate_(estimate), options_(options) {
+  require_positive("Simulation::relax", "tolerance", options.tolerance);
+  result_.status = RelaxStatus::step_limit;
+  // Forces of stiff segments carry the rounding of the positions; no step gets below what it moves.
+  const double rounding = std::numeric_limits<double>::epsilon() * rod.c_c *
+                          points.cwiseAbs().maxCoeff() / rod.rest_lengths.minCoeff() /
+                          std::min(estimate.slowest_expected(), estimate.modes().slowest);
+  target_ = std::max(options.tolerance * rod.length(), rounding);
+}
+
+bool RestSearch::open() const {
+  return result_.status == RelaxStatus::step_limit && result_.steps < options_.max_steps;
+}
+
+bool RestSearch::count(const StepResult& step) {
+  if (step.status == StepStatus::diverged) {
+    result_.status = RelaxStatus::diverged;
+    return false;
+  }
+  ++result_.steps;
+  return result_.steps % block_steps == 0 && result_.steps >= next_check_;
+}
+
+EquilibriumCheck RestSearch::measure(const MovingShape& shape) {
+  result_.residual_force = std::sqrt(shape.forces.colwise().squaredNorm().maxCoeff());
+  EquilibriumCheck check = check_equilibrium(rod_, shape.points);
+  result_.remaining_error = std::max(check.remaining_error, shape.momentum);
+  return check;
+}
+
+Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
+  // Cheap signs first; what proves rest is Newton's step and the stiffness behind it.
+  const double root_points = std::sqrt(static_cast<double>(shape.points.cols()));
+  const double distance = shape.forces.norm() / estimate_.modes().slowest / root_points;
+  if (std::max(distance, shape.momentum) >= target_) return {};
+  EquilibriumCheck check = measure(shape);
+  if (check.stable && result_.remaining_error < target_) {
+    result_.status = RelaxStatus::at_rest;
+    return {};
+  }
+  next_check_ = result_.steps + std::max(block_steps, result_.steps / 10);
+  return std::move(check.falling_direction);
+}
+
+RelaxResult RestSearch::finish(const MovingShape& shape) {
+  if (result_.status == RelaxStatus::step_limit) (void)measure(shape);
+  result_.message = to_string(result_.status);
+  return result_;
+}
+
+}  // namespace dlo::force_model

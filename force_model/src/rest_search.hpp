@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dlo/force_model/relax.hpp"
+#include "dlo/force_model/tangent_stiffness.hpp"
+#include "step_control.hpp"
+
+namespace dlo::force_model {
+
+/// A shape on its way to rest.
+struct MovingShape {
+  const Eigen::Matrix3Xd& points;  ///< [m]
+  const Eigen::Matrix3Xd& forces;  ///< on the free points, zero on rigidly held ones [N]
+  double momentum = 0;  ///< RMS of the movements that the last one still brings about [m]
+};
+
+/// Decides when a rod rests, see Simulation::relax. Allocates.
+class RestSearch {
+ public:
+  /// @param rod, estimate  outlive this
+  RestSearch(const Rod& rod, const ModeEstimate& estimate, const RelaxOptions& options,
+             const Eigen::Matrix3Xd& points);
+
+  /// Whether another step is to be made.
+  [[nodiscard]] bool open() const;
+
+  /// Takes note of a step. @return whether look() is due
+  [[nodiscard]] bool count(const StepResult& step);
+
+  /// Ends the search if the shape rests. @return for an equilibrium that does not hold the movement
+  /// in which it gives way, see EquilibriumCheck; else nothing, 3 x 0
+  [[nodiscard]] Eigen::Matrix3Xd look(const MovingShape& shape);
+
+  /// The outcome; a shape that has used up its steps is measured.
+  [[nodiscard]] RelaxResult finish(const MovingShape& shape);
+
+ private:
+  EquilibriumCheck measure(const MovingShape& shape);
+
+  const Rod& rod_;
+  const ModeEstimate& estimate_;
+  RelaxOptions options_;
+  double target_ = 0;
+  long next_check_ = 2 * block_steps;
+  RelaxResult result_;
+};
+
+}  // namespace dlo::force_model

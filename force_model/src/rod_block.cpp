@@ -1,0 +1,200 @@
+#include "rod_block.hpp"
+
+#include <algorithm>
+
+namespace dlo::force_model {
+namespace {
+
+constexpr int axes = 3;
+
+/// Whether no force can leave the plane z = 0 that all points lie in.
+bool is_planar(const Rod& rod) {
+  const auto in_plane = [](const Grip& grip) { return (grip.targets.row(2).array() == 0).all(); };
+  const auto upright = [](const Wall& wall) { return wall.normal.z() == 0; };
+  return (rod.loads.row(2).array() == 0).all() &&
+         std::all_of(rod.grips.begin(), rod.grips.end(), in_plane) &&
+         std::all_of(rod.walls.begin(), rod.walls.end(), upright);
+}
+
+bool has_spring_grips(const Rod& rod) {
+  return std::any_of(rod.grips.begin(), rod.grips.end(),
+                     [](const Grip& grip) { return grip.hold == GripHold::spring; });
+}
+
+std::ptrdiff_t round_up(std::ptrdiff_t size) {
+  return (size + block_lanes - 1) / block_lanes * block_lanes;
+}
+
+}  // namespace
+
+RodBlock::RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set)
+    : points_(rods.front().points()),
+      stride_(lockstep ? block_lanes : 1),
+      size_(round_up(points_ * stride_)),
+      pitch_(size_ + block_lanes),
+      set_(set),
+      law_(rods.front().bending.law),
+      spring_grips_(std::any_of(rods.begin(), rods.end(), has_spring_grips)),
+      plain_points_(axes, points_),
+      plain_forces_(axes, points_) {
+  // An odd number of cache lines from array to array, so that they do not share cache sets.
+  if (pitch_ / block_lanes % 2 == 0) pitch_ += block_lanes;
+  memory_.resize(static_cast<std::size_t>(point_array_count * pitch_ / block_lanes));
+  set_padding();
+  for (std::size_t lane = 0; lane < static_cast<std::size_t>(stride_); ++lane) {
+    set_rod(lane, rods[lane < rods.size() ? lane : 0]);
+  }
+  set_walls(rods);
+  kernel_ = &step_kernel(set_, law_, 3, stride_);
+}
+
+PointBlock RodBlock::block() {
+  return {.first = memory_.front().lane, .pitch = pitch_, .size = size_};
+}
+
+std::ptrdiff_t RodBlock::element(Eigen::Index point, std::size_t rod) const {
+  return point * stride_ + static_cast<std::ptrdiff_t>(rod);
+}
+
+double& RodBlock::at(int array, std::ptrdiff_t element) {
+  const std::ptrdiff_t k = array * pitch_ + element;
+  return memory_[static_cast<std::size_t>(k / block_lanes)].lane[k % block_lanes];
+}
+
+const double& RodBlock::at(int array, std::ptrdiff_t element) const {
+  const std::ptrdiff_t k = array * pitch_ + element;
+  return memory_[static_cast<std::size_t>(k / block_lanes)].lane[k % block_lanes];
+}
+
+RodBlock::View RodBlock::view(int array, std::size_t rod) const {
+  return {&at(array, element(0, rod)), axes, points_, {stride_, pitch_}};
+}
+
+void RodBlock::set(PointArray array, std::size_t rod, const Eigen::Matrix3Xd& vectors) {
+  for (Eigen::Index i = 0; i < points_; ++i) {
+    for (int axis = 0; axis < axes; ++axis) at(array + axis, element(i, rod)) = vectors(axis, i);
+  }
+}
+
+void RodBlock::set_padding() {
+  // Points far away, a metre from each other, that neither move nor pull.
+  for (std::ptrdiff_t k = 0; k < size_ + block_lanes; ++k) {
+    const std::ptrdiff_t point = k / stride_;
+    at(positions, k) = 1000 + static_cast<double>(point);
+    at(last_positions, k) = at(positions, k);
+    at(rest_lengths, k) = 1;
+  }
+}
+
+void RodBlock::set_rod(std::size_t lane, const Rod& rod) {
+  const Eigen::VectorXd& L = rod.rest_lengths;
+  set(loads, lane, rod.loads);
+  set(external_forces, lane, rod.loads);
+  for (Eigen::Index i = 0; i < points_; ++i) {
+    const std::ptrdiff_t k = element(i, lane);
+    at(is_free, k) = 1;
+    if (i + 1 == points_) continue;
+    at(is_segment, k) = 1;
+    at(rest_lengths, k) = L[i];
+    at(stretch, k) = rod.c_c / L[i];
+    if (i == 0) continue;
+    at(is_joint, k) = 1;
+    const double c = rod.bending.stiffness;
+    at(bend, k) = law_ == BendingLaw::hooke ? 2 * c / ((L[i - 1] + L[i]) / 2) : c;
+  }
+  for (const Grip& grip : rod.grips) {
+    if (grip.hold == GripHold::spring) continue;
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+      at(is_free, element(grip.first_point + k, lane)) = 0;
+    }
+  }
+}
+
+void RodBlock::set_walls(std::span<const Rod> rods) {
+  for (const Rod& rod : rods) walls_.resize(std::max(walls_.size(), rod.walls.size()));
+  for (std::size_t lane = 0; lane < block_lanes; ++lane) {
+    const Rod& rod = rods[lane < rods.size() ? lane : 0];
+    for (std::size_t w = 0; w < rod.walls.size(); ++w) {
+      for (int axis = 0; axis < axes; ++axis) {
+        walls_[w].point[axis].lane[lane] = rod.walls[w].point[axis];
+        walls_[w].normal[axis].lane[lane] = rod.walls[w].normal[axis];
+      }
+      walls_[w].stiffness.lane[lane] = rod.walls[w].stiffness;
+    }
+  }
+}
+
+void RodBlock::update_dimension(std::span<const Rod> rods) {
+  const auto flat = [this](int array) {
+    const auto zero = [&](std::ptrdiff_t k) { return at(array + 2, k) == 0; };
+    for (std::ptrdiff_t k = 0; k < size_; ++k) {
+      if (!zero(k)) return false;
+    }
+    return true;
+  };
+  const bool planar = std::all_of(rods.begin(), rods.end(), is_planar) && flat(positions) &&
+                      flat(proposals) && flat(proposals + axes);
+  kernel_ = &step_kernel(set_, law_, planar ? 2 : 3, stride_);
+}
+
+void RodBlock::add_spring_grips(std::span<const Rod> rods) {
+  for (std::size_t lane = 0; lane < rods.size(); ++lane) {
+    const auto on_springs = [&](const auto& action) {
+      for (const Grip& grip : rods[lane].grips) {
+        if (grip.hold == GripHold::rigid) continue;
+        for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+          for (int axis = 0; axis < axes; ++axis) {
+            action(grip, axis, k, element(grip.first_point + k, lane));
+          }
+        }
+      }
+    };
+    if (walls_.empty()) {
+      on_springs([this](const Grip&, int axis, Eigen::Index, std::ptrdiff_t e) {
+        at(external_forces + axis, e) = at(loads + axis, e);
+      });
+    }
+    on_springs([this](const Grip& grip, int axis, Eigen::Index k, std::ptrdiff_t e) {
+      at(external_forces + axis, e) +=
+          grip.stiffness * (grip.targets(axis, k) - at(positions + axis, e));
+    });
+  }
+}
+
+void RodBlock::compute_plain_forces(std::size_t lane, const Rod& rod) {
+  plain_points_ = view(positions, lane);
+  total_forces(rod, plain_points_, plain_forces_);
+  for (Eigen::Index i = 0; i < points_; ++i) plain_forces_.col(i) *= at(is_free, element(i, lane));
+  set(forces, lane, plain_forces_);
+  // Padding next to a segment without direction may hold what is not a number.
+  for (int axis = 0; axis < axes; ++axis) {
+    for (std::ptrdiff_t k = points_ * stride_; k < size_; ++k) at(forces + axis, k) = 0;
+  }
+}
+
+void RodBlock::compute_forces(std::span<const Rod> rods, const PerLane& active) {
+  if (!walls_.empty()) kernel_->add_walls(block(), walls_.data(), std::ssize(walls_));
+  if (spring_grips_) add_spring_grips(rods);
+  const bool only_loads = walls_.empty() && !spring_grips_;
+  kernel_->compute_forces(block(), only_loads ? loads : external_forces, regular_);
+  for (std::size_t lane = 0; lane < rods.size(); ++lane) {
+    if (regular_.lane[lane] == 0 && active.lane[lane] != 0) compute_plain_forces(lane, rods[lane]);
+  }
+}
+
+void RodBlock::propose(const PerLane& c_F, const PerLane& kept, const PerLane& rounding_squared,
+                       bool relative, ProposedStep& step) {
+  const auto propose = relative ? kernel_->propose_relative : kernel_->propose_absolute;
+  propose(block(), turn_, c_F, kept, rounding_squared, step);
+}
+
+void RodBlock::move(const PerLane& c_m) {
+  kernel_->move(block(), turn_, c_m);
+  turn_ = 1 - turn_;
+}
+
+RodBlock::View RodBlock::last_proposals(std::size_t rod) const {
+  return view(proposals + axes * (1 - turn_), rod);
+}
+
+}  // namespace dlo::force_model

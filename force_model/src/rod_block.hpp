@@ -1,0 +1,87 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "dlo/force_model/rod.hpp"
+#include "step_kernel.hpp"
+
+namespace dlo::force_model {
+
+/// The points of one rod, or of up to eight of the same size and bending law in lockstep, as the
+/// step kernel wants them. Lanes without a rod of their own repeat the first one's. Only the
+/// constructor allocates.
+class RodBlock {
+ public:
+  /// Positions or forces of one rod, as a matrix.
+  using View = Eigen::Map<const Eigen::Matrix3Xd, Eigen::Unaligned,
+                          Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>>;
+
+  /// @param rods  1 to 8, checked; @param lockstep  false: one rod, vectorised over its points
+  RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set);
+
+  /// An array with three axes, of one rod; 3 x points.
+  [[nodiscard]] View view(int array, std::size_t rod) const;
+  void set(PointArray array, std::size_t rod, const Eigen::Matrix3Xd& vectors);
+
+  /// Whether a rigid grip holds the point.
+  [[nodiscard]] bool held(Eigen::Index point, std::size_t rod) const {
+    return at(is_free, element(point, rod)) == 0;
+  }
+
+  /// Takes over the rods' walls; as many as the constructor saw, lest it allocate.
+  void set_walls(std::span<const Rod> rods);
+
+  /// Finds out whether all rods stay in the plane z = 0 that they lie in. To be called when
+  /// positions, loads, targets or walls have changed.
+  void update_dimension(std::span<const Rod> rods);
+
+  /// Total forces on the free points; rods that are not `active` may be left out.
+  void compute_forces(std::span<const Rod> rods, const PerLane& active);
+
+  /// Looks at the modes of the present shape; its forces have been computed.
+  void look_at_modes(ModeLook& look) { kernel_->look_at_modes(block(), look); }
+
+  /// Proposes movements, c_F forces + `kept` times the last ones proposed, and says what they look
+  /// like.
+  void propose(const PerLane& c_F, const PerLane& kept, const PerLane& rounding_squared,
+               bool relative, ProposedStep& step);
+
+  /// Moves the points of each rod by c_m times its proposed movements.
+  void move(const PerLane& c_m);
+
+  /// The proposed movements of a rod's last step.
+  [[nodiscard]] View last_proposals(std::size_t rod) const;
+
+ private:
+  struct alignas(64) Line {
+    double lane[block_lanes] = {};
+  };
+
+  [[nodiscard]] PointBlock block();
+  [[nodiscard]] std::ptrdiff_t element(Eigen::Index point, std::size_t rod) const;
+  [[nodiscard]] double& at(int array, std::ptrdiff_t element);
+  [[nodiscard]] const double& at(int array, std::ptrdiff_t element) const;
+  void set_padding();
+  void set_rod(std::size_t lane, const Rod& rod);
+  void add_spring_grips(std::span<const Rod> rods);
+  void compute_plain_forces(std::size_t lane, const Rod& rod);
+
+  Eigen::Index points_ = 0;
+  std::ptrdiff_t stride_ = 1;
+  std::ptrdiff_t size_ = 0;
+  std::ptrdiff_t pitch_ = 0;
+  InstructionSet set_ = InstructionSet::baseline;
+  BendingLaw law_ = BendingLaw::hooke;
+  const StepKernel* kernel_ = nullptr;
+  std::vector<Line> memory_;
+  std::vector<WallLanes> walls_;
+  bool spring_grips_ = false;
+  int turn_ = 0;  // which set of proposals the next step writes
+  PerLane regular_;
+  Eigen::Matrix3Xd plain_points_;
+  Eigen::Matrix3Xd plain_forces_;
+};
+
+}  // namespace dlo::force_model

@@ -1,0 +1,75 @@
+#include "step_control.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "require.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+const StepOptions& checked(const StepOptions& options) {
+  const StepPolicy& policy = options.policy;
+  if (!policy.automatic) {
+    require_positive("Simulation", "c_F", options.c_F);
+    if (policy.limit != StepLimit::none) require_positive("Simulation", "l_s", options.l_s);
+    if (policy.momentum) {
+      require(options.c_h >= 0 && options.c_h < 1, "Simulation", "c_h", options.c_h, "in [0, 1)");
+    }
+  }
+  require_not_negative("Simulation", "l_s", options.l_s);
+  require_not_negative("Simulation", "c_s_change", options.c_s_change);
+  return options;
+}
+
+void choose_constants(const ModeBounds& modes, StepOptions& options) {
+  if (!options.policy.automatic) return;
+  const HeavyBall chosen = heavy_ball(modes);
+  options.c_F = chosen.c_F;
+  options.c_h = chosen.c_h;
+}
+
+}  // namespace
+
+StepControl::StepControl(const Rod& rod, const Eigen::Matrix3Xd& points, const StepOptions& options)
+    : options_(checked(options)), estimate_(rod, points) {
+  if (options_.policy.automatic && options_.l_s == 0) {
+    options_.l_s = rod.rest_lengths.minCoeff() / 4;
+  }
+  choose_constants(estimate_.modes(), options_);
+}
+
+void StepControl::update_modes(double inner_mode, double force_change, double point_change) {
+  estimate_.update(inner_mode, force_change, point_change);
+  choose_constants(estimate_.modes(), options_);
+}
+
+void StepControl::change_environment(const Rod& rod, const Eigen::Matrix3Xd& points) {
+  estimate_.change_environment(rod, points);
+  choose_constants(estimate_.modes(), options_);
+}
+
+void StepControl::decide(double largest_squared, double sum_squared, double oscillating,
+                         StepResult& result) {
+  const StepPolicy& policy = options_.policy;
+  result.status = StepStatus::diverged;
+  result.c_m = 0;
+  result.limited = false;
+  result.movement = std::sqrt(largest_squared);  // (16), (18)
+  if (!std::isfinite(result.movement) || !std::isfinite(sum_squared)) return;
+  if (policy.damping) {
+    const double change = options_.c_s_change;
+    c_s_ = oscillating > 0 ? c_s_ + change * oscillating : std::max(1.0, c_s_ - change);
+  }
+  result.status = StepStatus::good;
+  result.c_m = 1 / c_s_;
+  if (policy.limit != StepLimit::none && result.movement > options_.l_s) {
+    result.c_m *= options_.l_s / result.movement;  // (17), (18), (20)
+    result.limited = true;
+    ++limited_steps_;
+  }
+  ++steps_;
+  if (c_s_ > 1) ++damped_steps_;
+}
+
+}  // namespace dlo::force_model

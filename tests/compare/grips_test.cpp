@@ -1,0 +1,279 @@
+// Scenes with several grips, or one inside the rod, in the models that work on a polygon.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "dlo/compare/comparison.hpp"
+#include "dlo/compare/error.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Vector3d;
+using test::heavy_scene;
+
+Scene two_clamps(double gamma, const Vector3d& end) {
+  Scene scene = heavy_scene(gamma, 0);
+  scene.grippers.push_back({.at = 1, .position = end, .direction = Vector3d::UnitX()});
+  return scene;
+}
+
+Scene spatial_clamps() {
+  Scene scene = two_clamps(5, {0.6, 0.1, 0.2});
+  scene.grippers[1].direction = Vector3d(0.5, 0.3, -0.6).normalized();
+  return scene;
+}
+
+Scene clamp_inside() {
+  Scene scene = heavy_scene(8, 20);
+  scene.grippers[0].at = 0.37;
+  return scene;
+}
+
+Scene clamp_and_pin() {
+  Scene scene = heavy_scene(6, 10);
+  scene.grippers.push_back({.at = 0.613, .position = {0.5, 0.05, 0}});
+  return scene;
+}
+
+Scene two_pins() {
+  Scene scene = heavy_scene(6, 0);
+  scene.grippers = {{.at = 0.21, .position = {0, 0, 0}}, {.at = 0.83, .position = {0.5, 0.1, 0}}};
+  return scene;
+}
+
+Scene loaded_clamps() {
+  Scene scene = two_clamps(3, {0.8, 0, 0});
+  scene.loads = {{0.413, {0.5, -4, 0}}};
+  return scene;
+}
+
+Scene three_clamps() {
+  Scene scene = two_clamps(10, {0.8, 0, 0});
+  scene.grippers.push_back(
+      {.at = 0.44, .position = {0.35, 0.02, 0}, .direction = Vector3d(1, 0.2, 0).normalized()});
+  return scene;
+}
+
+/// Sags onto a floor between the clamps.
+Scene yielding_floor() {
+  Scene scene = two_clamps(30, {0.9, 0.2, 0});
+  scene.obstacles = {{.stiffness = 20000 * scene.bending_stiffness()}};
+  return scene;
+}
+
+/// The free end lies on a floor.
+Scene tip_on_floor() {
+  Scene scene = heavy_scene(20, 0);
+  scene.grippers[0].position = {0, 0.15, 0};
+  scene.obstacles = {{.stiffness = 5000 * scene.bending_stiffness()}};
+  return scene;
+}
+
+/// The chain's errors against the energy model, forces and torques over the largest of each.
+struct Errors {
+  double segment = 0;
+  double shape = 0;
+  double force = 0;
+  double torque = 0;
+};
+
+Errors chain_errors(Scene scene, const energy_model::Equilibrium& reference, int points) {
+  scene.force_model.points = points;
+  // The energy model does not stretch; a hundred times AE stretches by less than 1e-7.
+  scene.force_model.c_c = 100 * scene.axial_stiffness();
+  const Solution chain = solve_chain(scene, scene.force_model);
+  Errors errors;
+  errors.segment = chain.parameters.segment_length;
+  const std::vector<double>& s = chain.shape.arc_length;
+  errors.shape = rms(s, chain.shape.points - reference.sample(s).points);
+  double largest_force = 0;
+  double largest_torque = 0;
+  for (std::size_t i = 0; i < chain.grippers.size(); ++i) {
+    const energy_model::Reaction& expected = reference.grips[i];
+    errors.force = std::max(errors.force, (chain.grippers[i].force - expected.force).norm());
+    errors.torque = std::max(errors.torque, (chain.grippers[i].torque - expected.torque).norm());
+    largest_force = std::max(largest_force, expected.force.norm());
+    largest_torque = std::max(largest_torque, expected.torque.norm());
+  }
+  errors.force /= largest_force;
+  if (largest_torque > 0) errors.torque /= largest_torque;
+  return errors;
+}
+
+struct NamedScene {
+  const char* name;
+  Scene scene;
+};
+
+class SceneOfGrips : public testing::TestWithParam<NamedScene> {};
+
+TEST_P(SceneOfGrips, ChainConvergesToTheEnergyModelAtSecondOrder) {
+  const Scene& scene = GetParam().scene;
+  const energy_model::Equilibrium reference = solve_reference(scene, Model::energy);
+  // Far apart, since grips and loads fall differently among the points of each N.
+  const Errors coarse = chain_errors(scene, reference, 24);
+  const Errors fine = chain_errors(scene, reference, 96);
+  const double refinement = std::log(coarse.segment / fine.segment);
+  const double order = std::log(coarse.shape / fine.shape) / refinement;
+  RecordProperty("order", std::to_string(order));
+  EXPECT_NEAR(order, 2, 0.2);
+  EXPECT_LT(fine.shape, 2e-4);
+  EXPECT_LT(chain_errors(scene, reference, 64).shape, 5e-4);
+  // A single gripper's force is what hangs on it, whatever the shape.
+  if (scene.grippers.size() > 1) {
+    const double force_order = std::log(coarse.force / fine.force) / refinement;
+    RecordProperty("force_order", std::to_string(force_order));
+    EXPECT_GT(force_order, 1.7);
+  }
+  EXPECT_LT(fine.force, 2e-3);
+  if (coarse.torque > 0) {
+    const double torque_order = std::log(coarse.torque / fine.torque) / refinement;
+    RecordProperty("torque_order", std::to_string(torque_order));
+    EXPECT_GT(torque_order, 1.7);
+  }
+  EXPECT_LT(fine.torque, 5e-3);
+}
+
+TEST_P(SceneOfGrips, ForceModelRestsInTheChainsPolygon) {
+  for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
+    Scene scene = GetParam().scene;
+    scene.force_model.bookkeeping = bookkeeping;
+    const Solution chain = solve_chain(scene, scene.force_model);
+    const Solution force = solve_force(scene, scene.force_model);
+    EXPECT_LT((chain.shape.points - force.shape.points).colwise().norm().maxCoeff(), 1e-6);
+    EXPECT_NEAR(force.energy.total(), chain.energy.total(), 1e-9 * std::abs(chain.energy.bending));
+    // 1e-7 l from rest, stiff segments still pull.
+    for (std::size_t i = 0; i < chain.grippers.size(); ++i) {
+      const double size = chain.grippers[i].force.norm();
+      EXPECT_LT((chain.grippers[i].force - force.grippers[i].force).norm(), 1e-3 * size);
+    }
+  }
+}
+
+TEST_P(SceneOfGrips, GrippersAndObstaclesCarryAllThatHangsOnTheRod) {
+  for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
+    Scene scene = GetParam().scene;
+    scene.force_model.bookkeeping = bookkeeping;
+    const Discretisation d = discretise(scene, scene.force_model);
+    const energy_model::PolygonResult rest =
+        energy_model::solve_polygon(polygon_problem(d.rod), d.starts.front());
+    Vector3d force = d.rod.loads.rowwise().sum();
+    Vector3d torque = Vector3d::Zero();
+    for (Eigen::Index i = 0; i < rest.points.cols(); ++i) {
+      torque += rest.points.col(i).cross(Vector3d(d.rod.loads.col(i)));
+    }
+    std::vector<Eigen::Index> held;
+    for (const force_model::Grip& grip : d.rod.grips) {
+      for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) held.push_back(grip.first_point + k);
+    }
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      const Vector3d hold = rest.grip_forces.col(static_cast<Eigen::Index>(k));
+      force += hold;
+      torque += rest.points.col(held[k]).cross(hold);
+    }
+    for (const force_model::Wall& wall : d.rod.walls) {
+      for (Eigen::Index i = 0; i < rest.points.cols(); ++i) {
+        if (std::count(held.begin(), held.end(), i) > 0) continue;
+        const Vector3d push = force_model::wall_force(wall, rest.points.col(i));
+        force += push;
+        torque += rest.points.col(i).cross(push);
+      }
+    }
+    const double size = d.rod.loads.colwise().norm().sum();
+    EXPECT_LT(force.norm(), 1e-6 * size);
+    EXPECT_LT(torque.norm(), 1e-6 * size);
+    EXPECT_NEAR((d.weights.rowwise().sum() - scene.weight_per_length()).norm(), 0, 1e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SceneOfGrips,
+                         testing::Values(NamedScene{"two_clamps", two_clamps(10, {0.8, 0, 0})},
+                                         NamedScene{"spatial_clamps", spatial_clamps()},
+                                         NamedScene{"clamp_inside", clamp_inside()},
+                                         NamedScene{"clamp_and_pin", clamp_and_pin()},
+                                         NamedScene{"two_pins", two_pins()},
+                                         NamedScene{"loaded_clamps", loaded_clamps()},
+                                         NamedScene{"three_clamps", three_clamps()},
+                                         NamedScene{"yielding_floor", yielding_floor()}),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST(Walls, UnderAFreeEndAreFirstOrder) {
+  // The last point has half a segment's weight but, as all of the force model's, a whole one's
+  // stiffness of the floor.
+  const Scene scene = tip_on_floor();
+  const energy_model::Equilibrium reference = solve_reference(scene, Model::energy);
+  const Errors coarse = chain_errors(scene, reference, 24);
+  const Errors fine = chain_errors(scene, reference, 96);
+  EXPECT_NEAR(std::log(coarse.shape / fine.shape) / std::log(coarse.segment / fine.segment), 1,
+              0.2);
+  EXPECT_LT(fine.shape, 3e-4);
+}
+
+TEST(Walls, RigidOnesAreEnteredByLessThanTheStretchOfTheRod) {
+  Scene scene = yielding_floor();
+  scene.obstacles[0].stiffness = std::numeric_limits<double>::infinity();
+  scene.force_model.points = 48;
+  const Solution chain = solve_chain(scene, scene.force_model);
+  const double weight = scene.weight_per_length().norm() * scene.length;
+  EXPECT_LT(-chain.shape.points.row(1).minCoeff(), weight / scene.axial_stiffness() * scene.length);
+  ASSERT_EQ(chain.obstacles.size(), 1);
+  EXPECT_GT(chain.obstacles[0].y(), 0.1 * weight);
+  const Solution force = solve_force(scene, scene.force_model);
+  EXPECT_LT((chain.shape.points - force.shape.points).colwise().norm().maxCoeff(), 1e-6);
+  EXPECT_NEAR(chain.obstacles[0].y(), force.obstacles[0].y(), 1e-3 * weight);
+}
+
+TEST(PaperLaw, HasATorqueOfItsOwnWhereSegmentsDiffer) {
+  // Two clamps leave one part of the rod, of equal segments: chain and force model are one model
+  // but for the stretch of the segments, which makes them a little unequal.
+  Scene equal = two_clamps(10, {0.8, 0, 0});
+  equal.force_model.law = Law::paper;
+  const auto distance = [](const Scene& scene) {
+    const Solution chain = solve_chain(scene, scene.force_model);
+    const Solution force = solve_force(scene, scene.force_model);
+    return (chain.shape.points - force.shape.points).colwise().norm().maxCoeff();
+  };
+  EXPECT_LT(distance(equal), 1e-6);
+  Scene unequal = two_pins();
+  unequal.force_model.law = Law::paper;
+  const double apart = distance(unequal);
+  EXPECT_GT(apart, 1e-6);
+  EXPECT_LT(apart, 1e-3);
+}
+
+TEST(Chain, FindsTheLowestOfTwoArches) {
+  // Clamps that point up hold an arch against the weight only while it is light.
+  for (const double gamma : {0.5, 20.0, 200.0}) {
+    Scene scene = heavy_scene(gamma, 90);
+    scene.grippers.push_back({.at = 1, .position = {0.3, 0, 0}, .direction = -Vector3d::UnitY()});
+    scene.force_model.points = 64;
+    const double energy = solve(scene, Model::energy).energy.total();
+    const Solution chain = solve_chain(scene, scene.force_model);
+    EXPECT_NEAR(chain.energy.total(), energy, 2e-3 * chain.energy.bending) << gamma;
+  }
+}
+
+TEST(Comparison, OfTwoClampsHasNoTipAndNoStraightRod) {
+  Scene scene = two_clamps(2, {0.8, 0, 0});
+  // A hundredth of AE gives way to the thrust of the arch, 40 EI/l^2, by a thousandth.
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  const Comparison comparison = compare(scene);
+  EXPECT_TRUE(std::isnan(comparison.deviation.tip_m));
+  EXPECT_TRUE(std::isnan(comparison.deviation.rms_over_movement));
+  EXPECT_TRUE(std::isnan(comparison.undeformed_rms_over_length));
+  EXPECT_LT(comparison.deviation.rms_over_length, 5e-3);
+  // Stretch is the force model's alone; the chain keeps to the rod's own.
+  EXPECT_GT(comparison.budget.stretch, 1e-4);
+  EXPECT_NEAR(comparison.budget.discretisation + comparison.budget.stretch,
+              comparison.deviation.rms_m, 0.05 * comparison.deviation.rms_m);
+  // Between two clamps the sag hardly knows the stiffness.
+  EXPECT_NE(comparison.effective_modulus.optimum, Optimum::clear);
+}
+
+}  // namespace
+}  // namespace dlo::compare

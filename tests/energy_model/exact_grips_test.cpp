@@ -1,0 +1,320 @@
+// Multiple shooting (any clamps and pins, in the plane and in space) against reference values, the
+// scan of one clamp, the minimiser, and the rod's own integrals.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <random>
+
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using test::heavy_cantilever;
+using test::reference_values;
+
+Problem two_clamps(double gamma, double span) {
+  Problem problem = heavy_cantilever(gamma, 0);
+  problem.grips.push_back({1, {span, 0, 0}, Eigen::Vector3d(1, 0, 0)});
+  return problem;
+}
+
+double distance(const Equilibrium& a, const Equilibrium& b) {
+  const std::vector<double> s = equal_arc_lengths(1, 41);
+  return (a.sample(s).points - b.sample(s).points).colwise().norm().maxCoeff();
+}
+
+/// Largest difference of a force or torque at a grip.
+double reaction_distance(const Equilibrium& a, const Equilibrium& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.grips.size(); ++i) {
+    largest = std::max({largest, (a.grips[i].force - b.grips[i].force).norm(),
+                        (a.grips[i].torque - b.grips[i].torque).norm()});
+  }
+  return largest;
+}
+
+/// Clamps, loads and weight in random directions; the size of the forces from 0.3 to 1000 EI/l^2.
+class RandomProblems {
+ public:
+  explicit RandomProblems(unsigned seed) : engine_(seed) {}
+
+  Problem one_clamp() {
+    const double size = std::pow(10, -0.5 + 3.5 * uniform());
+    Problem problem = heavy_cantilever(0, 0);
+    problem.weight_per_length = size * vector().normalized();
+    problem.grips[0].direction = vector();
+    problem.loads = {{0.2 + 0.6 * uniform(), size / 2 * vector()}, {1.0, size / 2 * vector()}};
+    return problem;
+  }
+
+  Problem two_clamps() {
+    Problem problem = one_clamp();
+    problem.grips.push_back({1, (0.2 + 0.7 * uniform()) * vector().normalized(), vector()});
+    return problem;
+  }
+
+ private:
+  double uniform() { return std::uniform_real_distribution<double>()(engine_); }
+  Eigen::Vector3d vector() {
+    std::normal_distribution<double> normal;
+    const double x = normal(engine_);
+    const double y = normal(engine_);
+    return {x, y, normal(engine_)};
+  }
+
+  std::mt19937 engine_;
+};
+
+double total_force(const Problem& problem) {
+  double force = problem.weight_per_length.norm();
+  for (const Load& load : problem.loads) force += load.force.norm();
+  return force;
+}
+
+TEST(MultipleShooting, MatchesTheReferenceValuesOfTwoClamps) {
+  const auto expected = reference_values().at("two_clamps").at("Gamma=10, lowest state");
+  const Equilibrium result = solve_exact(two_clamps(10, 0.8));
+  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  const std::vector<double> middle = {0.5};
+  EXPECT_NEAR(result.sample(middle).points(1, 0), expected.at("y_mid").get<double>(), 1e-11);
+  EXPECT_NEAR(result.energy.bending, expected.at("bending_energy").get<double>(), 1e-10);
+  EXPECT_NEAR(result.energy.gravity, expected.at("gravity_energy").get<double>(), 1e-10);
+  EXPECT_NEAR(result.grips[1].force.x(), expected.at("lambda_x").get<double>(), 1e-9);
+  EXPECT_NEAR(result.grips[1].force.y(), expected.at("lambda_y").get<double>(), 1e-9);
+  EXPECT_NEAR(std::abs(result.grips[0].torque.z()),
+              std::abs(expected.at("clamp_moment_0").get<double>()), 1e-9);
+  EXPECT_NEAR(std::abs(result.grips[1].torque.z()),
+              std::abs(expected.at("clamp_moment_L").get<double>()), 1e-9);
+}
+
+TEST(MultipleShooting, MatchesTheReferenceValuesInSpace) {
+  const auto expected = reference_values().at("spatial_cantilever").at("tip P=(0,0,1), Gamma=1");
+  Problem problem = heavy_cantilever(1, 0);
+  problem.loads = {{1.0, {0, 0, 1}}};
+  const Equilibrium result = solve_exact(problem);
+  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  const std::vector<double> tip = {1.0};
+  const Samples samples = result.sample(tip);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    EXPECT_NEAR(samples.points(i, 0), expected.at("tip")[k].get<double>(), 1e-10);
+    EXPECT_NEAR(samples.tangents(i, 0), expected.at("tip_tangent")[k].get<double>(), 1e-10);
+  }
+  EXPECT_NEAR(result.energy.bending, expected.at("bending_energy").get<double>(), 1e-10);
+  EXPECT_NEAR(result.energy.gravity, expected.at("gravity_energy").get<double>(), 1e-10);
+}
+
+TEST(MultipleShooting, FindsWhatTheScanOfOneClampFinds) {
+  // A clamp in the middle makes two cantilevers of the rod, which the scan takes one by one.
+  const std::vector<double> s = equal_arc_lengths(0.5, 21);
+  for (const double gamma : {0.5, 8.0, 80.0, 800.0, 8000.0}) {
+    for (const double degrees : {-60.0, 0.0, 45.0, 80.0}) {
+      Problem both = heavy_cantilever(gamma, degrees);
+      both.grips[0].at = 0.5;
+      const Equilibrium result = solve_exact(both);
+      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+      Problem half = heavy_cantilever(gamma, degrees);
+      half.length = 0.5;
+      const Equilibrium right = solve_exact(half);
+      half.grips[0].at = 0.5;
+      const Equilibrium left = solve_exact(half);
+      std::vector<double> beyond = s;
+      for (double& at : beyond) at += 0.5;
+      EXPECT_LT((result.sample(beyond).points - right.sample(s).points).norm(), 1e-9)
+          << gamma << ", " << degrees;
+      EXPECT_LT((result.sample(s).points - left.sample(s).points).norm(), 1e-9)
+          << gamma << ", " << degrees;
+      EXPECT_LT((result.grips[0].force - left.grips[0].force - right.grips[0].force).norm(),
+                1e-9 * gamma);
+      EXPECT_LT((result.grips[0].torque - left.grips[0].torque - right.grips[0].torque).norm(),
+                1e-9 * gamma);
+      EXPECT_NEAR(result.energy.total(), left.energy.total() + right.energy.total(), 1e-9 * gamma);
+    }
+  }
+}
+
+TEST(MultipleShooting, FromANearbyShapeAgreesWithTheScanOfOneClamp) {
+  for (const double gamma : {0.1, 1.0, 10.0, 100.0, 1000.0}) {
+    for (const double degrees : {-60.0, 0.0, 45.0, 80.0}) {
+      const Equilibrium nearby = solve_exact(heavy_cantilever(0.95 * gamma, degrees));
+      const Problem problem = heavy_cantilever(gamma, degrees);
+      const Equilibrium scanned = solve_exact(problem);
+      const Equilibrium result = solve_exact(problem, {.start = &nearby});
+      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+      EXPECT_LT(distance(result, scanned), 1e-10) << gamma << ", " << degrees;
+      EXPECT_LT(reaction_distance(result, scanned), 1e-10 * (1 + gamma)) << gamma;
+      EXPECT_NEAR(result.energy.total(), scanned.energy.total(), 1e-11 * (1 + gamma));
+    }
+  }
+}
+
+TEST(MultipleShooting, AgreesWithTheMinimiserInSpace) {
+  RandomProblems random(7);
+  for (int i = 0; i < 20; ++i) {
+    const Problem problem = i % 2 == 0 ? random.one_clamp() : random.two_clamps();
+    const Equilibrium minimum = solve_energy(problem);
+    ASSERT_EQ(minimum.status, SolveStatus::converged) << i << ": " << minimum.message;
+    const Equilibrium searched = solve_exact(problem);
+    ASSERT_EQ(searched.status, SolveStatus::converged) << i << ": " << searched.message;
+    EXPECT_LT(distance(searched, minimum), 1e-8) << i << ", forces " << total_force(problem);
+    EXPECT_LT(reaction_distance(searched, minimum), 1e-6) << i;
+    EXPECT_NEAR(searched.energy.total(), minimum.energy.total(), 1e-8 * (1 + total_force(problem)));
+    // The minimiser's shape is confirmed: Newton's method hardly moves it.
+    const Equilibrium confirmed = solve_exact(problem, {.start = &minimum});
+    ASSERT_EQ(confirmed.status, SolveStatus::converged) << i << ": " << confirmed.message;
+    EXPECT_LE(confirmed.evaluations, 6) << i;
+    EXPECT_LT(distance(confirmed, minimum), 1e-8) << i;
+    EXPECT_LT(distance(confirmed, searched), 1e-10) << i;
+  }
+}
+
+TEST(MultipleShooting, AgreesWithTheMinimiserBetweenTwoClampsInThePlane) {
+  for (const double gamma : {1.0, 10.0, 100.0, 1000.0}) {
+    for (const double span : {0.999, 0.8}) {
+      Problem problem = two_clamps(gamma, span);
+      problem.loads = {{0.3, {0, -gamma / 3, 0}}};
+      const Equilibrium minimum = solve_energy(problem);
+      ASSERT_EQ(minimum.status, SolveStatus::converged) << gamma << ", " << span;
+      const Equilibrium searched = solve_exact(problem);
+      ASSERT_EQ(searched.status, SolveStatus::converged) << searched.message;
+      EXPECT_LT(distance(searched, minimum), 1e-8) << gamma << ", " << span;
+      EXPECT_LT(reaction_distance(searched, minimum), 1e-6) << gamma << ", " << span;
+    }
+  }
+}
+
+TEST(MultipleShooting, TakesForcesThatAreNotParallelBeyondTheScansLimit) {
+  for (const double gamma : {40.0, 400.0, 4000.0}) {
+    Problem problem = heavy_cantilever(gamma, 30);
+    problem.loads = {{0.5, {gamma / 3, 0, 0}}, {1.0, {gamma / 5, -gamma / 5, 0}}};
+    const Equilibrium minimum = solve_energy(problem);
+    const Equilibrium result = solve_exact(problem);
+    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+    EXPECT_LT(distance(result, minimum), 1e-9) << gamma;
+  }
+}
+
+TEST(MultipleShooting, KeepsTheRodsFirstIntegral) {
+  // |v|^2 / 2 + n.t + w.r is constant between loads; without weight so is n.
+  RandomProblems random(11);
+  for (int i = 0; i < 8; ++i) {
+    Problem problem = random.two_clamps();
+    problem.loads.clear();
+    if (i % 2 == 0) problem.weight_per_length.setZero();
+    const Equilibrium result = solve_exact(problem);
+    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+    const Eigen::Vector3d w = problem.weight_per_length;
+    EXPECT_LT((result.grips[0].force + result.grips[1].force + w).norm(), 1e-10 * (1 + w.norm()));
+    const std::vector<double> s = equal_arc_lengths(1, 101);
+    const Samples samples = result.sample(s);
+    const auto integral = [&](Eigen::Index k) {
+      const Eigen::Vector3d n = -result.grips[0].force - s[static_cast<std::size_t>(k)] * w;
+      return samples.curvature.col(k).squaredNorm() / 2 + n.dot(samples.tangents.col(k)) +
+             w.dot(samples.points.col(k));
+    };
+    for (Eigen::Index k = 1; k < samples.points.cols(); ++k) {
+      EXPECT_NEAR(integral(k), integral(0), 1e-11 * (1 + result.grips[0].force.norm())) << i;
+      EXPECT_NEAR(samples.tangents.col(k).norm(), 1, 1e-12);
+      EXPECT_NEAR(samples.tangents.col(k).dot(samples.curvature.col(k)), 0, 1e-10);
+    }
+  }
+}
+
+TEST(MultipleShooting, IsRightToTheIntegratorsTolerance) {
+  RandomProblems random(13);
+  const Problem problem = random.two_clamps();
+  const Equilibrium finest = solve_exact(problem, {.tolerance = 1e-14});
+  EXPECT_LT(distance(solve_exact(problem), finest), 1e-13);
+  for (const double tolerance : {1e-7, 1e-9, 1e-11}) {
+    const Equilibrium result = solve_exact(problem, {.tolerance = tolerance});
+    ASSERT_EQ(result.status, SolveStatus::converged) << tolerance << ": " << result.message;
+    EXPECT_LT(distance(result, finest), tolerance) << tolerance;
+  }
+}
+
+TEST(MultipleShooting, FindsTheArchThatLeansOutOfThePlane) {
+  Problem problem = heavy_cantilever(200, 90);
+  problem.grips.push_back({1, {0.1, 0, 0}, Eigen::Vector3d(0, -1, 0)});
+  const std::vector<Equilibrium> found = all_exact(problem);
+  ASSERT_GE(found.size(), 3U);
+  const Equilibrium lowest = all_energy(problem).front();
+  EXPECT_NEAR(found[0].energy.total(), lowest.energy.total(), 1e-8);
+  const Equilibrium confirmed = solve_exact(problem, {.start = &lowest});
+  EXPECT_LT(distance(confirmed, lowest), 1e-8);
+  // Its mirror image, then one that stays in the plane
+  EXPECT_NEAR(found[1].energy.total(), found[0].energy.total(), 1e-8);
+  const std::vector<double> middle = {0.5};
+  EXPECT_GT(std::abs(found[0].sample(middle).points(2, 0)), 0.1);
+  EXPECT_NEAR(found[1].sample(middle).points(2, 0), -found[0].sample(middle).points(2, 0), 1e-8);
+  EXPECT_GT(found[2].energy.total(), found[0].energy.total() + 1);
+}
+
+TEST(MultipleShooting, LeavesAShapeAloneThatMayTurnForNothing) {
+  // Two clamps on one line and no weight: the arch may turn about that line.
+  const Problem problem = two_clamps(0, 0.8);
+  const Equilibrium arch = solve_exact(problem);
+  ASSERT_EQ(arch.status, SolveStatus::converged) << arch.message;
+  for (const double angle : {0.0, 0.4, 2.0}) {
+    Equilibrium turned = arch;
+    const Eigen::Matrix3d rotation =
+        Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()).toRotationMatrix();
+    turned.sample = [&arch, rotation](std::span<const double> s) {
+      Samples samples = arch.sample(s);
+      samples.points = rotation * samples.points;
+      samples.tangents = rotation * samples.tangents;
+      samples.curvature = rotation * samples.curvature;
+      return samples;
+    };
+    for (Reaction& grip : turned.grips) grip.force = rotation * grip.force;
+    const Equilibrium result = solve_exact(problem, {.start = &turned});
+    ASSERT_EQ(result.status, SolveStatus::converged) << angle << ": " << result.message;
+    EXPECT_LT(distance(result, turned), 1e-8) << angle;
+  }
+}
+
+/// Shapes that wind around: the minimiser's angles pass near a pole whatever their axis. It once
+/// called what its terms did not resolve there converged.
+TEST(MultipleShooting, ConfirmsTheMinimiserNearThePolesOfItsAngles) {
+  std::vector<Problem> problems;
+  Problem problem = heavy_cantilever(200, 90);
+  problem.grips.push_back({1, {0.1, 0, 0}, Eigen::Vector3d(0, -1, 0)});
+  problems.push_back(problem);
+  problem.weight_per_length = {-173.28, 112.617, 0};
+  problem.grips = {
+      {0, Eigen::Vector3d::Zero(), Eigen::Vector3d(-1.5483, 0.141439, 0)},
+      {1, Eigen::Vector3d(0.055752, -0.347351, 0), Eigen::Vector3d(0.563143, 1.14585, 0)}};
+  problem.loads = {{0.4852, Eigen::Vector3d(200.67, 115.982, 0)}};
+  problems.push_back(problem);
+  problem.weight_per_length = {-0.558265, 1.96161, -1.5385};
+  problem.grips = {{0, Eigen::Vector3d::Zero(), Eigen::Vector3d(-0.781288, 0.37546, 1.4041)},
+                   {0.5, Eigen::Vector3d(-0.175215, -0.113315, -0.313321), std::nullopt},
+                   {1, Eigen::Vector3d(-0.324812, -0.221592, -0.624989),
+                    Eigen::Vector3d(0.119347, 0.508999, 0.25328)}};
+  problem.loads = {{0.5987, Eigen::Vector3d(-0.352608, -0.11218, -0.509379)}};
+  problems.push_back(problem);
+  problem = two_clamps(10, 0);
+  problems.push_back(problem);
+  for (std::size_t i = 0; i < problems.size(); ++i) {
+    const Equilibrium energy = solve_energy(problems[i]);
+    ASSERT_EQ(energy.status, SolveStatus::converged) << "problem " << i << ": " << energy.message;
+    const Equilibrium confirmed = solve_exact(problems[i], {.start = &energy});
+    ASSERT_EQ(confirmed.status, SolveStatus::converged) << "problem " << i;
+    EXPECT_LT(distance(energy, confirmed), 1e-8) << "problem " << i;
+    EXPECT_LT(energy.energy.total(), solve_exact(problems[i]).energy.total() + 1e-7)
+        << "problem " << i;
+  }
+}
+
+TEST(MultipleShooting, RefusesGripsThatTheRodCannotReach) {
+  EXPECT_THROW((void)solve_exact(two_clamps(1, 1.2)), std::invalid_argument);
+  Problem problem = two_clamps(1, 0.5);
+  problem.weight_per_length.y() = -1e7;
+  EXPECT_THROW((void)solve_exact(problem), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model

@@ -1,0 +1,193 @@
+#include "dlo/energy_model/polygon.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr double stiff = 4e6;  // 16 (l/d)^2 of a rod 500 diameters long, over EI/l^2
+
+/// A rod of unit length and rigidity under its weight along -y, both ends clamped `span` apart.
+PolygonProblem two_clamps(JointLaw law, Eigen::Index points, double span, double gamma) {
+  PolygonProblem problem;
+  const double L = 1.0 / static_cast<double>(points - 2);
+  problem.rest_lengths = Eigen::VectorXd::Constant(points - 1, L);
+  problem.stretch_stiffness = stiff;
+  problem.node_forces.setZero(3, points);
+  problem.node_forces.row(1).segment(1, points - 2).setConstant(-gamma * L);
+  problem.law = law;
+  problem.stiffness = law == JointLaw::hooke ? 1 : 20;
+  problem.held = {{0, {-L / 2, 0, 0}},
+                  {1, {L / 2, 0, 0}},
+                  {points - 2, {span - L / 2, 0, 0}},
+                  {points - 1, {span + L / 2, 0, 0}}};
+  return problem;
+}
+
+/// Half a sine with the slack of the polygon, turned about the line of the grips.
+Eigen::Matrix3Xd arch(const PolygonProblem& problem, double span, double turned) {
+  const Eigen::Index n = problem.node_forces.cols();
+  const double height = 2 / std::numbers::pi * std::sqrt(span * (1 - span));
+  Eigen::Matrix3Xd points(3, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double t = static_cast<double>(i) / static_cast<double>(n - 1);
+    const double y = -height * std::sin(std::numbers::pi * t);
+    points.col(i) << span * t, y * std::cos(turned), y * std::sin(turned);
+  }
+  return points;
+}
+
+class PolygonOfBothLaws : public testing::TestWithParam<JointLaw> {};
+
+TEST_P(PolygonOfBothLaws, GradientIsTheDifferenceOfTheEnergy) {
+  PolygonProblem problem = two_clamps(GetParam(), 9, 0.8, 5);
+  problem.stretch_stiffness = 50;
+  problem.rest_lengths[3] *= 1.3;
+  problem.walls = {{{0, -0.1, 0}, Eigen::Vector3d(0.6, 0.8, 0), 30}};
+  Eigen::Matrix3Xd points = arch(problem, 0.8, 0.3);
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> uniform(-0.05, 0.05);
+  for (double& x : points.reshaped()) x += uniform(engine);
+  // One joint beyond the angle at which the hooke law's moment stops growing
+  points.col(6) = points.col(4) + Eigen::Vector3d(0, 0.004, 0.002);
+  Eigen::Matrix3Xd gradient(3, 9);
+  Eigen::Matrix3Xd unused(3, 9);
+  (void)polygon_energy(problem, points, gradient);
+  const double h = 1e-7;
+  for (Eigen::Index i = 0; i < points.size(); ++i) {
+    Eigen::Matrix3Xd above = points;
+    Eigen::Matrix3Xd below = points;
+    above.reshaped()[i] += h;
+    below.reshaped()[i] -= h;
+    const double difference =
+        (polygon_energy(problem, above, unused) - polygon_energy(problem, below, unused)) / (2 * h);
+    EXPECT_NEAR(gradient.reshaped()[i], difference, 1e-6 * gradient.cwiseAbs().maxCoeff()) << i;
+  }
+}
+
+TEST_P(PolygonOfBothLaws, RestsInFewStepsAndBalancesItsForces) {
+  for (const double gamma : {0.0, 1.0, 100.0, 1000.0}) {
+    for (const Eigen::Index points : {8, 33, 200}) {
+      const PolygonProblem problem = two_clamps(GetParam(), points, 0.8, gamma);
+      const PolygonResult result = solve_polygon(problem, arch(problem, 0.8, 0));
+      ASSERT_TRUE(succeeded(result.status)) << gamma << ", " << points << ": " << result.message;
+      // Where only the cubic law acts the Hessian fades towards rest, and Newton is slow.
+      const bool fading = GetParam() == JointLaw::paper && gamma == 0;
+      EXPECT_LT(result.evaluations, fading ? 1000 : 200) << gamma << ", " << points;
+      const Eigen::Vector3d total =
+          result.grip_forces.rowwise().sum() + problem.node_forces.rowwise().sum();
+      EXPECT_LT(total.norm(), 1e-6 * (1 + gamma)) << gamma << ", " << points;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, PolygonOfBothLaws, testing::Values(JointLaw::paper, JointLaw::hooke),
+                         [](const auto& instance) {
+                           return instance.param == JointLaw::paper ? "paper" : "hooke";
+                         });
+
+TEST(Polygon, IsTheRigidChainWhenItHasOneClamp) {
+  for (const JointLaw law : {JointLaw::paper, JointLaw::hooke}) {
+    for (const double gamma : {0.1, 2.0, 30.0}) {
+      ChainProblem chain;
+      const Eigen::Index n = 20;
+      const double L = 1 / (static_cast<double>(n) - 0.5);
+      chain.segment_lengths = Eigen::VectorXd::Constant(n, L);
+      chain.segment_lengths.tail(8) *= 0.7;  // unequal segments have the same potential in both
+      chain.node_forces.setZero(2, n + 1);
+      chain.node_forces.row(1).tail(n).setConstant(-gamma * L);
+      chain.law = law;
+      chain.stiffness = law == JointLaw::hooke ? 1 : 20;
+      const ChainResult rigid = solve_chain(chain);
+      ASSERT_TRUE(succeeded(rigid.status));
+      PolygonProblem problem;
+      problem.rest_lengths = chain.segment_lengths;
+      problem.stretch_stiffness = stiff * (1 + gamma);
+      problem.node_forces.setZero(3, n + 1);
+      problem.node_forces.topRows(2) = chain.node_forces;
+      problem.law = law;
+      problem.stiffness = chain.stiffness;
+      problem.held = {{0, {0, 0, 0}}, {1, {L, 0, 0}}};
+      Eigen::Matrix3Xd start = Eigen::Matrix3Xd::Zero(3, n + 1);
+      for (Eigen::Index i = 0; i < n; ++i) start(0, i + 1) = start(0, i) + problem.rest_lengths[i];
+      const PolygonResult result = solve_polygon(problem, start);
+      ASSERT_TRUE(succeeded(result.status)) << result.message;
+      // The strain is at most w l / c_c = 1 / stiff.
+      EXPECT_LT((result.points.topRows(2) - rigid.points).colwise().norm().maxCoeff(), 2 / stiff)
+          << gamma;
+      EXPECT_LT(result.points.row(2).cwiseAbs().maxCoeff(), 1e-9);
+    }
+  }
+}
+
+TEST(Polygon, LeavesASaddle) {
+  // Straight between two grips that press it together: Euler's column.
+  PolygonProblem problem = two_clamps(JointLaw::hooke, 42, 0.95, 0);
+  Eigen::Matrix3Xd start(3, 42);
+  for (Eigen::Index i = 0; i < 42; ++i) {
+    start.col(i) = Eigen::Vector3d(0.95 * static_cast<double>(i) / 41, 0, 0);
+  }
+  const PolygonResult buckled = solve_polygon(problem, start);
+  ASSERT_TRUE(succeeded(buckled.status)) << buckled.message;
+  // A column clamped at both ends carries 4 pi^2, and more as it bends: about P (1 + e/2), e its
+  // relative shortening. The polygon is softer by O(L^2).
+  const double thrust = buckled.grip_forces.leftCols<2>().rowwise().sum().x();
+  const double euler = 4 * std::numbers::pi * std::numbers::pi;
+  EXPECT_GT(thrust, euler);
+  EXPECT_LT(thrust, euler * (1 + 0.05));
+  const double sideways = buckled.points.bottomRows(2).colwise().norm().maxCoeff();
+  EXPECT_NEAR(sideways, 2 / std::numbers::pi * std::sqrt(0.05), 0.01);
+}
+
+TEST(Polygon, WallPushesBackWithItsStiffness) {
+  PolygonProblem problem = two_clamps(JointLaw::hooke, 33, 0.9, 20);
+  const PolygonResult free = solve_polygon(problem, arch(problem, 0.9, 0));
+  ASSERT_TRUE(succeeded(free.status));
+  const double sag = free.points.row(1).minCoeff();
+  problem.walls = {{{0, sag / 2, 0}, Eigen::Vector3d::UnitY(), 1e5}};
+  const PolygonResult held = solve_polygon(problem, arch(problem, 0.9, 0));
+  ASSERT_TRUE(succeeded(held.status)) << held.message;
+  const Eigen::ArrayXd depth = (sag / 2 - held.points.row(1).array()).max(0.0);
+  EXPECT_GT(depth.maxCoeff(), 0);
+  EXPECT_LT(depth.maxCoeff(), 1e-3);
+  const double total =
+      held.grip_forces.row(1).sum() + problem.node_forces.row(1).sum() + 1e5 * depth.sum();
+  EXPECT_NEAR(total, 0, 1e-6);
+}
+
+TEST(Polygon, StoppedEarlyIsAFailure) {
+  const PolygonProblem problem = two_clamps(JointLaw::hooke, 20, 0.8, 5);
+  EXPECT_EQ(solve_polygon(problem, arch(problem, 0.8, 0), {.max_evaluations = 2}).status,
+            SolveStatus::evaluation_limit);
+}
+
+TEST(Polygon, RefusesBadProblems) {
+  const PolygonProblem good = two_clamps(JointLaw::hooke, 10, 0.8, 5);
+  const Eigen::Matrix3Xd start = arch(good, 0.8, 0);
+  const auto refused = [&](const auto& spoil) {
+    PolygonProblem problem = good;
+    spoil(problem);
+    EXPECT_THROW((void)solve_polygon(problem, start), std::invalid_argument);
+  };
+  refused([](PolygonProblem& p) { p.stiffness = 0; });
+  refused([](PolygonProblem& p) { p.stretch_stiffness = -1; });
+  refused([](PolygonProblem& p) { p.rest_lengths[2] = 0; });
+  refused([](PolygonProblem& p) { p.node_forces(0, 3) = NAN; });
+  refused([](PolygonProblem& p) { p.node_forces.resize(3, 4); });
+  refused([](PolygonProblem& p) { p.held.clear(); });
+  refused([](PolygonProblem& p) { p.held[0].point = 10; });
+  refused([](PolygonProblem& p) { p.held[1].point = 0; });
+  refused([](PolygonProblem& p) { p.walls = {{{0, 0, 0}, {0, 2, 0}, 1}}; });
+  Eigen::Matrix3Xd coincident = start;
+  coincident.col(4) = coincident.col(5);
+  EXPECT_THROW((void)solve_polygon(good, coincident), std::invalid_argument);
+  EXPECT_THROW((void)solve_polygon(good, start, {.tolerance = 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model

@@ -1,0 +1,180 @@
+// What a step costs: the kernel against steps written with Eigen, one rod and many, and how long a
+// rod takes to come to rest. Ratios (`speedup`) are taken within one benchmark, the two sides
+// taking turns.
+//
+// The arithmetic limit. Counted in the kernel's source, with a product and the sum it goes into as
+// one operation, a step of one point (hooke, in the plane, stepper `dynamic`) does
+//     segment    2 differences, 2 for the square, 1 root                                      4
+//     joint      a b, s.s' (2), opening, its bound, comparison and selection, 1 division of
+//                1 / (b opening), product before it, 1/b, m (2)                              12
+//     force      tension (2), h (4), h.s (2), along (2), T (4), inner (2), load, held (4)    20
+//     proposal   dP (4), its product with the last, comparison, selection, count (5),
+//                difference, square, segment (5), largest, sum (2)                           16
+//     movement   scale, selection, addition                                                   6
+// that is 58 operations, a division and a root; a third axis adds 22. A core that does two
+// operations on 256 bits in a cycle, or one on 512 (Zen 4 splits those), needs 58/8 = 7.3 cycles a
+// point. The divider works beside it, and about 1.3 cycles a division and 2.3 a root are less. So
+// N = 16 cannot take less than 116 cycles, 35 ns at 3.3 GHz; `share_of_limit` compares with that,
+// at the clock that DLO_BENCHMARK_GHZ gives if it is another. What is above it: of a batch, loads
+// and stores, some 40 registers for 58 operations; of one rod, the way from the first root to the
+// scaling of the last movement, which no width shortens, and the registers that 16 points leave
+// empty; with SSE2 the limit is four times as high.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <vector>
+
+#include "dlo/force_model/batch.hpp"
+#include "dlo/force_model/simulation.hpp"
+#include "plain_simulation.hpp"
+#include "rods.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+constexpr double operations_in_plane = 58;
+constexpr double operations_in_space = 80;
+constexpr double operations_per_cycle = 8;
+
+/// Processor time: what other programs on the machine take away does not count.
+double seconds_since(std::clock_t start) {
+  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+}
+
+double clock_hertz() {
+  const char* const gigahertz = std::getenv("DLO_BENCHMARK_GHZ");
+  return 1e9 * (gigahertz != nullptr ? std::strtod(gigahertz, nullptr) : 3.3);
+}
+
+/// The paper's rod with a force to bend it out of the plane, or none.
+BatchRod steel_rod(int points, Stepper stepper, double side_force = 0) {
+  test::SteelRod steel;
+  steel.points = points;
+  BatchRod one{steel.rod({BendingLaw::hooke, steel.EI}, 660), steel.straight(), {}};
+  one.rod.loads(2, points - 1) = side_force;
+  const HeavyBall constants = heavy_ball(mode_bounds(one.rod, one.points));
+  one.options.policy = policy(stepper);
+  one.options.c_F = constants.c_F;
+  one.options.c_h = constants.c_h;
+  one.options.l_s = steel.segment() / 4;
+  return one;
+}
+
+void report(benchmark::State& state, double plain, double kernel, double rods) {
+  const auto points = static_cast<double>(state.range(0));
+  const double operations = state.range(3) == 0 ? operations_in_plane : operations_in_space;
+  const double limit = points * operations / operations_per_cycle / clock_hertz();
+  state.counters["plain_ns"] = 1e9 * plain;
+  state.counters["kernel_ns"] = 1e9 * kernel / rods;
+  state.counters["steps_per_s"] = rods / kernel;
+  state.counters["speedup"] = plain / (kernel / rods);
+  state.counters["share_of_limit"] = limit / (kernel / rods);
+}
+
+/// Steps both in turns, `steps` at a time, and keeps the fastest turn of each.
+template <typename StepKernel>
+void compare_with_plain(benchmark::State& state, const BatchRod& one, double rods,
+                        const StepKernel& step_kernel) {
+  constexpr int steps = 1000;
+  test::PlainSimulation plain(one.rod, one.points, one.options);
+  double fastest_plain = 1;
+  double fastest_kernel = 1;
+  for ([[maybe_unused]] const auto& turn : state) {
+    const std::clock_t start = std::clock();
+    for (int i = 0; i < steps; ++i) (void)plain.step();
+    fastest_plain = std::min(fastest_plain, seconds_since(start) / steps);
+    const std::clock_t middle = std::clock();
+    step_kernel(steps);
+    fastest_kernel = std::min(fastest_kernel, seconds_since(middle) / steps);
+  }
+  report(state, fastest_plain, fastest_kernel, rods);
+}
+
+/// Arguments: points, instruction set, stepper, 1 for space.
+void one_rod(benchmark::State& state) {
+  const double side_force = state.range(3) == 0 ? 0 : 1e-3;
+  BatchRod one =
+      steel_rod(static_cast<int>(state.range(0)), static_cast<Stepper>(state.range(2)), side_force);
+  one.options.instruction_set = static_cast<InstructionSet>(state.range(1));
+  state.SetLabel(to_string(one.options.instruction_set));
+  Simulation simulation(one.rod, one.points, one.options);
+  compare_with_plain(state, one, 1, [&](int steps) {
+    for (int i = 0; i < steps; ++i) (void)simulation.step();
+  });
+}
+
+/// 64 rods, one thread. Arguments as for one_rod.
+void batch_of_64(benchmark::State& state) {
+  const double side_force = state.range(3) == 0 ? 0 : 1e-3;
+  BatchRod one =
+      steel_rod(static_cast<int>(state.range(0)), static_cast<Stepper>(state.range(2)), side_force);
+  one.options.instruction_set = static_cast<InstructionSet>(state.range(1));
+  state.SetLabel(to_string(one.options.instruction_set));
+  Batch batch(std::vector<BatchRod>(64, one));
+  compare_with_plain(state, one, 64, [&](int steps) { batch.step(steps); });
+}
+
+void variants(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgNames({"N", "set", "stepper", "space"});
+  for (const InstructionSet set : available_instruction_sets()) {
+    for (const int points : {16, 64}) {
+      for (const Stepper stepper : {Stepper::dynamic, Stepper::automatic}) {
+        for (const int space : {0, 1}) {
+          benchmark->Args({points, static_cast<int>(set), static_cast<int>(stepper), space});
+        }
+      }
+    }
+  }
+}
+BENCHMARK(one_rod)->Apply(variants)->Unit(benchmark::kMicrosecond);
+BENCHMARK(batch_of_64)->Apply(variants)->Unit(benchmark::kMicrosecond);
+
+/// From straight until the tip stays within 1e-3 of its movement from where it rests. Argument: by
+/// how much E is lowered.
+void straight_to_rest(benchmark::State& state) {
+  test::SteelRod steel;
+  steel.EI /= static_cast<double>(state.range(0));
+  const Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
+  Simulation reference(rod, steel.straight(), {});
+  const RelaxResult rest = reference.relax({.tolerance = 1e-9});
+  if (rest.status != RelaxStatus::at_rest) state.SkipWithError("the rod does not come to rest");
+  const Eigen::Vector3d tip = reference.points().rightCols(1);
+  const double near = 1e-3 * (tip - steel.straight().rightCols(1)).norm();
+  long needed = 0;
+  Simulation observed(rod, steel.straight(), {});
+  for (long i = 1; i <= rest.steps; ++i) {
+    (void)observed.step();
+    if ((observed.points().rightCols(1) - tip).norm() > near) needed = i + 1;
+  }
+  double fastest = 1;
+  for ([[maybe_unused]] const auto& run : state) {
+    Simulation simulation(rod, steel.straight(), {});
+    const std::clock_t start = std::clock();
+    for (long i = 0; i < needed; ++i) (void)simulation.step();
+    fastest = std::min(fastest, seconds_since(start));
+  }
+  state.counters["steps"] = static_cast<double>(needed);
+  state.counters["ms_to_rest"] = 1e3 * fastest;
+}
+BENCHMARK(straight_to_rest)->ArgName("E_over")->Arg(1)->Arg(100)->Unit(benchmark::kMicrosecond);
+
+/// Cost of a step against N: `ns_per_point` should not grow.
+void many_points(benchmark::State& state) {
+  const BatchRod one = steel_rod(static_cast<int>(state.range(0)), Stepper::dynamic);
+  Simulation simulation(one.rod, one.points, one.options);
+  const std::clock_t start = std::clock();
+  for ([[maybe_unused]] const auto& step : state) (void)simulation.step();
+  const auto points = static_cast<double>(state.iterations() * state.range(0));
+  state.counters["ns_per_point"] = 1e9 * seconds_since(start) / points;
+  state.SetComplexityN(state.range(0));
+}
+BENCHMARK(many_points)->RangeMultiplier(10)->Range(10, 100000)->Complexity(benchmark::oN);
+
+}  // namespace
+}  // namespace dlo::force_model
+
+BENCHMARK_MAIN();
