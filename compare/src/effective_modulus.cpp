@@ -17,13 +17,12 @@ namespace {
 
 struct Fit {
   Scene scene;
-  const Shape* shape;
+  const ShapeDistance* distance;
   double modulus;  // E of the scene [Pa]
 
   double rms_at(double log_ratio) {
     scene.material.youngs_modulus = modulus * std::exp(log_ratio);
-    const energy_model::Equilibrium reference = solve_reference(scene, Model::energy);
-    return rms(shape->arc_length, shape->points - reference.sample(shape->arc_length).points);
+    return (*distance)(solve_reference(scene, Model::energy));
   }
 };
 
@@ -56,7 +55,13 @@ const char* to_string(Optimum optimum) {
 }
 
 EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape) {
-  Fit fit{scene, &shape, scene.material.youngs_modulus};
+  return fit_effective_modulus(scene, [&shape](const energy_model::Equilibrium& reference) {
+    return rms(shape.arc_length, shape.points - reference.sample(shape.arc_length).points);
+  });
+}
+
+EffectiveModulus fit_effective_modulus(const Scene& scene, const ShapeDistance& distance) {
+  Fit fit{scene, &distance, scene.material.youngs_modulus};
   const double low = std::log(smallest_modulus_ratio);
   const double high = std::log(largest_modulus_ratio);
   constexpr int steps = 32;
