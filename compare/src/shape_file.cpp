@@ -23,7 +23,7 @@ std::string where_point(const RawShape& raw, const std::string& file, std::size_
 void require_number(const RawShape& raw, const std::string& file, std::size_t i, const char* name,
                     double value, double unit) {
   if (std::isfinite(value) && std::abs(value * unit) <= largest_coordinate) return;
-  throw InputError(fmt::format("{}: {} = {} (allowed: numbers up to {:g} m)",
+  throw InputError(fmt::format("{}: {} = {:g} (allowed: numbers up to {:g} m)",
                                where_point(raw, file, i), name, value, largest_coordinate));
 }
 

@@ -28,6 +28,8 @@ class VtkReader {
         order = read_lines(points.points.size());
       } else if (word == "VERTICES" || word == "POLYGONS" || word == "TRIANGLE_STRIPS") {
         fail(fmt::format("{} (allowed: POINTS and LINES)", word));
+      } else if (word == "METADATA") {
+        skip_metadata();
       } else if (word == "POINT_DATA" || word == "CELL_DATA") {
         break;
       } else if (shape_number(word)) {
@@ -62,6 +64,12 @@ class VtkReader {
     const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r\n"));
     rest_.remove_prefix(word.size());
     return word;
+  }
+
+  /// A block that ends with an empty line.
+  void skip_metadata() {
+    next_line();
+    while (!rest_.empty() && !next_line().empty()) continue;
   }
 
   void read_preamble() {
