@@ -104,9 +104,8 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
   const Alignment& alignment = result.alignment;
   const std::vector<double>& s = alignment.shape.arc_length;
   result.reference = {s, energy.sample(s).points};
-  const std::vector<double> along = equal_arc_lengths(scene.length, 201);
-  const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, along);
-  result.movement_m = straight ? rms(along, *straight - energy.sample(along).points) : NAN;
+  const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
+  result.movement_m = straight ? rms(s, *straight - result.reference.points) : NAN;
   result.deviation =
       measured_deviation(scene, alignment, energy.sample, result.reference, result.movement_m);
 

@@ -87,7 +87,7 @@ TEST(ShapeCheck, MeasuresWhatIsSeenAndWhatIsMissing) {
 TEST(ShapeCheck, MovementIsTheRmsWayFromStraight) {
   const double gamma = 0.01;
   const Scene scene = heavy_scene(gamma, 0);
-  const ShapeCheck check = check_shape(scene, exact_shape(scene, equal_arc_lengths(1, 11)));
+  const ShapeCheck check = check_shape(scene, exact_shape(scene, equal_arc_lengths(1, 401)));
   double mean_square = 0;
   constexpr int n = 20000;
   for (int i = 0; i < n; ++i) {

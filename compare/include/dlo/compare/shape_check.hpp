@@ -27,11 +27,11 @@ struct ShapeCheck {
   /// RMS along the rod from the first point to the last, straight across what is missing; its share
   /// of the length is that of the whole rod. Tangent and curvature only for given arc lengths: NaN.
   Deviation deviation;
-  long worst_point = 0;             ///< of the largest deviation, counted from 1 as in the file
-  double movement_m = 0;            ///< RMS way of the reference from straight; NaN without one
-  double polyline_length_m = 0;     ///< of the points as they are
-  double largest_gap_m = 0;         ///< largest arc length between neighbours
-  double largest_gap_at_m = 0;      ///< where it begins
+  long worst_point = 0;          ///< of the largest deviation, counted from 1 as in the file
+  double movement_m = 0;         ///< RMS way of the reference from straight, same stretch; or NaN
+  double polyline_length_m = 0;  ///< of the points as they are
+  double largest_gap_m = 0;      ///< largest arc length between neighbours
+  double largest_gap_at_m = 0;   ///< where it begins
   bool direction_is_clear = false;  ///< the other direction fits at least 5 % worse
   /// The points lie so nearly on a line that nothing tells how the shape is turned about it.
   bool turn_is_clear = true;
