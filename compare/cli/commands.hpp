@@ -10,6 +10,7 @@ namespace dlo::cli {
 void add_solve(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_check(CLI::App& app);
+void add_calibrate(CLI::App& app);
 void add_paper(CLI::App& app);
 
 }  // namespace dlo::cli

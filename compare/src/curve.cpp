@@ -8,7 +8,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr Eigen::Index curve_pieces = 400;
+constexpr Eigen::Index curve_pieces = 200;
 
 }  // namespace
 

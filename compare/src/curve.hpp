@@ -8,8 +8,8 @@
 namespace dlo::compare {
 
 /// A reference shape as cubic pieces between equally spaced arc lengths, for many quick searches of
-/// nearest points. It is off by h^4/384 of the fourth derivative: 1e-10 of the length for a rod
-/// with Gamma = 100.
+/// nearest points. It is off by h^4/384 of the fourth derivative: 2e-9 of the length for a rod with
+/// Gamma = 100.
 class Curve {
  public:
   /// @param length  of the rod [m]; the pieces go from arc length 0 to it

@@ -29,7 +29,7 @@ bool is_flat(const Eigen::Matrix3Xd& points) {
   const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
   const Eigen::Matrix3d moments = centred * centred.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(moments);
-  return eigen.eigenvalues()[0] < 1e-20 * eigen.eigenvalues()[2];
+  return eigen.eigenvalues()[0] < 1e-15 * eigen.eigenvalues()[2];
 }
 
 /// Numbers that a shape contributes, less those of its frame.
