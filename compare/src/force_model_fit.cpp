@@ -200,6 +200,7 @@ class Fit {
       result_.rules.push_back(std::move(deviations));
     }
     const double centre = search_centre(matched);
+    result_.c_b_was_given = settings_.c_b.has_value();
     const double together = settings_.c_b ? *settings_.c_b : fitted_c_b(centre, 0, fitted_);
     RuleDeviations fitted{.rule = StiffnessRule::fitted};
     RuleDeviations alone{.rule = StiffnessRule::fitted_alone};

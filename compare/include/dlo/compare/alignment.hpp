@@ -22,10 +22,10 @@ enum class PoseFreedom {
 enum class ArcLengths {
   automatic,  ///< the file's, if it has them; else `chord` if the points' polyline is as long as
               ///< the rod to 0.5 %, as a simulator's is; else `nearest`
-  file,     ///< the file's column s
-  chord,    ///< the points are the whole rod: lengths along the polyline, scaled to the rod's
-  nearest,  ///< each the curve's nearest point, in order: parts may be missing. Differences along
-            ///< the curve are invisible.
+  file,       ///< the file's column s
+  chord,      ///< the points are the whole rod: lengths along the polyline, scaled to the rod's
+  nearest,    ///< each the curve's nearest point, in order: parts may be missing. Differences along
+              ///< the curve are invisible.
 };
 
 [[nodiscard]] const std::vector<std::string>& pose_names();

@@ -41,6 +41,7 @@ struct ForceModelFit {
   /// To be used: N, law, bookkeeping, c_b (law paper), c_c, and stepper dynamic with its c_F, c_h
   /// and l_s.
   ForceModelSettings settings;
+  bool c_b_was_given = false;  ///< `fitted` is then the given one
   double target = 0;
   std::vector<std::string> scenes;  ///< names, hold-out scenes last
   std::vector<double> gammas;
