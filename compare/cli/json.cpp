@@ -3,15 +3,14 @@
 #include <algorithm>
 
 namespace dlo::cli {
-namespace {
 
-Json to_json(const compare::EffectiveModulus& modulus) {
+Json modulus_json(const compare::EffectiveModulus& modulus) {
   return {{"effective_modulus_ratio", modulus.ratio},
           {"rms_at_effective_modulus_m", modulus.rms_m},
           {"optimum", compare::to_string(modulus.optimum)}};
 }
 
-Json to_json(const compare::Deviation& deviation) {
+Json deviation_json(const compare::Deviation& deviation) {
   return {{"rms_m", deviation.rms_m},
           {"max_m", deviation.max_m},
           {"max_at_m", deviation.max_at_m},
@@ -21,8 +20,6 @@ Json to_json(const compare::Deviation& deviation) {
           {"angle_rms_rad", deviation.angle_rms_rad},
           {"curvature_rms_per_m", deviation.curvature_rms_per_m}};
 }
-
-}  // namespace
 
 Json to_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
@@ -116,9 +113,9 @@ Json to_json(const compare::Comparison& comparison) {
                  {"law", compare::to_string(comparison.settings.law)},
                  {"bookkeeping", compare::to_string(comparison.settings.bookkeeping)},
                  {"points", comparison.settings.points},
-                 {"deviation", to_json(comparison.deviation)},
+                 {"deviation", deviation_json(comparison.deviation)},
                  {"undeformed_rms_over_length", comparison.undeformed_rms_over_length}};
-  result.update(to_json(comparison.effective_modulus));
+  result.update(modulus_json(comparison.effective_modulus));
   result["parameters"] = parameters_json(comparison.force, comparison.settings);
   result["budget"] = {{"law_m", budget.law},
                       {"bookkeeping_m", budget.bookkeeping},
@@ -152,7 +149,7 @@ Json to_json(const compare::PaperReport& report) {
     Json creep = Json::array();
     for (const compare::ModulusAtTime& at : entry.creep) {
       Json row = {{"time_s", at.time_s}, {"steps", at.steps}};
-      row.update(to_json(at.modulus));
+      row.update(modulus_json(at.modulus));
       row["rms_over_length"] = at.rms_over_length;
       row["distance_to_rest_over_length"] = at.rest_distance_over_length;
       creep.push_back(std::move(row));
@@ -172,7 +169,7 @@ Json to_json(const compare::PaperReport& report) {
                 {"law", compare::to_string(variant.settings.law)},
                 {"bookkeeping", compare::to_string(variant.settings.bookkeeping)},
                 {"bending_rule", compare::to_string(variant.settings.bending_rule)}};
-    row.update(to_json(variant.modulus));
+    row.update(modulus_json(variant.modulus));
     row["rms_over_length"] = variant.rms_over_length;
     variants.push_back(std::move(row));
   }

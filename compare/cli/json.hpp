@@ -10,6 +10,8 @@ namespace dlo::cli {
 using Json = nlohmann::ordered_json;
 
 [[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
+[[nodiscard]] Json deviation_json(const compare::Deviation& deviation);
+[[nodiscard]] Json modulus_json(const compare::EffectiveModulus& modulus);
 [[nodiscard]] Json points_json(const Eigen::Matrix3Xd& points);
 [[nodiscard]] Json parameters_json(const compare::Solution& force,
                                    const compare::ForceModelSettings& settings);

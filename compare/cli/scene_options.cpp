@@ -48,6 +48,11 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
 
 void SceneOptions::add_to(CLI::App& command) {
   const std::string group = "Force model (override the scene)";
+  command
+      .add_option("--parameters", parameters_,
+                  "[force_model] of a file such as dlo calibrate writes, instead of the scene's")
+      ->type_name("FILE")
+      ->group(group);
   command.add_option("--points", points_, "N")->check(CLI::Range(4, 1000000))->group(group);
   command.add_option("--law", law_, "paper or hooke")
       ->check(CLI::IsMember(compare::law_names()))
@@ -94,6 +99,7 @@ void SceneOptions::add_to(CLI::App& command) {
 
 void SceneOptions::apply(compare::Scene& scene) const {
   compare::ForceModelSettings& settings = scene.force_model;
+  if (!parameters_.empty()) settings = compare::load_parameters(parameters_);
   if (points_ > 0) settings.points = points_;
   if (!law_.empty()) settings.law = compare::law_from(law_);
   if (!bookkeeping_.empty()) settings.bookkeeping = compare::bookkeeping_from(bookkeeping_);

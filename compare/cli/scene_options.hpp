@@ -21,7 +21,7 @@ class SceneOptions {
  private:
   void apply(compare::Scene& scene) const;
 
-  std::string materials_;
+  std::string materials_, parameters_;
   int points_ = 0;
   std::string law_, bookkeeping_, stepper_, bending_rule_;
   std::string c_b_, c_c_, c_F_, c_h_, l_s_, design_curvature_;

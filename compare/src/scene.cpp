@@ -267,6 +267,21 @@ Scene load_scene(const std::string& path, const std::vector<Material>& known_mat
   return parse_scene(read_file(path), path, known_materials);
 }
 
+ForceModelSettings parse_parameters(const std::string& text, const std::string& file) {
+  const toml::table root = parse_toml(text, file);
+  StrictTable table(root, "", file);
+  StrictTable settings_table = table.table("force_model");
+  const ForceModelSettings settings = read_force_model(settings_table);
+  check(settings, settings_table.where());
+  (void)table.optional_table("derived");
+  table.finish();
+  return settings;
+}
+
+ForceModelSettings load_parameters(const std::string& path) {
+  return parse_parameters(read_file(path), path);
+}
+
 std::vector<Scene> paper_scenes() {
   return {
       parse_scene(std::string(builtin::spring_steel_135_toml), "data/scenes/spring_steel_135.toml"),

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
 
 namespace dlo::compare {
 
@@ -31,5 +33,10 @@ inline constexpr double largest_modulus_ratio = 1e4;
 /// over the range, then GSL's Brent minimiser.
 /// @throws InputError, ConvergenceError as solve_reference
 [[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape);
+
+/// The same for any distance [m] of a shape from the energy model's.
+using ShapeDistance = std::function<double(const energy_model::Equilibrium&)>;
+[[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene,
+                                                     const ShapeDistance& distance);
 
 }  // namespace dlo::compare

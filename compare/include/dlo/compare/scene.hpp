@@ -66,6 +66,12 @@ struct ForceModelSettings {
 /// a stepper that chooses its own
 void check(const ForceModelSettings& settings, const std::string& where);
 
+/// Reads a parameters file, as `dlo calibrate` writes it: a [force_model] table with the keys of a
+/// scene's; the table [derived], for programs of the user's own, is left alone.
+/// @throws InputError naming file, line, key, value and what is allowed
+[[nodiscard]] ForceModelSettings parse_parameters(const std::string& text, const std::string& file);
+[[nodiscard]] ForceModelSettings load_parameters(const std::string& path);
+
 /// A physical scene in SI units.
 struct Scene {
   std::string name;

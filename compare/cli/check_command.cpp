@@ -1,0 +1,222 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "commands.hpp"
+#include "comparison_text.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/quantity.hpp"
+#include "dlo/compare/shape_check.hpp"
+#include "json.hpp"
+#include "output.hpp"
+#include "scene_options.hpp"
+#include "shape_options.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct Options {
+  std::string scene;
+  std::string shape;
+  std::string tolerance;
+  std::string measure = "rms";
+  ShapeOptions shapes;
+  SceneOptions overrides;
+  OutputOptions output;
+};
+
+/// What the deviation may be, and whether it is.
+struct Verdict {
+  double tolerance_m = 0;
+  bool pass = false;
+
+  [[nodiscard]] const char* text() const { return pass ? "pass" : "fail"; }
+};
+
+/// "1%" of the rod's length, or a length.
+double tolerance_m(const std::string& text, double length) {
+  double value = 0;
+  try {
+    if (text.ends_with('%')) {
+      const std::string number = text.substr(0, text.size() - 1);
+      value = compare::parse_quantity(number, compare::Dimension::number) / 100 * length;
+    } else {
+      value = compare::parse_quantity(text, compare::Dimension::length);
+    }
+  } catch (const compare::InputError& error) {
+    throw compare::InputError(fmt::format(
+        "--tolerance = {}: {} (or a share of the length such as 1%)", text, error.what()));
+  }
+  if (value > 0) return value;
+  throw compare::InputError(fmt::format("--tolerance = {}: out of range (allowed: > 0)", text));
+}
+
+std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
+                 const std::optional<Verdict>& verdict, const Options& options) {
+  std::string out;
+  const compare::Alignment& a = c.alignment;
+  const std::vector<double>& s = a.shape.arc_length;
+  append(out, "{}   Gamma = {:.4g}\n", c.scene, c.gamma);
+  append(out, "  shape           {}: {} points, {}\n", c.file, s.size(), direction_text(a));
+  if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
+  constexpr const char* rules[] = {"", "the file's own", "chord lengths of the whole rod",
+                                   "nearest points, so differences along the rod do not show"};
+  append(out, "  arc lengths     {}\n", rules[static_cast<std::size_t>(a.arc_lengths)]);
+  append(out,
+         "  seen            s = {:.4g} to {:.4g} m, {:.4g} % of l; polyline {:.4g} m; largest gap "
+         "{:.4g} m at s = {:.4g} m\n",
+         s.front(), s.back(), (s.back() - s.front()) / scene.length * 100, c.polyline_length_m,
+         c.largest_gap_m, c.largest_gap_at_m);
+  if (options.shapes.pose() == compare::PoseFreedom::known) {
+    append(out, "  frame           the scene's\n");
+  } else {
+    append(out, "  frame           found ({}): {}\n", compare::to_string(options.shapes.pose()),
+           pose_text(a.pose));
+    if (!c.turn_is_clear) {
+      append(out,
+             "                  (the turn about the rod's own line is not told by these points)\n");
+    }
+  }
+  const compare::Deviation& d = c.deviation;
+  append(out, "  deviation       RMS {:.4g} mm = {:.4g} % of l", d.rms_m * 1e3,
+         d.rms_over_length * 100);
+  if (std::isfinite(d.rms_over_movement)) {
+    append(out, " = {:.4g} % of the movement", d.rms_over_movement * 100);
+  }
+  const Eigen::Vector3d at = a.shape.points.col(
+      static_cast<Eigen::Index>(std::lower_bound(s.begin(), s.end(), d.max_at_m) - s.begin()));
+  append(out,
+         "\n                  largest {:.4g} mm at s = {:.4f} m (point {} of the file, at "
+         "[{:.4g}, {:.4g}, {:.4g}] m)\n",
+         d.max_m * 1e3, d.max_at_m, c.worst_point, at.x() + 0.0, at.y() + 0.0, at.z() + 0.0);
+  if (std::isfinite(d.tip_m)) append(out, "                  tip {:.4g} mm\n", d.tip_m * 1e3);
+  if (std::isfinite(d.angle_rms_rad)) {
+    append(out, "                  tangent RMS {:.4g} deg, curvature RMS {:.4g} 1/m\n",
+           d.angle_rms_rad * 57.29577951308232, d.curvature_rms_per_m);
+  }
+  if (std::isfinite(c.movement_m)) {
+    append(out, "  movement        the rod is {:.4g} mm = {:.4g} % of l away from straight (RMS)\n",
+           c.movement_m * 1e3, c.movement_m / scene.length * 100);
+  }
+  append(out,
+         "  E*/E            {:.4f} (E* = {:.4g} Pa), where the RMS is {:.4g} mm ({} optimum)\n",
+         c.effective_modulus.ratio, c.modulus, c.effective_modulus.rms_m * 1e3,
+         compare::to_string(c.effective_modulus.optimum));
+  if (verdict) {
+    append(out, "  verdict         {}: {} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of l\n",
+           verdict->text(), options.measure == "rms" ? "RMS" : "largest",
+           (options.measure == "rms" ? d.rms_m : d.max_m) * 1e3, verdict->tolerance_m * 1e3,
+           verdict->tolerance_m / scene.length * 100);
+  }
+  return out;
+}
+
+Json json(const compare::ShapeCheck& c, const std::optional<Verdict>& verdict,
+          const Options& options) {
+  const std::vector<double>& s = c.alignment.shape.arc_length;
+  Json result = {{"schema", "dlo/check/1"},
+                 {"scene", c.scene},
+                 {"shape", c.file},
+                 {"gamma", c.gamma},
+                 {"points", s.size()}};
+  result.update(to_json(c.alignment));
+  result["direction_is_clear"] = c.direction_is_clear;
+  result["turn_is_clear"] = c.turn_is_clear;
+  result["seen"] = {{"from_m", s.front()},
+                    {"to_m", s.back()},
+                    {"polyline_length_m", c.polyline_length_m},
+                    {"largest_gap_m", c.largest_gap_m},
+                    {"largest_gap_at_m", c.largest_gap_at_m}};
+  result["deviation"] = deviation_json(c.deviation);
+  result["deviation"]["worst_point"] = c.worst_point;
+  result["movement_m"] = c.movement_m;
+  result.update(modulus_json(c.effective_modulus));
+  result["effective_modulus_Pa"] = c.modulus;
+  if (verdict) {
+    result["tolerance"] = {{"measure", options.measure}, {"allowed_m", verdict->tolerance_m}};
+    result["verdict"] = verdict->text();
+  }
+  result["arc_length_m"] = s;
+  result["points_m"] = points_json(c.alignment.shape.points);
+  result["reference_points_m"] = points_json(c.reference.points);
+  return result;
+}
+
+std::string csv(const compare::ShapeCheck& c, const std::optional<Verdict>& verdict) {
+  const compare::Deviation& d = c.deviation;
+  std::string out =
+      "scene,shape,gamma,points,reversed,arc_lengths,from_m,to_m,rms_m,rms_over_length,"
+      "rms_over_movement,max_m,max_at_m,worst_point,tip_m,movement_m,effective_modulus_ratio,"
+      "rms_at_effective_modulus_m,optimum,tolerance_m,verdict\n";
+  const std::vector<double>& s = c.alignment.shape.arc_length;
+  append(out,
+         "{},{},{:.10g},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},"
+         "{:.10g},{:.10g},{:.10g},{:.10g},{},",
+         csv_field(c.scene), csv_field(c.file), c.gamma, s.size(), c.alignment.reversed,
+         compare::to_string(c.alignment.arc_lengths), s.front(), s.back(), d.rms_m,
+         d.rms_over_length, d.rms_over_movement, d.max_m, d.max_at_m, c.worst_point, d.tip_m,
+         c.movement_m, c.effective_modulus.ratio, c.effective_modulus.rms_m,
+         compare::to_string(c.effective_modulus.optimum));
+  if (verdict) append(out, "{:.10g},{}", verdict->tolerance_m, verdict->text());
+  return out + (verdict ? "\n" : ",\n");
+}
+
+void run(const Options& options) {
+  const compare::Scene scene = options.overrides.load(options.scene);
+  const compare::MeasuredShape shape = options.shapes.load(options.shape);
+  std::optional<Verdict> verdict;
+  if (!options.tolerance.empty()) verdict = Verdict{tolerance_m(options.tolerance, scene.length)};
+  const compare::ShapeCheck check =
+      compare::check_shape(scene, shape,
+                           {.pose = options.shapes.pose(),
+                            .arc_lengths = options.shapes.arc_lengths(),
+                            .solve = options.overrides.solve()});
+  if (verdict) {
+    const double judged = options.measure == "rms" ? check.deviation.rms_m : check.deviation.max_m;
+    verdict->pass = judged <= verdict->tolerance_m;
+  }
+  std::string content;
+  switch (options.output.kind()) {
+    case Format::json:
+      content = json(check, verdict, options).dump(2) + "\n";
+      break;
+    case Format::csv:
+      content = csv(check, verdict);
+      break;
+    case Format::text:
+      content = text(check, scene, verdict, options);
+      break;
+  }
+  write_output(options.output, content);
+  if (verdict && !verdict->pass) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "check", "how far a shape of your own simulator or camera is from the energy model");
+  const auto options = std::make_shared<Options>();
+  command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
+  command->add_option("--shape", options->shape, "CSV, JSON or legacy VTK polyline")
+      ->type_name("FILE")
+      ->required();
+  command->add_option("--tolerance", options->tolerance,
+                      "largest deviation allowed, \"1%\" of the length or \"2 mm\"; exit status 1 "
+                      "beyond it");
+  command->add_option("--measure", options->measure, "what is held against it: rms or max")
+      ->check(CLI::IsMember({"rms", "max"}))
+      ->capture_default_str();
+  options->shapes.add_to(*command);
+  options->overrides.add_to(*command);
+  add_output_options(*command, options->output);
+  command->footer(
+      "Example:\n  dlo solve data/scenes/spring_steel_175.toml --model chain --format csv -o "
+      "mine.csv\n  dlo check data/scenes/spring_steel_175.toml --shape mine.csv --tolerance 1%");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "dlo/compare/alignment.hpp"
+#include "json.hpp"
+
+namespace dlo::cli {
+
+/// Options that say what a shape file's numbers mean.
+class ShapeOptions {
+ public:
+  void add_to(CLI::App& command);
+
+  /// Reads a shape file in the unit that was given. @throws compare::InputError
+  [[nodiscard]] compare::MeasuredShape load(const std::string& path) const;
+  [[nodiscard]] compare::PoseFreedom pose() const { return compare::pose_from(pose_); }
+  [[nodiscard]] compare::ArcLengths arc_lengths() const {
+    return compare::arc_lengths_from(arc_lengths_);
+  }
+
+ private:
+  std::string unit_ = "m";
+  std::string pose_ = "known";
+  std::string arc_lengths_ = "auto";
+};
+
+/// How a shape was laid on its reference, in a few words.
+[[nodiscard]] std::string direction_text(const compare::Alignment& alignment);
+[[nodiscard]] std::string pose_text(const compare::Pose& pose);
+[[nodiscard]] Json to_json(const compare::Alignment& alignment);
+
+}  // namespace dlo::cli

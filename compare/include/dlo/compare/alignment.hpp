@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/shape_file.hpp"
+
+namespace dlo::compare {
+
+/// What of a shape file's frame is unknown.
+enum class PoseFreedom {
+  known,        ///< nothing: it is the scene's frame
+  translation,  ///< where its origin is
+  upright,      ///< and how it is turned about the vertical (the direction of gravity)
+  rigid,        ///< any proper rigid motion. A planar shape and its mirror image in the plane are
+                ///< then the same: up and down is lost with the frame.
+};
+
+/// Where the points' arc lengths come from.
+enum class ArcLengths {
+  automatic,  ///< the file's, if it has them; else `chord` if the points' polyline is as long as
+              ///< the rod to 0.5 %, as a simulator's is; else `nearest`
+  file,       ///< the file's column s
+  chord,      ///< the points are the whole rod: lengths along the polyline, with a correction for
+              ///< the bow over each chord, scaled to the rod's; a dozen points know them to 1e-4 l
+  nearest,    ///< each the curve's nearest point, in order: parts may be missing. Differences along
+              ///< the curve are invisible.
+};
+
+[[nodiscard]] const std::vector<std::string>& pose_names();
+[[nodiscard]] const std::vector<std::string>& arc_lengths_names();
+[[nodiscard]] const char* to_string(PoseFreedom pose);
+[[nodiscard]] const char* to_string(ArcLengths arc_lengths);
+[[nodiscard]] PoseFreedom pose_from(const std::string& name);
+[[nodiscard]] ArcLengths arc_lengths_from(const std::string& name);
+
+/// A rigid motion from a file's frame to the scene's: p -> rotation p + translation.
+struct Pose {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
+
+  [[nodiscard]] Eigen::Matrix3Xd applied(const Eigen::Matrix3Xd& points) const {
+    return (rotation * points).colwise() + translation;
+  }
+};
+
+/// How much a point counts.
+enum class PointWeights {
+  equal,      ///< all the same: measured points with the same noise
+  by_length,  ///< by the arc length up to its neighbours' middles, so that sums are integrals
+};
+
+struct AlignOptions {
+  PoseFreedom pose = PoseFreedom::known;
+  ArcLengths arc_lengths = ArcLengths::automatic;
+  PointWeights weights = PointWeights::by_length;
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();  ///< unit, for `upright`
+};
+
+/// A measured shape laid on a reference.
+struct Alignment {
+  Pose pose;
+  bool reversed = false;  ///< the file runs (its s counts) from arc length l to 0
+  ArcLengths arc_lengths = ArcLengths::nearest;  ///< which rule was used
+  Shape shape;             ///< the points in the scene's frame, by growing arc length
+  double rms_m = 0;        ///< distance with the given weights
+  double other_rms_m = 0;  ///< the same the other way round
+  double mean_square = 0;  ///< of all distances, unweighted [m^2]
+};
+
+/// Lays a shape on a reference curve of arc length 0 to `length`: the direction, the motion within
+/// its freedom and, for `nearest`, the arc lengths at which the sum of squared distances is least.
+///
+/// Given arc lengths: in closed form (Kabsch for a rigid motion). `nearest`: starts from lengths
+/// along the polyline, at several places along the rod and in both directions; the points are
+/// assigned in order (dynamic programming), the motion then follows by Gauss-Newton steps on the
+/// distances across the curve (along it too where a point is past an end).
+/// @throws InputError if the options ask for a column s that the file lacks, if the arc lengths in
+/// the file are not on the rod, or if a motion is asked of too few points (3)
+[[nodiscard]] Alignment align(const MeasuredShape& shape, const Reference& reference, double length,
+                              const AlignOptions& options = {});
+
+}  // namespace dlo::compare

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solve.hpp"
+
+namespace dlo::compare {
+
+/// How the bending stiffness of the force model is chosen.
+enum class StiffnessRule {
+  physical,        ///< law hooke: EI, nothing to choose
+  formula_21,      ///< law paper: each scene's own c_b by Formula 21
+  moment_matched,  ///< law paper: each scene's own c_b, the physical moment at the design curvature
+  fitted,          ///< law paper: the one c_b that is nearest to all scenes (RMS)
+  fitted_alone,    ///< law paper: for each scene the c_b that is nearest to it: no c_b does better
+};
+
+[[nodiscard]] const char* to_string(StiffnessRule rule);
+
+struct ForceModelFitOptions {
+  /// N; without it the target decides (law hooke), or the scene (law paper, whose error does not
+  /// fall with N).
+  std::optional<int> points;
+  double target = 1e-3;  ///< RMS deviation over the rod's length, > 0
+  SolveOptions solve;
+};
+
+/// One rule on all scenes; values in their order, hold-out scenes last.
+struct RuleDeviations {
+  StiffnessRule rule = StiffnessRule::physical;
+  std::vector<double> c_b;              ///< [N]; law hooke: none
+  std::vector<double> rms_over_length;  ///< of the chain; NaN where the rule gives no c_b
+};
+
+/// Parameters of the force model for one material, and what they give.
+struct ForceModelFit {
+  /// To be used: N, law, bookkeeping, c_b (law paper), c_c, and stepper dynamic with its c_F, c_h
+  /// and l_s.
+  ForceModelSettings settings;
+  bool c_b_was_given = false;  ///< `fitted` is then the given one
+  double target = 0;
+  std::vector<std::string> scenes;  ///< names, hold-out scenes last
+  std::vector<double> gammas;
+  std::size_t holdouts = 0;  ///< how many of them were held out
+  std::vector<RuleDeviations> rules;
+  /// The force model itself, stepped to rest with `settings`.
+  std::vector<double> stepped_rms_over_length;
+  std::vector<long> steps;
+  double order = 0;              ///< of convergence in the segment length, as measured; 0: not used
+  double segment_length = 0;     ///< L of the first scene [m]
+  double bending_stiffness = 0;  ///< EI of the first scene [N m^2]
+
+  /// Largest stepped deviation of the scenes (of the hold-out scenes).
+  [[nodiscard]] double worst() const;
+  [[nodiscard]] double worst_holdout() const;
+};
+
+/// Derives the force model's parameters from physics.
+///
+/// N: the deviation of the chain at rest, worst of the scenes, is measured at N = 16 and 32; from
+/// this order of convergence follows the N that brings it below 0.9 of the target, which is then
+/// tried and raised until it does. c_b of the paper's law: Formula 21, moment-matched, and by
+/// NLopt's Nelder-Mead over log c_b, on the chain, whose rest shape is the force model's.
+/// c_c: as low as a stretch of a tenth of the target allows, for steps grow with its root; no more
+/// than AE. c_F and c_h: Polyak's heavy ball for the stiffest and slowest modes at the start and at
+/// rest in any of the scenes; l_s: a quarter of a segment. Given numbers in the first scene's
+/// settings (c_b, c_c) are kept. The stepped force model then has the last word.
+/// @param holdouts  scenes that only judge
+/// @throws InputError if scenes differ in law or bookkeeping; ConvergenceError
+[[nodiscard]] ForceModelFit fit_force_model(const std::vector<Scene>& scenes,
+                                            const std::vector<Scene>& holdouts,
+                                            const ForceModelFitOptions& options = {});
+
+}  // namespace dlo::compare

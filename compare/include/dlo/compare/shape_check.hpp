@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/effective_modulus.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solve.hpp"
+
+namespace dlo::compare {
+
+struct ShapeCheckOptions {
+  PoseFreedom pose = PoseFreedom::known;
+  ArcLengths arc_lengths = ArcLengths::automatic;
+  SolveOptions solve;
+};
+
+/// A measured shape against the energy model of its scene.
+struct ShapeCheck {
+  std::string scene;
+  std::string file;
+  double gamma = 0;
+  Alignment alignment;
+  Shape reference;  ///< the energy model at the alignment's arc lengths
+  /// RMS along the rod from the first point to the last, straight across what is missing; its share
+  /// of the length is that of the whole rod. Tangent and curvature only for given arc lengths: NaN.
+  Deviation deviation;
+  long worst_point = 0;          ///< of the largest deviation, counted from 1 as in the file
+  double movement_m = 0;         ///< RMS way of the reference from straight, same stretch; or NaN
+  double polyline_length_m = 0;  ///< of the points as they are
+  double largest_gap_m = 0;      ///< largest arc length between neighbours
+  double largest_gap_at_m = 0;   ///< where it begins
+  bool direction_is_clear = false;  ///< the other direction fits at least 5 % worse
+  /// The points lie so nearly on a line that nothing tells how the shape is turned about it.
+  bool turn_is_clear = true;
+  EffectiveModulus effective_modulus;  ///< aligned anew for each modulus
+  double modulus = 0;                  ///< E* [Pa]
+};
+
+/// Solves the scene with the energy model and compares the shape with it.
+/// @throws InputError, ConvergenceError
+[[nodiscard]] ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
+                                     const ShapeCheckOptions& options = {});
+
+/// Direction of "up" for PoseFreedom::upright.
+/// @throws InputError if the pose is `upright` and the scene has no gravity
+[[nodiscard]] Eigen::Vector3d up_of(const Scene& scene, PoseFreedom pose);
+
+}  // namespace dlo::compare

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+namespace dlo::compare {
+
+/// A shape as somebody else's program or camera gives it: points along a rod, in any frame, at any
+/// spacing, from either end, with stretches missing.
+struct MeasuredShape {
+  std::string file;                ///< its name, for messages
+  Eigen::Matrix3Xd points;         ///< in the file's order [m], 3 x M, neighbours distinct
+  std::vector<double> arc_length;  ///< the file's own, growing or falling [m], M; empty without
+};
+
+/// Most points that a shape file may have.
+inline constexpr long most_shape_points = 100'000;
+
+/// Reads a shape; the content says which of three formats it is.
+///     CSV: x,y or x,y,z or x,y,z,s a line, or any order of these under a header with their names
+///          (s: arc length). Fields are separated by commas, or else by semicolons, tabs or blanks;
+///          blank lines and lines that begin with # are skipped.
+///     JSON: [[x, y, z], ...], or an object with `points_m` and, if known, `arc_length_m` as `dlo
+///          solve` writes it; `points` and `arc_length` are in the unit that is given.
+///     VTK: legacy, ASCII, DATASET POLYDATA with POINTS and one polyline in LINES (or several that
+///          follow on from each other); without LINES the points in their order.
+/// A missing z is zero.
+/// @param file  its name, for messages;  @param unit  what the file's numbers are in [m]
+/// @throws InputError naming file, line (point, in JSON), what is wrong and what is allowed; two
+/// points at least, all finite and within 1e6 m, neighbours distinct, s strictly growing or falling
+[[nodiscard]] MeasuredShape parse_shape(const std::string& text, const std::string& file,
+                                        double unit = 1);
+
+[[nodiscard]] MeasuredShape load_shape(const std::string& path, double unit = 1);
+
+}  // namespace dlo::compare

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <vector>
+
+namespace dlo::compare {
+
+/// A function of one variable; infinite where it has no value, and never throws.
+using Function = std::function<double(double)>;
+
+/// Equal steps over a range and what a function is there.
+struct Scan {
+  std::vector<double> x;
+  std::vector<double> value;
+
+  [[nodiscard]] std::size_t best() const;
+  /// The least value is inside the range, not at an end.
+  [[nodiscard]] bool is_bracketed() const;
+};
+
+[[nodiscard]] Scan scan(const Function& function, double low, double high, int steps);
+
+struct Minimum {
+  double x = 0;
+  double value = 0;
+};
+
+/// GSL's Brent minimiser about the best point of a bracketed scan, to 1e-7 in x.
+[[nodiscard]] Minimum minimum_near(const Function& function, const Scan& scan);
+
+/// GSL's Brent root finder: where the function crosses `level` between `inside`, where it is below,
+/// and `outside`, where it is above; to 1e-5 in x.
+[[nodiscard]] double crossing(const Function& function, double inside, double outside,
+                              double level);
+
+}  // namespace dlo::compare

@@ -1,0 +1,176 @@
+// The command calibrate as a user runs it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Command;
+using dlo::test::Outcome;
+using nlohmann::json;
+
+class CalibrateCommand : public Command {
+ protected:
+  std::string scene_of(const std::string& name, const std::string& modulus, double angle,
+                       const std::string& more = "") {
+    std::ofstream(path(name)) << "[rod]\nlength = 1\ndiameter = \"4 mm\"\nmaterial = { "
+                                 "youngs_modulus = \""
+                              << modulus
+                              << "\", density = 1200 }\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\n"
+                                 "direction = \""
+                              << angle << " deg\"\n"
+                              << more;
+    return path(name);
+  }
+  /// The exact shape of a scene, without arc lengths.
+  std::string seen(const std::string& scene, const std::string& name) {
+    EXPECT_EQ(
+        run("solve " + scene + " --model exact --samples 9 --format csv -o " + path("all")).status,
+        0);
+    std::ifstream stream(path("all"));
+    std::ofstream shape(path(name));
+    for (std::string line; std::getline(stream, line);) {
+      shape << line.substr(0, line.rfind(',')) << "\n";
+    }
+    return path(name);
+  }
+};
+
+TEST_F(CalibrateCommand, FindsTheModulusOfMeasuredShapes) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string b = scene_of("b.toml", "5 GPa", 40);
+  const std::string shapes = " --shape " + seen(a, "a.csv") + " " + seen(b, "b.csv");
+  const std::string guess =
+      scene_of("a.toml", "30 GPa", 0) + " " + scene_of("b.toml", "30 GPa", 40);
+  for (const std::string pose : {"", " --register", " --register=upright"}) {
+    const Outcome result = run("calibrate " + guess + shapes + pose + " --format json");
+    ASSERT_EQ(result.status, 0) << result.err;
+    const json document = json::parse(result.out);
+    EXPECT_EQ(document.at("schema"), "dlo/calibrate/1");
+    EXPECT_NEAR(document.at("youngs_modulus_Pa").get<double>(), 5e9, 1e6);
+    EXPECT_LT(document.at("interval_95_Pa")[0].get<double>(), 5e9);
+    EXPECT_GT(document.at("interval_95_Pa")[1].get<double>(), 5e9);
+    EXPECT_GT(document.at("uncertainty_Pa").get<double>(), 0);
+    EXPECT_EQ(document.at("shapes").size(), 2U);
+  }
+}
+
+TEST_F(CalibrateCommand, WritesAMaterialThatScenesCanUse) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string shape = seen(a, "a.csv");
+  const std::string guess = scene_of("a.toml", "9 GPa", 0);
+  const Outcome result =
+      run("calibrate " + guess + " --shape " + shape + " -o " + path("material.toml"));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("95 %"), std::string::npos);
+  std::string text = read(a);
+  text.replace(text.find("{ youngs"), text.find('}') + 1 - text.find("{ youngs"), "\"calibrated\"");
+  const std::string calibrated = scene(text);
+  EXPECT_EQ(run("check " + calibrated + " --materials " + path("material.toml") + " --shape " +
+                shape + " --arc-lengths nearest --tolerance 0.001%")
+                .status,
+            0);
+}
+
+TEST_F(CalibrateCommand, SaysWhenTheShapesDoNotTell) {
+  const std::string stiff = scene_of("a.toml", "5000 GPa", 0);
+  const std::string shape = path("line.csv");
+  std::ofstream(shape) << "0,0.001,0\n0.3,-0.001,0.001\n0.5,0.001,-0.001\n0.7,-0.0005,0\n0.9,0,0\n";
+  const Outcome text = run("calibrate " + stiff + " --shape " + shape);
+  EXPECT_EQ(text.status, 0);
+  EXPECT_NE(text.out.find("these shapes do not tell E: E > "), std::string::npos) << text.out;
+  const json document =
+      json::parse(run("calibrate " + stiff + " --shape " + shape + " --format json").out);
+  EXPECT_TRUE(document.at("youngs_modulus_Pa").is_null());
+  EXPECT_TRUE(document.at("uncertainty_Pa").is_null());
+  EXPECT_TRUE(document.at("interval_95_Pa")[1].is_null());
+  EXPECT_TRUE(document.at("not_told").is_string());
+  expect_error("calibrate " + stiff + " --shape " + shape + " --format toml", 2, {"do not tell E"});
+}
+
+TEST_F(CalibrateCommand, WritesParametersThatTheOtherCommandsRead) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string b = scene_of("b.toml", "5 GPa", -30);
+  for (const std::string law : {"hooke", "paper"}) {
+    const std::string file = path(law + ".toml");
+    const std::string calibrate = "calibrate " + a + " --holdout " + b + " --law " + law;
+    const Outcome result = run(calibrate + " -o " + file);
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.out.find("hold-out"), std::string::npos);
+    const json fit = json::parse(run(calibrate + " --format json").out);
+    const json compared =
+        json::parse(run("compare " + b + " --parameters " + file + " --format json").out)
+            .at("cases")[0];
+    EXPECT_EQ(compared.at("law"), law);
+    EXPECT_EQ(compared.at("points"), fit.at("parameters").at("points"));
+    EXPECT_NEAR(compared.at("deviation").at("rms_over_length").get<double>(),
+                fit.at("deviation").at("worst_holdout_rms_over_length").get<double>(), 1e-7);
+    EXPECT_NEAR(compared.at("parameters").at("c_F").get<double>() /
+                    fit.at("parameters").at("c_F").get<double>(),
+                1, 1e-8);
+    // What the command line says goes before the file.
+    EXPECT_EQ(json::parse(run("solve " + a + " --model chain --parameters " + file +
+                              " --points 9 --format json")
+                              .out)
+                  .at("points_m")
+                  .size(),
+              9U);
+  }
+}
+
+TEST_F(CalibrateCommand, AMissedTargetIsStatusOne) {
+  const std::string a = scene_of("a.toml", "2 GPa", 0);
+  EXPECT_EQ(run("calibrate " + a + " --target 0.1%").status, 0);
+  EXPECT_EQ(run("calibrate " + a + " --target 0.001% --points 16").status, 1);
+  EXPECT_EQ(run("calibrate " + a + " --law paper --target 0.1%").status, 1);
+  EXPECT_EQ(run("calibrate " + a + " --law paper").status, 0);
+}
+
+TEST_F(CalibrateCommand, EveryFormatIsWritten) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string shape = seen(a, "a.csv");
+  for (const std::string& arguments : {"calibrate " + a, "calibrate " + a + " --shape " + shape}) {
+    EXPECT_NE(run(arguments).out.find("RMS"), std::string::npos);
+    const Outcome csv = run(arguments + " --format csv");
+    EXPECT_EQ(csv.status, 0) << csv.err;
+    const std::string header = csv.out.substr(0, csv.out.find('\n'));
+    const std::string row = csv.out.substr(csv.out.find('\n') + 1);
+    EXPECT_EQ(std::count(header.begin(), header.end(), ','),
+              std::count(row.begin(), row.end(), ','));
+    EXPECT_NE(run(arguments + " --format toml").out.find("# "), std::string::npos);
+  }
+}
+
+TEST_F(CalibrateCommand, BadInputIsOneLineAndStatusTwo) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string shape = seen(a, "a.csv");
+  expect_error("calibrate", 2, {"SCENE"});
+  expect_error("calibrate " + a + " " + a + " --shape " + shape, 2, {"2 scenes", "1 shape"});
+  expect_error("calibrate " + a + " --shape " + shape + " --noise 0", 2, {"--noise"});
+  expect_error("calibrate " + a + " --shape " + shape + " --noise \"-1 mm\"", 2, {"--noise"});
+  expect_error("calibrate " + a + " --density", 2, {"--density", "--shape"});
+  expect_error("calibrate " + a + " --shape " + shape + " --target 1%", 2, {"--target"});
+  for (const std::string target : {"0", "1", "0%", "100%", "x%", "nan%"}) {
+    expect_error("calibrate " + a + " --target " + target, 2, {"--target"});
+  }
+  std::ofstream(path("bad.csv")) << "x,y\n1,2\n3\n";
+  expect_error("calibrate " + a + " --shape " + path("bad.csv"), 2, {"bad.csv:3", "1 column"});
+  std::ofstream(path("bad.toml")) << "[force_model]\nc_d = 1\n";
+  expect_error("solve " + a + " --parameters " + path("bad.toml"), 2, {"bad.toml:2", "c_d"});
+  expect_error("solve " + a + " --parameters " + path("none.toml"), 2, {"none.toml", "read"});
+  std::ofstream(path("two.csv")) << "0,0\n0.3,0\n0.6,-0.1\n";
+  expect_error("calibrate " + a + " --register --shape " + path("two.csv"), 2, {"more points"});
+}
+
+TEST_F(CalibrateCommand, HelpHasExamples) {
+  const Outcome help = run("calibrate --help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_NE(help.out.find("dlo calibrate data/scenes"), std::string::npos);
+}
+
+}  // namespace

@@ -1,0 +1,123 @@
+// The command check as a user runs it.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Command;
+using dlo::test::Outcome;
+using nlohmann::json;
+
+class CheckCommand : public Command {
+ protected:
+  std::string shape(const std::string& text) {
+    std::ofstream(path("shape")) << text;
+    return path("shape");
+  }
+};
+
+TEST_F(CheckCommand, ReadsWhatSolveWrites) {
+  for (const std::string format : {"csv", "json"}) {
+    const std::string file = path("solved." + format);
+    ASSERT_EQ(
+        run("solve " + steel() + " --model exact --samples 9 --format " + format + " -o " + file)
+            .status,
+        0);
+    const Outcome result =
+        run("check " + steel() + " --shape " + file + " --tolerance 0.01% --format json");
+    ASSERT_EQ(result.status, 0) << result.err;
+    const json document = json::parse(result.out);
+    EXPECT_EQ(document.at("schema"), "dlo/check/1");
+    EXPECT_EQ(document.at("verdict"), "pass");
+    EXPECT_EQ(document.at("tolerance").at("allowed_m"), 0.5 * 0.0001);
+    EXPECT_EQ(document.at("arc_lengths"), "file");
+    EXPECT_LT(document.at("deviation").at("rms_m").get<double>(), 1e-9);
+    EXPECT_NEAR(document.at("effective_modulus_ratio").get<double>(), 1, 1e-5);
+    EXPECT_EQ(document.at("points_m").size(), 9U);
+  }
+}
+
+TEST_F(CheckCommand, ExitStatusIsTheVerdict) {
+  const std::string file = path("chain.csv");
+  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
+  // The paper's law is 21 % of the length off, at most 226 mm.
+  const std::string check = "check " + steel() + " --shape " + file;
+  EXPECT_EQ(run(check).status, 0);
+  EXPECT_EQ(run(check + " --tolerance 22%").status, 0);
+  EXPECT_EQ(run(check + " --tolerance 20%").status, 1);
+  EXPECT_EQ(run(check + " --tolerance \"110 mm\"").status, 0);
+  EXPECT_EQ(run(check + " --tolerance \"110 mm\" --measure max").status, 1);
+  const Outcome failed = run(check + " --tolerance 1% --format json");
+  EXPECT_EQ(failed.status, 1);
+  EXPECT_EQ(failed.err, "");
+  EXPECT_EQ(json::parse(failed.out).at("verdict"), "fail");
+  EXPECT_NE(run(check + " --tolerance 1%").out.find("fail: RMS 106.2 mm, allowed 5 mm"),
+            std::string::npos);
+}
+
+TEST_F(CheckCommand, EveryFormatHasTheSameDeviation) {
+  const std::string file = path("chain.csv");
+  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
+  const std::string check = "check " + steel() + " --shape " + file;
+  const Outcome csv = run(check + " --format csv");
+  EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 2);
+  const std::string header = csv.out.substr(0, csv.out.find('\n'));
+  const std::string row = csv.out.substr(csv.out.find('\n') + 1);
+  EXPECT_EQ(std::count(header.begin(), header.end(), ','),
+            std::count(row.begin(), row.end(), ',') - 1);  // the scene's name has one
+  EXPECT_NE(run(check).out.find("RMS 106.2 mm = 21.23 % of l"), std::string::npos);
+}
+
+TEST_F(CheckCommand, ShapesComeInAnyUnitAndFrame) {
+  const std::string file = path("solved.csv");
+  ASSERT_EQ(run("solve " + steel() + " --model exact --samples 9 --format csv -o " + file).status,
+            0);
+  // Millimetres, without s, moved by a metre and turned by a quarter about the vertical.
+  std::ifstream stream(file);
+  std::string line;
+  std::getline(stream, line);
+  std::string moved = "z,y,x\n";
+  while (std::getline(stream, line)) {
+    double x = 0;
+    double y = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf", &x, &y), 2);
+    moved += std::to_string(1e3 * x + 1000) + "," + std::to_string(1e3 * y) + ",0\n";
+  }
+  const std::string check = "check " + steel() + " --shape " + shape(moved) + " --tolerance 0.1%";
+  EXPECT_EQ(run(check + " --unit mm --register").status, 0);
+  EXPECT_EQ(run(check + " --unit mm --register=upright").status, 0);
+  EXPECT_EQ(run(check + " --unit mm --register=translation").status, 1);
+  EXPECT_EQ(run(check + " --unit mm").status, 1);
+  EXPECT_EQ(run(check + " --unit cm --register").status, 1);
+  const Outcome text = run(check + " --unit mm --register");
+  EXPECT_NE(text.out.find("found (rigid): turned"), std::string::npos) << text.out;
+}
+
+TEST_F(CheckCommand, BadInputIsOneLineAndStatusTwo) {
+  const std::string bad = shape("x,y,z\n0,0,0\n1,oops,0\n");
+  expect_error("check " + steel() + " --shape " + bad, 2, {bad + ":3", "oops"});
+  expect_error("check " + steel() + " --shape " + path("none.csv"), 2, {"none.csv", "read"});
+  expect_error("check " + steel(), 2, {"--shape"});
+  const std::string good = shape("0,0\n-0.2,0\n-0.4,-0.1\n");
+  for (const std::string tolerance : {"1", "0%", "-1%", "x", "\"1 kg\"", "nan%", "%"}) {
+    expect_error("check " + steel() + " --shape " + good + " --tolerance " + tolerance, 2,
+                 {"--tolerance"});
+  }
+  expect_error("check " + steel() + " --shape " + good + " --unit inch", 2, {"inch"});
+  expect_error("check " + steel() + " --shape " + good + " --arc-lengths file", 2, {"column s"});
+  expect_error("check " + steel() + " --shape " + shape("0,0\n1,1\n") + " --register", 2,
+               {"2 points", "3 or more"});
+}
+
+TEST_F(CheckCommand, HelpHasAnExample) {
+  const Outcome help = run("check --help");
+  EXPECT_EQ(help.status, 0);
+  EXPECT_NE(help.out.find("dlo check data/scenes"), std::string::npos);
+}
+
+}  // namespace

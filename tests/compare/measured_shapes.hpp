@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/shape_file.hpp"
+#include "dlo/compare/solve.hpp"
+
+namespace dlo::test {
+
+/// `count` uneven arc lengths on a rod [m], no two nearer than 2 % of its length.
+inline std::vector<double> uneven_arc_lengths(std::mt19937& random, int count, double length) {
+  std::uniform_real_distribution<double> anywhere(0, length);
+  std::vector<double> s;
+  while (static_cast<int>(s.size()) < count) {
+    const double next = anywhere(random);
+    const bool apart = std::none_of(
+        s.begin(), s.end(), [&](double other) { return std::abs(next - other) < 0.02 * length; });
+    if (apart) s.push_back(next);
+  }
+  std::sort(s.begin(), s.end());
+  return s;
+}
+
+/// Any rotation, all equally likely, and a shift of about a metre.
+inline compare::Pose random_pose(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  const Eigen::Quaterniond turn(normal(random), normal(random), normal(random), normal(random));
+  return {turn.normalized().toRotationMatrix(),
+          Eigen::Vector3d(normal(random), normal(random), normal(random))};
+}
+
+/// The motion back.
+inline compare::Pose inverse(const compare::Pose& pose) {
+  return {pose.rotation.transpose(), -pose.rotation.transpose() * pose.translation};
+}
+
+inline Eigen::Matrix3Xd with_noise(Eigen::Matrix3Xd points, double sigma, std::mt19937& random) {
+  std::normal_distribution<double> normal(0, sigma);
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k) points(k, i) += normal(random);
+  }
+  return points;
+}
+
+inline compare::MeasuredShape reversed(const compare::MeasuredShape& shape) {
+  compare::MeasuredShape result{shape.file, shape.points.rowwise().reverse(), shape.arc_length};
+  std::reverse(result.arc_length.begin(), result.arc_length.end());
+  return result;
+}
+
+/// The exact shape of a scene at these arc lengths.
+inline compare::MeasuredShape exact_shape(const compare::Scene& scene,
+                                          const std::vector<double>& s) {
+  const energy_model::Equilibrium exact = compare::solve_reference(scene, compare::Model::exact);
+  return {"exact", exact.sample(s).points, {}};
+}
+
+}  // namespace dlo::test
