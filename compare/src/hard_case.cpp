@@ -227,14 +227,18 @@ std::vector<HardCase> torn_rods() {
 
 }  // namespace
 
+Eigen::Matrix3Xd HardCase::moved(const Eigen::Matrix3Xd& points, double share) const {
+  const Eigen::Vector3d centre = discretisation.rod.grips.front().reference;
+  const Eigen::Matrix3d turned =
+      Eigen::AngleAxisd(share * motion.turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  return (turned * (points.colwise() - centre)).colwise() + (centre + share * motion.movement);
+}
+
 force_model::Rod HardCase::rod(double share) const {
   force_model::Rod result = discretisation.rod;
   force_model::Grip& grip = result.grips.front();
-  const Eigen::Vector3d before = grip.reference;
-  const Eigen::Matrix3d turned =
-      Eigen::AngleAxisd(share * motion.turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  grip.targets = moved(discretisation.rod.grips.front().targets, share);
   grip.reference += share * motion.movement;
-  grip.targets = ((turned * (grip.targets.colwise() - before)).colwise() + grip.reference).eval();
   return result;
 }
 

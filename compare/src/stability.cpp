@@ -69,7 +69,7 @@ Trajectory stay_at_rest(force_model::Simulation& simulation, long steps) {
 energy_model::PolygonResult reference_of(const HardCase& hard) {
   const energy_model::PolygonProblem problem = polygon_problem(hard.rod(1));
   energy_model::PolygonResult result =
-      energy_model::solve_polygon(problem, hard.discretisation.starts.front());
+      energy_model::solve_polygon(problem, hard.moved(hard.discretisation.starts.front(), 1));
   if (!energy_model::succeeded(result.status)) {
     throw ConvergenceError(fmt::format("hard case '{}': the chain model has no rest shape: {}",
                                        hard.name, result.message));

@@ -27,7 +27,10 @@ struct HardCase {
   /// Why there is no physical answer, as discretise says it; empty where there is one.
   std::string refusal;
 
-  /// The rod after a share (0 to 1) of the motion.
+  /// Points [m] that move with the first gripper through a share (0 to 1) of the motion.
+  [[nodiscard]] Eigen::Matrix3Xd moved(const Eigen::Matrix3Xd& points, double share) const;
+
+  /// The rod after that share.
   [[nodiscard]] force_model::Rod rod(double share) const;
 };
 
