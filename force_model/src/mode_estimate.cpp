@@ -31,4 +31,11 @@ void ModeEstimate::update(double inner_mode, double force_change, double point_c
   block_open_ = true;
 }
 
+void ModeEstimate::change_environment(const Rod& rod, const Eigen::Matrix3Xd& points) {
+  constraints_ = constraint_stiffness(rod);
+  modes_.fastest = mode_bounds(rod, points).fastest;
+  modes_.slowest = std::min(modes_.slowest, modes_.fastest);
+  block_open_ = false;
+}
+
 }  // namespace dlo::force_model

@@ -25,6 +25,10 @@ class ModeEstimate {
   /// @param point_change  dP.dP [m^2]. Those of the first call mean nothing.
   void update(double inner_mode, double force_change, double point_change);
 
+  /// After a change of the rod's walls. The next update starts a new block: its changes mean
+  /// nothing.
+  void change_environment(const Rod& rod, const Eigen::Matrix3Xd& points);
+
   [[nodiscard]] const ModeBounds& modes() const { return modes_; }
   [[nodiscard]] double slowest_expected() const { return slowest_expected_; }
 

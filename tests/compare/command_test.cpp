@@ -283,13 +283,18 @@ TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_EQ(text.err, "");
   for (const char* expected :
-       {"3776.21457", "3574.96", "659734", "1/3", "spring steel, -215 deg"}) {
+       {"3776.21457", "3574.96", "659734", "1/3", "spring steel, -215 deg", "116121", "34389"}) {
     EXPECT_NE(text.out.find(expected), std::string::npos) << expected;
   }
   EXPECT_EQ(run("paper --format json -o " + path("paper.json")).status, 0);
   const json document = json::parse(read(path("paper.json")));
   EXPECT_EQ(document.at("schema"), "dlo/paper/1");
   EXPECT_EQ(document.at("cases").size(), 6U);
+  // The average forces of Tables 2 and 4 are met within 10 % RMS with c_F and l_s in centimetres.
+  const json& moving = document.at("moving");
+  EXPECT_EQ(moving.at("rows").size(), 16U);
+  EXPECT_LT(moving.at("scan")[0].at("distance").at("force_factor").get<double>(), 1.1);
+  EXPECT_TRUE(moving.at("scan")[1].at("distance").at("force_factor").is_null());  // in metres
   EXPECT_EQ(run("paper --format csv").out.substr(0, 8), "section,");
 }
 

@@ -69,6 +69,7 @@ class PlainSimulation {
  private:
   void choose_step() {
     modes_.fastest = mode_bounds(rod_, points_).fastest;
+    rounding_ = 1024 * std::numeric_limits<double>::epsilon() * points_.cwiseAbs().maxCoeff();
     if (block_open_) {
       block_forces_ -= forces_;
       block_points_ = points_ - block_points_;
@@ -107,7 +108,7 @@ class PlainSimulation {
   void update_damping() {
     long oscillating = 0;
     for (Eigen::Index i = 0; i < proposed_.cols(); ++i) {
-      const bool turns = proposed_.col(i).dot(movement_.col(i)) < 0;
+      const bool turns = proposed_.col(i).dot(movement_.col(i)) < -rounding_ * rounding_;
       if (turns && turned_back_[i]) ++oscillating;
       turned_back_[i] = turns;
     }
@@ -125,6 +126,7 @@ class PlainSimulation {
   Eigen::ArrayXd free_;
   Eigen::ArrayX<bool> turned_back_;
   double c_s_ = 1;
+  double rounding_ = 0;
   long steps_ = 0;
   force_model::ModeBounds modes_;
   Eigen::Matrix3Xd block_points_;
