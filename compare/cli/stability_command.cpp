@@ -46,6 +46,14 @@ std::string error_text(const StabilityResult& result) {
   return fmt::format("{:.0e}", result.error_over_length);
 }
 
+bool creeping(const StabilityResult& result) {
+  return result.outcome == Outcome::wrong && !result.at_rest;
+}
+
+std::string outcome_text(const StabilityResult& result) {
+  return creeping(result) ? "creeping" : compare::to_string(result.outcome);
+}
+
 std::string table_head(const std::vector<StabilityResult>& results, std::size_t steppers,
                        int width) {
   std::string out = fmt::format("{:<28}", "");
@@ -73,11 +81,11 @@ std::string cases_text(const std::vector<StabilityResult>& results, std::size_t 
       append(notes, "  {}: {}\n", result.name, result.what);
     }
     const bool last = i % steppers + 1 == steppers;
-    const std::string cell =
-        fmt::format("{:<11}{}", compare::to_string(result.outcome), error_text(result));
+    const std::string cell = fmt::format("{:<11}{}", outcome_text(result), error_text(result));
     append(outcomes, "{:<{}}{}", cell, last ? 0 : outcome_width, last ? "\n" : "");
     append(steps, "{:<{}}{}", short_count(result.steps), last ? 0 : steps_width, last ? "\n" : "");
-    if (!result.note.empty()) {
+    const bool repeated = i % steppers > 0 && result.note == results[i - 1].note;
+    if (!result.note.empty() && !creeping(result) && !repeated) {
       append(notes, "    {}: {}\n", compare::to_string(result.stepper), result.note);
     }
   }
@@ -166,6 +174,12 @@ Json map_json(const compare::StabilityMap& map) {
           {"points", std::move(points)}};
 }
 
+/// The paper's steppers may fail, `auto` may not.
+bool auto_fails(const StabilityResult& result) {
+  return result.stepper == compare::StepperName::automatic && result.outcome != Outcome::pass &&
+         result.outcome != Outcome::refused;
+}
+
 void run_map(Options& options) {
   options.grid.axis = options.map == "cF-cc" ? compare::MapAxis::c_c : compare::MapAxis::c_h;
   options.grid.threads = options.threads;
@@ -191,14 +205,20 @@ void run_cases(Options& options) {
   }
   options.cases.threads = options.threads;
   const std::vector<StabilityResult> results = compare::stability(options.cases);
+  std::string content;
   switch (options.output.kind()) {
     case Format::json:
-      return write_output(options.output, cases_json(results).dump(2) + "\n");
+      content = cases_json(results).dump(2) + "\n";
+      break;
     case Format::csv:
-      return write_output(options.output, cases_csv(results));
+      content = cases_csv(results);
+      break;
     case Format::text:
-      return write_output(options.output, cases_text(results, options.cases.steppers.size()));
+      content = cases_text(results, options.cases.steppers.size());
+      break;
   }
+  write_output(options.output, content);
+  if (std::any_of(results.begin(), results.end(), auto_fails)) throw CLI::RuntimeError(1);
 }
 
 }  // namespace
@@ -250,6 +270,7 @@ void add_stability(CLI::App& app) {
       ->group(map);
   add_output_options(*command, options->output);
   command->footer(
+      "Exit status 1: stepper auto does not pass a case.\n"
       "Examples:\n  dlo stability --case folded\n  dlo stability --map cF-cc --columns 8");
   command->callback([options] {
     if (!options->map.empty()) return run_map(*options);

@@ -51,14 +51,19 @@ ForceModelSettings settings_for(const Scene& scene, int points, bool physical) {
   return settings;
 }
 
-HardCase make(std::string name, std::string what, const Scene& scene, int points = 16,
-              bool physical = false) {
+HardCase make(std::string name, std::string what, const Scene& scene,
+              const ForceModelSettings& settings) {
   HardCase result;
   result.name = std::move(name);
   result.what = std::move(what);
-  result.discretisation = discretise(scene, settings_for(scene, points, physical));
+  result.discretisation = discretise(scene, settings);
   result.start = result.discretisation.starts.front();
   return result;
+}
+
+HardCase make(std::string name, std::string what, const Scene& scene, int points = 16,
+              bool physical = false) {
+  return make(std::move(name), std::move(what), scene, settings_for(scene, points, physical));
 }
 
 Eigen::Matrix3Xd rest_shape(const HardCase& hard) {
@@ -140,6 +145,17 @@ HardCase unequal_segments() {
   return result;
 }
 
+/// Table 5 with the paper's own law and bookkeeping, under its own weight.
+HardCase papers_rod() {
+  constexpr double orientation = -175 * pi / 180;
+  Scene scene = steel_rod(1, {std::cos(orientation), std::sin(orientation), 0});
+  scene.gravity = {0, -9.81, 0};
+  ForceModelSettings settings = settings_for(scene, 16, false);
+  settings.law = Law::paper;
+  settings.bookkeeping = Bookkeeping::paper;
+  return make("the paper's rod", "Table 5 at -175 deg, law and bookkeeping paper", scene, settings);
+}
+
 std::vector<HardCase> hard_rods() {
   std::vector<HardCase> cases;
   cases.push_back(make("c_c = AE", "physical stretch stiffness: the stiffest segments for the rod",
@@ -161,6 +177,7 @@ std::vector<HardCase> hard_rods() {
   cases.push_back(make("N = 1000", "modes apart by a factor of 1e12", horizontal(2), 1000));
 
   cases.push_back(unequal_segments());
+  cases.push_back(papers_rod());
   Scene inside = horizontal(2);
   inside.grippers.front().at = 0.13;
   inside.grippers.push_back({.at = 0.37, .position = {0.2, 0.05, 0.03}, .where = "hard case"});

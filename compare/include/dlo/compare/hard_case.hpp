@@ -41,10 +41,10 @@ struct HardCase {
 ///
 /// Unless a case says otherwise it is the paper's spring steel rod (0.5 m long, 2 mm thick), N =
 /// 16, law hooke, bookkeeping consistent, clamped horizontally, gravity such that Gamma = 2. Its
-/// c_c lets the loads stretch it by a thousandth and is no lower than AE / 1000, the paper's own
-/// choice for this rod; the cases with c_c = AE show what that choice saves. Starts that are the
-/// rest shape of something else, as before a gripper jumps, come from solve_polygon; random ones
-/// have fixed seeds.
+/// c_c lets the loads stretch it by a thousandth at most and is no lower than AE / 1000, the
+/// paper's own choice for this rod; the cases with c_c = AE show what that choice saves. Starts
+/// that are the rest shape of something else, as before a gripper jumps, come from solve_polygon;
+/// random ones have fixed seeds.
 /// @param steps_at_rest  of the case that stays at rest, > 0
 /// @throws ConvergenceError if solve_polygon finds no start
 [[nodiscard]] std::vector<HardCase> hard_cases(long steps_at_rest);

@@ -45,7 +45,7 @@ struct StabilityResult {
 /// solve_polygon finds from the simulation's end; if that is stable and at most the tolerance away,
 /// it passes, and the note says so with both energies. The case that stays at rest passes if no
 /// look at it finds it further than 1e-6 of its length from where it began; the note says what its
-/// energy did.
+/// energy did, and growth by more than 1e-12 of its size is `wrong`.
 /// @throws ConvergenceError if there is no reference
 [[nodiscard]] StabilityResult run_hard_case(const HardCase& hard, StepperName stepper,
                                             const StabilityOptions& options = {});
