@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "polygons.hpp"
 
@@ -126,6 +129,49 @@ TEST(HookeBending, BalancesForceAndTorqueForUnequalSegments) {
     EXPECT_LT(forces.rowwise().sum().norm(), 1e-14 * scale);
     EXPECT_LT(net_torque(points, forces).norm(), 1e-14 * scale);
   }
+}
+
+// Measured: between segments whose lengths differ by up to a factor of three (1 +- 0.5), 0.13 of
+// the sum of |P_i x F_i| about the centre in the median, 0.38 at most; nothing of force.
+TEST(PaperBending, BalancesForceButNotTorqueForUnequalSegments) {
+  std::vector<double> shares;
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    Eigen::Matrix3Xd points = random_polygon(seed, 15, 0.1, 0.5);
+    points.colwise() -= Eigen::Vector3d(points.rowwise().mean());
+    const Eigen::Matrix3Xd forces =
+        forces_of(points, Eigen::VectorXd::Constant(15, 0.1), {BendingLaw::paper, 2.5});
+    EXPECT_LT(forces.rowwise().sum().norm(), 1e-14 * forces.cwiseAbs().sum());
+    double scale = 0;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Eigen::Vector3d arm = points.col(i);
+      scale += arm.cross(Eigen::Vector3d(forces.col(i))).norm();
+    }
+    shares.push_back(net_torque(points, forces).norm() / scale);
+  }
+  std::sort(shares.begin(), shares.end());
+  RecordProperty("net_torque_share_median", std::to_string(shares[50]));
+  RecordProperty("net_torque_share_largest", std::to_string(shares.back()));
+  EXPECT_GT(shares[50], 0.01);
+}
+
+/// Net torque of one joint with segments a and b, over the joint's moment.
+double torque_of_unequal_joint(double a, double b, double alpha) {
+  Eigen::Matrix3Xd points = one_joint(1, alpha);
+  points.col(0) *= a;
+  points.col(2) *= b;
+  const Bending bending{BendingLaw::paper, 2.5};
+  const Eigen::Matrix3Xd forces = forces_of(points, Eigen::Vector2d(a, b), bending);
+  return net_torque(points, forces).norm() / joint_moment(bending, (a + b) / 2, alpha);
+}
+
+TEST(PaperBending, NetTorqueGrowsWithTheDifferenceOfNeighbouringSegments) {
+  EXPECT_LT(torque_of_unequal_joint(1, 1, 0.2), 1e-14);
+  const double tenth = torque_of_unequal_joint(1, 1.1, 0.2);
+  const double twice = torque_of_unequal_joint(1, 2, 0.2);
+  RecordProperty("torque_over_moment_ratio_1_1", std::to_string(tenth));
+  RecordProperty("torque_over_moment_ratio_2", std::to_string(twice));
+  EXPECT_GT(tenth, 0);
+  EXPECT_GT(twice, tenth);
 }
 
 TEST(HookeBending, IsTheGradientOfItsEnergy) {

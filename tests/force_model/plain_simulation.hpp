@@ -37,7 +37,7 @@ class PlainSimulation {
     }
     modes_ = mode_bounds(rod_, points_);
     const double rounding = std::numeric_limits<double>::epsilon() * points_.cwiseAbs().maxCoeff();
-    rounding_ = static_cast<double>(n) * rounding * rounding / 2;
+    mode_rounding_ = static_cast<double>(n) * rounding * rounding / 2;
   }
 
   [[nodiscard]] force_model::StepResult step() {
@@ -75,7 +75,7 @@ class PlainSimulation {
       block_points_ = points_ - block_points_;
       const double change = block_forces_.cwiseProduct(block_points_).sum();
       const double lost = 4 * std::sqrt(modes_.slowest / modes_.fastest);
-      if (!(std::abs(change) <= modes_.fastest * rounding_ / lost)) {
+      if (!(std::abs(change) <= modes_.fastest * mode_rounding_ / lost)) {
         force_change_ = 0.8 * force_change_ + change;
         point_change_ = 0.8 * point_change_ + block_points_.squaredNorm();
         if (point_change_ > 0 && force_change_ > 0) modes_.slowest = force_change_ / point_change_;
@@ -126,13 +126,13 @@ class PlainSimulation {
   Eigen::ArrayXd free_;
   Eigen::ArrayX<bool> turned_back_;
   double c_s_ = 1;
-  double rounding_ = 0;
   long steps_ = 0;
   force_model::ModeBounds modes_;
   Eigen::Matrix3Xd block_points_;
   Eigen::Matrix3Xd block_forces_;
   double force_change_ = 0;
   double point_change_ = 0;
+  double mode_rounding_ = 0;
   double rounding_ = 0;
   bool block_open_ = false;
 };
