@@ -16,7 +16,7 @@ ModeEstimate::ModeEstimate(const Rod& rod, const Eigen::Matrix3Xd& points)
       slowest_expected_(modes_.slowest),
       constraints_(constraint_stiffness(rod)) {
   const double rounding = std::numeric_limits<double>::epsilon() * points.cwiseAbs().maxCoeff();
-  rounding_ = static_cast<double>(points.cols()) * rounding * rounding / 2;
+  rounding_ = 2 * static_cast<double>(points.cols()) * rounding * rounding;
 }
 
 void ModeEstimate::update(double inner_mode, double force_change, double point_change) {

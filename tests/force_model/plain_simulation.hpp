@@ -37,7 +37,7 @@ class PlainSimulation {
     }
     modes_ = mode_bounds(rod_, points_);
     const double rounding = std::numeric_limits<double>::epsilon() * points_.cwiseAbs().maxCoeff();
-    mode_rounding_ = static_cast<double>(n) * rounding * rounding / 2;
+    mode_rounding_ = 2 * static_cast<double>(n) * rounding * rounding;
   }
 
   [[nodiscard]] force_model::StepResult step() {
