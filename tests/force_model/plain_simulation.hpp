@@ -36,6 +36,8 @@ class PlainSimulation {
       options_.l_s = rod_.rest_lengths.minCoeff() / 4;
     }
     modes_ = mode_bounds(rod_, points_);
+    const double rounding = std::numeric_limits<double>::epsilon() * points_.cwiseAbs().maxCoeff();
+    mode_rounding_ = 2 * static_cast<double>(n) * rounding * rounding;
   }
 
   [[nodiscard]] force_model::StepResult step() {
@@ -71,11 +73,16 @@ class PlainSimulation {
     if (block_open_) {
       block_forces_ -= forces_;
       block_points_ = points_ - block_points_;
-      force_change_ = 0.8 * force_change_ + block_forces_.cwiseProduct(block_points_).sum();
-      point_change_ = 0.8 * point_change_ + block_points_.squaredNorm();
-      if (point_change_ > 0 && force_change_ > 0) modes_.slowest = force_change_ / point_change_;
-      modes_.slowest = std::clamp(modes_.slowest, 1e-10 * modes_.fastest, modes_.fastest);
+      const double change = block_forces_.cwiseProduct(block_points_).sum();
+      const double lost = 4 * std::sqrt(modes_.slowest / modes_.fastest);
+      if (!(std::abs(change) <= modes_.fastest * mode_rounding_ / lost)) {
+        force_change_ = 0.8 * force_change_ + change;
+        point_change_ = 0.8 * point_change_ + block_points_.squaredNorm();
+        if (point_change_ > 0 && force_change_ > 0) modes_.slowest = force_change_ / point_change_;
+      }
     }
+    modes_.slowest = std::clamp(modes_.slowest, force_model::smallest_mode_ratio * modes_.fastest,
+                                modes_.fastest);
     block_points_ = points_;
     block_forces_ = forces_;
     block_open_ = true;
@@ -119,13 +126,14 @@ class PlainSimulation {
   Eigen::ArrayXd free_;
   Eigen::ArrayX<bool> turned_back_;
   double c_s_ = 1;
-  double rounding_ = 0;
   long steps_ = 0;
   force_model::ModeBounds modes_;
   Eigen::Matrix3Xd block_points_;
   Eigen::Matrix3Xd block_forces_;
   double force_change_ = 0;
   double point_change_ = 0;
+  double mode_rounding_ = 0;
+  double rounding_ = 0;
   bool block_open_ = false;
 };
 
