@@ -9,5 +9,6 @@ namespace dlo::cli {
 void add_solve(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_paper(CLI::App& app);
+void add_sweep(CLI::App& app);
 
 }  // namespace dlo::cli

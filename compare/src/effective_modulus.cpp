@@ -77,7 +77,8 @@ EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape) {
     return result;
   }
 
-  gsl_set_error_handler_off();
+  static const bool silent = gsl_set_error_handler_off() != nullptr;  // GSL would abort
+  (void)silent;
   gsl_function function{rms_for_gsl, &fit};
   const std::unique_ptr<gsl_min_fminimizer, decltype(&gsl_min_fminimizer_free)> minimiser(
       gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);

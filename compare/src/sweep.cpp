@@ -1,0 +1,225 @@
+#include "dlo/compare/sweep.hpp"
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+#include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <new>
+#include <numeric>
+
+#include "dlo/compare/comparison.hpp"
+#include "dlo/compare/csv.hpp"
+#include "dlo/compare/error.hpp"
+#include "fingerprint.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Large enough that handing a chunk over costs nothing beside the cheapest scenes, small enough
+/// that little is lost with a run that is killed.
+constexpr std::int64_t rows_per_chunk = 16;
+/// So many chunks may wait for a slow one before them.
+constexpr std::size_t chunks_per_thread = 16;
+
+struct Chunk {
+  std::string lines;
+  std::int64_t count = 0;
+};
+
+std::string result_columns(SweepModel model) {
+  std::string columns = "tip_x_m,tip_y_m,tip_z_m,energy_J,";
+  switch (model) {
+    case SweepModel::energy:
+    case SweepModel::exact:
+      return columns + "evaluations,terms,";
+    case SweepModel::chain:
+      return columns + "evaluations,";
+    case SweepModel::force:
+      return columns + "steps,";
+    case SweepModel::compare:
+      break;
+  }
+  return columns +
+         "steps,rms_over_length,max_over_length,tip_over_length,effective_modulus_ratio,"
+         "rms_at_effective_modulus_over_length,optimum,energy_evaluations,";
+}
+
+std::string tip_and_energy(const Solution& solution) {
+  const Eigen::Vector3d tip = solution.shape.points.rightCols<1>();
+  return fmt::format("{},{},{},{},", csv_number(tip.x()), csv_number(tip.y()), csv_number(tip.z()),
+                     csv_number(solution.energy.total()));
+}
+
+Model solver_of(SweepModel model) {
+  switch (model) {
+    case SweepModel::chain:
+      return Model::chain;
+    case SweepModel::exact:
+      return Model::exact;
+    case SweepModel::force:
+    case SweepModel::compare:
+      return Model::force;
+    case SweepModel::energy:
+      break;
+  }
+  return Model::energy;
+}
+
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
+  return text;
+}
+
+}  // namespace
+
+const std::vector<std::string>& sweep_model_names() {
+  static const std::vector<std::string> names = {"energy", "chain", "exact", "force", "compare"};
+  return names;
+}
+
+SweepModel sweep_model_from(const std::string& name) {
+  const auto& names = sweep_model_names();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InputError(
+        fmt::format("unknown model \"{}\" (allowed: {})", name, fmt::join(names, ", ")));
+  }
+  return static_cast<SweepModel>(found - names.begin());
+}
+
+Sweep::Sweep(SceneTemplate scene, Grid grid, SweepModel model, const SolveOptions& options)
+    : scene_(std::move(scene)), grid_(std::move(grid)), model_(model), options_(options) {
+  for (const Axis& axis : grid_.axes()) gamma_varied_ = gamma_varied_ || axis.field == "gamma";
+  require_one_scene();
+}
+
+void Sweep::require_one_scene() const {
+  constexpr std::int64_t most_tries = 1000;
+  const std::int64_t tries = std::min(grid_.size(), most_tries);
+  // A step near the golden section of the grid that has no divisor in common with it visits every
+  // part of it before it comes back.
+  std::int64_t step = std::max<std::int64_t>(1, grid_.size() / 1000 * 618);
+  while (std::gcd(step, grid_.size()) != 1) ++step;
+  std::string first_problem;
+  std::int64_t row = 0;
+  for (std::int64_t i = 0; i < tries; ++i, row = (row + step) % grid_.size()) {
+    try {
+      (void)scene(row);
+      return;
+    } catch (const InputError& error) {
+      if (first_problem.empty()) first_problem = error.what();
+    }
+  }
+  throw InputError(fmt::format("{} (none of {} scenes of the grid can be read, this is the first)",
+                               first_problem, tries));
+}
+
+Scene Sweep::scene(std::int64_t row) const {
+  const std::vector<std::int64_t> indices = grid_.indices(row);
+  std::vector<FieldValue> values;
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    values.push_back({grid_.axes()[i].field, grid_.axes()[i].value(indices[i])});
+  }
+  return scene_.with(values);
+}
+
+std::string Sweep::identity() const {
+  std::string grid;
+  for (const Axis& axis : grid_.axes()) {
+    grid += fmt::format("{} {} {} {} {} {} {}\n", axis.field, static_cast<int>(axis.spacing),
+                        axis.first, axis.last, axis.unit, axis.count, fmt::join(axis.values, ","));
+  }
+  const std::string options = fmt::format("{} {} {} {}", options_.terms, options_.max_evaluations,
+                                          options_.max_steps, options_.rest_tolerance);
+  return fmt::format("scene {}, grid {}, model {}, options {}", scene_.fingerprint(),
+                     fingerprint(grid), sweep_model_names()[static_cast<std::size_t>(model_)],
+                     fingerprint(options));
+}
+
+std::string Sweep::header() const {
+  std::string line = "row,";
+  for (const Axis& axis : grid_.axes()) line += csv_field(axis.column()) + ",";
+  if (!gamma_varied_) line += "gamma,";
+  return line + result_columns(model_) + "status\n";
+}
+
+std::string Sweep::row_start(std::int64_t row) const {
+  const std::vector<std::int64_t> indices = grid_.indices(row);
+  std::string line = fmt::format("{},", row);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    line += csv_field(grid_.axes()[i].number(indices[i])) + ",";
+  }
+  return line;
+}
+
+std::string Sweep::results(const Scene& scene) const {
+  std::string line = gamma_varied_ ? "" : csv_number(scene.gamma()) + ",";
+  if (model_ == SweepModel::compare) return line + comparison_results(scene);
+  const Solution solution = solve(scene, solver_of(model_), options_, {scene.length});
+  line += tip_and_energy(solution);
+  if (model_ == SweepModel::force) return line + fmt::format("{},", solution.steps);
+  line += fmt::format("{},", solution.evaluations);
+  if (model_ != SweepModel::chain) line += fmt::format("{},", solution.terms);
+  return line;
+}
+
+std::string Sweep::comparison_results(const Scene& scene) const {
+  const Comparison c = compare::compare(scene, options_);
+  return tip_and_energy(c.force) +
+         fmt::format(
+             "{},{},{},{},{},{},{},{},", c.force.steps, csv_number(c.deviation.rms_over_length),
+             csv_number(c.deviation.max_m / scene.length),
+             csv_number(c.deviation.tip_m / scene.length), csv_number(c.effective_modulus.ratio),
+             csv_number(c.effective_modulus.rms_m / scene.length),
+             to_string(c.effective_modulus.optimum), c.energy_evaluations);
+}
+
+std::string Sweep::row(std::int64_t row) const {
+  const std::string start = row_start(row);
+  try {
+    return start + results(scene(row)) + "ok\n";
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& error) {
+    const std::string columns = (gamma_varied_ ? "" : "gamma,") + result_columns(model_);
+    const auto empty = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ','));
+    return start + std::string(empty, ',') + csv_field(one_line(error.what())) + "\n";
+  }
+}
+
+std::string Sweep::chunk(RowRange rows) const {
+  std::string lines;
+  for (std::int64_t i = rows.first; i < rows.last; ++i) lines += row(i);
+  return lines;
+}
+
+void Sweep::run(
+    RowRange rows, int threads,
+    const std::function<void(const std::string& lines, std::int64_t count)>& take) const {
+  const int workers = threads > 0 ? threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(workers));
+  tbb::task_arena arena(workers);
+  const std::size_t window = chunks_per_thread * static_cast<std::size_t>(workers);
+  std::int64_t next = rows.first;
+  const auto next_chunk = [&](tbb::flow_control& control) {
+    const RowRange result{next, std::min(next + rows_per_chunk, rows.last)};
+    next = result.last;
+    if (result.first == result.last) control.stop();
+    return result;
+  };
+  const auto compute = [this](RowRange part) { return Chunk{chunk(part), part.last - part.first}; };
+  const auto hand_over = [&](const Chunk& done) { take(done.lines, done.count); };
+  arena.execute([&] {
+    tbb::parallel_pipeline(
+        window, tbb::make_filter<void, RowRange>(tbb::filter_mode::serial_in_order, next_chunk) &
+                    tbb::make_filter<RowRange, Chunk>(tbb::filter_mode::parallel, compute) &
+                    tbb::make_filter<Chunk, void>(tbb::filter_mode::serial_in_order, hand_over));
+  });
+}
+
+}  // namespace dlo::compare
