@@ -88,11 +88,9 @@ std::optional<Place> mpi_place(const Variable& variable) {
 std::string Shard::name() const { return fmt::format("{}/{}", index, count); }
 
 Shard parse_shard(const std::string& text) {
-  const std::size_t slash = text.find('/');
+  const std::size_t slash = std::min(text.find('/'), text.size());
   const auto index = whole_number(std::string_view(text).substr(0, slash));
-  const auto count = slash == std::string::npos
-                         ? std::nullopt
-                         : whole_number(std::string_view(text).substr(slash + 1));
+  const auto count = whole_number(std::string_view(text).substr(std::min(slash + 1, text.size())));
   if (!index || !count || *index < 1 || *index > *count || *count > most_shards) {
     throw InputError(
         fmt::format("--shard {}: must be i/n (allowed: 1 <= i <= n <= {})", text, most_shards));

@@ -1,84 +1,20 @@
 // The command as a user runs it: exit status, standard output, standard error, files.
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
+
+#include "command_fixture.hpp"
 
 namespace {
 
+using dlo::test::Command;
+using dlo::test::Outcome;
 using nlohmann::json;
-
-struct Outcome {
-  int status = -1;
-  std::string out;
-  std::string err;
-};
-
-class Command : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("dlo_command_test_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
-
-  [[nodiscard]] static std::string read(const std::string& file) {
-    std::ifstream stream(file);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    return text.str();
-  }
-
-  std::string scene(const std::string& text) {
-    std::ofstream(path("scene.toml")) << text;
-    return path("scene.toml");
-  }
-
-  [[nodiscard]] Outcome run(const std::string& arguments) const {
-    const std::string line = std::string(DLO_COMMAND) + " " + arguments + " 2>" + path("stderr");
-    std::FILE* pipe = ::popen(line.c_str(), "r");
-    Outcome result;
-    std::array<char, 4096> buffer{};
-    std::size_t count = 0;
-    while ((count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0) {
-      result.out.append(buffer.data(), count);
-    }
-    const int status = ::pclose(pipe);
-    result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    result.err = read(path("stderr"));
-    return result;
-  }
-
-  /// Bad input: this status, nothing on standard output, one line that names all of `names`.
-  void expect_error(const std::string& arguments, int status,
-                    const std::vector<std::string>& names) const {
-    const Outcome result = run(arguments);
-    EXPECT_EQ(result.status, status) << arguments << "\n" << result.err;
-    EXPECT_EQ(result.out, "") << arguments;
-    EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
-    for (const std::string& name : names) {
-      EXPECT_NE(result.err.find(name), std::string::npos)
-          << "no \"" << name << "\" in " << result.err;
-    }
-  }
-
-  static std::string steel() { return std::string(DLO_DATA) + "/scenes/spring_steel_175.toml"; }
-
- private:
-  std::filesystem::path folder_;
-};
 
 constexpr const char* good = R"([rod]
 length = "50 cm"
