@@ -70,8 +70,7 @@ void print_sweep(const compare::Sweep& sweep, const std::optional<compare::Shard
   if (shard) print(compare::sweep_identity(sweep, shard));
   print(sweep.header());
   const std::int64_t rows = sweep.grid().size();
-  sweep.run(shard ? compare::rows_of(*shard, rows) : compare::RowRange{0, rows}, threads,
-            [&](const std::string& lines, std::int64_t) { print(lines); });
+  sweep.run(shard ? compare::rows_of(*shard, rows) : compare::RowRange{0, rows}, threads, print);
 }
 
 void warn_of_unresolved(const compare::SweepOutcome& outcome, const std::string& file) {
@@ -112,6 +111,8 @@ void run(Options options) {
   compare::SweepFileOptions file_options{.threads = options.threads, .restart = options.restart};
   if (terminal) {
     file_options.progress = [](std::int64_t done, std::int64_t rows) {
+      const std::int64_t rarely = rows / 1000 + 1;
+      if (done % rarely != 0 && done != rows) return;
       fmt::print(stderr, "\r{} of {} scenes{}", done, rows, done == rows ? "\n" : "");
     };
   }

@@ -18,16 +18,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Large enough that handing a chunk over costs nothing beside the cheapest scenes, small enough
-/// that little is lost with a run that is killed.
-constexpr std::int64_t rows_per_chunk = 16;
-/// So many chunks may wait for a slow one before them.
-constexpr std::size_t chunks_per_thread = 16;
-
-struct Chunk {
-  std::string lines;
-  std::int64_t count = 0;
-};
+/// So many rows may wait for a slow one before them.
+constexpr std::size_t rows_per_thread = 256;
 
 std::string result_columns(SweepModel model) {
   std::string columns = "tip_x_m,tip_y_m,tip_z_m,energy_J,";
@@ -191,34 +183,25 @@ std::string Sweep::row(std::int64_t row) const {
   }
 }
 
-std::string Sweep::chunk(RowRange rows) const {
-  std::string lines;
-  for (std::int64_t i = rows.first; i < rows.last; ++i) lines += row(i);
-  return lines;
-}
-
-void Sweep::run(
-    RowRange rows, int threads,
-    const std::function<void(const std::string& lines, std::int64_t count)>& take) const {
+void Sweep::run(RowRange rows, int threads,
+                const std::function<void(const std::string& line)>& take) const {
   const int workers = threads > 0 ? threads : tbb::info::default_concurrency();
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
                                   static_cast<std::size_t>(workers));
   tbb::task_arena arena(workers);
-  const std::size_t window = chunks_per_thread * static_cast<std::size_t>(workers);
+  const std::size_t window = rows_per_thread * static_cast<std::size_t>(workers);
   std::int64_t next = rows.first;
-  const auto next_chunk = [&](tbb::flow_control& control) {
-    const RowRange result{next, std::min(next + rows_per_chunk, rows.last)};
-    next = result.last;
-    if (result.first == result.last) control.stop();
-    return result;
+  const auto next_row = [&](tbb::flow_control& control) {
+    if (next == rows.last) control.stop();
+    return next++;
   };
-  const auto compute = [this](RowRange part) { return Chunk{chunk(part), part.last - part.first}; };
-  const auto hand_over = [&](const Chunk& done) { take(done.lines, done.count); };
+  const auto compute = [this](std::int64_t number) { return row(number); };
   arena.execute([&] {
     tbb::parallel_pipeline(
-        window, tbb::make_filter<void, RowRange>(tbb::filter_mode::serial_in_order, next_chunk) &
-                    tbb::make_filter<RowRange, Chunk>(tbb::filter_mode::parallel, compute) &
-                    tbb::make_filter<Chunk, void>(tbb::filter_mode::serial_in_order, hand_over));
+        window,
+        tbb::make_filter<void, std::int64_t>(tbb::filter_mode::serial_in_order, next_row) &
+            tbb::make_filter<std::int64_t, std::string>(tbb::filter_mode::parallel, compute) &
+            tbb::make_filter<std::string, void>(tbb::filter_mode::serial_in_order, take));
   });
 }
 

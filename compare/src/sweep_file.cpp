@@ -73,18 +73,14 @@ void compute_rows(const Sweep& sweep, const SweepHead& head, const SweepFileOpti
   using Clock = std::chrono::steady_clock;
   constexpr std::chrono::seconds between_syncs(1);
   Clock::time_point synced = Clock::now();
-  const auto take = [&](const std::string& lines, std::int64_t count) {
-    file.append(lines);
+  const auto take = [&](const std::string& line) {
+    file.append(line);
     if (Clock::now() - synced > between_syncs) {
       file.sync();
       synced = Clock::now();
     }
-    outcome.rows += count;
-    for (std::size_t begin = 0; begin < lines.size();) {
-      const std::size_t end = lines.find('\n', begin);
-      if (!row_is_ok(lines.substr(begin, end - begin))) ++outcome.unresolved;
-      begin = end + 1;
-    }
+    ++outcome.rows;
+    if (!row_is_ok(std::string_view(line).substr(0, line.size() - 1))) ++outcome.unresolved;
     if (options.progress) options.progress(outcome.rows, head.range.last - head.range.first);
   };
   sweep.run({head.range.first + outcome.found, head.range.last}, options.threads, take);

@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <cstring>
 #include <regex>
-#include <string_view>
 
 #include "dlo/compare/error.hpp"
 
@@ -46,10 +45,9 @@ bool LineReader::next(std::string& line) {
   return true;
 }
 
-bool row_is_ok(const std::string& line) {
-  const std::string_view status = ",ok";
-  return line.size() >= status.size() &&
-         line.compare(line.size() - status.size(), status.size(), status) == 0;
+bool row_is_ok(std::string_view line) {
+  constexpr std::string_view status = ",ok";
+  return line.size() >= status.size() && line.substr(line.size() - status.size()) == status;
 }
 
 }  // namespace dlo::compare

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "dlo/compare/sweep.hpp"
 
@@ -44,7 +45,7 @@ class LineReader {
   std::int64_t number_ = 0;
 };
 
-/// Whether a row's status is ok.
-[[nodiscard]] bool row_is_ok(const std::string& line);
+/// Whether the status of a row (without its line end) is ok.
+[[nodiscard]] bool row_is_ok(std::string_view line);
 
 }  // namespace dlo::compare

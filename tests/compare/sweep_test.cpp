@@ -169,8 +169,7 @@ TEST(SceneTemplate, ErrorsNameFileFieldAndValue) {
 
 std::string rows(const Sweep& sweep, int threads) {
   std::string text;
-  sweep.run({0, sweep.grid().size()}, threads,
-            [&](const std::string& lines, std::int64_t) { text += lines; });
+  sweep.run({0, sweep.grid().size()}, threads, [&](const std::string& line) { text += line; });
   return text;
 }
 
@@ -217,7 +216,7 @@ TEST(Sweep, AnyPartOfAnEnormousGridIsAtHand) {
   const Sweep large = sweep({"gamma=lin:1:2:1000000", "rod.length=lin:1:2:1000000000"});
   std::string text;
   large.run({999'999'999'999'990, 1'000'000'000'000'000}, 2,
-            [&](const std::string& lines, std::int64_t) { text += lines; });
+            [&](const std::string& line) { text += line; });
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);
   EXPECT_NE(text.find("999999999999999,2,2,"), std::string::npos) << text;
 }

@@ -55,19 +55,17 @@ class Sweep {
   /// does not converge is a row like any other. Numbers have 10 significant digits.
   [[nodiscard]] std::string row(std::int64_t row) const;
 
-  /// Computes rows on several threads and hands the lines over in order, some at a time.
-  /// No more than a fixed number of rows per thread is kept at any time.
+  /// Computes rows on several threads and hands their lines over in order. No more than a fixed
+  /// number of rows per thread is kept at any time.
   /// @param threads  0: all cores; more than there are cores only cost memory
-  /// @param take     called with lines and their number, by one thread at a time; its exceptions
-  ///                 end the run and come out of it
+  /// @param take     called by one thread at a time; its exceptions end the run and come out of it
   void run(RowRange rows, int threads,
-           const std::function<void(const std::string& lines, std::int64_t count)>& take) const;
+           const std::function<void(const std::string& line)>& take) const;
 
  private:
   [[nodiscard]] Scene scene(std::int64_t row) const;
   [[nodiscard]] std::string results(const Scene& scene) const;
   [[nodiscard]] std::string comparison_results(const Scene& scene) const;
-  [[nodiscard]] std::string chunk(RowRange rows) const;
   void require_one_scene() const;
 
   SceneTemplate scene_;

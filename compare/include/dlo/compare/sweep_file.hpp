@@ -21,7 +21,7 @@ struct SweepOutcome {
 struct SweepFileOptions {
   int threads = 0;       ///< 0: all cores
   bool restart = false;  ///< throw away what an earlier run has left
-  /// Called with the rows that are done and all rows, after some rows each.
+  /// Called after every row with the rows that are done and all rows.
   std::function<void(std::int64_t, std::int64_t)> progress;
 };
 
