@@ -9,6 +9,7 @@ namespace dlo::cli {
 void add_solve(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_paper(CLI::App& app);
+void add_regress(CLI::App& app);
 void add_sweep(CLI::App& app);
 
 }  // namespace dlo::cli

@@ -10,7 +10,8 @@
 
 namespace {
 
-enum ExitStatus : int { good = 0, outside_tolerance = 1, bad_input = 2, not_converged = 3 };
+// 1, outside a tolerance, is a CLI::RuntimeError of a command that has printed its result.
+enum ExitStatus : int { good = 0, bad_input = 2, not_converged = 3 };
 
 int report(ExitStatus status, const std::exception& error) {
   std::string line = error.what();
@@ -31,12 +32,15 @@ int run(int argc, char** argv) {
   dlo::cli::add_solve(app);
   dlo::cli::add_compare(app);
   dlo::cli::add_paper(app);
+  dlo::cli::add_regress(app);
   dlo::cli::add_sweep(app);
   app.footer(
       "Exit status: 0 good, 1 outside a tolerance, 2 bad usage or input, 3 a solver did not "
       "converge.\nMore: dlo COMMAND --help");
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RuntimeError& status) {
+    return status.get_exit_code();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
     return report(bad_input, error);
