@@ -144,6 +144,9 @@ void run(const Options& options) {
     write_output({.file = options.baseline}, compare::baseline_text(cases));
   }
   print(options, results, good);
+  if (options.update) {
+    fmt::print(stderr, "dlo: {} {}\n", options.baseline, solved ? "written" : "left as it was");
+  }
   if (!solved) throw CLI::RuntimeError(3);
   if (!good) throw CLI::RuntimeError(1);
 }

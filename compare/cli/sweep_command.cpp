@@ -139,7 +139,10 @@ void add_sweep(CLI::App& app) {
   command->add_option("--format", options->format, "csv")
       ->check(CLI::IsMember({"csv"}))
       ->capture_default_str();
-  command->add_option("--model", options->model, "energy, chain, exact, force or compare")
+  command
+      ->add_option("--model", options->model,
+                   "energy, chain, exact, force, compare (force against energy) or compare-chain "
+                   "(its rest shape, without steps, against energy)")
       ->check(CLI::IsMember(compare::sweep_model_names()))
       ->capture_default_str();
   command

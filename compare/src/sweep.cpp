@@ -32,10 +32,14 @@ std::string result_columns(SweepModel model) {
     case SweepModel::force:
       return columns + "steps,";
     case SweepModel::compare:
+      columns += "steps,";
+      break;
+    case SweepModel::compare_chain:
+      columns += "evaluations,";
       break;
   }
   return columns +
-         "steps,rms_over_length,max_over_length,tip_over_length,effective_modulus_ratio,"
+         "rms_over_length,max_over_length,tip_over_length,effective_modulus_ratio,"
          "rms_at_effective_modulus_over_length,optimum,energy_evaluations,";
 }
 
@@ -48,6 +52,7 @@ std::string tip_and_energy(const Solution& solution) {
 Model solver_of(SweepModel model) {
   switch (model) {
     case SweepModel::chain:
+    case SweepModel::compare_chain:
       return Model::chain;
     case SweepModel::exact:
       return Model::exact;
@@ -69,7 +74,8 @@ std::string one_line(std::string text) {
 }  // namespace
 
 const std::vector<std::string>& sweep_model_names() {
-  static const std::vector<std::string> names = {"energy", "chain", "exact", "force", "compare"};
+  static const std::vector<std::string> names = {"energy", "chain",   "exact",
+                                                 "force",  "compare", "compare-chain"};
   return names;
 }
 
@@ -149,25 +155,26 @@ std::string Sweep::row_start(std::int64_t row) const {
 }
 
 std::string Sweep::results(const Scene& scene) const {
+  const bool comparing = model_ == SweepModel::compare || model_ == SweepModel::compare_chain;
+  const Model model = solver_of(model_);
+  // A comparison needs all points, a tip does not.
+  const std::vector<double> samples = comparing ? std::vector<double>{} : std::vector{scene.length};
+  const Solution solution = solve(scene, model, options_, samples);
   std::string line = gamma_varied_ ? "" : csv_number(scene.gamma()) + ",";
-  if (model_ == SweepModel::compare) return line + comparison_results(scene);
-  const Solution solution = solve(scene, solver_of(model_), options_, {scene.length});
   line += tip_and_energy(solution);
-  if (model_ == SweepModel::force) return line + fmt::format("{},", solution.steps);
-  line += fmt::format("{},", solution.evaluations);
-  if (model_ != SweepModel::chain) line += fmt::format("{},", solution.terms);
-  return line;
+  line += fmt::format("{},", model == Model::force ? solution.steps : solution.evaluations);
+  if (model == Model::energy || model == Model::exact) line += fmt::format("{},", solution.terms);
+  return comparing ? line + compared(scene, solution) : line;
 }
 
-std::string Sweep::comparison_results(const Scene& scene) const {
-  const Comparison c = compare::compare(scene, options_);
-  return tip_and_energy(c.force) +
-         fmt::format(
-             "{},{},{},{},{},{},{},{},", c.force.steps, csv_number(c.deviation.rms_over_length),
-             csv_number(c.deviation.max_m / scene.length),
-             csv_number(c.deviation.tip_m / scene.length), csv_number(c.effective_modulus.ratio),
-             csv_number(c.effective_modulus.rms_m / scene.length),
-             to_string(c.effective_modulus.optimum), c.energy_evaluations);
+std::string Sweep::compared(const Scene& scene, const Solution& solution) const {
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options_);
+  const Deviation d = shape_deviation(scene, solution.shape, energy.sample);
+  const EffectiveModulus modulus = fit_effective_modulus(scene, solution.shape);
+  return fmt::format("{},{},{},{},{},{},{},", csv_number(d.rms_over_length),
+                     csv_number(d.max_m / scene.length), csv_number(d.tip_m / scene.length),
+                     csv_number(modulus.ratio), csv_number(modulus.rms_m / scene.length),
+                     to_string(modulus.optimum), energy.evaluations);
 }
 
 std::string Sweep::row(std::int64_t row) const {

@@ -12,7 +12,14 @@
 namespace dlo::compare {
 
 /// What is computed for every scene of a sweep.
-enum class SweepModel { energy, chain, exact, force, compare };
+enum class SweepModel {
+  energy,
+  chain,
+  exact,
+  force,
+  compare,        ///< the force model, stepped to rest, against the energy model
+  compare_chain,  ///< the chain, which is the force model's rest shape without steps
+};
 
 [[nodiscard]] const std::vector<std::string>& sweep_model_names();
 [[nodiscard]] SweepModel sweep_model_from(const std::string& name);
@@ -42,9 +49,9 @@ class Sweep {
   /// Columns, as a CSV line: row, one for each varied field, the results, status.
   ///
   /// All models: gamma (unless it is varied), tip_x_m, tip_y_m, tip_z_m (the rod's end at s = l),
-  /// energy_J. energy, exact: evaluations, terms; chain: evaluations; force: steps. compare: all of
-  /// the force model and, against the energy model, rms_over_length, max_over_length,
-  /// tip_over_length (empty without a free end), effective_modulus_ratio,
+  /// energy_J, evaluations (force, compare: steps). energy, exact: terms. compare and
+  /// compare-chain, of the force model or the chain against the energy model: rms_over_length,
+  /// max_over_length, tip_over_length (empty without a free end), effective_modulus_ratio,
   /// rms_at_effective_modulus_over_length, optimum, energy_evaluations.
   [[nodiscard]] std::string header() const;
 
@@ -65,7 +72,7 @@ class Sweep {
  private:
   [[nodiscard]] Scene scene(std::int64_t row) const;
   [[nodiscard]] std::string results(const Scene& scene) const;
-  [[nodiscard]] std::string comparison_results(const Scene& scene) const;
+  [[nodiscard]] std::string compared(const Scene& scene, const Solution& solution) const;
   void require_one_scene() const;
 
   SceneTemplate scene_;
