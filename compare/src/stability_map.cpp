@@ -10,6 +10,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "arena.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solve.hpp"
@@ -99,9 +100,7 @@ Eigen::Matrix3Xd disturbed(const RodAtRest& rest) {
 class Trials {
  public:
   Trials(const std::vector<RodAtRest>& rods, const StabilityMapOptions& options)
-      : rods_(rods),
-        options_(options),
-        arena_(options.threads > 0 ? options.threads : tbb::task_arena::automatic) {}
+      : rods_(rods), options_(options), arena_(arena_threads(options.threads)) {}
 
   /// @param which  index of each trial's rod; @param c_F  of each trial [m/N]
   std::vector<Outcome> run(const std::vector<std::size_t>& which, const std::vector<double>& c_F) {
