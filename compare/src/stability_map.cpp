@@ -20,9 +20,9 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double disturbance = 1e-6;  // RMS over the points, of the length
-constexpr double growth = 100;        // of a disturbance that is not stable
-constexpr long map_looks = 16;        // at each rod
+constexpr double disturbance = 1e-6;     // RMS over the points, of the length
+constexpr double unstable_growth = 100;  // of a disturbance that is not stable
+constexpr long map_looks = 16;           // at each rod
 constexpr int bisections = 12;
 
 /// A rod at rest and what is predicted for it.
@@ -139,7 +139,7 @@ class Trials {
     const double distance =
         (points - rest.points).norm() / std::sqrt(static_cast<double>(points.cols()));  // RMS
     if (diverged || !(distance < reach * length)) return Outcome::diverges;
-    return distance > growth * disturbance * length ? Outcome::oscillates : Outcome::pass;
+    return distance > unstable_growth * disturbance * length ? Outcome::oscillates : Outcome::pass;
   }
 
   const std::vector<RodAtRest>& rods_;
