@@ -81,13 +81,17 @@ std::string cases_text(const std::vector<StabilityResult>& results, std::size_t 
       append(notes, "  {}: {}\n", result.name, result.what);
     }
     const bool last = i % steppers + 1 == steppers;
-    const std::string cell = fmt::format("{:<11}{}", outcome_text(result), error_text(result));
+    const std::string error = error_text(result);
+    const std::string cell =
+        error.empty() ? outcome_text(result) : fmt::format("{:<11}{}", outcome_text(result), error);
     append(outcomes, "{:<{}}{}", cell, last ? 0 : outcome_width, last ? "\n" : "");
     append(steps, "{:<{}}{}", short_count(result.steps), last ? 0 : steps_width, last ? "\n" : "");
-    const bool repeated = i % steppers > 0 && result.note == results[i - 1].note;
-    if (!result.note.empty() && !creeping(result) && !repeated) {
-      append(notes, "    {}: {}\n", compare::to_string(result.stepper), result.note);
-    }
+    // A refusal is the case's, not the stepper's.
+    const bool repeated = result.outcome == Outcome::refused && i % steppers > 0;
+    if (result.note.empty() || creeping(result) || repeated) continue;
+    append(notes, "    {}: {}\n",
+           result.outcome == Outcome::refused ? "all" : compare::to_string(result.stepper),
+           result.note);
   }
   return outcomes + steps + notes;
 }

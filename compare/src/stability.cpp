@@ -9,6 +9,7 @@
 #include <limits>
 #include <numeric>
 
+#include "arena.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/polygon.hpp"
 #include "dlo/force_model/simulation.hpp"
@@ -170,7 +171,7 @@ std::vector<StabilityResult> stability(const StabilityOptions& options) {
                      ? run_against(references[i / steppers], hard, stepper, options)
                      : refused(hard, stepper);
   };
-  tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+  tbb::task_arena arena(arena_threads(options.threads));
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, cases.size(), find_reference);
     tbb::parallel_for(std::size_t{0}, results.size(), run);

@@ -10,6 +10,7 @@
 #include <random>
 #include <stdexcept>
 
+#include "arena.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solve.hpp"
@@ -19,9 +20,9 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double disturbance = 1e-6;  // RMS over the points, of the length
-constexpr double growth = 100;        // of a disturbance that is not stable
-constexpr long map_looks = 16;        // at each rod
+constexpr double disturbance = 1e-6;     // RMS over the points, of the length
+constexpr double unstable_growth = 100;  // of a disturbance that is not stable
+constexpr long map_looks = 16;           // at each rod
 constexpr int bisections = 12;
 
 /// A rod at rest and what is predicted for it.
@@ -99,9 +100,7 @@ Eigen::Matrix3Xd disturbed(const RodAtRest& rest) {
 class Trials {
  public:
   Trials(const std::vector<RodAtRest>& rods, const StabilityMapOptions& options)
-      : rods_(rods),
-        options_(options),
-        arena_(options.threads > 0 ? options.threads : tbb::task_arena::automatic) {}
+      : rods_(rods), options_(options), arena_(arena_threads(options.threads)) {}
 
   /// @param which  index of each trial's rod; @param c_F  of each trial [m/N]
   std::vector<Outcome> run(const std::vector<std::size_t>& which, const std::vector<double>& c_F) {
@@ -140,7 +139,7 @@ class Trials {
     const double distance =
         (points - rest.points).norm() / std::sqrt(static_cast<double>(points.cols()));  // RMS
     if (diverged || !(distance < reach * length)) return Outcome::diverges;
-    return distance > growth * disturbance * length ? Outcome::oscillates : Outcome::pass;
+    return distance > unstable_growth * disturbance * length ? Outcome::oscillates : Outcome::pass;
   }
 
   const std::vector<RodAtRest>& rods_;

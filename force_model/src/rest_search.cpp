@@ -78,7 +78,10 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
 }
 
 RelaxResult RestSearch::finish(const MovingShape& shape) {
-  if (result_.status == RelaxStatus::step_limit) (void)measure(shape);
+  if (result_.status == RelaxStatus::step_limit) {
+    const EquilibriumCheck check = measure(shape);
+    if (check.stable && result_.remaining_error < target_) result_.status = RelaxStatus::at_rest;
+  }
   result_.message = to_string(result_.status);
   return result_;
 }

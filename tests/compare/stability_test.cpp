@@ -74,20 +74,27 @@ TEST(HardCases, HoldWhatTheirNamesSay) {
   }
 }
 
-/// All but N = 1000, whose nine million steps belong into the command's own run.
+/// N = 1000 needs eight million steps, which belong into the command's own run; here it has to be
+/// on its way.
 class AutomaticStepper : public testing::TestWithParam<int> {};
 
 TEST_P(AutomaticStepper, PassesTheHardCase) {
   StabilityOptions options;
   options.max_steps_auto = 1'000'000;
   const HardCase hard = hard_cases(200'000).at(static_cast<std::size_t>(GetParam()));
-  if (hard.start.cols() > 500) return;
+  const bool long_way = hard.start.cols() > 500;
+  if (long_way) options.max_steps_auto = 10'000;
   const StabilityResult result = run_hard_case(hard, StepperName::automatic, options);
   RecordProperty("case", hard.name);
   RecordProperty("steps", static_cast<int>(result.steps));
   if (!hard.refusal.empty()) {
     EXPECT_EQ(result.outcome, Outcome::refused);
     EXPECT_TRUE(std::isnan(result.error_over_length));
+    return;
+  }
+  if (long_way) {
+    EXPECT_EQ(result.outcome, Outcome::wrong);
+    EXPECT_EQ(result.note, "still creeping");
     return;
   }
   EXPECT_EQ(result.outcome, Outcome::pass) << hard.name << ": " << result.note;
@@ -143,7 +150,8 @@ TEST(Stability, RefusesANameThatNoCaseHas) {
 }
 
 /// Prediction and measurement over a map.
-void expect_safe_and_tight(const Scene& scene, MapAxis axis, double tightest, double loosest) {
+void expect_safe_and_tight(const std::string& what, const Scene& scene, MapAxis axis,
+                           double tightest, double loosest) {
   const StabilityMap map =
       stability_map(scene, {.axis = axis, .columns = 8, .rows = 16, .steps = 8000});
   ASSERT_EQ(map.columns.size(), 8U);
@@ -154,8 +162,8 @@ void expect_safe_and_tight(const Scene& scene, MapAxis axis, double tightest, do
     least = std::min(least, column.measured / column.predicted);
     most = std::max(most, column.measured / column.predicted);
   }
-  testing::Test::RecordProperty("least_measured_over_predicted", std::to_string(least));
-  testing::Test::RecordProperty("most_measured_over_predicted", std::to_string(most));
+  testing::Test::RecordProperty(what + "_least_measured_over_predicted", std::to_string(least));
+  testing::Test::RecordProperty(what + "_most_measured_over_predicted", std::to_string(most));
   EXPECT_GE(least, 1) << scene.name;
   EXPECT_LT(least, tightest) << scene.name;
   EXPECT_LT(most, loosest) << scene.name;
@@ -164,18 +172,18 @@ void expect_safe_and_tight(const Scene& scene, MapAxis axis, double tightest, do
 // Contraction and bending act across each other, so their bounds' sum is at most twice the larger.
 // Bent rods add what turning the joints' forces does.
 TEST(StabilityMap, PredictionIsSafeAndTightForHookeanRods) {
-  expect_safe_and_tight(hard_case_scene(), MapAxis::c_c, 1.02, 2);
-  expect_safe_and_tight(hard_case_scene(), MapAxis::c_h, 1.5, 1.5);
+  expect_safe_and_tight("hooke_c_c", hard_case_scene(), MapAxis::c_c, 1.02, 2);
+  expect_safe_and_tight("hooke_c_h", hard_case_scene(), MapAxis::c_h, 1.5, 1.5);
 }
 
 TEST(StabilityMap, PredictionIsSafeForThePapersLawAndSeveralGrips) {
   Scene paper = test::heavy_scene(2, -175);
   paper.force_model.law = Law::paper;
   paper.force_model.bookkeeping = Bookkeeping::paper;
-  expect_safe_and_tight(paper, MapAxis::c_c, 1.1, 4);
+  expect_safe_and_tight("paper_c_c", paper, MapAxis::c_c, 1.1, 4);
   Scene grips = test::heavy_scene(20, 0);
   grips.grippers.push_back({.at = 0.71, .position = {0.5, 0.1, 0.05}, .where = "test"});
-  expect_safe_and_tight(grips, MapAxis::c_c, 1.5, 4);
+  expect_safe_and_tight("grips_c_c", grips, MapAxis::c_c, 1.5, 4);
 }
 
 TEST(StabilityMap, GridAgreesWithItsLimitsForAnyNumberOfThreads) {
