@@ -17,7 +17,8 @@ std::string SweepHead::line() const {
 
 std::optional<SweepHead> parse_sweep_head(const std::string& line) {
   static const std::regex pattern(
-      "# dlo sweep 1: (scene [0-9a-f]{16}, grid [0-9a-f]{16}, model [a-z-]+, options [0-9a-f]{16}); "
+      "# dlo sweep 1: (scene [0-9a-f]{16}, grid [0-9a-f]{16}, model [a-z-]+, options "
+      "[0-9a-f]{16}); "
       "shard ([0-9]{1,10}/[0-9]{1,10}); ([0-9]{1,16}) rows from ([0-9]{1,16}) of ([0-9]{1,16})");
   std::smatch part;
   if (!std::regex_match(line, part, pattern)) return std::nullopt;

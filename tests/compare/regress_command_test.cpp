@@ -91,8 +91,8 @@ TEST_F(RegressCommand, BadInputIsOneLineAndStatusTwo) {
   expect_error(arguments_ + steel() + " --relative -1", 2, {"--relative"});
   expect_error("regress " + steel(), 2, {"--baseline"});
   set("rms_over_length", "-1");
-  expect_error(arguments_ + steel(), 2, {"b.toml:10", "rms_over_length = -1", ">= 0"});
-  expect_error(arguments_ + steel() + " --update", 2, {"b.toml:10"});
+  expect_error(arguments_ + steel(), 2, {"b.toml:11", "rms_over_length = -1", ">= 0"});
+  expect_error(arguments_ + steel() + " --update", 2, {"b.toml:11"});
   std::ofstream(path("b.toml")) << "rubbish";
   expect_error(arguments_ + steel(), 2, {"b.toml:1", "not valid TOML"});
 }

@@ -97,7 +97,7 @@ TEST(Baseline, MalformedOnesNameFileLineKeyAndWhatIsAllowed) {
   expect(changed("max_over_length = 0.2", "max_over_length = inf #"), {"finite"});
   expect(changed("max_over_length = 0.2", "max_over_length = \"2 mm\" #"), {"max_over_length"});
   expect(changed("tip_over_length", "top_over_length"), {"top_over_length", "unknown key"});
-  expect(message(good + good.substr(good.find("[[case]]"))), {"b.toml:13", "second case"});
+  expect(message(good + good.substr(good.find("[[case]]"))), {"b.toml:15", "second case"});
 }
 
 TEST(Regression, ToleratesAShareOfTheErrorAndAShareOfTheRod) {
