@@ -180,6 +180,7 @@ bool Scene::planar() const {
     vectors.emplace_back(gripper.position - grippers.front().position);
   }
   for (const PointLoad& load : loads) vectors.push_back(load.force);
+  for (const Obstacle& obstacle : obstacles) vectors.push_back(obstacle.normal);
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& v : vectors) {
     if (v.norm() > 0) moments += v.normalized() * v.normalized().transpose();

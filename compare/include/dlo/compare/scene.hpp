@@ -85,7 +85,7 @@ struct Scene {
   [[nodiscard]] Eigen::Vector3d weight_per_length() const;  ///< rho A g [N/m]
   [[nodiscard]] double mass() const;                        ///< [kg]
   [[nodiscard]] double gamma() const;                       ///< w l^3 / (EI) [-]
-  [[nodiscard]] bool planar() const;  ///< grips, gravity and loads lie in one plane
+  [[nodiscard]] bool planar() const;  ///< grips, forces and obstacles share a plane
   [[nodiscard]] int spans() const;    ///< parts that the clamps cut the rod into
 };
 

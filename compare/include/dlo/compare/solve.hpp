@@ -53,8 +53,7 @@ struct Solution {
   Shape shape;
   SceneEnergies energy;
   std::vector<GripperLoad> grippers;
-  std::vector<Eigen::Vector3d>
-      obstacles;  ///< force of each on the rod; of all models but exact [N]
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod [N]
   /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   long evaluations = 0;
@@ -72,7 +71,8 @@ struct Solution {
 [[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                                         const SolveOptions& options = {});
 
-/// Solves a scene. Continuous models are sampled at `arc_lengths` (or at 101 equal ones if empty);
+/// Solves a scene, without the obstacles that its rod cannot reach (see make_plan), whose forces
+/// are zero. Continuous models are sampled at `arc_lengths` (or at 101 equal ones if empty);
 /// polygons keep their points, or are resampled on straight lines when `arc_lengths` are given.
 /// @throws InputError if the model does not know such a scene, ConvergenceError
 [[nodiscard]] Solution solve(const Scene& scene, Model model, const SolveOptions& options = {},
