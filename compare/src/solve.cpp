@@ -82,11 +82,11 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
   const energy_model::Problem problem = energy_problem(scene);
   energy_model::Equilibrium result;
   try {
-    result =
-        model == Model::exact
-            ? energy_model::solve_exact(problem)
-            : energy_model::solve_energy(
-                  problem, {.terms = options.terms, .max_evaluations = options.max_evaluations});
+    result = model == Model::exact
+                 ? energy_model::solve_exact(problem)
+                 : energy_model::solve_energy(problem, {.terms = options.terms,
+                                                        .max_evaluations = options.max_evaluations,
+                                                        .start = options.start});
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }
@@ -114,26 +114,33 @@ Solution solve(const Scene& scene, Model model, const SolveOptions& options,
   return solution;
 }
 
+std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
+                                                        const SolveOptions& options) {
+  std::vector<energy_model::Equilibrium> states;
+  try {
+    states = energy_model::all_energy(
+        energy_problem(scene),
+        {.terms = options.terms, .max_evaluations = options.max_evaluations});
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
+  }
+  std::erase_if(states, [](const energy_model::Equilibrium& state) {
+    return !energy_model::succeeded(state.status) &&
+           state.status != energy_model::SolveStatus::saddle;
+  });
+  if (states.empty()) {
+    throw ConvergenceError(fmt::format("{}: the energy model found no equilibrium", scene.file));
+  }
+  return states;
+}
+
 std::vector<Solution> solve_all(const Scene& scene, const SolveOptions& options,
                                 const std::vector<double>& arc_lengths) {
   const ReachedScene reached = without_far_obstacles(scene);
   std::vector<Solution> solutions;
-  try {
-    for (const energy_model::Equilibrium& equilibrium : energy_model::all_energy(
-             energy_problem(reached.scene),
-             {.terms = options.terms, .max_evaluations = options.max_evaluations})) {
-      const bool equilibrium_found = energy_model::succeeded(equilibrium.status) ||
-                                     equilibrium.status == energy_model::SolveStatus::saddle;
-      if (equilibrium_found) {
-        solutions.push_back(sampled(scene, Model::energy, equilibrium, arc_lengths));
-        spread_obstacle_forces(solutions.back(), reached.in_reach);
-      }
-    }
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
-  }
-  if (solutions.empty()) {
-    throw ConvergenceError(fmt::format("{}: the energy model found no equilibrium", scene.file));
+  for (const energy_model::Equilibrium& state : reference_states(reached.scene, options)) {
+    solutions.push_back(sampled(scene, Model::energy, state, arc_lengths));
+    spread_obstacle_forces(solutions.back(), reached.in_reach);
   }
   return solutions;
 }

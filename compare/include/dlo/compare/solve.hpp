@@ -27,6 +27,9 @@ struct SolveOptions {
   int max_evaluations = 20000;   ///< of the minimisers
   long max_steps = 20'000'000;   ///< of the force model
   double rest_tolerance = 1e-7;  ///< of the force model, share of the rod's length
+  /// One of the scene's equilibria, or of a similar scene's, for the energy model to follow instead
+  /// of searching for the lowest.
+  const energy_model::Equilibrium* start = nullptr;
 };
 
 /// Energies [J]; gravity and loads are zero at the first gripper.
@@ -64,12 +67,18 @@ struct Solution {
   double c_F = 0;         ///< of force, at its last step
   double c_h = 0;
   double remaining_error = 0;  ///< of force: estimated distance to rest [m]
+  Eigen::Matrix3Xd to_rest;    ///< of force: Newton's step to rest from each point [m]
 };
 
 /// The continuous reference of a scene: `energy` or `exact`.
 /// @throws InputError, ConvergenceError
 [[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                                         const SolveOptions& options = {});
+
+/// Every equilibrium that the energy model finds, as it is: stable ones first, by energy; never
+/// empty. @throws InputError, ConvergenceError
+[[nodiscard]] std::vector<energy_model::Equilibrium> reference_states(
+    const Scene& scene, const SolveOptions& options = {});
 
 /// Solves a scene, without the obstacles that its rod cannot reach (see make_plan), whose forces
 /// are zero. Continuous models are sampled at `arc_lengths` (or at 101 equal ones if empty);
@@ -88,6 +97,13 @@ struct Solution {
 /// @throws InputError, ConvergenceError
 [[nodiscard]] Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
                                    const SolveOptions& options = {});
+
+/// The chain of elastic segments in the equilibrium that a shape falls to; its c_c is the
+/// settings'. For the paper's law between unequal segments see energy_model::PolygonProblem.
+/// @param start  any polygon of the scene's rod
+/// @throws InputError, ConvergenceError
+[[nodiscard]] Shape chain_from(const Scene& scene, const ForceModelSettings& settings,
+                               const Shape& start, const SolveOptions& options = {});
 
 /// The force model at rest. Between several grippers it starts where the chain's lowest shape came
 /// from, so that both are in the same state. @throws InputError, ConvergenceError
