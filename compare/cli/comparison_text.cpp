@@ -30,7 +30,8 @@ void add_budget(std::string& out, const compare::Budget& b) {
 void add_state(std::string& out, const compare::Comparison& c) {
   const compare::ComparedState& state = c.state;
   append(out, "  state           {}, {:.6g} J",
-         state.rank == 1 ? "lowest stable" : "not the lowest", state.energy_J);
+         state.only_lowest() ? "the only stable one found" : "one of several stable ones",
+         state.energy_J);
   if (state.others.empty()) {
     out += "; no other equilibrium found\n";
     return;

@@ -31,6 +31,7 @@ int run(int argc, char** argv) {
   dlo::cli::add_solve(app);
   dlo::cli::add_compare(app);
   dlo::cli::add_paper(app);
+  dlo::cli::add_bench(app);
   app.footer(
       "Exit status: 0 good, 1 outside a tolerance, 2 bad usage or input, 3 a solver did not "
       "converge.\nMore: dlo COMMAND --help");

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "states.hpp"
+
 namespace dlo::compare {
 namespace {
 
@@ -26,25 +28,6 @@ std::size_t state_of(const Scene& scene, const Shape& force,
     nearest = i;
   }
   return nearest;
-}
-
-/// All states that are found, of which `lowest` is one even where the wider search misses it.
-std::vector<energy_model::Equilibrium> states_with(const energy_model::Equilibrium& lowest,
-                                                   const Scene& scene,
-                                                   const SolveOptions& options) {
-  std::vector<energy_model::Equilibrium> states = reference_states(scene, options);
-  const std::vector<double> s = equal_arc_lengths(scene.length, 21);
-  const Eigen::Matrix3Xd points = lowest.sample(s).points;
-  const auto same = [&](const energy_model::Equilibrium& state) {
-    return energy_model::succeeded(state.status) &&
-           rms(s, state.sample(s).points - points) < 1e-4 * scene.length;
-  };
-  if (std::any_of(states.begin(), states.end(), same)) return states;
-  const auto above = [&](const energy_model::Equilibrium& state) {
-    return !energy_model::succeeded(state.status) || state.energy.total() > lowest.energy.total();
-  };
-  states.insert(std::find_if(states.begin(), states.end(), above), lowest);
-  return states;
 }
 
 ComparedState describe(const std::vector<energy_model::Equilibrium>& states, std::size_t compared,
@@ -108,7 +91,7 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   const energy_model::Equilibrium lowest = solve_reference(near, Model::energy, options);
   result.energy_seconds = lowest.seconds;
   result.energy_evaluations = lowest.evaluations;
-  const std::vector<energy_model::Equilibrium> states = states_with(lowest, near, options);
+  const std::vector<energy_model::Equilibrium> states = all_states(near, lowest, options);
   const std::size_t compared = state_of(near, force, states, options);
   const energy_model::Equilibrium& energy = states[compared];
   result.state = describe(states, compared, force);
@@ -119,8 +102,7 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   result.deviation = deviation(force, energy.sample, straight, free_end(scene, s));
   result.undeformed_rms_over_length =
       straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
-  result.effective_modulus =
-      fit_effective_modulus(near, force, result.state.rank == 1 ? nullptr : &energy);
+  result.effective_modulus = fit_effective_modulus(near, force);
   result.residual_over_movement =
       result.deviation.rms_over_movement / result.deviation.rms_m * result.effective_modulus.rms_m;
   result.budget = error_budget(near, result.force, energy.sample, options);

@@ -19,12 +19,10 @@ struct Fit {
   Scene scene;
   const Shape* shape;
   double modulus;  // E of the scene [Pa]
-  const energy_model::Equilibrium* state;
 
   double rms_at(double log_ratio) {
     scene.material.youngs_modulus = modulus * std::exp(log_ratio);
-    const energy_model::Equilibrium reference =
-        solve_reference(scene, Model::energy, {.start = state});
+    const energy_model::Equilibrium reference = solve_reference(scene, Model::energy);
     return rms(shape->arc_length, shape->points - reference.sample(shape->arc_length).points);
   }
 };
@@ -57,9 +55,8 @@ const char* to_string(Optimum optimum) {
   return "clear";
 }
 
-EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape,
-                                       const energy_model::Equilibrium* state) {
-  Fit fit{scene, &shape, scene.material.youngs_modulus, state};
+EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape) {
+  Fit fit{scene, &shape, scene.material.youngs_modulus};
   const double low = std::log(smallest_modulus_ratio);
   const double high = std::log(largest_modulus_ratio);
   constexpr int steps = 32;

@@ -393,7 +393,7 @@ TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
 }
 
 TEST_F(Command, HelpHasAnExampleThatWorks) {
-  for (const std::string command : {"solve", "compare", "paper"}) {
+  for (const std::string command : {"solve", "compare", "paper", "bench"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Example:"), std::string::npos) << command;

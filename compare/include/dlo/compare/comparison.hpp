@@ -29,6 +29,9 @@ struct ComparedState {
   int stable = 1;       ///< how many stable ones were found
   int unstable = 0;
   std::vector<OtherState> others;  ///< stable ones first, by energy
+
+  /// No other stable one is as low, as a mirror image is.
+  [[nodiscard]] bool only_lowest() const { return rank == 1 && stable == 1; }
 };
 
 /// One scene, both models.
@@ -44,6 +47,7 @@ struct Comparison {
   Deviation deviation;
   /// The straight rod's own deviation from the reference; NaN without a straight rod.
   double undeformed_rms_over_length = 0;
+  /// Against the lowest shape at each E*, which need not be the state that was compared.
   EffectiveModulus effective_modulus;
   /// What even E* does not explain, against the reference's way from the straight rod; NaN without.
   double residual_over_movement = 0;

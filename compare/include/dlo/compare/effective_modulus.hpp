@@ -4,7 +4,6 @@
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
-#include "dlo/energy_model/equilibrium.hpp"
 
 namespace dlo::compare {
 
@@ -30,10 +29,7 @@ inline constexpr double largest_modulus_ratio = 1e4;
 
 /// Minimises the RMS distance at equal arc length over E*, everything else as in the scene: a scan
 /// over the range, then GSL's Brent minimiser.
-/// @param state  one of several equilibria of the scene, which is followed to each E*; without it
-///               the lowest one at each E* is taken
 /// @throws InputError, ConvergenceError as solve_reference
-[[nodiscard]] EffectiveModulus fit_effective_modulus(
-    const Scene& scene, const Shape& shape, const energy_model::Equilibrium* state = nullptr);
+[[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape);
 
 }  // namespace dlo::compare

@@ -27,9 +27,6 @@ struct SolveOptions {
   int max_evaluations = 20000;   ///< of the minimisers
   long max_steps = 20'000'000;   ///< of the force model
   double rest_tolerance = 1e-7;  ///< of the force model, share of the rod's length
-  /// One of the scene's equilibria, or of a similar scene's, for the energy model to follow instead
-  /// of searching for the lowest.
-  const energy_model::Equilibrium* start = nullptr;
 };
 
 /// Energies [J]; gravity and loads are zero at the first gripper.
