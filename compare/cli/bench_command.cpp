@@ -77,7 +77,9 @@ std::string text(const compare::BenchmarkReport& report) {
            compare::to_string(scene.reference));
     append(out, "  static: from straight to the shape (* no run is both faster and nearer)\n");
     add_runs(out, scene.runs);
-    append(out, "\n  tracking: a frame of 1 ms behind a gripper at {:g} m/s\n",
+    append(out,
+           "\n  tracking: a frame of 1 ms behind a gripper that moves at v = {:g} m/s and turns by "
+           "v/l\n",
            report.options.gripper_speed);
     add_runs(out, scene.tracking);
     append(out, "\n  use, for a static error of\n");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
@@ -56,19 +57,20 @@ void add_polygons(const Scene& scene, const ReferenceShape& reference, Model mod
     options.rest_tolerance = std::clamp(0.01 / (points * points), 1e-7, 1e-4);
     const double growth = last_points > 0 ? std::pow(1.0 * points / last_points, 3) : 1;
     Solution solution;
-    const std::optional<Timing> time = watch.time(
-        fmt::format("{}: {}, N = {}, {}", scene.name, to_string(model), points, variant.text()),
-        last_s * growth, [&] {
-          solution = model == Model::chain ? solve_chain(scene, settings, options)
-                                           : solve_force(scene, settings, options);
-        });
+    const std::optional<Timing> time =
+        watch.time(fmt::format("{}: {}, N = {}, {}", scene.name, to_string(model), points,
+                               variant.text(model)),
+                   last_s * growth, [&] {
+                     solution = model == Model::chain ? solve_chain(scene, settings, options)
+                                                      : solve_force(scene, settings, options);
+                   });
     if (!time) break;
     last_s = time->median_s;
     last_points = points;
     runs.push_back({.scene = scene.name,
                     .model = model,
                     .size = points,
-                    .setting = variant.text(),
+                    .setting = variant.text(model),
                     .time = *time,
                     .work = model == Model::chain ? solution.evaluations : solution.steps,
                     .rms_over_length = error_of(scene, solution.shape, reference.rod)});
@@ -157,10 +159,12 @@ std::vector<BenchmarkRun> static_runs(const Scene& scene, const ReferenceShape& 
   ForceVariant paper_law = soft;
   paper_law.law = Law::paper;
   paper_law.bookkeeping = Bookkeeping::paper;
+  ForceVariant paper_chain = paper_law;
+  paper_chain.stretch_share = 1;
   ForceVariant dynamic = soft;
   dynamic.stepper = StepperName::dynamic;
   add_polygons(scene, reference, Model::chain, hooke, watch, runs);
-  add_polygons(scene, reference, Model::chain, paper_law, watch, runs);
+  add_polygons(scene, reference, Model::chain, paper_chain, watch, runs);
   for (const ForceVariant& variant : {soft, hooke, dynamic, paper_law}) {
     add_polygons(scene, reference, Model::force, variant, watch, runs);
   }
@@ -177,9 +181,10 @@ ForceModelSettings ForceVariant::settings(const Scene& scene, int points) const 
   return result;
 }
 
-std::string ForceVariant::text() const {
-  return fmt::format("{}, {}, {}, c_c = {}", to_string(law), to_string(bookkeeping),
-                     to_string(stepper),
+std::string ForceVariant::text(Model model) const {
+  std::string result = fmt::format("{}, {}", to_string(law), to_string(bookkeeping));
+  if (model == Model::chain) return result;  // no steps, and rigid or nearly so
+  return fmt::format("{}, {}, c_c = {}", result, to_string(stepper),
                      stretch_share == 1 ? "AE" : fmt::format("AE/{:g}", 1 / stretch_share));
 }
 

@@ -67,7 +67,7 @@ struct ForceVariant {
   double stretch_share = 1;  ///< c_c over AE
 
   [[nodiscard]] ForceModelSettings settings(const Scene& scene, int points) const;
-  [[nodiscard]] std::string text() const;
+  [[nodiscard]] std::string text(Model model) const;
 };
 
 }  // namespace dlo::compare

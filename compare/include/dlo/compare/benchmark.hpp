@@ -15,7 +15,7 @@ struct BenchmarkOptions {
   /// the runs before it, is skipped.
   double budget_s = 40;
   int repeats = 5;             ///< runs that a median is taken of, >= 1
-  double gripper_speed = 0.1;  ///< of the tracking runs [m/s], > 0
+  double gripper_speed = 0.1;  ///< v of the tracking runs [m/s], > 0; they also turn by v/l
   int frames = 200;            ///< of 1 ms that the gripper moves in a tracking run, >= 1
 };
 
@@ -82,10 +82,11 @@ void mark_front(std::vector<BenchmarkRun>& runs);
 /// the solver with the scene's set-up, as a caller sees it. The rest tolerance of `force` is a
 /// tenth of the error that its N is good for.
 ///
-/// Tracking: the first gripper moves along +x at the given speed, all others with it, after the rod
-/// has come to rest; each frame of 1 ms the energy model follows, and the force model makes the
-/// steps that fit a frame on this machine (measured before; at least one). The error is against the
-/// quasi-static shape, the energy model's, which moves with the grippers.
+/// Tracking: after the rod has come to rest all grippers move along +x at the given speed v and
+/// turn as one body about z by v/l, which changes the shape. Each frame of 1 ms the energy model
+/// follows, and the force model makes the steps that fit a frame on this machine (measured before;
+/// at least one). The error, of every tenth frame, is against the quasi-static shape by the
+/// reference model.
 /// @param progress  called with what is being done
 /// @throws std::invalid_argument if an option is out of range, InputError, ConvergenceError
 [[nodiscard]] BenchmarkReport run_benchmark(
