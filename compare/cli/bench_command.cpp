@@ -1,5 +1,6 @@
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "commands.hpp"
 #include "comparison_text.hpp"
@@ -45,12 +46,14 @@ void add_answers(std::string& out, const std::vector<BenchmarkRun>& runs,
                  const std::vector<BenchmarkAnswer>& answers) {
   for (const BenchmarkAnswer& answer : answers) {
     append(out, "    {:>5g} %: ", answer.error * 100);
-    if (answer.best) {
-      const BenchmarkRun& run = runs[*answer.best];
-      append(out, "{}, {:.3g} ms\n", name_of(run), run.time.median_s * 1e3);
-    } else {
-      out += "none of the runs\n";
-    }
+    const auto add = [&](std::optional<std::size_t> best) {
+      if (!best) return append(out, "none");
+      append(out, "{}, {:.3g} ms", name_of(runs[*best]), runs[*best].time.median_s * 1e3);
+    };
+    add(answer.best);
+    out += "; with points and forces: ";
+    add(compare::fastest_within(runs, answer.error, compare::Model::force));
+    out += "\n";
   }
 }
 
@@ -82,15 +85,18 @@ std::string text(const compare::BenchmarkReport& report) {
            "v/l\n",
            report.options.gripper_speed);
     add_runs(out, scene.tracking);
-    append(out, "\n  use, for a static error of\n");
-    add_answers(out, scene.runs, scene.answers);
-    append(out, "  use, for an error behind the moving gripper of\n");
-    add_answers(out, scene.tracking, scene.tracking_answers);
-    add_claim(out, scene);
     out += "\n";
   }
   for (const std::string& skipped : report.skipped) append(out, "skipped: {}\n", skipped);
-  append(out, "{:.3g} s in all, one thread\n", report.seconds);
+  out += "\nWhat to use\n";
+  for (const SceneBenchmark& scene : report.scenes) {
+    append(out, "\n{}   Gamma = {:.4g}\n  for a static error of\n", scene.scene, scene.gamma);
+    add_answers(out, scene.runs, scene.answers);
+    append(out, "  for an error behind the moving gripper of\n");
+    add_answers(out, scene.tracking, scene.tracking_answers);
+    add_claim(out, scene);
+  }
+  append(out, "\n{:.3g} s in all, one thread\n", report.seconds);
   return out;
 }
 
