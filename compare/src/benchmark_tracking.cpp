@@ -94,13 +94,20 @@ BenchmarkRun track_energy(const Scene& scene, int terms, const Track& track,
   return run;
 }
 
-/// Steps that fit into a frame, from a copy that is thrown away.
+/// Steps that fit into a frame, from a copy that is thrown away; a median, since a busy machine may
+/// hold up any trial.
 long steps_per_frame(force_model::Simulation simulation) {
-  constexpr int trial = 1000;
-  const auto begin = std::chrono::steady_clock::now();
-  for (int i = 0; i < trial; ++i) (void)simulation.step();
-  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-  return std::max(1L, std::lround(std::floor(frame_s / (taken.count() / trial))));
+  constexpr int trials = 15;
+  constexpr int steps = 200;
+  std::vector<double> seconds;
+  for (int trial = 0; trial < trials; ++trial) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < steps; ++i) (void)simulation.step();
+    seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  const double step_s = timing_of(seconds).median_s / steps;
+  return std::max(1L, std::lround(std::floor(frame_s / step_s)));
 }
 
 BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int points,
