@@ -319,6 +319,22 @@ TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
   EXPECT_EQ(run("paper --format csv").out.substr(0, 8), "section,");
 }
 
+TEST_F(Command, BenchWritesRowsAndAnswers) {
+  const std::string arguments = "bench " + steel() + " --seconds 0.5 --repeats 1";
+  const json document = json::parse(run(arguments + " --format json").out);
+  EXPECT_EQ(document.at("schema"), "dlo/bench/1");
+  ASSERT_GT(document.at("runs").size(), 5U);
+  for (const char* key :
+       {"scene", "model", "law", "size", "time_s", "work", "rms_over_length", "front"}) {
+    EXPECT_TRUE(document.at("runs")[0].contains(key)) << key;
+  }
+  EXPECT_EQ(document.at("answers")[0].at("static").size(), 4U);
+  EXPECT_EQ(run(arguments + " --format csv").out.substr(0, 11), "scene,kind,");
+  EXPECT_NE(run(arguments).out.find("What to use"), std::string::npos);
+  expect_error("bench --seconds 0", 2, {"--seconds"});
+  expect_error("bench " + path("missing.toml"), 2, {"missing.toml"});
+}
+
 TEST_F(Command, OptionsOverrideTheScene) {
   const json document = json::parse(
       run("compare " + steel() +
