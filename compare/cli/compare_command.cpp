@@ -6,6 +6,7 @@
 #include "comparison_text.hpp"
 #include "json.hpp"
 #include "output.hpp"
+#include "plan_text.hpp"
 #include "scene_options.hpp"
 
 namespace dlo::cli {
@@ -14,6 +15,7 @@ namespace {
 struct Options {
   std::vector<std::string> scenes;
   SceneOptions overrides;
+  PlanOptions plan;
   OutputOptions output;
 };
 
@@ -22,30 +24,37 @@ std::string csv(const std::vector<compare::Comparison>& comparisons) {
       "scene,law,bookkeeping,points,gamma,rms_m,max_m,tip_m,rms_over_length,rms_over_movement,"
       "effective_modulus_ratio,rms_at_effective_modulus_m,optimum,c_b,c_c,budget_law_m,"
       "budget_bookkeeping_m,budget_discretisation_m,budget_stretch_m,budget_not_at_rest_m,"
+      "budget_interaction_m,budget_parts_share,residual_over_movement,state_rank,states_stable,"
       "force_steps,force_s,energy_evaluations,energy_s\n";
   for (const compare::Comparison& c : comparisons) {
     append(text,
            "{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{:.10g},"
-           "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{:.4g},{},{:.4g}\n",
+           "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{},{},{:.4g}"
+           ",{},"
+           "{:.4g}\n",
            csv_field(c.scene), compare::to_string(c.settings.law),
            compare::to_string(c.settings.bookkeeping), c.settings.points, c.gamma,
            c.deviation.rms_m, c.deviation.max_m, c.deviation.tip_m, c.deviation.rms_over_length,
            c.deviation.rms_over_movement, c.effective_modulus.ratio, c.effective_modulus.rms_m,
            compare::to_string(c.effective_modulus.optimum), c.force.parameters.c_b,
-           c.force.parameters.c_c, c.budget.law, c.budget.bookkeeping, c.budget.discretisation,
-           c.budget.stretch, c.budget.not_at_rest, c.force.steps, c.force.seconds,
-           c.energy_evaluations, c.energy_seconds);
+           c.force.parameters.c_c, c.budget.law.rms_m, c.budget.bookkeeping.rms_m,
+           c.budget.discretisation.rms_m, c.budget.stretch.rms_m, c.budget.not_at_rest.rms_m,
+           c.budget.interaction.rms_m, 1 - c.budget.interaction.share, c.residual_over_movement,
+           c.state.rank, c.state.stable, c.force.steps, c.force.seconds, c.energy_evaluations,
+           c.energy_seconds);
   }
   return text;
 }
 
 void run(const Options& options) {
   std::vector<compare::Comparison> comparisons;
-  for (const std::string& path : options.scenes) {
-    comparisons.push_back(
-        compare::compare(options.overrides.load(path), options.overrides.solve()));
-  }
   std::string content;
+  const bool explain = options.plan.explain() && options.output.kind() == Format::text;
+  for (const std::string& path : options.scenes) {
+    const compare::Scene scene = options.overrides.load(path);
+    comparisons.push_back(compare::compare(scene, options.overrides.solve(), options.plan.plan()));
+    if (explain) content += plan_text(comparisons.back().plan, scene);
+  }
   switch (options.output.kind()) {
     case Format::json: {
       Json cases = Json::array();
@@ -74,6 +83,7 @@ void add_compare(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
   options->overrides.add_to(*command);
+  options->plan.add_to(*command);
   add_output_options(*command, options->output);
   command->footer(
       "Example:\n  dlo compare data/scenes/spring_steel_175.toml --law hooke --bookkeeping "

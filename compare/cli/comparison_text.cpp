@@ -1,10 +1,52 @@
 #include "comparison_text.hpp"
 
 #include <cmath>
+#include <utility>
 
 #include "output.hpp"
 
 namespace dlo::cli {
+
+namespace {
+
+void add_budget(std::string& out, const compare::Budget& b) {
+  // A share is a part's projection on the total, so that the shares add up; a part across the total
+  // has millimetres but no share.
+  append(out, "  error budget    RMS, and share of the total {:.4g} mm with sign\n",
+         b.total_m * 1e3);
+  const std::pair<const char*, const compare::BudgetPart*> parts[] = {
+      {"law", &b.law},
+      {"bookkeeping", &b.bookkeeping},
+      {"discretisation", &b.discretisation},
+      {"stretch", &b.stretch},
+      {"not at rest", &b.not_at_rest},
+      {"interaction", &b.interaction}};
+  for (const auto& [name, part] : parts) {
+    append(out, "                  {:<16}{:>10.4g} mm {:>9.2f} %\n", name, part->rms_m * 1e3,
+           part->share * 100 + 0.0);
+  }
+}
+
+void add_state(std::string& out, const compare::Comparison& c) {
+  const compare::ComparedState& state = c.state;
+  append(out, "  state           {}, {:.6g} J",
+         state.only_lowest() ? "the only stable one found" : "one of several stable ones",
+         state.energy_J);
+  if (state.others.empty()) {
+    out += "; no other equilibrium found\n";
+    return;
+  }
+  append(out, "; number {} of {} stable, {} unstable found\n", state.rank, state.stable,
+         state.unstable);
+  for (const compare::OtherState& other : state.others) {
+    append(out,
+           "                  other: {}, {:+.4g} J, RMS {:.4g} % of l away, {:.4g} % from force\n",
+           other.stable ? "stable" : "unstable", other.energy_difference_J,
+           other.rms_from_compared_m / c.length * 100, other.rms_from_force_m / c.length * 100);
+  }
+}
+
+}  // namespace
 
 std::string comparison_text(const compare::Comparison& c) {
   std::string out;
@@ -30,16 +72,14 @@ std::string comparison_text(const compare::Comparison& c) {
     append(out, "                  (the unbent rod would be {:.4g} % of l off)\n",
            c.undeformed_rms_over_length * 100);
   }
-  append(out, "  E*/E            {:.4f}, where the RMS is {:.4g} mm ({} optimum)\n",
-         c.effective_modulus.ratio, c.effective_modulus.rms_m * 1e3,
-         compare::to_string(c.effective_modulus.optimum));
-  const compare::Budget& b = c.budget;
-  append(
-      out,
-      "  error budget    law {:.4g} mm, bookkeeping {:.4g} mm, discretisation {:.4g} mm, stretch "
-      "{:.3g} mm, not at rest {:.2g} mm\n",
-      b.law * 1e3, b.bookkeeping * 1e3, b.discretisation * 1e3, b.stretch * 1e3,
-      b.not_at_rest * 1e3);
+  append(out, "  E*/E            {:.4f}, where the RMS is {:.4g} mm", c.effective_modulus.ratio,
+         c.effective_modulus.rms_m * 1e3);
+  if (std::isfinite(c.residual_over_movement)) {
+    append(out, " = {:.4g} % of the movement", c.residual_over_movement * 100);
+  }
+  append(out, " ({} optimum)\n", compare::to_string(c.effective_modulus.optimum));
+  add_budget(out, c.budget);
+  add_state(out, c);
   append(out, "  cost            force {} steps, {:.3g} ms; energy {} evaluations, {:.3g} ms\n\n",
          c.force.steps, c.force.seconds * 1e3, c.energy_evaluations, c.energy_seconds * 1e3);
   return out;

@@ -1,7 +1,5 @@
 #include "json.hpp"
 
-#include <algorithm>
-
 namespace dlo::cli {
 
 Json modulus_json(const compare::EffectiveModulus& modulus) {
@@ -20,6 +18,25 @@ Json deviation_json(const compare::Deviation& deviation) {
           {"angle_rms_rad", deviation.angle_rms_rad},
           {"curvature_rms_per_m", deviation.curvature_rms_per_m}};
 }
+
+namespace {
+
+Json to_json(const compare::ComparedState& state) {
+  Json others = Json::array();
+  for (const compare::OtherState& other : state.others) {
+    others.push_back({{"stable", other.stable},
+                      {"energy_difference_J", other.energy_difference_J},
+                      {"rms_from_compared_m", other.rms_from_compared_m},
+                      {"rms_from_force_m", other.rms_from_force_m}});
+  }
+  return {{"energy_J", state.energy_J},
+          {"rank_of_stable", state.rank},
+          {"stable_found", state.stable},
+          {"unstable_found", state.unstable},
+          {"others", std::move(others)}};
+}
+
+}  // namespace
 
 Json to_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
@@ -54,7 +71,42 @@ Json parameters_json(const compare::Solution& force, const compare::ForceModelSe
   return result;
 }
 
-Json to_json(const compare::Solution& solution, const compare::Scene& scene) {
+Json to_json(const compare::Plan& plan) {
+  Json spans = Json::array();
+  for (const compare::PlannedSpan& span : plan.spans) {
+    spans.push_back({{"begin_m", span.begin},
+                     {"end_m", span.end},
+                     {"begin_held", span.begin_held},
+                     {"end_held", span.end_held},
+                     {"inner_pins", span.inner_pins}});
+  }
+  Json obstacles = Json::array();
+  for (const compare::PlannedObstacle& obstacle : plan.obstacles) {
+    obstacles.push_back({{"in_reach", obstacle.in_reach}, {"clearance_m", obstacle.clearance}});
+  }
+  // No bound, which is infinity, is null in JSON.
+  Json left_out = Json::array();
+  for (const compare::LeftOut& item : plan.left_out) {
+    left_out.push_back({{"what", item.what},
+                        {"by_models", item.models},
+                        {"bound_m", item.bound_m},
+                        {"why", item.why}});
+  }
+  return {{"gamma", plan.gamma},
+          {"target_over_length", plan.target},
+          {"geometry", plan.planar ? "planar" : "spatial"},
+          {"spans", std::move(spans)},
+          {"obstacles", std::move(obstacles)},
+          {"stretch", plan.stretch},
+          {"moving", plan.moving},
+          {"contact", plan.contact},
+          {"points_for_target", plan.points > 0 ? Json(plan.points) : Json()},
+          {"scene_points", plan.scene_points},
+          {"left_out", std::move(left_out)}};
+}
+
+Json to_json(const compare::Solution& solution, const compare::Scene& scene,
+             const compare::Plan& plan) {
   Json grippers = Json::array();
   for (const compare::GripperLoad& load : solution.grippers) {
     grippers.push_back({{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}});
@@ -80,19 +132,7 @@ Json to_json(const compare::Solution& solution, const compare::Scene& scene) {
                    {"steps", solution.steps},
                    {"terms", solution.terms},
                    {"wall_s", solution.seconds}}},
-                 {"plan",
-                  {{"geometry", scene.planar() ? "planar" : "spatial"},
-                   {"spans", scene.spans()},
-                   {"gamma", scene.gamma()}}}};
-  if (solution.model != compare::Model::force) {
-    // The tension of what hangs on the rod, had it all to be carried along its whole length.
-    double pull = scene.weight_per_length().norm() * scene.length;
-    for (const compare::PointLoad& load : scene.loads) pull += load.force.norm();
-    for (const compare::GripperLoad& load : solution.grippers) {
-      pull = std::max(pull, load.force.norm());
-    }
-    result["plan"]["neglected_stretch_bound_m"] = pull * scene.length / scene.axial_stiffness();
-  }
+                 {"plan", to_json(plan)}};
   if (!solution.obstacles.empty()) {
     Json obstacles = Json::array();
     for (const Eigen::Vector3d& force : solution.obstacles) {
@@ -117,16 +157,27 @@ Json to_json(const compare::Comparison& comparison) {
                  {"undeformed_rms_over_length", comparison.undeformed_rms_over_length}};
   result.update(modulus_json(comparison.effective_modulus));
   result["parameters"] = parameters_json(comparison.force, comparison.settings);
-  result["budget"] = {{"law_m", budget.law},
-                      {"bookkeeping_m", budget.bookkeeping},
-                      {"discretisation_m", budget.discretisation},
-                      {"stretch_m", budget.stretch},
-                      {"not_at_rest_m", budget.not_at_rest},
-                      {"total_m", comparison.deviation.rms_m}};
+  result["residual_over_movement"] = comparison.residual_over_movement;
+  result["budget"] = {{"law_m", budget.law.rms_m},
+                      {"bookkeeping_m", budget.bookkeeping.rms_m},
+                      {"discretisation_m", budget.discretisation.rms_m},
+                      {"stretch_m", budget.stretch.rms_m},
+                      {"not_at_rest_m", budget.not_at_rest.rms_m},
+                      {"interaction_m", budget.interaction.rms_m},
+                      {"total_m", budget.total_m},
+                      {"shares_of_total",
+                       {{"law", budget.law.share},
+                        {"bookkeeping", budget.bookkeeping.share},
+                        {"discretisation", budget.discretisation.share},
+                        {"stretch", budget.stretch.share},
+                        {"not_at_rest", budget.not_at_rest.share},
+                        {"interaction", budget.interaction.share}}}};
+  result["state"] = to_json(comparison.state);
   result["cost"] = {{"force_s", comparison.force.seconds},
                     {"force_steps", comparison.force.steps},
                     {"energy_s", comparison.energy_seconds},
                     {"energy_evaluations", comparison.energy_evaluations}};
+  result["plan"] = to_json(comparison.plan);
   result["arc_length_m"] = comparison.force.shape.arc_length;
   result["force_points_m"] = points_json(comparison.force.shape.points);
   result["energy_points_m"] = points_json(comparison.reference.points);

@@ -4,6 +4,7 @@
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/paper_report.hpp"
+#include "dlo/compare/plan.hpp"
 
 namespace dlo::cli {
 
@@ -15,7 +16,9 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json points_json(const Eigen::Matrix3Xd& points);
 [[nodiscard]] Json parameters_json(const compare::Solution& force,
                                    const compare::ForceModelSettings& settings);
-[[nodiscard]] Json to_json(const compare::Solution& solution, const compare::Scene& scene);
+[[nodiscard]] Json to_json(const compare::Plan& plan);
+[[nodiscard]] Json to_json(const compare::Solution& solution, const compare::Scene& scene,
+                           const compare::Plan& plan);
 [[nodiscard]] Json to_json(const compare::Comparison& comparison);
 [[nodiscard]] Json to_json(const compare::PaperReport& report);
 

@@ -34,6 +34,7 @@ int run(int argc, char** argv) {
   dlo::cli::add_check(app);
   dlo::cli::add_calibrate(app);
   dlo::cli::add_paper(app);
+  dlo::cli::add_bench(app);
   dlo::cli::add_stability(app);
   dlo::cli::add_regress(app);
   dlo::cli::add_sweep(app);

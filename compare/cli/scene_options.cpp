@@ -46,6 +46,20 @@ void add_output_options(CLI::App& command, OutputOptions& options) {
       ->type_name("FILE");
 }
 
+void PlanOptions::add_to(CLI::App& command) {
+  const std::string group = "Plan";
+  command
+      .add_flag("--explain", explain_,
+                "show what the scene needs, what is left out and what that could change")
+      ->group(group);
+  command
+      .add_option("--target-error", plan_.target,
+                  "error that the plan chooses N for, share of the length")
+      ->check(CLI::Range(1e-9, 1.0))
+      ->capture_default_str()
+      ->group(group);
+}
+
 void SceneOptions::add_to(CLI::App& command) {
   const std::string group = "Force model (override the scene)";
   command

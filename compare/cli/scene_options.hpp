@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "dlo/compare/plan.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solve.hpp"
 #include "output.hpp"
@@ -29,6 +30,19 @@ class SceneOptions {
   std::string law_, bookkeeping_, stepper_, bending_rule_;
   std::string c_b_, c_c_, c_F_, c_h_, l_s_, design_curvature_;
   compare::SolveOptions solve_;
+};
+
+/// --explain and --target-error.
+class PlanOptions {
+ public:
+  void add_to(CLI::App& command);
+
+  [[nodiscard]] bool explain() const { return explain_; }
+  [[nodiscard]] const compare::PlanOptions& plan() const { return plan_; }
+
+ private:
+  bool explain_ = false;
+  compare::PlanOptions plan_;
 };
 
 void add_output_options(CLI::App& command, OutputOptions& options);

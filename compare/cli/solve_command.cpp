@@ -7,6 +7,7 @@
 #include "dlo/compare/solve.hpp"
 #include "json.hpp"
 #include "output.hpp"
+#include "plan_text.hpp"
 #include "scene_options.hpp"
 
 namespace dlo::cli {
@@ -18,6 +19,7 @@ struct Options {
   int samples = 0;
   bool all = false;
   SceneOptions overrides;
+  PlanOptions plan;
   OutputOptions output;
 };
 
@@ -72,8 +74,9 @@ std::string text(const compare::Solution& solution, const compare::Scene& scene)
 }
 
 /// The first of several equilibria in full, then what tells them apart.
-Json json(const std::vector<compare::Solution>& solutions, const compare::Scene& scene, bool all) {
-  Json document = to_json(solutions.front(), scene);
+Json json(const std::vector<compare::Solution>& solutions, const compare::Scene& scene,
+          const compare::Plan& plan, bool all) {
+  Json document = to_json(solutions.front(), scene, plan);
   if (!all) return document;
   Json equilibria = Json::array();
   for (const compare::Solution& solution : solutions) {
@@ -117,16 +120,18 @@ void run(const Options& options) {
                   : std::vector<compare::Solution>{
                         compare::solve(scene, model, options.overrides.solve(), arc_lengths)};
   const compare::Solution& solution = solutions.front();
+  const auto plan = [&] { return compare::make_plan(scene, options.plan.plan()); };
   std::string content;
   switch (options.output.kind()) {
     case Format::json:
-      content = json(solutions, scene, options.all).dump(2) + "\n";
+      content = json(solutions, scene, plan(), options.all).dump(2) + "\n";
       break;
     case Format::csv:
       content = csv(solution);
       break;
     case Format::text:
-      content = text(solution, scene);
+      if (options.plan.explain()) content = plan_text(plan(), scene);
+      content += text(solution, scene);
       if (options.all) content += equilibria_text(solutions);
       break;
   }
@@ -146,6 +151,7 @@ void add_solve(CLI::App& app) {
       ->check(CLI::Range(2, 10000000));
   command->add_flag("--all", options->all, "every equilibrium that is found, with its stability");
   options->overrides.add_to(*command);
+  options->plan.add_to(*command);
   add_output_options(*command, options->output);
   command->footer(
       "Example:\n  dlo solve data/scenes/spring_steel_175.toml --model exact --samples 5");

@@ -2,45 +2,55 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "states.hpp"
 
 namespace dlo::compare {
 namespace {
 
-/// Difference of a polygon from the reference along the rod, so that polygons with other points can
-/// be set against each other: the difference is smooth where the polygon is not.
-Shape difference_field(const Shape& shape, const Reference& reference) {
-  return {shape.arc_length, shape.points - reference(shape.arc_length).points};
-}
-
-double field_distance(const Shape& a, const Shape& b, const std::vector<double>& s) {
-  return rms(s, resample(a, s).points - resample(b, s).points);
-}
-
-Budget error_budget(const Scene& scene, const Solution& force, const Reference& reference,
-                    const SolveOptions& options) {
+/// The stable state nearest to where the Hookean polygon falls from the force model's shape.
+std::size_t state_of(const Scene& scene, const Shape& force,
+                     const std::vector<energy_model::Equilibrium>& states,
+                     const SolveOptions& options) {
+  if (states.size() == 1) return 0;
   ForceModelSettings settings = scene.force_model;
-  // The chain stretches as the material does, so that what a lower c_c adds shows as stretch.
-  settings.c_c.reset();
-  const auto chain = [&] { return solve_chain(scene, settings, options).shape; };
-  const Shape same = chain();
   settings.law = Law::hooke;
-  const Shape hooke = settings.law == scene.force_model.law ? same : chain();
-  settings.bookkeeping = Bookkeeping::consistent;
-  const Shape consistent = settings.bookkeeping == scene.force_model.bookkeeping ? hooke : chain();
+  const Shape fallen = chain_from(scene, settings, force, options);
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (!energy_model::succeeded(states[i].status)) continue;
+    const double distance =
+        rms(fallen.arc_length, fallen.points - states[i].sample(fallen.arc_length).points);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = i;
+  }
+  return nearest;
+}
 
-  constexpr int field_points = 201;
-  const std::vector<double> s = equal_arc_lengths(scene.length, field_points);
-  const Shape force_field = difference_field(force.shape, reference);
-  const Shape same_field = difference_field(same, reference);
-  const Shape hooke_field = difference_field(hooke, reference);
-  const Shape consistent_field = difference_field(consistent, reference);
-  Budget budget;
-  budget.law = field_distance(same_field, hooke_field, s);
-  budget.bookkeeping = field_distance(hooke_field, consistent_field, s);
-  budget.discretisation = rms(s, resample(consistent_field, s).points);
-  budget.stretch = field_distance(force_field, same_field, s);
-  budget.not_at_rest = force.remaining_error;
-  return budget;
+ComparedState describe(const std::vector<energy_model::Equilibrium>& states, std::size_t compared,
+                       const Shape& force) {
+  ComparedState result;
+  const std::vector<double>& s = force.arc_length;
+  const Eigen::Matrix3Xd points = states[compared].sample(s).points;
+  result.energy_J = states[compared].energy.total();
+  result.stable = 0;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const bool stable = energy_model::succeeded(states[i].status);
+    ++(stable ? result.stable : result.unstable);
+    if (i == compared) {
+      result.rank = result.stable;
+      continue;
+    }
+    const Eigen::Matrix3Xd other = states[i].sample(s).points;
+    result.others.push_back({.stable = stable,
+                             .energy_difference_J = states[i].energy.total() - result.energy_J,
+                             .rms_from_compared_m = rms(s, other - points),
+                             .rms_from_force_m = rms(s, other - force.points)});
+  }
+  return result;
 }
 
 /// The end that no gripper holds; of two the one at arc length l.
@@ -71,23 +81,36 @@ Deviation shape_deviation(const Scene& scene, const Shape& shape, const Referenc
                    free_end(scene, shape.arc_length));
 }
 
-Comparison compare(const Scene& scene, const SolveOptions& options) {
+Comparison compare(const Scene& scene, const SolveOptions& options,
+                   const PlanOptions& plan_options) {
+  const Scene near = without_far_obstacles(scene).scene;
   Comparison result;
   result.scene = scene.name;
   result.gamma = scene.gamma();
+  result.length = scene.length;
   result.settings = scene.force_model;
-  result.force = solve_force(scene, scene.force_model, options);
-  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
-  const std::vector<double>& s = result.force.shape.arc_length;
+  result.plan = make_plan(scene, plan_options);
+  result.force = solve_force(near, near.force_model, options);
+  const Shape& force = result.force.shape;
+  // What a user would call, for its cost; the other states are looked for besides.
+  const energy_model::Equilibrium lowest = solve_reference(near, Model::energy, options);
+  result.energy_seconds = lowest.seconds;
+  result.energy_evaluations = lowest.evaluations;
+  const std::vector<energy_model::Equilibrium> states = all_states(near, lowest, options);
+  const std::size_t compared = state_of(near, force, states, options);
+  const energy_model::Equilibrium& energy = states[compared];
+  result.state = describe(states, compared, force);
+
+  const std::vector<double>& s = force.arc_length;
   result.reference = {s, energy.sample(s).points};
   const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
-  result.deviation = shape_deviation(scene, result.force.shape, energy.sample);
+  result.deviation = shape_deviation(scene, force, energy.sample);
   result.undeformed_rms_over_length =
       straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
-  result.effective_modulus = fit_effective_modulus(scene, result.force.shape);
-  result.budget = error_budget(scene, result.force, energy.sample, options);
-  result.energy_seconds = energy.seconds;
-  result.energy_evaluations = energy.evaluations;
+  result.effective_modulus = fit_effective_modulus(near, force);
+  result.residual_over_movement =
+      result.deviation.rms_over_movement / result.deviation.rms_m * result.effective_modulus.rms_m;
+  result.budget = error_budget(near, result.force, energy.sample, options);
   return result;
 }
 

@@ -174,18 +174,21 @@ double Scene::gamma() const {
   return weight_per_length().norm() * length * length * length / bending_stiffness();
 }
 
-bool Scene::planar() const {
+std::optional<Eigen::Vector3d> Scene::plane_normal() const {
   std::vector<Eigen::Vector3d> vectors = {gravity};
   for (const Gripper& gripper : grippers) {
     if (gripper.direction) vectors.push_back(*gripper.direction);
     vectors.emplace_back(gripper.position - grippers.front().position);
   }
   for (const PointLoad& load : loads) vectors.push_back(load.force);
+  for (const Obstacle& obstacle : obstacles) vectors.push_back(obstacle.normal);
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& v : vectors) {
     if (v.norm() > 0) moments += v.normalized() * v.normalized().transpose();
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moments).eigenvalues()[0] < 1e-18;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments);
+  if (!(axes.eigenvalues()[0] < 1e-18)) return std::nullopt;
+  return Eigen::Vector3d(axes.eigenvectors().col(0));
 }
 
 int Scene::spans() const {

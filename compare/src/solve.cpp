@@ -6,11 +6,23 @@
 #include <algorithm>
 
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/plan.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 
 namespace dlo::compare {
 namespace {
+
+/// Zero for each obstacle that was left out.
+void spread_obstacle_forces(Solution& solution, const std::vector<bool>& in_reach) {
+  std::vector<Eigen::Vector3d> forces;
+  std::size_t next = 0;
+  for (const bool solved : in_reach) {
+    const bool known = solved && next < solution.obstacles.size();
+    forces.emplace_back(known ? solution.obstacles[next++] : Eigen::Vector3d::Zero());
+  }
+  solution.obstacles = std::move(forces);
+}
 
 /// The exact model's scenes, said in the scene's own words.
 void require_exact_scene(const Scene& scene) {
@@ -88,33 +100,47 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
 
 Solution solve(const Scene& scene, Model model, const SolveOptions& options,
                const std::vector<double>& arc_lengths) {
+  const ReachedScene reached = without_far_obstacles(scene);
+  const Scene& near = reached.scene;
+  Solution solution;
   if (model == Model::chain || model == Model::force) {
-    Solution solution = model == Model::chain ? solve_chain(scene, scene.force_model, options)
-                                              : solve_force(scene, scene.force_model, options);
+    solution = model == Model::chain ? solve_chain(near, near.force_model, options)
+                                     : solve_force(near, near.force_model, options);
     if (!arc_lengths.empty()) solution.shape = resample(solution.shape, arc_lengths);
-    return solution;
+  } else {
+    solution = sampled(near, model, solve_reference(near, model, options), arc_lengths);
   }
-  return sampled(scene, model, solve_reference(scene, model, options), arc_lengths);
+  spread_obstacle_forces(solution, reached.in_reach);
+  return solution;
+}
+
+std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
+                                                        const SolveOptions& options) {
+  std::vector<energy_model::Equilibrium> states;
+  try {
+    states = energy_model::all_energy(
+        energy_problem(scene),
+        {.terms = options.terms, .max_evaluations = options.max_evaluations});
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
+  }
+  std::erase_if(states, [](const energy_model::Equilibrium& state) {
+    return !energy_model::succeeded(state.status) &&
+           state.status != energy_model::SolveStatus::saddle;
+  });
+  if (states.empty()) {
+    throw ConvergenceError(fmt::format("{}: the energy model found no equilibrium", scene.file));
+  }
+  return states;
 }
 
 std::vector<Solution> solve_all(const Scene& scene, const SolveOptions& options,
                                 const std::vector<double>& arc_lengths) {
+  const ReachedScene reached = without_far_obstacles(scene);
   std::vector<Solution> solutions;
-  try {
-    for (const energy_model::Equilibrium& equilibrium : energy_model::all_energy(
-             energy_problem(scene),
-             {.terms = options.terms, .max_evaluations = options.max_evaluations})) {
-      const bool equilibrium_found = energy_model::succeeded(equilibrium.status) ||
-                                     equilibrium.status == energy_model::SolveStatus::saddle;
-      if (equilibrium_found) {
-        solutions.push_back(sampled(scene, Model::energy, equilibrium, arc_lengths));
-      }
-    }
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
-  }
-  if (solutions.empty()) {
-    throw ConvergenceError(fmt::format("{}: the energy model found no equilibrium", scene.file));
+  for (const energy_model::Equilibrium& state : reference_states(reached.scene, options)) {
+    solutions.push_back(sampled(scene, Model::energy, state, arc_lengths));
+    spread_obstacle_forces(solutions.back(), reached.in_reach);
   }
   return solutions;
 }

@@ -8,6 +8,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solve.hpp"
 #include "dlo/force_model/simulation.hpp"
+#include "dlo/force_model/tangent_stiffness.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -159,6 +160,21 @@ Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
   return solution;
 }
 
+Shape chain_from(const Scene& scene, const ForceModelSettings& settings, const Shape& start,
+                 const SolveOptions& options) {
+  const Discretisation discretisation = discretise(scene, settings);
+  energy_model::PolygonOptions polygon_options;
+  polygon_options.max_evaluations = options.max_evaluations;
+  const energy_model::PolygonResult result = energy_model::solve_polygon(
+      polygon_problem(discretisation.rod), resample(start, discretisation.arc_length).points,
+      polygon_options);
+  if (!energy_model::succeeded(result.status)) {
+    throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
+                                       scene.file, result.message, result.evaluations));
+  }
+  return discretisation.shape(result.points);
+}
+
 Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                      const SolveOptions& options) {
   const Discretisation discretisation = discretise(scene, settings);
@@ -200,6 +216,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   solution.c_F = simulation.options().c_F;
   solution.c_h = simulation.options().c_h;
   solution.remaining_error = result.remaining_error;
+  solution.to_rest = force_model::check_equilibrium(simulation.rod(), simulation.points()).step;
   solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return solution;

@@ -91,6 +91,13 @@ class Search {
       if (options_.all) add(refined(near_field(fields[i])), found);
       if (i + 1 >= followed) add_falls(found);
     }
+    if (found.empty()) {
+      // A second search, which begins after the starts of the first, may have none left.
+      SpanSolution none = empty_solution(terms());
+      none.x.setZero(none.model->size());
+      none.fail("no shape to start from is left");
+      found.push_back(std::move(none));
+    }
     return sorted(std::move(found));
   }
 

@@ -62,7 +62,12 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
   Eigen::Index count = 0;
   const std::vector<Eigen::Index> index = free_indices(rod, count);
   EquilibriumCheck result;
-  if (count == 0) return {.stable = true, .remaining_error = 0};
+  result.step.setZero(3, N);
+  if (count == 0) {
+    result.stable = true;
+    result.remaining_error = 0;
+    return result;
+  }
 
   const double h = 1e-6 * rod.rest_lengths.minCoeff();
   Eigen::Matrix3Xd moved = points;
@@ -104,7 +109,12 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
   }
   const Factor factor(stiffness);
   if (factor.info() != Eigen::Success) return result;
-  const double remaining = factor.solve(force).norm() / std::sqrt(static_cast<double>(N));
+  const Eigen::VectorXd step = factor.solve(force);
+  for (Eigen::Index i = 0; i < N; ++i) {
+    const Eigen::Index row = index[static_cast<std::size_t>(i)];
+    if (row >= 0) result.step.col(i) = step.segment<3>(3 * row);
+  }
+  const double remaining = step.norm() / std::sqrt(static_cast<double>(N));
   result.stable = factor.vectorD().minCoeff() > 0 && std::isfinite(remaining);
   result.remaining_error = remaining;
   if (factor.vectorD().minCoeff() < 0) result.falling_direction = falling_direction(factor, index);

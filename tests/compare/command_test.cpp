@@ -206,6 +206,32 @@ TEST_F(Command, CompareWritesTheContractsJson) {
   EXPECT_NEAR(hooke.at("effective_modulus_ratio").get<double>(), 1, 0.01);
 }
 
+TEST_F(Command, ExplainShowsThePlanThatJsonAlwaysHas) {
+  const std::string far = scene(std::string(good) + R"([[obstacle]]
+point = [0, -0.6, 0]
+normal = [0, 1, 0]
+)");
+  for (const std::string command : {"solve ", "compare "}) {
+    EXPECT_EQ(run(command + far).out.find("left out"), std::string::npos);
+    const Outcome text = run(command + far + " --explain --target-error 1e-4");
+    ASSERT_EQ(text.status, 0) << text.err;
+    for (const char* expected : {"planar", "static", "clamp - free", "out of reach", "stretch",
+                                 "shear", "at most", "0.01 % of l"}) {
+      EXPECT_NE(text.out.find(expected), std::string::npos) << expected << "\n" << text.out;
+    }
+    const json document = json::parse(run(command + far + " --format json").out);
+    const json& plan =
+        command == "solve " ? document.at("plan") : document.at("cases")[0].at("plan");
+    EXPECT_EQ(plan.at("geometry"), "planar");
+    EXPECT_EQ(plan.at("obstacles")[0].at("in_reach"), false);
+    EXPECT_NEAR(plan.at("obstacles")[0].at("clearance_m").get<double>(), 0.1, 1e-12);
+    EXPECT_GT(plan.at("left_out")[0].at("bound_m").get<double>(), 0);
+  }
+  // Out of reach, so that exact, which knows no obstacles, takes the scene.
+  EXPECT_EQ(run("solve " + far + " --model exact").status, 0);
+  expect_error("solve " + far + " --target-error 0", 2, {"--target-error"});
+}
+
 TEST_F(Command, CompareIsReadableAsTextAndCsv) {
   const Outcome text = run("compare " + steel());
   EXPECT_NE(text.out.find("E*/E"), std::string::npos);
@@ -268,6 +294,22 @@ TEST_F(Command, StabilityMapTakesAScene) {
   expect_error("stability --map cF-l_s", 2, {"cF-l_s", "cF-cc"});
   expect_error("stability " + scene(good), 2, {"scene.toml", "--map"});
   expect_error("stability --case nonsense", 2, {"nonsense"});
+}
+
+TEST_F(Command, BenchWritesRowsAndAnswers) {
+  const std::string arguments = "bench " + steel() + " --seconds 0.5 --repeats 1";
+  const json document = json::parse(run(arguments + " --format json").out);
+  EXPECT_EQ(document.at("schema"), "dlo/bench/1");
+  ASSERT_GT(document.at("runs").size(), 5U);
+  for (const char* key :
+       {"scene", "model", "law", "size", "time_s", "work", "rms_over_length", "front"}) {
+    EXPECT_TRUE(document.at("runs")[0].contains(key)) << key;
+  }
+  EXPECT_EQ(document.at("answers")[0].at("static").size(), 4U);
+  EXPECT_EQ(run(arguments + " --format csv").out.substr(0, 11), "scene,kind,");
+  EXPECT_NE(run(arguments).out.find("What to use"), std::string::npos);
+  expect_error("bench --seconds 0", 2, {"--seconds"});
+  expect_error("bench " + path("missing.toml"), 2, {"missing.toml"});
 }
 
 TEST_F(Command, OptionsOverrideTheScene) {
@@ -344,7 +386,7 @@ TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
 }
 
 TEST_F(Command, HelpHasAnExampleThatWorks) {
-  for (const std::string command : {"solve", "compare", "paper", "stability"}) {
+  for (const std::string command : {"solve", "compare", "paper", "bench", "stability"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.status, 0);
     EXPECT_NE(help.out.find("Example"), std::string::npos) << command;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "dlo/compare/error.hpp"
 #include "scenes.hpp"
@@ -136,17 +137,103 @@ TEST(Comparison, PaperRodIsFarFromItsModulusAndHookeIsNot) {
   Scene scene = paper_scenes().front();
   const Comparison paper = compare(scene);
   EXPECT_NEAR(paper.effective_modulus.ratio, 0.0285, 0.0005);
-  EXPECT_GT(paper.budget.law, 10 * paper.budget.bookkeeping);
-  EXPECT_LT(paper.budget.stretch, 1e-6 * scene.length);
-  EXPECT_NEAR(paper.budget.law, paper.deviation.rms_m, 0.01 * paper.deviation.rms_m);
+  EXPECT_GT(paper.budget.law.rms_m, 10 * paper.budget.bookkeeping.rms_m);
+  EXPECT_LT(paper.budget.stretch.rms_m, 1e-6 * scene.length);
+  // Formula 21 with the consistent segments gives another c_b, which is their interaction.
+  EXPECT_NEAR(paper.budget.law.share + paper.budget.interaction.share, 1, 0.01);
+  EXPECT_LT(paper.budget.interaction.rms_m, 0.15 * paper.budget.total_m);
   scene.force_model.law = Law::hooke;
   scene.force_model.bookkeeping = Bookkeeping::consistent;
   const Comparison hooke = compare(scene);
   EXPECT_NEAR(hooke.effective_modulus.ratio, 1, 0.01);
   EXPECT_LT(hooke.deviation.rms_over_length, 1e-4);
-  EXPECT_EQ(hooke.budget.law, 0);
-  EXPECT_EQ(hooke.budget.bookkeeping, 0);
-  EXPECT_NEAR(hooke.budget.discretisation, hooke.deviation.rms_m, 0.02 * hooke.deviation.rms_m);
+  EXPECT_EQ(hooke.budget.law.rms_m, 0);
+  EXPECT_EQ(hooke.budget.bookkeeping.rms_m, 0);
+  EXPECT_NEAR(hooke.budget.discretisation.rms_m, hooke.deviation.rms_m,
+              0.02 * hooke.deviation.rms_m);
+}
+
+class BudgetOf : public testing::TestWithParam<std::tuple<double, Law, Bookkeeping>> {};
+
+TEST_P(BudgetOf, AddsUpToTheTotal) {
+  const auto [gamma, law, bookkeeping] = GetParam();
+  for (const int points : {8, 16, 40}) {
+    Scene scene = heavy_scene(gamma, 20);
+    scene.force_model.law = law;
+    scene.force_model.bookkeeping = bookkeeping;
+    scene.force_model.points = points;
+    // A hundredth of AE: rest comes ten times sooner.
+    scene.force_model.c_c = scene.axial_stiffness() / 100;
+    const Comparison c = compare(scene);
+    const Budget& b = c.budget;
+    const double parts = b.law.share + b.bookkeeping.share + b.discretisation.share +
+                         b.stretch.share + b.not_at_rest.share;
+    EXPECT_NEAR(parts + b.interaction.share, 1, 1e-9) << points;
+    // The total of the budget is the deviation, on other arc lengths.
+    EXPECT_NEAR(b.total_m, c.deviation.rms_m, 0.05 * c.deviation.rms_m) << points;
+    // Only where two things are switched is there anything to interact.
+    if (law == Law::hooke || bookkeeping == Bookkeeping::consistent) {
+      EXPECT_NEAR(parts, 1, 0.01) << points;
+      EXPECT_LT(b.interaction.rms_m, 0.02 * b.total_m + 1e-7) << points;
+    }
+    if (law == Law::hooke) {
+      EXPECT_EQ(b.law.rms_m, 0);
+    }
+    if (bookkeeping == Bookkeeping::consistent) {
+      EXPECT_EQ(b.bookkeeping.rms_m, 0);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, BudgetOf,
+    testing::Combine(testing::Values(0.2, 2.0, 20.0), testing::Values(Law::paper, Law::hooke),
+                     testing::Values(Bookkeeping::paper, Bookkeeping::consistent)));
+
+TEST(Budget, SaysHowFarFromRestTheShapeIs) {
+  Scene scene = heavy_scene(2, 0);
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  const Solution rest = solve_force(scene, scene.force_model, {.rest_tolerance = 1e-9});
+  const Solution early = solve_force(scene, scene.force_model, {.rest_tolerance = 1e-3});
+  const double distance = rms(rest.shape.arc_length, rest.shape.points - early.shape.points);
+  const Comparison c = compare(scene, {.rest_tolerance = 1e-3});
+  EXPECT_GT(distance, 1e-6);
+  EXPECT_NEAR(c.budget.not_at_rest.rms_m, distance, 0.1 * distance);
+}
+
+TEST(Comparison, ComparesWithTheStateThatTheForceModelIsIn) {
+  // Between clamps that lean up a heavy rod hangs out of its plane, to either side: two mirror
+  // images, of which force and energy model may well take different ones.
+  Scene scene = heavy_scene(100, 30);
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  scene.grippers.push_back(
+      {.at = 1, .position = {0.6, 0, 0}, .direction = Eigen::Vector3d(1, -1, 0).normalized()});
+  const Comparison c = compare(scene);
+  EXPECT_EQ(c.state.stable, 2);
+  EXPECT_EQ(c.state.others.front().stable, true);
+  EXPECT_NEAR(c.state.others.front().energy_difference_J, 0, 1e-9 * std::abs(c.state.energy_J));
+  EXPECT_GT(c.state.others.front().rms_from_compared_m, 0.1);
+  EXPECT_LT(c.deviation.rms_over_length, 0.01);
+  EXPECT_NEAR(c.budget.discretisation.share, 1, 0.01);
+  for (const OtherState& other : c.state.others) {
+    EXPECT_GT(other.rms_from_force_m, 5 * c.deviation.rms_m);
+  }
+}
+
+TEST(Comparison, SaysWhichOfSeveralStatesItCompared) {
+  Scene scene = heavy_scene(100, 0);
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  const Comparison c = compare(scene);
+  // Above Gamma = 41.4 a horizontal clamp has other shapes, thrown back over the clamp.
+  EXPECT_GE(c.state.others.size(), 1U);
+  EXPECT_EQ(c.state.rank, 1);
+  EXPECT_EQ(static_cast<int>(c.state.others.size()), c.state.stable + c.state.unstable - 1);
+  for (const OtherState& other : c.state.others) {
+    EXPECT_GT(other.energy_difference_J, 0);
+    EXPECT_GT(other.rms_from_compared_m, 0.1);
+    EXPECT_GT(other.rms_from_force_m, 10 * c.deviation.rms_m);
+  }
+  EXPECT_EQ(compare(heavy_scene(0.2, 0)).state.others.size(), 0U);
 }
 
 TEST(Solve, AllModelsAgreeOnForcesAndEnergies) {

@@ -91,7 +91,10 @@ struct Scene {
   [[nodiscard]] Eigen::Vector3d weight_per_length() const;  ///< rho A g [N/m]
   [[nodiscard]] double mass() const;                        ///< [kg]
   [[nodiscard]] double gamma() const;                       ///< w l^3 / (EI) [-]
-  [[nodiscard]] bool planar() const;  ///< grips, gravity and loads lie in one plane
+  /// Unit normal of the plane that grips, forces and obstacles share, if they do; of several planes
+  /// any one.
+  [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
+  [[nodiscard]] bool planar() const { return plane_normal().has_value(); }
   [[nodiscard]] int spans() const;    ///< parts that the clamps cut the rod into
 };
 

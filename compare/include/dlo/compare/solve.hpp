@@ -53,8 +53,7 @@ struct Solution {
   Shape shape;
   SceneEnergies energy;
   std::vector<GripperLoad> grippers;
-  std::vector<Eigen::Vector3d>
-      obstacles;  ///< force of each on the rod; of all models but exact [N]
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod [N]
   /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   long evaluations = 0;
@@ -65,6 +64,7 @@ struct Solution {
   double c_F = 0;         ///< of force, at its last step
   double c_h = 0;
   double remaining_error = 0;  ///< of force: estimated distance to rest [m]
+  Eigen::Matrix3Xd to_rest;    ///< of force: Newton's step to rest from each point [m]
 };
 
 /// The continuous reference of a scene: `energy` or `exact`.
@@ -72,7 +72,13 @@ struct Solution {
 [[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                                         const SolveOptions& options = {});
 
-/// Solves a scene. Continuous models are sampled at `arc_lengths` (or at 101 equal ones if empty);
+/// Every equilibrium that the energy model finds, as it is: stable ones first, by energy; never
+/// empty. @throws InputError, ConvergenceError
+[[nodiscard]] std::vector<energy_model::Equilibrium> reference_states(
+    const Scene& scene, const SolveOptions& options = {});
+
+/// Solves a scene, without the obstacles that its rod cannot reach (see make_plan), whose forces
+/// are zero. Continuous models are sampled at `arc_lengths` (or at 101 equal ones if empty);
 /// polygons keep their points, or are resampled on straight lines when `arc_lengths` are given.
 /// @throws InputError if the model does not know such a scene, ConvergenceError
 [[nodiscard]] Solution solve(const Scene& scene, Model model, const SolveOptions& options = {},
@@ -88,6 +94,13 @@ struct Solution {
 /// @throws InputError, ConvergenceError
 [[nodiscard]] Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
                                    const SolveOptions& options = {});
+
+/// The chain of elastic segments in the equilibrium that a shape falls to; its c_c is the
+/// settings'. For the paper's law between unequal segments see energy_model::PolygonProblem.
+/// @param start  any polygon of the scene's rod
+/// @throws InputError, ConvergenceError
+[[nodiscard]] Shape chain_from(const Scene& scene, const ForceModelSettings& settings,
+                               const Shape& start, const SolveOptions& options = {});
 
 /// The force model at rest. Between several grippers it starts where the chain's lowest shape came
 /// from, so that both are in the same state. @throws InputError, ConvergenceError

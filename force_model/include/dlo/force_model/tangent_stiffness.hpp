@@ -11,6 +11,7 @@ namespace dlo::force_model {
 struct [[nodiscard]] EquilibriumCheck {
   bool stable = false;          ///< the stiffness of the free points is positive definite
   double remaining_error = -1;  ///< RMS over the points of Newton's step to the equilibrium [m]
+  Eigen::Matrix3Xd step;        ///< that step [m], 3 x rod.points()
   /// A movement of the free points that the stiffness does not resist, the furthest by 1 and on the
   /// whole towards +x, else +y, else +z [-], 3 x rod.points(); empty if stable.
   Eigen::Matrix3Xd falling_direction;

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+
+namespace dlo::compare {
+
+struct PlanOptions {
+  double target = 1e-3;  ///< wanted error, RMS over the rod's length [-], > 0
+  /// Fastest that a gripper moves, starts or stops [m/s], >= 0; 0: the scene stands still.
+  double gripper_speed = 0;
+};
+
+/// A part of the rod that can be solved by itself: from clamp to clamp or end.
+struct PlannedSpan {
+  double begin = 0;  ///< arc length [m]
+  double end = 0;
+  int inner_pins = 0;      ///< pins strictly inside
+  std::string begin_held;  ///< "clamp", "pin" or "free"
+  std::string end_held;
+};
+
+struct PlannedObstacle {
+  double clearance = 0;  ///< least distance that any point of the rod keeps from it, however it
+                         ///< bends [m]; negative: some could enter it
+  bool in_reach = true;
+};
+
+/// What a model leaves out, with the most that it could change.
+struct LeftOut {
+  std::string what;
+  std::string models;  ///< that leave it out
+  /// Of the shape, RMS along the rod [m]; infinite: no bound, or it cannot be left out.
+  double bound_m = 0;
+  std::string why;
+};
+
+/// What a scene needs, decided before it is solved.
+struct Plan {
+  double gamma = 0;
+  double target = 0;     ///< PlanOptions::target
+  bool planar = false;   ///< grips, loads and obstacles in reach lie in one plane
+  bool moving = false;   ///< the gripper moves so fast that the rod's inertia counts
+  bool stretch = false;  ///< its bound is above a tenth of the target
+  std::vector<PlannedSpan> spans;
+  std::vector<PlannedObstacle> obstacles;  ///< as in the scene
+  /// N at which the hooke polygon with the scene's bookkeeping meets the target; 0: none up to
+  /// `most_planned_points`, or unknown.
+  int points = 0;
+  int scene_points = 0;  ///< N of the scene
+  bool contact = false;  ///< the rod touches an obstacle, or it was not found out
+  std::vector<LeftOut> left_out;
+
+  /// Bound of one thing left out [m]. @throws std::invalid_argument if there is no such thing
+  [[nodiscard]] double bound(const std::string& what) const;
+};
+
+inline constexpr int most_planned_points = 4000;
+
+/// Decides what a scene needs, and bounds what is left out.
+///
+/// - Planar if the scene is; the energy model checks that a planar shape is stable out of its
+/// plane.
+/// - Spans: clamps hold position and direction, so nothing but the shape's own energy passes.
+/// - Obstacles: with the rod's length and grips no point gets further than an ellipsoid between two
+///   neighbouring grips (foci the grips, the rod between them as its long axis), or a ball around
+///   the last. Stretch adds at most 2 l sqrt(P / EA), P the sum of all loads: the stretch energy
+///   EA d^2 / (2 l) is no more than what the loads do over a way of 2 l. The smaller of EA and c_c.
+/// - Stretch, shear and the polygon: twice the first-order answer of the rod's own shape
+///   (PolygonResponse), while that is below 3 % of the length; else they are said to have no bound.
+///   The shape is the energy model's, solved once, without obstacles out of reach; a rod that
+///   touches an obstacle has no bound either, since where it touches may change.
+///   Shear: k G >= 0.3 E. A round section has k = 6 (1 + nu) / (7 + 6 nu) (Cowper 1966) and
+///   G = E / (2 (1 + nu)), so kG = 3 E / (7 + 6 nu), least for nu = 1/2.
+/// - Polygon: that answer at the scene's N falls with L^2 (`consistent`) or L (`paper`), from which
+///   N follows; besides, no joint turns by more than 0.5 rad (Formula 10). The law `paper` has an
+///   error of its own that no N removes, so this is said of the hooke law only.
+/// - Motion: a gripper that starts or stops at speed v gives the rod the energy rho A l v^2 / 2 at
+///   most; a rod held by a clamp or two grips bends by 3 EI d^2 / (2 l^3) or more for a deflection
+///   d, so the rod leaves its static shape by d <= v l^2 sqrt(rho A / (3 EI)) (small deflections).
+///   A single pin lets the rod swing: no bound.
+/// - Twist: a round, naturally straight rod whose grips leave the twist free has none: nothing.
+/// @throws std::invalid_argument if an option is out of range
+[[nodiscard]] Plan make_plan(const Scene& scene, const PlanOptions& options = {});
+
+/// Distance [m] that every point of the rod keeps from each obstacle, as above; without stretch.
+[[nodiscard]] std::vector<double> obstacle_clearances(const Scene& scene);
+
+/// A scene without the obstacles that its rod cannot reach.
+struct ReachedScene {
+  Scene scene;
+  std::vector<bool> in_reach;  ///< of each of the original's obstacles
+};
+
+[[nodiscard]] ReachedScene without_far_obstacles(const Scene& scene);
+
+}  // namespace dlo::compare

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/benchmark.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
+
+namespace dlo::compare {
+
+/// Times runs within what is left of the budget.
+class Stopwatch {
+ public:
+  Stopwatch(const BenchmarkOptions& options, std::vector<std::string>& skipped)
+      : options_(options), skipped_(skipped) {}
+
+  [[nodiscard]] double seconds() const;  ///< since construction
+  void allow(double seconds) { until_ = this->seconds() + seconds; }
+  [[nodiscard]] double left() const { return until_ - seconds(); }
+
+  /// Runs `work` repeatedly. Nothing if it is predicted to take more than a quarter of what is
+  /// left, or does not converge.
+  [[nodiscard]] std::optional<Timing> time(const std::string& name, double predicted_s,
+                                           const std::function<void()>& work);
+
+  /// The same for a run that times its own parts; false if it was skipped.
+  [[nodiscard]] bool run_once(const std::string& name, double predicted_s,
+                              const std::function<void()>& work);
+
+ private:
+  [[nodiscard]] bool fits(const std::string& name, double predicted_s);
+  [[nodiscard]] bool done(const std::string& name, const std::function<void()>& work);
+
+  const BenchmarkOptions& options_;
+  std::vector<std::string>& skipped_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double until_ = 0;
+};
+
+[[nodiscard]] Timing timing_of(std::vector<double> seconds);
+
+struct ReferenceShape {
+  Model model = Model::exact;
+  energy_model::Equilibrium rod;
+  /// Of `exact` and `energy` from each other, RMS over the length; NaN without exact.
+  double agreement = 0;
+};
+
+[[nodiscard]] ReferenceShape benchmark_reference(const Scene& scene);
+
+[[nodiscard]] std::vector<BenchmarkRun> static_runs(const Scene& scene,
+                                                    const ReferenceShape& reference,
+                                                    Stopwatch& watch);
+
+[[nodiscard]] std::vector<BenchmarkRun> tracking_runs(const Scene& scene,
+                                                      const ReferenceShape& reference,
+                                                      const BenchmarkOptions& options,
+                                                      Stopwatch& watch);
+
+/// A force model of the benchmark.
+struct ForceVariant {
+  Law law = Law::hooke;
+  Bookkeeping bookkeeping = Bookkeeping::consistent;
+  StepperName stepper = StepperName::automatic;
+  double stretch_share = 1;  ///< c_c over AE
+
+  [[nodiscard]] ForceModelSettings settings(const Scene& scene, int points) const;
+  [[nodiscard]] std::string text(Model model) const;
+};
+
+}  // namespace dlo::compare

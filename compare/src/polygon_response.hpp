@@ -1,0 +1,63 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dlo/compare/discretise.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
+
+namespace dlo::compare {
+
+/// How an equilibrium of the continuous rod answers, to first order, to what a model leaves out.
+///
+/// The rod is cut into the segments of a polygon, each with the rod's own tangent t_i in its middle
+/// (a held one with its clamp's) and the force n_i that what lies beyond it exerts on it. Small
+/// turns dt_i across t_i minimise
+///     sum joints -2 (EI/L) ln((1 + t_i.t_{i+1})/2) - sum L_i n_i.t_i     to second order,
+/// minus f_i.dt_i for what was left out, subject to sum L_i (dt_i + eta_i) = gap between grips, eta
+/// the strain that was left out. With the complementary energy of a rod that stretches and shears,
+///     (n.t)^2 / (2 EA) + |n_across|^2 / (2 kGA)  per length,
+/// stretch has eta = (n.t) t / (EA), f = L n_across (n.t) / (EA), and shear has eta = n_across /
+/// (kGA), f = -L n_across (n.t) / (kGA). The polygon's own error is the first Newton step from the
+/// rod's tangents to the polygon's equilibrium. O(N).
+class PolygonResponse {
+ public:
+  /// Of a rod that touches no obstacle, its polygon and the hooke law.
+  PolygonResponse(const Scene& scene, const Discretisation& discretisation,
+                  const energy_model::Equilibrium& rod);
+
+  // RMS of the points' movement along the rod [m]; infinite if the rod cannot answer, as a taut one
+  // cannot get longer.
+
+  /// @param stiffness  EA [N]
+  [[nodiscard]] double stretch(double stiffness) const;
+  /// @param stiffness  kGA [N]
+  [[nodiscard]] double shear(double stiffness) const;
+  /// Of the hooke polygon against the rod.
+  [[nodiscard]] double discretisation() const;
+
+ private:
+  struct Turns {
+    bool possible = false;
+    Eigen::Matrix3Xd dt;  // 3 x n
+  };
+  void find_held_segments();
+  void find_forces(const energy_model::Equilibrium& rod);
+  [[nodiscard]] Turns turns(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& gaps) const;
+  [[nodiscard]] double moved_by(const Eigen::Matrix3Xd& f, const Eigen::Matrix3Xd& eta) const;
+  [[nodiscard]] Eigen::Matrix3Xd points_along(const Eigen::Vector3d& start,
+                                              const Eigen::Matrix3Xd& steps) const;
+  [[nodiscard]] double moved_rms(const Eigen::Matrix3Xd& movement) const;
+
+  const Scene& scene_;
+  const Discretisation& polygon_;
+  Eigen::Index n_;                  // segments
+  std::vector<std::size_t> along_;  // grips in the order of their points
+  std::vector<bool> held_;          // segments
+  Eigen::Matrix3Xd tangents_;       // t_i
+  Eigen::Matrix3Xd forces_;         // n_i [N]
+  Eigen::Matrix3Xd rod_points_;     // of the rod at the points' arc lengths [m]
+  std::vector<Eigen::Matrix<double, 3, 2>> across_;
+};
+
+}  // namespace dlo::compare
