@@ -204,6 +204,20 @@ TEST(MaterialFit, DensityIsToldByALoadAndNotByGravityAlone) {
   EXPECT_NEAR(*fit.density->value / truth.material.density, 1, 0.05);
 }
 
+TEST(MaterialFit, WarnsOfAShapeOfAnotherRod) {
+  const Scene scene = heavy_scene(2, 0);
+  const std::vector<double> s = equal_arc_lengths(1, 15);
+  std::mt19937 random(10);
+  MeasuredShape shape = exact_shape(scene, s);
+  shape.points = with_noise(shape.points, 1e-3, random);
+  EXPECT_EQ(fit_material({scene}, {shape}).warning, "");
+  EXPECT_EQ(fit_material({scene}, {shape}, {.noise = 1e-3}).warning, "");
+  EXPECT_NE(fit_material({scene}, {shape}, {.noise = 4e-4}).warning.find("given noise"),
+            std::string::npos);
+  shape.points *= 10;
+  EXPECT_NE(fit_material({scene}, {shape}).warning.find("another unit"), std::string::npos);
+}
+
 TEST(MaterialFit, RefusesWhatCannotBeFitted) {
   const Scene scene = heavy_scene(1, 0);
   const MeasuredShape three = exact_shape(scene, {0.2, 0.5, 0.9});
