@@ -12,5 +12,8 @@ void add_compare(CLI::App& app);
 void add_check(CLI::App& app);
 void add_calibrate(CLI::App& app);
 void add_paper(CLI::App& app);
+void add_stability(CLI::App& app);
+void add_regress(CLI::App& app);
+void add_sweep(CLI::App& app);
 
 }  // namespace dlo::cli

@@ -34,6 +34,9 @@ int run(int argc, char** argv) {
   dlo::cli::add_check(app);
   dlo::cli::add_calibrate(app);
   dlo::cli::add_paper(app);
+  dlo::cli::add_stability(app);
+  dlo::cli::add_regress(app);
+  dlo::cli::add_sweep(app);
   app.footer(
       "Exit status: 0 good, 1 outside a tolerance, 2 bad usage or input, 3 a solver did not "
       "converge.\nMore: dlo COMMAND --help");

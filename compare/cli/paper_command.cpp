@@ -10,6 +10,7 @@
 #include "comparison_text.hpp"
 #include "dlo/compare/paper_report.hpp"
 #include "json.hpp"
+#include "moving_text.hpp"
 #include "output.hpp"
 #include "scene_options.hpp"
 
@@ -200,16 +201,21 @@ void run(const OutputOptions& options) {
   const PaperReport report = compare::paper_report([&](const std::string& what) {
     if (terminal) fmt::print(stderr, "{}\n", what);
   });
+  if (terminal) fmt::print(stderr, "moving grippers, Tables 2 to 4\n");
+  const compare::MovingReport moving = compare::moving_report();
   std::string content;
   switch (options.kind()) {
-    case Format::json:
-      content = to_json(report).dump(2) + "\n";
+    case Format::json: {
+      Json document = to_json(report);
+      document["moving"] = to_json(moving);
+      content = document.dump(2) + "\n";
       break;
+    }
     case Format::csv:
-      content = csv(report);
+      content = csv(report) + moving_csv(moving);
       break;
     case Format::text:
-      content = text(report);
+      content = text(report) + moving_text(moving);
       break;
   }
   write_output(options, content);

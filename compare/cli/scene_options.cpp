@@ -74,6 +74,10 @@ void SceneOptions::add_to(CLI::App& command) {
   command.add_option("--c-h", c_h_, "share of the last movement [-], stepper dynamic")
       ->group(group);
   command.add_option("--l-s", l_s_, "largest movement per step [m]")->group(group);
+  add_solvers_to(command);
+}
+
+void SceneOptions::add_solvers_to(CLI::App& command) {
   const std::string solvers = "Solvers";
   command.add_option("--terms", solve_.terms, "curvature terms of the energy model, 0: as needed")
       ->check(CLI::Range(0, 128))
@@ -117,10 +121,12 @@ void SceneOptions::apply(compare::Scene& scene) const {
   compare::check(settings, scene.file + ", with the command line's options");
 }
 
+std::vector<compare::Material> SceneOptions::materials() const {
+  return materials_.empty() ? compare::materials() : compare::load_materials(materials_);
+}
+
 compare::Scene SceneOptions::load(const std::string& path) const {
-  compare::Scene scene = materials_.empty()
-                             ? compare::load_scene(path)
-                             : compare::load_scene(path, compare::load_materials(materials_));
+  compare::Scene scene = compare::load_scene(path, materials());
   apply(scene);
   return scene;
 }

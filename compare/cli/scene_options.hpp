@@ -13,10 +13,13 @@ namespace dlo::cli {
 class SceneOptions {
  public:
   void add_to(CLI::App& command);
+  /// Only those that steer the solvers, and --materials.
+  void add_solvers_to(CLI::App& command);
 
   /// Loads a scene and applies the options. @throws compare::InputError
   [[nodiscard]] compare::Scene load(const std::string& path) const;
   [[nodiscard]] const compare::SolveOptions& solve() const { return solve_; }
+  [[nodiscard]] std::vector<compare::Material> materials() const;
 
  private:
   void apply(compare::Scene& scene) const;

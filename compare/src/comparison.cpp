@@ -66,6 +66,11 @@ std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene, const std::vect
   return points;
 }
 
+Deviation shape_deviation(const Scene& scene, const Shape& shape, const Reference& reference) {
+  return deviation(shape, reference, straight_rod(scene, shape.arc_length),
+                   free_end(scene, shape.arc_length));
+}
+
 Comparison compare(const Scene& scene, const SolveOptions& options) {
   Comparison result;
   result.scene = scene.name;
@@ -76,7 +81,7 @@ Comparison compare(const Scene& scene, const SolveOptions& options) {
   const std::vector<double>& s = result.force.shape.arc_length;
   result.reference = {s, energy.sample(s).points};
   const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
-  result.deviation = deviation(result.force.shape, energy.sample, straight, free_end(scene, s));
+  result.deviation = shape_deviation(scene, result.force.shape, energy.sample);
   result.undeformed_rms_over_length =
       straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
   result.effective_modulus = fit_effective_modulus(scene, result.force.shape);

@@ -21,6 +21,13 @@ double call_for_gsl(double x, void* data) {
   return (*shifted.function)(x)-shifted.level;
 }
 
+/// GSL aborts the program on errors unless told otherwise; every call looks at its result instead.
+/// Told once, so that threads do not tell it at the same time.
+void keep_gsl_from_aborting() {
+  static const bool silent = gsl_set_error_handler_off() != nullptr;
+  (void)silent;
+}
+
 }  // namespace
 
 std::size_t Scan::best() const {
@@ -41,7 +48,7 @@ Scan scan(const Function& function, double low, double high, int steps) {
 Minimum minimum_near(const Function& function, const Scan& scan) {
   const std::size_t best = scan.best();
   Minimum result{scan.x[best], scan.value[best]};
-  gsl_set_error_handler_off();
+  keep_gsl_from_aborting();
   Shifted shifted{&function, 0};
   gsl_function gsl{call_for_gsl, &shifted};
   const std::unique_ptr<gsl_min_fminimizer, decltype(&gsl_min_fminimizer_free)> minimiser(
@@ -65,7 +72,7 @@ Minimum minimum_near(const Function& function, const Scan& scan) {
 }
 
 double crossing(const Function& function, double inside, double outside, double level) {
-  gsl_set_error_handler_off();
+  keep_gsl_from_aborting();
   // Brent's method interpolates, so what is infinite is made merely large.
   const Function finite = [&](double x) {
     const double value = function(x);

@@ -68,9 +68,10 @@ void add_table_1(std::vector<TableRow>& rows) {
   rows.push_back(
       table.row("c_F", "c_F", "m/N", 5, 0.86 * (length / points) / (2 * 1.5696),
                 "no formula in the paper; 0.86 of the largest stable step L/(2 c_c) with L = l/N, "
-                "and 0.78 of it with L = l/(N-1)"));
-  rows.push_back(table.row("l_s", "l_s", "m", 5, 0.6 * length / points,
-                           "no formula in the paper; 0.6 of l/N"));
+                "and 0.78 of it with L = l/(N-1); Tables 2 and 4 ask for cm/N instead"));
+  rows.push_back(
+      table.row("l_s", "l_s", "m", 5, 0.6 * length / points,
+                "no formula in the paper; 0.6 of l/N; Tables 2 and 4 ask for cm instead"));
 }
 
 void add_table_5(std::vector<TableRow>& rows) {

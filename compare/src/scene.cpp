@@ -10,6 +10,7 @@
 
 #include "builtin_data.hpp"
 #include "dlo/compare/error.hpp"
+#include "read_scene.hpp"
 #include "strict_table.hpp"
 
 namespace dlo::compare {
@@ -213,9 +214,8 @@ void check(const ForceModelSettings& settings, const std::string& where) {
   }
 }
 
-Scene parse_scene(const std::string& text, const std::string& file,
-                  const std::vector<Material>& known_materials) {
-  const toml::table root = parse_toml(text, file);
+Scene read_scene(const toml::table& root, const std::string& file,
+                 const std::vector<Material>& known_materials) {
   StrictTable table(root, "", file);
   Scene scene;
   scene.file = file;
@@ -261,6 +261,11 @@ Scene parse_scene(const std::string& text, const std::string& file,
                                  scene.gamma(), largest_gamma));
   }
   return scene;
+}
+
+Scene parse_scene(const std::string& text, const std::string& file,
+                  const std::vector<Material>& known_materials) {
+  return read_scene(parse_toml(text, file), file, known_materials);
 }
 
 Scene load_scene(const std::string& path, const std::vector<Material>& known_materials) {

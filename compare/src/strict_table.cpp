@@ -144,9 +144,12 @@ std::optional<double> StrictTable::optional_number(std::string_view key, Dimensi
 }
 
 std::optional<int> StrictTable::optional_integer(std::string_view key, int low, int high) {
-  const toml::node* node = find(key);
-  if (node == nullptr) return std::nullopt;
-  const auto value = node->value_exact<std::int64_t>();
+  if (find(key) == nullptr) return std::nullopt;
+  return integer(key, low, high);
+}
+
+int StrictTable::integer(std::string_view key, int low, int high) {
+  const auto value = need(key).value_exact<std::int64_t>();
   if (!value || *value < low || *value > high) {
     fail(key, fmt::format("must be a whole number (allowed: {} to {})", low, high));
   }
@@ -166,8 +169,13 @@ std::optional<std::string> StrictTable::optional_text(std::string_view key) {
 
 std::optional<std::string> StrictTable::optional_choice(std::string_view key,
                                                         const std::vector<std::string>& allowed) {
-  std::optional<std::string> value = optional_text(key);
-  if (value && std::find(allowed.begin(), allowed.end(), *value) == allowed.end()) {
+  if (find(key) == nullptr) return std::nullopt;
+  return choice(key, allowed);
+}
+
+std::string StrictTable::choice(std::string_view key, const std::vector<std::string>& allowed) {
+  std::string value = text(key);
+  if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
     fail(key, fmt::format("unknown (allowed: {})", joined(allowed)));
   }
   return value;

@@ -43,7 +43,9 @@ class StrictTable {
   std::optional<int> optional_integer(std::string_view key, int low, int high);
   std::string text(std::string_view key);
   std::optional<std::string> optional_text(std::string_view key);
+  int integer(std::string_view key, int low, int high);
   /// One of `allowed`.
+  std::string choice(std::string_view key, const std::vector<std::string>& allowed);
   std::optional<std::string> optional_choice(std::string_view key,
                                              const std::vector<std::string>& allowed);
   Eigen::Vector3d vector(std::string_view key, Dimension dimension);

@@ -6,21 +6,19 @@
 #include <limits>
 #include <numbers>
 
+#include "fold_angle.hpp"
 #include "minimise.hpp"
 #include "require.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-/// Beyond this angle the moment of a `hooke` joint stays constant, as the force model's does [rad].
-constexpr double fold_angle = 3.0;
-
 /// Potential of a joint and its first two derivatives by the turning angle.
-struct Joint {
+struct AngleJoint {
   double energy, moment, stiffness;
 };
 
-Joint joint(JointLaw law, double stiffness, double L, double alpha) {
+AngleJoint joint_by_angle(JointLaw law, double stiffness, double L, double alpha) {
   if (law == JointLaw::paper) {
     const double s = std::sin(alpha / 2);
     const double c = std::cos(alpha / 2);
@@ -141,7 +139,7 @@ Tridiagonal second_derivative(const ChainProblem& problem, const Eigen::Matrix2X
   Tridiagonal matrix{Eigen::VectorXd::Zero(free), Eigen::VectorXd::Zero(free - 1)};
   for (Eigen::Index i = 1; i <= free; ++i) {
     const double stiffness =
-        joint(problem.law, problem.stiffness, joint_length(problem, i), angles[i] - angles[i - 1])
+        joint_by_angle(problem.law, problem.stiffness, joint_length(problem, i), angles[i] - angles[i - 1])
             .stiffness;
     matrix.diagonal[i - 1] +=
         stiffness + problem.segment_lengths[i] *
@@ -239,8 +237,8 @@ double chain_energy(const ChainProblem& problem, const Eigen::Ref<const Eigen::V
     energy -= L * (force.x() * c + force.y() * s);
     if (i == 0) break;
     gradient[i] += L * (force.x() * s - force.y() * c);
-    const Joint j =
-        joint(problem.law, problem.stiffness, joint_length(problem, i), angles[i] - angles[i - 1]);
+    const AngleJoint j =
+        joint_by_angle(problem.law, problem.stiffness, joint_length(problem, i), angles[i] - angles[i - 1]);
     energy += j.energy;
     gradient[i] += j.moment;
     gradient[i - 1] -= j.moment;
@@ -292,7 +290,7 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   const double total = chain_energy(problem, result.angles, gradient);
   result.points = chain_points(problem, result.angles);
   for (Eigen::Index i = 1; i < n; ++i) {
-    result.bending_energy += joint(problem.law, problem.stiffness, joint_length(problem, i),
+    result.bending_energy += joint_by_angle(problem.law, problem.stiffness, joint_length(problem, i),
                                    result.angles[i] - result.angles[i - 1])
                                  .energy;
   }

@@ -39,14 +39,6 @@ TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double
   };
 }
 
-/// A span's last solution, to go on from.
-struct Remembered {
-  std::shared_ptr<const SpanEnergy> model;  // none after a failure
-  Eigen::Matrix3d frame;
-
-  [[nodiscard]] bool planar() const { return !model || model->span().planar; }
-};
-
 std::vector<Equilibrium> combine(const Problem& problem, const std::vector<PlacedSpan>& placed,
                                  const std::vector<std::vector<SpanSolution>>& solutions) {
   std::vector<Equilibrium> result;
@@ -94,6 +86,14 @@ class EnergySolver::State {
   }
 
  private:
+  /// A span's last solution, to go on from.
+  struct Remembered {
+    std::shared_ptr<const SpanEnergy> model;  // none after a failure
+    Eigen::Matrix3d frame;
+
+    [[nodiscard]] bool planar() const { return !model || model->span().planar; }
+  };
+
   std::vector<SpanSolution> solve_placed(PlacedSpan& placed, const Problem& problem, bool all,
                                          const Remembered* last) {
     SpanOptions options;

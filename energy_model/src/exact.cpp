@@ -23,7 +23,7 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr std::size_t most_combinations = 64;  // of the spans' equilibria
+constexpr std::size_t most_results = 64;  // of the spans' equilibria
 
 /// The spans of a rod and an equilibrium of each.
 struct Pieces {
@@ -138,7 +138,7 @@ std::vector<Equilibrium> solve_spans(const Problem& problem, const ExactOptions&
   }
   std::vector<Equilibrium> result;
   std::vector<std::size_t> choice(found.size(), 0);
-  for (bool more = true; more && result.size() < most_combinations;) {
+  for (bool more = true; more && result.size() < most_results;) {
     pieces.equilibria.clear();
     for (std::size_t i = 0; i < found.size(); ++i) pieces.equilibria.push_back(found[i][choice[i]]);
     result.push_back(assemble(problem, pieces, options.tolerance));

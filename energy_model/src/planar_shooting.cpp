@@ -68,7 +68,7 @@ Frame make_frame(const PlanarCantilever& rod) {
   return frame;
 }
 
-int right_hand_side(double sigma, const double* state, double* rate, void* data) {
+int section_rates(double sigma, const double* state, double* rate, void* data) {
   const auto& section = *static_cast<const Section*>(data);
   const Eigen::Vector2d n = sigma * section.weight + section.loads;
   const double sine = std::sin(state[psi]);
@@ -88,7 +88,7 @@ bool shoot(const Frame& frame, double start, double tolerance, const std::vector
            std::vector<State>& states) {
   const std::size_t n = components;
   Section section{frame.weight, Eigen::Vector2d::Zero()};
-  gsl_odeiv2_system system{right_hand_side, nullptr, n, &section};
+  gsl_odeiv2_system system{section_rates, nullptr, n, &section};
   const std::unique_ptr<gsl_odeiv2_step, decltype(&gsl_odeiv2_step_free)> step(
       gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, n), gsl_odeiv2_step_free);
   const std::unique_ptr<gsl_odeiv2_evolve, decltype(&gsl_odeiv2_evolve_free)> evolve(

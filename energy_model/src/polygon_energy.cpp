@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fold_angle.hpp"
+
 namespace dlo::energy_model {
 namespace {
 
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
-
-/// Beyond this angle the moment of a `hooke` joint stays constant, as the force model's does [rad].
-constexpr double fold_angle = 3.0;
 
 /// Potential of a joint and its first two derivatives by h = sin^2(alpha/2) = |u - v|^2 / 4, u and
 /// v the segments' directions. Unlike alpha, h is smooth where the segments are in line.

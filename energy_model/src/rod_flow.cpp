@@ -17,16 +17,16 @@ constexpr Eigen::Index state_size = 11;
 constexpr Eigen::Index variation_size = 9;
 constexpr int most_steps = 20000;
 
-struct Piece {
+struct FlowPiece {
   Eigen::Vector3d weight;
   Eigen::Vector3d n;                 // at its beginning
   const Eigen::Matrix3Xd* n_change;  // derivatives of n, constant along the piece
 };
 
-int right_hand_side(double s, const double* y, double* rate, void* data) {
+int rod_rates(double s, const double* y, double* rate, void* data) {
   using Vector = Eigen::Map<const Eigen::Vector3d>;
   using Rate = Eigen::Map<Eigen::Vector3d>;
-  const auto& piece = *static_cast<const Piece*>(data);
+  const auto& piece = *static_cast<const FlowPiece*>(data);
   const Vector r(y);
   const Vector t(y + 3);
   const Vector v(y + 6);
@@ -58,10 +58,10 @@ struct Release {
 template <class T, void (*release)(T*)>
 using Owned = std::unique_ptr<T, Release<T, release>>;
 
-bool integrate(Piece& piece, double length, double tolerance, std::vector<double>& y) {
+bool integrate(FlowPiece& piece, double length, double tolerance, std::vector<double>& y) {
   silence_gsl();
   const std::size_t size = y.size();
-  gsl_odeiv2_system system{right_hand_side, nullptr, size, &piece};
+  gsl_odeiv2_system system{rod_rates, nullptr, size, &piece};
   const Owned<gsl_odeiv2_step, gsl_odeiv2_step_free> step(
       gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, size));
   const Owned<gsl_odeiv2_control, gsl_odeiv2_control_free> control(
@@ -92,7 +92,7 @@ RodVariation::RodVariation(Eigen::Index parameters)
 bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance, RodState& state,
                 RodVariation& variation, RodIntegrals& integrals) {
   const Eigen::Index parameters = variation.n.cols();
-  Piece piece{weight, state.n, &variation.n};
+  FlowPiece piece{weight, state.n, &variation.n};
   std::vector<double> y(static_cast<std::size_t>(state_size + parameters * variation_size), 0.0);
   Eigen::Map<Eigen::VectorXd> all(y.data(), static_cast<Eigen::Index>(y.size()));
   all.head<9>() << state.r, state.t, state.v;

@@ -1,6 +1,9 @@
 #include "dlo/force_model/environment.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "require.hpp"
 
 namespace dlo::force_model {
 namespace {
@@ -10,6 +13,13 @@ double depth(const Wall& wall, const Eigen::Vector3d& position) {
 }
 
 }  // namespace
+
+void check(const Wall& wall) {
+  require_not_negative("Wall", "stiffness", wall.stiffness);
+  const double length = wall.normal.norm();
+  require(std::abs(length - 1) < 1e-9, "Wall", "length of the normal", length, "1");
+  require(wall.point.allFinite(), "Wall", "point", wall.point.norm(), "finite");
+}
 
 Eigen::Vector3d wall_force(const Wall& wall, const Eigen::Vector3d& position) {
   return wall.stiffness * depth(wall, position) * wall.normal;

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "require.hpp"
 
 namespace dlo::force_model {
 namespace {
+
+// Movements below this share of the coordinates are rounding, which turns back and forth at rest.
+constexpr double rounding_share = 1024 * std::numeric_limits<double>::epsilon();
 
 std::vector<Rod> checked_rods(std::span<const BatchRod> start) {
   std::vector<Rod> rods;
@@ -46,6 +50,12 @@ Lockstep::Lockstep(std::span<const BatchRod> start, bool together)
   block_.update_dimension(rods_);
   points_.resize(3, rods_.front().points());
   forces_.resize(3, rods_.front().points());
+  for (std::size_t rod = 0; rod < start.size(); ++rod) update_rounding(rod);
+}
+
+void Lockstep::update_rounding(std::size_t rod) {
+  const double rounding = rounding_share * block_.view(positions, rod).cwiseAbs().maxCoeff();
+  rounding_squared_.lane[rod] = rounding * rounding;
 }
 
 void Lockstep::set_active(std::size_t rod, bool active) { active_.lane[rod] = active ? 1 : 0; }
@@ -76,7 +86,7 @@ void Lockstep::step(std::span<StepResult> results) {
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
     kept_.lane[rod] = controls_[rod].kept() * c_m_.lane[rod];
   }
-  block_.propose(c_F_, kept_, controls_.front().relative(), proposed_);
+  block_.propose(c_F_, kept_, rounding_squared_, controls_.front().relative(), proposed_);
   PerLane c_m;
   bool moves = false;
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
@@ -166,7 +176,21 @@ void Lockstep::move_grip(std::size_t rod, std::size_t grip,
     points_.middleCols(moved.first_point, targets.cols()) = targets;
     block_.set(positions, rod, points_);
   }
+  update_rounding(rod);
   block_.update_dimension(rods_);
+}
+
+void Lockstep::move_wall(std::size_t rod, std::size_t wall, const Wall& moved) {
+  Rod& held = rods_[rod];
+  require(wall < held.walls.size(), "Simulation::move_wall", "wall", static_cast<double>(wall),
+          "smaller than the number of walls");
+  check(moved);
+  held.walls[wall] = moved;
+  block_.set_walls(rods_);
+  block_.update_dimension(rods_);
+  copy_points(rod, points_);
+  controls_[rod].change_environment(held, points_);
+  c_F_.lane[rod] = controls_[rod].options().c_F;
 }
 
 }  // namespace dlo::force_model

@@ -31,10 +31,16 @@ class Lockstep {
                  const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
                  const Eigen::Vector3d& reference);
 
+  /// As Simulation::move_wall.
+  void move_wall(std::size_t rod, std::size_t wall, const Wall& moved);
+
   [[nodiscard]] const Rod& rod(std::size_t rod) const { return rods_[rod]; }
   [[nodiscard]] const StepControl& control(std::size_t rod) const { return controls_[rod]; }
   [[nodiscard]] Eigen::Matrix3Xd points(std::size_t rod) const {
     return block_.view(positions, rod);
+  }
+  void copy_points(std::size_t rod, Eigen::Matrix3Xd& points) const {
+    points = block_.view(positions, rod);
   }
 
   [[nodiscard]] std::size_t size() const { return rods_.size(); }
@@ -46,6 +52,7 @@ class Lockstep {
 
  private:
   void look_at_modes();
+  void update_rounding(std::size_t rod);
   MovingShape shape(std::size_t rod);
   void nudge(std::size_t rod, const Eigen::Matrix3Xd& direction);
 
@@ -56,6 +63,7 @@ class Lockstep {
   PerLane c_m_;   // of the last step: its movements were c_m times the proposed ones
   PerLane kept_;  // c_h c_m
   PerLane active_;
+  PerLane rounding_squared_;  // of the smallest movement that counts as oscillation [m^2]
   ProposedStep proposed_;
   ModeLook look_;
   Eigen::Matrix3Xd points_;  // of the rod that is looked at

@@ -1,6 +1,8 @@
 #include "mode_estimate.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace dlo::force_model {
 namespace {
@@ -12,17 +14,28 @@ constexpr double memory = 0.8;  // weight of older blocks
 ModeEstimate::ModeEstimate(const Rod& rod, const Eigen::Matrix3Xd& points)
     : modes_(mode_bounds(rod, points)),
       slowest_expected_(modes_.slowest),
-      constraints_(constraint_stiffness(rod)) {}
+      constraints_(constraint_stiffness(rod)) {
+  const double rounding = std::numeric_limits<double>::epsilon() * points.cwiseAbs().maxCoeff();
+  rounding_ = 2 * static_cast<double>(points.cols()) * rounding * rounding;
+}
 
 void ModeEstimate::update(double inner_mode, double force_change, double point_change) {
   modes_.fastest = inner_mode + constraints_;
-  if (block_open_) {
+  const double lost = 4 * std::sqrt(modes_.slowest / modes_.fastest);  // 1 - c_h
+  if (block_open_ && !(std::abs(force_change) <= modes_.fastest * rounding_ / lost)) {
     force_change_ = memory * force_change_ + force_change;
     point_change_ = memory * point_change_ + point_change;
     if (point_change_ > 0 && force_change_ > 0) modes_.slowest = force_change_ / point_change_;
-    modes_.slowest = std::clamp(modes_.slowest, 1e-10 * modes_.fastest, modes_.fastest);
   }
+  modes_.slowest = std::clamp(modes_.slowest, smallest_mode_ratio * modes_.fastest, modes_.fastest);
   block_open_ = true;
+}
+
+void ModeEstimate::change_environment(const Rod& rod, const Eigen::Matrix3Xd& points) {
+  constraints_ = constraint_stiffness(rod);
+  modes_.fastest = mode_bounds(rod, points).fastest;
+  modes_.slowest = std::min(modes_.slowest, modes_.fastest);
+  block_open_ = false;
 }
 
 }  // namespace dlo::force_model

@@ -8,6 +8,11 @@
 #include "require.hpp"
 
 namespace dlo::force_model {
+namespace {
+
+constexpr long unconditional_after = 50'000;  // steps; looks are cheap against so many
+
+}  // namespace
 
 const char* to_string(RelaxStatus status) {
   switch (status) {
@@ -26,6 +31,7 @@ RestSearch::RestSearch(const Rod& rod, const ModeEstimate& estimate, const Relax
     : rod_(rod), estimate_(estimate), options_(options) {
   require_positive("Simulation::relax", "tolerance", options.tolerance);
   result_.status = RelaxStatus::step_limit;
+  next_measurement_ = unconditional_after;
   // Forces of stiff segments carry the rounding of the positions; no step gets below what it moves.
   const double rounding = std::numeric_limits<double>::epsilon() * rod.c_c *
                           points.cwiseAbs().maxCoeff() / rod.rest_lengths.minCoeff() /
@@ -57,12 +63,16 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
   // Cheap signs first; what proves rest is Newton's step and the stiffness behind it.
   const double root_points = std::sqrt(static_cast<double>(shape.points.cols()));
   const double distance = shape.forces.norm() / estimate_.modes().slowest / root_points;
-  if (std::max(distance, shape.momentum) >= target_) return {};
+  const bool seems_at_rest = std::max(distance, shape.momentum) < target_;
+  // Rounding of many stiff points' positions makes forces that hide rest from these signs for good.
+  if (!seems_at_rest && result_.steps < next_measurement_) return {};
+  next_measurement_ = std::max(next_measurement_, result_.steps + result_.steps / 4);
   EquilibriumCheck check = measure(shape);
   if (check.stable && result_.remaining_error < target_) {
     result_.status = RelaxStatus::at_rest;
     return {};
   }
+  if (!seems_at_rest) return {};
   next_check_ = result_.steps + std::max(block_steps, result_.steps / 10);
   return std::move(check.falling_direction);
 }

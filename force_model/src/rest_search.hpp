@@ -43,6 +43,7 @@ class RestSearch {
   RelaxOptions options_;
   double target_ = 0;
   long next_check_ = 2 * block_steps;
+  long next_measurement_ = 0;  // at the latest
   RelaxResult result_;
 };
 

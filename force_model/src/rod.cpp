@@ -21,7 +21,7 @@ void check_grip(const Grip& grip, Eigen::Index points) {
 }
 
 Eigen::Vector3d on_held_point(const Grip& grip, Eigen::Index k, const Points& points,
-                              const Eigen::Matrix3Xd& forces) {
+                              const Points& forces) {
   const Eigen::Index i = grip.first_point + k;
   if (grip.hold == GripHold::rigid) return -forces.col(i);
   return spring_force(grip.stiffness, grip.targets.col(k), points.col(i));
@@ -40,12 +40,7 @@ void check(const Rod& rod) {
   require(rod.loads.cols() == rod.points(), "Rod", "columns of loads",
           static_cast<double>(rod.loads.cols()), "the number of points");
   require(rod.loads.allFinite(), "Rod", "loads", rod.loads.norm(), "finite");
-  for (const Wall& wall : rod.walls) {
-    require_not_negative("Rod", "wall stiffness", wall.stiffness);
-    const double length = wall.normal.norm();
-    require(std::abs(length - 1) < 1e-9, "Rod", "length of a wall's normal", length, "1");
-    require(wall.point.allFinite(), "Rod", "point of a wall", wall.point.norm(), "finite");
-  }
+  for (const Wall& wall : rod.walls) check(wall);
   for (const Grip& grip : rod.grips) check_grip(grip, rod.points());
 }
 
@@ -69,12 +64,13 @@ void total_forces(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matrix
   }
 }
 
-std::vector<GripReaction> grip_reactions(const Rod& rod, const Points& points) {
-  Eigen::Matrix3Xd forces(3, points.cols());
+void grip_reactions(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matrix3Xd> forces,
+                    std::span<GripReaction> reactions) {
+  require(reactions.size() == rod.grips.size(), "grip_reactions", "number of reactions",
+          static_cast<double>(reactions.size()), "the number of grips");
   total_forces(rod, points, forces);
-  std::vector<GripReaction> reactions;
-  reactions.reserve(rod.grips.size());
-  for (const Grip& grip : rod.grips) {
+  for (std::size_t g = 0; g < rod.grips.size(); ++g) {
+    const Grip& grip = rod.grips[g];
     GripReaction reaction;
     for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
       const Eigen::Vector3d force = on_held_point(grip, k, points, forces);
@@ -82,8 +78,14 @@ std::vector<GripReaction> grip_reactions(const Rod& rod, const Points& points) {
       reaction.force += force;
       reaction.torque += arm.cross(force);
     }
-    reactions.push_back(reaction);
+    reactions[g] = reaction;
   }
+}
+
+std::vector<GripReaction> grip_reactions(const Rod& rod, const Points& points) {
+  Eigen::Matrix3Xd forces(3, points.cols());
+  std::vector<GripReaction> reactions(rod.grips.size());
+  grip_reactions(rod, points, forces, reactions);
   return reactions;
 }
 

@@ -182,9 +182,10 @@ void RodBlock::compute_forces(std::span<const Rod> rods, const PerLane& active) 
   }
 }
 
-void RodBlock::propose(const PerLane& c_F, const PerLane& kept, bool relative, ProposedStep& step) {
+void RodBlock::propose(const PerLane& c_F, const PerLane& kept, const PerLane& rounding_squared,
+                       bool relative, ProposedStep& step) {
   const auto propose = relative ? kernel_->propose_relative : kernel_->propose_absolute;
-  propose(block(), turn_, c_F, kept, step);
+  propose(block(), turn_, c_F, kept, rounding_squared, step);
 }
 
 void RodBlock::move(const PerLane& c_m) {

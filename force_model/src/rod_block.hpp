@@ -30,8 +30,11 @@ class RodBlock {
     return at(is_free, element(point, rod)) == 0;
   }
 
+  /// Takes over the rods' walls; as many as the constructor saw, lest it allocate.
+  void set_walls(std::span<const Rod> rods);
+
   /// Finds out whether all rods stay in the plane z = 0 that they lie in. To be called when
-  /// positions, loads or targets have changed.
+  /// positions, loads, targets or walls have changed.
   void update_dimension(std::span<const Rod> rods);
 
   /// Total forces on the free points; rods that are not `active` may be left out.
@@ -42,7 +45,8 @@ class RodBlock {
 
   /// Proposes movements, c_F forces + `kept` times the last ones proposed, and says what they look
   /// like.
-  void propose(const PerLane& c_F, const PerLane& kept, bool relative, ProposedStep& step);
+  void propose(const PerLane& c_F, const PerLane& kept, const PerLane& rounding_squared,
+               bool relative, ProposedStep& step);
 
   /// Moves the points of each rod by c_m times its proposed movements.
   void move(const PerLane& c_m);
@@ -61,7 +65,6 @@ class RodBlock {
   [[nodiscard]] const double& at(int array, std::ptrdiff_t element) const;
   void set_padding();
   void set_rod(std::size_t lane, const Rod& rod);
-  void set_walls(std::span<const Rod> rods);
   void add_spring_grips(std::span<const Rod> rods);
   void compute_plain_forces(std::size_t lane, const Rod& rod);
 

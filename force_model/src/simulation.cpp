@@ -54,8 +54,13 @@ void Simulation::move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matri
   lockstep_->move_grip(0, grip, targets, reference);
 }
 
+void Simulation::move_wall(std::size_t wall, const Wall& moved) {
+  lockstep_->move_wall(0, wall, moved);
+}
+
 const Rod& Simulation::rod() const { return lockstep_->rod(0); }
 Eigen::Matrix3Xd Simulation::points() const { return lockstep_->points(0); }
+void Simulation::copy_points(Eigen::Matrix3Xd& points) const { lockstep_->copy_points(0, points); }
 const StepOptions& Simulation::options() const { return lockstep_->control(0).options(); }
 long Simulation::steps() const { return lockstep_->control(0).steps(); }
 long Simulation::damped_steps() const { return lockstep_->control(0).damped_steps(); }

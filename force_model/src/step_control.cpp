@@ -44,6 +44,11 @@ void StepControl::update_modes(double inner_mode, double force_change, double po
   choose_constants(estimate_.modes(), options_);
 }
 
+void StepControl::change_environment(const Rod& rod, const Eigen::Matrix3Xd& points) {
+  estimate_.change_environment(rod, points);
+  choose_constants(estimate_.modes(), options_);
+}
+
 void StepControl::decide(double largest_squared, double sum_squared, double oscillating,
                          StepResult& result) {
   const StepPolicy& policy = options_.policy;

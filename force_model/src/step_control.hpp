@@ -22,6 +22,10 @@ class StepControl {
   /// Updates the modes and, for the automatic policy, c_F and c_h. Arguments as ModeEstimate's.
   void update_modes(double inner_mode, double force_change, double point_change);
 
+  /// After a change of the rod's walls: the modes' bound is that of the new ones, and forces before
+  /// and after are not compared.
+  void change_environment(const Rod& rod, const Eigen::Matrix3Xd& points);
+
   /// Scaling of a proposed step.
   /// @param largest_squared  of the movements that the limit compares [m^2]
   /// @param sum_squared      not finite if a movement is not [m^2]

@@ -191,7 +191,7 @@ void add_walls(const PointBlock& block, const WallLanes* walls, std::ptrdiff_t c
 
 template <bool relative, int dimension, std::ptrdiff_t stride>
 void propose(const PointBlock& block, int turn, const PerLane& c_F, const PerLane& kept,
-             ProposedStep& step) {
+             const PerLane& rounding_squared, ProposedStep& step) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
   const All all{block};
@@ -200,6 +200,7 @@ void propose(const PointBlock& block, int turn, const PerLane& c_F, const PerLan
   for (std::ptrdiff_t column = 0; column < All::columns; ++column) {
     const Lanes per_force = All::of_rods(c_F, column);
     const Lanes per_movement = All::of_rods(kept, column);
+    const Lanes rounding = All::of_rods(rounding_squared, column);
     Lanes largest = {};
     Lanes total = {};
     Lanes oscillating = {};
@@ -211,7 +212,7 @@ void propose(const PointBlock& block, int turn, const PerLane& c_F, const PerLan
     for (std::ptrdiff_t k = column * lane_count; k < block.size; k += All::next) {
       all.store_vector(proposed, k, dP);
       const Lanes turned = all.load(turned_back + 1 - turn, k);
-      const Lanes turns = dot(dP, last) < 0 ? all_lanes(1) : Lanes{};
+      const Lanes turns = dot(dP, last) < -rounding ? all_lanes(1) : Lanes{};
       all.store(turned_back + turn, k, turns);
       oscillating += turns * turned;
       last = all.load_vector(last_proposed, k + All::next);

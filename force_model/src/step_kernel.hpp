@@ -79,11 +79,15 @@ struct StepKernel {
   void (*look_at_modes)(const PointBlock& block, ModeLook& look);
   /// proposals = c_F forces + kept * those of the last step, compared with their neighbours (18).
   /// @param turn  which of the two sets is this step's, 0 or 1; the other is the last step's
+  /// @param rounding_squared  a point turns back if its proposals' scalar product is below minus
+  ///                          this [m^2]
   void (*propose_relative)(const PointBlock& block, int turn, const PerLane& c_F,
-                           const PerLane& kept, ProposedStep& step);
+                           const PerLane& kept, const PerLane& rounding_squared,
+                           ProposedStep& step);
   /// The same, each on its own (16).
   void (*propose_absolute)(const PointBlock& block, int turn, const PerLane& c_F,
-                           const PerLane& kept, ProposedStep& step);
+                           const PerLane& kept, const PerLane& rounding_squared,
+                           ProposedStep& step);
   /// positions += c_m proposals; rods with c_m = 0 stay where they are.
   void (*move)(const PointBlock& block, int turn, const PerLane& c_m);
 };

@@ -63,8 +63,7 @@ ModeBounds mode_bounds(const Rod& rod, const Points& points) {
   const double per_length = clamped_free_root / rod.length();
   const double square = per_length * per_length;
   modes.slowest = square * square * equivalent_rigidity(rod) * rod.rest_lengths.mean();
-  // Heavy ball constants lose their meaning when the two differ by more than rounding resolves.
-  modes.slowest = std::clamp(modes.slowest, 1e-10 * modes.fastest, modes.fastest);
+  modes.slowest = std::clamp(modes.slowest, smallest_mode_ratio * modes.fastest, modes.fastest);
   return modes;
 }
 

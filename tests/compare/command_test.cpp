@@ -219,14 +219,55 @@ TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
   EXPECT_EQ(text.status, 0) << text.err;
   EXPECT_EQ(text.err, "");
   for (const char* expected :
-       {"3776.21457", "3574.96", "659734", "1/3", "spring steel, -215 deg"}) {
+       {"3776.21457", "3574.96", "659734", "1/3", "spring steel, -215 deg", "116121", "34389"}) {
     EXPECT_NE(text.out.find(expected), std::string::npos) << expected;
   }
   EXPECT_EQ(run("paper --format json -o " + path("paper.json")).status, 0);
   const json document = json::parse(read(path("paper.json")));
   EXPECT_EQ(document.at("schema"), "dlo/paper/1");
   EXPECT_EQ(document.at("cases").size(), 6U);
+  // The average forces of Tables 2 and 4 are met within 10 % RMS with c_F and l_s in centimetres.
+  const json& moving = document.at("moving");
+  EXPECT_EQ(moving.at("rows").size(), 16U);
+  EXPECT_LT(moving.at("scan")[0].at("distance").at("force_factor").get<double>(), 1.1);
+  EXPECT_TRUE(moving.at("scan")[1].at("distance").at("force_factor").is_null());  // in metres
   EXPECT_EQ(run("paper --format csv").out.substr(0, 8), "section,");
+}
+
+TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAuto) {
+  const Outcome result = run("stability --case crossed --max-steps 2000 --format json");
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json document = json::parse(result.out);
+  EXPECT_EQ(document.at("schema"), "dlo/stability/1");
+  ASSERT_EQ(document.at("cases").size(), 5U);
+  const json& last = document.at("cases")[4];
+  EXPECT_EQ(last.at("case"), "points crossed");
+  EXPECT_EQ(last.at("stepper"), "auto");
+  EXPECT_EQ(last.at("outcome"), "pass");
+  EXPECT_LT(last.at("error_over_length").get<double>(), 1e-5);
+  EXPECT_GT(last.at("steps").get<long>(), 100);
+  EXPECT_EQ(run("stability --case crossed --stepper auto --max-steps-auto 100").status, 1);
+  const Outcome refused = run("stability --case \"pulled too far\" --stepper auto");
+  EXPECT_EQ(refused.status, 0);
+  EXPECT_NE(refused.out.find("allowed: no more than the 0.5 m of rod"), std::string::npos);
+  EXPECT_EQ(run("stability --case crossed --stepper auto --format csv").out.substr(0, 13),
+            "case,stepper,");
+}
+
+TEST_F(Command, StabilityMapTakesAScene) {
+  const std::string small = " --columns 2 --rows 8 --map-steps 2000";
+  const Outcome text = run("stability --map cF-ch" + small);
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("predicted"), std::string::npos);
+  const Outcome csv = run("stability " + scene(good) + " --map cF-cc --format csv" + small);
+  EXPECT_EQ(std::count(csv.out.begin(), csv.out.end(), '\n'), 1 + 2 * 8) << csv.err;
+  const json document = json::parse(run("stability --map cF-cc --format json" + small).out);
+  EXPECT_EQ(document.at("schema"), "dlo/stability-map/1");
+  EXPECT_GE(document.at("columns")[0].at("c_F_measured").get<double>(),
+            document.at("columns")[0].at("c_F_predicted").get<double>());
+  expect_error("stability --map cF-l_s", 2, {"cF-l_s", "cF-cc"});
+  expect_error("stability " + scene(good), 2, {"scene.toml", "--map"});
+  expect_error("stability --case nonsense", 2, {"nonsense"});
 }
 
 TEST_F(Command, OptionsOverrideTheScene) {
@@ -303,10 +344,10 @@ TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
 }
 
 TEST_F(Command, HelpHasAnExampleThatWorks) {
-  for (const std::string command : {"solve", "compare", "paper"}) {
+  for (const std::string command : {"solve", "compare", "paper", "stability"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.status, 0);
-    EXPECT_NE(help.out.find("Example:"), std::string::npos) << command;
+    EXPECT_NE(help.out.find("Example"), std::string::npos) << command;
   }
   EXPECT_EQ(run("--version").status, 0);
 }

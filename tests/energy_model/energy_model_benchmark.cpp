@@ -116,8 +116,8 @@ void cold_clamp(benchmark::State& state, double gamma) {
   report(state, result);
   state.counters["error"] = error(result, gamma);
 }
-BENCHMARK_CAPTURE(cold_clamp, gamma_0 .18, 0.18);
-BENCHMARK_CAPTURE(cold_clamp, gamma_0 .2, 0.2);
+BENCHMARK_CAPTURE(cold_clamp, gamma_0_18, 0.18);
+BENCHMARK_CAPTURE(cold_clamp, gamma_0_2, 0.2);
 BENCHMARK_CAPTURE(cold_clamp, gamma_1, 1);
 BENCHMARK_CAPTURE(cold_clamp, gamma_10, 10);
 BENCHMARK_CAPTURE(cold_clamp, gamma_18, 18);
@@ -133,7 +133,7 @@ void warm_clamp(benchmark::State& state, double gamma) {
   for (auto _ : state) benchmark::DoNotOptimize(solver.follow(problems[i = 1 - i]));
   report(state, solver.follow(problems[1 - i]));
 }
-BENCHMARK_CAPTURE(warm_clamp, gamma_0 .2, 0.2);
+BENCHMARK_CAPTURE(warm_clamp, gamma_0_2, 0.2);
 BENCHMARK_CAPTURE(warm_clamp, gamma_10, 10);
 BENCHMARK_CAPTURE(warm_clamp, gamma_100, 100);
 BENCHMARK_CAPTURE(warm_clamp, gamma_1000, 1000);

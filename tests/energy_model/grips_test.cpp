@@ -15,12 +15,7 @@ namespace {
 
 using test::heavy_cantilever;
 using test::reference_values;
-
-Problem two_clamps(double gamma, double span) {
-  Problem problem = heavy_cantilever(gamma, 0);
-  problem.grips.push_back({1, {span, 0, 0}, Eigen::Vector3d(1, 0, 0)});
-  return problem;
-}
+using test::two_clamps;
 
 /// Force and torque about the origin of everything that acts on the rod; zero in equilibrium.
 struct Balance {

@@ -25,6 +25,13 @@ inline energy_model::Problem heavy_cantilever(double gamma, double degrees) {
   return problem;
 }
 
+/// The same, horizontal, its end clamped in the same direction `span` away.
+inline energy_model::Problem two_clamps(double gamma, double span) {
+  energy_model::Problem problem = heavy_cantilever(gamma, 0);
+  problem.grips.push_back({1, {span, 0, 0}, Eigen::Vector3d(1, 0, 0)});
+  return problem;
+}
+
 /// data/reference/reference_values.json, which says where its numbers come from.
 inline nlohmann::json reference_values() {
   std::ifstream stream(std::string(DLO_DATA) + "/reference/reference_values.json");

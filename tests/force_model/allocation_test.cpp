@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <vector>
 
 #include "dlo/force_model/simulation.hpp"
 #include "rods.hpp"
@@ -51,6 +52,33 @@ TEST(Simulation, StepsDoNotAllocate) {
   const Eigen::VectorXd vector = Eigen::VectorXd::Zero(steel.points);
   EXPECT_EQ(vector.size(), steel.points);
   EXPECT_GT(allocations, before);
+}
+
+TEST(Simulation, AHapticFrameDoesNotAllocate) {
+  const test::SteelRod steel;
+  Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
+  rod.walls = {{.point = {0, -0.01, 0}, .normal = {0, 1, 0}, .stiffness = 100}};
+  for (const GripHold hold : {GripHold::rigid, GripHold::spring}) {
+    rod.grips[0].hold = hold;
+    rod.grips[0].stiffness = 1000;
+    Simulation simulation(rod, steel.straight(), StepOptions{});
+    Eigen::Matrix3Xd targets = rod.grips[0].targets;
+    Eigen::Matrix3Xd points(3, steel.points);
+    Eigen::Matrix3Xd forces(3, steel.points);
+    std::vector<GripReaction> reactions(1);
+    Wall wall = rod.walls[0];
+    const long before = allocations;
+    targets.row(1).array() += 1e-4;
+    wall.point.y() += 1e-4;
+    simulation.move_grip(0, targets, targets.col(0));
+    simulation.move_wall(0, wall);
+    const bool good = simulation.step().status == StepStatus::good;
+    simulation.copy_points(points);
+    grip_reactions(simulation.rod(), points, forces, reactions);
+    EXPECT_EQ(allocations, before);
+    EXPECT_TRUE(good);
+    EXPECT_GT(reactions[0].force.norm(), 0);
+  }
 }
 
 }  // namespace

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "polygons.hpp"
 
@@ -51,12 +54,19 @@ TEST_P(BendingOfBothLaws, OpensTheJoint) {
   EXPECT_GT(forces(1, 1), 0);
 }
 
-TEST_P(BendingOfBothLaws, ForcesAndTorquesSumToZeroForEqualSegments) {
-  const Eigen::Matrix3Xd points = random_polygon(5, 15, 0.1, 0);
-  const Eigen::Matrix3Xd forces = forces_of(points, Eigen::VectorXd::Constant(15, 0.1), bending());
-  const double scale = forces.cwiseAbs().sum();
-  EXPECT_LT(forces.rowwise().sum().norm(), 1e-14 * scale);
-  EXPECT_LT(net_torque(points, forces).norm(), 1e-14 * scale);
+// The paper's, too: the parts of F across both segments have the torque of F about the chord that
+// it points along.
+TEST_P(BendingOfBothLaws, ForcesAndTorquesSumToZeroForAnySegments) {
+  for (const double spread : {0.0, 0.1, 0.9}) {
+    for (unsigned seed = 0; seed < 100; ++seed) {
+      const Eigen::Matrix3Xd points = random_polygon(seed, 15, 0.1, spread);
+      const Eigen::Matrix3Xd forces =
+          forces_of(points, Eigen::VectorXd::Constant(15, 0.1), bending());
+      const double scale = forces.cwiseAbs().sum();
+      ASSERT_LT(forces.rowwise().sum().norm(), 1e-14 * scale) << seed;
+      ASSERT_LT(net_torque(points, forces).norm(), 1e-14 * scale) << seed;
+    }
+  }
 }
 
 TEST_P(BendingOfBothLaws, MomentIsWhatTheLawSays) {
@@ -117,15 +127,54 @@ INSTANTIATE_TEST_SUITE_P(Laws, BendingOfBothLaws,
                            return instance.param == BendingLaw::paper ? "paper" : "hooke";
                          });
 
-TEST(HookeBending, BalancesForceAndTorqueForUnequalSegments) {
-  for (unsigned seed = 0; seed < 20; ++seed) {
-    const Eigen::Matrix3Xd points = random_polygon(seed, 15, 0.1, 0.9);
-    const Eigen::Matrix3Xd forces =
-        forces_of(points, Eigen::VectorXd::Constant(15, 0.1), {BendingLaw::hooke, 2.5});
-    const double scale = forces.cwiseAbs().sum();
-    EXPECT_LT(forces.rowwise().sum().norm(), 1e-14 * scale);
-    EXPECT_LT(net_torque(points, forces).norm(), 1e-14 * scale);
+/// Moment of one joint of the paper's law between segments of lengths a and b.
+double paper_moment(double a, double b, double alpha) {
+  Eigen::Matrix3Xd points = one_joint(1, alpha);
+  points.col(0) *= a;
+  points.col(2) *= b;
+  const Eigen::Matrix3Xd forces =
+      forces_of(points, Eigen::Vector2d(a, b), {BendingLaw::paper, 2.5});
+  const Eigen::Vector3d arm = points.col(2);
+  return arm.cross(Eigen::Vector3d(forces.col(2))).norm();
+}
+
+TEST(PaperBending, IsWeakerBetweenUnequalSegmentsThanItsMeanLengthSays) {
+  const double alpha = 0.01;
+  for (const double b : {1.1, 2.0, 3.0}) {
+    const double share =
+        paper_moment(1, b, alpha) / joint_moment({BendingLaw::paper, 2.5}, (1 + b) / 2, alpha);
+    // c_b (1 - cos alpha) sin alpha a b / |a u + b v|, and a = b = (a + b) / 2 in the other
+    EXPECT_NEAR(share, 4 * b / ((1 + b) * (1 + b)), alpha * alpha) << b;
+    RecordProperty("moment_share_at_ratio_" + std::to_string(static_cast<int>(10 * b)),
+                   std::to_string(share));
   }
+}
+
+/// Median over random shapes of |F + dU/dP| / |F|.
+double paper_share_without_potential(double length_spread) {
+  const Bending bending{BendingLaw::paper, 2.5};
+  std::vector<double> shares;
+  for (unsigned seed = 0; seed < 25; ++seed) {
+    const Eigen::Matrix3Xd points = random_polygon(seed, 15, 0.1, length_spread);
+    const Eigen::VectorXd lengths =
+        (points.rightCols(15) - points.leftCols(15)).colwise().norm().transpose();
+    const Eigen::Matrix3Xd forces = forces_of(points, lengths, bending);
+    const Eigen::Matrix3Xd gradient = difference_forces(
+        [&](const Eigen::Matrix3Xd& p) { return bending_energy(p, lengths, bending); }, points,
+        1e-6);
+    shares.push_back((forces - gradient).norm() / forces.norm());
+  }
+  std::nth_element(shares.begin(), shares.begin() + 12, shares.end());
+  return shares[12];
+}
+
+TEST(PaperBending, HasAPotentialBetweenEqualSegmentsOnly) {
+  EXPECT_LT(paper_share_without_potential(0), 1e-8);
+  const double tenth = paper_share_without_potential(0.1);
+  const double half = paper_share_without_potential(0.5);
+  RecordProperty("spread_0.1", std::to_string(tenth));
+  RecordProperty("spread_0.5", std::to_string(half));
+  EXPECT_GT(half, 10 * tenth);  // second order in the difference
 }
 
 TEST(HookeBending, IsTheGradientOfItsEnergy) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "dlo/force_model/rod.hpp"
@@ -35,6 +36,8 @@ class PlainSimulation {
       options_.l_s = rod_.rest_lengths.minCoeff() / 4;
     }
     modes_ = mode_bounds(rod_, points_);
+    const double rounding = std::numeric_limits<double>::epsilon() * points_.cwiseAbs().maxCoeff();
+    mode_rounding_ = 2 * static_cast<double>(n) * rounding * rounding;
   }
 
   [[nodiscard]] force_model::StepResult step() {
@@ -66,14 +69,20 @@ class PlainSimulation {
  private:
   void choose_step() {
     modes_.fastest = mode_bounds(rod_, points_).fastest;
+    rounding_ = 1024 * std::numeric_limits<double>::epsilon() * points_.cwiseAbs().maxCoeff();
     if (block_open_) {
       block_forces_ -= forces_;
       block_points_ = points_ - block_points_;
-      force_change_ = 0.8 * force_change_ + block_forces_.cwiseProduct(block_points_).sum();
-      point_change_ = 0.8 * point_change_ + block_points_.squaredNorm();
-      if (point_change_ > 0 && force_change_ > 0) modes_.slowest = force_change_ / point_change_;
-      modes_.slowest = std::clamp(modes_.slowest, 1e-10 * modes_.fastest, modes_.fastest);
+      const double change = block_forces_.cwiseProduct(block_points_).sum();
+      const double lost = 4 * std::sqrt(modes_.slowest / modes_.fastest);
+      if (!(std::abs(change) <= modes_.fastest * mode_rounding_ / lost)) {
+        force_change_ = 0.8 * force_change_ + change;
+        point_change_ = 0.8 * point_change_ + block_points_.squaredNorm();
+        if (point_change_ > 0 && force_change_ > 0) modes_.slowest = force_change_ / point_change_;
+      }
     }
+    modes_.slowest = std::clamp(modes_.slowest, force_model::smallest_mode_ratio * modes_.fastest,
+                                modes_.fastest);
     block_points_ = points_;
     block_forces_ = forces_;
     block_open_ = true;
@@ -99,7 +108,7 @@ class PlainSimulation {
   void update_damping() {
     long oscillating = 0;
     for (Eigen::Index i = 0; i < proposed_.cols(); ++i) {
-      const bool turns = proposed_.col(i).dot(movement_.col(i)) < 0;
+      const bool turns = proposed_.col(i).dot(movement_.col(i)) < -rounding_ * rounding_;
       if (turns && turned_back_[i]) ++oscillating;
       turned_back_[i] = turns;
     }
@@ -123,6 +132,8 @@ class PlainSimulation {
   Eigen::Matrix3Xd block_forces_;
   double force_change_ = 0;
   double point_change_ = 0;
+  double mode_rounding_ = 0;
+  double rounding_ = 0;
   bool block_open_ = false;
 };
 

@@ -84,6 +84,17 @@ TEST(DynamicStepper, AddsAShareOfTheLastMovement) {
   EXPECT_LT((simulation.points() - expected).cwiseAbs().maxCoeff(), 1e-16);
 }
 
+TEST(OscillationDamping, LeavesOutMovementsOfRoundingSize) {
+  SteelRod hanging;
+  hanging.angle = -1.5707963267948966;
+  for (const double c_h : {0.0, 0.9}) {
+    Simulation simulation(hanging.rod({BendingLaw::hooke, hanging.EI}, 660), hanging.straight(),
+                          options(Stepper::dynamic, 1e-5, 1e-2, c_h));
+    for (int i = 0; i < 50000; ++i) ASSERT_EQ(simulation.step().status, StepStatus::good);
+    EXPECT_EQ(simulation.damped_steps(), 0) << "c_h = " << c_h;
+  }
+}
+
 TEST(OscillationDamping, GrowsWhilePointsTurnBackAndFallsToOneAfterwards) {
   // Twice the stable step: the contraction modes turn back in every step.
   const double c_F = 2.2 / mode_bounds(steel_rod(), SteelRod().straight()).fastest * 2;
@@ -161,6 +172,21 @@ TEST(Relax, IsNotFooledByManyPointsOrFastModes) {
   const RelaxResult result = simulation.relax({.max_steps = 2000});
   EXPECT_EQ(result.status, RelaxStatus::step_limit);
   EXPECT_GT(result.remaining_error, 1e-3);
+}
+
+TEST(Relax, FindsRestBetweenModesThatAreFarApart) {
+  // fastest / slowest = 1e11, as of 500 points: rounding's forces are larger than the rod's own.
+  SteelRod steel;
+  const Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 1e9);
+  Simulation simulation(rod, steel.straight(), {});
+  const RelaxResult result = simulation.relax({.tolerance = 1e-5, .max_steps = 4'000'000});
+  RecordProperty("steps", static_cast<int>(result.steps));
+  EXPECT_EQ(result.status, RelaxStatus::at_rest);
+  Simulation reference(steel.rod({BendingLaw::hooke, steel.EI}, 1e4), steel.straight(), {});
+  ASSERT_EQ(reference.relax().status, RelaxStatus::at_rest);
+  // The softer one stretches by weight / c_c = 1.2e-5.
+  EXPECT_LT((simulation.points() - reference.points()).colwise().norm().maxCoeff(),
+            4e-5 * steel.length);
 }
 
 TEST(Relax, LeavesAnUprightEquilibriumThatDoesNotHold) {
@@ -307,6 +333,46 @@ TEST(Simulation, WallHoldsTheRodUp) {
   ASSERT_EQ(simulation.relax({.tolerance = 1e-7}).status, RelaxStatus::at_rest);
   EXPECT_GT(simulation.points().row(1).minCoeff(), -0.0502);
   EXPECT_LT(simulation.points().row(1).minCoeff(), -0.05);
+}
+
+TEST(Simulation, MovedWallLeadsToTheShapeOfAWallThatWasThere) {
+  const SteelRod steel;
+  Rod rod = steel.rod({BendingLaw::hooke, steel.EI / 100}, 660);
+  rod.walls = {{.point = {0, -0.05, 0}, .normal = {0, 1, 0}, .stiffness = 1000}};
+  const Wall moved{.point = {0, -0.03, 0}, .normal = {0, 1, 0}, .stiffness = 500};
+  const RelaxOptions exact{.tolerance = 1e-9};
+  Simulation simulation(rod, steel.straight(), {});
+  ASSERT_EQ(simulation.relax(exact).status, RelaxStatus::at_rest);
+  simulation.move_wall(0, moved);
+  ASSERT_EQ(simulation.relax(exact).status, RelaxStatus::at_rest);
+  rod.walls = {moved};
+  Simulation expected(rod, steel.straight(), {});
+  ASSERT_EQ(expected.relax(exact).status, RelaxStatus::at_rest);
+  const Eigen::Matrix3Xd apart = simulation.points() - expected.points();
+  EXPECT_LT(apart.norm() / 4, 2 * 1e-9 * steel.length);  // 4: root of 16 points, RMS
+}
+
+TEST(Simulation, AutomaticStepsSuitAStifferWallAtOnce) {
+  const SteelRod steel;
+  Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
+  rod.walls = {{.point = {0, 0, 0}, .normal = {0, 1, 0}, .stiffness = 0}};
+  Simulation simulation(rod, steel.straight(), {});
+  for (int i = 0; i < 5; ++i) ASSERT_EQ(simulation.step().status, StepStatus::good);
+  simulation.move_wall(0, {.point = {0, 0.001, 0}, .normal = {0, 1, 0}, .stiffness = 1e7});
+  const double fastest = mode_bounds(simulation.rod(), simulation.points()).fastest;
+  EXPECT_GE(fastest, 1e7);
+  EXPECT_LE(simulation.options().c_F, largest_step_factor(fastest, simulation.options().c_h));
+  for (int i = 0; i < 1000; ++i) ASSERT_EQ(simulation.step().status, StepStatus::good);
+  EXPECT_LT(simulation.points().cwiseAbs().maxCoeff(), 2 * steel.length);
+}
+
+TEST(Simulation, RefusesToMoveAWallThatIsNotThere) {
+  Rod rod = steel_rod();
+  rod.walls = {{.stiffness = 1}};
+  Simulation simulation(rod, SteelRod().straight(), {});
+  EXPECT_THROW(simulation.move_wall(1, {}), std::invalid_argument);
+  EXPECT_THROW(simulation.move_wall(0, {.normal = {0, 2, 0}}), std::invalid_argument);
+  EXPECT_THROW(simulation.move_wall(0, {.stiffness = -1}), std::invalid_argument);
 }
 
 TEST(Simulation, RefusesMissingConstants) {

@@ -152,7 +152,8 @@ TEST(Kernel, BoundsTheModesLikeModeBounds) {
         const ModeBounds expected = mode_bounds(rod, simulation.points());
         ASSERT_EQ(simulation.step().status, StepStatus::good);
         ModeBounds modes = expected;
-        modes.slowest = std::clamp(expected.slowest, 1e-10 * modes.fastest, modes.fastest);
+        modes.slowest =
+            std::clamp(expected.slowest, smallest_mode_ratio * modes.fastest, modes.fastest);
         EXPECT_NEAR(simulation.options().c_F / heavy_ball(modes).c_F, 1, 1e-12) << seed;
       }
     }

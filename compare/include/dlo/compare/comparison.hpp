@@ -45,4 +45,8 @@ struct Comparison {
 [[nodiscard]] std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene,
                                                            const std::vector<double>& s);
 
+/// Deviation of any shape of a scene, with what the scene says about ends and straight rods.
+[[nodiscard]] Deviation shape_deviation(const Scene& scene, const Shape& shape,
+                                        const Reference& reference);
+
 }  // namespace dlo::compare

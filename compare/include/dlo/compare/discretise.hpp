@@ -64,9 +64,9 @@ struct Discretisation {
 /// So they differ from L by a share of about one over their number, and only where the grips do not
 /// fit a grid of N points. No such part may be shorter than L/2.
 ///
-/// Where neighbouring segments differ, the hooke law still balances force and torque. The paper's
-/// law has a net torque there, so that the gripper of a `paper` rod carries a little more or less
-/// than what hangs on it; with several grippers or one inside the rod, say so with every number.
+/// Forces and torques of both laws balance where neighbouring segments a and b differ. The paper's
+/// joints are weaker there by (a - b)^2/(a + b)^2 than their mean length says, and have no
+/// potential; with several grippers or one inside the rod, say so with every number.
 ///
 /// A wall acts on points, each with L times the obstacle's stiffness, as the force model's walls
 /// have one stiffness for all points (the last point of a free end has twice its share). A rigid

@@ -32,8 +32,8 @@ struct PointWall {
 ///
 /// The joints' potentials are those of JointLaw, L the mean of the two rest lengths. For the hooke
 /// law the force model's forces are this energy's derivative. For the paper's law they are that
-/// between segments of equal length only: elsewhere the paper's joint has a net torque, belongs to
-/// no potential, and rests in a slightly different shape.
+/// between segments of equal length only: elsewhere the paper's joint is a little weaker,
+/// belongs to no potential, and rests in a slightly different shape.
 struct PolygonProblem {
   Eigen::VectorXd rest_lengths;  ///< L_i [m], n >= 2, each > 0
   double stretch_stiffness = 0;  ///< c_c [N], > 0

@@ -27,7 +27,9 @@ struct Bending {
 /// from P_{i-1} to P_{i+1}:
 ///     paper:  P_{i+1}: F - (F.v) v      P_{i-1}: -(F - (F.u) u)      P_i: minus the sum of both
 /// The paper prints (Formula 4) the same parts with signs that leave a net force; Fig. 2 and
-/// equilibrium ask for these. Net force is zero; net torque is zero for equal segments.
+/// equilibrium ask for these. Net force and net torque are zero for any segments. Between unequal
+/// ones the moment is c_b (1 - u.v) |u x v| a b / |a u + b v|, by (a - b)^2/(a + b)^2 below that of
+/// their mean length for small angles, and has no potential, as it depends on the lengths now.
 ///
 /// With k = 2 (EI/L) / (1 + u.v), a and b the two segments:
 ///     hooke:  P_{i+1}: k/|b| (u - (u.v) v)   P_{i-1}: -k/|a| (v - (u.v) u)   P_i: minus the sum

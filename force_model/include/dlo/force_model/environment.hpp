@@ -12,6 +12,9 @@ struct Wall {
   double stiffness = 0;                               ///< c_e [N/m], >= 0
 };
 
+/// @throws std::invalid_argument naming the first member that is out of range
+void check(const Wall& wall);
+
 /// Force of a wall on a point: c_e d N for a depth d > 0 behind the plane, else zero [N].
 [[nodiscard]] Eigen::Vector3d wall_force(const Wall& wall, const Eigen::Vector3d& position);
 

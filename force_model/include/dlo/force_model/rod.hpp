@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "dlo/force_model/bending.hpp"
@@ -37,6 +38,13 @@ void total_forces(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& poin
 /// What each grip exerts on the rod in this shape, in the order of rod.grips.
 [[nodiscard]] std::vector<GripReaction> grip_reactions(
     const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+
+/// The same without an allocation, for a loop that may not wait for one.
+/// @param[out] forces     the total forces on the points [N], 3 x (n+1)
+/// @param[out] reactions  as many as rod.grips
+/// @throws std::invalid_argument if a shape is wrong
+void grip_reactions(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                    Eigen::Ref<Eigen::Matrix3Xd> forces, std::span<GripReaction> reactions);
 
 /// Energies of a shape [J]; gravity and loads count as `load`, with their zero at the origin.
 struct RodEnergy {

@@ -46,8 +46,15 @@ class Simulation {
   void move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
                  const Eigen::Vector3d& reference);
 
+  /// Replaces a wall, whatever it does to the rod: a wall that is not there yet has stiffness 0.
+  /// Automatic steps suit it from the next step on.
+  /// @throws std::invalid_argument if there is no such wall or the new one is out of range
+  void move_wall(std::size_t wall, const Wall& moved);
+
   [[nodiscard]] const Rod& rod() const;
   [[nodiscard]] Eigen::Matrix3Xd points() const;  ///< positions now [m], a copy
+  /// The same without an allocation. @param[out] points  3 x rod().points(), as it is
+  void copy_points(Eigen::Matrix3Xd& points) const;
   [[nodiscard]] const StepOptions& options() const;
 
   // Counters since construction (paper, Tables 2 to 4).

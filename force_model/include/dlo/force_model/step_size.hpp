@@ -13,6 +13,10 @@ struct ModeBounds {
   double slowest = 0;  ///< estimate, > 0
 };
 
+/// The slowest mode is not taken for less than this share of the fastest: heavy ball steps keep
+/// 1 - 4 sqrt(share) of a movement, and rounding has to leave that apart from 1.
+inline constexpr double smallest_mode_ratio = 1e-15;
+
 /// Bounds for a rod in a given shape.
 ///
 /// `fastest` adds up what can act on one point: 4 c_c / L of contraction, 16 M'(alpha) / L^2 of

@@ -36,7 +36,8 @@ struct StepOptions {
   double l_s = 0;  ///< largest movement [m], > 0 with a limit; 0 and automatic: 1/4 of the shortest
                    ///< rest length
   /// c_s grows by this for each point that turned back in two consecutive steps, and falls by it
-  /// after each step without such a point, to no less than 1 [-].
+  /// after each step without such a point, to no less than 1 [-]. Movements of rounding size do not
+  /// count: a rod at rest would seem to oscillate.
   double c_s_change = 0.1;
   /// What the steps run on; any other than the fastest serves tests and measurements only.
   InstructionSet instruction_set = fastest_instruction_set();

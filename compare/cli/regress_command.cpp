@@ -1,0 +1,190 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+
+#include "commands.hpp"
+#include "comparison_text.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/regression.hpp"
+#include "json.hpp"
+#include "output.hpp"
+#include "scene_options.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::MeasuredCase;
+using compare::RegressionResult;
+using compare::RegressionVerdict;
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::string baseline;
+  std::string junit;
+  std::string model = "force";
+  bool update = false;
+  compare::RegressionTolerance tolerance;
+  SceneOptions overrides;
+  OutputOptions output;
+};
+
+MeasuredCase measure(const Options& options, const std::string& path) {
+  const compare::Scene scene = options.overrides.load(path);
+  const compare::Model model = compare::model_from(options.model);
+  try {
+    return {compare::measure_case(scene, model, options.overrides.solve()), ""};
+  } catch (const compare::ConvergenceError& error) {
+    const compare::ForceModelSettings& settings = scene.force_model;
+    return {{scene.name, model, settings.law, settings.bookkeeping, settings.points, {}},
+            error.what()};
+  }
+}
+
+long count(const std::vector<RegressionResult>& results, RegressionVerdict verdict) {
+  return std::count_if(results.begin(), results.end(),
+                       [verdict](const auto& result) { return result.verdict == verdict; });
+}
+
+std::string text(const std::vector<RegressionResult>& results) {
+  std::string out;
+  for (const RegressionResult& result : results) {
+    append(out, "{:<20} {}\n{:<20} {}\n", compare::to_string(result.verdict), result.name, "",
+           result.message);
+  }
+  const char* separator = "";
+  for (const RegressionVerdict verdict :
+       {RegressionVerdict::worse, RegressionVerdict::not_in_baseline,
+        RegressionVerdict::not_measured, RegressionVerdict::not_solved, RegressionVerdict::better,
+        RegressionVerdict::same}) {
+    const long number = count(results, verdict);
+    if (number == 0) continue;
+    append(out, "{}{} {}", separator, number, compare::to_string(verdict));
+    separator = ", ";
+  }
+  return out + "\n";
+}
+
+Json errors_json(const std::optional<compare::ShapeErrors>& errors) {
+  if (!errors) return nullptr;
+  Json result = {{"rms_over_length", errors->rms}, {"max_over_length", errors->max}};
+  result["tip_over_length"] = errors->tip ? Json(*errors->tip) : Json(nullptr);
+  return result;
+}
+
+Json json(const std::vector<RegressionResult>& results, bool good) {
+  Json cases = Json::array();
+  for (const RegressionResult& result : results) {
+    cases.push_back({{"case", result.name},
+                     {"verdict", compare::to_string(result.verdict)},
+                     {"baseline", errors_json(result.expected)},
+                     {"measured", errors_json(result.measured)},
+                     {"message", result.message}});
+  }
+  return {{"schema", "dlo/regress/1"},
+          {"verdict", good ? "pass" : "fail"},
+          {"cases", std::move(cases)}};
+}
+
+std::string csv(const std::vector<RegressionResult>& results) {
+  std::string out =
+      "case,verdict,baseline_rms_over_length,baseline_max_over_length,baseline_tip_over_length,"
+      "rms_over_length,max_over_length,tip_over_length\n";
+  const auto add = [&](const std::optional<compare::ShapeErrors>& errors) {
+    if (!errors) {
+      out += ",,,";
+      return;
+    }
+    append(out, ",{},{},{}", compare::csv_number(errors->rms), compare::csv_number(errors->max),
+           errors->tip ? compare::csv_number(*errors->tip) : "");
+  };
+  for (const RegressionResult& result : results) {
+    append(out, "{},{}", csv_field(result.name), compare::to_string(result.verdict));
+    add(result.expected);
+    add(result.measured);
+    out += "\n";
+  }
+  return out;
+}
+
+void print(const Options& options, const std::vector<RegressionResult>& results, bool good) {
+  switch (options.output.kind()) {
+    case Format::json:
+      return write_output(options.output, json(results, good).dump(2) + "\n");
+    case Format::csv:
+      return write_output(options.output, csv(results));
+    case Format::text:
+      return write_output(options.output, text(results));
+  }
+}
+
+void run(const Options& options) {
+  // An unreadable baseline is told before minutes of solving.
+  std::vector<compare::BaselineCase> baseline;
+  if (!options.update || std::filesystem::exists(options.baseline)) {
+    baseline = compare::load_baseline(options.baseline);
+  }
+  std::vector<MeasuredCase> measured;
+  for (const std::string& path : options.scenes) measured.push_back(measure(options, path));
+  const std::vector<RegressionResult> results =
+      compare::judge_regression(baseline, measured, options.tolerance);
+  const bool solved = count(results, RegressionVerdict::not_solved) == 0;
+  const bool good = options.update
+                        ? solved
+                        : std::none_of(results.begin(), results.end(), [](const auto& result) {
+                            return compare::failed(result.verdict);
+                          });
+  if (!options.junit.empty()) {
+    write_output({.file = options.junit}, compare::junit_xml(results));
+  }
+  if (options.update && solved) {
+    std::vector<compare::BaselineCase> cases;
+    for (const MeasuredCase& entry : measured) cases.push_back(entry.entry);
+    write_output({.file = options.baseline}, compare::baseline_text(cases));
+  }
+  print(options, results, good);
+  if (options.update) {
+    fmt::print(stderr, "dlo: {} {}\n", options.baseline, solved ? "written" : "left as it was");
+  }
+  if (!solved) throw CLI::RuntimeError(3);
+  if (!good) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_regress(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("regress", "shape errors against a baseline under version control");
+  const auto options = std::make_shared<Options>();
+  command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
+  command->add_option("--baseline", options->baseline, "the baseline (TOML)")
+      ->type_name("FILE")
+      ->required();
+  command->add_flag("--update", options->update,
+                    "write the baseline anew, of these scenes and no others");
+  command->add_option("--junit", options->junit, "write the verdicts as JUnit XML too")
+      ->type_name("FILE");
+  command->add_option("--model", options->model, "force or chain")
+      ->check(CLI::IsMember({"force", "chain"}))
+      ->capture_default_str();
+  command
+      ->add_option("--relative", options->tolerance.relative,
+                   "how much an error may change, as a share of it")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
+  command
+      ->add_option("--absolute", options->tolerance.absolute,
+                   "and how much beside that, as a share of the rod's length")
+      ->check(CLI::Range(0.0, 1e3))
+      ->capture_default_str();
+  options->overrides.add_to(*command);
+  add_output_options(*command, options->output);
+  command->footer(
+      "Example:\n"
+      "  dlo regress --baseline shapes.toml data/scenes/spring_steel_175.toml --update\n"
+      "  dlo regress --baseline shapes.toml data/scenes/spring_steel_175.toml --junit dlo.xml");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

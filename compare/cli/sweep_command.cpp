@@ -1,0 +1,174 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+#include "commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/sweep_file.hpp"
+#include "scene_options.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::vector<std::string> vary;
+  std::string model = "energy";
+  std::string format = "csv";
+  std::string shard;
+  std::string output;
+  int threads = 0;
+  bool restart = false;
+  bool merge = false;
+  SceneOptions scene;
+};
+
+std::optional<compare::Shard> chosen_shard(const std::string& text) {
+  if (text == "none") return std::nullopt;
+  if (!text.empty()) return compare::parse_shard(text);
+  std::optional<compare::Shard> shard =
+      compare::shard_from_environment([](const char* name) { return std::getenv(name); });
+  if (shard) fmt::print(stderr, "dlo: shard {} (from {})\n", shard->name(), shard->source);
+  return shard;
+}
+
+/// {shard} in a file's name becomes 2-of-4, or "all" without shards.
+std::string output_path(std::string path, const std::optional<compare::Shard>& shard) {
+  const std::string placeholder = "{shard}";
+  const std::string name =
+      shard ? fmt::format("{}-of-{}", shard->index, shard->count) : std::string("all");
+  for (std::size_t at = path.find(placeholder); at != std::string::npos;
+       at = path.find(placeholder, at + name.size())) {
+    path.replace(at, placeholder.size(), name);
+  }
+  return path;
+}
+
+compare::Sweep sweep_of(const Options& options) {
+  std::vector<compare::Axis> axes;
+  for (const std::string& text : options.vary) axes.push_back(compare::parse_axis(text));
+  return {compare::load_scene_template(options.files.front(), options.scene.materials()),
+          compare::Grid(std::move(axes)), compare::sweep_model_from(options.model),
+          options.scene.solve()};
+}
+
+void print_sweep(const compare::Sweep& sweep, const std::optional<compare::Shard>& shard,
+                 int threads) {
+  const auto print = [](const std::string& text) {
+    if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
+        std::fflush(stdout) == 0) {
+      return;
+    }
+    throw compare::InputError(
+        fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
+  };
+  if (shard) print(compare::sweep_identity(sweep, shard));
+  print(sweep.header());
+  const std::int64_t rows = sweep.grid().size();
+  sweep.run(shard ? compare::rows_of(*shard, rows) : compare::RowRange{0, rows}, threads, print);
+}
+
+void warn_of_unresolved(const compare::SweepOutcome& outcome, const std::string& file) {
+  if (outcome.unresolved == 0) return;
+  fmt::print(stderr, "dlo: {}: {} of {} scenes have no result, the column status says why\n", file,
+             outcome.unresolved, outcome.rows);
+}
+
+void run_merge(const Options& options) {
+  if (options.output.empty()) throw compare::InputError("--merge: -o FILE is required");
+  if (!options.vary.empty() || !options.shard.empty()) {
+    throw compare::InputError("--merge: takes the shards' files only (allowed: -o)");
+  }
+  warn_of_unresolved(compare::merge_sweep(options.files, options.output), options.output);
+}
+
+/// One --vary may be followed by several fields; what has a "=" is one of them, not a file.
+void sort_words(Options& options) {
+  const auto fields = std::stable_partition(
+      options.files.begin(), options.files.end(),
+      [](const std::string& word) { return word.find('=') == std::string::npos; });
+  options.vary.insert(options.vary.end(), fields, options.files.end());
+  options.files.erase(fields, options.files.end());
+}
+
+void run(Options options) {
+  if (options.merge) return run_merge(options);
+  if (!options.vary.empty()) sort_words(options);
+  if (options.files.size() != 1) {
+    throw compare::InputError(
+        fmt::format("sweep: {} scene files given (allowed: 1)", options.files.size()));
+  }
+  if (options.vary.empty()) throw compare::InputError("sweep: no --vary FIELD=VALUES given");
+  const compare::Sweep sweep = sweep_of(options);
+  const std::optional<compare::Shard> shard = chosen_shard(options.shard);
+  if (options.output.empty()) return print_sweep(sweep, shard, options.threads);
+  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  compare::SweepFileOptions file_options{.threads = options.threads, .restart = options.restart};
+  if (terminal) {
+    file_options.progress = [](std::int64_t done, std::int64_t rows) {
+      const std::int64_t rarely = rows / 1000 + 1;
+      if (done % rarely != 0 && done != rows) return;
+      fmt::print(stderr, "\r{} of {} scenes{}", done, rows, done == rows ? "\n" : "");
+    };
+  }
+  const std::string path = output_path(options.output, shard);
+  warn_of_unresolved(compare::write_sweep(sweep, shard, path, file_options), path);
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("sweep", "a grid over any fields of a scene, as a table (CSV)");
+  const auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->files, "scene file (TOML); with --merge the shards' files")
+      ->required();
+  command
+      ->add_option("--vary", options->vary,
+                   "a field and its values, once for each field: a dotted path such as "
+                   "rod.length or gripper.0.direction, or gamma, which scales gravity; values "
+                   "a,b,c or lin:a:b:n or log:a:b:n, with units as in scene files. The last field "
+                   "changes fastest")
+      ->type_name("FIELD=VALUES")
+      ->allow_extra_args(false);
+  command->add_option("--format", options->format, "csv")
+      ->check(CLI::IsMember({"csv"}))
+      ->capture_default_str();
+  command
+      ->add_option("--model", options->model,
+                   "energy, chain, exact, force, compare (force against energy) or compare-chain "
+                   "(its rest shape, without steps, against energy)")
+      ->check(CLI::IsMember(compare::sweep_model_names()))
+      ->capture_default_str();
+  command
+      ->add_option("-o,--output", options->output,
+                   "write to FILE (FILE.part until it is finished; after a kill the same command "
+                   "goes on there) instead of standard output; {shard} in it becomes 2-of-4")
+      ->type_name("FILE");
+  command->add_flag("--restart", options->restart, "throw away what an earlier run has left");
+  command->add_option("--threads", options->threads, "0: all cores")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  command
+      ->add_option("--shard", options->shard,
+                   "compute part i of n, or none; default: what SLURM_ARRAY_TASK_ID and "
+                   "OMPI_COMM_WORLD_RANK say")
+      ->type_name("i/n");
+  command->add_flag("--merge", options->merge, "put finished shards together");
+  options->scene.add_solvers_to(*command);
+  command->footer(
+      "Example:\n"
+      "  dlo sweep data/scenes/spring_steel_175.toml --vary gamma=log:0.1:10:5 \\\n"
+      "      --vary gripper.0.direction=\"-90 deg\",\"0 deg\" -o map.csv\n"
+      "On a cluster, then merged:\n"
+      "  mpirun dlo sweep scene.toml --vary gamma=log:1:10:99 -o 'map.{shard}.csv'\n"
+      "  dlo sweep --merge map.*-of-*.csv -o map.csv");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

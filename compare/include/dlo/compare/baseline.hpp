@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solve.hpp"
+
+namespace dlo::compare {
+
+/// How far a shape is from the energy model's, each as a share of the rod's length [-].
+struct ShapeErrors {
+  double rms = 0;
+  double max = 0;
+  std::optional<double> tip;  ///< nothing if both ends are held
+};
+
+/// Errors of one scene with one choice of model, law, bookkeeping and N.
+struct BaselineCase {
+  std::string scene;  ///< its name
+  Model model = Model::force;
+  Law law = Law::hooke;
+  Bookkeeping bookkeeping = Bookkeeping::consistent;
+  int points = 0;  ///< N
+  ShapeErrors errors;
+
+  /// "copper wire (force, law hooke, bookkeeping consistent, N = 16)": two cases with the same name
+  /// are the same case.
+  [[nodiscard]] std::string name() const;
+};
+
+/// Solves a scene with `model` (chain or force) and with the energy model.
+/// @throws InputError, ConvergenceError
+[[nodiscard]] BaselineCase measure_case(const Scene& scene, Model model,
+                                        const SolveOptions& options = {});
+
+/// Reads a baseline: TOML with schema = "dlo/baseline/1" and a [[case]] for each.
+/// @throws InputError naming file, line, key, value and what is allowed, also if a case comes twice
+[[nodiscard]] std::vector<BaselineCase> read_baseline(const std::string& text,
+                                                      const std::string& file);
+[[nodiscard]] std::vector<BaselineCase> load_baseline(const std::string& path);
+
+/// A baseline's text, sorted by name, errors with 6 significant digits: what does not change reads
+/// the same.
+[[nodiscard]] std::string baseline_text(std::vector<BaselineCase> cases);
+
+}  // namespace dlo::compare

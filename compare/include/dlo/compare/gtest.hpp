@@ -1,0 +1,71 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+#include <utility>
+
+#include "dlo/compare/shape_verdict.hpp"
+
+/// GoogleTest for shapes; headers only, the library itself does not need GoogleTest.
+///
+///     EXPECT_SHAPE_NEAR(shape, load_scene("wire.toml"), 1e-3);         // 0.1 % of the length
+///     EXPECT_THAT(shape, dlo::compare::IsShapeOf(scene, 1e-3));         // with gmock
+///
+/// `shape` is a dlo::compare::Shape (points at arc lengths, in m, in the scene's frame),
+/// `tolerance` the largest distance at equal arc length that is allowed, as a share of the rod's
+/// length. A failure says where the shape is furthest away and how far.
+#define EXPECT_SHAPE_NEAR(shape, scene, tolerance) \
+  EXPECT_PRED_FORMAT3(::dlo::compare::assert_shape_near, shape, scene, tolerance)
+#define ASSERT_SHAPE_NEAR(shape, scene, tolerance) \
+  ASSERT_PRED_FORMAT3(::dlo::compare::assert_shape_near, shape, scene, tolerance)
+
+namespace dlo::compare {
+
+inline testing::AssertionResult assert_shape_near(const char* shape_text, const char* scene_text,
+                                                  const char* tolerance_text, const Shape& shape,
+                                                  const Scene& scene, double tolerance) {
+  const ShapeVerdict verdict = judge_shape(shape, scene, tolerance);
+  if (verdict.near) return testing::AssertionSuccess();
+  return testing::AssertionFailure()
+         << shape_text << " is not the shape of " << scene_text << " (" << scene.name << ") within "
+         << tolerance_text << ":\n  " << verdict.explanation;
+}
+
+/// What IsShapeOf gives.
+class ShapeMatcher {
+ public:
+  using is_gtest_matcher = void;
+
+  ShapeMatcher(Scene scene, double tolerance) : scene_(std::move(scene)), tolerance_(tolerance) {}
+
+  bool MatchAndExplain(const Shape& shape, std::ostream* explanation) const {
+    const ShapeVerdict verdict = judge_shape(shape, scene_, tolerance_);
+    if (explanation != nullptr) *explanation << verdict.explanation;
+    return verdict.near;
+  }
+  void DescribeTo(std::ostream* out) const {
+    *out << "is the shape of " << scene_.name << " within " << tolerance_ * 100 << " % of l";
+  }
+  void DescribeNegationTo(std::ostream* out) const {
+    *out << "is not the shape of " << scene_.name << " within " << tolerance_ * 100 << " % of l";
+  }
+
+ private:
+  Scene scene_;
+  double tolerance_;
+};
+
+// GoogleTest's names for what GoogleTest calls and for what stands beside its matchers.
+// NOLINTNEXTLINE(readability-identifier-naming)
+inline ShapeMatcher IsShapeOf(Scene scene, double tolerance) {
+  return {std::move(scene), tolerance};
+}
+
+/// How GoogleTest prints a shape: its size, not its bytes.
+// NOLINTNEXTLINE(readability-identifier-naming)
+inline void PrintTo(const Shape& shape, std::ostream* out) {
+  *out << "a shape of " << shape.points.cols() << " points";
+}
+
+}  // namespace dlo::compare

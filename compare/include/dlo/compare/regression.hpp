@@ -1,0 +1,57 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/baseline.hpp"
+
+namespace dlo::compare {
+
+enum class RegressionVerdict {
+  same,
+  better,
+  worse,
+  not_in_baseline,  ///< measured, but the baseline does not know it
+  not_measured,     ///< in the baseline, but not measured
+  not_solved,       ///< a solver did not converge
+};
+
+[[nodiscard]] const char* to_string(RegressionVerdict verdict);
+/// Everything but same and better.
+[[nodiscard]] bool failed(RegressionVerdict verdict);
+
+/// A share e of the rod's length has changed if it is off by more than absolute + relative * e.
+struct RegressionTolerance {
+  double relative = 0.01;
+  double absolute = 1e-6;  ///< share of the rod's length
+};
+
+/// One case against its baseline.
+struct RegressionResult {
+  std::string name;
+  RegressionVerdict verdict = RegressionVerdict::not_solved;
+  std::optional<ShapeErrors> expected;
+  std::optional<ShapeErrors> measured;
+  std::string message;  ///< one line, in % of the rod's length
+};
+
+/// A scene and model that were asked for: its errors, or why there are none.
+struct MeasuredCase {
+  BaselineCase entry;   ///< without errors if it was not solved
+  std::string problem;  ///< of the solver; empty if there is none
+};
+
+/// Every case of either side, sorted by name. A case is worse if any of its errors is, better if
+/// none is worse and any is better; an error that only one side has is worse.
+/// @throws InputError if two measured cases have the same name, std::invalid_argument if a
+/// tolerance is negative or not finite
+[[nodiscard]] std::vector<RegressionResult> judge_regression(
+    const std::vector<BaselineCase>& baseline, const std::vector<MeasuredCase>& measured,
+    const RegressionTolerance& tolerance = {});
+
+/// JUnit XML: a <failure> for what is worse or on one side only, an <error> for what was not
+/// solved.
+[[nodiscard]] std::string junit_xml(const std::vector<RegressionResult>& results);
+
+}  // namespace dlo::compare

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+
+namespace dlo::compare {
+
+/// A field of a scene file and the value it gets, as the file would spell it.
+struct FieldValue {
+  std::string
+      field;  ///< dotted path; elements of arrays by number from 0, as in gripper.0.direction
+  std::string value;  ///< number, [vector], or any other text, quotes not needed: 210 GPa, paper
+};
+
+/// A scene file whose fields can be given other values. They go into its parsed TOML, and that goes
+/// through the ordinary reader: what a scene file may say is what a field may say.
+///
+/// A material that is given by name can be varied in parts, as rod.material.youngs_modulus. The
+/// derived field `gamma` scales gravity so that w l^3 / (EI) is its value, whatever else is varied.
+///
+/// Safe to use from several threads at once.
+class SceneTemplate {
+ public:
+  /// @param name  of the file, for messages and Scene::file
+  /// @throws InputError if the text is no TOML
+  SceneTemplate(const std::string& text, std::string name,
+                std::vector<Material> known_materials = materials());
+
+  /// The scene with other values. @throws InputError as parse_scene, and if a path leads nowhere
+  [[nodiscard]] Scene with(const std::vector<FieldValue>& values) const;
+
+  /// 16 hexadecimal digits that stand for the file's text and name and for the known materials.
+  [[nodiscard]] const std::string& fingerprint() const;
+
+ private:
+  struct Parsed;  // keeps TOML out of this header
+  std::shared_ptr<const Parsed> parsed_;
+};
+
+/// A scene file as a template. Its name goes without its folder, so that messages, and what is
+/// derived from them, are the same wherever the file lies. @throws InputError
+[[nodiscard]] SceneTemplate load_scene_template(
+    const std::string& path, const std::vector<Material>& known_materials = materials());
+
+}  // namespace dlo::compare

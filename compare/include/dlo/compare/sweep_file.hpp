@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/shard.hpp"
+#include "dlo/compare/sweep.hpp"
+
+namespace dlo::compare {
+
+/// What happened to the rows of a sweep's file.
+struct SweepOutcome {
+  std::int64_t rows = 0;        ///< in the file
+  std::int64_t found = 0;       ///< of them, those that an earlier run had left
+  std::int64_t unresolved = 0;  ///< of them, those whose status is not ok
+};
+
+struct SweepFileOptions {
+  int threads = 0;       ///< 0: all cores
+  bool restart = false;  ///< throw away what an earlier run has left
+  /// Called after every row with the rows that are done and all rows.
+  std::function<void(std::int64_t, std::int64_t)> progress;
+};
+
+/// First line of a file that is not a whole sweep: fingerprints of the scene (with its name and the
+/// known materials), of the grid and of the options, the model, the shard and its rows.
+[[nodiscard]] std::string sweep_identity(const Sweep& sweep, const std::optional<Shard>& shard);
+
+/// Computes a sweep, or a shard of it, into a CSV file.
+///
+/// Rows are appended in order to `path`.part, whose first line is sweep_identity(). A run that
+/// finds such a file goes on behind its last whole line, a torn one is cut off; so a run may be
+/// killed at any moment and no row is lost or written twice. The file is locked while a process
+/// writes it. In the end a whole sweep is put into `path` at once, without its first line; a shard
+/// keeps it. A shard that is in `path` already is left as it is.
+/// @throws InputError if the files cannot be written, belong to another sweep or to a process that
+/// still writes them
+SweepOutcome write_sweep(const Sweep& sweep, const std::optional<Shard>& shard,
+                         const std::string& path, const SweepFileOptions& options = {});
+
+/// Puts the shards of a sweep together, in any order of files. The result is what one run over the
+/// whole grid would have written.
+/// @throws InputError naming the file, and nothing is written, if a file is no shard, is damaged or
+/// not finished, if shards belong to different sweeps, overlap, or leave rows out
+SweepOutcome merge_sweep(const std::vector<std::string>& files, const std::string& path);
+
+}  // namespace dlo::compare

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace dlo::compare {
+
+/// A file that is written by one process at a time. Created if it is not there, never truncated by
+/// opening it; its end is where writing goes on. Errors are InputErrors that name the file.
+class LockedFile {
+ public:
+  /// @throws InputError if another process holds it
+  explicit LockedFile(const std::string& path);
+  ~LockedFile();
+  LockedFile(const LockedFile&) = delete;
+  LockedFile& operator=(const LockedFile&) = delete;
+  LockedFile(LockedFile&&) = delete;
+  LockedFile& operator=(LockedFile&&) = delete;
+
+  void cut(std::int64_t size);
+  void append(std::string_view text);
+  /// Waits until the disk has everything: a power failure then takes nothing.
+  void sync();
+  /// Gives the file another name, replacing a file of that name.
+  void rename(const std::string& path);
+  void remove();
+
+ private:
+  [[noreturn]] void fail(int error) const;
+
+  std::string path_;
+  int descriptor_ = -1;
+};
+
+}  // namespace dlo::compare

@@ -1,0 +1,131 @@
+// dlo regress as a user and a CI run it.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+class RegressCommand : public dlo::test::Command {
+ protected:
+  void SetUp() override {
+    Command::SetUp();
+    arguments_ = "regress --model chain --baseline " + path("b.toml") + " ";
+    ASSERT_EQ(run(arguments_ + steel() + " --update").status, 0);
+  }
+
+  /// Replaces the number behind a key of the baseline.
+  void set(const std::string& key, const std::string& number) const {
+    std::string text = read(path("b.toml"));
+    const std::size_t begin = text.find(key + " = ") + key.size() + 3;
+    text.replace(begin, text.find('\n', begin) - begin, number);
+    std::ofstream(path("b.toml")) << text;
+  }
+
+  /// The value of an XPath expression on the JUnit file, by libxml2's reader.
+  [[nodiscard]] std::string junit(const std::string& expression) const {
+    const std::string line =
+        "xmllint --xpath '" + expression + "' " + path("j.xml") + " >" + path("value") + " 2>&1";
+    EXPECT_EQ(std::system(line.c_str()), 0) << read(path("value"));
+    return read(path("value"));
+  }
+
+  std::string arguments_;
+};
+
+TEST_F(RegressCommand, UpdateIsStableAndTheSameShapesPass) {
+  const std::string before = read(path("b.toml"));
+  EXPECT_EQ(run(arguments_ + steel() + " --update").status, 0);
+  EXPECT_EQ(read(path("b.toml")), before);
+  const dlo::test::Outcome result = run(arguments_ + steel());
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out.substr(0, 5), "same ");
+  EXPECT_EQ(read(path("b.toml")), before);
+}
+
+TEST_F(RegressCommand, AWorseErrorFailsAndABetterOneIsReported) {
+  set("rms_over_length", "0.2");
+  dlo::test::Outcome result = run(arguments_ + steel());
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.out.find("(baseline 20 %) worse"), std::string::npos) << result.out;
+  EXPECT_EQ(run(arguments_ + steel() + " --relative 0.1").status, 0);
+  EXPECT_EQ(run(arguments_ + steel() + " --absolute 0.02").status, 0);
+  set("rms_over_length", "0.3");
+  result = run(arguments_ + steel());
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.out.find("1 better"), std::string::npos) << result.out;
+}
+
+TEST_F(RegressCommand, AMissingBaselineOrCaseOnEitherSideFails) {
+  expect_error("regress --baseline " + path("none.toml") + " " + steel(), 2,
+               {"none.toml", "cannot be read"});
+  const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
+  const dlo::test::Outcome added = run(arguments_ + steel() + " " + other);
+  EXPECT_EQ(added.status, 1);
+  EXPECT_NE(added.out.find("1 not in the baseline"), std::string::npos) << added.out;
+  const dlo::test::Outcome changed = run(arguments_ + steel() + " --points 20");
+  EXPECT_EQ(changed.status, 1);
+  EXPECT_NE(changed.out.find("1 not in the baseline, 1 not measured"), std::string::npos)
+      << changed.out;
+}
+
+TEST_F(RegressCommand, WhatIsNotSolvedIsStatusThreeAndUpdatesNothing) {
+  const std::string before = read(path("b.toml"));
+  for (const std::string update : {"", " --update"}) {
+    const dlo::test::Outcome result = run(arguments_ + steel() + " --max-evaluations 1" + update);
+    EXPECT_EQ(result.status, 3);
+    EXPECT_NE(result.out.find("did not converge"), std::string::npos) << result.out;
+    EXPECT_EQ(read(path("b.toml")), before);
+  }
+}
+
+TEST_F(RegressCommand, BadInputIsOneLineAndStatusTwo) {
+  expect_error(arguments_ + path("none.toml"), 2, {"none.toml"});
+  expect_error(arguments_ + steel() + " " + steel(), 2, {"two scenes are this case"});
+  expect_error(arguments_ + steel() + " --relative -1", 2, {"--relative"});
+  expect_error("regress " + steel(), 2, {"--baseline"});
+  set("rms_over_length", "-1");
+  expect_error(arguments_ + steel(), 2, {"b.toml:10", "rms_over_length = -1", ">= 0"});
+  expect_error(arguments_ + steel() + " --update", 2, {"b.toml:10"});
+  std::ofstream(path("b.toml")) << "rubbish";
+  expect_error(arguments_ + steel(), 2, {"b.toml:1", "not valid TOML"});
+}
+
+TEST_F(RegressCommand, WritesJunitThatAnXmlReaderTakes) {
+  set("tip_over_length", "0.1");
+  const std::string strange = scene(R"(name = "<&>'\" \u0001 caf\u00e9"
+[rod]
+length = "50 cm"
+diameter = "2 mm"
+material = "spring_steel"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)");
+  EXPECT_EQ(run(arguments_ + steel() + " " + strange + " --junit " + path("j.xml")).status, 1);
+  EXPECT_EQ(junit("string(/testsuites/testsuite/@tests)"), "2\n");
+  EXPECT_EQ(junit("string(/testsuites/testsuite/@failures)"), "2\n");
+  EXPECT_EQ(junit("count(//testcase/failure)"), "2\n");
+  EXPECT_EQ(junit("string(//testcase[failure/@type=\"not in the baseline\"]/@name)"),
+            "<&>'\"   caf\xc3\xa9 (chain, law hooke, bookkeeping consistent, N = 16)\n");
+  EXPECT_NE(junit("string(//failure[@type=\"worse\"]/@message)").find("tip"), std::string::npos);
+}
+
+TEST_F(RegressCommand, PrintsJsonAndCsv) {
+  const auto document = nlohmann::json::parse(run(arguments_ + steel() + " --format json").out);
+  EXPECT_EQ(document.at("schema"), "dlo/regress/1");
+  EXPECT_EQ(document.at("verdict"), "pass");
+  EXPECT_EQ(document.at("cases")[0].at("verdict"), "same");
+  EXPECT_GT(document.at("cases")[0].at("measured").at("rms_over_length").get<double>(), 0.1);
+  EXPECT_EQ(run(arguments_ + steel() + " --format csv").out.substr(0, 13), "case,verdict,");
+  EXPECT_NE(run("regress --help").out.find("Example:"), std::string::npos);
+}
+
+}  // namespace

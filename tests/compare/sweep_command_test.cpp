@@ -1,0 +1,163 @@
+// dlo sweep as a user and a scheduler run it.
+
+#include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <string>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+class SweepCommand : public dlo::test::Command {
+ protected:
+  void SetUp() override {
+    Command::SetUp();
+    // This test may itself run under a scheduler.
+    for (const char* name : {"SLURM_ARRAY_TASK_ID", "OMPI_COMM_WORLD_RANK"}) ::unsetenv(name);
+  }
+
+  /// Starts a sweep, kills it (SIGKILL) when its part has grown by `bytes`; false if it finished.
+  [[nodiscard]] bool run_and_kill(const std::string& vary, const std::string& output,
+                                  std::uintmax_t bytes) const {
+    std::string words[] = {DLO_COMMAND, "sweep", steel(), "--vary", vary, "-o", output};
+    std::array<char*, std::size(words) + 1> arguments{};
+    for (std::size_t i = 0; i < std::size(words); ++i) arguments[i] = words[i].data();
+    const std::string part = output + ".part";
+    const auto size = [&] {
+      std::error_code error;
+      const std::uintmax_t count = std::filesystem::file_size(part, error);
+      return error ? 0 : count;
+    };
+    const std::uintmax_t enough = size() + bytes;
+    pid_t process = 0;
+    EXPECT_EQ(::posix_spawn(&process, DLO_COMMAND, nullptr, nullptr, arguments.data(), environ), 0);
+    int status = 0;
+    while (::waitpid(process, &status, WNOHANG) == 0) {
+      if (size() < enough) {
+        ::usleep(100);
+        continue;
+      }
+      ::kill(process, SIGKILL);
+      ::waitpid(process, &status, 0);
+      return WIFSIGNALED(status);
+    }
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0);
+    return false;
+  }
+
+  void expect_same_files(const std::string& a, const std::string& b) const {
+    const std::string expected = read(path(a));
+    EXPECT_GT(expected.size(), 100U);
+    EXPECT_TRUE(read(path(b)) == expected) << a << " and " << b;
+  }
+};
+
+TEST_F(SweepCommand, WritesATableToStandardOutputOrAFile) {
+  const std::string arguments =
+      "sweep " + steel() + " --vary gamma=log:0.1:10:3 gripper.0.direction='0 deg,45 deg'";
+  const dlo::test::Outcome printed = run(arguments);
+  ASSERT_EQ(printed.status, 0) << printed.err;
+  EXPECT_EQ(printed.err, "");
+  EXPECT_EQ(printed.out.substr(0, 40), "row,gamma,gripper.0.direction [deg],tip_");
+  EXPECT_EQ(std::count(printed.out.begin(), printed.out.end(), '\n'), 7);
+  EXPECT_EQ(run(arguments + " -o " + path("a.csv")).status, 0);
+  EXPECT_EQ(read(path("a.csv")), printed.out);
+  EXPECT_EQ(run(arguments + " --threads 5").out, printed.out);
+}
+
+TEST_F(SweepCommand, SaysHowManyScenesHaveNoResult) {
+  const dlo::test::Outcome result =
+      run("sweep " + steel() + " --vary rod.length=-1,1 -o " + path("a.csv"));
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("1 of 2 scenes"), std::string::npos) << result.err;
+}
+
+TEST_F(SweepCommand, BadGridsAreOneLineAndStatusTwo) {
+  const std::string start = "sweep " + steel() + " ";
+  expect_error(start, 2, {"--vary"});
+  expect_error("sweep --vary gamma=1", 2, {"FILE"});
+  expect_error(start + "--vary rod.lenght=1", 2, {"rod.lenght", "unknown key", "length"});
+  expect_error(start + "--vary rod.length=lin:1:2", 2, {"rod.length=lin:1:2", "lin:a:b:n"});
+  expect_error(start + "--vary rod.length=1 rod.length=2", 2, {"rod.length", "once"});
+  expect_error(start + "--vary gamma=1 --model fem", 2, {"fem", "energy"});
+  expect_error(start + "--vary gamma=1 --shard 3/2", 2, {"3/2", "i <= n"});
+  expect_error(start + "--vary gamma=1 --threads -1", 2, {"--threads"});
+  expect_error("sweep " + path("none.toml") + " --vary gamma=1", 2, {"none.toml"});
+  expect_error("sweep " + steel() + " " + steel() + " --vary gamma=1", 2, {"2 scene files"});
+  expect_error("sweep --merge " + steel() + " -o " + path("a.csv"), 2, {"no shard"});
+  expect_error("sweep --merge " + steel(), 2, {"-o"});
+}
+
+TEST_F(SweepCommand, KilledTwentyTimesGivesTheFileOfAnUnbrokenRun) {
+  const std::string vary = "gamma=log:0.1:100:20000";
+  ASSERT_EQ(run("sweep " + steel() + " --vary " + vary + " -o " + path("whole.csv")).status, 0);
+  const std::uintmax_t size = std::filesystem::file_size(path("whole.csv"));
+  std::mt19937 random(5);
+  std::uniform_int_distribution<std::uintmax_t> bytes(0, size / 24);
+  // A run that finishes before the kill reaches it is begun anew and not counted.
+  for (int kills = 0; kills < 20;) {
+    if (run_and_kill(vary, path("killed.csv"), bytes(random))) {
+      ++kills;
+    } else {
+      std::filesystem::remove(path("killed.csv"));
+    }
+  }
+  ASSERT_EQ(run("sweep " + steel() + " --vary " + vary + " -o " + path("killed.csv")).status, 0);
+  expect_same_files("whole.csv", "killed.csv");
+  EXPECT_FALSE(std::filesystem::exists(path("killed.csv.part")));
+}
+
+TEST_F(SweepCommand, RanksOfMpirunAreShards) {
+  ::setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1);
+  ::setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
+  const std::string sweep = "sweep " + steel() + " --vary gamma=log:0.1:10:50 -o ";
+  ASSERT_EQ(run(sweep + path("whole.csv")).status, 0);
+  const std::string line = "mpirun --oversubscribe -n 3 " DLO_COMMAND " " + sweep + "'" +
+                           path("{shard}.csv") + "' 2>" + path("log");
+  ASSERT_EQ(std::system(line.c_str()), 0) << read(path("log"));
+  EXPECT_NE(read(path("log")).find("shard 3/3"), std::string::npos) << read(path("log"));
+  ASSERT_EQ(run("sweep --merge " + path("*-of-3.csv") + " -o " + path("merged.csv")).status, 0);
+  expect_same_files("whole.csv", "merged.csv");
+}
+
+TEST_F(SweepCommand, GnuParallelRunsShards) {
+  const std::string sweep = "sweep " + steel() + " --vary gamma=log:0.1:10:50 -o ";
+  ASSERT_EQ(run(sweep + path("whole.csv")).status, 0);
+  const std::string line = "parallel --will-cite -j 2 " DLO_COMMAND " " + sweep +
+                           path("part{}.csv") + " --shard {}/4 ::: 1 2 3 4 2>" + path("log");
+  ASSERT_EQ(std::system(line.c_str()), 0) << read(path("log"));
+  ASSERT_EQ(run("sweep --merge " + path("part*.csv") + " -o " + path("merged.csv")).status, 0);
+  expect_same_files("whole.csv", "merged.csv");
+}
+
+TEST_F(SweepCommand, TasksOfASlurmArrayAreShards) {
+  const std::string sweep = "sweep " + steel() + " --vary gamma=log:0.1:10:50 -o ";
+  ASSERT_EQ(run(sweep + path("whole.csv")).status, 0);
+  ::setenv("SLURM_ARRAY_TASK_MIN", "1", 1);
+  ::setenv("SLURM_ARRAY_TASK_COUNT", "2", 1);
+  for (const char* task : {"1", "2"}) {
+    ::setenv("SLURM_ARRAY_TASK_ID", task, 1);
+    ASSERT_EQ(run(sweep + path("task_{shard}.csv")).status, 0);
+  }
+  const dlo::test::Outcome other = run(sweep + path("task_1-of-2.csv"));
+  EXPECT_EQ(other.status, 2);
+  EXPECT_NE(other.err.find("is shard 1/2, this is 2/2"), std::string::npos) << other.err;
+  ::unsetenv("SLURM_ARRAY_TASK_ID");
+  ASSERT_EQ(run("sweep --merge " + path("task_*.csv") + " -o " + path("merged.csv")).status, 0);
+  expect_same_files("whole.csv", "merged.csv");
+}
+
+TEST_F(SweepCommand, HelpHasAnExample) {
+  EXPECT_NE(run("sweep --help").out.find("Example:"), std::string::npos);
+}
+
+}  // namespace
