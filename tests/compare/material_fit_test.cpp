@@ -40,7 +40,7 @@ TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
   constexpr int draws = 100;
   for (int draw = 0; draw < draws; ++draw) {
     const std::vector<double> s = uneven_arc_lengths(random, 7, 1);
-    const Pose motion = pose == PoseFreedom::known ? Pose() : random_pose(random);
+    const RigidMotion motion = pose == PoseFreedom::known ? RigidMotion() : random_pose(random);
     const MeasuredShape seen{
         "seen", with_noise(motion.applied(exact.sample(s).points), 1e-3, random), {}};
     const MaterialFit fit =
