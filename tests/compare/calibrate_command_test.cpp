@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <fstream>
-#include <initializer_list>
 #include <nlohmann/json.hpp>
 
 #include "command_fixture.hpp"
@@ -17,11 +16,6 @@ using nlohmann::json;
 
 class CalibrateCommand : public Command {
  protected:
-  static std::string words(std::initializer_list<std::string> list) {
-    std::string line;
-    for (const std::string& word : list) line.append(word).append(" ");
-    return line;
-  }
   std::string scene_of(const std::string& name, const std::string& modulus, double angle,
                        const std::string& more = "") {
     std::ofstream(path(name)) << "[rod]\nlength = 1\ndiameter = \"4 mm\"\nmaterial = { "
