@@ -58,6 +58,7 @@ double target_share(const std::string& text) {
 std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
                                      const SceneOptions& overrides) {
   std::vector<compare::Scene> scenes;
+  scenes.reserve(paths.size());
   for (const std::string& path : paths) scenes.push_back(overrides.load(path));
   return scenes;
 }
@@ -89,6 +90,7 @@ void run_material(const Options& options, bool format_is_given) {
   MaterialReport report;
   report.scenes = load_all(options.scenes, options.overrides);
   std::vector<compare::MeasuredShape> shapes;
+  shapes.reserve(options.shapes.size());
   for (const std::string& path : options.shapes) {
     shapes.push_back(options.shape_options.load(path));
   }

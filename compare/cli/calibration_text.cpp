@@ -53,6 +53,7 @@ std::string material_text(const MaterialReport& report) {
            report.scenes.front().material.density);
   }
   if (!fit.not_told.empty()) append(out, "            {}\n", fit.not_told);
+  if (!fit.warning.empty()) append(out, "            {}\n", fit.warning);
   append(out, "noise       {:.4g} mm in each coordinate, {} ({} degrees of freedom)\n",
          fit.noise_m * 1e3, fit.noise_is_estimated ? "estimated from the residuals" : "given",
          fit.degrees_of_freedom);
@@ -79,10 +80,10 @@ std::string material_csv(const MaterialReport& report) {
   const FittedValue density = fit.density.value_or(FittedValue());
   std::string out =
       "youngs_modulus_Pa,low_Pa,high_Pa,density_kg_per_m3,density_low,density_high,noise_m,"
-      "degrees_of_freedom,rms_m,not_told\n";
-  append(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{}\n", field(E.value), field(E.low),
+      "degrees_of_freedom,rms_m,not_told,warning\n";
+  append(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{},{}\n", field(E.value), field(E.low),
          field(E.high), field(density.value), field(density.low), field(density.high), fit.noise_m,
-         fit.degrees_of_freedom, fit.rms_m, csv_field(fit.not_told));
+         fit.degrees_of_freedom, fit.rms_m, csv_field(fit.not_told), csv_field(fit.warning));
   return out;
 }
 
@@ -92,6 +93,7 @@ Json material_json(const MaterialReport& report) {
   add_value(result, "youngs_modulus", "_Pa", fit.youngs_modulus);
   if (fit.density) add_value(result, "density", "_kg_per_m3", *fit.density);
   result["not_told"] = fit.not_told.empty() ? Json(nullptr) : Json(fit.not_told);
+  result["warning"] = fit.warning.empty() ? Json(nullptr) : Json(fit.warning);
   result["noise_m"] = fit.noise_m;
   result["noise_is_estimated"] = fit.noise_is_estimated;
   result["degrees_of_freedom"] = fit.degrees_of_freedom;

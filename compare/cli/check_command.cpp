@@ -70,6 +70,11 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
          "{:.4g} m at s = {:.4g} m\n",
          s.front(), s.back(), (s.back() - s.front()) / scene.length * 100, c.polyline_length_m,
          c.largest_gap_m, c.largest_gap_at_m);
+  if (c.polyline_length_m > 1.1 * scene.length) {
+    append(
+        out,
+        "                  (longer than the rod: noise between close points, or another unit?)\n");
+  }
   if (options.shapes.pose() == compare::PoseFreedom::known) {
     append(out, "  frame           the scene's\n");
   } else {
@@ -86,12 +91,11 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
   if (std::isfinite(d.rms_over_movement)) {
     append(out, " = {:.4g} % of the movement", d.rms_over_movement * 100);
   }
-  const Eigen::Vector3d at = a.shape.points.col(
-      static_cast<Eigen::Index>(std::lower_bound(s.begin(), s.end(), d.max_at_m) - s.begin()));
+  const Eigen::Vector3d at = c.worst_position.array() + 0.0;  // turns -0 into 0
   append(out,
          "\n                  largest {:.4g} mm at s = {:.4f} m (point {} of the file, at "
          "[{:.4g}, {:.4g}, {:.4g}] m)\n",
-         d.max_m * 1e3, d.max_at_m, c.worst_point, at.x() + 0.0, at.y() + 0.0, at.z() + 0.0);
+         d.max_m * 1e3, d.max_at_m, c.worst_point, at.x(), at.y(), at.z());
   if (std::isfinite(d.tip_m)) append(out, "                  tip {:.4g} mm\n", d.tip_m * 1e3);
   if (std::isfinite(d.angle_rms_rad)) {
     append(out, "                  tangent RMS {:.4g} deg, curvature RMS {:.4g} 1/m\n",
@@ -132,6 +136,7 @@ Json json(const compare::ShapeCheck& c, const std::optional<Verdict>& verdict,
                     {"largest_gap_at_m", c.largest_gap_at_m}};
   result["deviation"] = deviation_json(c.deviation);
   result["deviation"]["worst_point"] = c.worst_point;
+  result["deviation"]["worst_position_m"] = to_json(c.worst_position);
   result["movement_m"] = c.movement_m;
   result.update(modulus_json(c.effective_modulus));
   result["effective_modulus_Pa"] = c.modulus;

@@ -40,7 +40,7 @@ std::string direction_text(const compare::Alignment& alignment) {
   return alignment.reversed ? "from arc length l to 0" : "from arc length 0 to l";
 }
 
-std::string pose_text(const compare::Pose& pose) {
+std::string pose_text(const compare::RigidMotion& pose) {
   const Eigen::AngleAxisd turn(pose.rotation);
   std::string out;
   // Adding zero turns -0 into 0.

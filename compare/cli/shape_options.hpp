@@ -28,7 +28,7 @@ class ShapeOptions {
 
 /// How a shape was laid on its reference, in a few words.
 [[nodiscard]] std::string direction_text(const compare::Alignment& alignment);
-[[nodiscard]] std::string pose_text(const compare::Pose& pose);
+[[nodiscard]] std::string pose_text(const compare::RigidMotion& pose);
 [[nodiscard]] Json to_json(const compare::Alignment& alignment);
 
 }  // namespace dlo::cli

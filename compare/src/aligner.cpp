@@ -146,9 +146,9 @@ double Aligner::mean_square(const Eigen::Matrix3Xd& gaps, const std::vector<doub
   return gaps.colwise().squaredNorm().transpose().dot(weights(s));
 }
 
-Pose Aligner::closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
-                           const Eigen::VectorXd& weight) const {
-  Pose pose;
+RigidMotion Aligner::closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                                  const Eigen::VectorXd& weight) const {
+  RigidMotion pose;
   if (options_.pose == PoseFreedom::known) return pose;
   const Eigen::Vector3d from_centre = from * weight;
   const Eigen::Vector3d to_centre = to * weight;
@@ -212,7 +212,8 @@ std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve&
   return result;
 }
 
-Aligner::Placed Aligner::polish(const Way& way, const Curve& curve, const Pose& start) const {
+Aligner::Placed Aligner::polish(const Way& way, const Curve& curve,
+                                const RigidMotion& start) const {
   Placed placed;
   placed.pose = start;
   constexpr int most_rounds = 6;
@@ -268,8 +269,8 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
     const Eigen::Matrix3d rotation =
         turn.norm() > 0 ? Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix()
                         : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
-    const Pose next{rotation * placed.pose.rotation,
-                    rotation * (placed.pose.translation - centre) + centre + move.tail<3>()};
+    const RigidMotion next{rotation * placed.pose.rotation,
+                           rotation * (placed.pose.translation - centre) + centre + move.tail<3>()};
     const Eigen::Matrix3Xd next_moved = next.applied(points);
     std::vector<double> next_s(placed.arc_length);
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -291,7 +292,7 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
 
 Aligner::Placed Aligner::best_place(const Way& way, const Curve& curve) const {
   if (!has_free_arc_lengths()) return place_given(way, curve);
-  if (options_.pose == PoseFreedom::known) return polish(way, curve, Pose());
+  if (options_.pose == PoseFreedom::known) return polish(way, curve, RigidMotion());
   const std::vector<Placed> coarse = coarse_places(way, curve);
   Placed best = polish(way, curve, coarse.front().pose);
   if (coarse.size() > 1) {

@@ -31,7 +31,7 @@ class Aligner {
     std::vector<double> arc_length;  // given, or a guess along the polyline
   };
   struct Placed {
-    Pose pose;
+    RigidMotion pose;
     std::vector<double> arc_length;
     double mean_square = 0;  // weighted
   };
@@ -41,11 +41,11 @@ class Aligner {
   [[nodiscard]] Eigen::VectorXd weights(const std::vector<double>& s) const;
   [[nodiscard]] double mean_square(const Eigen::Matrix3Xd& gaps,
                                    const std::vector<double>& s) const;
-  [[nodiscard]] Pose closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
-                                  const Eigen::VectorXd& weight) const;
+  [[nodiscard]] RigidMotion closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                                         const Eigen::VectorXd& weight) const;
   [[nodiscard]] Placed place_given(const Way& way, const Curve& curve) const;
   [[nodiscard]] std::vector<Placed> coarse_places(const Way& way, const Curve& curve) const;
-  [[nodiscard]] Placed polish(const Way& way, const Curve& curve, const Pose& start) const;
+  [[nodiscard]] Placed polish(const Way& way, const Curve& curve, const RigidMotion& start) const;
   void gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve, Placed& placed) const;
   [[nodiscard]] Placed best_place(const Way& way, const Curve& curve) const;
   [[nodiscard]] Alignment finished(const Placed& placed, bool reversed, const Curve& curve) const;

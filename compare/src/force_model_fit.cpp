@@ -24,7 +24,7 @@ constexpr double stretch_share = 0.1;
 constexpr double mode_margin = 1.2;
 
 /// A scene with its reference, for many chains.
-struct Case {
+struct FittedCase {
   Scene scene;
   energy_model::Equilibrium reference;
 
@@ -56,18 +56,18 @@ struct Case {
   }
 };
 
-struct Objective {
+struct LogObjective {
   const Function* function;
 };
 
 double value_for_nlopt(unsigned /*n*/, const double* x, double* /*gradient*/, void* data) {
-  return (*static_cast<const Objective*>(data)->function)(*x);
+  return (*static_cast<const LogObjective*>(data)->function)(*x);
 }
 
 /// NLopt's Nelder-Mead from the best point of a scan.
 Minimum nelder_mead(const Function& function, const Scan& values) {
   const Function finite = [&](double x) { return std::min(function(x), 1e3); };
-  Objective objective{&finite};
+  LogObjective objective{&finite};
   const std::unique_ptr<std::remove_pointer_t<nlopt_opt>, decltype(&nlopt_destroy)> optimiser(
       nlopt_create(NLOPT_LN_NELDERMEAD, 1), nlopt_destroy);
   nlopt_set_min_objective(optimiser.get(), value_for_nlopt, &objective);
@@ -80,10 +80,10 @@ Minimum nelder_mead(const Function& function, const Scan& values) {
   return found.value < best.value ? found : best;
 }
 
-class Fit {
+class ForceModelFitter {
  public:
-  Fit(const std::vector<Scene>& scenes, const std::vector<Scene>& holdouts,
-      const ForceModelFitOptions& options)
+  ForceModelFitter(const std::vector<Scene>& scenes, const std::vector<Scene>& holdouts,
+                   const ForceModelFitOptions& options)
       : options_(options), fitted_(scenes.size()) {
     for (const std::vector<Scene>* list : {&scenes, &holdouts}) {
       for (const Scene& scene : *list) {
@@ -109,7 +109,7 @@ class Fit {
       apply_paper_rules();
     } else {
       RuleDeviations physical{.rule = StiffnessRule::physical};
-      for (const Case& entry : cases_) {
+      for (const FittedCase& entry : cases_) {
         physical.rms_over_length.push_back(entry.chain(settings_, options_.solve));
       }
       result_.rules.push_back(std::move(physical));
@@ -166,7 +166,7 @@ class Fit {
     for (int points = 5; points < most_points; ++points) {
       settings.points = points;
       try {
-        for (const Case& entry : cases_) (void)discretise(entry.scene, settings);
+        for (const FittedCase& entry : cases_) (void)discretise(entry.scene, settings);
         return points;
       } catch (const InputError&) {
         continue;
@@ -181,7 +181,7 @@ class Fit {
          {std::pair{StiffnessRule::formula_21, BendingRule::formula_21},
           std::pair{StiffnessRule::moment_matched, BendingRule::moment_matched}}) {
       RuleDeviations deviations{.rule = rule};
-      for (const Case& entry : cases_) {
+      for (const FittedCase& entry : cases_) {
         ForceModelSettings settings = settings_;
         settings.c_b.reset();
         settings.bending_rule = bending;
@@ -250,7 +250,7 @@ class Fit {
     if (settings_.c_c) return;
     double stiffness = 0;
     double axial = std::numeric_limits<double>::infinity();
-    for (const Case& entry : cases_) {
+    for (const FittedCase& entry : cases_) {
       stiffness = std::max(stiffness, entry.pull() / (stretch_share * options_.target));
       axial = std::min(axial, entry.scene.axial_stiffness());
     }
@@ -260,7 +260,7 @@ class Fit {
   /// Modes of all scenes at their starts and at rest.
   [[nodiscard]] force_model::ModeBounds modes() const {
     force_model::ModeBounds result{0, std::numeric_limits<double>::infinity()};
-    for (const Case& entry : cases_) {
+    for (const FittedCase& entry : cases_) {
       const Discretisation discretisation = discretise(entry.scene, settings_);
       std::vector<Eigen::Matrix3Xd> shapes = discretisation.starts;
       shapes.push_back(solve_chain(entry.scene, settings_, options_.solve).shape.points);
@@ -285,7 +285,7 @@ class Fit {
       result_.steps.clear();
       result_.stepped_rms_over_length.clear();
       try {
-        for (const Case& entry : cases_) {
+        for (const FittedCase& entry : cases_) {
           const Solution force = solve_force(entry.scene, settings_, options_.solve);
           result_.steps.push_back(force.steps);
           result_.stepped_rms_over_length.push_back(entry.rms_over_length(force.shape));
@@ -300,12 +300,12 @@ class Fit {
 
   ForceModelFitOptions options_;
   std::size_t fitted_;
-  std::vector<Case> cases_;
+  std::vector<FittedCase> cases_;
   ForceModelSettings settings_;
   ForceModelFit result_;
 };
 
-double largest(const std::vector<double>& values, std::size_t begin, std::size_t end) {
+double largest_of(const std::vector<double>& values, std::size_t begin, std::size_t end) {
   double result = 0;
   for (std::size_t i = begin; i < end; ++i) result = std::max(result, values[i]);
   return result;
@@ -320,11 +320,11 @@ const char* to_string(StiffnessRule rule) {
 }
 
 double ForceModelFit::worst() const {
-  return largest(stepped_rms_over_length, 0, stepped_rms_over_length.size() - holdouts);
+  return largest_of(stepped_rms_over_length, 0, stepped_rms_over_length.size() - holdouts);
 }
 double ForceModelFit::worst_holdout() const {
   const std::size_t all = stepped_rms_over_length.size();
-  return largest(stepped_rms_over_length, all - holdouts, all);
+  return largest_of(stepped_rms_over_length, all - holdouts, all);
 }
 
 ForceModelFit fit_force_model(const std::vector<Scene>& scenes, const std::vector<Scene>& holdouts,
@@ -346,7 +346,7 @@ ForceModelFit fit_force_model(const std::vector<Scene>& scenes, const std::vecto
           to_string(first.bookkeeping)));
     }
   }
-  return Fit(scenes, holdouts, options).run();
+  return ForceModelFitter(scenes, holdouts, options).run();
 }
 
 }  // namespace dlo::compare

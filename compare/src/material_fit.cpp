@@ -167,6 +167,24 @@ std::string what_is_not_told(const FittedValue& value, const char* name, const c
       name);
 }
 
+std::string warning_of(double least_squares, double points, double nu, double length,
+                       const std::optional<double>& noise) {
+  const double rms = std::sqrt(least_squares / points);
+  if (noise && nu > 0 && least_squares > std::pow(*noise, 2) * gsl_cdf_chisq_Qinv(1e-3, nu)) {
+    return fmt::format(
+        "the rod does not fit these shapes: its residuals are {:.3g} times what the given noise "
+        "explains, so the interval means nothing",
+        std::sqrt(least_squares / nu) / *noise);
+  }
+  if (rms > 0.05 * length) {
+    return fmt::format(
+        "the rod does not fit these shapes: residuals of {:.3g} % of its length (another unit, "
+        "frame or rod?)",
+        rms / length * 100);
+  }
+  return {};
+}
+
 bool has_forces_beside_weight(const std::vector<Scene>& scenes) {
   return std::any_of(scenes.begin(), scenes.end(), [](const Scene& scene) {
     const bool loaded = std::any_of(scene.loads.begin(), scene.loads.end(),
@@ -261,6 +279,8 @@ MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<Mea
   const double least = at(over_modulus.minimum.x, best_density);
   result.noise_m = std::sqrt(variance(least));
   result.rms_m = std::sqrt(least / static_cast<double>(misfit.points()));
+  result.warning =
+      warning_of(least, static_cast<double>(misfit.points()), nu, length, options.noise);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     result.shapes.push_back({scenes[i].name, misfit.alignments()[i]});
   }

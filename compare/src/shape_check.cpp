@@ -111,6 +111,7 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
 
   Eigen::Index worst = 0;
   (alignment.shape.points - result.reference.points).colwise().squaredNorm().maxCoeff(&worst);
+  result.worst_position = alignment.shape.points.col(worst);
   const bool file_falls = alignment.arc_lengths == ArcLengths::file &&
                           shape.arc_length.front() > shape.arc_length.back();
   const bool backwards = alignment.reversed != file_falls;

@@ -20,7 +20,7 @@ constexpr const char* column_names[] = {"x", "y", "z", "s"};
 constexpr const char* columns_allowed =
     "(allowed: x,y or x,y,z or x,y,z,s, or a header with these names in any order)";
 
-std::string_view trimmed(std::string_view text) {
+std::string_view trimmed_field(std::string_view text) {
   const std::size_t start = text.find_first_not_of(" \t\r\"");
   if (start == std::string_view::npos) return {};
   return text.substr(start, text.find_last_not_of(" \t\r\"") - start + 1);
@@ -34,11 +34,11 @@ char separator_of(std::string_view line) {
   return '\0';
 }
 
-std::vector<std::string_view> split(std::string_view line, char separator) {
+std::vector<std::string_view> split_fields(std::string_view line, char separator) {
   std::vector<std::string_view> fields;
   while (true) {
     const std::size_t end = separator == '\0' ? line.find_first_of(" \t") : line.find(separator);
-    fields.push_back(trimmed(line.substr(0, end)));
+    fields.push_back(trimmed_field(line.substr(0, end)));
     if (end == std::string_view::npos) return fields;
     line.remove_prefix(end + 1);
     if (separator != '\0') continue;
@@ -109,12 +109,12 @@ RawShape read_csv_shape(std::string_view text, const std::string& file) {
   char separator = '\0';
   for (long number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
-    const std::string_view line = trimmed(text.substr(0, end));
+    const std::string_view line = trimmed_field(text.substr(0, end));
     text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     if (line.empty() || line.front() == '#') continue;
     const std::string where = fmt::format("{}:{}", file, number);
     if (!columns) separator = separator_of(line);
-    const std::vector<std::string_view> fields = split(line, separator);
+    const std::vector<std::string_view> fields = split_fields(line, separator);
     if (!columns) {
       const bool header = std::none_of(fields.begin(), fields.end(), [](std::string_view field) {
         return shape_number(field).has_value();

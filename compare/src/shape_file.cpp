@@ -58,7 +58,7 @@ void require_arc_lengths(const RawShape& raw, const std::string& file, double un
   }
 }
 
-RawShape read(std::string_view text, const std::string& file, double unit) {
+RawShape read_any_shape(std::string_view text, const std::string& file, double unit) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   const std::size_t start = text.find_first_not_of(" \t\r\n");
@@ -103,7 +103,7 @@ void require_point_count(std::size_t count, const std::string& where) {
 }
 
 MeasuredShape parse_shape(const std::string& text, const std::string& file, double unit) {
-  const RawShape raw = read(text, file, unit);
+  const RawShape raw = read_any_shape(text, file, unit);
   const double metres = raw.in_metres ? 1 : unit;
   require_points(raw, file, metres);
   require_arc_lengths(raw, file, metres);

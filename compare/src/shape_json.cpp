@@ -28,12 +28,12 @@ json parsed(std::string_view text, const std::string& file) {
   }
 }
 
-double number(const json& value, const std::string& where) {
+double json_number(const json& value, const std::string& where) {
   if (!value.is_number()) throw InputError(fmt::format("{}: must be a number", where));
   return value.get<double>();
 }
 
-void read_points(const json& list, const std::string& where, RawShape& raw) {
+void read_json_points(const json& list, const std::string& where, RawShape& raw) {
   if (!list.is_array()) throw InputError(fmt::format("{}: must be an array of points", where));
   require_point_count(list.size(), where);
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -48,19 +48,19 @@ void read_points(const json& list, const std::string& where, RawShape& raw) {
     }
     std::array<double, 3> coordinates{};
     for (std::size_t k = 0; k < point.size(); ++k) {
-      coordinates[k] = number(point[k], fmt::format("{}[{}]", at, k));
+      coordinates[k] = json_number(point[k], fmt::format("{}[{}]", at, k));
     }
     raw.points.push_back(coordinates);
   }
 }
 
-void read_arc_lengths(const json& list, const std::string& where, RawShape& raw) {
+void read_json_arc_lengths(const json& list, const std::string& where, RawShape& raw) {
   if (!list.is_array() || list.size() != raw.points.size()) {
     throw InputError(
         fmt::format("{}: must be an array of {} numbers, one per point", where, raw.points.size()));
   }
   for (std::size_t i = 0; i < list.size(); ++i) {
-    raw.arc_length.push_back(number(list[i], fmt::format("{}[{}]", where, i)));
+    raw.arc_length.push_back(json_number(list[i], fmt::format("{}[{}]", where, i)));
   }
 }
 
@@ -70,7 +70,7 @@ RawShape read_json_shape(std::string_view text, const std::string& file, double 
   const json document = parsed(text, file);
   RawShape raw;
   if (document.is_array()) {
-    read_points(document, file + ": points", raw);
+    read_json_points(document, file + ": points", raw);
     return raw;
   }
   raw.in_metres = document.contains("points_m");
@@ -86,9 +86,9 @@ RawShape read_json_shape(std::string_view text, const std::string& file, double 
   if (!document.contains(points)) {
     throw InputError(fmt::format("{}: neither points_m nor points {}", file, json_allowed));
   }
-  read_points(document[points], fmt::format("{}: {}", file, points), raw);
+  read_json_points(document[points], fmt::format("{}: {}", file, points), raw);
   if (document.contains(arc_length)) {
-    read_arc_lengths(document[arc_length], fmt::format("{}: {}", file, arc_length), raw);
+    read_json_arc_lengths(document[arc_length], fmt::format("{}: {}", file, arc_length), raw);
   }
   return raw;
 }

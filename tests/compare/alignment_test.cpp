@@ -30,7 +30,7 @@ TEST(Alignment, RecoversARandomRigidMotionOfSevenUnevenPointsFromEitherEnd) {
     const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
     for (int round = 0; round < 10; ++round) {
       const MeasuredShape truth = exact_shape(scene, uneven_arc_lengths(random, 7, 1));
-      const Pose pose = random_pose(random);
+      const RigidMotion pose = random_pose(random);
       MeasuredShape moved{"moved", pose.applied(truth.points), {}};
       const bool backwards = round % 2 == 1;
       if (backwards) moved = test::reversed(moved);
@@ -56,7 +56,7 @@ TEST(Alignment, RecoversTheMotionOfAWholeRodToTheNoise) {
     s.back() = 1;
     const MeasuredShape truth = exact_shape(scene, s);
     for (int round = 0; round < 20; ++round) {
-      const Pose pose = random_pose(random);
+      const RigidMotion pose = random_pose(random);
       const MeasuredShape moved =
           test::reversed({"moved", with_noise(pose.applied(truth.points), 1e-3, random), {}});
       const Alignment found = align(moved, energy.sample, 1, any_motion);
@@ -76,7 +76,7 @@ TEST(Alignment, GivenArcLengthsAreUsedEitherWayRound) {
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
   std::mt19937 random(3);
   const std::vector<double> s = uneven_arc_lengths(random, 9, 1);
-  const Pose pose = random_pose(random);
+  const RigidMotion pose = random_pose(random);
   MeasuredShape shape{"s", pose.applied(energy.sample(s).points), s};
   for (const bool from_the_other_end : {false, true}) {
     for (const bool backwards : {false, true}) {
@@ -122,7 +122,7 @@ TEST(Alignment, ADenseNoisyPolylineStaysInOrder) {
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
   const std::vector<double> s = equal_arc_lengths(1, 1001);
   std::mt19937 random(5);
-  const Pose pose = random_pose(random);
+  const RigidMotion pose = random_pose(random);
   const MeasuredShape seen{
       "seen", with_noise(pose.applied(energy.sample(s).points), 2e-3, random), {}};
   const Alignment found = align(test::reversed(seen), energy.sample, 1, any_motion);
@@ -138,13 +138,13 @@ TEST(Alignment, FreedomsOfTheFrame) {
   const Scene scene = heavy_scene(6, 35);
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
   const std::vector<double> s = equal_arc_lengths(1, 12);
-  const Pose turned{Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitY()).toRotationMatrix(),
-                    Eigen::Vector3d(1, 2, 3)};
-  const Pose tilted{Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
-                    Eigen::Vector3d(1, 2, 3)};
-  const Pose shifted{Eigen::Matrix3d::Identity(), Eigen::Vector3d(1, 2, 3)};
+  const RigidMotion turned{Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitY()).toRotationMatrix(),
+                           Eigen::Vector3d(1, 2, 3)};
+  const RigidMotion tilted{Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+                           Eigen::Vector3d(1, 2, 3)};
+  const RigidMotion shifted{Eigen::Matrix3d::Identity(), Eigen::Vector3d(1, 2, 3)};
   for (const ArcLengths rule : {ArcLengths::chord, ArcLengths::nearest}) {
-    const auto rms_with = [&](PoseFreedom freedom, const Pose& pose) {
+    const auto rms_with = [&](PoseFreedom freedom, const RigidMotion& pose) {
       const MeasuredShape shape{"f", pose.applied(energy.sample(s).points), {}};
       return align(shape, energy.sample, 1, {.pose = freedom, .arc_lengths = rule}).rms_m;
     };

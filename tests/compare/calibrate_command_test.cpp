@@ -48,7 +48,7 @@ TEST_F(CalibrateCommand, FindsTheModulusOfMeasuredShapes) {
   const std::string guess =
       scene_of("a.toml", "30 GPa", 0) + " " + scene_of("b.toml", "30 GPa", 40);
   for (const std::string pose : {"", " --register", " --register=upright"}) {
-    const Outcome result = run("calibrate " + guess + shapes + pose + " --format json");
+    const Outcome result = run(words({"calibrate", guess, shapes, pose, "--format json"}));
     ASSERT_EQ(result.status, 0) << result.err;
     const json document = json::parse(result.out);
     EXPECT_EQ(document.at("schema"), "dlo/calibrate/1");
@@ -98,13 +98,13 @@ TEST_F(CalibrateCommand, WritesParametersThatTheOtherCommandsRead) {
   const std::string b = scene_of("b.toml", "5 GPa", -30);
   for (const std::string law : {"hooke", "paper"}) {
     const std::string file = path(law + ".toml");
-    const std::string calibrate = "calibrate " + a + " --holdout " + b + " --law " + law;
-    const Outcome result = run(calibrate + " -o " + file);
+    const std::string calibrate = words({"calibrate", a, "--holdout", b, "--law", law});
+    const Outcome result = run(words({calibrate, "-o", file}));
     ASSERT_EQ(result.status, 0) << result.err;
     EXPECT_NE(result.out.find("hold-out"), std::string::npos);
-    const json fit = json::parse(run(calibrate + " --format json").out);
+    const json fit = json::parse(run(words({calibrate, "--format json"})).out);
     const json compared =
-        json::parse(run("compare " + b + " --parameters " + file + " --format json").out)
+        json::parse(run(words({"compare", b, "--parameters", file, "--format json"})).out)
             .at("cases")[0];
     EXPECT_EQ(compared.at("law"), law);
     EXPECT_EQ(compared.at("points"), fit.at("parameters").at("points"));
@@ -114,8 +114,8 @@ TEST_F(CalibrateCommand, WritesParametersThatTheOtherCommandsRead) {
                     fit.at("parameters").at("c_F").get<double>(),
                 1, 1e-8);
     // What the command line says goes before the file.
-    EXPECT_EQ(json::parse(run("solve " + a + " --model chain --parameters " + file +
-                              " --points 9 --format json")
+    EXPECT_EQ(json::parse(run(words({"solve", a, "--model chain --parameters", file,
+                                     "--points 9 --format json"}))
                               .out)
                   .at("points_m")
                   .size(),
@@ -136,13 +136,13 @@ TEST_F(CalibrateCommand, EveryFormatIsWritten) {
   const std::string shape = seen(a, "a.csv");
   for (const std::string& arguments : {"calibrate " + a, "calibrate " + a + " --shape " + shape}) {
     EXPECT_NE(run(arguments).out.find("RMS"), std::string::npos);
-    const Outcome csv = run(arguments + " --format csv");
+    const Outcome csv = run(words({arguments, "--format csv"}));
     EXPECT_EQ(csv.status, 0) << csv.err;
     const std::string header = csv.out.substr(0, csv.out.find('\n'));
     const std::string row = csv.out.substr(csv.out.find('\n') + 1);
     EXPECT_EQ(std::count(header.begin(), header.end(), ','),
               std::count(row.begin(), row.end(), ','));
-    EXPECT_NE(run(arguments + " --format toml").out.find("# "), std::string::npos);
+    EXPECT_NE(run(words({arguments, "--format toml"})).out.find("# "), std::string::npos);
   }
 }
 
@@ -156,7 +156,7 @@ TEST_F(CalibrateCommand, BadInputIsOneLineAndStatusTwo) {
   expect_error("calibrate " + a + " --density", 2, {"--density", "--shape"});
   expect_error("calibrate " + a + " --shape " + shape + " --target 1%", 2, {"--target"});
   for (const std::string target : {"0", "1", "0%", "100%", "x%", "nan%"}) {
-    expect_error("calibrate " + a + " --target " + target, 2, {"--target"});
+    expect_error(words({"calibrate", a, "--target", target}), 2, {"--target"});
   }
   std::ofstream(path("bad.csv")) << "x,y\n1,2\n3\n";
   expect_error("calibrate " + a + " --shape " + path("bad.csv"), 2, {"bad.csv:3", "1 column"});

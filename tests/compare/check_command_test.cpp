@@ -25,11 +25,11 @@ TEST_F(CheckCommand, ReadsWhatSolveWrites) {
   for (const std::string format : {"csv", "json"}) {
     const std::string file = path("solved." + format);
     ASSERT_EQ(
-        run("solve " + steel() + " --model exact --samples 9 --format " + format + " -o " + file)
+        run(words({"solve", steel(), "--model exact --samples 9 --format", format, "-o", file}))
             .status,
         0);
     const Outcome result =
-        run("check " + steel() + " --shape " + file + " --tolerance 0.01% --format json");
+        run(words({"check", steel(), "--shape", file, "--tolerance 0.01% --format json"}));
     ASSERT_EQ(result.status, 0) << result.err;
     const json document = json::parse(result.out);
     EXPECT_EQ(document.at("schema"), "dlo/check/1");
@@ -105,7 +105,7 @@ TEST_F(CheckCommand, BadInputIsOneLineAndStatusTwo) {
   expect_error("check " + steel(), 2, {"--shape"});
   const std::string good = shape("0,0\n-0.2,0\n-0.4,-0.1\n");
   for (const std::string tolerance : {"1", "0%", "-1%", "x", "\"1 kg\"", "nan%", "%"}) {
-    expect_error("check " + steel() + " --shape " + good + " --tolerance " + tolerance, 2,
+    expect_error(words({"check", steel(), "--shape", good, "--tolerance", tolerance}), 2,
                  {"--tolerance"});
   }
   expect_error("check " + steel() + " --shape " + good + " --unit inch", 2, {"inch"});

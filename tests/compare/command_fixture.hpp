@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -39,6 +40,13 @@ class Command : public testing::Test {
     std::ostringstream text;
     text << stream.rdbuf();
     return text.str();
+  }
+
+  /// Words with blanks between them.
+  static std::string words(std::initializer_list<std::string> list) {
+    std::string line;
+    for (const std::string& word : list) line.append(word).append(" ");
+    return line;
   }
 
   std::string scene(const std::string& text) {

@@ -40,7 +40,7 @@ TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
   constexpr int draws = 100;
   for (int draw = 0; draw < draws; ++draw) {
     const std::vector<double> s = uneven_arc_lengths(random, 7, 1);
-    const Pose motion = pose == PoseFreedom::known ? Pose() : random_pose(random);
+    const RigidMotion motion = pose == PoseFreedom::known ? RigidMotion() : random_pose(random);
     const MeasuredShape seen{
         "seen", with_noise(motion.applied(exact.sample(s).points), 1e-3, random), {}};
     const MaterialFit fit =
@@ -202,6 +202,20 @@ TEST(MaterialFit, DensityIsToldByALoadAndNotByGravityAlone) {
   EXPECT_TRUE(holds(*fit.density, truth.material.density));
   EXPECT_NEAR(*fit.youngs_modulus.value / truth.material.youngs_modulus, 1, 0.05);
   EXPECT_NEAR(*fit.density->value / truth.material.density, 1, 0.05);
+}
+
+TEST(MaterialFit, WarnsOfAShapeOfAnotherRod) {
+  const Scene scene = heavy_scene(2, 0);
+  const std::vector<double> s = equal_arc_lengths(1, 15);
+  std::mt19937 random(10);
+  MeasuredShape shape = exact_shape(scene, s);
+  shape.points = with_noise(shape.points, 1e-3, random);
+  EXPECT_EQ(fit_material({scene}, {shape}).warning, "");
+  EXPECT_EQ(fit_material({scene}, {shape}, {.noise = 1e-3}).warning, "");
+  EXPECT_NE(fit_material({scene}, {shape}, {.noise = 4e-4}).warning.find("given noise"),
+            std::string::npos);
+  shape.points *= 10;
+  EXPECT_NE(fit_material({scene}, {shape}).warning.find("another unit"), std::string::npos);
 }
 
 TEST(MaterialFit, RefusesWhatCannotBeFitted) {

@@ -26,7 +26,7 @@ inline std::vector<double> uneven_arc_lengths(std::mt19937& random, int count, d
 }
 
 /// Any rotation, all equally likely, and a shift of about a metre.
-inline compare::Pose random_pose(std::mt19937& random) {
+inline compare::RigidMotion random_pose(std::mt19937& random) {
   std::normal_distribution<double> normal;
   const Eigen::Quaterniond turn(normal(random), normal(random), normal(random), normal(random));
   return {turn.normalized().toRotationMatrix(),
@@ -34,7 +34,7 @@ inline compare::Pose random_pose(std::mt19937& random) {
 }
 
 /// The motion back.
-inline compare::Pose inverse(const compare::Pose& pose) {
+inline compare::RigidMotion inverse(const compare::RigidMotion& pose) {
   return {pose.rotation.transpose(), -pose.rotation.transpose() * pose.translation};
 }
 

@@ -37,7 +37,7 @@ enum class ArcLengths {
 [[nodiscard]] ArcLengths arc_lengths_from(const std::string& name);
 
 /// A rigid motion from a file's frame to the scene's: p -> rotation p + translation.
-struct Pose {
+struct RigidMotion {
   Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
 
@@ -61,7 +61,7 @@ struct AlignOptions {
 
 /// A measured shape laid on a reference.
 struct Alignment {
-  Pose pose;
+  RigidMotion pose;
   bool reversed = false;  ///< the file runs (its s counts) from arc length l to 0
   ArcLengths arc_lengths = ArcLengths::nearest;  ///< which rule was used
   Shape shape;             ///< the points in the scene's frame, by growing arc length

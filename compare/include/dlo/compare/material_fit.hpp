@@ -39,7 +39,12 @@ struct MaterialFit {
   std::optional<FittedValue> density;  ///< [kg/m^3], if it was asked for and could be fitted
   /// What the shapes do not tell, and why; empty if all is told.
   std::string not_told;
-  double noise_m = 0;  ///< standard deviation of one coordinate, estimated or given
+  /// Why the fit is not to be believed: residuals far above the given noise (chance 1e-3), or above
+  /// a twentieth of the length; else empty.
+  std::string warning;
+  /// Standard deviation of one coordinate, given, or estimated and then no less than 1e-8 l, the
+  /// energy model's own error.
+  double noise_m = 0;
   bool noise_is_estimated = true;
   int degrees_of_freedom = 0;  ///< numbers measured less numbers fitted
   double rms_m = 0;            ///< of the distances between points and rod at the fit

@@ -27,7 +27,8 @@ struct ShapeCheck {
   /// RMS along the rod from the first point to the last, straight across what is missing; its share
   /// of the length is that of the whole rod. Tangent and curvature only for given arc lengths: NaN.
   Deviation deviation;
-  long worst_point = 0;          ///< of the largest deviation, counted from 1 as in the file
+  long worst_point = 0;  ///< of the largest deviation, counted from 1 as in the file
+  Eigen::Vector3d worst_position = Eigen::Vector3d::Zero();  ///< in the scene's frame [m]
   double movement_m = 0;         ///< RMS way of the reference from straight, same stretch; or NaN
   double polyline_length_m = 0;  ///< of the points as they are
   double largest_gap_m = 0;      ///< largest arc length between neighbours
