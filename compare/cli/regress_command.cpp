@@ -126,6 +126,7 @@ void run(const Options& options) {
     baseline = compare::load_baseline(options.baseline);
   }
   std::vector<MeasuredCase> measured;
+  measured.reserve(options.scenes.size());
   for (const std::string& path : options.scenes) measured.push_back(measure(options, path));
   const std::vector<RegressionResult> results =
       compare::judge_regression(baseline, measured, options.tolerance);
@@ -140,6 +141,7 @@ void run(const Options& options) {
   }
   if (options.update && solved) {
     std::vector<compare::BaselineCase> cases;
+    cases.reserve(measured.size());
     for (const MeasuredCase& entry : measured) cases.push_back(entry.entry);
     write_output({.file = options.baseline}, compare::baseline_text(cases));
   }

@@ -51,6 +51,7 @@ std::string output_path(std::string path, const std::optional<compare::Shard>& s
 
 compare::Sweep sweep_of(const Options& options) {
   std::vector<compare::Axis> axes;
+  axes.reserve(options.vary.size());
   for (const std::string& text : options.vary) axes.push_back(compare::parse_axis(text));
   return {compare::load_scene_template(options.files.front(), options.scene.materials()),
           compare::Grid(std::move(axes)), compare::sweep_model_from(options.model),

@@ -70,8 +70,8 @@ class Overrider {
     throw InputError(fmt::format("{}: {}: {}", file_, path, problem));
   }
 
-  std::size_t element(const toml::array& array, std::string_view step,
-                      const std::string& path) const {
+  [[nodiscard]] std::size_t element(const toml::array& array, std::string_view step,
+                                    const std::string& path) const {
     const auto index = whole_text_as<std::size_t>(std::string(step));
     if (!index || *index >= array.size()) {
       refuse(path, array.empty() ? fmt::format("there is no \"{}\", the array is empty", step)

@@ -21,7 +21,7 @@ struct NumberWithUnit {
   std::string unit;
 };
 
-std::string_view trimmed(std::string_view text) {
+std::string_view without_spaces(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(' ');
   if (begin == std::string_view::npos) return {};
   return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
@@ -35,12 +35,12 @@ std::optional<NumberWithUnit> split_number(std::string_view text) {
   if (error != std::errc() || !std::isfinite(result.number)) return std::nullopt;
   const auto length = static_cast<std::size_t>(end - text.data());
   result.digits = text.substr(0, length);
-  result.unit = trimmed(text.substr(length));
+  result.unit = without_spaces(text.substr(length));
   return result;
 }
 
 /// Parts between separators; those inside brackets do not count.
-std::vector<std::string> split(std::string_view text, char separator) {
+std::vector<std::string> split_values(std::string_view text, char separator) {
   std::vector<std::string> parts;
   int depth = 0;
   std::size_t begin = 0;
@@ -48,7 +48,7 @@ std::vector<std::string> split(std::string_view text, char separator) {
     if (i < text.size() && text[i] == '[') ++depth;
     if (i < text.size() && text[i] == ']') --depth;
     if (i < text.size() && (text[i] != separator || depth > 0)) continue;
-    parts.emplace_back(trimmed(text.substr(begin, i - begin)));
+    parts.emplace_back(without_spaces(text.substr(begin, i - begin)));
     begin = i + 1;
   }
   return parts;
@@ -139,14 +139,14 @@ Axis parse_axis(const std::string& text) {
     refuse_axis(text, "has a control character");
   }
   Axis axis;
-  axis.field = trimmed(std::string_view(text).substr(0, equals));
+  axis.field = without_spaces(std::string_view(text).substr(0, equals));
   if (axis.field.empty()) refuse_axis(text, "has no field");
   const std::string values = text.substr(equals + 1);
-  const std::vector<std::string> range = split(values, ':');
+  const std::vector<std::string> range = split_values(values, ':');
   if (range.front() == "lin" || range.front() == "log") {
     read_range(text, range, axis);
   } else {
-    read_list(text, split(values, ','), axis);
+    read_list(text, split_values(values, ','), axis);
   }
   return axis;
 }

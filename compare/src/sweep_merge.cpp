@@ -109,6 +109,7 @@ void append_rows(const ShardFile& shard, LockedFile& target, SweepOutcome& outco
 
 SweepOutcome merge_sweep(const std::vector<std::string>& files, const std::string& path) {
   std::vector<ShardFile> shards;
+  shards.reserve(files.size());
   for (const std::string& file : files) shards.push_back(open_shard(file));
   if (shards.empty()) throw InputError("--merge: no files given (allowed: all shards of a sweep)");
   std::stable_sort(shards.begin(), shards.end(), [](const ShardFile& a, const ShardFile& b) {

@@ -19,11 +19,9 @@ using dlo::compare::baseline_text;
 using dlo::compare::BaselineCase;
 using dlo::compare::InputError;
 using dlo::compare::judge_regression;
-using dlo::compare::MeasuredCase;
 using dlo::compare::read_baseline;
 using dlo::compare::RegressionResult;
 using dlo::compare::RegressionVerdict;
-using dlo::compare::ShapeErrors;
 
 BaselineCase entry(const std::string& scene, double error, int points = 16) {
   BaselineCase result;

@@ -26,8 +26,8 @@ class SweepCommand : public dlo::test::Command {
   }
 
   /// Starts a sweep, kills it (SIGKILL) when its part has grown by `bytes`; false if it finished.
-  [[nodiscard]] bool run_and_kill(const std::string& vary, const std::string& output,
-                                  std::uintmax_t bytes) const {
+  [[nodiscard]] static bool run_and_kill(const std::string& vary, const std::string& output,
+                                         std::uintmax_t bytes) {
     std::string words[] = {DLO_COMMAND, "sweep", steel(), "--vary", vary, "-o", output};
     std::array<char*, std::size(words) + 1> arguments{};
     for (std::size_t i = 0; i < std::size(words); ++i) arguments[i] = words[i].data();

@@ -22,6 +22,7 @@ inline compare::Sweep sweep(const std::vector<std::string>& vary,
                             compare::SweepModel model = compare::SweepModel::energy,
                             const std::string& scene = sweep_scene) {
   std::vector<compare::Axis> axes;
+  axes.reserve(vary.size());
   for (const std::string& text : vary) axes.push_back(compare::parse_axis(text));
   return {compare::SceneTemplate(scene, "swept.toml"), compare::Grid(axes), model};
 }
