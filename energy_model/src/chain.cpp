@@ -138,9 +138,9 @@ Tridiagonal second_derivative(const ChainProblem& problem, const Eigen::Matrix2X
   const Eigen::Index free = angles.size() - 1;
   Tridiagonal matrix{Eigen::VectorXd::Zero(free), Eigen::VectorXd::Zero(free - 1)};
   for (Eigen::Index i = 1; i <= free; ++i) {
-    const double stiffness =
-        joint_by_angle(problem.law, problem.stiffness, joint_length(problem, i), angles[i] - angles[i - 1])
-            .stiffness;
+    const double stiffness = joint_by_angle(problem.law, problem.stiffness,
+                                            joint_length(problem, i), angles[i] - angles[i - 1])
+                                 .stiffness;
     matrix.diagonal[i - 1] +=
         stiffness + problem.segment_lengths[i] *
                         (forces(0, i) * std::cos(angles[i]) + forces(1, i) * std::sin(angles[i]));
@@ -237,8 +237,8 @@ double chain_energy(const ChainProblem& problem, const Eigen::Ref<const Eigen::V
     energy -= L * (force.x() * c + force.y() * s);
     if (i == 0) break;
     gradient[i] += L * (force.x() * s - force.y() * c);
-    const AngleJoint j =
-        joint_by_angle(problem.law, problem.stiffness, joint_length(problem, i), angles[i] - angles[i - 1]);
+    const AngleJoint j = joint_by_angle(problem.law, problem.stiffness, joint_length(problem, i),
+                                        angles[i] - angles[i - 1]);
     energy += j.energy;
     gradient[i] += j.moment;
     gradient[i - 1] -= j.moment;
@@ -290,9 +290,10 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   const double total = chain_energy(problem, result.angles, gradient);
   result.points = chain_points(problem, result.angles);
   for (Eigen::Index i = 1; i < n; ++i) {
-    result.bending_energy += joint_by_angle(problem.law, problem.stiffness, joint_length(problem, i),
-                                   result.angles[i] - result.angles[i - 1])
-                                 .energy;
+    result.bending_energy +=
+        joint_by_angle(problem.law, problem.stiffness, joint_length(problem, i),
+                       result.angles[i] - result.angles[i - 1])
+            .energy;
   }
   result.load_energy = total - result.bending_energy;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -95,7 +95,7 @@ struct Scene {
   /// any one.
   [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }
-  [[nodiscard]] int spans() const;    ///< parts that the clamps cut the rod into
+  [[nodiscard]] int spans() const;  ///< parts that the clamps cut the rod into
 };
 
 /// Reads a scene. @param file  its name, for messages and Scene::file
