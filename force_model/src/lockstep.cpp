@@ -145,6 +145,9 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
         // fall.
         const Eigen::Matrix3Xd falling = searches[rod].look(shape(rod));
         if (falling.cols() > 0) nudge(rod, falling);
+        if (!searches[rod].bounces()) continue;
+        controls_[rod].descend();
+        c_F_.lane[rod] = controls_[rod].options().c_F;
       }
     }
     for (std::size_t rod = 0; rod < rods_.size(); ++rod) stop_if_done(rod);

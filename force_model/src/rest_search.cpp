@@ -65,13 +65,17 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
   const double distance = shape.forces.norm() / estimate_.modes().slowest / root_points;
   const bool seems_at_rest = std::max(distance, shape.momentum) < target_;
   // Rounding of many stiff points' positions makes forces that hide rest from these signs for good.
-  if (!seems_at_rest && result_.steps < next_measurement_) return {};
+  bounces_ = false;
+  const bool due = result_.steps >= next_measurement_;
+  if (!seems_at_rest && !due) return {};
   next_measurement_ = std::max(next_measurement_, result_.steps + result_.steps / 4);
   EquilibriumCheck check = measure(shape);
   if (check.stable && result_.remaining_error < target_) {
     result_.status = RelaxStatus::at_rest;
     return {};
   }
+  bounces_ = due && check.stable && check.remaining_error < target_;
+  if (bounces_) next_measurement_ = result_.steps + descent_steps;
   if (!seems_at_rest) return {};
   next_check_ = result_.steps + std::max(block_steps, result_.steps / 10);
   return std::move(check.falling_direction);

@@ -32,6 +32,11 @@ class RestSearch {
   /// in which it gives way, see EquilibriumCheck; else nothing, 3 x 0
   [[nodiscard]] Eigen::Matrix3Xd look(const MovingShape& shape);
 
+  /// Whether the last look found the rod at an equilibrium after many steps, yet moving on: a point
+  /// that barely touches a wall may bounce on it forever by less than matters for the shape, but
+  /// not for the forces. Steps without momentum (StepControl::descend) end that.
+  [[nodiscard]] bool bounces() const { return bounces_; }
+
   /// The outcome; a shape that has used up its steps is measured.
   [[nodiscard]] RelaxResult finish(const MovingShape& shape);
 
@@ -44,6 +49,7 @@ class RestSearch {
   double target_ = 0;
   long next_check_ = 2 * block_steps;
   long next_measurement_ = 0;  // at the latest
+  bool bounces_ = false;
   RelaxResult result_;
 };
 

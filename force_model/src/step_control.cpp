@@ -22,13 +22,6 @@ const StepOptions& checked(const StepOptions& options) {
   return options;
 }
 
-void choose_constants(const ModeBounds& modes, StepOptions& options) {
-  if (!options.policy.automatic) return;
-  const HeavyBall chosen = heavy_ball(modes);
-  options.c_F = chosen.c_F;
-  options.c_h = chosen.c_h;
-}
-
 }  // namespace
 
 StepControl::StepControl(const Rod& rod, const Eigen::Matrix3Xd& points, const StepOptions& options)
@@ -36,17 +29,31 @@ StepControl::StepControl(const Rod& rod, const Eigen::Matrix3Xd& points, const S
   if (options_.policy.automatic && options_.l_s == 0) {
     options_.l_s = rod.rest_lengths.minCoeff() / 4;
   }
-  choose_constants(estimate_.modes(), options_);
+  choose_constants();
 }
 
 void StepControl::update_modes(double inner_mode, double force_change, double point_change) {
   estimate_.update(inner_mode, force_change, point_change);
-  choose_constants(estimate_.modes(), options_);
+  choose_constants();
 }
 
 void StepControl::change_environment(const Rod& rod, const Eigen::Matrix3Xd& points) {
   estimate_.change_environment(rod, points);
-  choose_constants(estimate_.modes(), options_);
+  choose_constants();
+}
+
+void StepControl::descend() {
+  descends_until_ = steps_ + descent_steps;
+  choose_constants();
+}
+
+void StepControl::choose_constants() {
+  if (!options_.policy.automatic) return;
+  const ModeBounds& modes = estimate_.modes();
+  const bool descends = steps_ < descends_until_;
+  const HeavyBall chosen = descends ? HeavyBall{1 / modes.fastest, 0} : heavy_ball(modes);
+  options_.c_F = chosen.c_F;
+  options_.c_h = chosen.c_h;
 }
 
 void StepControl::decide(double largest_squared, double sum_squared, double oscillating,

@@ -10,6 +10,9 @@ namespace dlo::force_model {
 /// Steps between two looks at the modes.
 inline constexpr long block_steps = 16;
 
+/// Steps of a descent without momentum.
+inline constexpr long descent_steps = 64 * block_steps;
+
 /// What one rod's steps decide on and count: everything about them but the points.
 class StepControl {
  public:
@@ -25,6 +28,10 @@ class StepControl {
   /// After a change of the rod's walls: the modes' bound is that of the new ones, and forces before
   /// and after are not compared.
   void change_environment(const Rod& rod, const Eigen::Matrix3Xd& points);
+
+  /// With the automatic policy, makes the next descent_steps without momentum and with c_F =
+  /// 1/fastest, so that the potential energy falls with each.
+  void descend();
 
   /// Scaling of a proposed step.
   /// @param largest_squared  of the movements that the limit compares [m^2]
@@ -44,8 +51,11 @@ class StepControl {
   [[nodiscard]] long limited_steps() const { return limited_steps_; }
 
  private:
+  void choose_constants();
+
   StepOptions options_;
   ModeEstimate estimate_;
+  long descends_until_ = 0;  // in steps
   double c_s_ = 1;
   long steps_ = 0;
   long damped_steps_ = 0;

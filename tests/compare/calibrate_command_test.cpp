@@ -134,7 +134,8 @@ TEST_F(CalibrateCommand, AMissedTargetIsStatusOne) {
 TEST_F(CalibrateCommand, EveryFormatIsWritten) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string shape = seen(a, "a.csv");
-  for (const std::string& arguments : {"calibrate " + a, "calibrate " + a + " --shape " + shape}) {
+  for (const std::string& arguments :
+       {words({"calibrate", a}), words({"calibrate", a, "--shape", shape})}) {
     EXPECT_NE(run(arguments).out.find("RMS"), std::string::npos);
     const Outcome csv = run(words({arguments, "--format csv"}));
     EXPECT_EQ(csv.status, 0) << csv.err;
