@@ -109,6 +109,7 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
          "  E*/E            {:.4f} (E* = {:.4g} Pa), where the RMS is {:.4g} mm ({} optimum)\n",
          c.effective_modulus.ratio, c.modulus, c.effective_modulus.rms_m * 1e3,
          compare::to_string(c.effective_modulus.optimum));
+  add_state(out, c.state, scene.length, "the shape");
   if (verdict) {
     append(out, "  verdict         {}: {} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of l\n",
            verdict->text(), options.measure == "rms" ? "RMS" : "largest",
@@ -144,6 +145,7 @@ Json json(const compare::ShapeCheck& c, const std::optional<Verdict>& verdict,
     result["tolerance"] = {{"measure", options.measure}, {"allowed_m", verdict->tolerance_m}};
     result["verdict"] = verdict->text();
   }
+  result["state"] = to_json(c.state);
   result["arc_length_m"] = s;
   result["points_m"] = points_json(c.alignment.shape.points);
   result["reference_points_m"] = points_json(c.reference.points);

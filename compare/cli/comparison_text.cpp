@@ -27,8 +27,10 @@ void add_budget(std::string& out, const compare::Budget& b) {
   }
 }
 
-void add_state(std::string& out, const compare::Comparison& c) {
-  const compare::ComparedState& state = c.state;
+}  // namespace
+
+void add_state(std::string& out, const compare::ComparedState& state, double length,
+               const char* shape) {
   append(out, "  state           {}, {:.6g} J",
          state.only_lowest() ? "the only stable one found" : "one of several stable ones",
          state.energy_J);
@@ -40,13 +42,11 @@ void add_state(std::string& out, const compare::Comparison& c) {
          state.unstable);
   for (const compare::OtherState& other : state.others) {
     append(out,
-           "                  other: {}, {:+.4g} J, RMS {:.4g} % of l away, {:.4g} % from force\n",
+           "                  other: {}, {:+.4g} J, RMS {:.4g} % of l away, {:.4g} % from {}\n",
            other.stable ? "stable" : "unstable", other.energy_difference_J,
-           other.rms_from_compared_m / c.length * 100, other.rms_from_force_m / c.length * 100);
+           other.rms_from_compared_m / length * 100, other.rms_from_shape_m / length * 100, shape);
   }
 }
-
-}  // namespace
 
 std::string comparison_text(const compare::Comparison& c) {
   std::string out;
@@ -79,7 +79,7 @@ std::string comparison_text(const compare::Comparison& c) {
   }
   append(out, " ({} optimum)\n", compare::to_string(c.effective_modulus.optimum));
   add_budget(out, c.budget);
-  add_state(out, c);
+  add_state(out, c.state, c.length, "force");
   append(out, "  cost            force {} steps, {:.3g} ms; energy {} evaluations, {:.3g} ms\n\n",
          c.force.steps, c.force.seconds * 1e3, c.energy_evaluations, c.energy_seconds * 1e3);
   return out;

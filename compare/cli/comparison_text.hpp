@@ -10,6 +10,11 @@ namespace dlo::cli {
 /// A comparison as a person reads it, with a blank line after it.
 [[nodiscard]] std::string comparison_text(const compare::Comparison& comparison);
 
+/// Which equilibrium was compared and which others there are.
+/// @param length  of the rod [m];  @param shape  what the shape that was compared is called
+void add_state(std::string& out, const compare::ComparedState& state, double length,
+               const char* shape);
+
 using compare::csv_field;
 
 }  // namespace dlo::cli

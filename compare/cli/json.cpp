@@ -19,15 +19,13 @@ Json deviation_json(const compare::Deviation& deviation) {
           {"curvature_rms_per_m", deviation.curvature_rms_per_m}};
 }
 
-namespace {
-
 Json to_json(const compare::ComparedState& state) {
   Json others = Json::array();
   for (const compare::OtherState& other : state.others) {
     others.push_back({{"stable", other.stable},
                       {"energy_difference_J", other.energy_difference_J},
                       {"rms_from_compared_m", other.rms_from_compared_m},
-                      {"rms_from_force_m", other.rms_from_force_m}});
+                      {"rms_from_shape_m", other.rms_from_shape_m}});
   }
   return {{"energy_J", state.energy_J},
           {"rank_of_stable", state.rank},
@@ -35,8 +33,6 @@ Json to_json(const compare::ComparedState& state) {
           {"unstable_found", state.unstable},
           {"others", std::move(others)}};
 }
-
-}  // namespace
 
 Json to_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 

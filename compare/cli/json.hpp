@@ -16,6 +16,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json points_json(const Eigen::Matrix3Xd& points);
 [[nodiscard]] Json parameters_json(const compare::Solution& force,
                                    const compare::ForceModelSettings& settings);
+[[nodiscard]] Json to_json(const compare::ComparedState& state);
 [[nodiscard]] Json to_json(const compare::Plan& plan);
 [[nodiscard]] Json to_json(const compare::Solution& solution, const compare::Scene& scene,
                            const compare::Plan& plan);

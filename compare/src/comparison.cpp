@@ -30,29 +30,6 @@ std::size_t state_of(const Scene& scene, const Shape& force,
   return nearest;
 }
 
-ComparedState describe(const std::vector<energy_model::Equilibrium>& states, std::size_t compared,
-                       const Shape& force) {
-  ComparedState result;
-  const std::vector<double>& s = force.arc_length;
-  const Eigen::Matrix3Xd points = states[compared].sample(s).points;
-  result.energy_J = states[compared].energy.total();
-  result.stable = 0;
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    const bool stable = energy_model::succeeded(states[i].status);
-    ++(stable ? result.stable : result.unstable);
-    if (i == compared) {
-      result.rank = result.stable;
-      continue;
-    }
-    const Eigen::Matrix3Xd other = states[i].sample(s).points;
-    result.others.push_back({.stable = stable,
-                             .energy_difference_J = states[i].energy.total() - result.energy_J,
-                             .rms_from_compared_m = rms(s, other - points),
-                             .rms_from_force_m = rms(s, other - force.points)});
-  }
-  return result;
-}
-
 /// The end that no gripper holds; of two the one at arc length l.
 std::optional<Eigen::Index> free_end(const Scene& scene, const std::vector<double>& s) {
   const auto held = [&](double at) {
@@ -99,7 +76,11 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   const std::vector<energy_model::Equilibrium> states = all_states(near, lowest, options);
   const std::size_t compared = state_of(near, force, states, options);
   const energy_model::Equilibrium& energy = states[compared];
-  result.state = describe(states, compared, force);
+  std::vector<double> from_force;
+  const ShapeDistance distance = distance_from(force);
+  from_force.reserve(states.size());
+  for (const energy_model::Equilibrium& state : states) from_force.push_back(distance(state));
+  result.state = describe_state(near, states, compared, from_force);
 
   const std::vector<double>& s = force.arc_length;
   result.reference = {s, energy.sample(s).points};
@@ -107,7 +88,8 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   result.deviation = shape_deviation(scene, force, energy.sample);
   result.undeformed_rms_over_length =
       straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
-  result.effective_modulus = fit_effective_modulus(near, force);
+  result.effective_modulus =
+      fit_effective_modulus(near, distance, result.state.only_lowest() ? nullptr : &energy);
   result.residual_over_movement =
       result.deviation.rms_over_movement / result.deviation.rms_m * result.effective_modulus.rms_m;
   result.budget = error_budget(near, result.force, energy.sample, options);

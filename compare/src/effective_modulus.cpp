@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
@@ -12,24 +14,61 @@
 namespace dlo::compare {
 namespace {
 
-struct Fit {
-  Scene scene;
-  const ShapeDistance* distance;
-  double modulus;  // E of the scene [Pa]
+constexpr int scan_steps = 32;
+
+/// RMS against the logarithm of E*/E: of the lowest shape at each modulus, or of one followed.
+class Fit {
+ public:
+  Fit(const Scene& scene, const ShapeDistance& distance)
+      : scene_(scene), distance_(distance), modulus_(scene.material.youngs_modulus) {}
+
+  void follow(const energy_model::Equilibrium& state) { followed_ = state; }
 
   double rms_at(double log_ratio) {
-    scene.material.youngs_modulus = modulus * std::exp(log_ratio);
-    return (*distance)(solve_reference(scene, Model::energy));
+    scene_.material.youngs_modulus = modulus_ * std::exp(log_ratio);
+    const bool follows = followed_.has_value();
+    energy_model::Equilibrium shape =
+        solve_reference(scene_, Model::energy, {.start = follows ? &*followed_ : nullptr});
+    const double rms = distance_(shape);
+    if (follows) followed_ = std::move(shape);
+    return rms;
   }
+
+  /// A modulus at which the energy model finds no shape is infinitely far.
+  double rms_or_infinity(double log_ratio) {
+    try {
+      return rms_at(log_ratio);
+    } catch (const ConvergenceError&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+
+ private:
+  Scene scene_;
+  const ShapeDistance& distance_;
+  double modulus_;  // E of the scene [Pa]
+  std::optional<energy_model::Equilibrium> followed_;
 };
 
-/// A modulus at which the energy model finds no shape is infinitely far.
-double rms_or_infinity(Fit& fit, double log_ratio) {
-  try {
-    return fit.rms_at(log_ratio);
-  } catch (const ConvergenceError&) {
-    return std::numeric_limits<double>::infinity();
+/// The scan by following a state from E*/E = 1 both ways, each until the distance has not got less
+/// for a factor of ten: far from its modulus a state is slow to solve, if it still exists.
+Scan scan_state(Fit& fit, const energy_model::Equilibrium& state) {
+  constexpr int most_worse = scan_steps / 8;
+  Scan values = scan([](double) { return std::numeric_limits<double>::infinity(); },
+                     std::log(smallest_modulus_ratio), std::log(largest_modulus_ratio), scan_steps);
+  for (const int way : {-1, 1}) {
+    fit.follow(state);
+    double least = std::numeric_limits<double>::infinity();
+    int worse = 0;
+    for (int i = scan_steps / 2; i >= 0 && i <= scan_steps && worse < most_worse; i += way) {
+      const auto at = static_cast<std::size_t>(i);
+      values.value[at] = fit.rms_or_infinity(values.x[at]);
+      worse = values.value[at] < least ? 0 : worse + 1;
+      least = std::min(least, values.value[at]);
+    }
   }
+  fit.follow(state);
+  return values;
 }
 
 }  // namespace
@@ -46,18 +85,23 @@ const char* to_string(Optimum optimum) {
   return "clear";
 }
 
-EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape) {
-  return fit_effective_modulus(scene, [&shape](const energy_model::Equilibrium& reference) {
+ShapeDistance distance_from(const Shape& shape) {
+  return [shape](const energy_model::Equilibrium& reference) {
     return rms(shape.arc_length, shape.points - reference.sample(shape.arc_length).points);
-  });
+  };
 }
 
-EffectiveModulus fit_effective_modulus(const Scene& scene, const ShapeDistance& distance) {
-  Fit fit{scene, &distance, scene.material.youngs_modulus};
-  const Function rms_at = [&fit](double log_ratio) { return rms_or_infinity(fit, log_ratio); };
-  constexpr int steps = 32;
-  Scan values =
-      scan(rms_at, std::log(smallest_modulus_ratio), std::log(largest_modulus_ratio), steps);
+EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape) {
+  return fit_effective_modulus(scene, distance_from(shape));
+}
+
+EffectiveModulus fit_effective_modulus(const Scene& scene, const ShapeDistance& distance,
+                                       const energy_model::Equilibrium* state) {
+  Fit fit(scene, distance);
+  const Function rms_at = [&fit](double log_ratio) { return fit.rms_or_infinity(log_ratio); };
+  Scan values = state != nullptr ? scan_state(fit, *state)
+                                 : scan(rms_at, std::log(smallest_modulus_ratio),
+                                        std::log(largest_modulus_ratio), scan_steps);
   // Not one shape: the scene's own modulus says why.
   if (!std::isfinite(values.value[values.best()])) values.value[values.best()] = fit.rms_at(0);
   EffectiveModulus result;

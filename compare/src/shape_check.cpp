@@ -9,6 +9,8 @@
 #include "aligner.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/plan.hpp"
+#include "states.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -90,17 +92,31 @@ Eigen::Vector3d up_of(const Scene& scene, PoseFreedom pose) {
   return -scene.gravity.normalized();
 }
 
-ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
+ShapeCheck check_shape(const Scene& given, const MeasuredShape& shape,
                        const ShapeCheckOptions& options) {
+  const Scene scene = without_far_obstacles(given).scene;
   const AlignOptions align_options{
       .pose = options.pose, .arc_lengths = options.arc_lengths, .up = up_of(scene, options.pose)};
   const Aligner aligner(shape, scene.length, align_options);
-  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options.solve);
+  const energy_model::Equilibrium lowest = solve_reference(scene, Model::energy, options.solve);
+  const std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options.solve);
+  std::vector<Alignment> alignments;
+  std::vector<double> from_shape;
+  std::size_t nearest = 0;
+  for (const energy_model::Equilibrium& state : states) {
+    alignments.push_back(aligner.align(Curve(state.sample, scene.length)));
+    from_shape.push_back(alignments.back().rms_m);
+    // The lowest of all is stable and comes first.
+    const bool nearer = from_shape.back() < from_shape[nearest];
+    if (energy_model::succeeded(state.status) && nearer) nearest = alignments.size() - 1;
+  }
+  const energy_model::Equilibrium& energy = states[nearest];
   ShapeCheck result;
   result.scene = scene.name;
   result.file = shape.file;
   result.gamma = scene.gamma();
-  result.alignment = aligner.align(Curve(energy.sample, scene.length));
+  result.alignment = std::move(alignments[nearest]);
+  result.state = describe_state(scene, states, nearest, from_shape);
   const Alignment& alignment = result.alignment;
   const std::vector<double>& s = alignment.shape.arc_length;
   result.reference = {s, energy.sample(s).points};
@@ -130,10 +146,11 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                          offset > std::max(3 * alignment.rms_m, 1e-6 * scene.length);
 
   const Aligner thin(thinned(shape), scene.length, align_options);
+  const ShapeDistance distance = [&](const energy_model::Equilibrium& reference) {
+    return thin.align(Curve(reference.sample, scene.length)).rms_m;
+  };
   result.effective_modulus =
-      fit_effective_modulus(scene, [&](const energy_model::Equilibrium& reference) {
-        return thin.align(Curve(reference.sample, scene.length)).rms_m;
-      });
+      fit_effective_modulus(scene, distance, result.state.only_lowest() ? nullptr : &energy);
   result.modulus = result.effective_modulus.ratio * scene.material.youngs_modulus;
   return result;
 }

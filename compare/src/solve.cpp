@@ -82,11 +82,11 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
   const energy_model::Problem problem = energy_problem(scene);
   energy_model::Equilibrium result;
   try {
-    result =
-        model == Model::exact
-            ? energy_model::solve_exact(problem)
-            : energy_model::solve_energy(
-                  problem, {.terms = options.terms, .max_evaluations = options.max_evaluations});
+    result = model == Model::exact
+                 ? energy_model::solve_exact(problem)
+                 : energy_model::solve_energy(problem, {.terms = options.terms,
+                                                        .max_evaluations = options.max_evaluations,
+                                                        .start = options.start});
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }

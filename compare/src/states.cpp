@@ -64,4 +64,25 @@ std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowes
   return states;
 }
 
+ComparedState describe_state(const Scene& scene, const std::vector<Equilibrium>& states,
+                             std::size_t compared, const std::vector<double>& from_shape) {
+  ComparedState result;
+  result.energy_J = states[compared].energy.total();
+  result.stable = 0;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const bool stable = succeeded(states[i].status);
+    ++(stable ? result.stable : result.unstable);
+    if (i == compared) {
+      result.rank = result.stable;
+      continue;
+    }
+    result.others.push_back(
+        {.stable = stable,
+         .energy_difference_J = states[i].energy.total() - result.energy_J,
+         .rms_from_compared_m = shapes_apart(scene, states[i], states[compared]),
+         .rms_from_shape_m = from_shape[i]});
+  }
+  return result;
+}
+
 }  // namespace dlo::compare

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "dlo/compare/compared_state.hpp"
 #include "dlo/compare/solve.hpp"
 
 namespace dlo::compare {
@@ -11,5 +12,13 @@ namespace dlo::compare {
 /// shapes out of its plane also the mirror images.
 [[nodiscard]] std::vector<energy_model::Equilibrium> all_states(
     const Scene& scene, const energy_model::Equilibrium& lowest, const SolveOptions& options);
+
+/// What there is to say of the state compared.
+/// @param states  of all_states();  @param compared  its index
+/// @param from_shape  of each state, RMS distance from the shape that was compared [m]
+[[nodiscard]] ComparedState describe_state(const Scene& scene,
+                                           const std::vector<energy_model::Equilibrium>& states,
+                                           std::size_t compared,
+                                           const std::vector<double>& from_shape);
 
 }  // namespace dlo::compare

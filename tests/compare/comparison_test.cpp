@@ -216,7 +216,7 @@ TEST(Comparison, ComparesWithTheStateThatTheForceModelIsIn) {
   EXPECT_LT(c.deviation.rms_over_length, 0.01);
   EXPECT_NEAR(c.budget.discretisation.share, 1, 0.01);
   for (const OtherState& other : c.state.others) {
-    EXPECT_GT(other.rms_from_force_m, 5 * c.deviation.rms_m);
+    EXPECT_GT(other.rms_from_shape_m, 5 * c.deviation.rms_m);
   }
 }
 
@@ -231,7 +231,7 @@ TEST(Comparison, SaysWhichOfSeveralStatesItCompared) {
   for (const OtherState& other : c.state.others) {
     EXPECT_GT(other.energy_difference_J, 0);
     EXPECT_GT(other.rms_from_compared_m, 0.1);
-    EXPECT_GT(other.rms_from_force_m, 10 * c.deviation.rms_m);
+    EXPECT_GT(other.rms_from_shape_m, 10 * c.deviation.rms_m);
   }
   EXPECT_EQ(compare(heavy_scene(0.2, 0)).state.others.size(), 0U);
 }

@@ -52,6 +52,26 @@ TEST(ShapeCheck, FindsTheModulusInAnyFrameFromEitherEnd) {
   }
 }
 
+// Between clamps that lean up a heavy rod hangs out of its plane, to either side. Neither side is
+// wrong, and the modulus is the one of the shape's own side.
+TEST(ShapeCheck, ComparesWithTheStateThatTheShapeIsIn) {
+  Scene scene = heavy_scene(100, 30);
+  scene.grippers.push_back(
+      {.at = 1, .position = {0.6, 0, 0}, .direction = Eigen::Vector3d(1, -1, 0).normalized()});
+  Scene soft = scene;
+  soft.material.youngs_modulus *= 0.8;
+  const std::vector<double> s = equal_arc_lengths(1, 31);
+  MeasuredShape shape{"s", solve_reference(soft, Model::energy).sample(s).points, s};
+  for (const double side : {1, -1}) {
+    shape.points.row(2) *= side;
+    const ShapeCheck check = check_shape(scene, shape);
+    EXPECT_EQ(check.state.stable, 2);
+    EXPECT_GT(check.state.others.front().rms_from_shape_m, 3 * check.deviation.rms_m);
+    EXPECT_NEAR(check.effective_modulus.ratio, 0.8, 1e-5);
+    EXPECT_LT(check.effective_modulus.rms_m, 1e-6);
+  }
+}
+
 TEST(ShapeCheck, SaysWhereItIsWorst) {
   const Scene scene = heavy_scene(2, -10);
   MeasuredShape shape = exact_shape(scene, equal_arc_lengths(1, 11));

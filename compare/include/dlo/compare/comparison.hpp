@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/compared_state.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/effective_modulus.hpp"
 #include "dlo/compare/error_budget.hpp"
@@ -11,28 +12,6 @@
 #include "dlo/compare/solve.hpp"
 
 namespace dlo::compare {
-
-/// An equilibrium of the energy model beside the one that was compared.
-struct OtherState {
-  bool stable = false;
-  double energy_difference_J = 0;  ///< its energy minus that of the one compared
-  double rms_from_compared_m = 0;
-  double rms_from_force_m = 0;  ///< from the force model's shape
-};
-
-/// Which of a scene's equilibria was compared with the force model's shape: of the stable ones the
-/// nearest (RMS) to where the Hookean polygon falls from the force model's shape. That is the state
-/// that the force model is in, and not always the one of lowest energy.
-struct ComparedState {
-  double energy_J = 0;  ///< bending, gravity and loads
-  int rank = 1;         ///< among the stable ones by energy, 1: the lowest
-  int stable = 1;       ///< how many stable ones were found
-  int unstable = 0;
-  std::vector<OtherState> others;  ///< stable ones first, by energy
-
-  /// No other stable one is as low, as a mirror image is.
-  [[nodiscard]] bool only_lowest() const { return rank == 1 && stable == 1; }
-};
 
 /// One scene, both models.
 struct Comparison {
@@ -43,11 +22,13 @@ struct Comparison {
   Plan plan;
   Solution force;
   Shape reference;  ///< the energy model at the force model's arc lengths
+  /// Of the stable ones the nearest (RMS) to where the Hookean polygon falls from the force model's
+  /// shape: the state that the force model is in, and not always the one of lowest energy.
   ComparedState state;
   Deviation deviation;
   /// The straight rod's own deviation from the reference; NaN without a straight rod.
   double undeformed_rms_over_length = 0;
-  /// Against the lowest shape at each E*, which need not be the state that was compared.
+  /// Of several stable states in the one that was compared, followed to each E*.
   EffectiveModulus effective_modulus;
   /// What even E* does not explain, against the reference's way from the straight rod; NaN without.
   double residual_over_movement = 0;

@@ -35,8 +35,14 @@ inline constexpr double largest_modulus_ratio = 1e4;
 [[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape);
 
 /// The same for any distance [m] of a shape from the energy model's.
+/// @param state  an equilibrium of the scene that is followed both ways from E*/E = 1 to the nearest
+///               minimum; without one the lowest that each modulus has
 using ShapeDistance = std::function<double(const energy_model::Equilibrium&)>;
-[[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene,
-                                                     const ShapeDistance& distance);
+[[nodiscard]] EffectiveModulus fit_effective_modulus(
+    const Scene& scene, const ShapeDistance& distance,
+    const energy_model::Equilibrium* state = nullptr);
+
+/// RMS distance at equal arc length.
+[[nodiscard]] ShapeDistance distance_from(const Shape& shape);
 
 }  // namespace dlo::compare

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "dlo/compare/alignment.hpp"
+#include "dlo/compare/compared_state.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/effective_modulus.hpp"
 #include "dlo/compare/scene.hpp"
@@ -17,13 +18,14 @@ struct ShapeCheckOptions {
   SolveOptions solve;
 };
 
-/// A measured shape against the energy model of its scene.
+/// A measured shape against the energy model of its scene, without obstacles out of reach.
 struct ShapeCheck {
   std::string scene;
   std::string file;
   double gamma = 0;
   Alignment alignment;
-  Shape reference;  ///< the energy model at the alignment's arc lengths
+  ComparedState state;  ///< the stable one that the shape comes nearest to
+  Shape reference;      ///< the energy model at the alignment's arc lengths
   /// RMS along the rod from the first point to the last, straight across what is missing; its share
   /// of the length is that of the whole rod. Tangent and curvature only for given arc lengths: NaN.
   Deviation deviation;
@@ -36,11 +38,11 @@ struct ShapeCheck {
   bool direction_is_clear = false;  ///< the other direction fits at least 5 % worse
   /// The points lie so nearly on a line that nothing tells how the shape is turned about it.
   bool turn_is_clear = true;
-  EffectiveModulus effective_modulus;  ///< aligned anew for each modulus
+  EffectiveModulus effective_modulus;  ///< aligned anew for each modulus, in the same state
   double modulus = 0;                  ///< E* [Pa]
 };
 
-/// Solves the scene with the energy model and compares the shape with it.
+/// Solves the scene with the energy model and compares the shape with the nearest stable state.
 /// @throws InputError, ConvergenceError
 [[nodiscard]] ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                                      const ShapeCheckOptions& options = {});

@@ -27,6 +27,8 @@ struct SolveOptions {
   int max_evaluations = 20000;   ///< of the minimisers
   long max_steps = 20'000'000;   ///< of the force model
   double rest_tolerance = 1e-7;  ///< of the force model, share of the rod's length
+  /// Of the energy model: an equilibrium of a similar scene to follow, instead of the lowest.
+  const energy_model::Equilibrium* start = nullptr;
 };
 
 /// Energies [J]; gravity and loads are zero at the first gripper.
