@@ -39,7 +39,7 @@ function(dlo_install name)
   string(REPLACE _ - pkgconfig_name dlo-${name})
   list(JOIN _REQUIRES ", " requires)
   list(JOIN _STATIC_LIBS " " static_libs)
-  file(RELATIVE_PATH to_prefix /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+  string(REGEX REPLACE "[^/]+" ".." to_prefix ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
   configure_file(${dlo_package_dir}/library.pc.in ${pkgconfig_name}.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${pkgconfig_name}.pc
     DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT ${name})
