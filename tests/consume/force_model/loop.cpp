@@ -1,6 +1,7 @@
 // A wire in a 1 kHz loop: every millisecond a hand moves the gripper, the wire follows, and the
 // hand gets back the force that it has to bear.
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -36,7 +37,7 @@ int main() {
   for (int i = 0; i < points; ++i) shape.col(i) << (i - 0.5) * segment, 0, 0;
   Simulation simulation(rod, shape, {});
 
-  // From here on nothing allocates.
+  // From here on the model allocates nothing.
   Eigen::Matrix3Xd targets = hold_at(0);
   Eigen::Matrix3Xd forces(3, points);
   std::array<GripReaction, 1> reaction;
