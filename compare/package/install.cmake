@@ -39,6 +39,8 @@ function(dlo_install name)
   string(REPLACE _ - pkgconfig_name dlo-${name})
   list(JOIN _REQUIRES ", " requires)
   list(JOIN _STATIC_LIBS " " static_libs)
+  list(TRANSFORM dlo_eigen_memory PREPEND -D OUTPUT_VARIABLE defines)
+  list(JOIN defines " " defines)
   string(REGEX REPLACE "[^/]+" ".." to_prefix ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
   configure_file(${dlo_package_dir}/library.pc.in ${pkgconfig_name}.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${pkgconfig_name}.pc
