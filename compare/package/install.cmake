@@ -1,0 +1,60 @@
+# Installing. Each library is an install component and an export set of its own, so that one can be
+# installed, and found, without what the others need. `force_model` also holds what all share.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(dlo_package_dir ${CMAKE_CURRENT_LIST_DIR})
+set(dlo_cmake_dir ${CMAKE_INSTALL_LIBDIR}/cmake/dlo)
+set(dlo_data_dir ${CMAKE_INSTALL_DATADIR}/dlo)
+file(RELATIVE_PATH dlo_bin_to_lib /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBDIR})
+
+# Installs the library dlo_<name> for find_package and pkg-config.
+#   DESCRIPTION  for pkg-config
+#   FIND         what find_package has to find first, one "package version" each
+#   REQUIRES     the same for pkg-config, one "package >= version" each
+#   STATIC_FIND, STATIC_REQUIRES, STATIC_LIBS
+#                what a static library leaves to the program that links it: nothing if it is shared
+function(dlo_install name)
+  cmake_parse_arguments(PARSE_ARGV 1 "" "" DESCRIPTION
+    "FIND;REQUIRES;STATIC_FIND;STATIC_REQUIRES;STATIC_LIBS")
+  if(NOT BUILD_SHARED_LIBS)
+    list(APPEND _FIND ${_STATIC_FIND})
+    list(APPEND _REQUIRES ${_STATIC_REQUIRES})
+  else()
+    set(_STATIC_LIBS)
+  endif()
+
+  install(TARGETS dlo_${name} EXPORT dlo_${name}
+    ARCHIVE COMPONENT ${name} LIBRARY COMPONENT ${name} RUNTIME COMPONENT ${name})
+  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${name})
+
+  install(EXPORT dlo_${name} NAMESPACE dlo:: FILE dlo_${name}-targets.cmake
+    DESTINATION ${dlo_cmake_dir} COMPONENT ${name})
+  list(TRANSFORM _FIND REPLACE ".+" "find_dependency(\\0)")
+  list(JOIN _FIND "\n" find_dependencies)
+  configure_file(${dlo_package_dir}/library.cmake.in dlo_${name}.cmake @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/dlo_${name}.cmake
+    DESTINATION ${dlo_cmake_dir} COMPONENT ${name})
+
+  string(REPLACE _ - pkgconfig_name dlo-${name})
+  list(JOIN _REQUIRES ", " requires)
+  list(JOIN _STATIC_LIBS " " static_libs)
+  list(TRANSFORM dlo_eigen_memory PREPEND -D OUTPUT_VARIABLE defines)
+  list(JOIN defines " " defines)
+  string(REGEX REPLACE "[^/]+" ".." to_prefix ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+  configure_file(${dlo_package_dir}/library.pc.in ${pkgconfig_name}.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/${pkgconfig_name}.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT ${name})
+endfunction()
+
+configure_package_config_file(${dlo_package_dir}/dloConfig.cmake.in dloConfig.cmake
+  INSTALL_DESTINATION ${dlo_cmake_dir} PATH_VARS dlo_data_dir)
+write_basic_package_version_file(dloConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/dloConfig.cmake
+  ${CMAKE_CURRENT_BINARY_DIR}/dloConfigVersion.cmake
+  DESTINATION ${dlo_cmake_dir} COMPONENT force_model)
+
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)
+install(FILES data/materials.toml data/effective_modulus.csv
+  DESTINATION ${dlo_data_dir} COMPONENT command)
+install(DIRECTORY data/scenes data/shapes DESTINATION ${dlo_data_dir} COMPONENT command)

@@ -1,0 +1,31 @@
+// What a program does with all three libraries: read a scene, solve it, compare, and test shapes.
+
+#include <dlo/compare/comparison.hpp>
+#include <dlo/compare/gtest.hpp>
+#include <dlo/compare/scene.hpp>
+#include <dlo/compare/solve.hpp>
+
+namespace {
+
+using namespace dlo::compare;
+
+Scene installed_scene() {
+  Scene scene = load_scene(DLO_DATA_DIR "/scenes/spring_steel_175.toml");
+  scene.force_model = {.points = 32, .law = Law::hooke, .bookkeeping = Bookkeeping::consistent};
+  return scene;
+}
+
+TEST(InstalledDlo, BothModelsGiveTheShapeOfAScene) {
+  const Scene scene = installed_scene();
+  EXPECT_SHAPE_NEAR(solve(scene, Model::exact).shape, scene, 1e-8);
+  EXPECT_SHAPE_NEAR(solve(scene, Model::force).shape, scene, 1e-4);
+}
+
+TEST(InstalledDlo, ComparesTheModels) {
+  const Comparison comparison = compare(installed_scene());
+  EXPECT_GT(comparison.deviation.rms_over_length, 1e-6);
+  EXPECT_LT(comparison.deviation.rms_over_length, 1e-4);
+  EXPECT_NEAR(comparison.effective_modulus.ratio, 1, 1e-2);
+}
+
+}  // namespace
