@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/model.hpp"
 #include "dlo/compare/scene.hpp"
-#include "dlo/compare/solve.hpp"
 
 namespace dlo::compare {
 
@@ -29,11 +29,6 @@ struct BaselineCase {
   /// are the same case.
   [[nodiscard]] std::string name() const;
 };
-
-/// Solves a scene with `model` (chain or force) and with the energy model.
-/// @throws InputError, ConvergenceError
-[[nodiscard]] BaselineCase measure_case(const Scene& scene, Model model,
-                                        const SolveOptions& options = {});
 
 /// Reads a baseline: TOML with schema = "dlo/baseline/1" and a [[case]] for each.
 /// @throws InputError naming file, line, key, value and what is allowed, also if a case comes twice

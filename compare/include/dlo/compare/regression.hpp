@@ -5,8 +5,14 @@
 #include <vector>
 
 #include "dlo/compare/baseline.hpp"
+#include "dlo/compare/solve.hpp"
 
 namespace dlo::compare {
+
+/// Solves a scene with `model` (chain or force) and with the energy model.
+/// @throws InputError, ConvergenceError
+[[nodiscard]] BaselineCase measure_case(const Scene& scene, Model model,
+                                        const SolveOptions& options = {});
 
 enum class RegressionVerdict {
   same,

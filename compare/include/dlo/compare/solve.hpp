@@ -5,22 +5,12 @@
 #include <vector>
 
 #include "dlo/compare/discretise.hpp"
+#include "dlo/compare/model.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 
 namespace dlo::compare {
-
-enum class Model {
-  energy,  ///< minimiser of the continuous rod's energy
-  chain,   ///< minimiser over the force model's polygon
-  exact,   ///< boundary value problem of the rod, shot with GSL
-  force,   ///< the paper's model, stepped to rest
-};
-
-[[nodiscard]] const std::vector<std::string>& model_names();
-[[nodiscard]] const char* to_string(Model model);
-[[nodiscard]] Model model_from(const std::string& name);
 
 struct SolveOptions {
   int terms = 0;                 ///< of the energy model, 0: as many as needed
