@@ -14,20 +14,20 @@ namespace dlo::compare {
 
 /// An equilibrium of the energy model beside the one that was compared.
 struct OtherState {
-  bool stable = false;
+  bool stable = false;             ///< its second variation is positive
   double energy_difference_J = 0;  ///< its energy minus that of the one compared
-  double rms_from_compared_m = 0;
-  double rms_from_force_m = 0;  ///< from the force model's shape
+  double rms_from_compared_m = 0;  ///< RMS along the rod from the shape compared [m]
+  double rms_from_force_m = 0;     ///< from the force model's shape
 };
 
 /// Which of a scene's equilibria was compared with the force model's shape: of the stable ones the
 /// nearest (RMS) to where the Hookean polygon falls from the force model's shape. That is the state
 /// that the force model is in, and not always the one of lowest energy.
 struct ComparedState {
-  double energy_J = 0;  ///< bending, gravity and loads
-  int rank = 1;         ///< among the stable ones by energy, 1: the lowest
-  int stable = 1;       ///< how many stable ones were found
-  int unstable = 0;
+  double energy_J = 0;             ///< bending, gravity and loads
+  int rank = 1;                    ///< among the stable ones by energy, 1: the lowest
+  int stable = 1;                  ///< how many stable ones were found
+  int unstable = 0;                ///< how many unstable ones were found
   std::vector<OtherState> others;  ///< stable ones first, by energy
 
   /// No other stable one is as low, as a mirror image is.
@@ -36,24 +36,24 @@ struct ComparedState {
 
 /// One scene, both models.
 struct Comparison {
-  std::string scene;
-  double gamma = 0;
-  double length = 0;  ///< l [m]
-  ForceModelSettings settings;
-  Plan plan;
-  Solution force;
-  Shape reference;  ///< the energy model at the force model's arc lengths
-  ComparedState state;
-  Deviation deviation;
+  std::string scene;            ///< its name
+  double gamma = 0;             ///< w l^3 / (EI) [-]
+  double length = 0;            ///< l [m]
+  ForceModelSettings settings;  ///< of the force model, as used
+  Plan plan;                    ///< what the scene needs
+  Solution force;               ///< the force model at rest
+  Shape reference;              ///< the energy model at the force model's arc lengths
+  ComparedState state;          ///< which equilibrium `reference` is
+  Deviation deviation;          ///< of `force` from `reference`
   /// The straight rod's own deviation from the reference; NaN without a straight rod.
   double undeformed_rms_over_length = 0;
   /// Against the lowest shape at each E*, which need not be the state that was compared.
   EffectiveModulus effective_modulus;
   /// What even E* does not explain, against the reference's way from the straight rod; NaN without.
   double residual_over_movement = 0;
-  Budget budget;
-  double energy_seconds = 0;
-  long energy_evaluations = 0;
+  Budget budget;                ///< where the deviation comes from
+  double energy_seconds = 0;    ///< of the energy model's solver [s]
+  long energy_evaluations = 0;  ///< of the energy model's solver
 };
 
 /// Solves a scene with the force model at rest and with the energy model, both without obstacles

@@ -15,6 +15,7 @@ enum class Model {
 
 /// Their names, as options and files spell them.
 [[nodiscard]] const std::vector<std::string>& model_names();
+/// The name of a model.
 [[nodiscard]] const char* to_string(Model model);
 /// @throws InputError if no model has this name
 [[nodiscard]] Model model_from(const std::string& name);
