@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
-#include "dlo/compare/comparison.hpp"
 #include "strict_table.hpp"
 
 namespace dlo::compare {
@@ -56,20 +54,6 @@ std::string toml_number(double value) { return fmt::format("{:#.6g}", value); }
 std::string BaselineCase::name() const {
   return fmt::format("{} ({}, law {}, bookkeeping {}, N = {})", scene, to_string(model),
                      to_string(law), to_string(bookkeeping), points);
-}
-
-BaselineCase measure_case(const Scene& scene, Model model, const SolveOptions& options) {
-  const Solution solution = solve(scene, model, options);
-  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
-  const Deviation d = shape_deviation(scene, solution.shape, energy.sample);
-  BaselineCase result{scene.name,
-                      model,
-                      scene.force_model.law,
-                      scene.force_model.bookkeeping,
-                      scene.force_model.points,
-                      {d.rms_over_length, d.max_m / scene.length, std::nullopt}};
-  if (std::isfinite(d.tip_m)) result.errors.tip = d.tip_m / scene.length;
-  return result;
 }
 
 std::vector<BaselineCase> read_baseline(const std::string& text, const std::string& file) {

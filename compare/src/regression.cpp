@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "dlo/compare/comparison.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
@@ -75,6 +76,20 @@ std::string escaped_xml(const std::string& text) {
 }
 
 }  // namespace
+
+BaselineCase measure_case(const Scene& scene, Model model, const SolveOptions& options) {
+  const Solution solution = solve(scene, model, options);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
+  const Deviation d = shape_deviation(scene, solution.shape, energy.sample);
+  BaselineCase result{scene.name,
+                      model,
+                      scene.force_model.law,
+                      scene.force_model.bookkeeping,
+                      scene.force_model.points,
+                      {d.rms_over_length, d.max_m / scene.length, std::nullopt}};
+  if (std::isfinite(d.tip_m)) result.errors.tip = d.tip_m / scene.length;
+  return result;
+}
 
 const char* to_string(RegressionVerdict verdict) {
   switch (verdict) {

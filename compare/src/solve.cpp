@@ -57,25 +57,6 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
 
 }  // namespace
 
-const std::vector<std::string>& model_names() {
-  static const std::vector<std::string> names = {"energy", "chain", "exact", "force"};
-  return names;
-}
-
-const char* to_string(Model model) {
-  return model_names()[static_cast<std::size_t>(model)].c_str();
-}
-
-Model model_from(const std::string& name) {
-  const auto& names = model_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw InputError(
-        fmt::format("unknown model \"{}\" (allowed: {})", name, fmt::join(names, ", ")));
-  }
-  return static_cast<Model>(found - names.begin());
-}
-
 energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                           const SolveOptions& options) {
   if (model == Model::exact) require_exact_scene(scene);

@@ -29,18 +29,25 @@ enum class ArcLengths {
               ///< the curve are invisible.
 };
 
+/// Names of choices, as options spell them.
 [[nodiscard]] const std::vector<std::string>& pose_names();
+/// The same of arc lengths.
 [[nodiscard]] const std::vector<std::string>& arc_lengths_names();
+/// Name of a choice.
 [[nodiscard]] const char* to_string(PoseFreedom pose);
+/// Name of a rule.
 [[nodiscard]] const char* to_string(ArcLengths arc_lengths);
+/// @throws InputError if there is no such choice
 [[nodiscard]] PoseFreedom pose_from(const std::string& name);
+/// @throws InputError if there is no such rule
 [[nodiscard]] ArcLengths arc_lengths_from(const std::string& name);
 
 /// A rigid motion from a file's frame to the scene's: p -> rotation p + translation.
 struct RigidMotion {
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  ///< [m]
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  ///< proper [-]
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();   ///< [m]
 
+  /// Points [m], 3 x M, in the scene's frame.
   [[nodiscard]] Eigen::Matrix3Xd applied(const Eigen::Matrix3Xd& points) const {
     return (rotation * points).colwise() + translation;
   }
@@ -52,16 +59,17 @@ enum class PointWeights {
   by_length,  ///< by the arc length up to its neighbours' middles, so that sums are integrals
 };
 
+/// How a shape is to be laid on a reference.
 struct AlignOptions {
-  PoseFreedom pose = PoseFreedom::known;
-  ArcLengths arc_lengths = ArcLengths::automatic;
-  PointWeights weights = PointWeights::by_length;
-  Eigen::Vector3d up = Eigen::Vector3d::UnitY();  ///< unit, for `upright`
+  PoseFreedom pose = PoseFreedom::known;           ///< what is unknown of its frame
+  ArcLengths arc_lengths = ArcLengths::automatic;  ///< where its arc lengths come from
+  PointWeights weights = PointWeights::by_length;  ///< how much each point counts
+  Eigen::Vector3d up = Eigen::Vector3d::UnitY();   ///< unit, for `upright`
 };
 
 /// A measured shape laid on a reference.
 struct Alignment {
-  RigidMotion pose;
+  RigidMotion pose;       ///< from the file's frame to the scene's
   bool reversed = false;  ///< the file runs (its s counts) from arc length l to 0
   ArcLengths arc_lengths = ArcLengths::nearest;  ///< which rule was used
   Shape shape;             ///< the points in the scene's frame, by growing arc length

@@ -4,41 +4,37 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/model.hpp"
 #include "dlo/compare/scene.hpp"
-#include "dlo/compare/solve.hpp"
 
 namespace dlo::compare {
 
 /// How far a shape is from the energy model's, each as a share of the rod's length [-].
 struct ShapeErrors {
-  double rms = 0;
-  double max = 0;
+  double rms = 0;             ///< along the rod
+  double max = 0;             ///< of any point
   std::optional<double> tip;  ///< nothing if both ends are held
 };
 
 /// Errors of one scene with one choice of model, law, bookkeeping and N.
 struct BaselineCase {
-  std::string scene;  ///< its name
-  Model model = Model::force;
-  Law law = Law::hooke;
-  Bookkeeping bookkeeping = Bookkeeping::consistent;
-  int points = 0;  ///< N
-  ShapeErrors errors;
+  std::string scene;                                  ///< its name
+  Model model = Model::force;                         ///< force or chain
+  Law law = Law::hooke;                               ///< of bending
+  Bookkeeping bookkeeping = Bookkeeping::consistent;  ///< of the polygon
+  int points = 0;                                     ///< N
+  ShapeErrors errors;                                 ///< those of this case
 
   /// "copper wire (force, law hooke, bookkeeping consistent, N = 16)": two cases with the same name
   /// are the same case.
   [[nodiscard]] std::string name() const;
 };
 
-/// Solves a scene with `model` (chain or force) and with the energy model.
-/// @throws InputError, ConvergenceError
-[[nodiscard]] BaselineCase measure_case(const Scene& scene, Model model,
-                                        const SolveOptions& options = {});
-
 /// Reads a baseline: TOML with schema = "dlo/baseline/1" and a [[case]] for each.
 /// @throws InputError naming file, line, key, value and what is allowed, also if a case comes twice
 [[nodiscard]] std::vector<BaselineCase> read_baseline(const std::string& text,
                                                       const std::string& file);
+/// Reads a baseline file. @throws InputError as read_baseline, or if it cannot be read
 [[nodiscard]] std::vector<BaselineCase> load_baseline(const std::string& path);
 
 /// A baseline's text, sorted by name, errors with 6 significant digits: what does not change reads

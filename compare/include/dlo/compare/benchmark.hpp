@@ -10,6 +10,7 @@
 
 namespace dlo::compare {
 
+/// What dlo bench measures, and how long.
 struct BenchmarkOptions {
   /// Time that all runs may take [s], > 0. A run that would take more than what is left, judged by
   /// the runs before it, is skipped.
@@ -21,16 +22,16 @@ struct BenchmarkOptions {
 
 /// Median and quartiles of repeated runs [s].
 struct Timing {
-  double median_s = 0;
-  double lower_quartile_s = 0;
-  double upper_quartile_s = 0;
-  int repeats = 0;
+  double median_s = 0;          ///< [s]
+  double lower_quartile_s = 0;  ///< [s]
+  double upper_quartile_s = 0;  ///< [s]
+  int repeats = 0;              ///< how many runs
 };
 
 /// One model with one setting on one scene.
 struct BenchmarkRun {
-  std::string scene;
-  Model model = Model::energy;
+  std::string scene;            ///< its name
+  Model model = Model::energy;  ///< what was timed
   int size = 0;         ///< K of energy (0: as many as needed), N of chain and force, 0 of exact
   std::string setting;  ///< law, stepper and c_c of chain and force
   Timing time;          ///< from straight to the shape; of tracking runs, of one frame
@@ -45,23 +46,25 @@ struct BenchmarkAnswer {
   std::optional<std::size_t> best;  ///< the fastest run of the scene within it; nothing: none
 };
 
+/// All runs of one scene.
 struct SceneBenchmark {
-  std::string scene;
-  double gamma = 0;
-  Model reference = Model::exact;  ///< energy where exact cannot
-  std::vector<BenchmarkRun> runs;  ///< static
-  std::vector<BenchmarkRun> tracking;
-  std::vector<BenchmarkAnswer> answers;  ///< static, for 10 %, 1 %, 0.1 % and 1e-6
-  std::vector<BenchmarkAnswer> tracking_answers;
+  std::string scene;                              ///< its name
+  double gamma = 0;                               ///< w l^3 / (EI) [-]
+  Model reference = Model::exact;                 ///< energy where exact cannot
+  std::vector<BenchmarkRun> runs;                 ///< static
+  std::vector<BenchmarkRun> tracking;             ///< per frame behind a moving gripper
+  std::vector<BenchmarkAnswer> answers;           ///< static, for 10 %, 1 %, 0.1 % and 1e-6
+  std::vector<BenchmarkAnswer> tracking_answers;  ///< the same of tracking
   /// Static: the fastest `energy` run within 1e-6 l and the fastest `force` run within 1e-3 l.
-  std::optional<std::size_t> energy_at_1e6, force_at_1e3;
+  std::optional<std::size_t> energy_at_1e6, force_at_1e3;  ///< nothing: none is
 };
 
+/// All scenes of a benchmark.
 struct BenchmarkReport {
-  BenchmarkOptions options;
-  std::vector<SceneBenchmark> scenes;
-  std::vector<std::string> skipped;  ///< runs that would not have fitted in, or did not converge
-  double seconds = 0;                ///< all of it
+  BenchmarkOptions options;            ///< as given
+  std::vector<SceneBenchmark> scenes;  ///< in the order given
+  std::vector<std::string> skipped;    ///< runs that would not have fitted in, or did not converge
+  double seconds = 0;                  ///< all of it
 };
 
 /// The paper's steel rod (Gamma = 0.18, horizontal) and one a hundred times softer.

@@ -15,26 +15,27 @@ namespace dlo::compare {
 
 /// One scene, both models.
 struct Comparison {
-  std::string scene;
-  double gamma = 0;
-  double length = 0;  ///< l [m]
-  ForceModelSettings settings;
-  Plan plan;
-  Solution force;
-  Shape reference;  ///< the energy model at the force model's arc lengths
-  /// Of the stable ones the nearest (RMS) to where the Hookean polygon falls from the force model's
-  /// shape: the state that the force model is in, and not always the one of lowest energy.
+  std::string scene;            ///< its name
+  double gamma = 0;             ///< w l^3 / (EI) [-]
+  double length = 0;            ///< l [m]
+  ForceModelSettings settings;  ///< of the force model, as used
+  Plan plan;                    ///< what the scene needs
+  Solution force;               ///< the force model at rest
+  Shape reference;              ///< the energy model at the force model's arc lengths
+  /// Which equilibrium `reference` is: of the stable ones the nearest (RMS) to where the Hookean
+  /// polygon falls from the force model's shape. That is the state that the force model is in, and
+  /// not always the one of lowest energy.
   ComparedState state;
-  Deviation deviation;
+  Deviation deviation;  ///< of `force` from `reference`
   /// The straight rod's own deviation from the reference; NaN without a straight rod.
   double undeformed_rms_over_length = 0;
   /// Of several stable states in the one that was compared, followed to each E*.
   EffectiveModulus effective_modulus;
   /// What even E* does not explain, against the reference's way from the straight rod; NaN without.
   double residual_over_movement = 0;
-  Budget budget;
-  double energy_seconds = 0;
-  long energy_evaluations = 0;
+  Budget budget;                ///< where the deviation comes from
+  double energy_seconds = 0;    ///< of the energy model's solver [s]
+  long energy_evaluations = 0;  ///< of the energy model's solver
 };
 
 /// Solves a scene with the force model at rest and with the energy model, both without obstacles

@@ -16,11 +16,11 @@ using Reference = std::function<energy_model::Samples(std::span<const double>)>;
 /// Distance of a shape from a reference at equal arc length. A polygon is measured at its points:
 /// between them it claims nothing. Integrals over the arc length are trapezoidal.
 struct Deviation {
-  double rms_m = 0;  ///< sqrt(1/l int |dr|^2 ds)
-  double max_m = 0;
-  double max_at_m = 0;  ///< arc length of the largest
-  double tip_m = 0;     ///< at the free end; NaN without one
-  double rms_over_length = 0;
+  double rms_m = 0;            ///< sqrt(1/l int |dr|^2 ds)
+  double max_m = 0;            ///< largest distance of a point [m]
+  double max_at_m = 0;         ///< arc length of the largest
+  double tip_m = 0;            ///< at the free end; NaN without one
+  double rms_over_length = 0;  ///< RMS as a share of the length [-]
   /// Against the RMS way of the reference from the straight rod; NaN without one.
   double rms_over_movement = 0;
   double angle_rms_rad = 0;        ///< of the segments against the tangent in their middle

@@ -33,7 +33,7 @@ struct Parameters {
 
 /// A scene as points and segments.
 struct Discretisation {
-  force_model::Rod rod;
+  force_model::Rod rod;      ///< polygon, forces and grips of the force model
   Eigen::Matrix3Xd weights;  ///< the part of rod.loads that is gravity [N]
   /// Where a simulation may start [m]: straight from a single gripper; two shapes for several
   /// grippers, whose slack hangs along or against the load.
@@ -41,7 +41,7 @@ struct Discretisation {
   std::vector<double> arc_length;  ///< of the points; a point inside an end gripper is negative, or
                                    ///< beyond the rod's length [m]
   double length = 0;               ///< l, the rod's own part [m]
-  Parameters parameters;
+  Parameters parameters;           ///< c_b, c_c and what else follows from the scene
 
   /// The rod's own part, arc length 0 to l: points inside end grippers give way to the point where
   /// the gripper holds the rod.
@@ -79,9 +79,12 @@ struct Discretisation {
 
 /// The same polygon for the rigid chain solver.
 struct ChainScene {
-  energy_model::ChainProblem problem;
-  Eigen::Vector3d origin, x, y;  ///< frame of its plane
+  energy_model::ChainProblem problem;  ///< in the coordinates of its plane
+  Eigen::Vector3d origin;              ///< of the plane's frame, in space [m]
+  Eigen::Vector3d x;                   ///< its axis, unit
+  Eigen::Vector3d y;                   ///< its axis, unit
 
+  /// Points of the plane [m], 2 x M, in space [m], 3 x M.
   [[nodiscard]] Eigen::Matrix3Xd to_space(const Eigen::Matrix2Xd& points) const;
 };
 

@@ -8,7 +8,7 @@ namespace dlo::compare {
 
 /// One reason of a deviation. It is a difference of two shapes, a vector at each arc length.
 struct BudgetPart {
-  double rms_m = 0;
+  double rms_m = 0;  ///< RMS along the rod [m]
   /// What it contributes to the total, with sign: <part, total> / <total, total>, the product an
   /// integral over the arc length [-]. The shares of all parts and of the remainder add up to 1.
   double share = 0;
@@ -19,16 +19,22 @@ struct BudgetPart {
 ///     discretisation  chain(hooke, consistent, rigid) - rod
 ///     bookkeeping     chain(hooke, the scene's, rigid) - chain(hooke, consistent, rigid)
 ///     law             chain(the scene's, consistent, rigid) - chain(hooke, consistent, rigid)
-///     stretch         chain(the scene's, the scene's, c_c) - chain(the scene's, the scene's,
-///     rigid) not at rest     force model - force model after Newton's step to rest interaction
-///     what is left of force model - rod
+///     stretch         chain(the scene's, the scene's, c_c)
+///                     - chain(the scene's, the scene's, rigid)
+///     not at rest     force model - force model after Newton's step to rest
+///     interaction     what is left of force model - rod
 /// Law and bookkeeping are switched from the better model, so that neither hides behind the other;
 /// what they do together beyond the sum of both is interaction, and so are the second order of
 /// "not at rest" and the net torque of the paper's law between unequal segments, which no potential
 /// has. All chains start from the force model's shape, so that they are in its state.
 struct Budget {
-  BudgetPart law, bookkeeping, discretisation, stretch, not_at_rest, interaction;
-  double total_m = 0;  ///< RMS of force model - rod
+  BudgetPart law;             ///< see above
+  BudgetPart bookkeeping;     ///< see above
+  BudgetPart discretisation;  ///< see above
+  BudgetPart stretch;         ///< see above
+  BudgetPart not_at_rest;     ///< see above
+  BudgetPart interaction;     ///< see above
+  double total_m = 0;         ///< RMS of force model - rod
 };
 
 /// @param scene  without obstacles out of reach;  @param force  its force model at rest

@@ -19,21 +19,23 @@ enum class StiffnessRule {
   fitted_alone,    ///< law paper: for each scene the c_b that is nearest to it: no c_b does better
 };
 
+/// In words, for tables.
 [[nodiscard]] const char* to_string(StiffnessRule rule);
 
+/// What parameters are wanted.
 struct ForceModelFitOptions {
   /// N; without it the target decides (law hooke), or the scene (law paper, whose error does not
   /// fall with N).
   std::optional<int> points;
   double target = 1e-3;  ///< RMS deviation over the rod's length, > 0
-  SolveOptions solve;
+  SolveOptions solve;    ///< limits of the solvers
 };
 
 /// One rule on all scenes; values in their order, hold-out scenes last.
 struct RuleDeviations {
-  StiffnessRule rule = StiffnessRule::physical;
-  std::vector<double> c_b;              ///< [N]; law hooke: none
-  std::vector<double> rms_over_length;  ///< of the chain; NaN where the rule gives no c_b
+  StiffnessRule rule = StiffnessRule::physical;  ///< how c_b was chosen
+  std::vector<double> c_b;                       ///< [N]; law hooke: none
+  std::vector<double> rms_over_length;           ///< of the chain; NaN where the rule gives no c_b
 };
 
 /// Parameters of the force model for one material, and what they give.
@@ -41,21 +43,22 @@ struct ForceModelFit {
   /// To be used: N, law, bookkeeping, c_b (law paper), c_c, and stepper dynamic with its c_F, c_h
   /// and l_s.
   ForceModelSettings settings;
-  bool c_b_was_given = false;  ///< `fitted` is then the given one
-  double target = 0;
-  std::vector<std::string> scenes;  ///< names, hold-out scenes last
-  std::vector<double> gammas;
-  std::size_t holdouts = 0;  ///< how many of them were held out
-  std::vector<RuleDeviations> rules;
+  bool c_b_was_given = false;         ///< `fitted` is then the given one
+  double target = 0;                  ///< RMS deviation over the length that was asked for [-]
+  std::vector<std::string> scenes;    ///< names, hold-out scenes last
+  std::vector<double> gammas;         ///< w l^3 / (EI) of each scene [-]
+  std::size_t holdouts = 0;           ///< how many of them were held out
+  std::vector<RuleDeviations> rules;  ///< every rule that was tried
   /// The force model itself, stepped to rest with `settings`.
   std::vector<double> stepped_rms_over_length;
-  std::vector<long> steps;
+  std::vector<long> steps;       ///< that it took, of each scene
   double order = 0;              ///< of convergence in the segment length, as measured; 0: not used
   double segment_length = 0;     ///< L of the first scene [m]
   double bending_stiffness = 0;  ///< EI of the first scene [N m^2]
 
   /// Largest stepped deviation of the scenes (of the hold-out scenes).
   [[nodiscard]] double worst() const;
+  /// The same of the hold-out scenes; 0 without any.
   [[nodiscard]] double worst_holdout() const;
 };
 

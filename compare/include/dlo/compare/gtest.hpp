@@ -22,6 +22,7 @@
 
 namespace dlo::compare {
 
+/// What EXPECT_SHAPE_NEAR calls: the texts are the arguments as written.
 inline testing::AssertionResult assert_shape_near(const char* shape_text, const char* scene_text,
                                                   const char* tolerance_text, const Shape& shape,
                                                   const Scene& scene, double tolerance) {
@@ -35,18 +36,23 @@ inline testing::AssertionResult assert_shape_near(const char* shape_text, const 
 /// What IsShapeOf gives.
 class ShapeMatcher {
  public:
+  /// for GoogleTest
   using is_gtest_matcher = void;
 
+  /// @param tolerance  largest distance of a point, share of the length [-], > 0
   ShapeMatcher(Scene scene, double tolerance) : scene_(std::move(scene)), tolerance_(tolerance) {}
 
+  /// Whether the shape is the scene's; streams where it is worst.
   bool MatchAndExplain(const Shape& shape, std::ostream* explanation) const {
     const ShapeVerdict verdict = judge_shape(shape, scene_, tolerance_);
     if (explanation != nullptr) *explanation << verdict.explanation;
     return verdict.near;
   }
+  /// What is expected.
   void DescribeTo(std::ostream* out) const {
     *out << "is the shape of " << scene_.name << " within " << tolerance_ * 100 << " % of l";
   }
+  /// What is not expected.
   void DescribeNegationTo(std::ostream* out) const {
     *out << "is not the shape of " << scene_.name << " within " << tolerance_ * 100 << " % of l";
   }
@@ -57,6 +63,7 @@ class ShapeMatcher {
 };
 
 // GoogleTest's names for what GoogleTest calls and for what stands beside its matchers.
+/// EXPECT_THAT(shape, IsShapeOf(scene, 1e-3)): see judge_shape.
 // NOLINTNEXTLINE(readability-identifier-naming)
 inline ShapeMatcher IsShapeOf(Scene scene, double tolerance) {
   return {std::move(scene), tolerance};

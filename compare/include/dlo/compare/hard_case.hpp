@@ -10,18 +10,18 @@ namespace dlo::compare {
 
 /// How the first gripper moves before the rod is left to itself, by equal shares a step.
 struct GripMotion {
-  long steps = 0;
+  long steps = 0;                                      ///< over which the motion is spread
   Eigen::Vector3d movement = Eigen::Vector3d::Zero();  ///< of the whole motion [m]
   double turn = 0;                                     ///< of the whole motion, about +z [rad]
 };
 
 /// A rod and a start that a stepper may stumble over.
 struct HardCase {
-  std::string name;
-  std::string what;  ///< one line: what is hard about it
-  Discretisation discretisation;
-  Eigen::Matrix3Xd start;  ///< [m], 3 x N
-  GripMotion motion;
+  std::string name;               ///< short, for --case
+  std::string what;               ///< one line: what is hard about it
+  Discretisation discretisation;  ///< of the rod, before the motion
+  Eigen::Matrix3Xd start;         ///< [m], 3 x N
+  GripMotion motion;              ///< of the first gripper
   /// Steps from the rest shape on, in which nothing may happen; 0: the rod is to come to rest.
   long steps_at_rest = 0;
   /// Why there is no physical answer, as discretise says it; empty where there is one.

@@ -5,8 +5,9 @@
 
 namespace dlo::compare {
 
+/// What a rod is made of.
 struct Material {
-  std::string name;
+  std::string name;           ///< as scene files say it
   double youngs_modulus = 0;  ///< E [Pa]
   double density = 0;         ///< rho [kg/m^3]
   std::string source;         ///< where the numbers come from
@@ -19,6 +20,7 @@ struct Material {
 /// @throws InputError
 [[nodiscard]] std::vector<Material> read_materials(const std::string& text,
                                                    const std::string& file);
+/// Reads such a file. @throws InputError as read_materials, or if it cannot be read
 [[nodiscard]] std::vector<Material> load_materials(const std::string& path);
 
 }  // namespace dlo::compare

@@ -10,30 +10,32 @@
 
 namespace dlo::compare {
 
+/// What is fitted, and from what.
 struct MaterialFitOptions {
-  PoseFreedom pose = PoseFreedom::known;
+  PoseFreedom pose = PoseFreedom::known;  ///< what is unknown of the shapes' frames
   /// `automatic` is the file's own, else nearest points: chord lengths are not exact enough.
   ArcLengths arc_lengths = ArcLengths::automatic;
   bool density = false;          ///< fitted as well
   std::optional<double> noise;   ///< standard deviation of one coordinate [m]; else estimated
   double smallest_ratio = 1e-4;  ///< of the modulus to the scene's, where it is looked for
-  double largest_ratio = 1e4;
-  SolveOptions solve;
+  double largest_ratio = 1e4;    ///< the upper end of that range
+  SolveOptions solve;            ///< limits of the solvers
 };
 
 /// A fitted quantity and its 95 % interval; a side without a number is open as far as was searched.
 struct FittedValue {
   std::optional<double> value;  ///< only if the interval is closed
-  std::optional<double> low;
-  std::optional<double> high;
+  std::optional<double> low;    ///< lower end of the interval
+  std::optional<double> high;   ///< upper end of the interval
 };
 
 /// How one shape was laid on the rod of the fitted modulus.
 struct FittedShape {
-  std::string scene;
-  Alignment alignment;
+  std::string scene;    ///< its name
+  Alignment alignment;  ///< of the shape on the fitted rod
 };
 
+/// A material that fits measured shapes.
 struct MaterialFit {
   FittedValue youngs_modulus;          ///< [Pa]
   std::optional<FittedValue> density;  ///< [kg/m^3], if it was asked for and could be fitted
@@ -45,10 +47,10 @@ struct MaterialFit {
   /// Standard deviation of one coordinate, given, or estimated and then no less than 1e-8 l, the
   /// energy model's own error.
   double noise_m = 0;
-  bool noise_is_estimated = true;
-  int degrees_of_freedom = 0;  ///< numbers measured less numbers fitted
-  double rms_m = 0;            ///< of the distances between points and rod at the fit
-  std::vector<FittedShape> shapes;
+  bool noise_is_estimated = true;   ///< else it was given
+  int degrees_of_freedom = 0;       ///< numbers measured less numbers fitted
+  double rms_m = 0;                 ///< of the distances between points and rod at the fit
+  std::vector<FittedShape> shapes;  ///< in the order given
 };
 
 /// Young's modulus, one for all scenes, from a measured shape of each: least squares on the energy

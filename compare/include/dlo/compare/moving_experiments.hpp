@@ -13,6 +13,7 @@ enum class Movement {
   accelerated  ///< sideways at a constant acceleration from rest, stopped at once
 };
 
+/// How the rod is stepped.
 enum class MovingVariant {
   basic,            ///< Formula 7
   relative,         ///< Formula 18: the tables' rows without "dynamic"
@@ -20,14 +21,18 @@ enum class MovingVariant {
   dynamic_absolute  ///< Formulas 17 and 19: "dynamic no rel. limit"
 };
 
+/// In words, for tables.
 [[nodiscard]] const char* to_string(Movement movement);
+/// In words, for tables.
 [[nodiscard]] const char* to_string(MovingVariant variant);
 
+/// One row of Tables 2 to 4.
 struct MovingExperiment {
-  Movement movement = Movement::rotation;
-  bool horizontal = false;  ///< direction of the rod at the start; else it hangs
-  MovingVariant variant = MovingVariant::relative;
+  Movement movement = Movement::rotation;  ///< of the gripper
+  bool horizontal = false;                 ///< direction of the rod at the start; else it hangs
+  MovingVariant variant = MovingVariant::relative;  ///< of the step
 
+  /// Equal in every choice.
   bool operator==(const MovingExperiment&) const = default;
 };
 
@@ -41,19 +46,21 @@ struct MovingChoices {
   double grip_force = 0.981;
   double angle = 110 * std::numbers::pi / 180;  ///< of the rotation [rad]
   double distance = 0.1;                        ///< of the sideways movements [m]
-  double c_h = 0.95;
+  double c_h = 0.95;        ///< share of the last movement that is kept, the variants `dynamic` [-]
   double c_s_change = 0.1;  ///< force_model::StepOptions
   /// How many segments the rod starts behind its place in the gripper, which pulls it there.
   double start_offset = 0;
 
+  /// Equal in every choice.
   bool operator==(const MovingChoices&) const = default;
 };
 
+/// How an experiment ended.
 enum class MovingStatus { diverged, too_many_steps, finished };
 
 /// Indicators of Tables 2 to 4.
 struct [[nodiscard]] MovingRun {
-  MovingStatus status = MovingStatus::diverged;
+  MovingStatus status = MovingStatus::diverged;  ///< how it ended
   long steps = 0;          ///< evaluations of the model; 112000 if none was scaled down
   long damped_steps = 0;   ///< with c_s != 1
   long limited_steps = 0;  ///< with d_m > l_s
@@ -63,7 +70,7 @@ struct [[nodiscard]] MovingRun {
   double average_force = 0;
   double average_net_force = 0;  ///< magnitude of the spring forces' sum [N]
   double final_force = 0;        ///< as average_force, in the last frame [N]
-  double final_net_force = 0;
+  double final_net_force = 0;    ///< as average_net_force, in the last frame [N]
 };
 
 /// Nominal steps of every experiment: 28 s at 4000 steps/s.

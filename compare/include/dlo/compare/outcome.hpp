@@ -14,6 +14,7 @@ enum class Outcome {
   refused,     ///< a clear error instead of a shape
 };
 
+/// In words, for tables.
 [[nodiscard]] const char* to_string(Outcome outcome);
 
 /// What is known of a simulation's end.

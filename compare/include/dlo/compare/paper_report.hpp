@@ -10,13 +10,13 @@ namespace dlo::compare {
 
 /// A number the paper prints, beside what its formula gives.
 struct TableRow {
-  std::string table;
-  std::string quantity;
-  std::string unit;
-  std::string printed;  ///< digits as in the paper
-  double computed = 0;
-  std::string explanation;
-  bool agrees = false;  ///< computed, rounded to the printed digits, is what is printed
+  std::string table;        ///< the paper's number of it
+  std::string quantity;     ///< symbol as printed
+  std::string unit;         ///< as printed
+  std::string printed;      ///< digits as in the paper
+  double computed = 0;      ///< in `unit`
+  std::string explanation;  ///< how it was computed
+  bool agrees = false;      ///< computed, rounded to the printed digits, is what is printed
 };
 
 /// Tables 1 and 5 recomputed from the quantities they are said to follow from.
@@ -24,18 +24,18 @@ struct TableRow {
 
 /// E*/E of a shape that is still on its way to rest.
 struct ModulusAtTime {
-  double time_s = 0;  ///< simulated, at 4000 steps/s
-  long steps = 0;
-  EffectiveModulus modulus;
+  double time_s = 0;                     ///< simulated, at 4000 steps/s
+  long steps = 0;                        ///< to that time
+  EffectiveModulus modulus;              ///< at that time
   double rms_over_length = 0;            ///< against the energy model at E
   double rest_distance_over_length = 0;  ///< RMS distance to the force model's own rest shape
 };
 
 /// One orientation of Figs. 12 and 13, with one choice of the points' weight.
 struct PaperCase {
-  Comparison rest;  ///< at rest, c_c as the paper used it
-  std::vector<ModulusAtTime> creep;
-  bool printed_weight = false;  ///< Table 5's 0.00892 N a point instead of rho A l g / N
+  Comparison rest;                   ///< at rest, c_c as the paper used it
+  std::vector<ModulusAtTime> creep;  ///< on the way to rest, by time
+  bool printed_weight = false;       ///< Table 5's 0.00892 N a point instead of rho A l g / N
 
   /// Simulated time at which E*/E passes the paper's 1/3, between the times that were looked at
   /// (power law); NaN if it does not [s].
@@ -44,22 +44,23 @@ struct PaperCase {
 
 /// E*/E at rest for other loads, points, laws, rules and bookkeeping.
 struct ModulusVariant {
-  std::string what;
-  ForceModelSettings settings;
-  double load_factor = 1;  ///< on gravity
-  double gamma = 0;
-  EffectiveModulus modulus;
-  double rms_over_length = 0;  ///< against the energy model at E
+  std::string what;             ///< what is varied, and to what
+  ForceModelSettings settings;  ///< of the force model
+  double load_factor = 1;       ///< on gravity
+  double gamma = 0;             ///< w l^3 / (EI) [-]
+  EffectiveModulus modulus;     ///< at rest
+  double rms_over_length = 0;   ///< against the energy model at E
 };
 
+/// What dlo paper prints of shapes and tables.
 struct PaperReport {
-  std::vector<TableRow> tables;
-  std::vector<PaperCase> cases;
-  std::vector<ModulusVariant> variants;
+  std::vector<TableRow> tables;          ///< Tables 1 and 5
+  std::vector<PaperCase> cases;          ///< Figs. 12 and 13
+  std::vector<ModulusVariant> variants;  ///< away from the paper's own choices
   std::vector<std::string> assumptions;  ///< what the paper leaves open and how it was filled in
   double c_c = 0;                        ///< used for the cases [N]
   double c_F = 0;                        ///< used on the way to rest [m/N]
-  double steps_per_second = 0;
+  double steps_per_second = 0;           ///< of simulated time [1/s]
 };
 
 /// The paper's comparison on its own rod. @param progress  called with what is being done

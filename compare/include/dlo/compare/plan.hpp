@@ -8,6 +8,7 @@
 
 namespace dlo::compare {
 
+/// What a scene is planned for.
 struct PlanOptions {
   double target = 1e-3;  ///< wanted error, RMS over the rod's length [-], > 0
   /// Fastest that a gripper moves, starts or stops [m/s], >= 0; 0: the scene stands still.
@@ -16,48 +17,50 @@ struct PlanOptions {
 
 /// A part of the rod that can be solved by itself: from clamp to clamp or end.
 struct PlannedSpan {
-  double begin = 0;  ///< arc length [m]
-  double end = 0;
+  double begin = 0;        ///< arc length [m]
+  double end = 0;          ///< arc length [m]
   int inner_pins = 0;      ///< pins strictly inside
   std::string begin_held;  ///< "clamp", "pin" or "free"
-  std::string end_held;
+  std::string end_held;    ///< the same of its end
 };
 
+/// An obstacle and the rod's reach.
 struct PlannedObstacle {
   double clearance = 0;  ///< least distance that any point of the rod keeps from it, however it
                          ///< bends [m]; negative: some could enter it
-  bool in_reach = true;
+  bool in_reach = true;  ///< some point of the rod could touch it
 };
 
 /// What a model leaves out, with the most that it could change.
 struct LeftOut {
-  std::string what;
+  std::string what;    ///< short name, as Plan::bound takes it
   std::string models;  ///< that leave it out
   /// Of the shape, RMS along the rod [m]; infinite: no bound, or it cannot be left out.
   double bound_m = 0;
-  std::string why;
+  std::string why;  ///< how the bound comes about
 };
 
 /// What a scene needs, decided before it is solved.
 struct Plan {
-  double gamma = 0;
-  double target = 0;     ///< PlanOptions::target
-  bool planar = false;   ///< grips, loads and obstacles in reach lie in one plane
-  bool moving = false;   ///< the gripper moves so fast that the rod's inertia counts
-  bool stretch = false;  ///< its bound is above a tenth of the target
-  std::vector<PlannedSpan> spans;
+  double gamma = 0;                ///< w l^3 / (EI) [-]
+  double target = 0;               ///< PlanOptions::target
+  bool planar = false;             ///< grips, loads and obstacles in reach lie in one plane
+  bool moving = false;             ///< the gripper moves so fast that the rod's inertia counts
+  bool stretch = false;            ///< its bound is above a tenth of the target
+  std::vector<PlannedSpan> spans;  ///< by growing arc length
   std::vector<PlannedObstacle> obstacles;  ///< as in the scene
   /// N at which the hooke polygon with the scene's bookkeeping meets the target; 0: none up to
   /// `most_planned_points`, or unknown.
   int points = 0;
-  int scene_points = 0;  ///< N of the scene
-  bool contact = false;  ///< the rod touches an obstacle, or it was not found out
-  std::vector<LeftOut> left_out;
+  int scene_points = 0;           ///< N of the scene
+  bool contact = false;           ///< the rod touches an obstacle, or it was not found out
+  std::vector<LeftOut> left_out;  ///< everything that any of the models leaves out
 
   /// Bound of one thing left out [m]. @throws std::invalid_argument if there is no such thing
   [[nodiscard]] double bound(const std::string& what) const;
 };
 
+/// Largest N that a plan asks for.
 inline constexpr int most_planned_points = 4000;
 
 /// Decides what a scene needs, and bounds what is left out.
@@ -91,10 +94,11 @@ inline constexpr int most_planned_points = 4000;
 
 /// A scene without the obstacles that its rod cannot reach.
 struct ReachedScene {
-  Scene scene;
+  Scene scene;                 ///< without them
   std::vector<bool> in_reach;  ///< of each of the original's obstacles
 };
 
+/// Those within reach stay, the stretch of the rod included.
 [[nodiscard]] ReachedScene without_far_obstacles(const Scene& scene);
 
 }  // namespace dlo::compare

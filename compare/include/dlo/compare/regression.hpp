@@ -5,9 +5,16 @@
 #include <vector>
 
 #include "dlo/compare/baseline.hpp"
+#include "dlo/compare/solve.hpp"
 
 namespace dlo::compare {
 
+/// Solves a scene with `model` (chain or force) and with the energy model.
+/// @throws InputError, ConvergenceError
+[[nodiscard]] BaselineCase measure_case(const Scene& scene, Model model,
+                                        const SolveOptions& options = {});
+
+/// What became of a case's errors.
 enum class RegressionVerdict {
   same,
   better,
@@ -17,23 +24,24 @@ enum class RegressionVerdict {
   not_solved,       ///< a solver did not converge
 };
 
+/// In words, for tables.
 [[nodiscard]] const char* to_string(RegressionVerdict verdict);
 /// Everything but same and better.
 [[nodiscard]] bool failed(RegressionVerdict verdict);
 
 /// A share e of the rod's length has changed if it is off by more than absolute + relative * e.
 struct RegressionTolerance {
-  double relative = 0.01;
+  double relative = 0.01;  ///< share of the error
   double absolute = 1e-6;  ///< share of the rod's length
 };
 
 /// One case against its baseline.
 struct RegressionResult {
-  std::string name;
-  RegressionVerdict verdict = RegressionVerdict::not_solved;
-  std::optional<ShapeErrors> expected;
-  std::optional<ShapeErrors> measured;
-  std::string message;  ///< one line, in % of the rod's length
+  std::string name;                                           ///< of the case, BaselineCase::name()
+  RegressionVerdict verdict = RegressionVerdict::not_solved;  ///< on all its errors
+  std::optional<ShapeErrors> expected;  ///< of the baseline, if it knows the case
+  std::optional<ShapeErrors> measured;  ///< of this run, if it was solved
+  std::string message;                  ///< one line, in % of the rod's length
 };
 
 /// A scene and model that were asked for: its errors, or why there are none.
@@ -50,7 +58,7 @@ struct MeasuredCase {
     const std::vector<BaselineCase>& baseline, const std::vector<MeasuredCase>& measured,
     const RegressionTolerance& tolerance = {});
 
-/// JUnit XML: a <failure> for what is worse or on one side only, an <error> for what was not
+/// JUnit XML: a `failure` for what is worse or on one side only, an `error` for what was not
 /// solved.
 [[nodiscard]] std::string junit_xml(const std::vector<RegressionResult>& results);
 

@@ -12,18 +12,19 @@
 
 namespace dlo::compare {
 
+/// How a shape is compared.
 struct ShapeCheckOptions {
-  PoseFreedom pose = PoseFreedom::known;
-  ArcLengths arc_lengths = ArcLengths::automatic;
-  SolveOptions solve;
+  PoseFreedom pose = PoseFreedom::known;           ///< what is unknown of its frame
+  ArcLengths arc_lengths = ArcLengths::automatic;  ///< where its arc lengths come from
+  SolveOptions solve;                              ///< limits of the solvers
 };
 
 /// A measured shape against the energy model of its scene, without obstacles out of reach.
 struct ShapeCheck {
-  std::string scene;
-  std::string file;
-  double gamma = 0;
-  Alignment alignment;
+  std::string scene;    ///< its name
+  std::string file;     ///< the shape's name
+  double gamma = 0;     ///< w l^3 / (EI) [-]
+  Alignment alignment;  ///< the shape as laid on the reference
   ComparedState state;  ///< the stable one that the shape comes nearest to
   Shape reference;      ///< the energy model at the alignment's arc lengths
   /// RMS along the rod from the first point to the last, straight across what is missing; its share

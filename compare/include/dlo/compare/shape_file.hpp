@@ -32,6 +32,7 @@ inline constexpr long most_shape_points = 100'000;
 [[nodiscard]] MeasuredShape parse_shape(const std::string& text, const std::string& file,
                                         double unit = 1);
 
+/// Reads a shape file. @throws InputError as parse_shape, or if it cannot be read
 [[nodiscard]] MeasuredShape load_shape(const std::string& path, double unit = 1);
 
 }  // namespace dlo::compare

@@ -9,7 +9,7 @@ namespace dlo::compare {
 
 /// Whether a shape is a scene's.
 struct ShapeVerdict {
-  bool near = false;
+  bool near = false;        ///< within the tolerance everywhere
   std::string explanation;  ///< one line: where it is worst, how far, and how far on the whole
 };
 

@@ -11,9 +11,9 @@ namespace dlo::compare {
 
 /// Part `index` of `count` of a sweep, 1 <= index <= count.
 struct Shard {
-  std::int64_t index = 1;
-  std::int64_t count = 1;
-  std::string source;  ///< the environment variables it was taken from, if it was
+  std::int64_t index = 1;  ///< 1 <= index <= count
+  std::int64_t count = 1;  ///< of shards
+  std::string source;      ///< the environment variables it was taken from, if it was
 
   [[nodiscard]] std::string name() const;  ///< "2/4"
 };

@@ -5,23 +5,14 @@
 #include <vector>
 
 #include "dlo/compare/discretise.hpp"
+#include "dlo/compare/model.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 
 namespace dlo::compare {
 
-enum class Model {
-  energy,  ///< minimiser of the continuous rod's energy
-  chain,   ///< minimiser over the force model's polygon
-  exact,   ///< boundary value problem of the rod, shot with GSL
-  force,   ///< the paper's model, stepped to rest
-};
-
-[[nodiscard]] const std::vector<std::string>& model_names();
-[[nodiscard]] const char* to_string(Model model);
-[[nodiscard]] Model model_from(const std::string& name);
-
+/// Limits of the solvers.
 struct SolveOptions {
   int terms = 0;                 ///< of the energy model, 0: as many as needed
   int max_evaluations = 20000;   ///< of the minimisers
@@ -33,12 +24,13 @@ struct SolveOptions {
 
 /// Energies [J]; gravity and loads are zero at the first gripper.
 struct SceneEnergies {
-  double bending = 0;
-  double gravity = 0;
-  double load = 0;
-  double stretch = 0;
+  double bending = 0;  ///< of the joints or the curvature
+  double gravity = 0;  ///< of the rod's weight
+  double load = 0;     ///< of point loads
+  double stretch = 0;  ///< of elastic segments
   double contact = 0;  ///< of obstacles that yield
 
+  /// Of all [J].
   [[nodiscard]] double total() const { return bending + gravity + load + stretch + contact; }
 };
 
@@ -50,21 +42,21 @@ struct GripperLoad {
 
 /// A shape and what it cost. Only converged shapes are ever returned.
 struct Solution {
-  Model model = Model::energy;
-  std::string message;
-  Shape shape;
-  SceneEnergies energy;
-  std::vector<GripperLoad> grippers;
+  Model model = Model::energy;             ///< that solved it
+  std::string message;                     ///< how the solver ended
+  Shape shape;                             ///< the converged shape
+  SceneEnergies energy;                    ///< of that shape
+  std::vector<GripperLoad> grippers;       ///< in the scene's order
   std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod [N]
   /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
-  long evaluations = 0;
-  long steps = 0;
-  int terms = 0;
-  double seconds = 0;
-  Parameters parameters;  ///< of chain and force
-  double c_F = 0;         ///< of force, at its last step
-  double c_h = 0;
+  long evaluations = 0;        ///< of minimisers; shots of exact
+  long steps = 0;              ///< of force
+  int terms = 0;               ///< curvature coefficients of energy
+  double seconds = 0;          ///< wall time of the solver
+  Parameters parameters;       ///< of chain and force
+  double c_F = 0;              ///< of force, at its last step
+  double c_h = 0;              ///< of force, at its last step [-]
   double remaining_error = 0;  ///< of force: estimated distance to rest [m]
   Eigen::Matrix3Xd to_rest;    ///< of force: Newton's step to rest from each point [m]
 };

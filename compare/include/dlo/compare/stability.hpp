@@ -8,6 +8,7 @@
 
 namespace dlo::compare {
 
+/// What dlo stability runs.
 struct StabilityOptions {
   /// Steps for the paper's four steppers: 10 s of a loop at 20000 steps/s.
   long max_steps = 200'000;
@@ -18,6 +19,7 @@ struct StabilityOptions {
   int threads = 1;                  ///< at most; 0: as many as the machine has
   /// What to run: cases whose name contains this, with these steppers.
   std::string name_contains;
+  /// with which steppers
   std::vector<StepperName> steppers = {StepperName::basic, StepperName::limited,
                                        StepperName::relative, StepperName::dynamic,
                                        StepperName::automatic};
@@ -25,11 +27,11 @@ struct StabilityOptions {
 
 /// What one stepper makes of one hard case.
 struct StabilityResult {
-  std::string name;  ///< of the case
-  std::string what;
-  StepperName stepper = StepperName::automatic;
-  Outcome outcome = Outcome::diverges;
-  long steps = 0;
+  std::string name;                              ///< of the case
+  std::string what;                              ///< what is hard about it
+  StepperName stepper = StepperName::automatic;  ///< that ran
+  Outcome outcome = Outcome::diverges;           ///< how it ended
+  long steps = 0;                                ///< that it took
   /// Largest distance of a point from the reference over the length [-]; NaN if refused, infinite
   /// if not finite.
   double error_over_length = 0;

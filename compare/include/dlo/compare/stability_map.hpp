@@ -11,10 +11,11 @@ namespace dlo::compare {
 /// What varies beside c_F.
 enum class MapAxis { c_c, c_h };
 
+/// Which map, and how fine.
 struct StabilityMapOptions {
-  MapAxis axis = MapAxis::c_c;
-  int columns = 16;     ///< values of c_c or c_h, >= 1
-  int rows = 32;        ///< values of c_F, >= 2
+  MapAxis axis = MapAxis::c_c;  ///< what varies beside c_F
+  int columns = 16;             ///< values of c_c or c_h, >= 1
+  int rows = 32;                ///< values of c_F, >= 2
   long steps = 20'000;  ///< of each rod, >= 1; a limit is found to about 10 / steps of itself
   int threads = 1;      ///< at most; 0: as many as the machine has
 };
@@ -38,11 +39,12 @@ struct MapColumn {
   double table_1 = 0;       ///< the paper's own choice, 0.86 L/(2 c_c) [m/N]
 };
 
+/// Measured and predicted limits of c_F.
 struct StabilityMap {
-  std::string scene;
-  MapAxis axis = MapAxis::c_c;
-  std::vector<MapColumn> columns;
-  std::vector<MapPoint> points;  ///< columns x rows, c_F growing, one column after the other
+  std::string scene;               ///< its name
+  MapAxis axis = MapAxis::c_c;     ///< what varies beside c_F
+  std::vector<MapColumn> columns;  ///< one per value on the axis
+  std::vector<MapPoint> points;    ///< columns x rows, c_F growing, one column after the other
 };
 
 /// Where steps dP = c_F F + c_h dP_last, neither limited nor damped, stop being stable (what the

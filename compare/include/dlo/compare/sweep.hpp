@@ -21,14 +21,17 @@ enum class SweepModel {
   compare_chain,  ///< the chain, which is the force model's rest shape without steps
 };
 
+/// As --model spells them.
 [[nodiscard]] const std::vector<std::string>& sweep_model_names();
+/// @throws InputError if there is no such model
 [[nodiscard]] SweepModel sweep_model_from(const std::string& name);
 
 /// Rows first <= row < last.
 struct RowRange {
-  std::int64_t first = 0;
-  std::int64_t last = 0;
+  std::int64_t first = 0;  ///< the first row, from 0
+  std::int64_t last = 0;   ///< one past the last row
 
+  /// The same rows.
   bool operator==(const RowRange&) const = default;
 };
 
@@ -40,6 +43,7 @@ class Sweep {
   /// a larger one 1000 that are spread over it
   Sweep(SceneTemplate scene, Grid grid, SweepModel model, const SolveOptions& options = {});
 
+  /// Over the scene's fields.
   [[nodiscard]] const Grid& grid() const { return grid_; }
 
   /// What the rows depend on, in words and fingerprints: "scene ..., grid ..., model ..., options

@@ -18,6 +18,7 @@ struct SweepOutcome {
   std::int64_t unresolved = 0;  ///< of them, those whose status is not ok
 };
 
+/// How a sweep is written.
 struct SweepFileOptions {
   int threads = 0;       ///< 0: all cores
   bool restart = false;  ///< throw away what an earlier run has left

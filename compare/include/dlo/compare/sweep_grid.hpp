@@ -12,11 +12,12 @@ enum class Spacing { list, linear, logarithmic };
 /// One field of a scene and the values it takes.
 struct Axis {
   std::string field;  ///< dotted path such as rod.material.youngs_modulus or gripper.0.direction
-  Spacing spacing = Spacing::list;
+  Spacing spacing = Spacing::list;  ///< how `values` or the range are meant
   std::vector<std::string> values;  ///< of a list, as a scene file spells them
-  double first = 0, last = 0;       ///< of a range, in `unit`
+  double first = 0;                 ///< of a range, in `unit`
+  double last = 0;                  ///< of a range, in `unit`
   std::string unit;                 ///< of a range or of all numbers of a list; may be empty
-  std::int64_t count = 0;
+  std::int64_t count = 0;           ///< of values
 
   /// Value `index`, 0 <= index < count, without the unit. Values inside a range are rounded to 12
   /// significant digits, so that they are the same on every machine and 0.3 is not
@@ -43,7 +44,9 @@ class Grid {
   /// combinations
   explicit Grid(std::vector<Axis> axes);
 
+  /// How many combinations.
   [[nodiscard]] std::int64_t size() const { return size_; }
+  /// As given.
   [[nodiscard]] const std::vector<Axis>& axes() const { return axes_; }
   /// Which value each axis takes in combination `row`, 0 <= row < size().
   [[nodiscard]] std::vector<std::int64_t> indices(std::int64_t row) const;

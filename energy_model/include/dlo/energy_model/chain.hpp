@@ -20,27 +20,29 @@ struct ChainProblem {
   Eigen::Vector2d start = Eigen::Vector2d::Zero();  ///< first point [m]
   double held_angle = 0;                            ///< of the first segment, from +x [rad]
   Eigen::Matrix2Xd node_forces;                     ///< dead force on each point [N], 2 x (n+1)
-  JointLaw law = JointLaw::hooke;
-  double stiffness = 0;  ///< c_b [N] or EI [N m^2], > 0
+  JointLaw law = JointLaw::hooke;                   ///< of every joint
+  double stiffness = 0;                             ///< c_b [N] or EI [N m^2], > 0
 };
 
+/// Where and how far to minimise.
 struct ChainOptions {
   /// Angles of the segments to start from [rad], n; empty: from the moments of the straight chain.
   Eigen::VectorXd start_angles;
   double tolerance = 1e-12;  ///< of the gradient, over the moment of all forces about the grip; > 0
-  int max_evaluations = 20000;
+  int max_evaluations = 20000;  ///< of the energy
 };
 
+/// A shape of a chain, and how it was found.
 struct [[nodiscard]] ChainResult {
-  SolveStatus status = SolveStatus::not_run;
-  std::string message = "never ran";
-  int evaluations = 0;
-  double seconds = 0;
-  double residual = -1;       ///< norm of the gradient by the segment angles [N m]
-  Eigen::VectorXd angles;     ///< of the segments, from +x [rad], n
-  Eigen::Matrix2Xd points;    ///< [m], 2 x (n+1)
-  double bending_energy = 0;  ///< [J]
-  double load_energy = 0;     ///< of all forces, zero with every point at `start` [J]
+  SolveStatus status = SolveStatus::not_run;  ///< how it ended
+  std::string message = "never ran";          ///< the same in words
+  int evaluations = 0;                        ///< of the energy
+  double seconds = 0;                         ///< wall time
+  double residual = -1;                       ///< norm of the gradient by the segment angles [N m]
+  Eigen::VectorXd angles;                     ///< of the segments, from +x [rad], n
+  Eigen::Matrix2Xd points;                    ///< [m], 2 x (n+1)
+  double bending_energy = 0;                  ///< [J]
+  double load_energy = 0;  ///< of all forces, zero with every point at `start` [J]
 };
 
 /// Minimises the joint potentials minus the work of the forces with NLopt's LD_LBFGS over the joint

@@ -7,10 +7,10 @@ namespace dlo::energy_model {
 /// What a dead force at the tip does to a weightless rod that is clamped at the origin along +x.
 /// Lengths in l, energies in EI/l.
 struct TipDeflection {
-  Eigen::Vector2d tip = Eigen::Vector2d::Zero();
-  double tip_angle = 0;        ///< of the tangent, from +x [rad]
-  double clamp_curvature = 0;  ///< d angle / ds, counter-clockwise positive
-  double bending_energy = 0;
+  Eigen::Vector2d tip = Eigen::Vector2d::Zero();  ///< in l
+  double tip_angle = 0;                           ///< of the tangent, from +x [rad]
+  double clamp_curvature = 0;                     ///< d angle / ds, counter-clockwise positive
+  double bending_energy = 0;                      ///< in EI/l
 };
 
 /// The elastica in elliptic integrals, with GSL. With phi the tangent's angle against the reversed

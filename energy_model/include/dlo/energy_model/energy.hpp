@@ -8,6 +8,7 @@
 
 namespace dlo::energy_model {
 
+/// How well to solve, and from where.
 struct EnergyOptions {
   /// Curvature coefficients K of each smooth piece of the rod; 0 chooses them so that the last ones
   /// have fallen below `tolerance`.
@@ -52,8 +53,9 @@ class EnergySolver {
   /// @throws std::invalid_argument if an option is out of range
   explicit EnergySolver(const EnergyOptions& options = {});
   ~EnergySolver();
+  /// Takes the buffers over.
   EnergySolver(EnergySolver&& other) noexcept;
-  EnergySolver& operator=(EnergySolver&& other) noexcept;
+  EnergySolver& operator=(EnergySolver&& other) noexcept;  ///< Takes the buffers over.
   EnergySolver(const EnergySolver& other) = delete;
   EnergySolver& operator=(const EnergySolver& other) = delete;
 

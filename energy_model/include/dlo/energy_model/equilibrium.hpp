@@ -13,8 +13,8 @@ namespace dlo::energy_model {
 
 /// Outcome of a solver for a continuous rod.
 struct [[nodiscard]] Equilibrium {
-  SolveStatus status = SolveStatus::not_run;
-  std::string message = "never ran";
+  SolveStatus status = SolveStatus::not_run;  ///< how it ended
+  std::string message = "never ran";          ///< the same in words
   int evaluations = 0;  ///< of the objective, with or without derivatives; shots for `exact`
   int terms = 0;        ///< curvature coefficients; 0 for `exact`
   double seconds = 0;   ///< wall time of the solver
@@ -23,7 +23,7 @@ struct [[nodiscard]] Equilibrium {
   /// Smallest eigenvalue of the second variation over EI/l, with the constraints and, for planar
   /// shapes, with bending out of the plane; NaN where a solver did not look. Negative: unstable.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
-  Energies energy;
+  Energies energy;                     ///< of the shape [J]
   std::vector<Eigen::Vector3d> walls;  ///< force of each wall on the rod [N]
   std::vector<Reaction> grips;         ///< in the order of Problem::grips
 

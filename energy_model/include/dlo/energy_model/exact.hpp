@@ -5,6 +5,7 @@
 
 namespace dlo::energy_model {
 
+/// How well to integrate, and from where.
 struct ExactOptions {
   double tolerance = 1e-13;  ///< local error of the integrator per step, > 0
   /// A shape to confirm or correct, of this problem or a similar one, with its grips' reactions:

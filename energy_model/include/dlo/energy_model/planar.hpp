@@ -10,9 +10,10 @@ namespace dlo::energy_model {
 /// energies in EI/l. The clamp is the origin and the rod leaves it along +x; s is the distance from
 /// the clamp along the rod.
 struct PlanarCantilever {
+  /// A force at a point.
   struct Load {
-    double at = 0;  ///< s, 0 < s <= 1
-    Eigen::Vector2d force = Eigen::Vector2d::Zero();
+    double at = 0;                                    ///< s, 0 < s <= 1
+    Eigen::Vector2d force = Eigen::Vector2d::Zero();  ///< in EI/l^2
   };
   Eigen::Vector2d weight = Eigen::Vector2d::Zero();  ///< its norm is Gamma = w l^3 / (EI)
   std::vector<Load> loads;                           ///< sorted by `at`
@@ -20,13 +21,15 @@ struct PlanarCantilever {
 
 /// A right-handed frame of a plane in space.
 struct Plane {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  Eigen::Vector3d x = Eigen::Vector3d::UnitX();
-  Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< a point of it [m]
+  Eigen::Vector3d x = Eigen::Vector3d::UnitX();      ///< unit
+  Eigen::Vector3d y = Eigen::Vector3d::UnitY();      ///< unit, orthogonal to x
 
+  /// Of a direction, along x and y.
   [[nodiscard]] Eigen::Vector2d coordinates(const Eigen::Vector3d& vector) const {
     return {x.dot(vector), y.dot(vector)};
   }
+  /// A direction in space.
   [[nodiscard]] Eigen::Vector3d vector(const Eigen::Vector2d& coordinates) const {
     return x * coordinates.x() + y * coordinates.y();
   }

@@ -35,27 +35,29 @@ struct PointWall {
 /// between segments of equal length only: elsewhere the paper's joint is a little weaker,
 /// belongs to no potential, and rests in a slightly different shape.
 struct PolygonProblem {
-  Eigen::VectorXd rest_lengths;  ///< L_i [m], n >= 2, each > 0
-  double stretch_stiffness = 0;  ///< c_c [N], > 0
-  Eigen::Matrix3Xd node_forces;  ///< dead force on each point [N], 3 x (n+1)
-  JointLaw law = JointLaw::hooke;
-  double stiffness = 0;         ///< c_b [N] or EI [N m^2], > 0
-  std::vector<HeldPoint> held;  ///< one or more, each point once
-  std::vector<PointWall> walls;
+  Eigen::VectorXd rest_lengths;    ///< L_i [m], n >= 2, each > 0
+  double stretch_stiffness = 0;    ///< c_c [N], > 0
+  Eigen::Matrix3Xd node_forces;    ///< dead force on each point [N], 3 x (n+1)
+  JointLaw law = JointLaw::hooke;  ///< of every joint
+  double stiffness = 0;            ///< c_b [N] or EI [N m^2], > 0
+  std::vector<HeldPoint> held;     ///< one or more, each point once
+  std::vector<PointWall> walls;    ///< may be empty
 };
 
+/// How far to minimise.
 struct PolygonOptions {
-  double tolerance = 1e-12;  ///< of Newton's step, RMS over the points, in polygon lengths; > 0
-  int max_evaluations = 20000;
+  double tolerance = 1e-12;     ///< of Newton's step, RMS over the points, in polygon lengths; > 0
+  int max_evaluations = 20000;  ///< of the energy
 };
 
+/// A shape of a polygon, and how it was found.
 struct [[nodiscard]] PolygonResult {
-  SolveStatus status = SolveStatus::not_run;
-  std::string message = "never ran";
-  int evaluations = 0;
-  double seconds = 0;
-  double residual = -1;          ///< largest force on a free point [N]
-  Eigen::Matrix3Xd points;       ///< [m], 3 x (n+1)
+  SolveStatus status = SolveStatus::not_run;  ///< how it ended
+  std::string message = "never ran";          ///< the same in words
+  int evaluations = 0;                        ///< of the energy
+  double seconds = 0;                         ///< wall time
+  double residual = -1;                       ///< largest force on a free point [N]
+  Eigen::Matrix3Xd points;                    ///< [m], 3 x (n+1)
   Eigen::Matrix3Xd grip_forces;  ///< what holds each of PolygonProblem::held exerts [N]
   double energy = 0;             ///< E [J]
 };

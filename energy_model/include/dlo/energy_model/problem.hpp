@@ -36,9 +36,9 @@ struct Problem {
   double length = 0;                                            ///< l [m], > 0
   double bending_stiffness = 0;                                 ///< EI [N m^2], > 0
   Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
-  std::vector<Grip> grips;
-  std::vector<Load> loads;
-  std::vector<Wall> walls;
+  std::vector<Grip> grips;                                      ///< one or more
+  std::vector<Load> loads;                                      ///< may be empty
+  std::vector<Wall> walls;                                      ///< may be empty
 };
 
 /// @throws std::invalid_argument naming the first member that is out of range
@@ -46,10 +46,11 @@ void check(const Problem& problem);
 
 /// Energies [J]; gravity and loads are zero where their points sit at the first grip.
 struct Energies {
-  double bending = 0;
-  double gravity = 0;
-  double load = 0;
+  double bending = 0;  ///< int 1/2 EI |t'|^2 ds
+  double gravity = 0;  ///< of the rod's weight
+  double load = 0;     ///< of point loads
 
+  /// Of all [J].
   [[nodiscard]] double total() const { return bending + gravity + load; }
 };
 

@@ -13,10 +13,12 @@ enum class SolveStatus {
   failed,  ///< the solver gave up, see the message
 };
 
+/// The shape can be used.
 [[nodiscard]] constexpr bool succeeded(SolveStatus status) {
   return status == SolveStatus::converged || status == SolveStatus::roundoff_limited;
 }
 
+/// In words, for messages.
 [[nodiscard]] constexpr const char* to_string(SolveStatus status) {
   switch (status) {
     case SolveStatus::not_run:

@@ -14,9 +14,9 @@ class Lockstep;
 
 /// A rod, where its points start, and how it steps.
 struct BatchRod {
-  Rod rod;
+  Rod rod;                  ///< what makes forces
   Eigen::Matrix3Xd points;  ///< [m], 3 x rod.points()
-  StepOptions options;
+  StepOptions options;      ///< how it steps
 };
 
 /// Many rods of the same number of points, bending law and step policy, eight to a block and the
@@ -29,6 +29,7 @@ struct BatchRod {
 ///     });
 class Batch {
  public:
+  /// Size of a block; the last one may have fewer.
   static constexpr std::size_t rods_per_block = 8;
 
   /// @throws std::invalid_argument if there are no rods, if they differ in what they have to share,
@@ -36,21 +37,26 @@ class Batch {
   explicit Batch(const std::vector<BatchRod>& rods);
   Batch(const Batch& other) = delete;
   Batch& operator=(const Batch& other) = delete;
+  /// Takes the rods over.
   Batch(Batch&& other) noexcept;
-  Batch& operator=(Batch&& other) noexcept;
+  Batch& operator=(Batch&& other) noexcept;  ///< Takes the rods over.
   ~Batch();
 
+  /// How many rods.
   [[nodiscard]] std::size_t size() const { return size_; }
+  /// How many blocks.
   [[nodiscard]] std::size_t blocks() const;
 
   /// Steps the rods of one block, or of all blocks one after another, `count` times. A rod that
   /// diverges stays where it was before that step, for good. Allocates nothing.
   void step_block(std::size_t block, long count);
+  /// Every block in turn.
   void step(long count);
 
   /// Steps until each rod rests, see Simulation::relax; those that rest wait for the others.
   /// Results in the order of the rods, of one block or of all. Allocates.
   std::vector<RelaxResult> relax_block(std::size_t block, const RelaxOptions& options);
+  /// Every block in turn.
   std::vector<RelaxResult> relax(const RelaxOptions& options = {});
 
   /// Moves a gripper of a rod, see Simulation::move_grip.
@@ -59,10 +65,14 @@ class Batch {
                  const Eigen::Vector3d& reference);
 
   // Of each rod, 0 <= index < size().
+  /// As moved.
   [[nodiscard]] const Rod& rod(std::size_t index) const;
   [[nodiscard]] Eigen::Matrix3Xd points(std::size_t index) const;  ///< positions now [m], a copy
+  /// It stays where it was.
   [[nodiscard]] bool diverged(std::size_t index) const;
+  /// As given; automatic constants filled in.
   [[nodiscard]] const StepOptions& options(std::size_t index) const;
+  /// Made since construction.
   [[nodiscard]] long steps(std::size_t index) const;
 
  private:

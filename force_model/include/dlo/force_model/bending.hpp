@@ -8,8 +8,8 @@ namespace dlo::force_model {
 
 /// What resists bending.
 struct Bending {
-  BendingLaw law = BendingLaw::hooke;
-  double stiffness = 0;  ///< c_b [N] for `paper`, EI [N m^2] for `hooke`; >= 0
+  BendingLaw law = BendingLaw::hooke;  ///< how the moment grows with the angle
+  double stiffness = 0;                ///< c_b [N] for `paper`, EI [N m^2] for `hooke`; >= 0
 };
 
 /// Moment of one joint [N m] at turning angle `alpha` [rad], 0 <= alpha <= pi.

@@ -15,8 +15,8 @@ struct Grip {
   Eigen::Index first_point = 0;  ///< index of the first point held
   Eigen::Matrix3Xd targets;      ///< where its points are held [m], 3 x 1 or 3 x 2
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();  ///< torques are taken about this point [m]
-  GripHold hold = GripHold::rigid;
-  double stiffness = 0;  ///< c_e of a `spring` hold [N/m], > 0
+  GripHold hold = GripHold::rigid;                      ///< rigid, or springs
+  double stiffness = 0;                                 ///< c_e of a `spring` hold [N/m], > 0
 };
 
 /// What a gripper exerts on the rod; a hand that holds it feels the opposite.

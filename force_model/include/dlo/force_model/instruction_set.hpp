@@ -11,6 +11,7 @@ enum class InstructionSet {
   avx512,    ///< x86-64 with AVX-512 F, DQ and VL: eight numbers at a time
 };
 
+/// Its name.
 [[nodiscard]] const char* to_string(InstructionSet set);
 
 /// Those that this machine can run, the fastest last.

@@ -14,13 +14,15 @@ namespace dlo::force_model {
 struct Rod {
   Eigen::VectorXd rest_lengths;  ///< of the n segments [m], each > 0
   double c_c = 0;                ///< stretch stiffness [N], >= 0
-  Bending bending;
-  Eigen::Matrix3Xd loads;  ///< constant force on each point: gravity and loads (Formula 5,
-                           ///< constraint 1) [N], 3 x (n+1)
-  std::vector<Wall> walls;
-  std::vector<Grip> grips;
+  Bending bending;               ///< law and stiffness of the joints
+  Eigen::Matrix3Xd loads;        ///< constant force on each point: gravity and loads (Formula 5,
+                                 ///< constraint 1) [N], 3 x (n+1)
+  std::vector<Wall> walls;       ///< each acts on every point
+  std::vector<Grip> grips;       ///< each holds points of its own
 
+  /// N = n + 1.
   [[nodiscard]] Eigen::Index points() const { return rest_lengths.size() + 1; }
+  /// Of all segments at rest [m].
   [[nodiscard]] double length() const { return rest_lengths.sum(); }
 };
 
@@ -48,14 +50,17 @@ void grip_reactions(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& po
 
 /// Energies of a shape [J]; gravity and loads count as `load`, with their zero at the origin.
 struct RodEnergy {
-  double bending = 0;
-  double stretch = 0;
-  double load = 0;
+  double bending = 0;  ///< of the joints
+  double stretch = 0;  ///< of the segments
+  double load = 0;     ///< of gravity and loads
   double contact = 0;  ///< walls and spring grips
 
+  /// Of all [J].
   [[nodiscard]] double total() const { return bending + stretch + load + contact; }
 };
 
+/// @param points  [m], 3 x (n+1). @throws std::invalid_argument if a shape or number is out of
+/// range
 [[nodiscard]] RodEnergy energy(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
 }  // namespace dlo::force_model

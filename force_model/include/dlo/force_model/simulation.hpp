@@ -19,10 +19,12 @@ class Simulation {
   /// @param points  start [m], 3 x rod.points(); rigidly held points are set to their targets
   /// @throws std::invalid_argument if rod, points or options are out of range
   Simulation(Rod rod, Eigen::Matrix3Xd points, const StepOptions& options);
+  /// Copies time and counters as well.
   Simulation(const Simulation& other);
-  Simulation& operator=(const Simulation& other);
+  Simulation& operator=(const Simulation& other);  ///< Copies time and counters as well.
+  /// Leaves the other without a rod: assign to it or destroy it.
   Simulation(Simulation&& other) noexcept;
-  Simulation& operator=(Simulation&& other) noexcept;
+  Simulation& operator=(Simulation&& other) noexcept;  ///< As the constructor.
   ~Simulation();
 
   /// One simulation step.
@@ -51,13 +53,16 @@ class Simulation {
   /// @throws std::invalid_argument if there is no such wall or the new one is out of range
   void move_wall(std::size_t wall, const Wall& moved);
 
+  /// As moved.
   [[nodiscard]] const Rod& rod() const;
   [[nodiscard]] Eigen::Matrix3Xd points() const;  ///< positions now [m], a copy
   /// The same without an allocation. @param[out] points  3 x rod().points(), as it is
   void copy_points(Eigen::Matrix3Xd& points) const;
+  /// As given; automatic constants filled in.
   [[nodiscard]] const StepOptions& options() const;
 
   // Counters since construction (paper, Tables 2 to 4).
+  /// Model evaluations.
   [[nodiscard]] long steps() const;
   [[nodiscard]] long damped_steps() const;   ///< c_s was not 1
   [[nodiscard]] long limited_steps() const;  ///< d_m was above l_s

@@ -46,6 +46,7 @@ struct HeavyBall {
   double c_h = 0;  ///< [-]
 };
 
+/// @throws std::invalid_argument unless both are > 0
 [[nodiscard]] HeavyBall heavy_ball(const ModeBounds& modes);
 
 }  // namespace dlo::force_model

@@ -18,19 +18,21 @@ enum class StepLimit { none, absolute, relative };
 
 /// A step as policies; the steppers above are the combinations that the paper tries.
 struct StepPolicy {
-  StepLimit limit = StepLimit::none;
-  bool momentum = false;   ///< adds c_h times the last movement
-  bool damping = false;    ///< divides by c_s once points oscillate
-  bool automatic = false;  ///< overwrites c_F and c_h
+  StepLimit limit = StepLimit::none;  ///< with l_s
+  bool momentum = false;              ///< adds c_h times the last movement
+  bool damping = false;               ///< divides by c_s once points oscillate
+  bool automatic = false;             ///< overwrites c_F and c_h
 
+  /// Equal in every part.
   bool operator==(const StepPolicy&) const = default;
 };
 
+/// The policy of a stepper.
 [[nodiscard]] StepPolicy policy(Stepper stepper);
 
 /// Constants of a step. The paper leaves open how c_s grows; what is filled in is said here.
 struct StepOptions {
-  StepPolicy policy = force_model::policy(Stepper::automatic);
+  StepPolicy policy = force_model::policy(Stepper::automatic);  ///< what the step does
   double c_F = 0;  ///< scaling factor [m/N], > 0 unless automatic
   double c_h = 0;  ///< share of the last movement that is kept [-], 0 <= c_h < 1 with momentum
   double l_s = 0;  ///< largest movement [m], > 0 with a limit; 0 and automatic: 1/4 of the shortest
@@ -43,16 +45,18 @@ struct StepOptions {
   InstructionSet instruction_set = fastest_instruction_set();
 };
 
+/// How a step ended.
 enum class StepStatus {
   diverged,  ///< a force or movement was not finite; the points were left as they were
   good,
 };
 
+/// Indicators of one step.
 struct StepResult {
-  StepStatus status = StepStatus::diverged;
-  double c_m = 0;        ///< scaling of this step (Formulas 17, 18, 20) [-]
-  double movement = 0;   ///< d_m: largest movement compared with l_s [m]
-  bool limited = false;  ///< d_m was larger than l_s
+  StepStatus status = StepStatus::diverged;  ///< how it ended
+  double c_m = 0;                            ///< scaling of this step (Formulas 17, 18, 20) [-]
+  double movement = 0;                       ///< d_m: largest movement compared with l_s [m]
+  bool limited = false;                      ///< d_m was larger than l_s
 };
 
 }  // namespace dlo::force_model

@@ -1,0 +1,103 @@
+#include "readers.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+
+#include "dlo/compare/baseline.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/scene_template.hpp"
+#include "dlo/compare/shape_file.hpp"
+#include "dlo/compare/sweep_grid.hpp"
+
+namespace dlo::fuzz {
+namespace {
+
+constexpr const char* file = "fuzz.txt";
+
+void promise(bool kept, const std::string& what) {
+  if (!kept) throw std::logic_error("broken promise: " + what);
+}
+
+/// Whether `read` gives a value; if not, the error has to be one line, of this file.
+template <typename Read>
+bool reads(const Read& read, const std::string& start) {
+  try {
+    read();
+    return true;
+  } catch (const compare::InputError& error) {
+    const std::string message = error.what();
+    promise(message.starts_with(start), "the error names the file: " + message);
+    promise(std::none_of(message.begin(), message.end(),
+                         [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }),
+            "the error is one line without control characters: " + message);
+    return false;
+  }
+}
+
+void promise_shape(const compare::MeasuredShape& shape) {
+  promise(shape.points.cols() >= 2 && shape.points.cols() <= compare::most_shape_points,
+          "number of points");
+  promise(shape.points.allFinite(), "finite points");
+  const auto count = static_cast<std::size_t>(shape.points.cols());
+  promise(shape.arc_length.empty() || shape.arc_length.size() == count, "an arc length a point");
+}
+
+}  // namespace
+
+void scene(const std::string& text) {
+  (void)reads(
+      [&] {
+        const compare::Scene scene = compare::parse_scene(text, file);
+        promise(scene.gamma() >= 0 && !scene.grippers.empty(), "a rod that is held");
+      },
+      file);
+}
+
+void parameters(const std::string& text) {
+  (void)reads(
+      [&] { promise(compare::parse_parameters(text, file).points >= 2, "number of points"); },
+      file);
+}
+
+void baseline(const std::string& text) {
+  std::string written;
+  if (!reads([&] { written = compare::baseline_text(compare::read_baseline(text, file)); }, file)) {
+    return;
+  }
+  // What we write ourselves has to be good.
+  promise(compare::baseline_text(compare::read_baseline(written, "written")) == written,
+          "a baseline reads as it was written");
+}
+
+void shape(const std::string& text) {
+  for (const double unit : {1.0, 1e-3}) {
+    (void)reads([&] { promise_shape(compare::parse_shape(text, file, unit)); }, file);
+  }
+}
+
+void vary(const std::string& text) {
+  static const compare::SceneTemplate scene(R"(gravity = [0, -9.81, 0]
+[rod]
+length = 1
+diameter = 0.002
+material = "copper"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)",
+                                            file);
+  (void)reads(
+      [&] {
+        const compare::Axis axis = compare::parse_axis(text);
+        promise(axis.count >= 1, "an axis has values");
+        for (const std::int64_t index : {std::int64_t{0}, axis.count / 2, axis.count - 1}) {
+          (void)scene.with({{axis.field, axis.value(index)}});
+        }
+      },
+      "");
+}
+
+}  // namespace dlo::fuzz
