@@ -42,7 +42,8 @@ struct Comparison {
   ForceModelSettings settings;
   Plan plan;
   Solution force;
-  Shape reference;  ///< the energy model at the force model's arc lengths
+  Shape reference;          ///< the energy model at the force model's arc lengths
+  Reference reference_rod;  ///< and anywhere from 0 to l
   ComparedState state;
   Deviation deviation;
   /// The straight rod's own deviation from the reference; NaN without a straight rod.
