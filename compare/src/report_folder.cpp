@@ -29,7 +29,7 @@ constexpr const char* allowed =
 /// The folder itself, without a slash at its end; a link stays what it is and its target is used.
 fs::path target_folder(const std::string& folder) {
   std::error_code error;
-  fs::path path = fs::weakly_canonical(folder, error);
+  fs::path path = fs::weakly_canonical(fs::absolute(folder), error);
   if (error || folder.empty()) {
     throw InputError(
         fmt::format("report: -o {}: no such place ({}; {})", folder, error.message(), allowed));
