@@ -17,9 +17,8 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int top_pixels = 14;
-constexpr int axis_pixels = 56;  // numbers and name of the horizontal axis
-constexpr int key_row_pixels = 20;
+constexpr int axis_pixels = 62;  // numbers and name of the horizontal axis
+constexpr int key_row_pixels = 24;
 
 /// A child process's end.
 struct Child {
@@ -90,28 +89,36 @@ std::string gnuplot_string(const std::string& text) {
 }
 
 int height_besides_plot(int key_rows) {
-  return top_pixels + axis_pixels + key_rows * key_row_pixels;
+  return top_margin + axis_pixels + key_rows * key_row_pixels;
 }
 
-std::string figure_head(const std::string& name, const std::string& csv_file, int width, int height,
+std::string figure_head(const std::string& name, const std::string& csv_file, int height,
                         int key_rows) {
   const double key = static_cast<double>(key_rows * key_row_pixels) / height;
   return fmt::format(
-      "# gnuplot {0}.gp draws {0}.svg from {8}\n"
-      "set terminal svg size {1},{2} dynamic noenhanced font 'sans-serif,15' linewidth 1.3\n"
+      "# gnuplot {0}.gp draws {0}.svg from {1}\n"
+      "set terminal svg size {2},{3} dynamic noenhanced font 'sans-serif,16' linewidth 1.3\n"
       "set encoding utf8\n"
       "set output '{0}.svg'\n"
       "set datafile separator comma\n"
       "set grid linecolor rgb '#808080'\n"
-      "set lmargin at screen {3:.4f}\n"
-      "set rmargin at screen {4:.4f}\n"
-      "set tmargin at screen {5:.4f}\n"
-      "set bmargin at screen {6:.4f}\n"
-      "set key at screen 0.02,{7:.4f} left top vertical maxcols 1 Left reverse samplen 2.5 "
-      "spacing 1.1\n",
-      name, width, height, 74.0 / width, 1 - 16.0 / width,
-      1 - static_cast<double>(top_pixels) / height, key + static_cast<double>(axis_pixels) / height,
-      key, csv_file);
+      "set lmargin at screen {4:.4f}\n"
+      "set rmargin at screen {5:.4f}\n"
+      "set tmargin at screen {6:.4f}\n"
+      "set bmargin at screen {7:.4f}\n"
+      "set key at screen 0.02,{8:.4f} left top vertical maxcols 1 Left reverse samplen 2.5\n",
+      name, csv_file, figure_width, height, static_cast<double>(left_margin) / figure_width,
+      1 - static_cast<double>(right_margin) / figure_width,
+      1 - static_cast<double>(top_margin) / height, key + static_cast<double>(axis_pixels) / height,
+      key);
+}
+
+std::string axis_labels(const std::string& x, const std::string& y, int height, double top) {
+  constexpr double from_the_left = 8;
+  constexpr double above = 16;
+  return fmt::format("set xlabel {}\nset label 1 {} at screen {:.4f},{:.4f} left\n",
+                     gnuplot_string(x), gnuplot_string(y), from_the_left / figure_width,
+                     1 - (top - above) / height);
 }
 
 std::string gnuplot_version() {

@@ -20,10 +20,22 @@ struct Figure {
 /// A text as a gnuplot string that nothing in it can end or run.
 [[nodiscard]] std::string gnuplot_string(const std::string& text);
 
-/// First lines of a script: an SVG of this size [pixels] with room for `key_rows` lines of key
-/// below the plot. Text is big enough to read on a page of 375 pixels.
+/// All figures have this width [pixels], small enough for their text to be read on a page of 375.
+inline constexpr int figure_width = 460;
+/// Margins of a plot in its figure [pixels].
+inline constexpr int left_margin = 76;
+inline constexpr int right_margin = 26;
+inline constexpr int top_margin = 34;
+
+/// First lines of a script: an SVG of this height [pixels] with room for `key_rows` lines of key
+/// below the plot.
 [[nodiscard]] std::string figure_head(const std::string& name, const std::string& csv_file,
-                                      int width, int height, int key_rows);
+                                      int height, int key_rows);
+
+/// Names of the axes; the upright one's stands level above it, where no number is in its way.
+/// @param top  of the plot, from the figure's top [pixels]
+[[nodiscard]] std::string axis_labels(const std::string& x, const std::string& y, int height,
+                                      double top);
 
 /// Height of a canvas besides its plot [pixels]: top, axis text and key.
 [[nodiscard]] int height_besides_plot(int key_rows);

@@ -11,18 +11,18 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int figure_width = 480;  // [pixels]
-constexpr int figure_plot = 330;   // height [pixels]
+constexpr int figure_plot = 330;  // height [pixels]
 
-/// Colours that colour-blind readers tell apart (Okabe and Ito), each with its own dashes and
-/// points, so that none is told by its colour alone.
+/// Colours that colour-blind readers tell apart (after Okabe and Ito, darker, so that they stand
+/// out inverted as well), each with its own dashes and points, so that none is told by colour
+/// alone.
 struct Look {
   const char* colour;
   int points;
   int dashes;
 };
-constexpr Look looks_of_curves[] = {{"#0072B2", 6, 1},  {"#D55E00", 4, 2},  {"#009E73", 8, 3},
-                                    {"#AA4499", 12, 4}, {"#B07D00", 10, 5}, {"#505050", 2, 2}};
+constexpr Look looks_of_curves[] = {{"#0059A8", 6, 1},  {"#B34700", 4, 2},  {"#00704F", 8, 3},
+                                    {"#8A2F85", 12, 4}, {"#7A5600", 10, 5}, {"#404040", 2, 2}};
 
 std::string style_of(std::size_t i, const char* with) {
   const Look& look = looks_of_curves[i % std::size(looks_of_curves)];
@@ -30,9 +30,11 @@ std::string style_of(std::size_t i, const char* with) {
                      look.colour, look.dashes, look.points);
 }
 
-std::string head_of(const Figure& figure, int key_rows) {
-  return figure_head(figure.name, figure.csv_file, figure_width,
-                     height_besides_plot(key_rows) + figure_plot, key_rows);
+std::string head_of(const Figure& figure, int key_rows, const std::string& x,
+                    const std::string& y) {
+  const int height = height_besides_plot(key_rows) + figure_plot;
+  return figure_head(figure.name, figure.csv_file, height, key_rows) +
+         axis_labels(x, y, height, top_margin);
 }
 
 Figure history_figure(const std::string& name, const std::vector<const SceneHistory*>& histories,
@@ -44,7 +46,7 @@ Figure history_figure(const std::string& name, const std::vector<const SceneHist
                 .csv_file = name + ".csv"};
   figure.description =
       "E*/E against simulated time, both logarithmic, falling from well above the paper's 1/3 "
-      "(a dashed level) to the value at rest, on the right.";
+      "(a dashed level) to the value at rest, on the right. The paper's simulations took 28 s.";
   figure.csv = "curve,scene,time_s,steps,effective_modulus_ratio,rms_at_effective_modulus_m\n";
   constexpr double place_of_rest = 600;  // on the axis of time
   std::string plots;
@@ -65,10 +67,10 @@ Figure history_figure(const std::string& name, const std::vector<const SceneHist
         place_of_rest, style_of(i, "points"));
   }
   const int rows = static_cast<int>(histories.size()) + 1;
-  figure.script = head_of(figure, rows);
+  figure.script = head_of(figure, rows, "simulated time [s], 4000 steps/s", "E*/E");
   figure.script += fmt::format(
-      "set logscale xy\nset xrange [0.8:{:g}]\nset xlabel 'simulated time [s], 4000 steps/s'\n"
-      "set ylabel 'E*/E'\nset xtics (1, 3, 10, 30, 100, 'rest' {:g})\nset format y '%g'\n"
+      "set logscale xy\nset xrange [0.8:{:g}]\n"
+      "set xtics (1, 3, 10, 28, 100, 'rest' {:g})\nset format y '%g'\n"
       "plot 1/3. title 'what the paper says: 1/3' with lines linecolor rgb 'black' dashtype 2 "
       "linewidth 1.5",
       place_of_rest * 1.4, place_of_rest);
@@ -141,9 +143,9 @@ Figure front_figure(const Report& report, std::size_t index) {
                               csv_field(run->setting), csv_number(run->time.median_s),
                               csv_number(run->rms_over_length));
   }
-  figure.script = head_of(figure, rows);
+  figure.script = head_of(figure, rows, "time [ms]", "error, RMS over the length");
   figure.script +=
-      "set logscale xy\nset xlabel 'time [ms]'\nset ylabel 'error, RMS/l' offset -1.5,0\n"
+      "set logscale xy\n"
       "set format x '%g'\nset format y '%.0e'\n"
       "plot '" +
       figure.csv_file +
@@ -170,13 +172,14 @@ Figure map_figure(const Report& report) {
     figure.csv += fmt::format("{},{},{},{}\n", to_string(point.outcome), csv_number(point.c_c),
                               csv_number(point.c_h), csv_number(point.c_F));
   }
-  for (const MapColumn& column : map.columns) {
-    const std::pair<const char*, double> limits[] = {{"predicted", column.predicted},
-                                                     {"measured", column.measured},
-                                                     {"table_1", column.table_1}};
-    for (const auto& [kind, limit] : limits) {
+  const std::pair<const char*, double MapColumn::*> limits[] = {
+      {"predicted", &MapColumn::predicted},
+      {"measured", &MapColumn::measured},
+      {"table_1", &MapColumn::table_1}};
+  for (const auto& [kind, limit] : limits) {
+    for (const MapColumn& column : map.columns) {
       figure.csv += fmt::format("{},{},{},{}\n", kind, csv_number(column.c_c),
-                                csv_number(column.c_h), csv_number(limit));
+                                csv_number(column.c_h), csv_number(column.*limit));
     }
   }
   struct Curve {
@@ -185,18 +188,18 @@ Figure map_figure(const Report& report) {
     const char* style;
   };
   const Curve curves[] = {
-      {"pass", "stable", "with points linecolor rgb '#0072B2' pointtype 7 pointsize 0.25"},
+      {"pass", "stable", "with points linecolor rgb '#0059A8' pointtype 7 pointsize 0.25"},
       {"oscillates", "grows, within bounds",
-       "with points linecolor rgb '#AA4499' pointtype 8 pointsize 0.6"},
-      {"diverges", "diverges", "with points linecolor rgb '#D55E00' pointtype 2 pointsize 0.5"},
+       "with points linecolor rgb '#8A2F85' pointtype 8 pointsize 0.6"},
+      {"diverges", "diverges", "with points linecolor rgb '#B34700' pointtype 2 pointsize 0.5"},
       {"predicted", "predicted limit", "with lines linecolor rgb 'black' dashtype 1 linewidth 2"},
       {"measured", "measured limit",
-       "with linespoints linecolor rgb '#009E73' dashtype 2 pointtype 4 pointsize 0.7"},
+       "with linespoints linecolor rgb '#00704F' dashtype 2 pointtype 4 pointsize 0.7"},
       {"table_1", "Table 1: c_F = 0.86 L/(2 c_c)",
-       "with lines linecolor rgb '#808080' dashtype 3 linewidth 2"}};
-  figure.script = head_of(figure, static_cast<int>(std::size(curves)));
+       "with lines linecolor rgb '#606060' dashtype 3 linewidth 2"}};
+  figure.script = head_of(figure, static_cast<int>(std::size(curves)), "c_c [N]", "c_F [m/N]");
   figure.script +=
-      "set logscale xy\nset xlabel 'c_c [N]'\nset ylabel 'c_F [m/N]' offset -1.5,0\n"
+      "set logscale xy\n"
       "set format x '%.0e'\nset format y '%.0e'\nset xtics 100\nplot";
   std::string separator = " ";
   for (const Curve& curve : curves) {

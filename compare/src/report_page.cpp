@@ -41,6 +41,11 @@ class Page {
   }
   void open_box() { out_ += "<div class=\"verdict\">\n"; }
   void close_box() { out_ += "</div>\n"; }
+  void folded_list(const std::string& summary, const std::vector<std::string>& items) {
+    out_ += "<details><summary>" + escape_html(summary) + "</summary>\n";
+    list(items);
+    out_ += "</details>\n";
+  }
   void table(const HtmlTable& table) { out_ += to_html(table); }
   /// A table that is there for those who want it all.
   void folded_table(const HtmlTable& table) {
@@ -81,7 +86,7 @@ class Page {
  private:
   void add_figure(const PageFigure& entry) {
     const Figure& figure = entry.figure;
-    out_ += fmt::format("<figure id=\"{}\">\n", figure.name);
+    out_ += fmt::format("<figure id=\"figure-{}\">\n", figure.name);
     out_ += entry.failure.empty()
                 ? entry.svg
                 : fmt::format(
@@ -154,7 +159,10 @@ void add_modulus(const Report& report, Page& page) {
       "names them; 4000 steps are a simulated second (Table 2). Rods with one clamp only.");
   page.figures("modulus");
   page.table(history_table(report));
-  page.command("Again:", history_command(report));
+  page.command(report.paper ? "The paper's poses again:" : "Again:", history_command(report));
+  if (report.paper) {
+    page.command("The others:", "dlo report scenes/long_rod.toml scenes/side_load.toml -o again");
+  }
 }
 
 void add_speed(const Report& report, Page& page) {
@@ -169,8 +177,8 @@ void add_speed(const Report& report, Page& page) {
   page.table(answer_table(report));
   for (const SceneBenchmark& scene : benchmark.scenes) page.folded_table(front_table(scene));
   if (!benchmark.skipped.empty()) {
-    page.heading("Skipped");
-    page.list(benchmark.skipped);
+    page.folded_list(fmt::format("{} runs were skipped", benchmark.skipped.size()),
+                     benchmark.skipped);
   }
   page.command("Again, as long as nothing else runs:", benchmark_command(report));
 }

@@ -14,12 +14,11 @@ namespace dlo::compare {
 namespace {
 
 constexpr int reference_samples = 201;
-constexpr int canvas_width = 480;        // [pixels]
-constexpr double plot_width = 480 - 90;  // without numbers and margin [pixels]
-constexpr double highest_plot = 460;     // [pixels]
-constexpr double flattest_plot = 110;    // [pixels]
-constexpr int curvature_plot = 280;      // height [pixels]
-constexpr double same_shape = 1e-6;      // of the length
+constexpr double plot_width = figure_width - left_margin - right_margin;  // [pixels]
+constexpr double highest_plot = 460;                                      // [pixels]
+constexpr double flattest_plot = 110;                                     // [pixels]
+constexpr int curvature_plot = 280;                                       // height [pixels]
+constexpr double same_shape = 1e-6;                                       // of the length
 constexpr const char* axis_names = "xyz";
 
 /// One shape of a figure.
@@ -133,9 +132,9 @@ std::vector<Series> series_of(const SceneReport& report, const View& view) {
     const Comparison& c = comparisons[i];
     all.push_back({.id = i == 0 ? "force" : "force_hooke_consistent",
                    .title = setting_name(c.settings),
-                   .style = i == 0 ? "with linespoints linecolor rgb '#D55E00' dashtype 2 "
+                   .style = i == 0 ? "with linespoints linecolor rgb '#B34700' dashtype 2 "
                                      "pointtype 5 pointsize 0.6"
-                                   : "with linespoints linecolor rgb '#0072B2' dashtype 3 "
+                                   : "with linespoints linecolor rgb '#0059A8' dashtype 3 "
                                      "pointtype 6 pointsize 0.9",
                    .points = c.force.shape.points,
                    .arc_length = c.force.shape.arc_length,
@@ -237,21 +236,22 @@ std::string shapes_script(const std::string& name, const std::string& csv_file,
   }
   const int between = height_besides_plot(0);
   height += between * static_cast<int>(views.size() - 1);
-  std::string out = figure_head(name, csv_file, canvas_width, height, rows);
+  std::string out = figure_head(name, csv_file, height, rows);
   fmt::format_to(std::back_inserter(out), "# equal aspect: {:.6g} pixels a metre on both axes\n",
                  pixels_per_metre);
   fmt::format_to(std::back_inserter(out),
                  "set xrange [{:.6g}:{:.6g}]\nset xtics {:g}\nset ytics {:g}\n", x[0], x[1],
                  tic_step(width), tic_step(width));
   if (views.size() > 1) out += "set multiplot\n";
-  double top = 14;  // [pixels]
+  double top = top_margin;  // [pixels]
   for (std::size_t i = 0; i < views.size(); ++i) {
     const bool last = i + 1 == views.size();
     fmt::format_to(std::back_inserter(out),
                    "set tmargin at screen {:.6f}\nset bmargin at screen {:.6f}\n"
-                   "set yrange [{:.6g}:{:.6g}]\nset xlabel '{} [m]'\nset ylabel '{} [m]'\n",
-                   1 - top / height, 1 - (top + heights[i]) / height, ups[i][0], ups[i][1],
-                   axis_names[views[i].right], axis_names[views[i].up]);
+                   "set yrange [{:.6g}:{:.6g}]\n",
+                   1 - top / height, 1 - (top + heights[i]) / height, ups[i][0], ups[i][1]);
+    out += axis_labels(fmt::format("{} [m]", axis_names[views[i].right]),
+                       fmt::format("{} [m]", axis_names[views[i].up]), height, top);
     out += plot_lines(all, csv_file, fmt::format("${}", views[i].right + 3),
                       fmt::format("{}", views[i].up + 3), last, false);
     top += heights[i] + between;
@@ -265,11 +265,11 @@ std::string curvature_script(const std::string& name, const std::string& csv_fil
   const auto shown = std::count_if(all.begin(), all.end(),
                                    [](const Series& series) { return !series.curvature.empty(); });
   const int rows = static_cast<int>(shown);
-  std::string out =
-      figure_head(name, csv_file, canvas_width, height_besides_plot(rows) + curvature_plot, rows);
-  out += "set xlabel 'arc length s [m]'\n";
-  fmt::format_to(std::back_inserter(out), "set ylabel 'curvature{} [1/m]'\n",
-                 planar ? ", with its sense" : ", without a sense");
+  const int height = height_besides_plot(rows) + curvature_plot;
+  std::string out = figure_head(name, csv_file, height, rows);
+  out += axis_labels("arc length s [m]",
+                     planar ? "curvature [1/m], > 0: to the left" : "curvature [1/m]", height,
+                     top_margin);
   return out + plot_lines(all, csv_file, "$2", "6", true, true);
 }
 

@@ -28,18 +28,19 @@ nav a { display: inline-block; padding: 0.3rem 0; }
 .verdict ul { padding-left: 1.1rem; }
 .verdict li { margin: 0.5rem 0; }
 .verdict li:first-child { font-weight: 600; }
-.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 24rem), 1fr)); gap: 1.2rem; }
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 28rem), 1fr)); gap: 1.2rem; }
 figure { margin: 0; min-width: 0; }
-figure svg { display: block; width: 100%; max-width: 40rem; height: auto; }
+figure svg { display: block; width: 100%; max-width: 32rem; height: auto; }
 figcaption strong { color: var(--text); }
 .missing { border: 1px dashed var(--line); padding: 1rem; }
 .table { overflow-x: auto; margin: 0.8rem 0; max-width: 100%; }
 table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
 caption { text-align: left; padding: 0.3rem 0; caption-side: top; }
-th, td { padding: 0.3rem 0.6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
+th, td { overflow-wrap: normal; padding: 0.3rem 0.6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 thead th { border-bottom: 2px solid var(--line); vertical-align: bottom; }
-tbody th { font-weight: 600; min-width: 8.5rem; }
+tbody th { font-weight: 600; min-width: 8.5rem; position: sticky; left: 0; background: var(--back); }
 .n { text-align: right; }
+td.n { white-space: nowrap; }
 td { min-width: 4.5rem; }
 code { font: 0.85em ui-monospace, monospace; background: var(--card); padding: 0.1em 0.3em; overflow-wrap: anywhere; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0.3rem 1rem; }
@@ -56,7 +57,8 @@ details summary { cursor: pointer; padding: 0.3rem 0; }
   h2, h3, caption { break-after: avoid; }
   .table { overflow: visible; }
   table { font-size: 7.5pt; }
-  th, td, tbody th { padding: 0.15rem 0.3rem; min-width: 0; }
+  th, td, tbody th { padding: 0.15rem 0.3rem; min-width: 0; position: static; }
+  td.n { white-space: normal; }
 }
 )~~~";
 

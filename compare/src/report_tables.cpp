@@ -17,6 +17,11 @@ std::string setting_of(const Comparison& c) {
                      c.settings.points);
 }
 
+/// With one decimal, never -0.0.
+std::string tenths(double value) {
+  return fmt::format("{:.1f}", std::round(value * 10) / 10 + 0.0);
+}
+
 const char* const setting_head = "law, bookkeeping, N";
 
 /// Calls for every comparison.
@@ -45,6 +50,7 @@ std::string answer_text(const std::vector<BenchmarkRun>& runs, std::optional<std
 void add_answers(const SceneBenchmark& scene, const char* kind,
                  const std::vector<BenchmarkRun>& runs, const std::vector<BenchmarkAnswer>& answers,
                  HtmlTable& table) {
+  if (runs.empty()) return;  // all were skipped, as the page says
   for (const BenchmarkAnswer& answer : answers) {
     table.rows.push_back({scene.scene, kind, page_percent(answer.error),
                           answer_text(runs, answer.best),
@@ -153,8 +159,7 @@ HtmlTable budget_table(const Report& report) {
     std::vector<std::string> row = {c.scene, setting_of(c), millimetres(b.total_m)};
     for (const BudgetPart* part :
          {&b.law, &b.bookkeeping, &b.discretisation, &b.stretch, &b.not_at_rest, &b.interaction}) {
-      row.push_back(
-          fmt::format("{} ({:.2f} %)", millimetres(part->rms_m), part->share * 100 + 0.0));
+      row.push_back(fmt::format("{} ({} %)", millimetres(part->rms_m), tenths(part->share * 100)));
     }
     table.rows.push_back(std::move(row));
   });
@@ -191,7 +196,7 @@ HtmlTable history_table(const Report& report) {
                               {"at 28 s"},
                               {"at 200 s"},
                               {"at rest"},
-                              {"passes 1/3 at [s]"}}};
+                              {"passes 1/3 at [s] (–: not in 200 s)"}}};
   const auto add = [&](const SceneHistory& entry) {
     std::vector<std::string> row = {
         entry.scene, page_number(entry.point_weight) + (entry.printed_weight ? ", Table 5's" : ""),

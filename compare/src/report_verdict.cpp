@@ -68,9 +68,9 @@ std::string largest_part(const Budget& b) {
       {"law and bookkeeping together", &b.interaction}};
   const auto* largest = std::max_element(
       std::begin(parts), std::end(parts),
-      [](const auto& a, const auto& other) { return a.second->rms_m < other.second->rms_m; });
-  return fmt::format("{} ({} mm of {} mm)", largest->first,
-                     page_number(largest->second->rms_m * 1e3), page_number(b.total_m * 1e3));
+      [](const auto& a, const auto& other) { return a.second->share < other.second->share; });
+  return fmt::format("{}, with {:.0f} % of the deviation", largest->first,
+                     largest->second->share * 100);
 }
 
 void add_shapes(const Report& report, std::vector<std::string>& verdict) {
@@ -87,12 +87,13 @@ void add_shapes(const Report& report, std::vector<std::string>& verdict) {
         group.begin(), group.end(), [](const Comparison* a, const Comparison* b) {
           return a->deviation.rms_over_length < b->deviation.rms_over_length;
         });
-    verdict.push_back(fmt::format(
-        "Law {}, bookkeeping {}: {} of {} shapes within {} of the length; RMS {} % of the length, "
-        "E*/E at rest {}. Worst is {}, mostly by {}.",
-        to_string(worst.settings.law), to_string(worst.settings.bookkeeping), right, group.size(),
-        page_percent(report.options.tolerance), rms.text(100), ratio.text(), worst.scene,
-        largest_part(worst.budget)));
+    verdict.push_back(
+        fmt::format("Law {}, bookkeeping {}: {} of {} shapes are right within {} of the length. "
+                    "RMS {} % of the "
+                    "length, E*/E at rest {}. Worst is {}; the main reason is {}.",
+                    to_string(worst.settings.law), to_string(worst.settings.bookkeeping), right,
+                    group.size(), page_percent(report.options.tolerance), rms.text(100),
+                    ratio.text(), worst.scene, largest_part(worst.budget)));
   }
 }
 
