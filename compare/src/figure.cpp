@@ -17,7 +17,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int axis_pixels = 62;  // numbers and name of the horizontal axis
+constexpr int axis_pixels = 78;  // numbers and name of the horizontal axis
 constexpr int key_row_pixels = 24;
 
 /// A child process's end.
@@ -115,7 +115,7 @@ std::string figure_head(const std::string& name, const std::string& csv_file, in
 
 std::string axis_labels(const std::string& x, const std::string& y, int height, double top) {
   constexpr double from_the_left = 8;
-  constexpr double above = 16;
+  constexpr double above = 20;
   return fmt::format("set xlabel {}\nset label 1 {} at screen {:.4f},{:.4f} left\n",
                      gnuplot_string(x), gnuplot_string(y), from_the_left / figure_width,
                      1 - (top - above) / height);

@@ -25,7 +25,7 @@ inline constexpr int figure_width = 460;
 /// Margins of a plot in its figure [pixels].
 inline constexpr int left_margin = 76;
 inline constexpr int right_margin = 26;
-inline constexpr int top_margin = 34;
+inline constexpr int top_margin = 38;
 
 /// First lines of a script: an SVG of this height [pixels] with room for `key_rows` lines of key
 /// below the plot.

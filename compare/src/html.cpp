@@ -39,17 +39,25 @@ std::string page_number(double value) {
 }
 
 std::string page_percent(double share) {
-  return std::isfinite(share) ? page_number(share * 100) + " %" : page_number(share);
+  return std::isfinite(share) ? page_number(share * 100) + "\u00a0%" : page_number(share);
 }
 
 std::string to_html(const HtmlTable& table) {
   const std::string caption = escape_html(table.caption);
   std::string out = fmt::format(
       "<div class=\"table\" role=\"region\" aria-label=\"{0}\" tabindex=\"0\">\n"
-      "<table>\n<caption>{0}</caption>\n<thead><tr>",
+      "<table>\n<caption><span>{0}</span></caption>\n<thead><tr>",
       caption);
   const auto class_of = [&](std::size_t column) {
-    return table.columns.at(column).numbers ? " class=\"n\"" : "";
+    switch (table.columns.at(column).cell) {
+      case HtmlCell::number:
+        return " class=\"n\"";
+      case HtmlCell::word:
+        return " class=\"w\"";
+      case HtmlCell::text:
+        break;
+    }
+    return "";
   };
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
     out +=

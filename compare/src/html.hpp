@@ -11,12 +11,18 @@ namespace dlo::compare {
 /// A number with 4 significant digits; a dash for NaN, which says that there is none.
 [[nodiscard]] std::string page_number(double value);
 
-/// A share in percent.
+/// A share in percent, the sign never in another line than the number.
 [[nodiscard]] std::string page_percent(double share);
+
+enum class HtmlCell {
+  text,    ///< may break into lines
+  word,    ///< stays in one line
+  number,  ///< so does this, aligned to the right
+};
 
 struct HtmlColumn {
   std::string head;
-  bool numbers = true;  ///< aligned to the right
+  HtmlCell cell = HtmlCell::number;
 };
 
 /// A table of plain texts.

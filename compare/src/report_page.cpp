@@ -42,14 +42,14 @@ class Page {
   void open_box() { out_ += "<div class=\"verdict\">\n"; }
   void close_box() { out_ += "</div>\n"; }
   void folded_list(const std::string& summary, const std::vector<std::string>& items) {
-    out_ += "<details><summary>" + escape_html(summary) + "</summary>\n";
+    out_ += "<details open><summary>" + escape_html(summary) + "</summary>\n";
     list(items);
     out_ += "</details>\n";
   }
   void table(const HtmlTable& table) { out_ += to_html(table); }
   /// A table that is there for those who want it all.
   void folded_table(const HtmlTable& table) {
-    out_ += fmt::format("<details><summary>{}</summary>\n{}</details>\n",
+    out_ += fmt::format("<details open><summary>{}</summary>\n{}</details>\n",
                         escape_html(table.caption), to_html(table));
   }
   void facts(const std::vector<std::pair<std::string, std::string>>& facts) {

@@ -40,8 +40,10 @@ th, td { overflow-wrap: normal; padding: 0.3rem 0.6rem; border-bottom: 1px solid
 thead th { border-bottom: 2px solid var(--line); vertical-align: bottom; }
 tbody th { font-weight: 600; min-width: 8.5rem; position: sticky; left: 0; background: var(--back); }
 .n { text-align: right; }
-td.n { white-space: nowrap; }
-td { min-width: 4.5rem; }
+.n, .w { white-space: nowrap; }
+thead .n, thead .w { white-space: normal; }
+td:not(.n):not(.w) { min-width: 14rem; }
+caption span { position: sticky; left: 0; display: inline-block; max-width: calc(100vw - 2rem); }
 code { font: 0.85em ui-monospace, monospace; background: var(--card); padding: 0.1em 0.3em; overflow-wrap: anywhere; }
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0.3rem 1rem; }
 dt { font-weight: 600; } dd { margin: 0; min-width: 0; overflow-wrap: anywhere; }
@@ -58,7 +60,7 @@ details summary { cursor: pointer; padding: 0.3rem 0; }
   .table { overflow: visible; }
   table { font-size: 7.5pt; }
   th, td, tbody th { padding: 0.15rem 0.3rem; min-width: 0; position: static; }
-  td.n { white-space: normal; }
+  td:not(.n):not(.w) { min-width: 0; }
 }
 )~~~";
 

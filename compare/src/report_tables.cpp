@@ -81,15 +81,15 @@ std::string run_name(const BenchmarkRun& run) {
 
 HtmlTable scene_table(const Report& report) {
   HtmlTable table{.caption = "Scenes",
-                  .columns = {{"scene", false},
+                  .columns = {{"scene", HtmlCell::text},
                               {"l [m]"},
                               {"d [mm]"},
                               {"E [GPa]"},
                               {"ρ [kg/m³]"},
                               {"Γ = w l³/(EI)"},
-                              {"held", false},
+                              {"held", HtmlCell::text},
                               {"loads"},
-                              {"file", false}}};
+                              {"file", HtmlCell::word}}};
   for (const SceneReport& entry : report.scenes) {
     const Scene& scene = entry.file.scene;
     table.rows.push_back({scene.name, page_number(scene.length), millimetres(scene.diameter),
@@ -105,8 +105,8 @@ HtmlTable deviation_table(const Report& report) {
   HtmlTable table{.caption =
                       "Distance of the force model at rest from the energy model, at equal "
                       "arc length",
-                  .columns = {{"scene", false},
-                              {setting_head, false},
+                  .columns = {{"scene", HtmlCell::text},
+                              {setting_head, HtmlCell::word},
                               {"RMS [mm]"},
                               {"RMS / l"},
                               {"RMS / movement"},
@@ -129,8 +129,8 @@ HtmlTable deviation_table(const Report& report) {
 
 HtmlTable state_table(const Report& report) {
   HtmlTable table{.caption = "Which equilibrium of the energy model was compared",
-                  .columns = {{"scene", false},
-                              {setting_head, false},
+                  .columns = {{"scene", HtmlCell::text},
+                              {setting_head, HtmlCell::word},
                               {"its energy [J]"},
                               {"rank by energy"},
                               {"stable ones found"},
@@ -145,8 +145,8 @@ HtmlTable state_table(const Report& report) {
 
 HtmlTable budget_table(const Report& report) {
   HtmlTable table{.caption = "Error budget: RMS [mm], and share of the total with sign",
-                  .columns = {{"scene", false},
-                              {setting_head, false},
+                  .columns = {{"scene", HtmlCell::text},
+                              {setting_head, HtmlCell::word},
                               {"total"},
                               {"law"},
                               {"bookkeeping"},
@@ -159,7 +159,8 @@ HtmlTable budget_table(const Report& report) {
     std::vector<std::string> row = {c.scene, setting_of(c), millimetres(b.total_m)};
     for (const BudgetPart* part :
          {&b.law, &b.bookkeeping, &b.discretisation, &b.stretch, &b.not_at_rest, &b.interaction}) {
-      row.push_back(fmt::format("{} ({} %)", millimetres(part->rms_m), tenths(part->share * 100)));
+      row.push_back(
+          fmt::format("{} ({}\u00a0%)", millimetres(part->rms_m), tenths(part->share * 100)));
     }
     table.rows.push_back(std::move(row));
   });
@@ -168,12 +169,12 @@ HtmlTable budget_table(const Report& report) {
 
 HtmlTable modulus_table(const Report& report) {
   HtmlTable table{.caption = "E*/E at rest: the modulus at which the energy model comes nearest",
-                  .columns = {{"scene", false},
-                              {setting_head, false},
+                  .columns = {{"scene", HtmlCell::text},
+                              {setting_head, HtmlCell::word},
                               {"E*/E"},
                               {"RMS there [mm]"},
                               {"RMS there / l"},
-                              {"optimum", false}}};
+                              {"optimum", HtmlCell::word}}};
   for_each_comparison(report, [&](const Comparison& c) {
     table.rows.push_back({c.scene, setting_of(c), page_number(c.effective_modulus.ratio),
                           millimetres(c.effective_modulus.rms_m),
@@ -187,7 +188,7 @@ HtmlTable history_table(const Report& report) {
   HtmlTable table{.caption =
                       "E*/E on the way to rest: stepper basic, 4000 steps per simulated "
                       "second",
-                  .columns = {{"scene", false},
+                  .columns = {{"scene", HtmlCell::text},
                               {"weight of a point [N]"},
                               {"c_c [N]"},
                               {"c_F [m/N]"},
@@ -219,11 +220,11 @@ HtmlTable history_table(const Report& report) {
 
 HtmlTable answer_table(const Report& report) {
   HtmlTable table{.caption = "What to use: the fastest run within an error",
-                  .columns = {{"scene", false},
-                              {"kind", false},
+                  .columns = {{"scene", HtmlCell::text},
+                              {"kind", HtmlCell::word},
                               {"error, RMS / l"},
-                              {"of all models", false},
-                              {"with points and forces", false}}};
+                              {"of all models", HtmlCell::text},
+                              {"with points and forces", HtmlCell::text}}};
   for (const SceneBenchmark& scene : report.benchmark->scenes) {
     add_answers(scene, "static", scene.runs, scene.answers, table);
     add_answers(scene, "tracking", scene.tracking, scene.tracking_answers, table);
@@ -235,7 +236,7 @@ HtmlTable front_table(const SceneBenchmark& scene) {
   HtmlTable table{
       .caption = fmt::format("{}, Γ = {}: runs on the front (static; error against {})",
                              scene.scene, page_number(scene.gamma), to_string(scene.reference)),
-      .columns = {{"run", false},
+      .columns = {{"run", HtmlCell::text},
                   {"median [ms]"},
                   {"quartiles [ms]"},
                   {"evaluations or steps"},
@@ -273,16 +274,16 @@ HtmlTable hard_case_table(const std::vector<StabilityResult>& results) {
   HtmlTable table{.caption =
                       "Hard cases: outcome, and largest distance from the chain's rest "
                       "shape over the length",
-                  .columns = {{"case", false}}};
+                  .columns = {{"case", HtmlCell::text}}};
   for (const StabilityResult& result : results) {
     const bool first_case = result.name == results.front().name;
-    if (first_case) table.columns.push_back({to_string(result.stepper), false});
+    if (first_case) table.columns.push_back({to_string(result.stepper), HtmlCell::word});
     if (table.rows.empty() || table.rows.back().front() != result.name) {
       table.rows.push_back({result.name});
     }
     table.rows.back().push_back(outcome_cell(result));
   }
-  table.columns.push_back({"what is hard about it", false});
+  table.columns.push_back({"what is hard about it", HtmlCell::text});
   std::size_t row = 0;
   for (const StabilityResult& result : results) {
     if (row < table.rows.size() && table.rows[row].front() == result.name) {
@@ -296,15 +297,15 @@ HtmlTable hard_case_table(const std::vector<StabilityResult>& results) {
 
 HtmlTable parameter_table(const Report& report) {
   HtmlTable table{.caption = "Parameters of the force model",
-                  .columns = {{"scene", false},
-                              {setting_head, false},
+                  .columns = {{"scene", HtmlCell::text},
+                              {setting_head, HtmlCell::word},
                               {"L [mm]"},
                               {"c_b [N]"},
-                              {"c_b by", false},
+                              {"c_b by", HtmlCell::word},
                               {"c_c [N]"},
                               {"c_F [m/N]"},
                               {"c_h"},
-                              {"stepper", false},
+                              {"stepper", HtmlCell::word},
                               {"weight of a point [N]"},
                               {"steps"},
                               {"force [ms]"},

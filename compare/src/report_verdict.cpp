@@ -69,7 +69,7 @@ std::string largest_part(const Budget& b) {
   const auto* largest = std::max_element(
       std::begin(parts), std::end(parts),
       [](const auto& a, const auto& other) { return a.second->share < other.second->share; });
-  return fmt::format("{}, with {:.0f} % of the deviation", largest->first,
+  return fmt::format("{}, with {:.0f}\u00a0% of the deviation", largest->first,
                      largest->second->share * 100);
 }
 
@@ -114,7 +114,7 @@ void add_claim_of_a_third(const Report& report, std::vector<std::string>& verdic
   verdict.push_back(fmt::format(
       "The paper says that its shapes look like the energy model's for E/3. At rest E*/E is {} in "
       "its three poses. It is 1/3 on the way there, after {} s of simulated time ({} s with the "
-      "weight that Table 5 prints); the paper's simulations took 28 s.",
+      "weight that Table 5 prints); the paper's simulations took 28\u00a0s.",
       rest.text(), own.text(), printed.text()));
 }
 
