@@ -16,8 +16,12 @@ import subprocess
 import sys
 import tempfile
 
-from selenium import webdriver
-from selenium.webdriver.chrome.service import Service
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+except ModuleNotFoundError:
+    print("python3-selenium is not installed")
+    sys.exit(77)  # skipped
 
 WIDTHS = (375, 768, 1440)
 SCHEMES = ("light", "dark")
