@@ -37,6 +37,7 @@ int run(int argc, char** argv) {
   dlo::cli::add_bench(app);
   dlo::cli::add_stability(app);
   dlo::cli::add_regress(app);
+  dlo::cli::add_report(app);
   dlo::cli::add_sweep(app);
   app.footer(
       "Exit status: 0 good, 1 outside a tolerance, 2 bad usage or input, 3 a solver did not "

@@ -8,6 +8,8 @@ namespace dlo::compare::builtin {
 
 extern const std::string_view materials_toml;
 extern const std::string_view tables_toml;
+extern const std::string_view long_rod_toml;
+extern const std::string_view side_load_toml;
 extern const std::string_view spring_steel_135_toml;
 extern const std::string_view spring_steel_175_toml;
 extern const std::string_view spring_steel_215_toml;

@@ -2,49 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
-#include "dlo/compare/error.hpp"
-#include "dlo/force_model/simulation.hpp"
-
 namespace dlo::compare {
 namespace {
 
-// Table 2: 112000 nominal steps in 28 s of simulated time.
-constexpr double steps_per_second = 4000;
 constexpr double paper_contraction = 659.734;   // the c_c of Fig. 12 [N]
 constexpr double paper_point_weight = 0.00892;  // Table 5, though Table 1's rod had it [N]
-constexpr double creep_times[] = {1, 2, 5, 10, 20, 28, 30, 32, 40, 60, 100, 200};
-
-std::vector<ModulusAtTime> creep(const Scene& scene, const Shape& rest, double& c_F) {
-  ForceModelSettings settings = scene.force_model;
-  settings.stepper = StepperName::basic;
-  const Discretisation discretisation = discretise(scene, settings);
-  const force_model::StepOptions options = step_options(settings, discretisation);
-  c_F = options.c_F;
-  force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(), options);
-  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
-  std::vector<ModulusAtTime> result;
-  for (const double time : creep_times) {
-    const auto target = static_cast<long>(time * steps_per_second);
-    while (simulation.steps() < target) {
-      if (simulation.step().status == force_model::StepStatus::diverged) {
-        throw ConvergenceError(fmt::format("{}: the force model diverged at step {} (c_F = {:.4g})",
-                                           scene.name, simulation.steps(), c_F));
-      }
-    }
-    const Shape shape = discretisation.shape(simulation.points());
-    ModulusAtTime at;
-    at.time_s = time;
-    at.steps = simulation.steps();
-    at.modulus = fit_effective_modulus(scene, shape);
-    at.rms_over_length =
-        rms(shape.arc_length, shape.points - energy.sample(shape.arc_length).points) / scene.length;
-    at.rest_distance_over_length = rms(shape.arc_length, shape.points - rest.points) / scene.length;
-    result.push_back(at);
-  }
-  return result;
-}
 
 /// E*/E of the chain's rest shape: no steps, so no creep and no stretch.
 ModulusVariant variant(const Scene& original, const std::string& what,
@@ -96,36 +58,25 @@ std::vector<ModulusVariant> variants(const Scene& scene) {
 
 }  // namespace
 
-double PaperCase::time_at_one_third() const {
-  for (std::size_t i = 0; i + 1 < creep.size(); ++i) {
-    const double before = creep[i].modulus.ratio * 3;
-    const double after = creep[i + 1].modulus.ratio * 3;
-    if (before >= 1 && after < 1) {
-      const double share = std::log(before) / std::log(before / after);
-      return creep[i].time_s * std::pow(creep[i + 1].time_s / creep[i].time_s, share);
-    }
-  }
-  return NAN;
-}
-
 PaperReport paper_report(const std::function<void(const std::string&)>& progress) {
   const auto say = [&](const std::string& what) {
     if (progress) progress(what);
   };
   PaperReport report;
   report.c_c = paper_contraction;
-  report.steps_per_second = steps_per_second;
+  report.steps_per_second = paper_steps_per_second;
   report.tables = recompute_tables();
   for (const bool printed_weight : {false, true}) {
     for (Scene scene : paper_scenes()) {
       scene.force_model.c_c = paper_contraction;
       if (printed_weight) scene.force_model.point_weight = paper_point_weight;
-      say(fmt::format("{}: to rest, and {} s of simulated time", scene.name,
-                      creep_times[std::size(creep_times) - 1]));
+      say(fmt::format("{}: to rest, and {} s of simulated time", scene.name, last_history_time));
       PaperCase entry;
       entry.printed_weight = printed_weight;
       entry.rest = compare(scene);
-      entry.creep = creep(scene, entry.rest.force.shape, report.c_F);
+      const ModulusHistory history = modulus_history(scene, entry.rest.force.shape);
+      entry.creep = history.times;
+      report.c_F = history.c_F;
       report.cases.push_back(std::move(entry));
     }
   }

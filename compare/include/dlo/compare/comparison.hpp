@@ -22,6 +22,7 @@ struct Comparison {
   Plan plan;                    ///< what the scene needs
   Solution force;               ///< the force model at rest
   Shape reference;              ///< the energy model at the force model's arc lengths
+  Reference reference_rod;      ///< and anywhere from 0 to l
   /// Which equilibrium `reference` is: of the stable ones the nearest (RMS) to where the Hookean
   /// polygon falls from the force model's shape. That is the state that the force model is in, and
   /// not always the one of lowest energy.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dlo/compare/comparison.hpp"
+#include "dlo/compare/modulus_history.hpp"
 
 namespace dlo::compare {
 
@@ -22,24 +23,14 @@ struct TableRow {
 /// Tables 1 and 5 recomputed from the quantities they are said to follow from.
 [[nodiscard]] std::vector<TableRow> recompute_tables();
 
-/// E*/E of a shape that is still on its way to rest.
-struct ModulusAtTime {
-  double time_s = 0;                     ///< simulated, at 4000 steps/s
-  long steps = 0;                        ///< to that time
-  EffectiveModulus modulus;              ///< at that time
-  double rms_over_length = 0;            ///< against the energy model at E
-  double rest_distance_over_length = 0;  ///< RMS distance to the force model's own rest shape
-};
-
 /// One orientation of Figs. 12 and 13, with one choice of the points' weight.
 struct PaperCase {
   Comparison rest;                   ///< at rest, c_c as the paper used it
   std::vector<ModulusAtTime> creep;  ///< on the way to rest, by time
   bool printed_weight = false;       ///< Table 5's 0.00892 N a point instead of rho A l g / N
 
-  /// Simulated time at which E*/E passes the paper's 1/3, between the times that were looked at
-  /// (power law); NaN if it does not [s].
-  [[nodiscard]] double time_at_one_third() const;
+  /// Simulated time at which E*/E passes the paper's 1/3, see time_at_ratio [s].
+  [[nodiscard]] double time_at_one_third() const { return time_at_ratio(creep, 1. / 3); }
 };
 
 /// E*/E at rest for other loads, points, laws, rules and bookkeeping.

@@ -1,0 +1,113 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "commands.hpp"
+#include "dlo/compare/report.hpp"
+#include "dlo/compare/report_folder.hpp"
+#include "dlo/compare/report_verdict.hpp"
+#include "output.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct Options {
+  std::vector<std::string> scenes;
+  std::string folder;
+  double tolerance = 0.01;
+  int threads = 0;
+  bool quick = false;
+};
+
+/// A word as a shell takes it.
+std::string shell_word(const std::string& word) {
+  const bool plain = !word.empty() && word.find_first_not_of(
+                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                          "0123456789._/-+:@%,=") == std::string::npos;
+  if (plain) return word;
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string command_line(const Options& options) {
+  std::string line = "dlo report";
+  for (const std::string& scene : options.scenes) line += " " + shell_word(scene);
+  if (options.quick) line += " --quick";
+  if (options.tolerance != Options{}.tolerance) append(line, " --tolerance {}", options.tolerance);
+  if (options.threads != 0) append(line, " --threads {}", options.threads);
+  return line + " -o " + shell_word(options.folder);
+}
+
+compare::ReportOptions report_options(const Options& options) {
+  compare::ReportOptions result;
+  result.tolerance = options.tolerance;
+  result.threads = options.threads;
+  if (options.quick) {
+    result.benchmark = compare::BenchmarkOptions{.budget_s = 1, .repeats = 3};
+    result.map = compare::StabilityMapOptions{.columns = 6, .rows = 16, .steps = 2000};
+    result.hard_cases.reset();
+  }
+  return result;
+}
+
+void run(const Options& options) {
+  compare::check_report_folder(options.folder);
+  const std::vector<compare::SceneFile> files = compare::load_scene_files(options.scenes);
+  const bool terminal = ::isatty(STDERR_FILENO) == 1;
+  const compare::Report report =
+      compare::make_report(files, report_options(options), [&](const std::string& what) {
+        if (terminal) fmt::print(stderr, "{}\n", what);
+      });
+  const compare::WrittenReport written = compare::write_report(
+      report, {.version = DLO_VERSION, .command = command_line(options)}, options.folder);
+  std::string out;
+  for (const std::string& sentence : compare::report_verdict(report)) append(out, "{}\n", sentence);
+  append(out, "\n{}: {} scenes, {} figures, {:.3g} s\n", written.page, report.scenes.size(),
+         written.figures, report.seconds);
+  write_output({}, out);
+  if (written.figures_missing > 0) {
+    fmt::print(stderr, "dlo: {} figures are missing: {}; install gnuplot-nox\n",
+               written.figures_missing, written.why_missing);
+  }
+  constexpr int not_converged = 3;
+  if (!report.failures.empty()) throw CLI::RuntimeError(not_converged);
+}
+
+}  // namespace
+
+void add_report(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("report", "a page for people: verdict, shapes, errors, speed, stability");
+  const auto options = std::make_shared<Options>();
+  command->add_option("SCENE", options->scenes,
+                      "scene files, or folders with *.toml; none: the paper's three scenes and two "
+                      "that tell more");
+  command
+      ->add_option("-o,--output", options->folder,
+                   "folder to make: index.html, and its numbers, scripts and scenes beside it. A "
+                   "report in it is replaced, anything else is refused")
+      ->type_name("DIR")
+      ->required();
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "RMS up to which a shape counts as right, share of the length")
+      ->check(CLI::Range(1e-9, 1.0))
+      ->capture_default_str();
+  command->add_flag("--quick", options->quick,
+                    "a benchmark of 1 s, a coarse map, no hard cases; the page says so");
+  command->add_option("--threads", options->threads, "at most; 0: as many as the machine has")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command->footer(
+      "Exit status 3: something did not converge; the page has the rest, and says what.\n"
+      "Example:\n  dlo report data/scenes/side_load.toml --quick -o report");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,268 @@
+#include "report_page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "dlo/compare/provenance.hpp"
+#include "dlo/compare/report_verdict.hpp"
+#include "html.hpp"
+#include "report_figures.hpp"
+#include "report_style.hpp"
+#include "report_tables.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// A page while it is written.
+class Page {
+ public:
+  explicit Page(const std::vector<PageFigure>& figures) : figures_(figures) {}
+
+  /// A section with a heading; what is added next is in it.
+  void section(const std::string& id, const std::string& heading) {
+    if (open_) out_ += "</section>\n";
+    open_ = true;
+    out_ += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", id, escape_html(heading));
+    sections_.emplace_back(id, heading);
+  }
+  void heading(const std::string& text) { out_ += "<h3>" + escape_html(text) + "</h3>\n"; }
+  void paragraph(const std::string& text) { out_ += "<p>" + escape_html(text) + "</p>\n"; }
+  void command(const std::string& what, const std::string& line) {
+    out_ += fmt::format("<p class=\"faint\">{} <code>{}</code></p>\n", escape_html(what),
+                        escape_html(line));
+  }
+  void list(const std::vector<std::string>& items) {
+    out_ += "<ul>\n";
+    for (const std::string& item : items) out_ += "<li>" + escape_html(item) + "</li>\n";
+    out_ += "</ul>\n";
+  }
+  void open_box() { out_ += "<div class=\"verdict\">\n"; }
+  void close_box() { out_ += "</div>\n"; }
+  void folded_list(const std::string& summary, const std::vector<std::string>& items) {
+    out_ += "<details open><summary>" + escape_html(summary) + "</summary>\n";
+    list(items);
+    out_ += "</details>\n";
+  }
+  void table(const HtmlTable& table) { out_ += to_html(table); }
+  /// A table that is there for those who want it all.
+  void folded_table(const HtmlTable& table) {
+    out_ += fmt::format("<details open><summary>{}</summary>\n{}</details>\n",
+                        escape_html(table.caption), to_html(table));
+  }
+  void facts(const std::vector<std::pair<std::string, std::string>>& facts) {
+    out_ += "<dl>\n";
+    for (const auto& [name, value] : facts) {
+      out_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
+    }
+    out_ += "</dl>\n";
+  }
+  /// Figures of a section whose names begin with a text.
+  void figures(const std::string& section) {
+    out_ += "<div class=\"figures\">\n";
+    for (const PageFigure& entry : figures_) {
+      if (entry.figure.section == section) add_figure(entry);
+    }
+    out_ += "</div>\n";
+  }
+
+  [[nodiscard]] std::string finished(const std::string& title) const {
+    std::string page = fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<meta name=\"generator\" content=\"dlo report\">\n<link rel=\"icon\" href=\"data:,\">\n"
+        "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n",
+        escape_html(title), report_style);
+    page += "<nav aria-label=\"Sections\"><ul>\n";
+    for (const auto& [id, heading] : sections_) {
+      page += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, escape_html(heading));
+    }
+    return page + "</ul></nav>\n</header>\n<main>\n" + out_ + (open_ ? "</section>\n" : "") +
+           "</main>\n</body>\n</html>\n";
+  }
+
+ private:
+  void add_figure(const PageFigure& entry) {
+    const Figure& figure = entry.figure;
+    out_ += fmt::format("<figure id=\"figure-{}\">\n", figure.name);
+    out_ += entry.failure.empty()
+                ? entry.svg
+                : fmt::format(
+                      "<p class=\"missing\">This figure is missing: {}. Its numbers are in "
+                      "the tables and in {}.</p>\n",
+                      escape_html(entry.failure), figure.csv_file);
+    out_ += fmt::format(
+        "<figcaption><strong>{0}</strong><br>{1}<br>Numbers: <a href=\"{2}\">{2}</a>, again by "
+        "<code>{3}</code>; picture: <code>gnuplot {4}.gp</code></figcaption>\n</figure>\n",
+        escape_html(figure.title), escape_html(figure.description), figure.csv_file,
+        escape_html(figure.command), figure.name);
+  }
+
+  const std::vector<PageFigure>& figures_;
+  std::string out_;
+  std::vector<std::pair<std::string, std::string>> sections_;
+  bool open_ = false;
+};
+
+void add_verdict(const Report& report, Page& page) {
+  page.section("verdict", "Verdict");
+  page.open_box();
+  page.list(report_verdict(report));
+  page.close_box();
+  page.paragraph(fmt::format(
+      "Every number names its law (how a joint's moment grows with its angle: paper, cubic; hooke, "
+      "linear) and its bookkeeping (where the grip and the weights are: paper, first order; "
+      "consistent, second order). N is the number of points, l the rod's length. Distances are at "
+      "equal arc length, RMS over the rod. That {} of the length count as right is this report's "
+      "choice (--tolerance).",
+      page_percent(report.options.tolerance)));
+  if (report.paper) {
+    page.paragraph(
+        "The scenes are the paper's three (Figs. 12 and 13) and two that tell more, since the "
+        "paper's rod hardly bends (Gamma = 0.18): the same rod 1.9 m long, and one metre of it "
+        "pulled sideways, which no plane holds.");
+  }
+  page.table(scene_table(report));
+}
+
+void add_shapes(const Report& report, Page& page) {
+  page.section("shapes", "Shapes and curvature");
+  page.paragraph(
+      "Both models at rest, drawn with one scale for both axes. Next to the force model as the "
+      "scene says it: the same with law hooke and bookkeeping consistent.");
+  page.figures("shapes");
+  page.section("deviation", "How far apart");
+  page.table(deviation_table(report));
+  page.command("Each scene's numbers again, in this folder, such as",
+               compare_command(report.scenes.front(), 0));
+  page.folded_table(state_table(report));
+  page.section("budget", "Why: the error budget");
+  page.paragraph(
+      "Each part is found by switching one thing. Parts are vectors along the rod: their "
+      "millimetres do not add up, their shares of the total (projections, with sign) do, to 100 %. "
+      "Interaction is what law and bookkeeping do together beyond the sum of both.");
+  page.table(budget_table(report));
+}
+
+void add_modulus(const Report& report, Page& page) {
+  page.section("modulus", "E*/E, and the paper's 1/3");
+  page.paragraph(
+      "E* is the modulus at which the energy model comes nearest to the force model's shape (RMS). "
+      "A law that is not Hookean leaves a residual even there.");
+  page.table(modulus_table(report));
+  if (!report.options.history) return page.paragraph("E*/E against time was left out.");
+  page.paragraph(
+      "On the way from straight to rest E*/E falls. Stepper basic, no dynamics, c_F = 0.86 L/(2 "
+      "c_c), as in Table 1's proportion, and c_c = AE/1000, as the paper used, unless the scene "
+      "names them; 4000 steps are a simulated second (Table 2). Rods with one clamp only.");
+  page.figures("modulus");
+  page.table(history_table(report));
+  page.command(report.paper ? "The paper's poses again:" : "Again:", history_command(report));
+  if (report.paper) {
+    page.command("The others:", "dlo report scenes/long_rod.toml scenes/side_load.toml -o again");
+  }
+}
+
+void add_speed(const Report& report, Page& page) {
+  page.section("speed", "Speed against error");
+  if (!report.benchmark) return page.paragraph("The benchmark was left out.");
+  const BenchmarkReport& benchmark = *report.benchmark;
+  page.paragraph(fmt::format(
+      "From straight to the shape, on one thread with nothing else running, medians of {} runs. "
+      "Tracking: a frame of 1 ms behind a gripper that moves at {} m/s and turns by v/l.",
+      benchmark.options.repeats, page_number(benchmark.options.gripper_speed)));
+  page.figures("speed");
+  page.table(answer_table(report));
+  for (const SceneBenchmark& scene : benchmark.scenes) page.folded_table(front_table(scene));
+  if (!benchmark.skipped.empty()) {
+    page.folded_list(fmt::format("{} runs were skipped", benchmark.skipped.size()),
+                     benchmark.skipped);
+  }
+  page.command("Again, as long as nothing else runs:", benchmark_command(report));
+}
+
+void add_stability(const Report& report, Page& page) {
+  page.section("stability", "Where the steps stop being stable");
+  if (report.map) {
+    page.paragraph(
+        "Steps without limit or damping, from rest, disturbed by 1e-6 of the length. The predicted "
+        "limit 2 (1 + c_h) / (bound of the stiffest mode) answers the paper's Formula 15.");
+    page.figures("stability");
+    page.table(map_table(*report.map));
+    page.command("Again:", map_command(report));
+  } else {
+    page.paragraph("The map was left out, or not computed.");
+  }
+  page.section("hard-cases", "Hard cases");
+  if (report.hard_cases.empty()) return page.paragraph("They were left out, or not computed.");
+  const StabilityOptions options = report.options.hard_cases.value_or(StabilityOptions{});
+  page.paragraph(fmt::format(
+      "The paper's four steppers (c_F = 0.86 L/(2 c_c), l_s = 0.6 L, c_h = 0.9; {} steps) and auto "
+      "(at most {}). ✓: within {} of the length of an equilibrium that no step has a part in. "
+      "Creeping: still on the way, though it may look at rest. At rest: {} steps.",
+      options.max_steps, options.max_steps_auto, page_percent(options.tolerance),
+      options.steps_at_rest));
+  page.table(hard_case_table(report.hard_cases));
+  for (const std::string& name : options.left_out) {
+    page.paragraph("Left out, for the time it takes: " + name + ".");
+  }
+  std::vector<std::string> notes;
+  for (const StabilityResult& result : report.hard_cases) {
+    const bool own_note = result.outcome != Outcome::wrong && result.outcome != Outcome::refused;
+    if (result.note.empty() || !own_note) continue;
+    notes.push_back(fmt::format("{}, {}: {}", result.name, to_string(result.stepper), result.note));
+  }
+  if (!notes.empty()) {
+    page.heading("Notes");
+    page.list(notes);
+  }
+  page.command("Again, with what was left out:",
+               fmt::format("dlo stability --steps-at-rest {}", options.steps_at_rest));
+}
+
+void add_provenance(const Report& report, const std::vector<PageFigure>& figures,
+                    const ReportMaker& maker, Page& page) {
+  page.section("provenance", "Provenance");
+  std::vector<std::pair<std::string, std::string>> facts = {{"dlo", maker.version},
+                                                            {"command", maker.command}};
+  for (const auto& fact : provenance()) facts.push_back(fact);
+  const std::string drawn_by = gnuplot_version();
+  facts.emplace_back("figures", drawn_by.empty() ? "none: no gnuplot was found" : drawn_by);
+  facts.emplace_back("time to compute", page_number(report.seconds) + " s");
+  page.facts(facts);
+  page.table(parameter_table(report));
+  if (report.paper) {
+    page.paragraph(
+        "The paper gives neither the gravity constant nor the gripper's position nor the start: "
+        "9.81 m/s², the origin and straight along the gripper are filled in. Its formula 4 is "
+        "taken "
+        "with the signs that balance. dlo paper lists all that had to be assumed.");
+  }
+  const auto missing = std::count_if(figures.begin(), figures.end(), [](const PageFigure& figure) {
+    return !figure.failure.empty();
+  });
+  page.paragraph(fmt::format(
+      "{} of {} figures are on this page. In its folder are the scenes, and for each figure the "
+      "numbers (CSV) and the script: gnuplot FIGURE.gp draws it anew. All commands are for a shell "
+      "in that folder.",
+      figures.size() - static_cast<std::size_t>(missing), figures.size()));
+}
+
+}  // namespace
+
+std::string report_page(const Report& report, const std::vector<PageFigure>& figures,
+                        const ReportMaker& maker) {
+  Page page(figures);
+  add_verdict(report, page);
+  add_shapes(report, page);
+  add_modulus(report, page);
+  add_speed(report, page);
+  add_stability(report, page);
+  add_provenance(report, figures, maker, page);
+  return page.finished(report.paper ? "The paper's rod: how far a fast model is from physics"
+                                    : "How far a fast rod model is from physics");
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dlo/compare/report.hpp"
+#include "dlo/compare/report_folder.hpp"
+#include "figure.hpp"
+
+namespace dlo::compare {
+
+/// A figure as far as it is drawn.
+struct PageFigure {
+  Figure figure;
+  std::string svg;      ///< element of a page, see inline_svg
+  std::string failure;  ///< why there is none
+};
+
+/// The whole page, in one file: style and figures in it, no script, nothing to be fetched.
+[[nodiscard]] std::string report_page(const Report& report, const std::vector<PageFigure>& figures,
+                                      const ReportMaker& maker);
+
+}  // namespace dlo::compare

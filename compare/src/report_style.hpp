@@ -1,0 +1,67 @@
+#pragma once
+
+namespace dlo::compare {
+
+/// Style sheet of a report's page. Figures are drawn for a light page; in the dark they are
+/// inverted as a whole and their hues turned back, which holds for any colours that gnuplot writes.
+inline constexpr const char* report_style = R"~~~(
+:root { color-scheme: light dark; --back: #ffffff; --text: #1b1f24; --faint: #57606a; --line: #c9d1d9;
+  --card: #f6f8fa; --accent: #0059a8; }
+@media (prefers-color-scheme: dark) {
+  :root { --back: #14181d; --text: #e6eaee; --faint: #a3adb8; --line: #3b444e; --card: #1c2229;
+    --accent: #7cb8f2; }
+  figure svg { filter: invert(1) hue-rotate(180deg); }
+}
+* { box-sizing: border-box; }
+html { -webkit-text-size-adjust: 100%; text-size-adjust: 100%; }
+body { margin: 0 auto; padding: 1rem; max-width: 76rem; background: var(--back); color: var(--text);
+  font: 1rem/1.5 system-ui, sans-serif; overflow-wrap: break-word; }
+h1 { font-size: 1.6rem; line-height: 1.25; margin: 0.5rem 0; }
+h2 { font-size: 1.25rem; margin: 2.2rem 0 0.6rem; padding-top: 0.6rem; border-top: 1px solid var(--line); }
+h3 { font-size: 1.05rem; margin: 1.4rem 0 0.4rem; }
+p, li { max-width: 46rem; }
+a { color: var(--accent); }
+nav ul { list-style: none; margin: 0.8rem 0 0; padding: 0; display: flex; flex-wrap: wrap; gap: 0.2rem 1rem; }
+nav a { display: inline-block; padding: 0.3rem 0; }
+.faint, figcaption, caption { color: var(--faint); font-size: 0.9rem; }
+.verdict { background: var(--card); border-left: 4px solid var(--accent); padding: 0.4rem 1rem; }
+.verdict ul { padding-left: 1.1rem; }
+.verdict li { margin: 0.5rem 0; }
+.verdict li:first-child { font-weight: 600; }
+.figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 28rem), 1fr)); gap: 1.2rem; }
+figure { margin: 0; min-width: 0; }
+figure svg { display: block; width: 100%; max-width: 32rem; height: auto; }
+figcaption strong { color: var(--text); }
+.missing { border: 1px dashed var(--line); padding: 1rem; }
+.table { overflow-x: auto; margin: 0.8rem 0; max-width: 100%; }
+table { border-collapse: collapse; font-size: 0.85rem; font-variant-numeric: tabular-nums; }
+caption { text-align: left; padding: 0.3rem 0; caption-side: top; }
+th, td { overflow-wrap: normal; padding: 0.3rem 0.6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
+thead th { border-bottom: 2px solid var(--line); vertical-align: bottom; }
+tbody th { font-weight: 600; min-width: 8.5rem; position: sticky; left: 0; background: var(--back); }
+.n { text-align: right; }
+.n, .w { white-space: nowrap; }
+thead .n, thead .w { white-space: normal; }
+td:not(.n):not(.w) { min-width: 14rem; }
+caption span { position: sticky; left: 0; display: inline-block; max-width: calc(100vw - 2rem); }
+code { font: 0.85em ui-monospace, monospace; background: var(--card); padding: 0.1em 0.3em; overflow-wrap: anywhere; }
+dl { display: grid; grid-template-columns: max-content 1fr; gap: 0.3rem 1rem; }
+dt { font-weight: 600; } dd { margin: 0; min-width: 0; overflow-wrap: anywhere; }
+details summary { cursor: pointer; padding: 0.3rem 0; }
+@media (max-width: 30rem) { dl { grid-template-columns: 1fr; } dd { margin-bottom: 0.5rem; } }
+@media print {
+  @page { margin: 15mm; }
+  :root { --back: #ffffff; --text: #000000; --faint: #333333; --line: #999999; --card: #ffffff; --accent: #000000; }
+  body { padding: 0; max-width: none; font-size: 10pt; }
+  nav { display: none; }
+  figure svg { filter: none; max-width: 11cm; }
+  figure, tr, .verdict { break-inside: avoid; }
+  h2, h3, caption { break-after: avoid; }
+  .table { overflow: visible; }
+  table { font-size: 7.5pt; }
+  th, td, tbody th { padding: 0.15rem 0.3rem; min-width: 0; position: static; }
+  td:not(.n):not(.w) { min-width: 0; }
+}
+)~~~";
+
+}  // namespace dlo::compare

@@ -1,0 +1,177 @@
+#!/usr/bin/env python3
+"""Looks at a report's page in headless Chromium, as a reader would.
+
+    browser_check.py DLO SCENE... [--screenshots FOLDER] [--report FOLDER]
+
+Makes a quick report of the scenes with the command DLO (or takes a finished one) and checks at 375,
+768 and 1440 pixels, in light and in dark: no console message, no request but for the page itself,
+every figure there, of some size and within the page, nothing that makes the page scroll sideways,
+text that stands out from its ground. With --screenshots it leaves pictures of all of them, and of the page as it is printed.
+"""
+import argparse
+import base64
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+try:
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+except ModuleNotFoundError:
+    print("python3-selenium is not installed")
+    sys.exit(77)  # skipped
+
+WIDTHS = (375, 768, 1440)
+SCHEMES = ("light", "dark")
+
+# Every figure's box, what is wider than the page, and the contrast of texts on their ground.
+MEASURE = """
+const box = e => e.getBoundingClientRect();
+const rgb = c => (c.match(/[0-9.]+/g) || []).map(Number);
+const luminance = c => {
+  const part = v => (v /= 255) <= 0.03928 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4;
+  return 0.2126 * part(c[0]) + 0.7152 * part(c[1]) + 0.0722 * part(c[2]);
+};
+const ground = e => {
+  for (; e; e = e.parentElement) {
+    const c = rgb(getComputedStyle(e).backgroundColor);
+    if (c.length === 3 || c[3] > 0) return c;
+  }
+  return [255, 255, 255];
+};
+const contrast = e => {
+  const [a, b] = [luminance(rgb(getComputedStyle(e).color)), luminance(ground(e))];
+  return (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
+};
+const figures = [...document.querySelectorAll('figure')].map(f => {
+  const svg = f.querySelector('svg');
+  const b = svg ? box(svg) : {width: 0, height: 0, left: 0, right: 0};
+  const texts = svg ? [...svg.querySelectorAll('text')] : [];
+  return {id: f.id, width: b.width, height: b.height, left: b.left, right: b.right,
+          visible: !!svg && getComputedStyle(svg).visibility === 'visible',
+          role: svg && svg.getAttribute('role'),
+          title: svg && svg.querySelector('title') ? svg.querySelector('title').textContent : '',
+          shapes: svg ? svg.querySelectorAll('path, use').length : 0,
+          outside: texts.filter(t => box(t).left < b.left - 1 || box(t).right > b.right + 1 ||
+                                     box(t).top < b.top - 1 || box(t).bottom > b.bottom + 1)
+                        .map(t => t.textContent),
+          smallest: Math.min(...texts.map(t => box(t).height))};
+});
+const ids = [...document.querySelectorAll('[id]')].map(e => e.id);
+const pale = [...document.querySelectorAll('p, li, td, th, caption, figcaption, code, a, h1, h2')]
+  .map(e => [contrast(e), e.textContent.slice(0, 40)]).filter(([c]) => c < 4.5);
+return {figures, pale, width: document.documentElement.clientWidth,
+        scroll: document.documentElement.scrollWidth,
+        twice: ids.filter((id, i) => ids.indexOf(id) !== i)};
+"""
+
+
+def open_browser():
+    options = webdriver.ChromeOptions()
+    for argument in ("--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
+                     "--hide-scrollbars"):
+        options.add_argument(argument)
+    options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+
+
+def set_view(browser, width, scheme, media=""):
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
+                            {"width": width, "height": 900, "deviceScaleFactor": 1,
+                             "mobile": width < 600})
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
+                            {"media": media,
+                             "features": [{"name": "prefers-color-scheme", "value": scheme}]})
+
+
+def screenshot(browser, path):
+    picture = browser.execute_cdp_cmd("Page.captureScreenshot", {"captureBeyondViewport": True})
+    path.write_bytes(base64.b64decode(picture["data"]))
+
+
+def requests_of(browser):
+    for entry in browser.get_log("performance"):
+        message = json.loads(entry["message"])["message"]
+        if message["method"] == "Network.requestWillBeSent":
+            yield message["params"]["request"]["url"]
+
+
+def problems_of(seen):
+    if seen["scroll"] > seen["width"]:
+        yield f"the page is {seen['scroll']} wide"
+    if not seen["figures"]:
+        yield "no figure"
+    for twice in seen["twice"]:
+        yield f"two elements are called {twice}"
+    for contrast, text in seen["pale"]:
+        yield f"contrast {contrast:.2f} of '{text}'"
+    for figure in seen["figures"]:
+        name = figure["id"]
+        if not figure["visible"] or figure["width"] < 250 or figure["height"] < 100:
+            yield f"{name} is {figure['width']} x {figure['height']}"
+        if figure["left"] < 0 or figure["right"] > seen["width"]:
+            yield f"{name} leaves the page"
+        if figure["role"] != "img" or not figure["title"]:
+            yield f"{name} has no name for those who do not see it"
+        if figure["shapes"] < 10:
+            yield f"{name} is empty"
+        if figure["outside"]:
+            yield f"{name}: texts outside of it: {figure['outside']}"
+        if figure["smallest"] < 10:
+            yield f"{name}: text {figure['smallest']:.1f} pixels high"
+
+
+def check(page, screenshots):
+    problems = []
+    browser = open_browser()
+    try:
+        browser.execute_cdp_cmd("Network.enable", {})
+        for width in WIDTHS:
+            for scheme in SCHEMES:
+                set_view(browser, width, scheme)
+                browser.get(page.as_uri())
+                where = f"{width} {scheme}"
+                seen = browser.execute_script(MEASURE)
+                problems += [f"{where}: {problem}" for problem in problems_of(seen)]
+                for url in requests_of(browser):
+                    if url != page.as_uri() and not url.startswith("data:"):
+                        problems.append(f"{where}: request of {url}")
+                problems += [f"{where}: console: {entry['message']}"
+                             for entry in browser.get_log("browser")]
+                if screenshots:
+                    screenshot(browser, screenshots / f"{width}_{scheme}.png")
+        if screenshots:
+            set_view(browser, 720, "light", "print")
+            screenshot(browser, screenshots / "print.png")
+            pdf = browser.execute_cdp_cmd("Page.printToPDF", {"preferCSSPageSize": True})
+            (screenshots / "print.pdf").write_bytes(base64.b64decode(pdf["data"]))
+    finally:
+        browser.quit()
+    return problems
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("dlo")
+    parser.add_argument("scenes", nargs="*")
+    parser.add_argument("--report", type=pathlib.Path)
+    parser.add_argument("--screenshots", type=pathlib.Path)
+    options = parser.parse_args()
+    if options.screenshots:
+        options.screenshots.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        report = options.report
+        if not report:
+            report = pathlib.Path(folder) / "report"
+            subprocess.run([options.dlo, "report", *options.scenes, "--quick", "-o", str(report)],
+                           check=True, stdout=subprocess.DEVNULL)
+        problems = check((report / "index.html").resolve(), options.screenshots)
+    for problem in problems:
+        print(problem)
+    return 1 if problems else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
