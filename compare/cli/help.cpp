@@ -92,11 +92,14 @@ class HelpFormatter : public CLI::Formatter {
   }
 };
 
-/// A word such as --modle of a command line that CLI11 did not expect.
-std::string unexpected(const CLI::App& command, const std::string& word) {
+/// What CLI11 did not expect: a word such as --modle, or an argument too many.
+std::string unexpected(const CLI::App& command, const std::vector<std::string>& words) {
+  const auto option = std::find_if(words.begin(), words.end(),
+                                   [](const std::string& word) { return word.starts_with('-'); });
+  const std::string& word = option != words.end() ? *option : words.front();
   std::vector<std::string> names;
-  for (const CLI::Option* option : options_of(command)) {
-    for (std::string& name : option_text(*option).names) names.push_back(std::move(name));
+  for (const CLI::Option* known : options_of(command)) {
+    for (std::string& name : option_text(*known).names) names.push_back(std::move(name));
   }
   const std::string written = word.substr(0, word.find('='));
   if (!written.starts_with('-')) {
@@ -186,9 +189,9 @@ std::string parse_message(const CLI::App& app, const CLI::ParseError& error) {
       app.get_subcommands([](const CLI::App* command) { return command->count() > 0; });
   if (chosen.empty()) return error.what();
   const CLI::App& command = *chosen.front();
-  if (error.get_name() == "ExtrasError") {
-    const std::vector<std::string> words = app.remaining(true);
-    if (!words.empty()) return unexpected(command, words.front());
+  const std::vector<std::string> unexpected_words = app.remaining(true);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unexpected_words.empty()) {
+    return unexpected(command, unexpected_words);
   }
   return fmt::format("{}: {} (see dlo {} --help)", command.get_name(), error.what(),
                      command.get_name());

@@ -103,7 +103,7 @@ TEST_F(Command, InitNeverOverwritesUnasked) {
 // Rods that are stiff and soft, thin and thick, in directions of the plane and of space.
 TEST(SceneText, IsValidWithAnyAndAllOptionalPartsAndSolves) {
   for (const SceneChoices& choices :
-       {SceneChoices{.length = "2 m"},
+       {SceneChoices{.material = "pvc_cable"},
         SceneChoices{
             .length = "0.5", .diameter = "0.5 mm", .material = "nitinol", .direction = "30 deg"},
         SceneChoices{.diameter = "20 mm",
