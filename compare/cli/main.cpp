@@ -10,6 +10,7 @@
 #include "commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "help.hpp"
+#include "reference.hpp"
 
 namespace {
 
@@ -51,6 +52,18 @@ void build(CLI::App& app) {
   app.formatter(dlo::cli::help_formatter());
   app.set_help_flag("-h,--help", "this help; with a command, its options");
   app.set_version_flag("--version", "dlo " DLO_VERSION, "the version");
+  const std::string setup = "Set up";
+  const auto print = [&app](std::string (*text)(const CLI::App&)) {
+    fmt::print("{}", text(app));
+    throw CLI::Success();
+  };
+  app.add_flag_callback(
+         "--man-page", [=] { print(dlo::cli::manual_page); }, "print the manual page (mdoc)")
+      ->group(setup);
+  app.add_flag_callback(
+         "--bash-completion", [=] { print(dlo::cli::bash_completion); },
+         "print completion for bash: source <(dlo --bash-completion)")
+      ->group(setup);
   for (const Task& task : tasks()) {
     for (const auto add : task.commands) {
       add(app);

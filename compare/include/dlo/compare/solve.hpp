@@ -51,6 +51,10 @@ struct Solution {
   Model model = Model::energy;
   std::string message;
   Shape shape;
+  /// Of energy and exact, at the shape's points: curvature [1/m], and tension [N], positive where
+  /// the rod is pulled; at a gripper or load inside the rod that of the side towards l. No tension
+  /// where an obstacle is touched.
+  std::vector<double> curvature, tension;
   SceneEnergies energy;
   std::vector<GripperLoad> grippers;
   std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod [N]
