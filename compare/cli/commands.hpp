@@ -7,6 +7,8 @@ namespace dlo::cli {
 // Each adds its command to the application and runs it when it is chosen. Errors are exceptions;
 // main() turns them into messages and exit statuses. A result outside a tolerance is printed, then
 // CLI::RuntimeError(1) thrown.
+void add_init(CLI::App& app);
+void add_materials(CLI::App& app);
 void add_solve(CLI::App& app);
 void add_compare(CLI::App& app);
 void add_check(CLI::App& app);

@@ -4,9 +4,13 @@
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "help.hpp"
+#include "reference.hpp"
 
 namespace {
 
@@ -22,33 +26,77 @@ int report(ExitStatus status, const std::exception& error) {
   return status;
 }
 
+/// Commands by what a user wants to do.
+struct Task {
+  const char* what;
+  std::vector<void (*)(CLI::App&)> commands;
+};
+
+const std::vector<Task>& tasks() {
+  using namespace dlo::cli;
+  static const std::vector<Task> list = {
+      {"Begin", {add_init, add_materials}},
+      {"See a shape", {add_solve}},
+      {"Is my simulator's shape right?", {add_check}},
+      {"Get parameters", {add_calibrate}},
+      {"How far is the force model from physics, and why?", {add_compare, add_report, add_paper}},
+      {"What does accuracy cost?", {add_bench, add_stability}},
+      {"Many scenes", {add_sweep}},
+      {"Keep it from getting worse", {add_regress}},
+  };
+  return list;
+}
+
+void build(CLI::App& app) {
+  app.require_subcommand(1);
+  app.formatter(dlo::cli::help_formatter());
+  app.set_help_flag("-h,--help", "this help; with a command, its options");
+  app.set_version_flag("--version", "dlo " DLO_VERSION, "the version");
+  const std::string setup = "Set up";
+  const auto print = [&app](std::string (*text)(const CLI::App&)) {
+    fmt::print("{}", text(app));
+    throw CLI::Success();
+  };
+  app.add_flag_callback(
+         "--man-page", [=] { print(dlo::cli::manual_page); }, "print the manual page (mdoc)")
+      ->group(setup);
+  app.add_flag_callback(
+         "--bash-completion", [=] { print(dlo::cli::bash_completion); },
+         "print completion for bash: source <(dlo --bash-completion)")
+      ->group(setup);
+  for (const Task& task : tasks()) {
+    for (const auto add : task.commands) {
+      add(app);
+      app.get_subcommands({}).back()->group(task.what);
+    }
+  }
+  app.footer(
+      "Begin with:\n"
+      "  dlo init cable.toml --length \"2 m\" --diameter \"6 mm\" --material silicone\n"
+      "  dlo solve cable.toml\n\n"
+      "Exit status: 0 good, 1 outside a tolerance, 2 bad usage or input, 3 a solver did\n"
+      "not converge. More, with examples: dlo COMMAND --help");
+}
+
 int run(int argc, char** argv) {
   CLI::App app(
-      "How far is a fast rod model from physics? Shapes of deformable linear objects by the "
-      "paper's force model and by the rod's energy, and how far they are apart.",
+      "Is the shape of a simulated rod, wire or cable the shape that its material would take? "
+      "dlo computes it from bending energy and gravity, and says how far others are from it.",
       "dlo");
-  app.require_subcommand(1);
-  app.set_version_flag("--version", "dlo " DLO_VERSION);
-  dlo::cli::add_solve(app);
-  dlo::cli::add_compare(app);
-  dlo::cli::add_check(app);
-  dlo::cli::add_calibrate(app);
-  dlo::cli::add_paper(app);
-  dlo::cli::add_bench(app);
-  dlo::cli::add_stability(app);
-  dlo::cli::add_regress(app);
-  dlo::cli::add_report(app);
-  dlo::cli::add_sweep(app);
-  app.footer(
-      "Exit status: 0 good, 1 outside a tolerance, 2 bad usage or input, 3 a solver did not "
-      "converge.\nMore: dlo COMMAND --help");
+  build(app);
+  if (argc == 1) {
+    fmt::print("{}", app.help());
+    return good;
+  }
+  const std::string first = argv[1];
+  if (!first.starts_with('-')) dlo::cli::require_known_command(app, first);
   try {
     app.parse(argc, argv);
   } catch (const CLI::RuntimeError& status) {
     return status.get_exit_code();
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    return report(bad_input, error);
+    throw dlo::compare::InputError(dlo::cli::parse_message(app, error));
   }
   return good;
 }

@@ -38,9 +38,10 @@ double option_quantity(const std::string& option, const std::string& text, Dimen
 
 }  // namespace
 
-void add_output_options(CLI::App& command, OutputOptions& options) {
-  command.add_option("--format", options.format, "text, json or csv")
-      ->check(CLI::IsMember(format_names()))
+void add_output_options(CLI::App& command, OutputOptions& options,
+                        const std::vector<std::string>& formats) {
+  command.add_option("--format", options.format, fmt::format("{}", fmt::join(formats, ", ")))
+      ->check(CLI::IsMember(formats))
       ->capture_default_str();
   command.add_option("-o,--output", options.file, "write to FILE instead of standard output")
       ->type_name("FILE");

@@ -45,6 +45,8 @@ class PlanOptions {
   compare::PlanOptions plan_;
 };
 
-void add_output_options(CLI::App& command, OutputOptions& options);
+/// @param formats  those that the command writes
+void add_output_options(CLI::App& command, OutputOptions& options,
+                        const std::vector<std::string>& formats = format_names());
 
 }  // namespace dlo::cli

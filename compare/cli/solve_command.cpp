@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solve.hpp"
+#include "dlo/compare/vtk_polyline.hpp"
 #include "json.hpp"
 #include "output.hpp"
 #include "plan_text.hpp"
@@ -120,6 +121,9 @@ void run(const Options& options) {
                   : std::vector<compare::Solution>{
                         compare::solve(scene, model, options.overrides.solve(), arc_lengths)};
   const compare::Solution& solution = solutions.front();
+  if (options.output.format == "vtk") {
+    return write_output(options.output, compare::vtk_polyline(solution, scene.name));
+  }
   const auto plan = [&] { return compare::make_plan(scene, options.plan.plan()); };
   std::string content;
   switch (options.output.kind()) {
@@ -152,9 +156,13 @@ void add_solve(CLI::App& app) {
   command->add_flag("--all", options->all, "every equilibrium that is found, with its stability");
   options->overrides.add_to(*command);
   options->plan.add_to(*command);
-  add_output_options(*command, options->output);
+  std::vector<std::string> formats = format_names();
+  formats.emplace_back("vtk");
+  add_output_options(*command, options->output, formats);
   command->footer(
-      "Example:\n  dlo solve data/scenes/spring_steel_175.toml --model exact --samples 5");
+      "Examples:\n"
+      "  dlo solve data/scenes/spring_steel_175.toml --model exact --samples 5\n"
+      "  dlo solve data/scenes/cable.toml --format vtk -o cable.vtk   # for ParaView");
   command->callback([options] { run(*options); });
 }
 

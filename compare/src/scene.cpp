@@ -10,6 +10,7 @@
 
 #include "builtin_data.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/nearest_word.hpp"
 #include "read_scene.hpp"
 #include "strict_table.hpp"
 
@@ -44,9 +45,10 @@ Material read_material(StrictTable& rod, const std::vector<Material>& known_mate
     if (material.name == name) return material;
     names.push_back(material.name);
   }
-  rod.fail("material", fmt::format("unknown material (allowed: {}, or a table with youngs_modulus "
-                                   "and density)",
-                                   fmt::join(names, ", ")));
+  rod.fail("material",
+           fmt::format("unknown material{} (allowed: {}, or a table such as {{ youngs_modulus = "
+                       "\"5 MPa\", density = 1100 }}; dlo materials lists them with values)",
+                       did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 Eigen::Vector3d unit_vector(StrictTable& table, std::string_view key) {

@@ -31,6 +31,7 @@ class VtkReader {
       } else if (word == "METADATA") {
         skip_metadata();
       } else if (word == "POINT_DATA" || word == "CELL_DATA") {
+        if (word == "POINT_DATA") read_arc_lengths(points);
         break;
       } else if (shape_number(word)) {
         fail(fmt::format("{} where a keyword such as LINES should be", quoted_piece(word)));
@@ -122,6 +123,25 @@ class VtkReader {
     return raw;
   }
 
+  /// The array arc_length_m of a FIELD, which `dlo solve` writes; a file with it is in metres.
+  void read_arc_lengths(RawShape& raw) {
+    std::string_view word = next();
+    while (!word.empty() && word != "arc_length_m" && word != "CELL_DATA") word = next();
+    if (word != "arc_length_m") return;
+    if (next() != "1") fail("arc_length_m: must have one component");
+    if (read_count("arc_length_m: number of values", raw.points.size()) != raw.points.size()) {
+      fail(fmt::format("arc_length_m: must have {} values, one a point", raw.points.size()));
+    }
+    next();  // float or double
+    for (std::size_t i = 0; i < raw.points.size(); ++i) {
+      const std::string_view number = next();
+      const std::optional<double> value = shape_number(number);
+      if (!value) fail(fmt::format("arc_length_m: {} is not a number", quoted_piece(number)));
+      raw.arc_length.push_back(*value);
+    }
+    raw.in_metres = true;
+  }
+
   /// Indices of the points along the polyline.
   std::vector<std::size_t> read_lines(std::size_t points) {
     if (points == 0) fail("LINES before POINTS");
@@ -180,9 +200,11 @@ class VtkReader {
 
   static RawShape ordered(const RawShape& points, const std::vector<std::size_t>& order) {
     RawShape result;
+    result.in_metres = points.in_metres;
     for (const std::size_t i : order) {
       result.points.push_back(points.points[i]);
       result.lines.push_back(points.lines[i]);
+      if (!points.arc_length.empty()) result.arc_length.push_back(points.arc_length[i]);
     }
     return result;
   }

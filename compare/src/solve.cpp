@@ -32,6 +32,21 @@ void require_exact_scene(const Scene& scene) {
       scene.file, scene.obstacles.size()));
 }
 
+/// What the part of the rod beyond `at` pulls the part before it with: the opposite of all that
+/// acts on the part before.
+Eigen::Vector3d section_force(const Scene& scene, const std::vector<GripperLoad>& grippers,
+                              double at) {
+  const auto before = [&](double s) { return s < at || (s == at && at < scene.length); };
+  Eigen::Vector3d sum = at * scene.weight_per_length();
+  for (std::size_t i = 0; i < grippers.size(); ++i) {
+    if (before(scene.grippers[i].at)) sum += grippers[i].force;
+  }
+  for (const PointLoad& load : scene.loads) {
+    if (before(load.at)) sum += load.force;
+  }
+  return -sum;
+}
+
 Solution sampled(const Scene& scene, Model model, const energy_model::Equilibrium& equilibrium,
                  const std::vector<double>& arc_lengths) {
   constexpr int default_samples = 101;
@@ -40,7 +55,8 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   Solution solution;
   solution.model = model;
   solution.message = equilibrium.message;
-  solution.shape = {samples, equilibrium.sample(samples).points};
+  const energy_model::Samples shape = equilibrium.sample(samples);
+  solution.shape = {samples, shape.points};
   solution.energy = {.bending = equilibrium.energy.bending,
                      .gravity = equilibrium.energy.gravity,
                      .load = equilibrium.energy.load};
@@ -48,6 +64,15 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
     solution.grippers.push_back({reaction.force, reaction.torque});
   }
   solution.obstacles = equilibrium.walls;
+  const bool touches = std::any_of(equilibrium.walls.begin(), equilibrium.walls.end(),
+                                   [](const Eigen::Vector3d& force) { return force.norm() > 0; });
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    solution.curvature.push_back(shape.curvature.col(column).norm());
+    if (touches) continue;
+    const Eigen::Vector3d force = section_force(scene, solution.grippers, samples[i]);
+    solution.tension.push_back(force.dot(shape.tangents.col(column)));
+  }
   solution.smallest_curvature = equilibrium.smallest_curvature;
   solution.evaluations = equilibrium.evaluations;
   solution.terms = equilibrium.terms;

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/nearest_word.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -34,22 +35,6 @@ std::string shown(const toml::node& node) {
     line += "...";
   }
   return line;
-}
-
-/// Levenshtein's distance of two words.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
 }
 
 }  // namespace
@@ -97,10 +82,9 @@ const toml::node& StrictTable::need(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) {
     // A slip of the pen is both a missing and an unknown key.
-    for (const auto& [present, value] : table_) {
-      if (distance(key, present.str()) <= 2) {
-        fail(present.str(), fmt::format("unknown key, did you mean {}?", key));
-      }
+    const std::string slip = nearest_word(key, keys());
+    if (!slip.empty() && !known_.contains(slip)) {
+      fail(slip, fmt::format("unknown key, did you mean {}?", key));
     }
     fail(key, "missing, it is required");
   }
@@ -176,7 +160,8 @@ std::optional<std::string> StrictTable::optional_choice(std::string_view key,
 std::string StrictTable::choice(std::string_view key, const std::vector<std::string>& allowed) {
   std::string value = text(key);
   if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
-    fail(key, fmt::format("unknown (allowed: {})", joined(allowed)));
+    fail(key,
+         fmt::format("unknown{} (allowed: {})", did_you_mean(value, allowed), joined(allowed)));
   }
   return value;
 }
@@ -243,8 +228,9 @@ std::vector<std::string> StrictTable::keys() const {
 void StrictTable::finish() const {
   for (const auto& [key, node] : table_) {
     if (known_.contains(key.str())) continue;
+    const std::vector<std::string> known(known_.begin(), known_.end());
     fail(key.str(),
-         fmt::format("unknown key (allowed: {})", fmt::join(known_.begin(), known_.end(), ", ")));
+         fmt::format("unknown key{} (allowed: {})", did_you_mean(key.str(), known), joined(known)));
   }
 }
 

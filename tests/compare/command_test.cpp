@@ -342,7 +342,6 @@ TEST_F(Command, BadInputNamesFileLineKeyValueAndWhatIsAllowed) {
 }
 
 TEST_F(Command, BadUsageIsOneLineAndStatusTwo) {
-  expect_error("", 2, {"dlo"});
   expect_error("slove", 2, {"dlo"});
   expect_error("solve", 2, {"SCENE"});
   expect_error("solve " + steel() + " --model fem", 2, {"fem", "energy"});

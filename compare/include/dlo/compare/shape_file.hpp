@@ -24,7 +24,8 @@ inline constexpr long most_shape_points = 100'000;
 ///     JSON: [[x, y, z], ...], or an object with `points_m` and, if known, `arc_length_m` as `dlo
 ///          solve` writes it; `points` and `arc_length` are in the unit that is given.
 ///     VTK: legacy, ASCII, DATASET POLYDATA with POINTS and one polyline in LINES (or several that
-///          follow on from each other); without LINES the points in their order.
+///          follow on from each other); without LINES the points in their order. The point data
+///          arc_length_m of a FIELD, as `dlo solve` writes it; such a file is in metres.
 /// A missing z is zero.
 /// @param file  its name, for messages;  @param unit  what the file's numbers are in [m]
 /// @throws InputError naming file, line (point, in JSON), what is wrong and what is allowed; two

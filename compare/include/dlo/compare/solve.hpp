@@ -42,9 +42,14 @@ struct GripperLoad {
 
 /// A shape and what it cost. Only converged shapes are ever returned.
 struct Solution {
-  Model model = Model::energy;             ///< that solved it
-  std::string message;                     ///< how the solver ended
-  Shape shape;                             ///< the converged shape
+  Model model = Model::energy;  ///< that solved it
+  std::string message;          ///< how the solver ended
+  Shape shape;                  ///< the converged shape
+  /// Of energy and exact, at the shape's points: curvature [1/m].
+  std::vector<double> curvature;
+  /// Tension [N] there, positive where the rod is pulled; at a gripper or load inside the rod that
+  /// of the side towards l. None where an obstacle is touched.
+  std::vector<double> tension;
   SceneEnergies energy;                    ///< of that shape
   std::vector<GripperLoad> grippers;       ///< in the scene's order
   std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod [N]

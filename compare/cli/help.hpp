@@ -1,0 +1,46 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace dlo::cli {
+
+/// An option or argument as help, manual page and completion tell it.
+struct OptionText {
+  std::vector<std::string> names;  ///< "--points", or "SCENE" of an argument
+  std::string value;               ///< "FILE", "INT"; empty for a flag
+  std::vector<std::string> choices;
+  std::string range;  ///< "4 to 1000000"
+  std::string default_value;
+  std::string description;
+  bool optional_value = false;  ///< a flag that takes a value behind "="
+  bool repeated = false;
+
+  /// "FILE", "{text,json,csv}" or nothing.
+  [[nodiscard]] std::string value_text() const;
+  /// Description, range and default.
+  [[nodiscard]] std::string full_description() const;
+};
+
+[[nodiscard]] OptionText option_text(const CLI::Option& option);
+
+/// Commands, arguments and options in the order in which they were added; hidden ones left out.
+[[nodiscard]] std::vector<const CLI::App*> commands_of(const CLI::App& app);
+[[nodiscard]] std::vector<const CLI::Option*> arguments_of(const CLI::App& app);
+[[nodiscard]] std::vector<const CLI::Option*> options_of(const CLI::App& app);
+
+/// Lines of at most `width`, all but the first indented.
+[[nodiscard]] std::string wrap(const std::string& text, std::size_t indent, std::size_t width = 80);
+
+/// Help in 80 columns.
+[[nodiscard]] std::shared_ptr<CLI::FormatterBase> help_formatter();
+
+/// @throws compare::InputError with the nearest command
+void require_known_command(const CLI::App& app, const std::string& written);
+
+/// What is wrong with a command line, with the nearest option.
+[[nodiscard]] std::string parse_message(const CLI::App& app, const CLI::ParseError& error);
+
+}  // namespace dlo::cli

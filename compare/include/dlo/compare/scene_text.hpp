@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dlo/compare/material.hpp"
+
+namespace dlo::compare {
+
+/// What a new scene file is to say; values as a scene file spells them, without quotes: "2 m", 0.5,
+/// "[0, 0, 1]".
+struct SceneChoices {
+  std::string name = "rod";
+  std::string length = "1 m";
+  std::string diameter = "6 mm";
+  std::string material = "silicone";  ///< a name; not looked at if a modulus is given
+  std::string youngs_modulus;         ///< with density: a material of one's own
+  std::string density;
+  std::string direction = "0 deg";  ///< of the clamp at arc length 0
+};
+
+/// A scene file of one clamp at the origin, with comments that explain every key, its unit and what
+/// is allowed. Lines that begin with # and no blank are optional parts; the file is valid with any
+/// of these paragraphs, and with all of them, uncommented.
+/// @throws InputError naming rod.length and the like, as reading the file does
+[[nodiscard]] std::string scene_text(const SceneChoices& choices,
+                                     const std::vector<Material>& known_materials = materials());
+
+}  // namespace dlo::compare
