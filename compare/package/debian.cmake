@@ -1,6 +1,7 @@
 # cpack -G DEB makes three Debian packages of a build with static libraries: libdlo-force-model-dev
 # for programs that embed the force model, libdlo-dev for the other two libraries, and the command
-# dlo, for which dpkg-shlibdeps finds the libraries that it needs.
+# dlo, for which dpkg-shlibdeps finds the libraries that it needs. Whoever gives them to others sets
+# CPACK_PACKAGE_CONTACT to an address that answers.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "the dlo authors <dlo@localhost>" CACHE STRING "Maintainer of the packages")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)

@@ -13,7 +13,8 @@ file(RELATIVE_PATH dlo_bin_to_lib /${CMAKE_INSTALL_BINDIR} /${CMAKE_INSTALL_LIBD
 #   FIND         what find_package has to find first, one "package version" each
 #   REQUIRES     the same for pkg-config, one "package >= version" each
 #   STATIC_FIND, STATIC_REQUIRES, STATIC_LIBS
-#                what a static library leaves to the program that links it: nothing if it is shared
+#                what a program has to link besides a static library, and not besides a shared one;
+#                public in the .pc file, so that pkg-config gives a line that links without --static
 function(dlo_install name)
   cmake_parse_arguments(PARSE_ARGV 1 "" "" DESCRIPTION
     "FIND;REQUIRES;STATIC_FIND;STATIC_REQUIRES;STATIC_LIBS")
