@@ -21,7 +21,7 @@ Json deviation_json(const compare::Deviation& deviation) {
 
 namespace {
 
-Json to_json(const compare::ComparedState& state) {
+Json state_json(const compare::ComparedState& state) {
   Json others = Json::array();
   for (const compare::OtherState& other : state.others) {
     others.push_back({{"stable", other.stable},
@@ -172,7 +172,7 @@ Json to_json(const compare::Comparison& comparison) {
                         {"stretch", budget.stretch.share},
                         {"not_at_rest", budget.not_at_rest.share},
                         {"interaction", budget.interaction.share}}}};
-  result["state"] = to_json(comparison.state);
+  result["state"] = state_json(comparison.state);
   result["cost"] = {{"force_s", comparison.force.seconds},
                     {"force_steps", comparison.force.steps},
                     {"energy_s", comparison.energy_seconds},
