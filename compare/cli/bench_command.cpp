@@ -16,7 +16,7 @@ using compare::BenchmarkAnswer;
 using compare::BenchmarkRun;
 using compare::SceneBenchmark;
 
-struct Options {
+struct BenchOptions {
   std::vector<std::string> scenes;
   compare::BenchmarkOptions benchmark;
   OutputOptions output;
@@ -100,7 +100,7 @@ std::string text(const compare::BenchmarkReport& report) {
   return out;
 }
 
-Json to_json(const BenchmarkRun& run, bool tracking) {
+Json run_json(const BenchmarkRun& run, bool tracking) {
   return {{"scene", run.scene},
           {"kind", tracking ? "tracking" : "static"},
           {"model", compare::to_string(run.model)},
@@ -115,7 +115,8 @@ Json to_json(const BenchmarkRun& run, bool tracking) {
           {"front", run.front}};
 }
 
-Json to_json(const std::vector<BenchmarkAnswer>& answers, const std::vector<BenchmarkRun>& runs) {
+Json answers_json(const std::vector<BenchmarkAnswer>& answers,
+                  const std::vector<BenchmarkRun>& runs) {
   Json result = Json::array();
   for (const BenchmarkAnswer& answer : answers) {
     Json entry = {{"error_over_length", answer.error}, {"use", nullptr}};
@@ -129,13 +130,13 @@ Json json(const compare::BenchmarkReport& report) {
   Json runs = Json::array();
   Json answers = Json::array();
   for (const SceneBenchmark& scene : report.scenes) {
-    for (const BenchmarkRun& run : scene.runs) runs.push_back(to_json(run, false));
-    for (const BenchmarkRun& run : scene.tracking) runs.push_back(to_json(run, true));
+    for (const BenchmarkRun& run : scene.runs) runs.push_back(run_json(run, false));
+    for (const BenchmarkRun& run : scene.tracking) runs.push_back(run_json(run, true));
     Json entry = {{"scene", scene.scene},
                   {"gamma", scene.gamma},
                   {"reference", compare::to_string(scene.reference)},
-                  {"static", to_json(scene.answers, scene.runs)},
-                  {"tracking", to_json(scene.tracking_answers, scene.tracking)},
+                  {"static", answers_json(scene.answers, scene.runs)},
+                  {"tracking", answers_json(scene.tracking_answers, scene.tracking)},
                   {"energy_at_1e-6_s", nullptr},
                   {"force_at_1e-3_s", nullptr}};
     if (scene.energy_at_1e6) {
@@ -168,7 +169,7 @@ std::string csv(const compare::BenchmarkReport& report) {
   return out;
 }
 
-void run(const Options& options) {
+void run(const BenchOptions& options) {
   std::vector<compare::Scene> scenes;
   for (const std::string& path : options.scenes) scenes.push_back(compare::load_scene(path));
   if (scenes.empty()) scenes = compare::benchmark_scenes();
@@ -190,7 +191,7 @@ void run(const Options& options) {
 
 void add_bench(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bench", "speed against error of all models");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<BenchOptions>();
   command->add_option("SCENE", options->scenes,
                       "scene files (TOML); none: a steel rod and one a hundred times softer");
   command->add_option("--seconds", options->benchmark.budget_s, "time for all runs together")

@@ -17,7 +17,7 @@
 namespace dlo::cli {
 namespace {
 
-struct Options {
+struct CalibrateOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> shapes;
   bool density = false;
@@ -86,7 +86,7 @@ void write_report(const Report& report, const OutputOptions& output, bool format
   }
 }
 
-void run_material(const Options& options, bool format_is_given) {
+void run_material(const CalibrateOptions& options, bool format_is_given) {
   MaterialReport report;
   report.scenes = load_all(options.scenes, options.overrides);
   std::vector<compare::MeasuredShape> shapes;
@@ -111,7 +111,7 @@ void run_material(const Options& options, bool format_is_given) {
                options.output, format_is_given);
 }
 
-void run_force_model(const Options& options, bool points_are_given, bool format_is_given) {
+void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
   const std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   const std::vector<compare::Scene> holdouts = load_all(options.holdouts, options.overrides);
   compare::ForceModelFitOptions fit_options;
@@ -134,7 +134,7 @@ void add_calibrate(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "calibrate",
       "parameters of the force model from physics, or Young's modulus from measured shapes");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CalibrateOptions>();
   command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
   const std::string parameters = "Parameters of the force model";
   CLI::Option* holdout =

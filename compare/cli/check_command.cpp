@@ -18,7 +18,7 @@
 namespace dlo::cli {
 namespace {
 
-struct Options {
+struct CheckOptions {
   std::string scene;
   std::string shape;
   std::string tolerance;
@@ -55,7 +55,7 @@ double tolerance_m(const std::string& text, double length) {
 }
 
 std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
-                 const std::optional<Verdict>& verdict, const Options& options) {
+                 const std::optional<Verdict>& verdict, const CheckOptions& options) {
   std::string out;
   const compare::Alignment& a = c.alignment;
   const std::vector<double>& s = a.shape.arc_length;
@@ -120,7 +120,7 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
 }
 
 Json json(const compare::ShapeCheck& c, const std::optional<Verdict>& verdict,
-          const Options& options) {
+          const CheckOptions& options) {
   const std::vector<double>& s = c.alignment.shape.arc_length;
   Json result = {{"schema", "dlo/check/1"},
                  {"scene", c.scene},
@@ -171,7 +171,7 @@ std::string csv(const compare::ShapeCheck& c, const std::optional<Verdict>& verd
   return out + (verdict ? "\n" : ",\n");
 }
 
-void run(const Options& options) {
+void run(const CheckOptions& options) {
   const compare::Scene scene = options.overrides.load(options.scene);
   const compare::MeasuredShape shape = options.shapes.load(options.shape);
   std::optional<Verdict> verdict;
@@ -206,7 +206,7 @@ void run(const Options& options) {
 void add_check(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "check", "how far a shape of your own simulator or camera is from the energy model");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CheckOptions>();
   command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
   command->add_option("--shape", options->shape, "CSV, JSON or legacy VTK polyline")
       ->type_name("FILE")

@@ -12,7 +12,7 @@
 namespace dlo::cli {
 namespace {
 
-struct Options {
+struct CompareOptions {
   std::vector<std::string> scenes;
   SceneOptions overrides;
   PlanOptions plan;
@@ -46,7 +46,7 @@ std::string csv(const std::vector<compare::Comparison>& comparisons) {
   return text;
 }
 
-void run(const Options& options) {
+void run(const CompareOptions& options) {
   std::vector<compare::Comparison> comparisons;
   std::string content;
   const bool explain = options.plan.explain() && options.output.kind() == Format::text;
@@ -80,7 +80,7 @@ void run(const Options& options) {
 void add_compare(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("compare", "how far the force model is from the energy model, and why");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompareOptions>();
   command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
   options->overrides.add_to(*command);
   options->plan.add_to(*command);

@@ -90,7 +90,7 @@ void add_scan(std::string& out, const std::vector<compare::MovingScanEntry>& sca
   out += "\n";
 }
 
-Json to_json(const MovingChoices& choices) {
+Json moving_json(const MovingChoices& choices) {
   return {{"length_unit_m", choices.length_unit},
           {"grip_force_at_5_percent_N", choices.grip_force},
           {"angle_rad", choices.angle},
@@ -100,14 +100,14 @@ Json to_json(const MovingChoices& choices) {
           {"start_offset_segments", choices.start_offset}};
 }
 
-Json to_json(const compare::MovingDistance& distance) {
+Json moving_json(const compare::MovingDistance& distance) {
   // A factor that is not finite becomes null.
   return {{"force_factor", distance.force_factor},
           {"counters_near", distance.counters_near},
           {"counters", distance.counters}};
 }
 
-Json to_json(const std::vector<MovingRow>& rows) {
+Json moving_json(const std::vector<MovingRow>& rows) {
   Json result = Json::array();
   for (const MovingRow& row : rows) {
     const compare::MovingRun& run = row.run;
@@ -133,13 +133,13 @@ Json to_json(const std::vector<MovingRow>& rows) {
   return result;
 }
 
-Json to_json(const std::vector<compare::MovingScanEntry>& scan) {
+Json moving_json(const std::vector<compare::MovingScanEntry>& scan) {
   Json result = Json::array();
   for (const compare::MovingScanEntry& entry : scan) {
     result.push_back({{"varied", entry.varied},
-                      {"choices", to_json(entry.choices)},
-                      {"distance", to_json(entry.distance)},
-                      {"rows", to_json(entry.rows)}});
+                      {"choices", moving_json(entry.choices)},
+                      {"distance", moving_json(entry.distance)},
+                      {"rows", moving_json(entry.rows)}});
   }
   return result;
 }
@@ -196,9 +196,12 @@ std::string moving_csv(const compare::MovingReport& report) {
 }
 
 Json to_json(const compare::MovingReport& report) {
-  return {{"choices", to_json(report.choices)}, {"nominal_steps", compare::nominal_moving_steps},
-          {"rows", to_json(report.rows)},       {"distance", to_json(report.distance)},
-          {"scan", to_json(report.scan)},       {"table_3_scan", to_json(report.table_3_scan)},
+  return {{"choices", moving_json(report.choices)},
+          {"nominal_steps", compare::nominal_moving_steps},
+          {"rows", moving_json(report.rows)},
+          {"distance", moving_json(report.distance)},
+          {"scan", moving_json(report.scan)},
+          {"table_3_scan", moving_json(report.table_3_scan)},
           {"findings", report.findings}};
 }
 

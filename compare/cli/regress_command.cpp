@@ -19,7 +19,7 @@ using compare::MeasuredCase;
 using compare::RegressionResult;
 using compare::RegressionVerdict;
 
-struct Options {
+struct RegressOptions {
   std::vector<std::string> scenes;
   std::string baseline;
   std::string junit;
@@ -30,7 +30,7 @@ struct Options {
   OutputOptions output;
 };
 
-MeasuredCase measure(const Options& options, const std::string& path) {
+MeasuredCase measure(const RegressOptions& options, const std::string& path) {
   const compare::Scene scene = options.overrides.load(path);
   const compare::Model model = compare::model_from(options.model);
   try {
@@ -108,7 +108,7 @@ std::string csv(const std::vector<RegressionResult>& results) {
   return out;
 }
 
-void print(const Options& options, const std::vector<RegressionResult>& results, bool good) {
+void print(const RegressOptions& options, const std::vector<RegressionResult>& results, bool good) {
   switch (options.output.kind()) {
     case Format::json:
       return write_output(options.output, json(results, good).dump(2) + "\n");
@@ -119,7 +119,7 @@ void print(const Options& options, const std::vector<RegressionResult>& results,
   }
 }
 
-void run(const Options& options) {
+void run(const RegressOptions& options) {
   // An unreadable baseline is told before minutes of solving.
   std::vector<compare::BaselineCase> baseline;
   if (!options.update || std::filesystem::exists(options.baseline)) {
@@ -158,7 +158,7 @@ void run(const Options& options) {
 void add_regress(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("regress", "shape errors against a baseline under version control");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RegressOptions>();
   command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
   command->add_option("--baseline", options->baseline, "the baseline (TOML)")
       ->type_name("FILE")

@@ -14,7 +14,7 @@
 namespace dlo::cli {
 namespace {
 
-struct Options {
+struct SolveOptions {
   std::string scene;
   std::string model = "energy";
   int samples = 0;
@@ -104,7 +104,7 @@ std::string equilibria_text(const std::vector<compare::Solution>& solutions) {
   return out;
 }
 
-void run(const Options& options) {
+void run(const SolveOptions& options) {
   const compare::Scene scene = options.overrides.load(options.scene);
   const compare::Model model = compare::model_from(options.model);
   constexpr int text_samples = 11;
@@ -146,7 +146,7 @@ void run(const Options& options) {
 
 void add_solve(CLI::App& app) {
   CLI::App* command = app.add_subcommand("solve", "the shape of one scene with one model");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SolveOptions>();
   command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
   command->add_option("--model", options->model, "energy, chain, exact or force")
       ->check(CLI::IsMember(compare::model_names()))

@@ -22,7 +22,7 @@ using compare::MapColumn;
 using compare::Outcome;
 using compare::StabilityResult;
 
-struct Options {
+struct StabilityOptions {
   std::string scene;
   std::string map;
   std::vector<std::string> steppers;
@@ -184,7 +184,7 @@ bool auto_fails(const StabilityResult& result) {
          result.outcome != Outcome::refused;
 }
 
-void run_map(Options& options) {
+void run_map(StabilityOptions& options) {
   options.grid.axis = options.map == "cF-cc" ? compare::MapAxis::c_c : compare::MapAxis::c_h;
   options.grid.threads = options.threads;
   const compare::Scene scene =
@@ -200,7 +200,7 @@ void run_map(Options& options) {
   }
 }
 
-void run_cases(Options& options) {
+void run_cases(StabilityOptions& options) {
   if (!options.steppers.empty()) {
     options.cases.steppers.clear();
     for (const std::string& name : options.steppers) {
@@ -230,7 +230,7 @@ void run_cases(Options& options) {
 void add_stability(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "stability", "where the force model's steppers break: hard cases, or a map of c_F");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<StabilityOptions>();
   command->add_option("SCENE", options->scene,
                       "scene file (TOML) of a map; without it the hard cases' rod");
   command

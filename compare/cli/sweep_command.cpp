@@ -15,7 +15,7 @@
 namespace dlo::cli {
 namespace {
 
-struct Options {
+struct SweepOptions {
   std::vector<std::string> files;
   std::vector<std::string> vary;
   std::string model = "energy";
@@ -49,7 +49,7 @@ std::string output_path(std::string path, const std::optional<compare::Shard>& s
   return path;
 }
 
-compare::Sweep sweep_of(const Options& options) {
+compare::Sweep sweep_of(const SweepOptions& options) {
   std::vector<compare::Axis> axes;
   axes.reserve(options.vary.size());
   for (const std::string& text : options.vary) axes.push_back(compare::parse_axis(text));
@@ -80,7 +80,7 @@ void warn_of_unresolved(const compare::SweepOutcome& outcome, const std::string&
              outcome.unresolved, outcome.rows);
 }
 
-void run_merge(const Options& options) {
+void run_merge(const SweepOptions& options) {
   if (options.output.empty()) throw compare::InputError("--merge: -o FILE is required");
   if (!options.vary.empty() || !options.shard.empty()) {
     throw compare::InputError("--merge: takes the shards' files only (allowed: -o)");
@@ -89,7 +89,7 @@ void run_merge(const Options& options) {
 }
 
 /// One --vary may be followed by several fields; what has a "=" is one of them, not a file.
-void sort_words(Options& options) {
+void sort_words(SweepOptions& options) {
   const auto fields = std::stable_partition(
       options.files.begin(), options.files.end(),
       [](const std::string& word) { return word.find('=') == std::string::npos; });
@@ -97,7 +97,7 @@ void sort_words(Options& options) {
   options.files.erase(fields, options.files.end());
 }
 
-void run(Options options) {
+void run(SweepOptions options) {
   if (options.merge) return run_merge(options);
   if (!options.vary.empty()) sort_words(options);
   if (options.files.size() != 1) {
@@ -126,7 +126,7 @@ void run(Options options) {
 void add_sweep(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("sweep", "a grid over any fields of a scene, as a table (CSV)");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<SweepOptions>();
   command->add_option("FILE", options->files, "scene file (TOML); with --merge the shards' files")
       ->required();
   command

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "command_fixture.hpp"
+#include "sanitized.hpp"
 
 namespace {
 
@@ -241,13 +242,6 @@ TEST_F(Command, CompareIsReadableAsTextAndCsv) {
 }
 
 TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
-  const Outcome text = run("paper");
-  EXPECT_EQ(text.status, 0) << text.err;
-  EXPECT_EQ(text.err, "");
-  for (const char* expected :
-       {"3776.21457", "3574.96", "659734", "1/3", "spring steel, -215 deg", "116121", "34389"}) {
-    EXPECT_NE(text.out.find(expected), std::string::npos) << expected;
-  }
   EXPECT_EQ(run("paper --format json -o " + path("paper.json")).status, 0);
   const json document = json::parse(read(path("paper.json")));
   EXPECT_EQ(document.at("schema"), "dlo/paper/1");
@@ -257,7 +251,16 @@ TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
   EXPECT_EQ(moving.at("rows").size(), 16U);
   EXPECT_LT(moving.at("scan")[0].at("distance").at("force_factor").get<double>(), 1.1);
   EXPECT_TRUE(moving.at("scan")[1].at("distance").at("force_factor").is_null());  // in metres
+  // Each run solves everything again: under sanitizers the one above has to do.
+  if (dlo::test::sanitized) return;
   EXPECT_EQ(run("paper --format csv").out.substr(0, 8), "section,");
+  const Outcome text = run("paper");
+  EXPECT_EQ(text.status, 0) << text.err;
+  EXPECT_EQ(text.err, "");
+  for (const char* expected :
+       {"3776.21457", "3574.96", "659734", "1/3", "spring steel, -215 deg", "116121", "34389"}) {
+    EXPECT_NE(text.out.find(expected), std::string::npos) << expected;
+  }
 }
 
 TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAuto) {

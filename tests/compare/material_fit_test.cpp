@@ -7,6 +7,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "measured_shapes.hpp"
+#include "sanitized.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {
@@ -37,7 +38,7 @@ TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
   std::mt19937 random(2024);
   int held = 0;
   int told = 0;
-  constexpr int draws = 100;
+  constexpr int draws = test::sanitized ? 10 : 100;
   for (int draw = 0; draw < draws; ++draw) {
     const std::vector<double> s = uneven_arc_lengths(random, 7, 1);
     const RigidMotion motion = pose == PoseFreedom::known ? RigidMotion() : random_pose(random);
@@ -58,7 +59,9 @@ TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
   }
   RecordProperty("held", held);
   RecordProperty("told", told);
-  EXPECT_GE(held, 90);
+  if (!test::sanitized) {
+    EXPECT_GE(held, 90);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(GammasAndPoses, MaterialFitCoverage,
