@@ -47,11 +47,6 @@ class Page {
     out_ += "</details>\n";
   }
   void table(const HtmlTable& table) { out_ += to_html(table); }
-  /// A table that is there for those who want it all.
-  void folded_table(const HtmlTable& table) {
-    out_ += fmt::format("<details open><summary>{}</summary>\n{}</details>\n",
-                        escape_html(table.caption), to_html(table));
-  }
   void facts(const std::vector<std::pair<std::string, std::string>>& facts) {
     out_ += "<dl>\n";
     for (const auto& [name, value] : facts) {
@@ -135,9 +130,12 @@ void add_shapes(const Report& report, Page& page) {
   page.figures("shapes");
   page.section("deviation", "How far apart");
   page.table(deviation_table(report));
-  page.command("Each scene's numbers again, in this folder, such as",
-               compare_command(report.scenes.front(), 0));
-  page.folded_table(state_table(report));
+  for (const SceneReport& scene : report.scenes) {
+    for (const Comparison& comparison : scene.comparisons) {
+      page.command("Again:", compare_command(scene.file, comparison));
+    }
+  }
+  page.table(state_table(report));
   page.section("budget", "Why: the error budget");
   page.paragraph(
       "Each part is found by switching one thing. Parts are vectors along the rod: their "
@@ -175,7 +173,7 @@ void add_speed(const Report& report, Page& page) {
       benchmark.options.repeats, page_number(benchmark.options.gripper_speed)));
   page.figures("speed");
   page.table(answer_table(report));
-  for (const SceneBenchmark& scene : benchmark.scenes) page.folded_table(front_table(scene));
+  for (const SceneBenchmark& scene : benchmark.scenes) page.table(front_table(scene));
   if (!benchmark.skipped.empty()) {
     page.folded_list(fmt::format("{} runs were skipped", benchmark.skipped.size()),
                      benchmark.skipped);

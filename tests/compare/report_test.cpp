@@ -251,16 +251,17 @@ TEST_F(ReportFolder, IsTheSameButForTimes) {
   options.threads = 2;
   (void)write_report(make_report({heavy_file()}, options), {}, folder());
   for (const auto& [name, text] : contents(folder())) {
-    if (name != "index.html") EXPECT_EQ(first.at(name), text) << name;
+    if (name == "index.html") continue;
+    EXPECT_EQ(first.at(name), text) << name;
   }
 }
 
 TEST_F(ReportFolder, ReplacesReportsAndNothingElse) {
   const Report report = make_report({heavy_file()}, small_report());
   fs::create_directory(folder());  // an empty one may be used
-  (void)write_report(report, {.version = "first"}, folder());
-  (void)write_report(report, {.version = "second"}, folder() + "/");
-  EXPECT_THAT(page(), AllOf(HasSubstr("second"), Not(HasSubstr("first"))));
+  (void)write_report(report, {.version = "version one"}, folder());
+  (void)write_report(report, {.version = "version two"}, folder() + "/");
+  EXPECT_THAT(page(), AllOf(HasSubstr("version two"), Not(HasSubstr("version one"))));
 
   write("report/mine.txt", "notes");
   expect_refused(folder(), "mine.txt");
