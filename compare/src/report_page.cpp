@@ -34,6 +34,13 @@ class Page {
     out_ += fmt::format("<p class=\"faint\">{} <code>{}</code></p>\n", escape_html(what),
                         escape_html(line));
   }
+  void commands(const std::string& summary, const std::vector<std::string>& lines) {
+    out_ += "<details open><summary>" + escape_html(summary) + "</summary>\n<ul>\n";
+    for (const std::string& line : lines) {
+      out_ += "<li><code>" + escape_html(line) + "</code></li>\n";
+    }
+    out_ += "</ul>\n</details>\n";
+  }
   void list(const std::vector<std::string>& items) {
     out_ += "<ul>\n";
     for (const std::string& item : items) out_ += "<li>" + escape_html(item) + "</li>\n";
@@ -130,11 +137,13 @@ void add_shapes(const Report& report, Page& page) {
   page.figures("shapes");
   page.section("deviation", "How far apart");
   page.table(deviation_table(report));
+  std::vector<std::string> commands;
   for (const SceneReport& scene : report.scenes) {
     for (const Comparison& comparison : scene.comparisons) {
-      page.command("Again:", compare_command(scene.file, comparison));
+      commands.push_back(compare_command(scene.file, comparison));
     }
   }
+  page.commands("Each row again", commands);
   page.table(state_table(report));
   page.section("budget", "Why: the error budget");
   page.paragraph(
