@@ -12,6 +12,7 @@
 
 #include "arena.hpp"
 #include "builtin_data.hpp"
+#include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/hard_case.hpp"
 #include "strict_table.hpp"
@@ -70,23 +71,26 @@ struct SceneTask {
   std::vector<std::string> failures;
 };
 
-/// Runs it; what does not converge is a failure.
+/// Runs it; what does not converge, or is no task for the model, is a failure.
 template <typename Function>
 void try_to(const std::string& what, std::vector<std::string>& failures, const Function& function) {
   try {
     function();
   } catch (const ConvergenceError& error) {
     failures.push_back(fmt::format("{}: {}", what, error.what()));
+  } catch (const InputError& error) {
+    failures.push_back(fmt::format("{}: {}", what, error.what()));
   }
 }
 
-SceneHistory history_of(Scene scene, bool printed_weight) {
+SceneHistory history_of(Scene scene, const std::string& file, bool printed_weight) {
   ForceModelSettings& settings = scene.force_model;
   if (!settings.c_c) settings.c_c = scene.axial_stiffness() / 1000;
   if (printed_weight) settings.point_weight = printed_point_weight;
   const Solution rest = solve_force(scene, settings);
   SceneHistory result;
   result.scene = scene.name;
+  result.file = file;
   result.point_weight = rest.parameters.point_weight;
   result.printed_weight = printed_weight;
   result.rest = fit_effective_modulus(scene, rest.shape);
@@ -108,10 +112,10 @@ void run_task(SceneTask& task, const ReportOptions& options, bool with_printed_w
   const Scene near = without_far_obstacles(scene).scene;
   if (!options.history || !straight_rod(near, {0})) return;
   try_to(scene.name + ", E*/E against time", task.failures,
-         [&] { task.report.history = history_of(near, false); });
+         [&] { task.report.history = history_of(near, task.report.file.name, false); });
   if (!with_printed_weight) return;
   try_to(scene.name + ", E*/E against time, printed weight", task.failures,
-         [&] { task.printed_weight = history_of(near, true); });
+         [&] { task.printed_weight = history_of(near, task.report.file.name, true); });
 }
 
 void add_scenes(const std::vector<SceneFile>& files, std::size_t of_the_paper, Report& report) {
@@ -180,6 +184,7 @@ Report make_report(const std::vector<SceneFile>& files, const ReportOptions& opt
     if (progress) progress(what);
   };
   const auto start = std::chrono::steady_clock::now();
+  for (const SceneFile& file : files) (void)discretise(file.scene, file.scene.force_model);
   Report report;
   report.options = options;
   report.paper = files.empty();

@@ -47,17 +47,17 @@ Figure history_figure(const std::string& name, const std::vector<const SceneHist
   figure.description =
       "E*/E against simulated time, both logarithmic, falling from well above the paper's 1/3 "
       "(a dashed level) to the value at rest, on the right. The paper's simulations took 28 s.";
-  figure.csv = "curve,scene,time_s,steps,effective_modulus_ratio,rms_at_effective_modulus_m\n";
+  figure.csv = "curve,scene_file,time_s,steps,effective_modulus_ratio,rms_at_effective_modulus_m\n";
   constexpr double place_of_rest = 600;  // on the axis of time
   std::string plots;
   for (std::size_t i = 0; i < histories.size(); ++i) {
     const SceneHistory& history = *histories[i];
     for (const ModulusAtTime& at : history.history.times) {
       figure.csv +=
-          fmt::format("{},{},{},{},{},{}\n", i + 1, csv_field(history.scene), csv_number(at.time_s),
-                      at.steps, csv_number(at.modulus.ratio), csv_number(at.modulus.rms_m));
+          fmt::format("{},{},{},{},{},{}\n", i + 1, history.file, csv_number(at.time_s), at.steps,
+                      csv_number(at.modulus.ratio), csv_number(at.modulus.rms_m));
     }
-    figure.csv += fmt::format("{},{},rest,,{},{}\n", i + 1, csv_field(history.scene),
+    figure.csv += fmt::format("{},{},rest,,{},{}\n", i + 1, history.file,
                               csv_number(history.rest.ratio), csv_number(history.rest.rms_m));
     fmt::format_to(
         std::back_inserter(plots),

@@ -18,7 +18,7 @@ namespace dlo::compare {
 [[nodiscard]] std::vector<Figure> report_figures(const Report& report);
 
 /// Commands that give a part's numbers again, run in the report's folder.
-[[nodiscard]] std::string compare_command(const SceneReport& scene, std::size_t comparison);
+[[nodiscard]] std::string compare_command(const SceneFile& file, const Comparison& comparison);
 [[nodiscard]] std::string benchmark_command(const Report& report);
 [[nodiscard]] std::string map_command(const Report& report);
 [[nodiscard]] std::string history_command(const Report& report);

@@ -34,6 +34,13 @@ class Page {
     out_ += fmt::format("<p class=\"faint\">{} <code>{}</code></p>\n", escape_html(what),
                         escape_html(line));
   }
+  void commands(const std::string& summary, const std::vector<std::string>& lines) {
+    out_ += "<details open><summary>" + escape_html(summary) + "</summary>\n<ul>\n";
+    for (const std::string& line : lines) {
+      out_ += "<li><code>" + escape_html(line) + "</code></li>\n";
+    }
+    out_ += "</ul>\n</details>\n";
+  }
   void list(const std::vector<std::string>& items) {
     out_ += "<ul>\n";
     for (const std::string& item : items) out_ += "<li>" + escape_html(item) + "</li>\n";
@@ -47,11 +54,6 @@ class Page {
     out_ += "</details>\n";
   }
   void table(const HtmlTable& table) { out_ += to_html(table); }
-  /// A table that is there for those who want it all.
-  void folded_table(const HtmlTable& table) {
-    out_ += fmt::format("<details open><summary>{}</summary>\n{}</details>\n",
-                        escape_html(table.caption), to_html(table));
-  }
   void facts(const std::vector<std::pair<std::string, std::string>>& facts) {
     out_ += "<dl>\n";
     for (const auto& [name, value] : facts) {
@@ -135,9 +137,14 @@ void add_shapes(const Report& report, Page& page) {
   page.figures("shapes");
   page.section("deviation", "How far apart");
   page.table(deviation_table(report));
-  page.command("Each scene's numbers again, in this folder, such as",
-               compare_command(report.scenes.front(), 0));
-  page.folded_table(state_table(report));
+  std::vector<std::string> commands;
+  for (const SceneReport& scene : report.scenes) {
+    for (const Comparison& comparison : scene.comparisons) {
+      commands.push_back(compare_command(scene.file, comparison));
+    }
+  }
+  page.commands("Each row again", commands);
+  page.table(state_table(report));
   page.section("budget", "Why: the error budget");
   page.paragraph(
       "Each part is found by switching one thing. Parts are vectors along the rod: their "
@@ -175,7 +182,7 @@ void add_speed(const Report& report, Page& page) {
       benchmark.options.repeats, page_number(benchmark.options.gripper_speed)));
   page.figures("speed");
   page.table(answer_table(report));
-  for (const SceneBenchmark& scene : benchmark.scenes) page.folded_table(front_table(scene));
+  for (const SceneBenchmark& scene : benchmark.scenes) page.table(front_table(scene));
   if (!benchmark.skipped.empty()) {
     page.folded_list(fmt::format("{} runs were skipped", benchmark.skipped.size()),
                      benchmark.skipped);

@@ -31,6 +31,7 @@ nav a { display: inline-block; padding: 0.3rem 0; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 28rem), 1fr)); gap: 1.2rem; }
 figure { margin: 0; min-width: 0; }
 figure svg { display: block; width: 100%; max-width: 32rem; height: auto; }
+figcaption { margin-top: 0.4rem; max-width: 46rem; }
 figcaption strong { color: var(--text); }
 .missing { border: 1px dashed var(--line); padding: 1rem; }
 .table { overflow-x: auto; margin: 0.8rem 0; max-width: 100%; }
@@ -48,7 +49,10 @@ code { font: 0.85em ui-monospace, monospace; background: var(--card); padding: 0
 dl { display: grid; grid-template-columns: max-content 1fr; gap: 0.3rem 1rem; }
 dt { font-weight: 600; } dd { margin: 0; min-width: 0; overflow-wrap: anywhere; }
 details summary { cursor: pointer; padding: 0.3rem 0; }
-@media (max-width: 30rem) { dl { grid-template-columns: 1fr; } dd { margin-bottom: 0.5rem; } }
+@media (max-width: 30rem) {
+  dl { grid-template-columns: 1fr; } dd { margin-bottom: 0.5rem; }
+  tbody th { min-width: 6.5rem; } th, td { padding: 0.3rem; } .w { white-space: normal; }
+}
 @media print {
   @page { margin: 15mm; }
   :root { --back: #ffffff; --text: #000000; --faint: #333333; --line: #999999; --card: #ffffff; --accent: #000000; }

@@ -74,6 +74,18 @@ TEST(HardCases, HoldWhatTheirNamesSay) {
   }
 }
 
+TEST(HardCases, AreLeftOutByName) {
+  const StabilityOptions options = {.max_steps = 1,
+                                    .max_steps_auto = 1,
+                                    .name_contains = "crumpled",
+                                    .left_out = {"crumpled 2", "N = 1000"},
+                                    .steppers = {StepperName::automatic}};
+  const std::vector<StabilityResult> results = stability(options);
+  ASSERT_EQ(results.size(), 2U);
+  EXPECT_EQ(results[0].name, "crumpled 1");
+  EXPECT_EQ(results[1].name, "crumpled 3");
+}
+
 /// N = 1000 needs eight million steps, which belong into the command's own run; here it has to be
 /// on its way.
 class AutomaticStepper : public testing::TestWithParam<int> {};

@@ -44,6 +44,7 @@ struct ReportOptions {
 /// E*/E of one scene on its way to rest.
 struct SceneHistory {
   std::string scene;
+  std::string file;             ///< name of its SceneFile
   double point_weight = 0;      ///< of an inner point [N]
   bool printed_weight = false;  ///< Table 5's, not rho A l g / N
   EffectiveModulus rest;
@@ -82,7 +83,8 @@ struct Report {
 /// and only rods with one clamp, which start straight. What does not converge is said in `failures`
 /// and left out.
 /// @param progress  called with what is being done, by the calling thread
-/// @throws InputError, std::invalid_argument if an option is out of range
+/// @throws InputError if a scene cannot be made into points, before anything is computed;
+/// std::invalid_argument if an option is out of range
 [[nodiscard]] Report make_report(const std::vector<SceneFile>& files, const ReportOptions& options,
                                  const std::function<void(const std::string&)>& progress = {});
 
