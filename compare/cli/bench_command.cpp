@@ -8,6 +8,7 @@
 #include "json.hpp"
 #include "output.hpp"
 #include "scene_options.hpp"
+#include "terminal.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -173,7 +174,11 @@ void run(const BenchOptions& options) {
   std::vector<compare::Scene> scenes;
   for (const std::string& path : options.scenes) scenes.push_back(compare::load_scene(path));
   if (scenes.empty()) scenes = compare::benchmark_scenes();
-  const compare::BenchmarkReport report = compare::run_benchmark(scenes, options.benchmark);
+  const compare::BenchmarkReport report = [&] {
+    ProgressBar bar("bench");
+    return compare::run_benchmark(scenes, options.benchmark,
+                                  [&](const std::string& what) { bar.stage(what); });
+  }();
   switch (options.output.kind()) {
     case Format::json:
       write_output(options.output, json(report).dump(2) + "\n");
@@ -204,7 +209,7 @@ void add_bench(CLI::App& app) {
       ->check(CLI::Range(1e-9, 1e3))
       ->capture_default_str();
   add_output_options(*command, options->output);
-  command->footer("Example:\n  dlo bench data/scenes/spring_steel_175.toml --seconds 5");
+  command->footer("Example:\n  dlo bench data/scenes/spring_steel_175.toml --seconds 2");
   command->callback([options] { run(*options); });
 }
 

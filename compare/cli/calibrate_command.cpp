@@ -13,6 +13,7 @@
 #include "output.hpp"
 #include "scene_options.hpp"
 #include "shape_options.hpp"
+#include "terminal.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -98,12 +99,15 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
   if (report.scenes.size() == 1) report.scenes.resize(shapes.size(), report.scenes.front());
   report.files = options.shapes;
   report.frame_was_found = options.shape_options.pose() != compare::PoseFreedom::known;
-  report.fit = compare::fit_material(report.scenes, shapes,
-                                     {.pose = options.shape_options.pose(),
-                                      .arc_lengths = options.shape_options.arc_lengths(),
-                                      .density = options.density,
-                                      .noise = noise_m(options.noise),
-                                      .solve = options.overrides.solve()});
+  const compare::MaterialFitOptions fit_options{.pose = options.shape_options.pose(),
+                                                .arc_lengths = options.shape_options.arc_lengths(),
+                                                .density = options.density,
+                                                .noise = noise_m(options.noise),
+                                                .solve = options.overrides.solve()};
+  report.fit = [&] {
+    const ProgressBar bar("calibrate");
+    return compare::fit_material(report.scenes, shapes, fit_options);
+  }();
   write_report({.text = [&] { return material_text(report); },
                 .csv = [&] { return material_csv(report); },
                 .toml = [&] { return material_toml(report); },
@@ -118,7 +122,11 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
   if (points_are_given) fit_options.points = scenes.front().force_model.points;
   if (!options.target.empty()) fit_options.target = target_share(options.target);
   fit_options.solve = options.overrides.solve();
-  const compare::ForceModelFit fit = compare::fit_force_model(scenes, holdouts, fit_options);
+  const compare::ForceModelFit fit = [&] {
+    ProgressBar bar("calibrate");
+    fit_options.progress = [&](std::int64_t done, std::int64_t total) { bar.show(done, total); };
+    return compare::fit_force_model(scenes, holdouts, fit_options);
+  }();
   write_report({.text = [&] { return force_model_text(fit); },
                 .csv = [&] { return force_model_csv(fit); },
                 .toml = [&] { return force_model_toml(fit); },

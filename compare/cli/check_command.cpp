@@ -14,6 +14,7 @@
 #include "output.hpp"
 #include "scene_options.hpp"
 #include "shape_options.hpp"
+#include "terminal.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -112,7 +113,8 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
   add_state(out, c.state, scene.length, "the shape");
   if (verdict) {
     append(out, "  verdict         {}: {} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of l\n",
-           verdict->text(), options.measure == "rms" ? "RMS" : "largest",
+           verdict_word(verdict->text(), verdict->pass, options.output.file),
+           options.measure == "rms" ? "RMS" : "largest",
            (options.measure == "rms" ? d.rms_m : d.max_m) * 1e3, verdict->tolerance_m * 1e3,
            verdict->tolerance_m / scene.length * 100);
   }
@@ -221,8 +223,9 @@ void add_check(CLI::App& app) {
   options->overrides.add_to(*command);
   add_output_options(*command, options->output);
   command->footer(
-      "Example:\n  dlo solve data/scenes/spring_steel_175.toml --model chain --format csv -o "
-      "mine.csv\n  dlo check data/scenes/spring_steel_175.toml --shape mine.csv --tolerance 1%");
+      "Example, with dlo in place of your simulator:\n"
+      "  dlo solve data/scenes/cable.toml --model force --format csv -o mine.csv\n"
+      "  dlo check data/scenes/cable.toml --shape mine.csv --tolerance 1%");
   command->callback([options] { run(*options); });
 }
 

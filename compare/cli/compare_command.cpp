@@ -8,6 +8,7 @@
 #include "output.hpp"
 #include "plan_text.hpp"
 #include "scene_options.hpp"
+#include "terminal.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -50,10 +51,16 @@ void run(const CompareOptions& options) {
   std::vector<compare::Comparison> comparisons;
   std::string content;
   const bool explain = options.plan.explain() && options.output.kind() == Format::text;
-  for (const std::string& path : options.scenes) {
-    const compare::Scene scene = options.overrides.load(path);
-    comparisons.push_back(compare::compare(scene, options.overrides.solve(), options.plan.plan()));
-    if (explain) content += plan_text(comparisons.back().plan, scene);
+  {
+    ProgressBar bar("compare");
+    for (const std::string& path : options.scenes) {
+      const compare::Scene scene = options.overrides.load(path);
+      comparisons.push_back(
+          compare::compare(scene, options.overrides.solve(), options.plan.plan()));
+      if (explain) content += plan_text(comparisons.back().plan, scene);
+      bar.show(static_cast<std::int64_t>(comparisons.size()),
+               static_cast<std::int64_t>(options.scenes.size()));
+    }
   }
   switch (options.output.kind()) {
     case Format::json: {

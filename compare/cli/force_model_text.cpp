@@ -65,6 +65,13 @@ std::string force_model_text(const ForceModelFit& fit) {
   if (fit.holdouts > 0) append(out, ", of the hold-out scenes {}", percent(fit.worst_holdout()));
   append(out, ": the target of {} is {}\n", percent(fit.target),
          reached(fit) ? "reached" : "not reached");
+  if (!reached(fit) && fit.c_c_is_physical) {
+    append(
+        out,
+        "  c_c is A E: the rod stretches as its material does, the energy model's rod does not.\n"
+        "  That is part of the deviation, and no error of the force model; a --target above it\n"
+        "  also takes fewer points.\n");
+  }
   return out;
 }
 

@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +12,7 @@
 #include "moving_text.hpp"
 #include "output.hpp"
 #include "scene_options.hpp"
+#include "terminal.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -197,12 +197,14 @@ std::string csv(const PaperReport& report) {
 }
 
 void run(const OutputOptions& options) {
-  const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  const PaperReport report = compare::paper_report([&](const std::string& what) {
-    if (terminal) fmt::print(stderr, "{}\n", what);
-  });
-  if (terminal) fmt::print(stderr, "moving grippers, Tables 2 to 4\n");
-  const compare::MovingReport moving = compare::moving_report();
+  PaperReport report;
+  compare::MovingReport moving;
+  {
+    ProgressBar bar("paper");
+    report = compare::paper_report([&](const std::string& what) { bar.stage(what); });
+    bar.stage("moving grippers, Tables 2 to 4");
+    moving = compare::moving_report();
+  }
   std::string content;
   switch (options.kind()) {
     case Format::json: {

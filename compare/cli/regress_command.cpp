@@ -11,6 +11,7 @@
 #include "json.hpp"
 #include "output.hpp"
 #include "scene_options.hpp"
+#include "terminal.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -47,11 +48,12 @@ long count(const std::vector<RegressionResult>& results, RegressionVerdict verdi
                        [verdict](const auto& result) { return result.verdict == verdict; });
 }
 
-std::string text(const std::vector<RegressionResult>& results) {
+std::string text(const std::vector<RegressionResult>& results, const std::string& file) {
   std::string out;
   for (const RegressionResult& result : results) {
-    append(out, "{:<20} {}\n{:<20} {}\n", compare::to_string(result.verdict), result.name, "",
-           result.message);
+    const std::string verdict = fmt::format("{:<20}", compare::to_string(result.verdict));
+    append(out, "{} {}\n{:<20} {}\n", verdict_word(verdict, !compare::failed(result.verdict), file),
+           result.name, "", result.message);
   }
   const char* separator = "";
   for (const RegressionVerdict verdict :
@@ -115,7 +117,7 @@ void print(const RegressOptions& options, const std::vector<RegressionResult>& r
     case Format::csv:
       return write_output(options.output, csv(results));
     case Format::text:
-      return write_output(options.output, text(results));
+      return write_output(options.output, text(results, options.output.file));
   }
 }
 
@@ -127,7 +129,14 @@ void run(const RegressOptions& options) {
   }
   std::vector<MeasuredCase> measured;
   measured.reserve(options.scenes.size());
-  for (const std::string& path : options.scenes) measured.push_back(measure(options, path));
+  {
+    ProgressBar bar("regress");
+    for (const std::string& path : options.scenes) {
+      measured.push_back(measure(options, path));
+      bar.show(static_cast<std::int64_t>(measured.size()),
+               static_cast<std::int64_t>(options.scenes.size()));
+    }
+  }
   const std::vector<RegressionResult> results =
       compare::judge_regression(baseline, measured, options.tolerance);
   const bool solved = count(results, RegressionVerdict::not_solved) == 0;

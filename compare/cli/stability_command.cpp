@@ -14,6 +14,7 @@
 #include "json.hpp"
 #include "output.hpp"
 #include "scene_options.hpp"
+#include "terminal.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -189,7 +190,11 @@ void run_map(StabilityOptions& options) {
   options.grid.threads = options.threads;
   const compare::Scene scene =
       options.scene.empty() ? compare::hard_case_scene() : compare::load_scene(options.scene);
-  const compare::StabilityMap map = compare::stability_map(scene, options.grid);
+  const compare::StabilityMap map = [&] {
+    ProgressBar bar("map");
+    options.grid.progress = [&](std::int64_t done, std::int64_t total) { bar.show(done, total); };
+    return compare::stability_map(scene, options.grid);
+  }();
   switch (options.output.kind()) {
     case Format::json:
       return write_output(options.output, map_json(map).dump(2) + "\n");
@@ -208,7 +213,11 @@ void run_cases(StabilityOptions& options) {
     }
   }
   options.cases.threads = options.threads;
-  const std::vector<StabilityResult> results = compare::stability(options.cases);
+  const std::vector<StabilityResult> results = [&] {
+    ProgressBar bar("hard cases");
+    options.cases.progress = [&](std::int64_t done, std::int64_t total) { bar.show(done, total); };
+    return compare::stability(options.cases);
+  }();
   std::string content;
   switch (options.output.kind()) {
     case Format::json:

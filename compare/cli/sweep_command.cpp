@@ -1,5 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -11,6 +10,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/sweep_file.hpp"
 #include "scene_options.hpp"
+#include "terminal.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -108,17 +108,19 @@ void run(SweepOptions options) {
   const compare::Sweep sweep = sweep_of(options);
   const std::optional<compare::Shard> shard = chosen_shard(options.shard);
   if (options.output.empty()) return print_sweep(sweep, shard, options.threads);
-  const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  compare::SweepFileOptions file_options{.threads = options.threads, .restart = options.restart};
-  if (terminal) {
-    file_options.progress = [](std::int64_t done, std::int64_t rows) {
-      const std::int64_t rarely = rows / 1000 + 1;
-      if (done % rarely != 0 && done != rows) return;
-      fmt::print(stderr, "\r{} of {} scenes{}", done, rows, done == rows ? "\n" : "");
-    };
-  }
   const std::string path = output_path(options.output, shard);
-  warn_of_unresolved(compare::write_sweep(sweep, shard, path, file_options), path);
+  const compare::SweepOutcome outcome = [&] {
+    ProgressBar bar("sweep");
+    const compare::SweepFileOptions file_options{
+        .threads = options.threads,
+        .restart = options.restart,
+        .progress = [&](std::int64_t done, std::int64_t rows) {
+          const std::int64_t rarely = rows / 1000 + 1;
+          if (done % rarely == 0 || done == rows) bar.show(done, rows);
+        }};
+    return compare::write_sweep(sweep, shard, path, file_options);
+  }();
+  warn_of_unresolved(outcome, path);
 }
 
 }  // namespace
@@ -166,9 +168,12 @@ void add_sweep(CLI::App& app) {
       "Example:\n"
       "  dlo sweep data/scenes/spring_steel_175.toml --vary gamma=log:0.1:10:5 \\\n"
       "      --vary gripper.0.direction=\"-90 deg\",\"0 deg\" -o map.csv\n"
-      "On a cluster, then merged:\n"
-      "  mpirun dlo sweep scene.toml --vary gamma=log:1:10:99 -o 'map.{shard}.csv'\n"
-      "  dlo sweep --merge map.*-of-*.csv -o map.csv");
+      "In parts, then merged (mpirun and Slurm arrays choose --shard by themselves):\n"
+      "  dlo sweep data/scenes/cable.toml --vary gamma=log:1:10:9 --shard 1/2 -o "
+      "'part.{shard}.csv'\n"
+      "  dlo sweep data/scenes/cable.toml --vary gamma=log:1:10:9 --shard 2/2 -o "
+      "'part.{shard}.csv'\n"
+      "  dlo sweep --merge part.*-of-*.csv -o all.csv");
   command->callback([options] { run(*options); });
 }
 

@@ -12,6 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/force_model/step_size.hpp"
 #include "log_search.hpp"
+#include "progress_counter.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -84,7 +85,9 @@ class ForceModelFitter {
  public:
   ForceModelFitter(const std::vector<Scene>& scenes, const std::vector<Scene>& holdouts,
                    const ForceModelFitOptions& options)
-      : options_(options), fitted_(scenes.size()) {
+      : options_(options),
+        fitted_(scenes.size()),
+        counter_(options.progress, static_cast<std::int64_t>(scenes.size() + holdouts.size()) + 1) {
     for (const std::vector<Scene>* list : {&scenes, &holdouts}) {
       for (const Scene& scene : *list) {
         cases_.push_back({scene, solve_reference(scene, Model::energy, options.solve)});
@@ -111,11 +114,13 @@ class ForceModelFitter {
       RuleDeviations physical{.rule = StiffnessRule::physical};
       for (const FittedCase& entry : cases_) {
         physical.rms_over_length.push_back(entry.chain(settings_, options_.solve));
+        counter_.add_one();
       }
       result_.rules.push_back(std::move(physical));
     }
     choose_stretch();
     step_to_rest();
+    counter_.add_one();
     const Scene& first = cases_.front().scene;
     result_.segment_length = discretise(first, settings_).parameters.segment_length;
     result_.bending_stiffness = first.bending_stiffness();
@@ -210,6 +215,7 @@ class ForceModelFitter {
       alone.c_b.push_back(fitted_c_b(centre, i, i + 1));
       alone.rms_over_length.push_back(
           cases_[i].chain_with(settings_, alone.c_b.back(), options_.solve));
+      counter_.add_one();
     }
     result_.rules.push_back(std::move(fitted));
     result_.rules.push_back(std::move(alone));
@@ -255,6 +261,7 @@ class ForceModelFitter {
       axial = std::min(axial, entry.scene.axial_stiffness());
     }
     settings_.c_c = stiffness > 0 ? std::min(stiffness, axial) : axial;
+    result_.c_c_is_physical = stiffness > axial;
   }
 
   /// Modes of all scenes at their starts and at rest.
@@ -303,6 +310,7 @@ class ForceModelFitter {
   std::vector<FittedCase> cases_;
   ForceModelSettings settings_;
   ForceModelFit result_;
+  ProgressCounter counter_;  // of scenes, then the runs to rest
 };
 
 double largest_of(const std::vector<double>& values, std::size_t begin, std::size_t end) {

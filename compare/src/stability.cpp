@@ -13,6 +13,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/polygon.hpp"
 #include "dlo/force_model/simulation.hpp"
+#include "progress_counter.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -163,8 +164,11 @@ std::vector<StabilityResult> stability(const StabilityOptions& options) {
   const std::size_t steppers = options.steppers.size();
   std::vector<energy_model::PolygonResult> references(cases.size());
   std::vector<StabilityResult> results(cases.size() * steppers);
+  ProgressCounter counter(options.progress,
+                          static_cast<std::int64_t>(references.size() + results.size()));
   const auto find_reference = [&](std::size_t i) {
     if (cases[i].refusal.empty()) references[i] = reference_of(cases[i]);
+    counter.add_one();
   };
   const auto run = [&](std::size_t i) {
     const HardCase& hard = cases[i / steppers];
@@ -172,6 +176,7 @@ std::vector<StabilityResult> stability(const StabilityOptions& options) {
     results[i] = hard.refusal.empty()
                      ? run_against(references[i / steppers], hard, stepper, options)
                      : refused(hard, stepper);
+    counter.add_one();
   };
   tbb::task_arena arena(arena_threads(options.threads));
   arena.execute([&] {

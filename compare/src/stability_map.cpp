@@ -16,6 +16,7 @@
 #include "dlo/compare/solve.hpp"
 #include "dlo/force_model/batch.hpp"
 #include "dlo/force_model/simulation.hpp"
+#include "progress_counter.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -100,7 +101,11 @@ Eigen::Matrix3Xd disturbed(const RodAtRest& rest) {
 class Trials {
  public:
   Trials(const std::vector<RodAtRest>& rods, const StabilityMapOptions& options)
-      : rods_(rods), options_(options), arena_(arena_threads(options.threads)) {}
+      : rods_(rods),
+        options_(options),
+        arena_(arena_threads(options.threads)),
+        counter_(options.progress, blocks_of(rods.size() * static_cast<std::size_t>(options.rows)) +
+                                       bisections * blocks_of(rods.size())) {}
 
   /// @param which  index of each trial's rod; @param c_F  of each trial [m/N]
   std::vector<Outcome> run(const std::vector<std::size_t>& which, const std::vector<double>& c_F) {
@@ -127,12 +132,18 @@ class Trials {
           if (seen != Outcome::pass) outcomes[i] = seen;
         }
       }
+      counter_.add_one();
     };
     arena_.execute([&] { tbb::parallel_for(std::size_t{0}, batch.blocks(), run_block); });
     return outcomes;
   }
 
  private:
+  static std::int64_t blocks_of(std::size_t rods) {
+    constexpr std::size_t block = force_model::Batch::rods_per_block;
+    return static_cast<std::int64_t>((rods + block - 1) / block);
+  }
+
   static Outcome look_at(const RodAtRest& rest, const Eigen::Matrix3Xd& points, bool diverged) {
     constexpr double reach = 10;  // lengths
     const double length = rest.rod.length();
@@ -145,6 +156,7 @@ class Trials {
   const std::vector<RodAtRest>& rods_;
   const StabilityMapOptions& options_;
   tbb::task_arena arena_;
+  ProgressCounter counter_;
 };
 
 void run_grid(const std::vector<RodAtRest>& rods, const StabilityMapOptions& options,

@@ -56,6 +56,9 @@ TEST(ShapeFile, ReadsLegacyVtkPolylines) {
   const std::string head = std::string(vtk_head) + vtk_points;
   expect_points(head + "LINES 1 4\n3 1 0 2\nPOINT_DATA 3\nSCALARS a float 1\n");
   expect_points(head + "LINES 2 6\n2 1 0\n2 0 2\n");
+  expect_points(head + "LINES 1 4\n3 1 0 2\nPOINT_DATA 3\nFIELD rod 2\na 1 3 double\n1 2 3\n" +
+                    "arc_length_m 1 3 double\n0.11 0 0.25\n",
+                true);
   expect_points(head +
                 "METADATA\nINFORMATION 0\n\nLINES 2 3\nOFFSETS vtktypeint64\n0 3\n"
                 "CONNECTIVITY vtktypeint64\n1 0 2\n");
@@ -142,6 +145,9 @@ TEST(ShapeFile, RefusesMalformedVtkWithFileAndLine) {
   const std::string points = head + vtk_points;
   expect_refused({
       {"<VTKFile type=\"PolyData\">", {"mine: XML", "legacy ASCII"}},
+      {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 2 double\n0 1\n", {"mine:9", "3 values"}},
+      {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 3 double\n0 1 b\n", {"mine:10", "\"b\""}},
+      {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 3 double\n0 1 1\n", {"s = 1 after 1"}},
       {"# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\n", {"mine:3: BINARY", "ASCII"}},
       {"# vtk DataFile Version 3.0\nt\n", {"mine:3: \"\"", "ASCII"}},
       {"# vtk DataFile Version 3.0\nt\nASCII\nDATASET STRUCTURED_GRID\n",

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solve.hpp"
 
@@ -29,6 +30,7 @@ struct ForceModelFitOptions {
   std::optional<int> points;
   double target = 1e-3;  ///< RMS deviation over the rod's length, > 0
   SolveOptions solve;    ///< limits of the solvers
+  Progress progress;     ///< over fits and runs to rest; may be empty
 };
 
 /// One rule on all scenes; values in their order, hold-out scenes last.
@@ -43,7 +45,10 @@ struct ForceModelFit {
   /// To be used: N, law, bookkeeping, c_b (law paper), c_c, and stepper dynamic with its c_F, c_h
   /// and l_s.
   ForceModelSettings settings;
-  bool c_b_was_given = false;         ///< `fitted` is then the given one
+  bool c_b_was_given = false;  ///< `fitted` is then the given one
+  /// The target asked for a stiffer rod than the material makes: c_c is AE, and the rod's own
+  /// stretch, which the energy model leaves out, is part of the deviation.
+  bool c_c_is_physical = false;
   double target = 0;                  ///< RMS deviation over the length that was asked for [-]
   std::vector<std::string> scenes;    ///< names, hold-out scenes last
   std::vector<double> gammas;         ///< w l^3 / (EI) of each scene [-]

@@ -5,6 +5,7 @@
 
 #include "dlo/compare/hard_case.hpp"
 #include "dlo/compare/outcome.hpp"
+#include "dlo/compare/progress.hpp"
 
 namespace dlo::compare {
 
@@ -24,6 +25,7 @@ struct StabilityOptions {
   std::vector<StepperName> steppers = {StepperName::basic, StepperName::limited,
                                        StepperName::relative, StepperName::dynamic,
                                        StepperName::automatic};
+  Progress progress;  ///< over references and runs; may be empty
 };
 
 /// What one stepper makes of one hard case.

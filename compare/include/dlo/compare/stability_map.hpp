@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dlo/compare/outcome.hpp"
+#include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
 
 namespace dlo::compare {
@@ -18,6 +19,7 @@ struct StabilityMapOptions {
   int rows = 32;                ///< values of c_F, >= 2
   long steps = 20'000;  ///< of each rod, >= 1; a limit is found to about 10 / steps of itself
   int threads = 1;      ///< at most; 0: as many as the machine has
+  Progress progress;    ///< over blocks of rods; may be empty
 };
 
 /// One rod of the grid.

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+
+namespace dlo::compare {
+
+/// Called with how much is done and how much there is, in a unit of the function's own. From any
+/// thread, but one call at a time, and `done` grows by one from call to call.
+using Progress = std::function<void(std::int64_t done, std::int64_t total)>;
+
+}  // namespace dlo::compare

@@ -1,0 +1,73 @@
+// Progress and colours: on a terminal only, and never in a result.
+
+#include <gtest/gtest.h>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Command;
+using dlo::test::Outcome;
+
+class Terminal : public Command {
+ protected:
+  /// What a terminal shows of a command.
+  [[nodiscard]] std::string seen(const std::string& environment, const std::string& arguments) {
+    const std::string line = "env " + environment + " script -qec '" + std::string(DLO_COMMAND) +
+                             " " + arguments + "' " + path("typescript") + " >/dev/null </dev/null";
+    EXPECT_EQ(std::system(line.c_str()) & ~0x100, 0) << line;
+    return read(path("typescript"));
+  }
+};
+
+constexpr const char* erased = "\r\x1b[K";
+
+TEST_F(Terminal, ProgressIsShownAndErased) {
+  const std::string grid =
+      "sweep " + steel() + " --vary gamma=log:0.1:1:40 --threads 2 --restart -o ";
+  const std::string text = seen("TERM=xterm", grid + path("a.csv"));
+  EXPECT_NE(text.find("sweep ["), std::string::npos) << text;
+  EXPECT_NE(text.find("100 %, 40 of 40"), std::string::npos) << text;
+  EXPECT_NE(text.find(erased), std::string::npos) << text;
+  // Nothing is left behind the last erasure but script's own last line.
+  const std::string rest = text.substr(text.rfind(erased) + 4);
+  EXPECT_EQ(rest.find("sweep"), std::string::npos) << rest;
+  // The result is the same without a terminal, where there is no progress.
+  const Outcome quiet = run(grid + path("b.csv"));
+  EXPECT_EQ(quiet.err, "");
+  EXPECT_EQ(read(path("a.csv")), read(path("b.csv")));
+}
+
+TEST_F(Terminal, LongCommandsShowProgress) {
+  EXPECT_NE(seen("TERM=xterm", "stability --case folded --stepper auto").find("2 of 2"),
+            std::string::npos);
+  EXPECT_NE(seen("TERM=xterm", "stability --map cF-cc --columns 2 --rows 8 --map-steps 100")
+                .find("14 of 14"),
+            std::string::npos);
+  EXPECT_NE(seen("TERM=xterm", "bench " + steel() + " --seconds 0.1").find("bench: "),
+            std::string::npos);
+  EXPECT_NE(seen("TERM=xterm", "compare " + steel() + " " + steel()).find("2 of 2"),
+            std::string::npos);
+  EXPECT_NE(seen("TERM=xterm", "calibrate " + steel() + " --law hooke --target 1%").find("2 of 2"),
+            std::string::npos);
+}
+
+TEST_F(Terminal, ADumbTerminalGetsPlainText) {
+  const std::string text = seen("TERM=dumb", "compare " + steel() + " " + steel());
+  EXPECT_EQ(text.find('\x1b'), std::string::npos) << text;
+}
+
+TEST_F(Terminal, ColoursAreForTerminalsThatWantThem) {
+  ASSERT_EQ(run("solve " + steel() + " --format csv -o " + path("s.csv")).status, 0);
+  const std::string check = "check " + steel() + " --tolerance 1% --shape " + path("s.csv");
+  const std::string green = "\x1b[32mpass\x1b[0m";
+  EXPECT_NE(seen("TERM=xterm", check).find(green), std::string::npos);
+  EXPECT_EQ(seen("TERM=xterm NO_COLOR=1", check).find(green), std::string::npos);
+  EXPECT_NE(seen("TERM=xterm NO_COLOR=", check).find(green), std::string::npos);
+  EXPECT_EQ(seen("TERM=dumb", check).find('\x1b'), std::string::npos);
+  EXPECT_EQ(run(check).out.find('\x1b'), std::string::npos);
+  (void)seen("TERM=xterm", check + " -o " + path("check.txt"));
+  EXPECT_EQ(read(path("check.txt")), run(check).out);
+}
+
+}  // namespace
