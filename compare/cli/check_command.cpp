@@ -222,7 +222,7 @@ void add_check(CLI::App& app) {
   add_output_options(*command, options->output);
   command->footer(
       "Example, with dlo in place of your simulator:\n"
-      "  dlo solve data/scenes/cable.toml --model force --format csv -o mine.csv\n"
+      "  dlo solve data/scenes/cable.toml --model force --points 32 --format csv -o mine.csv\n"
       "  dlo check data/scenes/cable.toml --shape mine.csv --tolerance 1%");
   command->callback([options] { run(*options); });
 }
