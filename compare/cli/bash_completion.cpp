@@ -43,7 +43,8 @@ std::string command_case(const CLI::App& command) {
     const OptionText text = option_text(*option);
     const std::string completion = completion_of(text);
     if (completion.empty() || text.optional_value) continue;
-    append(out, "        {}) files= options= {} ;;\n", fmt::join(text.names, "|"), completion);
+    append(out, "        {}) values= files= options= {} ;;\n", fmt::join(text.names, "|"),
+           completion);
   }
   append(out, "      esac ;;\n");
   return out;

@@ -47,9 +47,10 @@ double tolerance_m(const std::string& text, double length) {
     } else {
       value = compare::parse_quantity(text, compare::Dimension::length);
     }
-  } catch (const compare::InputError& error) {
+  } catch (const compare::InputError&) {
     throw compare::InputError(fmt::format(
-        "--tolerance = {}: {} (or a share of the length such as 1%)", text, error.what()));
+        "--tolerance = {}: neither a length nor a share of it (allowed: such as \"2 mm\" or 1%)",
+        text));
   }
   if (value > 0) return value;
   throw compare::InputError(fmt::format("--tolerance = {}: out of range (allowed: > 0)", text));
@@ -72,9 +73,8 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
          s.front(), s.back(), (s.back() - s.front()) / scene.length * 100, c.polyline_length_m,
          c.largest_gap_m, c.largest_gap_at_m);
   if (c.polyline_length_m > 1.1 * scene.length) {
-    append(
-        out,
-        "                  (longer than the rod: noise between close points, or another unit?)\n");
+    append(out,
+           "                  (longer than the rod: noise between close points, or --unit?)\n");
   }
   if (options.shapes.pose() == compare::PoseFreedom::known) {
     append(out, "  frame           the scene's\n");
@@ -224,7 +224,7 @@ void add_check(CLI::App& app) {
   add_output_options(*command, options->output);
   command->footer(
       "Example, with dlo in place of your simulator:\n"
-      "  dlo solve data/scenes/cable.toml --model force --format csv -o mine.csv\n"
+      "  dlo solve data/scenes/cable.toml --model force --points 32 --format csv -o mine.csv\n"
       "  dlo check data/scenes/cable.toml --shape mine.csv --tolerance 1%");
   command->callback([options] { run(*options); });
 }

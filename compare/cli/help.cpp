@@ -70,15 +70,15 @@ class HelpFormatter : public CLI::Formatter {
   }
 
   /// CLI11 ends every group but the last with an empty line.
-  std::string make_group(std::string group, bool is_argument,
-                         std::vector<const CLI::Option*> options) const override {
+  [[nodiscard]] std::string make_group(std::string group, bool is_argument,
+                                       std::vector<const CLI::Option*> options) const override {
     std::string text = is_argument ? "\nArguments:\n" : group + ":\n";
     if (!is_argument && group == "Options") text.insert(0, "\n");
     for (const CLI::Option* option : options) text += make_option(option, is_argument);
     return text;
   }
 
-  std::string make_subcommands(const CLI::App* app, CLI::AppFormatMode) const override {
+  std::string make_subcommands(const CLI::App* app, CLI::AppFormatMode /*mode*/) const override {
     std::string text;
     std::string group;
     for (const CLI::App* command : commands_of(*app)) {

@@ -74,7 +74,7 @@ std::string command_section(const CLI::App& command) {
   out += ".Bl -tag -width Ds\n";
   for (const CLI::Option* argument : arguments_of(command)) out += item(*argument);
   for (const CLI::Option* option : options_of(command)) out += item(*option);
-  return out + ".El\n.Pp\n" + literal(command.get_footer());
+  return out + ".El\n" + literal(command.get_footer());
 }
 
 /// Of the page: SOURCE_DATE_EPOCH, which reproducible builds set, or today.
@@ -131,7 +131,7 @@ From nothing to parameters of the force model:
 }  // namespace
 
 std::string manual_page(const CLI::App& app) {
-  std::string out = ".Dd " + date() + "\n.Dt DLO 1\n.Os dlo " DLO_VERSION "\n";
+  std::string out = ".Dd " + date() + "\n.Dt DLO 1\n.Os\n";
   out +=
       ".Sh NAME\n.Nm dlo\n.Nd compare fast rod models with the physics of bending\n"
       ".Sh SYNOPSIS\n.Nm\n.Ar command\n.Op Ar options\n"

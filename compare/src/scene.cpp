@@ -227,6 +227,9 @@ Scene read_scene(const toml::table& root, const std::string& file,
   scene.name = table.optional_text("name").value_or(file);
   scene.gravity = table.optional_vector("gravity", Dimension::acceleration).value_or(scene.gravity);
 
+  if (!table.has("rod")) {
+    table.fail("rod", "missing, it is required (dlo init writes a scene to start from)");
+  }
   StrictTable rod = table.table("rod");
   scene.length = rod.number("length", Dimension::length, Range::between(1e-6, 1e6, " m"));
   scene.diameter = rod.number("diameter", Dimension::length, Range::between(1e-9, 1e3, " m"));

@@ -90,8 +90,9 @@ void add_row(const std::vector<std::string_view>& fields, const Columns& columns
     const std::string_view field = fields[*columns.of[k]];
     const std::optional<double> value = shape_number(field);
     if (!value) {
-      throw InputError(
-          fmt::format("{}: {} = {} is not a number", where, column_names[k], quoted_piece(field)));
+      throw InputError(fmt::format(
+          "{}: {} = {} is not a number{}", where, column_names[k], quoted_piece(field),
+          field.find(',') == std::string_view::npos ? "" : " (allowed: decimal points)"));
     }
     values[k] = *value;
   }

@@ -71,7 +71,8 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
     solution.curvature.push_back(shape.curvature.col(column).norm());
     if (touches) continue;
     const Eigen::Vector3d force = section_force(scene, solution.grippers, samples[i]);
-    solution.tension.push_back(force.dot(shape.tangents.col(column)));
+    // Adding zero turns -0 into 0.
+    solution.tension.push_back(force.dot(shape.tangents.col(column)) + 0.0);
   }
   solution.smallest_curvature = equilibrium.smallest_curvature;
   solution.evaluations = equilibrium.evaluations;

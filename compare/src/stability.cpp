@@ -153,13 +153,16 @@ StabilityResult run_hard_case(const HardCase& hard, StepperName stepper,
 
 std::vector<StabilityResult> stability(const StabilityOptions& options) {
   std::vector<HardCase> cases = hard_cases(options.steps_at_rest);
+  std::string names;
+  for (const HardCase& hard : cases) names += (names.empty() ? "" : ", ") + hard.name;
   std::erase_if(cases, [&](const HardCase& hard) {
     return hard.name.find(options.name_contains) == std::string::npos ||
            std::find(options.left_out.begin(), options.left_out.end(), hard.name) !=
                options.left_out.end();
   });
   if (cases.empty()) {
-    throw InputError(fmt::format("no hard case's name contains '{}'", options.name_contains));
+    throw InputError(fmt::format("no hard case's name contains '{}' (allowed: part of {})",
+                                 options.name_contains, names));
   }
   const std::size_t steppers = options.steppers.size();
   std::vector<energy_model::PolygonResult> references(cases.size());

@@ -240,8 +240,9 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
   } catch (const toml::parse_error& error) {
     std::string description(error.description());
     std::replace(description.begin(), description.end(), '\n', ' ');
-    throw InputError(
-        fmt::format("{}:{}: not valid TOML: {}", file, error.source().begin.line, description));
+    throw InputError(fmt::format(
+        "{}:{}: not valid TOML: {} (text, and a number with a unit, is in quotes: \"2 mm\")", file,
+        error.source().begin.line, description));
   }
 }
 
@@ -251,8 +252,10 @@ std::string read_file(const std::string& path) {
   errno = 0;
   if (stream) text << stream.rdbuf();
   if (!stream || (text.str().empty() && errno != 0)) {
-    throw InputError(fmt::format("{}: cannot be read ({})", path,
-                                 errno != 0 ? std::strerror(errno) : "no such file"));
+    const std::string reason = errno != 0 ? std::strerror(errno) : "no such file";
+    const bool scene = std::ifstream(path + ".toml").good();
+    throw InputError(fmt::format("{}: cannot be read ({}{})", path, reason,
+                                 scene ? ", but " + path + ".toml is there" : ""));
   }
   return text.str();
 }

@@ -77,7 +77,7 @@ class Reference : public Command {
 };
 
 TEST_F(Reference, EveryExampleOfEveryHelpWorks) {
-  // Its example is dlo paper itself, half a minute: PaperReport's tests run what it does.
+  // Longer than all others together; their own tests run what they do.
   const std::set<std::string> too_long = {"paper", "report"};
   const std::vector<std::string> all = commands();
   EXPECT_GE(all.size(), 11U);

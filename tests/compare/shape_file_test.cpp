@@ -145,8 +145,8 @@ TEST(ShapeFile, RefusesMalformedVtkWithFileAndLine) {
   const std::string points = head + vtk_points;
   expect_refused({
       {"<VTKFile type=\"PolyData\">", {"mine: XML", "legacy ASCII"}},
-      {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 2 double\n0 1\n", {"mine:9", "3 values"}},
-      {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 3 double\n0 1 b\n", {"mine:10", "\"b\""}},
+      {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 2 double\n0 1\n", {"mine:10", "3 values"}},
+      {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 3 double\n0 1 b\n", {"mine:11", "\"b\""}},
       {points + "POINT_DATA 3\nFIELD f 1\narc_length_m 1 3 double\n0 1 1\n", {"s = 1 after 1"}},
       {"# vtk DataFile Version 3.0\nt\nBINARY\nDATASET POLYDATA\n", {"mine:3: BINARY", "ASCII"}},
       {"# vtk DataFile Version 3.0\nt\n", {"mine:3: \"\"", "ASCII"}},
