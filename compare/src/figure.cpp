@@ -125,7 +125,7 @@ std::string gnuplot_version() {
   const std::filesystem::path folder = std::filesystem::temp_directory_path();
   const std::string stem = fmt::format("dlo_gnuplot_{}", ::getpid());
   const Child child = run_gnuplot(folder, "--version", stem + ".out", stem + ".err");
-  const std::string version = child.good() ? one_line(text_of(folder / (stem + ".out"))) : "";
+  std::string version = child.good() ? one_line(text_of(folder / (stem + ".out"))) : "";
   std::error_code ignored;
   std::filesystem::remove(folder / (stem + ".out"), ignored);
   std::filesystem::remove(folder / (stem + ".err"), ignored);

@@ -85,7 +85,7 @@ struct FrontCurve {
 };
 
 bool of_law(const BenchmarkRun& run, Model model, const char* law) {
-  return run.model == model && run.setting.find(law) == 0;
+  return run.model == model && run.setting.starts_with(law);
 }
 
 constexpr const char* hooke_setting = "hooke, consistent";
