@@ -161,7 +161,7 @@ void add_modulus(const Report& report, Page& page) {
   page.table(modulus_table(report));
   if (!report.options.history) return page.paragraph("E*/E against time was left out.");
   page.paragraph(
-      "On the way from straight to rest E*/E falls. Stepper basic, no dynamics, c_F = 0.86 L/(2 "
+      "On the way from straight to rest E*/E changes. Stepper basic, no dynamics, c_F = 0.86 L/(2 "
       "c_c), as in Table 1's proportion, and c_c = AE/1000, as the paper used, unless the scene "
       "names them; 4000 steps are a simulated second (Table 2). Rods with one clamp only.");
   page.figures("modulus");

@@ -73,7 +73,7 @@ std::string largest_part(const Budget& b) {
                      largest->second->share * 100);
 }
 
-void add_shapes(const Report& report, std::vector<std::string>& verdict) {
+void say_shapes(const Report& report, std::vector<std::string>& verdict) {
   for (const auto& group : groups_of(report)) {
     Extent rms;
     Extent ratio;
@@ -97,7 +97,7 @@ void add_shapes(const Report& report, std::vector<std::string>& verdict) {
   }
 }
 
-void add_claim_of_a_third(const Report& report, std::vector<std::string>& verdict) {
+void say_claim_of_a_third(const Report& report, std::vector<std::string>& verdict) {
   if (!report.paper || report.printed_weight.empty()) return;
   Extent rest;
   Extent own;
@@ -118,7 +118,7 @@ void add_claim_of_a_third(const Report& report, std::vector<std::string>& verdic
       rest.text(), own.text(), printed.text()));
 }
 
-void add_speed(const Report& report, std::vector<std::string>& verdict) {
+void say_speed(const Report& report, std::vector<std::string>& verdict) {
   if (!report.benchmark) return;
   for (const SceneBenchmark& scene : report.benchmark->scenes) {
     if (!scene.energy_at_1e6 || !scene.force_at_1e3) continue;
@@ -135,7 +135,7 @@ void add_speed(const Report& report, std::vector<std::string>& verdict) {
   }
 }
 
-void add_stability(const Report& report, std::vector<std::string>& verdict) {
+void say_stability(const Report& report, std::vector<std::string>& verdict) {
   Extent ratio;
   if (report.map) {
     for (const MapColumn& column : report.map->columns)
@@ -171,10 +171,10 @@ void add_stability(const Report& report, std::vector<std::string>& verdict) {
 
 std::vector<std::string> report_verdict(const Report& report) {
   std::vector<std::string> verdict;
-  add_shapes(report, verdict);
-  add_claim_of_a_third(report, verdict);
-  add_speed(report, verdict);
-  add_stability(report, verdict);
+  say_shapes(report, verdict);
+  say_claim_of_a_third(report, verdict);
+  say_speed(report, verdict);
+  say_stability(report, verdict);
   for (const std::string& failure : report.failures) {
     verdict.push_back("Not computed: " + failure);
   }
