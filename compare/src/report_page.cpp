@@ -132,8 +132,9 @@ void add_verdict(const Report& report, Page& page) {
 void add_shapes(const Report& report, Page& page) {
   page.section("shapes", "Shapes and curvature");
   page.paragraph(
-      "Both models at rest, drawn with one scale for both axes. Next to the force model as the "
-      "scene says it: the same with law hooke and bookkeeping consistent.");
+      "Both models at rest, drawn with one scale for both axes. Besides the force model as the "
+      "scene "
+      "says it, unless it says just this: the same with law hooke and bookkeeping consistent.");
   page.figures("shapes");
   page.section("deviation", "How far apart");
   page.table(deviation_table(report));

@@ -22,6 +22,7 @@ class Extent {
     ++count_;
   }
   [[nodiscard]] bool empty() const { return count_ == 0; }
+  [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] double least() const { return least_; }
   [[nodiscard]] double largest() const { return largest_; }
   [[nodiscard]] std::string text(double scale = 1) const {
@@ -80,20 +81,24 @@ void say_shapes(const Report& report, std::vector<std::string>& verdict) {
     std::ptrdiff_t right = 0;
     for (const Comparison* c : group) {
       rms.add(c->deviation.rms_over_length);
-      ratio.add(c->effective_modulus.ratio);
+      if (c->effective_modulus.optimum == Optimum::clear) ratio.add(c->effective_modulus.ratio);
       if (c->deviation.rms_over_length <= report.options.tolerance) ++right;
     }
     const Comparison& worst = **std::max_element(
         group.begin(), group.end(), [](const Comparison* a, const Comparison* b) {
           return a->deviation.rms_over_length < b->deviation.rms_over_length;
         });
+    // Where the fit is flat or at its range's end, E* says nothing.
+    const std::string modulus =
+        ratio.empty() ? "nowhere to be told" : ratio.text() + " where it can be told";
     verdict.push_back(
         fmt::format("Law {}, bookkeeping {}: {} of {} shapes are right within {} of the length. "
                     "RMS {} % of the "
                     "length, E*/E at rest {}. Worst is {}; the main reason is {}.",
                     to_string(worst.settings.law), to_string(worst.settings.bookkeeping), right,
                     group.size(), page_percent(report.options.tolerance), rms.text(100),
-                    ratio.text(), worst.scene, largest_part(worst.budget)));
+                    ratio.count() == static_cast<int>(group.size()) ? ratio.text() : modulus,
+                    worst.scene, largest_part(worst.budget)));
   }
 }
 
