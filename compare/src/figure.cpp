@@ -59,7 +59,7 @@ std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
-std::string one_line(std::string text) {
+std::string joined_lines(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
   const std::size_t first = text.find_first_not_of(' ');
@@ -125,7 +125,7 @@ std::string gnuplot_version() {
   const std::filesystem::path folder = std::filesystem::temp_directory_path();
   const std::string stem = fmt::format("dlo_gnuplot_{}", ::getpid());
   const Child child = run_gnuplot(folder, "--version", stem + ".out", stem + ".err");
-  const std::string version = child.good() ? one_line(text_of(folder / (stem + ".out"))) : "";
+  std::string version = child.good() ? joined_lines(text_of(folder / (stem + ".out"))) : "";
   std::error_code ignored;
   std::filesystem::remove(folder / (stem + ".out"), ignored);
   std::filesystem::remove(folder / (stem + ".err"), ignored);
@@ -135,7 +135,7 @@ std::string gnuplot_version() {
 std::string draw(const Figure& figure, const std::filesystem::path& folder) {
   const std::string messages = figure.name + ".err";
   const Child child = run_gnuplot(folder, figure.name + ".gp", "/dev/null", messages);
-  const std::string message = one_line(text_of(folder / messages));
+  const std::string message = joined_lines(text_of(folder / messages));
   std::error_code ignored;
   std::filesystem::remove(folder / messages, ignored);
   if (child.error != 0) {

@@ -45,8 +45,8 @@ Figure history_figure(const std::string& name, const std::vector<const SceneHist
                 .command = command,
                 .csv_file = name + ".csv"};
   figure.description =
-      "E*/E against simulated time, both logarithmic, falling from well above the paper's 1/3 "
-      "(a dashed level) to the value at rest, on the right. The paper's simulations took 28 s.";
+      "E*/E against simulated time, both logarithmic, beside the paper's 1/3 (a dashed level), and "
+      "on the right at rest. The paper's simulations took 28 s.";
   figure.csv = "curve,scene_file,time_s,steps,effective_modulus_ratio,rms_at_effective_modulus_m\n";
   constexpr double place_of_rest = 600;  // on the axis of time
   std::string plots;
@@ -85,7 +85,7 @@ struct FrontCurve {
 };
 
 bool of_law(const BenchmarkRun& run, Model model, const char* law) {
-  return run.model == model && run.setting.find(law) == 0;
+  return run.model == model && run.setting.starts_with(law);
 }
 
 constexpr const char* hooke_setting = "hooke, consistent";
@@ -163,8 +163,9 @@ Figure map_figure(const Report& report) {
       .title = map.scene + ": largest stable c_F",
       .description =
           "Grid of step factors c_F over stretch stiffnesses c_c, both logarithmic, each point by "
-          "what became of the rod: stable, growing within bounds, or diverged. The predicted limit "
-          "runs below the measured one; Table 1's proportion crosses it where c_c is small.",
+          "what became of the rod: stable, growing within bounds, or diverged. Lines for the "
+          "predicted "
+          "limit, the measured one, and Table 1's proportion.",
       .command = map_command(report) + " --format csv",
       .csv_file = "stability_map.csv"};
   figure.csv = "kind,c_c_N,c_h,c_F_m_per_N\n";
@@ -191,7 +192,7 @@ Figure map_figure(const Report& report) {
       {"pass", "stable", "with points linecolor rgb '#0059A8' pointtype 7 pointsize 0.25"},
       {"oscillates", "grows, within bounds",
        "with points linecolor rgb '#8A2F85' pointtype 8 pointsize 0.6"},
-      {"diverges", "diverges", "with points linecolor rgb '#B34700' pointtype 2 pointsize 0.5"},
+      {"diverges", "diverges", "with points linecolor rgb '#B34700' pointtype 2 pointsize 0.7"},
       {"predicted", "predicted limit", "with lines linecolor rgb 'black' dashtype 1 linewidth 2"},
       {"measured", "measured limit",
        "with linespoints linecolor rgb '#00704F' dashtype 2 pointtype 4 pointsize 0.7"},

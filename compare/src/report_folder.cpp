@@ -54,8 +54,8 @@ std::string foreign_file(const fs::path& folder) {
   const std::set<std::string> files = listed(folder);
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     if (entry.is_directory() && !entry.is_symlink()) continue;
-    const std::string name = entry.path().lexically_relative(folder).string();
-    if (files.count(name) == 0) return name;
+    std::string name = entry.path().lexically_relative(folder).string();
+    if (!files.contains(name)) return name;
   }
   return {};
 }

@@ -132,8 +132,9 @@ void add_verdict(const Report& report, Page& page) {
 void add_shapes(const Report& report, Page& page) {
   page.section("shapes", "Shapes and curvature");
   page.paragraph(
-      "Both models at rest, drawn with one scale for both axes. Next to the force model as the "
-      "scene says it: the same with law hooke and bookkeeping consistent.");
+      "Both models at rest, drawn with one scale for both axes. Besides the force model as the "
+      "scene "
+      "says it, unless it says just this: the same with law hooke and bookkeeping consistent.");
   page.figures("shapes");
   page.section("deviation", "How far apart");
   page.table(deviation_table(report));
@@ -161,7 +162,7 @@ void add_modulus(const Report& report, Page& page) {
   page.table(modulus_table(report));
   if (!report.options.history) return page.paragraph("E*/E against time was left out.");
   page.paragraph(
-      "On the way from straight to rest E*/E falls. Stepper basic, no dynamics, c_F = 0.86 L/(2 "
+      "On the way from straight to rest E*/E changes. Stepper basic, no dynamics, c_F = 0.86 L/(2 "
       "c_c), as in Table 1's proportion, and c_c = AE/1000, as the paper used, unless the scene "
       "names them; 4000 steps are a simulated second (Table 2). Rods with one clamp only.");
   page.figures("modulus");

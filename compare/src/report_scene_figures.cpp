@@ -13,12 +13,12 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int reference_samples = 201;
+constexpr int drawn_samples = 201;
 constexpr double plot_width = figure_width - left_margin - right_margin;  // [pixels]
 constexpr double highest_plot = 460;                                      // [pixels]
 constexpr double flattest_plot = 110;                                     // [pixels]
 constexpr int curvature_plot = 280;                                       // height [pixels]
-constexpr double same_shape = 1e-6;                                       // of the length
+constexpr double same_curve = 1e-6;                                       // of the length
 constexpr const char* axis_names = "xyz";
 
 /// One shape of a figure.
@@ -79,7 +79,7 @@ Series reference_series(const Comparison& comparison, const Scene& scene, const 
   Series series{.id = "energy",
                 .title = "energy model (the rod itself)",
                 .style = "with lines linecolor rgb 'black' linewidth 2 dashtype 1"};
-  series.arc_length = equal_arc_lengths(scene.length, reference_samples);
+  series.arc_length = equal_arc_lengths(scene.length, drawn_samples);
   const energy_model::Samples samples = comparison.reference_rod(series.arc_length);
   series.points = samples.points;
   const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view);
@@ -121,7 +121,7 @@ std::vector<Series> series_of(const SceneReport& report, const View& view) {
   if (comparisons.size() > 1) {
     Series other = reference_series(comparisons.back(), scene, view);
     if ((other.points - all.front().points).colwise().norm().maxCoeff() >
-        same_shape * scene.length) {
+        same_curve * scene.length) {
       other.id = "energy_of_hooke";
       other.title = "energy model, the state that law hooke is in";
       other.style = "with lines linecolor rgb '#606060' linewidth 2 dashtype 4";

@@ -61,7 +61,7 @@ void add_answers(const SceneBenchmark& scene, const char* kind,
 /// What became of it, in a word, and how far it is off.
 std::string outcome_cell(const StabilityResult& result) {
   const bool creeping = result.outcome == Outcome::wrong && !result.at_rest;
-  const std::string word = creeping ? "creeping" : to_string(result.outcome);
+  std::string word = creeping ? "creeping" : to_string(result.outcome);
   if (result.outcome == Outcome::refused) return word;
   const char* mark = result.outcome == Outcome::pass ? "✓" : "✗";
   if (!std::isfinite(result.error_over_length)) return fmt::format("{} {}", mark, word);

@@ -22,6 +22,7 @@ class Extent {
     ++count_;
   }
   [[nodiscard]] bool empty() const { return count_ == 0; }
+  [[nodiscard]] int count() const { return count_; }
   [[nodiscard]] double least() const { return least_; }
   [[nodiscard]] double largest() const { return largest_; }
   [[nodiscard]] std::string text(double scale = 1) const {
@@ -73,31 +74,35 @@ std::string largest_part(const Budget& b) {
                      largest->second->share * 100);
 }
 
-void add_shapes(const Report& report, std::vector<std::string>& verdict) {
+void say_shapes(const Report& report, std::vector<std::string>& verdict) {
   for (const auto& group : groups_of(report)) {
     Extent rms;
     Extent ratio;
     std::ptrdiff_t right = 0;
     for (const Comparison* c : group) {
       rms.add(c->deviation.rms_over_length);
-      ratio.add(c->effective_modulus.ratio);
+      if (c->effective_modulus.optimum == Optimum::clear) ratio.add(c->effective_modulus.ratio);
       if (c->deviation.rms_over_length <= report.options.tolerance) ++right;
     }
     const Comparison& worst = **std::max_element(
         group.begin(), group.end(), [](const Comparison* a, const Comparison* b) {
           return a->deviation.rms_over_length < b->deviation.rms_over_length;
         });
+    // Where the fit is flat or at its range's end, E* says nothing.
+    const std::string modulus =
+        ratio.empty() ? "nowhere to be told" : ratio.text() + " where it can be told";
     verdict.push_back(
         fmt::format("Law {}, bookkeeping {}: {} of {} shapes are right within {} of the length. "
                     "RMS {} % of the "
                     "length, E*/E at rest {}. Worst is {}; the main reason is {}.",
                     to_string(worst.settings.law), to_string(worst.settings.bookkeeping), right,
                     group.size(), page_percent(report.options.tolerance), rms.text(100),
-                    ratio.text(), worst.scene, largest_part(worst.budget)));
+                    ratio.count() == static_cast<int>(group.size()) ? ratio.text() : modulus,
+                    worst.scene, largest_part(worst.budget)));
   }
 }
 
-void add_claim_of_a_third(const Report& report, std::vector<std::string>& verdict) {
+void say_claim_of_a_third(const Report& report, std::vector<std::string>& verdict) {
   if (!report.paper || report.printed_weight.empty()) return;
   Extent rest;
   Extent own;
@@ -118,7 +123,7 @@ void add_claim_of_a_third(const Report& report, std::vector<std::string>& verdic
       rest.text(), own.text(), printed.text()));
 }
 
-void add_speed(const Report& report, std::vector<std::string>& verdict) {
+void say_speed(const Report& report, std::vector<std::string>& verdict) {
   if (!report.benchmark) return;
   for (const SceneBenchmark& scene : report.benchmark->scenes) {
     if (!scene.energy_at_1e6 || !scene.force_at_1e3) continue;
@@ -135,7 +140,7 @@ void add_speed(const Report& report, std::vector<std::string>& verdict) {
   }
 }
 
-void add_stability(const Report& report, std::vector<std::string>& verdict) {
+void say_stability(const Report& report, std::vector<std::string>& verdict) {
   Extent ratio;
   if (report.map) {
     for (const MapColumn& column : report.map->columns)
@@ -171,10 +176,10 @@ void add_stability(const Report& report, std::vector<std::string>& verdict) {
 
 std::vector<std::string> report_verdict(const Report& report) {
   std::vector<std::string> verdict;
-  add_shapes(report, verdict);
-  add_claim_of_a_third(report, verdict);
-  add_speed(report, verdict);
-  add_stability(report, verdict);
+  say_shapes(report, verdict);
+  say_claim_of_a_third(report, verdict);
+  say_speed(report, verdict);
+  say_stability(report, verdict);
   for (const std::string& failure : report.failures) {
     verdict.push_back("Not computed: " + failure);
   }

@@ -307,6 +307,19 @@ TEST(Report, PutsTheVerdictInNumbers) {
   EXPECT_THROW((void)make_report({heavy_file()}, options), std::invalid_argument);
 }
 
+TEST(Report, GivesNoModulusThatTheShapesDoNotTell) {
+  // Between two clamps the shape hardly depends on the stiffness.
+  SceneFile file = heavy_file();
+  file.scene = test::heavy_scene(1.5, 0);
+  file.scene.grippers.push_back(file.scene.grippers.front());
+  file.scene.grippers.back().at = 1;
+  file.scene.grippers.back().position.x() = 0.8;
+  const Report report = make_report({file}, small_report());
+  ASSERT_EQ(report.scenes.front().comparisons.size(), 1U);
+  ASSERT_NE(report.scenes.front().comparisons.front().effective_modulus.optimum, Optimum::clear);
+  EXPECT_THAT(report_verdict(report).front(), HasSubstr("E*/E at rest nowhere to be told"));
+}
+
 TEST(Report, TakesASceneThatIsHookeanOnce) {
   SceneFile file = heavy_file();
   file.scene.force_model = {.points = 8};
