@@ -128,6 +128,24 @@ TEST(CatchUpLoop, CarriesTheOvershootToTheNextCall) {
   EXPECT_EQ(simulation.steps(), 5);
 }
 
+TEST(Simulation, ACopyGoesOnAsTheOriginalAndLeavesItAlone) {
+  const StepOptions dynamic = options(Stepper::dynamic, 1e-5, 1e-4, 0.9);
+  Simulation original(steel_rod(), SteelRod().straight(), dynamic);
+  for (int i = 0; i < 50; ++i) (void)original.step();
+  const Eigen::Matrix3Xd before = original.points();
+  const Simulation constructed(original);
+  Simulation assigned(steel_rod(1), SteelRod().straight(), dynamic);
+  assigned = constructed;
+  for (int i = 0; i < 50; ++i) (void)assigned.step();
+  EXPECT_EQ((original.points() - before).norm(), 0);
+  EXPECT_EQ((constructed.points() - before).norm(), 0);
+  for (int i = 0; i < 50; ++i) (void)original.step();
+  // The momentum of the last step has been copied as well.
+  EXPECT_EQ((original.points() - assigned.points()).norm(), 0);
+  EXPECT_GT((original.points() - before).norm(), 0);
+  EXPECT_EQ(assigned.steps(), 100);
+}
+
 TEST(Step, BeyondTheStabilityLimitDivergesAndSaysSo) {
   const double c_F = 10 / mode_bounds(steel_rod(), SteelRod().straight()).fastest * 4;
   Simulation simulation(steel_rod(), SteelRod().straight(), options(Stepper::basic, c_F));

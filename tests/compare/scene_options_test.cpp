@@ -1,0 +1,93 @@
+// An option of the command line means what the same key of the scene's file means.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Command;
+using dlo::test::Outcome;
+using nlohmann::json;
+
+constexpr const char* short_rod = R"(gravity = [0, -9.81, 0]
+[rod]
+length = "50 cm"
+diameter = "2 mm"
+material = "spring_steel"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+[force_model]
+points = 8
+c_c = 660
+)";
+
+class SceneOptions : public Command {
+ protected:
+  /// `dlo solve` of the rod with more keys in its [force_model] and more options; without the time.
+  json solved(const std::string& keys, const std::string& options) {
+    const Outcome result = run(words({"solve", scene(short_rod + keys), "--format json", options}));
+    EXPECT_EQ(result.status, 0) << options << "\n" << result.err;
+    json document = json::parse(result.out, nullptr, false);
+    if (document.is_object()) document["solver"].erase("wall_s");
+    return document;
+  }
+
+  void expect_same(const std::string& keys, const std::string& options, const std::string& model) {
+    const std::string solver = "--model " + model + " ";
+    const json by_option = solved("", solver + options);
+    EXPECT_EQ(by_option, solved(keys, solver)) << options;
+    EXPECT_NE(by_option, solved("", solver)) << options << " has no effect";
+  }
+};
+
+TEST_F(SceneOptions, OfThePapersLawMeanTheirKeys) {
+  expect_same("law = \"paper\"\nc_b = 3000\n", "--law paper --c-b '3 kN'", "chain");
+  expect_same("law = \"paper\"\nc_b = 3000\nbookkeeping = \"paper\"\n",
+              "--law paper --c-b 3000 --bookkeeping paper", "chain");
+  expect_same("law = \"paper\"\ndesign_curvature = 5\n",
+              "--law paper --design-curvature '0.005 1/mm'", "chain");
+  const std::string moment = "--law paper --design-curvature 5 --bending-rule moment_matched";
+  expect_same("law = \"paper\"\ndesign_curvature = 5\nbending_rule = \"moment_matched\"\n", moment,
+              "chain");
+  EXPECT_NE(solved("", "--model chain " + moment),
+            solved("", "--model chain --law paper --design-curvature 5"));
+}
+
+TEST_F(SceneOptions, OfTheStepperMeanTheirKeys) {
+  expect_same("stepper = \"dynamic\"\nc_F = 4e-5\nc_h = 0.9\nl_s = 0.02\n",
+              "--stepper dynamic --c-F 4e-5 --c-h 0.9 --l-s '2 cm'", "force");
+  const std::string dynamic = "--model force --stepper dynamic --c-F 4e-5 --l-s 0.02 --c-h ";
+  EXPECT_NE(solved("", dynamic + "0.9"), solved("", dynamic + "0.8"));
+  const std::string file = scene(short_rod);
+  expect_error("solve " + file + " --model force --stepper dynamic --c-F 4e-5 --c-h 1", 2,
+               {"--c-h = 1", "0 <= value < 1"});
+  expect_error("solve " + file + " --law paper --c-b -3", 2, {"--c-b = -3", "> 0"});
+  expect_error("solve " + file + " --model force --c-h 0.9", 2, {"c_h", "stepper dynamic"});
+}
+
+TEST_F(SceneOptions, OfTheSolversDoWhatTheySay) {
+  const auto steps = [&](const std::string& tolerance) {
+    return solved("", "--model force --rest-tolerance " + tolerance).at("solver").at("steps");
+  };
+  EXPECT_LT(steps("1e-3").get<long>(), steps("1e-9").get<long>());
+  const auto terms = [&](const std::string& count) {
+    return solved("", "--terms " + count).at("solver").at("terms").get<int>();
+  };
+  EXPECT_EQ(terms("5"), 5);
+  EXPECT_EQ(terms("9"), 9);
+  // Far above Gamma = 41.4 a horizontal clamp has other equilibria, some of them unstable.
+  const std::string soft =
+      scene(std::string(short_rod).replace(std::string(short_rod).find("spring_steel") - 1, 14,
+                                           "{ youngs_modulus = \"0.2 GPa\", density = 7850 }"));
+  const Outcome all = run("solve " + soft + " --all --format json");
+  ASSERT_EQ(all.status, 0) << all.err;
+  EXPECT_GT(json::parse(all.out).at("equilibria").size(), 1U) << all.out;
+  expect_error("solve " + soft + " --all --model chain", 2, {"--all", "energy"});
+}
+
+}  // namespace
