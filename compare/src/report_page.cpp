@@ -178,7 +178,8 @@ void add_speed(const Report& report, Page& page) {
   if (!report.benchmark) return page.paragraph("The benchmark was left out.");
   const BenchmarkReport& benchmark = *report.benchmark;
   page.paragraph(fmt::format(
-      "From straight to the shape, on one thread with nothing else running, medians of {} runs. "
+      "From straight to the shape, on one thread while nothing else of this report ran, medians of "
+      "{} runs. "
       "Tracking: a frame of 1 ms behind a gripper that moves at {} m/s and turns by v/l.",
       benchmark.options.repeats, page_number(benchmark.options.gripper_speed)));
   page.figures("speed");
