@@ -35,7 +35,7 @@ double curvature_rms(const Shape& shape, const energy_model::Samples& samples) {
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d before = shape.points.col(column) - shape.points.col(column - 1);
     const Eigen::Vector3d after = shape.points.col(column + 1) - shape.points.col(column);
-    const double share = (s[i + 1] - s[i - 1]) / 2;
+    const double share = joint_length(shape, i);
     // The binormal carries the sense of turning: a wrong side counts twice.
     const Eigen::Vector3d turn = before.cross(after).normalized() * angle_between(before, after);
     const Eigen::Vector3d expected =

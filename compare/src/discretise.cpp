@@ -222,15 +222,19 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
 }
 
 Shape Discretisation::shape(const Eigen::Matrix3Xd& points) const {
-  Shape result{arc_length, points};
+  Shape result;
+  result.arc_length = arc_length;
+  result.points = points;
   for (const force_model::Grip& grip : rod.grips) {
     if (arc_length.front() < 0 && grip.first_point == 0) {
       result.arc_length.front() = 0;
       result.points.leftCols<1>() = grip.reference;
+      result.half_at_start = true;
     }
     if (arc_length.back() > length && grip.first_point == points.cols() - 2) {
       result.arc_length.back() = length;
       result.points.rightCols<1>() = grip.reference;
+      result.half_at_end = true;
     }
   }
   return result;

@@ -7,7 +7,6 @@
 #include <iterator>
 
 #include "dlo/compare/csv.hpp"
-#include "dlo/compare/discretise.hpp"
 #include "report_figures.hpp"
 
 namespace dlo::compare {
@@ -91,25 +90,17 @@ Series reference_series(const Comparison& comparison, const Scene& scene, const 
   return series;
 }
 
-/// Turning angle of each inner point over half of its two segments, in full even where a gripper
-/// holds a segment's middle.
-std::vector<double> polygon_curvature(const Comparison& comparison, const Scene& scene,
-                                      const View& view) {
-  const Shape& shape = comparison.force.shape;
-  Scene own = scene;
-  own.force_model = comparison.settings;
-  std::vector<double> s = discretise(own, own.force_model).arc_length;
-  if (s.size() != shape.arc_length.size()) s = shape.arc_length;
+/// Turning angle of each inner point over its joint's length.
+std::vector<double> polygon_curvature(const Shape& shape, const Scene& scene, const View& view) {
   const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view);
-  std::vector<double> curvature(s.size(), NAN);
-  for (std::size_t i = 1; i + 1 < s.size(); ++i) {
+  std::vector<double> curvature(shape.arc_length.size(), NAN);
+  for (std::size_t i = 1; i + 1 < curvature.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     const Eigen::Vector3d before = shape.points.col(column) - shape.points.col(column - 1);
     const Eigen::Vector3d after = shape.points.col(column + 1) - shape.points.col(column);
     const Eigen::Vector3d binormal = before.cross(after);
     const double angle = std::atan2(binormal.norm(), before.dot(after));
-    curvature[i] =
-        signed_curvature(normal, binormal.normalized() * angle) / ((s[i + 1] - s[i - 1]) / 2);
+    curvature[i] = signed_curvature(normal, binormal.normalized() * angle) / joint_length(shape, i);
   }
   return curvature;
 }
@@ -138,7 +129,7 @@ std::vector<Series> series_of(const SceneReport& report, const View& view) {
                                      "pointtype 6 pointsize 0.9",
                    .points = c.force.shape.points,
                    .arc_length = c.force.shape.arc_length,
-                   .curvature = polygon_curvature(c, scene, view)});
+                   .curvature = polygon_curvature(c.force.shape, scene, view)});
   }
   if (const auto straight = straight_rod(scene, {0, scene.length})) {
     all.push_back({.id = "unbent",

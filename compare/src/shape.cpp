@@ -5,6 +5,15 @@
 
 namespace dlo::compare {
 
+double joint_length(const Shape& shape, std::size_t point) {
+  const std::vector<double>& s = shape.arc_length;
+  double before = s[point] - s[point - 1];
+  double after = s[point + 1] - s[point];
+  if (shape.half_at_start && point == 1) before *= 2;
+  if (shape.half_at_end && point + 2 == s.size()) after *= 2;
+  return (before + after) / 2;
+}
+
 Shape resample(const Shape& shape, const std::vector<double>& arc_lengths) {
   const std::vector<double>& s = shape.arc_length;
   if (s.size() < 2 || static_cast<std::size_t>(shape.points.cols()) != s.size()) {

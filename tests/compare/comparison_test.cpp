@@ -101,6 +101,24 @@ TEST(Deviation, CurvatureOfAFlatShapeIsTheReferencesOwn) {
   EXPECT_NEAR(d.rms_over_movement, 1, 1e-12);
 }
 
+// The joint next to the gripper turns over a whole segment, of which the rod's own part is a half:
+// taken for a half its curvature would be 4/3 of the rod's at any N.
+TEST(Deviation, CurvatureOfAHookeanChainIsOfSecondOrder) {
+  Scene scene = heavy_scene(2, 0);
+  scene.force_model.law = Law::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  const auto curvature_rms = [&](int points) {
+    scene.force_model.points = points;
+    const Shape chain = solve_chain(scene, scene.force_model).shape;
+    return shape_deviation(scene, chain, energy.sample).curvature_rms_per_m;
+  };
+  const double coarse = curvature_rms(16);
+  const double order = std::log(coarse / curvature_rms(64)) / std::log((64 - 1.5) / (16 - 1.5));
+  EXPECT_NEAR(order, 2, 0.1);
+  EXPECT_LT(coarse, 0.01);
+}
+
 TEST(EffectiveModulus, RecoversTheModulusOfAnEnergyShape) {
   const Scene scene = heavy_scene(2, 15);
   for (const double ratio : {0.03, 0.5, 1.0, 7.0}) {
