@@ -14,7 +14,7 @@
 namespace dlo::cli {
 namespace {
 
-struct Options {
+struct InitOptions {
   std::string target = "scene.toml";
   bool force = false;
   std::string materials;
@@ -53,7 +53,7 @@ std::string next_steps(const compare::Scene& scene, const std::string& file) {
   return out;
 }
 
-void run(Options options) {
+void run(InitOptions options) {
   const std::string file = file_of(options.target, options.choices.name).string();
   if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(file))) {
     throw compare::InputError(
@@ -71,7 +71,7 @@ void run(Options options) {
 
 void add_init(CLI::App& app) {
   CLI::App* command = app.add_subcommand("init", "write a commented scene file to start from");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InitOptions>();
   command->add_option("NAME", options->target,
                       "name of the scene, or FILE.toml; default scene.toml");
   compare::SceneChoices& choices = options->choices;

@@ -14,7 +14,7 @@ namespace {
 
 using compare::Material;
 
-struct Options {
+struct MaterialsOptions {
   std::string file;
   OutputOptions output;
 };
@@ -53,7 +53,7 @@ Json json(const std::vector<Material>& materials) {
   return {{"schema", "dlo/materials/1"}, {"materials", std::move(list)}};
 }
 
-void run(const Options& options) {
+void run(const MaterialsOptions& options) {
   const std::vector<Material> materials =
       options.file.empty() ? compare::materials() : compare::load_materials(options.file);
   switch (options.output.kind()) {
@@ -71,7 +71,7 @@ void run(const Options& options) {
 void add_materials(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("materials", "the materials that a scene can name, with their values");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<MaterialsOptions>();
   command->add_option("--materials", options->file, "materials file instead of the built-in one")
       ->type_name("FILE");
   add_output_options(*command, options->output);

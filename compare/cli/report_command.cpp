@@ -16,7 +16,7 @@
 namespace dlo::cli {
 namespace {
 
-struct Options {
+struct ReportOptions {
   std::vector<std::string> scenes;
   std::string folder;
   double tolerance = 0.01;
@@ -35,16 +35,17 @@ std::string shell_word(const std::string& word) {
   return quoted + "'";
 }
 
-std::string command_line(const Options& options) {
+std::string command_line(const ReportOptions& options) {
   std::string line = "dlo report";
   for (const std::string& scene : options.scenes) line += " " + shell_word(scene);
   if (options.quick) line += " --quick";
-  if (options.tolerance != Options{}.tolerance) append(line, " --tolerance {}", options.tolerance);
+  if (options.tolerance != ReportOptions{}.tolerance)
+    append(line, " --tolerance {}", options.tolerance);
   if (options.threads != 0) append(line, " --threads {}", options.threads);
   return line + " -o " + shell_word(options.folder);
 }
 
-compare::ReportOptions report_options(const Options& options) {
+compare::ReportOptions report_options(const ReportOptions& options) {
   compare::ReportOptions result;
   result.tolerance = options.tolerance;
   result.threads = options.threads;
@@ -56,7 +57,7 @@ compare::ReportOptions report_options(const Options& options) {
   return result;
 }
 
-void run(const Options& options) {
+void run(const ReportOptions& options) {
   compare::check_report_folder(options.folder);
   const std::vector<compare::SceneFile> files = compare::load_scene_files(options.scenes);
   const bool terminal = ::isatty(STDERR_FILENO) == 1;
@@ -84,7 +85,7 @@ void run(const Options& options) {
 void add_report(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("report", "a page for people: verdict, shapes, errors, speed, stability");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReportOptions>();
   command->add_option("SCENE", options->scenes,
                       "scene files, or folders with *.toml; none: the paper's three scenes and two "
                       "that tell more");
