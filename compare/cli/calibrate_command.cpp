@@ -13,6 +13,7 @@
 #include "output.hpp"
 #include "scene_options.hpp"
 #include "shape_options.hpp"
+#include "share.hpp"
 #include "terminal.hpp"
 
 namespace dlo::cli {
@@ -24,7 +25,7 @@ struct CalibrateOptions {
   bool density = false;
   std::string noise;
   std::vector<std::string> holdouts;
-  std::string target;
+  std::optional<double> target;
   ShapeOptions shape_options;
   SceneOptions overrides;
   OutputOptions output;
@@ -39,21 +40,6 @@ std::optional<double> noise_m(const std::string& text) {
     throw compare::InputError(fmt::format("--noise = {}: {}", text, error.what()));
   }
   throw compare::InputError(fmt::format("--noise = {}: out of range (allowed: > 0)", text));
-}
-
-/// "0.1%" of the rod's length.
-double target_share(const std::string& text) {
-  try {
-    if (text.ends_with('%')) {
-      const std::string number = text.substr(0, text.size() - 1);
-      const double share = compare::parse_quantity(number, compare::Dimension::number) / 100;
-      if (share > 0 && share < 1) return share;
-    }
-  } catch (const compare::InputError& error) {
-    throw compare::InputError(fmt::format("--target = {}: {}", text, error.what()));
-  }
-  throw compare::InputError(
-      fmt::format("--target = {}: allowed: a share of the length such as 0.1%", text));
 }
 
 std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
@@ -120,7 +106,7 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
   const std::vector<compare::Scene> holdouts = load_all(options.holdouts, options.overrides);
   compare::ForceModelFitOptions fit_options;
   if (points_are_given) fit_options.points = scenes.front().force_model.points;
-  if (!options.target.empty()) fit_options.target = target_share(options.target);
+  if (options.target) fit_options.target = *options.target;
   fit_options.solve = options.overrides.solve();
   const compare::ForceModelFit fit = [&] {
     ProgressBar bar("calibrate");
@@ -133,7 +119,7 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
                 .json = [&] { return force_model_json(fit); }},
                options.output, format_is_given);
   const bool missed = std::max(fit.worst(), fit.worst_holdout()) > fit.target;
-  if (missed && !options.target.empty()) throw CLI::RuntimeError(1);
+  if (missed && options.target) throw CLI::RuntimeError(1);
 }
 
 }  // namespace
@@ -154,6 +140,7 @@ void add_calibrate(CLI::App& app) {
           ->add_option("--target", options->target,
                        "RMS deviation wanted, share of the length such as 0.1% (the default); law "
                        "hooke takes N from it unless --points is given; exit status 1 if missed")
+          ->transform(share_of_length())
           ->group(parameters);
   const std::string measured = "Young's modulus from measured shapes";
   CLI::Option* shape =

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <chrono>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -12,6 +10,8 @@
 #include "dlo/compare/report_folder.hpp"
 #include "dlo/compare/report_verdict.hpp"
 #include "output.hpp"
+#include "share.hpp"
+#include "terminal.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -60,11 +60,11 @@ compare::ReportOptions report_options(const ReportOptions& options) {
 void run(const ReportOptions& options) {
   compare::check_report_folder(options.folder);
   const std::vector<compare::SceneFile> files = compare::load_scene_files(options.scenes);
-  const bool terminal = ::isatty(STDERR_FILENO) == 1;
-  const compare::Report report =
-      compare::make_report(files, report_options(options), [&](const std::string& what) {
-        if (terminal) fmt::print(stderr, "{}\n", what);
-      });
+  const compare::Report report = [&] {
+    ProgressBar bar("report");
+    return compare::make_report(files, report_options(options),
+                                [&](const std::string& what) { bar.stage(what); });
+  }();
   const compare::WrittenReport written = compare::write_report(
       report, {.version = DLO_VERSION, .command = command_line(options)}, options.folder);
   std::string out;
@@ -97,8 +97,8 @@ void add_report(CLI::App& app) {
       ->required();
   command
       ->add_option("--tolerance", options->tolerance,
-                   "RMS up to which a shape counts as right, share of the length")
-      ->check(CLI::Range(1e-9, 1.0))
+                   "RMS up to which a shape counts as right, share of the length such as 1%")
+      ->transform(share_of_length())
       ->capture_default_str();
   command->add_flag("--quick", options->quick,
                     "a benchmark of 1 s, a coarse map, no hard cases; the page says so");

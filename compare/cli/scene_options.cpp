@@ -8,6 +8,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/quantity.hpp"
+#include "share.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -55,8 +56,8 @@ void PlanOptions::add_to(CLI::App& command) {
       ->group(group);
   command
       .add_option("--target-error", plan_.target,
-                  "error that the plan chooses N for, share of the length")
-      ->check(CLI::Range(1e-9, 1.0))
+                  "error that the plan chooses N for, share of the length such as 0.1%")
+      ->transform(share_of_length())
       ->capture_default_str()
       ->group(group);
 }

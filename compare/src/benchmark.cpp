@@ -51,7 +51,7 @@ std::optional<std::size_t> fastest_within(const std::vector<BenchmarkRun>& runs,
 }
 
 BenchmarkReport run_benchmark(const std::vector<Scene>& scenes, const BenchmarkOptions& options,
-                              const std::function<void(const std::string&)>& progress) {
+                              const Stages& progress) {
   if (!(options.budget_s > 0) || options.repeats < 1 || !(options.gripper_speed > 0) ||
       options.frames < 1) {
     throw std::invalid_argument(

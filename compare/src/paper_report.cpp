@@ -58,7 +58,7 @@ std::vector<ModulusVariant> variants(const Scene& scene) {
 
 }  // namespace
 
-PaperReport paper_report(const std::function<void(const std::string&)>& progress) {
+PaperReport paper_report(const Stages& progress) {
   const auto say = [&](const std::string& what) {
     if (progress) progress(what);
   };

@@ -174,7 +174,7 @@ std::vector<SceneFile> report_scene_files() {
 }
 
 Report make_report(const std::vector<SceneFile>& files, const ReportOptions& options,
-                   const std::function<void(const std::string&)>& progress) {
+                   const Stages& progress) {
   if (!(options.tolerance > 0) || options.threads < 0) {
     throw std::invalid_argument(
         fmt::format("make_report: tolerance = {}, threads = {}, must be > 0 and >= 0",

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solve.hpp"
 
@@ -92,8 +92,8 @@ void mark_front(std::vector<BenchmarkRun>& runs);
 /// reference model.
 /// @param progress  called with what is being done
 /// @throws std::invalid_argument if an option is out of range, InputError, ConvergenceError
-[[nodiscard]] BenchmarkReport run_benchmark(
-    const std::vector<Scene>& scenes, const BenchmarkOptions& options = {},
-    const std::function<void(const std::string&)>& progress = {});
+[[nodiscard]] BenchmarkReport run_benchmark(const std::vector<Scene>& scenes,
+                                            const BenchmarkOptions& options = {},
+                                            const Stages& progress = {});
 
 }  // namespace dlo::compare

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/modulus_history.hpp"
+#include "dlo/compare/progress.hpp"
 
 namespace dlo::compare {
 
@@ -56,7 +56,6 @@ struct PaperReport {
 
 /// The paper's comparison on its own rod. @param progress  called with what is being done
 /// @throws ConvergenceError
-[[nodiscard]] PaperReport paper_report(
-    const std::function<void(const std::string&)>& progress = {});
+[[nodiscard]] PaperReport paper_report(const Stages& progress = {});
 
 }  // namespace dlo::compare

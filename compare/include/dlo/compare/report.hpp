@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +7,7 @@
 #include "dlo/compare/benchmark.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/modulus_history.hpp"
+#include "dlo/compare/progress.hpp"
 #include "dlo/compare/stability.hpp"
 #include "dlo/compare/stability_map.hpp"
 
@@ -86,6 +86,6 @@ struct Report {
 /// @throws InputError if a scene cannot be made into points, before anything is computed;
 /// std::invalid_argument if an option is out of range
 [[nodiscard]] Report make_report(const std::vector<SceneFile>& files, const ReportOptions& options,
-                                 const std::function<void(const std::string&)>& progress = {});
+                                 const Stages& progress = {});
 
 }  // namespace dlo::compare

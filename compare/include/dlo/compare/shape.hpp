@@ -10,8 +10,8 @@ struct Shape {
   std::vector<double> arc_length;  ///< [m], M
   Eigen::Matrix3Xd points;         ///< [m], 3 x M
   bool half_at_start = false;      ///< a gripper at s = 0 holds the middle of the first segment, of
-                               ///< which only the rod's own half is here
-  bool half_at_end = false;  ///< the same of the last segment
+                                   ///< which only the rod's own half is here
+  bool half_at_end = false;        ///< the same of the last segment
 };
 
 /// Arc length over which a polygon turns at an inner point: half of both its segments [m], those

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "dlo/compare/progress.hpp"
 #include "dlo/compare/shard.hpp"
 #include "dlo/compare/sweep.hpp"
 
@@ -23,7 +23,7 @@ struct SweepFileOptions {
   int threads = 0;       ///< 0: all cores
   bool restart = false;  ///< throw away what an earlier run has left
   /// Called after every row with the rows that are done and all rows.
-  std::function<void(std::int64_t, std::int64_t)> progress;
+  Progress progress;
 };
 
 /// First line of a file that is not a whole sweep: fingerprints of the scene (with its name and the
