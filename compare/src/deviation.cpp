@@ -33,14 +33,11 @@ double curvature_rms(const Shape& shape, const energy_model::Samples& samples) {
   double length = 0;
   for (std::size_t i = 1; i + 1 < s.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    const Eigen::Vector3d before = shape.points.col(column) - shape.points.col(column - 1);
-    const Eigen::Vector3d after = shape.points.col(column + 1) - shape.points.col(column);
     const double share = joint_length(shape, i);
     // The binormal carries the sense of turning: a wrong side counts twice.
-    const Eigen::Vector3d turn = before.cross(after).normalized() * angle_between(before, after);
     const Eigen::Vector3d expected =
         samples.tangents.col(column).cross(samples.curvature.col(column));
-    sum += (turn / share - expected).squaredNorm() * share;
+    sum += (joint_curvature(shape, i) - expected).squaredNorm() * share;
     length += share;
   }
   return length > 0 ? std::sqrt(sum / length) : 0;

@@ -95,12 +95,7 @@ std::vector<double> polygon_curvature(const Shape& shape, const Scene& scene, co
   const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view);
   std::vector<double> curvature(shape.arc_length.size(), NAN);
   for (std::size_t i = 1; i + 1 < curvature.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    const Eigen::Vector3d before = shape.points.col(column) - shape.points.col(column - 1);
-    const Eigen::Vector3d after = shape.points.col(column + 1) - shape.points.col(column);
-    const Eigen::Vector3d binormal = before.cross(after);
-    const double angle = std::atan2(binormal.norm(), before.dot(after));
-    curvature[i] = signed_curvature(normal, binormal.normalized() * angle) / joint_length(shape, i);
+    curvature[i] = signed_curvature(normal, joint_curvature(shape, i));
   }
   return curvature;
 }

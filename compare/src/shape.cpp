@@ -1,9 +1,27 @@
 #include "dlo/compare/shape.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace dlo::compare {
+namespace {
+
+/// Between which given arc lengths another one lies.
+struct Place {
+  std::size_t right;  // of the two
+  double share;       // of the way from the left one, 0 to 1
+};
+
+Place place_of(const std::vector<double>& s, double at) {
+  const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
+  const double left = *(above - 1);
+  return {static_cast<std::size_t>(above - s.begin()),
+          std::clamp((at - left) / (*above - left), 0.0, 1.0)};
+}
+
+}  // namespace
 
 double joint_length(const Shape& shape, std::size_t point) {
   const std::vector<double>& s = shape.arc_length;
@@ -12,6 +30,37 @@ double joint_length(const Shape& shape, std::size_t point) {
   if (shape.half_at_start && point == 1) before *= 2;
   if (shape.half_at_end && point + 2 == s.size()) after *= 2;
   return (before + after) / 2;
+}
+
+Eigen::Vector3d joint_curvature(const Shape& shape, std::size_t point) {
+  const auto column = static_cast<Eigen::Index>(point);
+  const Eigen::Vector3d before = shape.points.col(column) - shape.points.col(column - 1);
+  const Eigen::Vector3d after = shape.points.col(column + 1) - shape.points.col(column);
+  const Eigen::Vector3d binormal = before.cross(after);
+  const double angle = std::atan2(binormal.norm(), before.dot(after));
+  return binormal.normalized() * angle / joint_length(shape, point);
+}
+
+std::vector<double> joint_curvatures(const Shape& shape) {
+  const std::size_t count = shape.arc_length.size();
+  std::vector<double> result(count, 0.0);
+  if (count < 3) return result;
+  for (std::size_t i = 1; i + 1 < count; ++i) result[i] = joint_curvature(shape, i).norm();
+  result.front() = result[1];
+  result.back() = result[count - 2];
+  return result;
+}
+
+std::vector<double> interpolated(const std::vector<double>& values, const std::vector<double>& from,
+                                 const std::vector<double>& to) {
+  std::vector<double> result;
+  result.reserve(to.size());
+  for (const double s : to) {
+    const Place place = place_of(from, s);
+    result.push_back((1 - place.share) * values[place.right - 1] +
+                     place.share * values[place.right]);
+  }
+  return result;
 }
 
 Shape resample(const Shape& shape, const std::vector<double>& arc_lengths) {
@@ -23,12 +72,10 @@ Shape resample(const Shape& shape, const std::vector<double>& arc_lengths) {
   result.arc_length = arc_lengths;
   result.points.resize(3, static_cast<Eigen::Index>(arc_lengths.size()));
   for (std::size_t i = 0; i < arc_lengths.size(); ++i) {
-    const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, arc_lengths[i]);
-    const auto right = static_cast<Eigen::Index>(above - s.begin());
-    const double left_s = *(above - 1);
-    const double share = std::clamp((arc_lengths[i] - left_s) / (*above - left_s), 0.0, 1.0);
+    const Place place = place_of(s, arc_lengths[i]);
+    const auto right = static_cast<Eigen::Index>(place.right);
     result.points.col(static_cast<Eigen::Index>(i)) =
-        (1 - share) * shape.points.col(right - 1) + share * shape.points.col(right);
+        (1 - place.share) * shape.points.col(right - 1) + place.share * shape.points.col(right);
   }
   return result;
 }

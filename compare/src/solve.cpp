@@ -113,7 +113,11 @@ Solution solve(const Scene& scene, Model model, const SolveOptions& options,
   if (model == Model::chain || model == Model::force) {
     solution = model == Model::chain ? solve_chain(near, near.force_model, options)
                                      : solve_force(near, near.force_model, options);
-    if (!arc_lengths.empty()) solution.shape = resample(solution.shape, arc_lengths);
+    solution.curvature = joint_curvatures(solution.shape);
+    if (!arc_lengths.empty()) {
+      solution.curvature = interpolated(solution.curvature, solution.shape.arc_length, arc_lengths);
+      solution.shape = resample(solution.shape, arc_lengths);
+    }
   } else {
     solution = sampled(near, model, solve_reference(near, model, options), arc_lengths);
   }

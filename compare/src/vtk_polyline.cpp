@@ -2,29 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <utility>
 
 namespace dlo::compare {
 namespace {
-
-std::vector<double> joint_curvatures(const Eigen::Matrix3Xd& points) {
-  std::vector<double> result(static_cast<std::size_t>(points.cols()), 0.0);
-  for (Eigen::Index i = 1; i + 1 < points.cols(); ++i) {
-    const Eigen::Vector3d a = points.col(i) - points.col(i - 1);
-    const Eigen::Vector3d b = points.col(i + 1) - points.col(i);
-    const double angle = std::atan2(a.cross(b).norm(), a.dot(b));
-    result[static_cast<std::size_t>(i)] = 2 * angle / (a.norm() + b.norm());
-  }
-  if (result.size() > 2) {
-    result.front() = result[1];
-    result.back() = result[result.size() - 2];
-  }
-  return result;
-}
 
 /// The format knows printable ASCII and 255 characters in a line.
 std::string vtk_title(std::string title) {
@@ -49,9 +32,7 @@ std::string vtk_polyline(const Solution& solution, const std::string& title) {
   fmt::format_to(out, "LINES 1 {}\n{}", points.cols() + 1, points.cols());
   for (Eigen::Index i = 0; i < points.cols(); ++i) fmt::format_to(out, " {}", i);
   std::vector<std::pair<const char*, std::vector<double>>> fields = {
-      {"arc_length_m", solution.shape.arc_length},
-      {"curvature_per_m",
-       solution.curvature.empty() ? joint_curvatures(points) : solution.curvature}};
+      {"arc_length_m", solution.shape.arc_length}, {"curvature_per_m", solution.curvature}};
   if (!solution.tension.empty()) fields.emplace_back("tension_N", solution.tension);
   fmt::format_to(out, "\nPOINT_DATA {}\nFIELD rod {}\n", points.cols(), fields.size());
   for (const auto& [name, values] : fields) {

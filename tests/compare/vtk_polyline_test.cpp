@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "command_fixture.hpp"
@@ -66,6 +67,27 @@ TEST(Solution, CurvatureAndTensionAreThoseOfTheGrippers) {
     const double moment = solution.grippers[0].torque.norm() / scene.bending_stiffness();
     EXPECT_NEAR(solution.curvature.front(), moment, 1e-4 * moment);
     EXPECT_EQ(solution.curvature.size(), solution.shape.arc_length.size());
+  }
+}
+
+// Also next to the gripper, which holds half of a segment, and between a polygon's joints.
+TEST(Solution, AFinePolygonHasTheCurvatureOfTheRod) {
+  Scene scene = loaded_arch();
+  scene.force_model.points = 160;
+  scene.force_model.law = Law::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  const Solution chain = solve(scene, Model::chain);
+  const std::vector<double>& s = chain.shape.arc_length;
+  const Solution energy = solve(scene, Model::energy, {}, s);
+  const double largest = *std::max_element(energy.curvature.begin(), energy.curvature.end());
+  for (std::size_t i = 1; i + 1 < s.size(); ++i) {
+    EXPECT_NEAR(chain.curvature[i], energy.curvature[i], 0.01 * largest) << i;
+  }
+  const std::vector<double> samples = {0.1, 0.103, 0.55, 0.9};
+  const Solution sampled = solve(scene, Model::chain, {}, samples);
+  const Solution expected = solve(scene, Model::energy, {}, samples);
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    EXPECT_NEAR(sampled.curvature[i], expected.curvature[i], 0.01 * largest) << i;
   }
 }
 

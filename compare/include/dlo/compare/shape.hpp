@@ -19,6 +19,19 @@ struct Shape {
 /// @param point  from 1 to M - 2
 [[nodiscard]] double joint_length(const Shape& shape, std::size_t point);
 
+/// Curvature of a polygon at an inner point [1/m]: its turning angle over joint_length, about the
+/// binormal. @param point  from 1 to M - 2
+[[nodiscard]] Eigen::Vector3d joint_curvature(const Shape& shape, std::size_t point);
+
+/// Amount of the curvature at all points of a polygon [1/m], M; at an end that of the next joint.
+[[nodiscard]] std::vector<double> joint_curvatures(const Shape& shape);
+
+/// Values at other arc lengths, linear between the given ones; beyond the ends those of the ends.
+/// @param values  at `from`;  @param from  growing, two or more
+[[nodiscard]] std::vector<double> interpolated(const std::vector<double>& values,
+                                               const std::vector<double>& from,
+                                               const std::vector<double>& to);
+
 /// Points at other arc lengths, on straight lines between the given ones; arc lengths beyond the
 /// ends give the end points.
 /// @throws std::invalid_argument if the shape has fewer than two points

@@ -45,10 +45,11 @@ struct Solution {
   Model model = Model::energy;  ///< that solved it
   std::string message;          ///< how the solver ended
   Shape shape;                  ///< the converged shape
-  /// Of energy and exact, at the shape's points: curvature [1/m].
+  /// From solve() and solve_all(), at the shape's points: curvature [1/m], a polygon's that of its
+  /// joints.
   std::vector<double> curvature;
-  /// Tension [N] there, positive where the rod is pulled; at a gripper or load inside the rod that
-  /// of the side towards l. None where an obstacle is touched.
+  /// Of energy and exact: tension [N] there, positive where the rod is pulled; at a gripper or load
+  /// inside the rod that of the side towards l. None where an obstacle is touched.
   std::vector<double> tension;
   SceneEnergies energy;                    ///< of that shape
   std::vector<GripperLoad> grippers;       ///< in the scene's order
