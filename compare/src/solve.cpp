@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "chain_start.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/plan.hpp"
 #include "dlo/energy_model/energy.hpp"
@@ -94,13 +95,20 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                  : energy_model::solve_energy(problem, {.terms = options.terms,
                                                         .max_evaluations = options.max_evaluations,
                                                         .start = options.start});
+    const bool searched = model == Model::energy && options.start == nullptr;
+    if (!energy_model::succeeded(result.status) && searched && !scene.obstacles.empty()) {
+      const int spent = result.evaluations;
+      result = solve_from_chain(scene, options);
+      result.evaluations += spent;
+    }
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }
   if (!energy_model::succeeded(result.status)) {
-    throw ConvergenceError(fmt::format("{}: the {} model did not converge: {} ({} evaluations)",
-                                       scene.file, to_string(model), result.message,
-                                       result.evaluations));
+    throw ConvergenceError(fmt::format(
+        "{}: the {} model did not converge: {} ({} evaluations{})", scene.file, to_string(model),
+        result.message, result.evaluations,
+        scene.obstacles.empty() ? "" : "; --model chain or an obstacle with a stiffness may do"));
   }
   return result;
 }

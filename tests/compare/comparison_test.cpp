@@ -276,6 +276,41 @@ TEST(Solve, AllModelsAgreeOnForcesAndEnergies) {
   }
 }
 
+// A search ends on a saddle here; the chain's shape leads to the table.
+TEST(Solve, ACableBetweenClampsLiesOnATable) {
+  const Scene scene = parse_scene(R"(
+[rod]
+length = 2
+diameter = "6 mm"
+material = "silicone"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+[[gripper]]
+at = 2
+position = [1.6, 0, 0]
+direction = "0 deg"
+[[obstacle]]
+point = [0, -0.5, 0]
+normal = [0, 1, 0]
+[force_model]
+points = 160
+law = "hooke"
+bookkeeping = "consistent"
+)",
+                                  "table.toml");
+  const Solution energy = solve(scene, Model::energy);
+  EXPECT_GT(energy.shape.points.row(1).minCoeff(), -0.5 - 2e-3);
+  // The table and the grippers bear the rod's weight.
+  const double weight = scene.weight_per_length().norm() * scene.length;
+  const double table = energy.obstacles[0].y();
+  EXPECT_GT(table, 0.1 * weight);
+  EXPECT_NEAR(table + energy.grippers[0].force.y() + energy.grippers[1].force.y(), weight,
+              1e-3 * weight);
+  EXPECT_NEAR(solve(scene, Model::chain).obstacles[0].y(), table, 0.02 * weight);
+}
+
 TEST(Solve, WhatDoesNotConvergeIsAnError) {
   const Scene scene = heavy_scene(10, 0);
   EXPECT_THROW((void)solve(scene, Model::energy, {.max_evaluations = 2}), ConvergenceError);
