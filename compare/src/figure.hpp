@@ -41,7 +41,8 @@ inline constexpr int top_margin = 38;
 [[nodiscard]] int height_besides_plot(int key_rows);
 
 /// Version of the gnuplot that would draw, as it says it; empty if there is none.
-[[nodiscard]] std::string gnuplot_version();
+/// @param folder  the report's own, where nobody else has files, to run it in
+[[nodiscard]] std::string gnuplot_version(const std::filesystem::path& folder);
 
 /// Draws NAME.svg in the folder, where its CSV file and NAME.gp are.
 /// @return why not, in one line; empty if it is drawn

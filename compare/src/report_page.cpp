@@ -232,12 +232,11 @@ void add_stability(const Report& report, Page& page) {
 }
 
 void add_provenance(const Report& report, const std::vector<PageFigure>& figures,
-                    const ReportMaker& maker, Page& page) {
+                    const ReportMaker& maker, const std::string& drawn_by, Page& page) {
   page.section("provenance", "Provenance");
   std::vector<std::pair<std::string, std::string>> facts = {{"dlo", maker.version},
                                                             {"command", maker.command}};
   for (const auto& fact : provenance()) facts.push_back(fact);
-  const std::string drawn_by = gnuplot_version();
   facts.emplace_back("figures", drawn_by.empty() ? "none: no gnuplot was found" : drawn_by);
   facts.emplace_back("time to compute", page_number(report.seconds) + " s");
   page.facts(facts);
@@ -262,14 +261,14 @@ void add_provenance(const Report& report, const std::vector<PageFigure>& figures
 }  // namespace
 
 std::string report_page(const Report& report, const std::vector<PageFigure>& figures,
-                        const ReportMaker& maker) {
+                        const ReportMaker& maker, const std::string& drawn_by) {
   Page page(figures);
   add_verdict(report, page);
   add_shapes(report, page);
   add_modulus(report, page);
   add_speed(report, page);
   add_stability(report, page);
-  add_provenance(report, figures, maker, page);
+  add_provenance(report, figures, maker, drawn_by, page);
   return page.finished(report.paper ? "The paper's rod: how far a fast model is from physics"
                                     : "How far a fast rod model is from physics");
 }
