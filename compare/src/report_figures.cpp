@@ -257,7 +257,7 @@ std::vector<Figure> report_figures(const Report& report) {
   }
   if (report.benchmark) {
     for (std::size_t i = 0; i < report.benchmark->scenes.size(); ++i) {
-      figures.push_back(front_figure(report, i));
+      if (has_run(report.benchmark->scenes[i].runs)) figures.push_back(front_figure(report, i));
     }
   }
   if (report.map) figures.push_back(map_figure(report));
