@@ -46,14 +46,10 @@ std::string command_line(const ReportOptions& options) {
 }
 
 compare::ReportOptions report_options(const ReportOptions& options) {
-  compare::ReportOptions result;
+  compare::ReportOptions result =
+      options.quick ? compare::quick_report_options() : compare::ReportOptions{};
   result.tolerance = options.tolerance;
   result.threads = options.threads;
-  if (options.quick) {
-    result.benchmark = compare::BenchmarkOptions{.budget_s = 1, .repeats = 3};
-    result.map = compare::StabilityMapOptions{.columns = 6, .rows = 16, .steps = 2000};
-    result.hard_cases.reset();
-  }
   return result;
 }
 
