@@ -12,6 +12,7 @@ struct Figure {
   std::string title;        ///< one line
   std::string description;  ///< what it shows, for those who do not see it
   std::string command;      ///< of a shell in the report's folder, gives the numbers
+  std::string given;        ///< which of the numbers, if not all
   std::string csv_file;
   std::string csv;     ///< what is in it; empty if another figure has the same file
   std::string script;  ///< for gnuplot, run in the report's folder

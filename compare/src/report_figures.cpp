@@ -230,7 +230,16 @@ std::string map_command(const Report& report) {
 }
 
 std::string history_command(const Report& report) {
-  return report.paper ? "dlo paper --format csv" : "dlo report scenes -o again";
+  return report.paper ? "dlo paper --format csv" : report_command(report, "scenes");
+}
+
+std::string report_command(const Report& report, const std::string& scenes) {
+  std::string command = "dlo report " + scenes;
+  if (report.options.quick) command += " --quick";
+  if (report.options.tolerance != ReportOptions{}.tolerance) {
+    command += fmt::format(" --tolerance {}", report.options.tolerance);
+  }
+  return command + " -o ../again";  // this folder has to stay a report and nothing else
 }
 
 std::vector<Figure> report_figures(const Report& report) {
