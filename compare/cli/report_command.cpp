@@ -11,6 +11,7 @@
 #include "dlo/compare/report_verdict.hpp"
 #include "output.hpp"
 #include "share.hpp"
+#include "shell_word.hpp"
 #include "terminal.hpp"
 
 namespace dlo::cli {
@@ -23,17 +24,6 @@ struct ReportOptions {
   int threads = 0;
   bool quick = false;
 };
-
-/// A word as a shell takes it.
-std::string shell_word(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789._/-+:@%,=") == std::string::npos;
-  if (plain) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
 
 std::string command_line(const ReportOptions& options) {
   std::string line = "dlo report";
