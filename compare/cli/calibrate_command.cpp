@@ -56,8 +56,12 @@ struct Report {
   std::function<Json()> json;
 };
 
-void write_report(const Report& report, const OutputOptions& output, bool format_is_given) {
+void write_report(const Report& report, OutputOptions output, bool format_is_given) {
   const bool to_toml_file = !format_is_given && output.file.ends_with(".toml");
+  if (!format_is_given) {
+    const std::string format = format_of_file(output.file, format_names());
+    if (!format.empty()) output.format = format;
+  }
   if (to_toml_file) {
     write_output(output, report.toml());
     write_output({}, report.text());
@@ -166,7 +170,8 @@ void add_calibrate(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("-o,--output", options->output.file,
-                   "write to FILE instead of standard output; a .toml gets what --parameters (with "
+                   "write to FILE instead of standard output; .json and .csv are formats, a .toml "
+                   "gets what --parameters (with "
                    "--shape: --materials) reads, and the text still goes to standard output")
       ->type_name("FILE");
   command->footer(
