@@ -33,7 +33,14 @@ std::string name_of(const BenchmarkRun& run) {
   return name;
 }
 
+constexpr const char* not_run = "not run";
+constexpr const char* none_within = "no run is within the error";
+
 void add_runs(std::string& out, const std::vector<BenchmarkRun>& runs) {
+  if (runs.empty()) {
+    append(out, "  {}: all were skipped, see below\n", not_run);
+    return;
+  }
   append(out, "  {:<52} {:>10} {:>21} {:>9} {:>10}\n", "", "median", "quartiles [ms]", "work",
          "error/l");
   for (const BenchmarkRun& run : runs) {
@@ -47,21 +54,25 @@ void add_answers(std::string& out, const std::vector<BenchmarkRun>& runs,
                  const std::vector<BenchmarkAnswer>& answers) {
   for (const BenchmarkAnswer& answer : answers) {
     append(out, "    {:>5g} %: ", answer.error * 100);
-    const auto add = [&](std::optional<std::size_t> best) {
-      if (!best) return append(out, "none");
+    const auto add = [&](std::optional<std::size_t> best, std::optional<compare::Model> model) {
+      if (!best) return append(out, "{}", compare::has_run(runs, model) ? "none" : not_run);
       append(out, "{}, {:.3g} ms", name_of(runs[*best]), runs[*best].time.median_s * 1e3);
     };
-    add(answer.best);
+    add(answer.best, {});
     out += "; with points and forces: ";
-    add(compare::fastest_within(runs, answer.error, compare::Model::force));
+    add(compare::fastest_within(runs, answer.error, compare::Model::force), compare::Model::force);
     out += "\n";
   }
 }
 
 void add_claim(std::string& out, const SceneBenchmark& scene) {
   if (!scene.energy_at_1e6 || !scene.force_at_1e3) {
-    append(out, "  energy at 1e-6 l against force at 1e-3 l: no {} run came that near\n",
-           scene.energy_at_1e6 ? "force" : "energy");
+    const compare::Model model =
+        scene.energy_at_1e6 ? compare::Model::force : compare::Model::energy;
+    const std::string name = compare::to_string(model);
+    append(out, "  energy at 1e-6 l against force at 1e-3 l: {}\n",
+           compare::has_run(scene.runs, model) ? "no " + name + " run came that near"
+                                               : name + " was not run");
     return;
   }
   const BenchmarkRun& energy = scene.runs[*scene.energy_at_1e6];
@@ -121,7 +132,11 @@ Json answers_json(const std::vector<BenchmarkAnswer>& answers,
   Json result = Json::array();
   for (const BenchmarkAnswer& answer : answers) {
     Json entry = {{"error_over_length", answer.error}, {"use", nullptr}};
-    if (answer.best) entry["use"] = name_of(runs[*answer.best]);
+    if (answer.best) {
+      entry["use"] = name_of(runs[*answer.best]);
+    } else {
+      entry["reason"] = compare::has_run(runs) ? none_within : not_run;
+    }
     result.push_back(std::move(entry));
   }
   return result;
@@ -140,12 +155,16 @@ Json json(const compare::BenchmarkReport& report) {
                   {"tracking", answers_json(scene.tracking_answers, scene.tracking)},
                   {"energy_at_1e-6_s", nullptr},
                   {"force_at_1e-3_s", nullptr}};
-    if (scene.energy_at_1e6) {
-      entry["energy_at_1e-6_s"] = scene.runs[*scene.energy_at_1e6].time.median_s;
-    }
-    if (scene.force_at_1e3) {
-      entry["force_at_1e-3_s"] = scene.runs[*scene.force_at_1e3].time.median_s;
-    }
+    const auto add_time = [&](const std::string& name, std::optional<std::size_t> run,
+                              compare::Model model) {
+      if (run) {
+        entry[name + "_s"] = scene.runs[*run].time.median_s;
+      } else {
+        entry[name + "_reason"] = compare::has_run(scene.runs, model) ? none_within : not_run;
+      }
+    };
+    add_time("energy_at_1e-6", scene.energy_at_1e6, compare::Model::energy);
+    add_time("force_at_1e-3", scene.force_at_1e3, compare::Model::force);
     answers.push_back(std::move(entry));
   }
   return {{"schema", "dlo/bench/1"},       {"runs", std::move(runs)},

@@ -61,11 +61,9 @@ std::string material_text(const MaterialReport& report) {
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
     const compare::Alignment& a = fit.shapes[i].alignment;
     append(out, "shape       {} on {}: {} points, {}, RMS {:.4g} mm\n", report.files[i],
-           fit.shapes[i].scene, a.shape.points.cols(), direction_text(a),
+           fit.shapes[i].scene, a.shape.points.cols(), range_text(a, report.scenes[i].length),
            std::sqrt(a.mean_square) * 1e3);
-    append(out, "            seen from s = {:.4g} to {:.4g} m (arc lengths: {})\n",
-           a.shape.arc_length.front(), a.shape.arc_length.back(),
-           compare::to_string(a.arc_lengths));
+    append(out, "            arc lengths: {}\n", compare::to_string(a.arc_lengths));
     if (report.frame_was_found) append(out, "            frame {}\n", pose_text(a.pose));
   }
   return out;

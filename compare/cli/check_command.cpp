@@ -14,6 +14,7 @@
 #include "output.hpp"
 #include "scene_options.hpp"
 #include "shape_options.hpp"
+#include "share.hpp"
 #include "terminal.hpp"
 
 namespace dlo::cli {
@@ -24,17 +25,18 @@ struct CheckOptions {
   std::string shape;
   std::string tolerance;
   std::string measure = "rms";
+  double min_seen = compare::ShapeTolerance{}.least_seen_share;
   ShapeOptions shapes;
   SceneOptions overrides;
   OutputOptions output;
 };
 
-/// What the deviation may be, and whether it is.
+/// What was allowed, and whether the shape keeps to it.
 struct Verdict {
-  double tolerance_m = 0;
-  bool pass = false;
+  compare::ShapeTolerance tolerance;
+  compare::ShapeJudgement judgement;
 
-  [[nodiscard]] const char* text() const { return pass ? "pass" : "fail"; }
+  [[nodiscard]] const char* text() const { return judgement.pass ? "pass" : "fail"; }
 };
 
 /// "1%" of the rod's length, or a length.
@@ -62,7 +64,8 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
   const compare::Alignment& a = c.alignment;
   const std::vector<double>& s = a.shape.arc_length;
   append(out, "{}   Gamma = {:.4g}\n", c.scene, c.gamma);
-  append(out, "  shape           {}: {} points, {}\n", c.file, s.size(), direction_text(a));
+  append(out, "  shape           {}: {} points, {}\n", c.file, s.size(),
+         range_text(a, scene.length));
   if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
   constexpr const char* rules[] = {"", "the file's own", "chord lengths of the whole rod",
                                    "nearest points, so differences along the rod do not show"};
@@ -70,12 +73,10 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
   append(out,
          "  seen            s = {:.4g} to {:.4g} m, {:.4g} % of l; polyline {:.4g} m; largest gap "
          "{:.4g} m at s = {:.4g} m\n",
-         s.front(), s.back(), (s.back() - s.front()) / scene.length * 100, c.polyline_length_m,
-         c.largest_gap_m, c.largest_gap_at_m);
-  if (c.polyline_length_m > 1.1 * scene.length) {
-    append(out,
-           "                  (longer than the rod: noise between close points, or --unit?)\n");
-  }
+         s.front(), s.back(), c.seen_share * 100, c.polyline_length_m, c.largest_gap_m,
+         c.largest_gap_at_m);
+  const std::string hint = options.shapes.unit_hint(c.polyline_length_m, scene.length);
+  if (!hint.empty()) append(out, "                  ({})\n", hint);
   if (options.shapes.pose() == compare::PoseFreedom::known) {
     append(out, "  frame           the scene's\n");
   } else {
@@ -112,11 +113,9 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
          compare::to_string(c.effective_modulus.optimum));
   add_state(out, c.state, scene.length, "the shape");
   if (verdict) {
-    append(out, "  verdict         {}: {} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of l\n",
-           verdict_word(verdict->text(), verdict->pass, options.output.file),
-           options.measure == "rms" ? "RMS" : "largest",
-           (options.measure == "rms" ? d.rms_m : d.max_m) * 1e3, verdict->tolerance_m * 1e3,
-           verdict->tolerance_m / scene.length * 100);
+    append(out, "  verdict         {}: {}\n",
+           verdict_word(verdict->text(), verdict->judgement.pass, options.output.file),
+           verdict->judgement.reason);
   }
   return out;
 }
@@ -134,6 +133,7 @@ Json json(const compare::ShapeCheck& c, const std::optional<Verdict>& verdict,
   result["turn_is_clear"] = c.turn_is_clear;
   result["seen"] = {{"from_m", s.front()},
                     {"to_m", s.back()},
+                    {"share", c.seen_share},
                     {"polyline_length_m", c.polyline_length_m},
                     {"largest_gap_m", c.largest_gap_m},
                     {"largest_gap_at_m", c.largest_gap_at_m}};
@@ -144,8 +144,11 @@ Json json(const compare::ShapeCheck& c, const std::optional<Verdict>& verdict,
   result.update(modulus_json(c.effective_modulus));
   result["effective_modulus_Pa"] = c.modulus;
   if (verdict) {
-    result["tolerance"] = {{"measure", options.measure}, {"allowed_m", verdict->tolerance_m}};
+    result["tolerance"] = {{"measure", options.measure},
+                           {"allowed_m", verdict->tolerance.allowed_m},
+                           {"least_seen_share", verdict->tolerance.least_seen_share}};
     result["verdict"] = verdict->text();
+    result["reason"] = verdict->judgement.reason;
   }
   result["state"] = to_json(c.state);
   result["arc_length_m"] = s;
@@ -159,7 +162,7 @@ std::string csv(const compare::ShapeCheck& c, const std::optional<Verdict>& verd
   std::string out =
       "scene,shape,gamma,points,reversed,arc_lengths,from_m,to_m,rms_m,rms_over_length,"
       "rms_over_movement,max_m,max_at_m,worst_point,tip_m,movement_m,effective_modulus_ratio,"
-      "rms_at_effective_modulus_m,optimum,tolerance_m,verdict\n";
+      "rms_at_effective_modulus_m,optimum,tolerance_m,verdict,seen_share,reason\n";
   const std::vector<double>& s = c.alignment.shape.arc_length;
   append(out,
          "{},{},{:.10g},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},"
@@ -169,24 +172,31 @@ std::string csv(const compare::ShapeCheck& c, const std::optional<Verdict>& verd
          d.rms_over_length, d.rms_over_movement, d.max_m, d.max_at_m, c.worst_point, d.tip_m,
          c.movement_m, c.effective_modulus.ratio, c.effective_modulus.rms_m,
          compare::to_string(c.effective_modulus.optimum));
-  if (verdict) append(out, "{:.10g},{}", verdict->tolerance_m, verdict->text());
-  return out + (verdict ? "\n" : ",\n");
+  if (verdict) {
+    append(out, "{:.10g},{},", verdict->tolerance.allowed_m, verdict->text());
+  } else {
+    out += ",,";
+  }
+  append(out, "{:.10g},{}\n", c.seen_share, verdict ? csv_field(verdict->judgement.reason) : "");
+  return out;
 }
 
 void run(const CheckOptions& options) {
   const compare::Scene scene = options.overrides.load(options.scene);
   const compare::MeasuredShape shape = options.shapes.load(options.shape);
   std::optional<Verdict> verdict;
-  if (!options.tolerance.empty()) verdict = Verdict{tolerance_m(options.tolerance, scene.length)};
+  if (!options.tolerance.empty()) {
+    verdict.emplace();
+    verdict->tolerance = {.allowed_m = tolerance_m(options.tolerance, scene.length),
+                          .largest = options.measure == "max",
+                          .least_seen_share = options.min_seen};
+  }
   const compare::ShapeCheck check =
       compare::check_shape(scene, shape,
                            {.pose = options.shapes.pose(),
                             .arc_lengths = options.shapes.arc_lengths(),
                             .solve = options.overrides.solve()});
-  if (verdict) {
-    const double judged = options.measure == "rms" ? check.deviation.rms_m : check.deviation.max_m;
-    verdict->pass = judged <= verdict->tolerance_m;
-  }
+  if (verdict) verdict->judgement = compare::judge(check, verdict->tolerance);
   std::string content;
   switch (options.output.kind()) {
     case Format::json:
@@ -200,7 +210,7 @@ void run(const CheckOptions& options) {
       break;
   }
   write_output(options.output, content);
-  if (verdict && !verdict->pass) throw CLI::RuntimeError(1);
+  if (verdict && !verdict->judgement.pass) throw CLI::RuntimeError(1);
 }
 
 }  // namespace
@@ -219,8 +229,14 @@ void add_check(CLI::App& app) {
   command->add_option("--measure", options->measure, "what is held against it: rms or max")
       ->check(CLI::IsMember({"rms", "max"}))
       ->capture_default_str();
+  command
+      ->add_option("--min-seen", options->min_seen,
+                   "least share of the rod between the first point and the last, such as 10%; less "
+                   "never passes")
+      ->transform(share_of_length())
+      ->capture_default_str();
   options->shapes.add_to(*command);
-  options->overrides.add_to(*command);
+  options->overrides.add_solvers_to(*command);
   add_output_options(*command, options->output);
   command->footer(
       "Example, with dlo in place of your simulator:\n"

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "comparison_text.hpp"
+#include "help.hpp"
 #include "output.hpp"
 
 namespace dlo::cli {
@@ -20,13 +21,15 @@ std::string percent(double share) {
   return std::isfinite(share) ? fmt::format("{:.3g} %", share * 100) : "-";
 }
 
-bool reached(const ForceModelFit& fit) {
-  return std::max(fit.worst(), fit.worst_holdout()) <= fit.target;
+const char* c_c_origin(const ForceModelFit& fit) {
+  if (fit.c_c_was_given) return "as given";
+  return fit.c_c_is_physical ? "A E of the rod"
+                             : "stretches the rod by a tenth of the target at most";
 }
 
 }  // namespace
 
-std::string force_model_text(const ForceModelFit& fit) {
+std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
   const compare::ForceModelSettings& s = fit.settings;
   std::string out;
   append(out, "law {}, bookkeeping {}, N = {}", compare::to_string(s.law),
@@ -44,8 +47,8 @@ std::string force_model_text(const ForceModelFit& fit) {
   } else {
     append(out, "  EI    {:.6g} N m^2   physical, in place of c_b\n", fit.bending_stiffness);
   }
-  append(out, "  c_c   {:.6g} N\n  c_F   {:.6g} m/N\n  c_h   {:.8f}\n  l_s   {:.6g} m\n\n", *s.c_c,
-         *s.c_F, *s.c_h, *s.l_s);
+  append(out, "  c_c   {:.6g} N   {}\n  c_F   {:.6g} m/N\n  c_h   {:.8f}\n  l_s   {:.6g} m\n\n",
+         *s.c_c, c_c_origin(fit), *s.c_F, *s.c_h, *s.l_s);
   append(out, "RMS deviation from the energy model, share of l\n");
   append(out, "  {:<28} {:>8}", "", "Gamma");
   for (const RuleDeviations& rule : fit.rules) {
@@ -60,18 +63,14 @@ std::string force_model_text(const ForceModelFit& fit) {
     }
     append(out, " {:>15} {:9}\n", percent(fit.stepped_rms_over_length[i]), fit.steps[i]);
   }
+  append(out, "  ({}: rigid segments, no stretch; stepped: the force model itself, with stretch)\n",
+         s.law == compare::Law::hooke ? "physical" : "rules for c_b");
   if (fit.holdouts > 0) append(out, "  (* held out: judged, not fitted)\n");
   append(out, "\nworst {}", percent(fit.worst()));
   if (fit.holdouts > 0) append(out, ", of the hold-out scenes {}", percent(fit.worst_holdout()));
-  append(out, ": the target of {} is {}\n", percent(fit.target),
-         reached(fit) ? "reached" : "not reached");
-  if (!reached(fit) && fit.c_c_is_physical) {
-    append(
-        out,
-        "  c_c is A E: the rod stretches as its material does, the energy model's rod does not.\n"
-        "  That is part of the deviation, and no error of the force model; a --target above it\n"
-        "  also takes fewer points.\n");
-  }
+  append(out, ": the {} of {} is {}\n", target_was_given ? "target" : "default target",
+         percent(fit.target), fit.reached() ? "reached" : "not reached");
+  for (const std::string& reason : fit.why_missed()) append(out, "  {}\n", wrap(reason, 2, 100));
   return out;
 }
 
@@ -107,6 +106,7 @@ Json force_model_json(const ForceModelFit& fit) {
                       {"gamma", fit.gammas[i]},
                       {"holdout", is_holdout(fit, i)},
                       {"rms_over_length", fit.stepped_rms_over_length[i]},
+                      {"stretch_rms_over_length", fit.stretch_rms_over_length[i]},
                       {"steps", fit.steps[i]},
                       {"rules", std::move(rules)}});
   }
@@ -125,7 +125,8 @@ Json force_model_json(const ForceModelFit& fit) {
             {"l_s", *s.l_s}}},
           {"order_of_convergence", fit.order > 0 ? Json(fit.order) : Json(nullptr)},
           {"target", fit.target},
-          {"reached", reached(fit)},
+          {"reached", fit.reached()},
+          {"why_missed", fit.why_missed()},
           {"deviation",
            {{"worst_rms_over_length", fit.worst()},
             {"worst_holdout_rms_over_length",
@@ -145,6 +146,7 @@ std::string force_model_toml(const ForceModelFit& fit) {
     append(out, "#   {} (Gamma = {:.4g}): RMS deviation {} of the length{}\n", name, fit.gammas[i],
            percent(fit.stepped_rms_over_length[i]), is_holdout(fit, i) ? ", held out" : "");
   }
+  append(out, "# Target {}: {}.\n", percent(fit.target), fit.reached() ? "reached" : "not reached");
   append(out, "# dlo reads it with --parameters. Lengths in m, forces in N.\n\n[force_model]\n");
   append(out, "law = \"{}\"\nbookkeeping = \"{}\"\n", compare::to_string(s.law),
          compare::to_string(s.bookkeeping));
@@ -153,10 +155,7 @@ std::string force_model_toml(const ForceModelFit& fit) {
     append(out, "c_b = {:.9e}  # N, bending stiffness: {}\n", *s.c_b,
            fit.c_b_was_given ? "as given" : "fitted to the scenes' energy shapes");
   }
-  append(out,
-         "c_c = {:.9e}  # N, stretch stiffness: stretches the rod by a tenth of the target at "
-         "most, no more than A E, or as given\n",
-         *s.c_c);
+  append(out, "c_c = {:.9e}  # N, stretch stiffness: {}\n", *s.c_c, c_c_origin(fit));
   append(out, "stepper = \"dynamic\"  # Formulas 19 and 20\n");
   append(out, "c_F = {:.9e}  # m/N, heavy ball of the stiffest and slowest modes\n", *s.c_F);
   append(out, "c_h = {:.9f}  # share of the last movement that is kept, likewise\n", *s.c_h);

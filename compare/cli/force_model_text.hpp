@@ -7,7 +7,8 @@
 
 namespace dlo::cli {
 
-[[nodiscard]] std::string force_model_text(const compare::ForceModelFit& fit);
+[[nodiscard]] std::string force_model_text(const compare::ForceModelFit& fit,
+                                           bool target_was_given);
 [[nodiscard]] std::string force_model_csv(const compare::ForceModelFit& fit);
 [[nodiscard]] Json force_model_json(const compare::ForceModelFit& fit);
 /// A parameters file for --parameters and for programs of the user's own.

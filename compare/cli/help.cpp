@@ -102,6 +102,16 @@ std::string unexpected(const CLI::App& command, const std::vector<std::string>& 
     for (std::string& name : option_text(*known).names) names.push_back(std::move(name));
   }
   const std::string written = word.substr(0, word.find('='));
+  for (const CLI::Option* known : options_of(command)) {
+    const OptionText text = option_text(*known);
+    // Such a flag takes its value behind "=" only.
+    const bool is_its_value =
+        text.optional_value &&
+        std::find(text.choices.begin(), text.choices.end(), word) != text.choices.end();
+    if (!is_its_value) continue;
+    return fmt::format("{}: one argument too many: {}, did you mean {}={}? (see dlo {} --help)",
+                       command.get_name(), word, text.names.back(), word, command.get_name());
+  }
   if (!written.starts_with('-')) {
     return fmt::format("{}: one argument too many: {} (see dlo {} --help)", command.get_name(),
                        word, command.get_name());

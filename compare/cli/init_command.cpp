@@ -4,12 +4,15 @@
 #include <cctype>
 #include <filesystem>
 #include <memory>
+#include <system_error>
+#include <utility>
 
 #include "commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_text.hpp"
 #include "output.hpp"
+#include "shell_word.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -43,25 +46,48 @@ std::string next_steps(const compare::Scene& scene, const std::string& file) {
          scene.material.density);
   append(out, "  weight {:.4g} N, EI = {:.4g} N m^2, Gamma = w l^3 / (EI) = {:.4g}\n",
          scene.mass() * scene.gravity.norm(), scene.bending_stiffness(), scene.gamma());
-  const std::string word = file.find(' ') == std::string::npos ? file : "'" + file + "'";
   append(out,
          "Next:\n"
          "  dlo solve {0}                       its shape, and the gripper's force and torque\n"
          "  dlo check {0} --shape mine.csv      is your simulator's shape right?\n"
          "  dlo calibrate {0} -o params.toml    parameters of the force model\n",
-         word);
+         shell_word(file));
   return out;
+}
+
+/// The scene's text; what is wrong with a value is said of the option that gave it.
+std::string text_of(const compare::SceneChoices& choices,
+                    const std::vector<compare::Material>& known) {
+  try {
+    return compare::scene_text(choices, known);
+  } catch (const compare::InputError& error) {
+    const std::string message = error.what();
+    constexpr std::pair<const char*, const char*> options[] = {
+        {" rod.length =", "--length ="},
+        {" rod.diameter =", "--diameter ="},
+        {" rod.material =", "--material ="},
+        {" rod.material.youngs_modulus =", "--youngs-modulus ="},
+        {" rod.material.density =", "--density ="},
+        {" gripper.direction =", "--direction ="}};
+    for (const auto& [key, option] : options) {
+      const std::size_t at = message.find(key);
+      if (at == std::string::npos) continue;
+      throw compare::InputError(option + message.substr(at + std::string(key).size()));
+    }
+    throw;
+  }
 }
 
 void run(InitOptions options) {
   const std::string file = file_of(options.target, options.choices.name).string();
-  if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(file))) {
+  std::error_code unknown;  // writing tells what is wrong with a name
+  if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(file, unknown))) {
     throw compare::InputError(
         fmt::format("{}: exists (allowed: another name, or --force to replace it)", file));
   }
   const std::vector<compare::Material> known =
       options.materials.empty() ? compare::materials() : compare::load_materials(options.materials);
-  const std::string text = compare::scene_text(options.choices, known);
+  const std::string text = text_of(options.choices, known);
   const compare::Scene scene = compare::parse_scene(text, file, known);
   write_output({.file = file}, text);
   write_output({}, next_steps(scene, file));

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -109,6 +110,8 @@ int main(int argc, char** argv) {
   } catch (const dlo::compare::InputError& error) {
     return report(bad_input, error);
   } catch (const std::invalid_argument& error) {
+    return report(bad_input, error);
+  } catch (const std::filesystem::filesystem_error& error) {
     return report(bad_input, error);
   } catch (const std::exception& error) {
     return report(not_converged, error);

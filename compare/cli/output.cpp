@@ -24,6 +24,14 @@ Format OutputOptions::kind() const {
   return static_cast<Format>(std::find(names.begin(), names.end(), format) - names.begin());
 }
 
+std::string format_of_file(const std::string& file, const std::vector<std::string>& formats) {
+  const std::string extension = std::filesystem::path(file).extension().string();
+  for (const std::string& format : formats) {
+    if (extension == "." + format) return format;
+  }
+  return {};
+}
+
 void write_output(const OutputOptions& options, const std::string& content) {
   if (options.file.empty()) {
     std::fwrite(content.data(), 1, content.size(), stdout);

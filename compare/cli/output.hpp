@@ -27,6 +27,10 @@ struct OutputOptions {
   [[nodiscard]] Format kind() const;
 };
 
+/// The format of a file's extension: "csv" of shape.csv; empty unless it is one of `formats`.
+[[nodiscard]] std::string format_of_file(const std::string& file,
+                                         const std::vector<std::string>& formats);
+
 /// Writes to standard output, or to the file: to a temporary name beside it first, then renamed, so
 /// that no reader ever sees half a file.
 /// @throws compare::InputError naming the file if it cannot be written

@@ -11,6 +11,7 @@
 #include "dlo/compare/report_verdict.hpp"
 #include "output.hpp"
 #include "share.hpp"
+#include "shell_word.hpp"
 #include "terminal.hpp"
 
 namespace dlo::cli {
@@ -24,17 +25,6 @@ struct ReportOptions {
   bool quick = false;
 };
 
-/// A word as a shell takes it.
-std::string shell_word(const std::string& word) {
-  const bool plain = !word.empty() && word.find_first_not_of(
-                                          "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                                          "0123456789._/-+:@%,=") == std::string::npos;
-  if (plain) return word;
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string command_line(const ReportOptions& options) {
   std::string line = "dlo report";
   for (const std::string& scene : options.scenes) line += " " + shell_word(scene);
@@ -46,14 +36,10 @@ std::string command_line(const ReportOptions& options) {
 }
 
 compare::ReportOptions report_options(const ReportOptions& options) {
-  compare::ReportOptions result;
+  compare::ReportOptions result =
+      options.quick ? compare::quick_report_options() : compare::ReportOptions{};
   result.tolerance = options.tolerance;
   result.threads = options.threads;
-  if (options.quick) {
-    result.benchmark = compare::BenchmarkOptions{.budget_s = 1, .repeats = 3};
-    result.map = compare::StabilityMapOptions{.columns = 6, .rows = 16, .steps = 2000};
-    result.hard_cases.reset();
-  }
   return result;
 }
 

@@ -16,6 +16,8 @@ namespace {
 using compare::Dimension;
 using compare::InputError;
 
+constexpr const char* force_model_group = "Force model (override the scene)";
+
 /// A quantity of an option: with a unit, or a bare number in SI.
 double option_quantity(const std::string& option, const std::string& text, Dimension dimension,
                        double below = std::numeric_limits<double>::infinity()) {
@@ -44,8 +46,16 @@ void add_output_options(CLI::App& command, OutputOptions& options,
   command.add_option("--format", options.format, fmt::format("{}", fmt::join(formats, ", ")))
       ->check(CLI::IsMember(formats))
       ->capture_default_str();
-  command.add_option("-o,--output", options.file, "write to FILE instead of standard output")
+  command
+      .add_option("-o,--output", options.file,
+                  "write to FILE instead of standard output; its extension is the format unless "
+                  "--format is given")
       ->type_name("FILE");
+  command.parse_complete_callback([&command, &options, formats] {
+    if (command.count("--format") > 0) return;
+    const std::string format = format_of_file(options.file, formats);
+    if (!format.empty()) options.format = format;
+  });
 }
 
 void PlanOptions::add_to(CLI::App& command) {
@@ -63,7 +73,8 @@ void PlanOptions::add_to(CLI::App& command) {
 }
 
 void SceneOptions::add_to(CLI::App& command) {
-  const std::string group = "Force model (override the scene)";
+  const std::string group = force_model_group;
+  command_ = &command;
   command
       .add_option("--parameters", parameters_,
                   "[force_model] of a file such as dlo calibrate writes, instead of the scene's")
@@ -135,6 +146,18 @@ void SceneOptions::apply(compare::Scene& scene) const {
   if (!c_h_.empty()) settings.c_h = option_quantity("--c-h", c_h_, Dimension::number, 1);
   if (!l_s_.empty()) settings.l_s = option_quantity("--l-s", l_s_, Dimension::length);
   compare::check(settings, scene.file + ", with the command line's options");
+}
+
+std::string SceneOptions::force_model_options() const {
+  std::string names;
+  const std::vector<const CLI::Option*> given =
+      command_->get_options([](const CLI::Option* option) {
+        return option->get_group() == force_model_group && option->count() > 0;
+      });
+  for (const CLI::Option* option : given) {
+    names += (names.empty() ? "" : ", ") + option->get_name();
+  }
+  return names;
 }
 
 std::vector<compare::Material> SceneOptions::materials() const {

@@ -21,10 +21,13 @@ class SceneOptions {
   [[nodiscard]] compare::Scene load(const std::string& path) const;
   [[nodiscard]] const compare::SolveOptions& solve() const { return solve_; }
   [[nodiscard]] std::vector<compare::Material> materials() const;
+  /// Names of the force model's options that were given, such as "--points, --law"; after add_to.
+  [[nodiscard]] std::string force_model_options() const;
 
  private:
   void apply(compare::Scene& scene) const;
 
+  const CLI::App* command_ = nullptr;
   std::string materials_, parameters_;
   int points_ = 0;
   std::string law_, bookkeeping_, stepper_, bending_rule_;

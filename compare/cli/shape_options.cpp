@@ -1,17 +1,26 @@
 #include "shape_options.hpp"
 
 #include <Eigen/Geometry>
+#include <utility>
 
 #include "dlo/compare/quantity.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "output.hpp"
 
 namespace dlo::cli {
+namespace {
+
+const std::vector<std::string>& unit_names() {
+  static const std::vector<std::string> names = {"m", "cm", "mm", "um"};
+  return names;
+}
+
+}  // namespace
 
 void ShapeOptions::add_to(CLI::App& command) {
   const std::string group = "Shape files";
   command.add_option("--unit", unit_, "what the numbers are in: m, cm, mm or um")
-      ->check(CLI::IsMember({"m", "cm", "mm", "um"}))
+      ->check(CLI::IsMember(unit_names()))
       ->capture_default_str()
       ->group(group);
   command
@@ -36,8 +45,30 @@ compare::MeasuredShape ShapeOptions::load(const std::string& path) const {
                              compare::parse_quantity("1 " + unit_, compare::Dimension::length));
 }
 
-std::string direction_text(const compare::Alignment& alignment) {
-  return alignment.reversed ? "from arc length l to 0" : "from arc length 0 to l";
+std::string ShapeOptions::unit_hint(double polyline_m, double length) const {
+  const double ratio = polyline_m / length;
+  const bool short_one = ratio < 1.0 / 50;
+  if (!short_one && !(ratio > 1.1)) return {};
+  std::string hint = short_one ? fmt::format("polyline is 1/{:.0f} of the rod: ", 1 / ratio)
+                               : fmt::format("polyline is {:.4g} times the rod: ", ratio);
+  const double given = compare::parse_quantity("1 " + unit_, compare::Dimension::length);
+  for (const std::string& unit : unit_names()) {
+    const double value = compare::parse_quantity("1 " + unit, compare::Dimension::length);
+    const double share = ratio * value / given;
+    // Whole rod or a good part of it, and noise may lengthen the polyline.
+    if (unit != unit_ && share > 0.2 && share < 2) return hint + fmt::format("--unit {}?", unit);
+  }
+  return hint + (short_one ? "a small piece, or --unit?" : "noise between points, or --unit?");
+}
+
+std::string range_text(const compare::Alignment& alignment, double length) {
+  double from = alignment.shape.arc_length.front();
+  double to = alignment.shape.arc_length.back();
+  const double near = 1e-4 * length;
+  const bool whole = from <= near && to >= length - near;
+  if (whole) return alignment.reversed ? "from arc length l to 0" : "from arc length 0 to l";
+  if (alignment.reversed) std::swap(from, to);
+  return fmt::format("from s = {:.4g} to {:.4g} m", from, to);
 }
 
 std::string pose_text(const compare::RigidMotion& pose) {

@@ -15,6 +15,8 @@ class ShapeOptions {
 
   /// Reads a shape file in the unit that was given. @throws compare::InputError
   [[nodiscard]] compare::MeasuredShape load(const std::string& path) const;
+  /// "polyline is 1/998 of the rod: --unit m?", or nothing if the unit may be right.
+  [[nodiscard]] std::string unit_hint(double polyline_m, double length) const;
   [[nodiscard]] compare::PoseFreedom pose() const { return compare::pose_from(pose_); }
   [[nodiscard]] compare::ArcLengths arc_lengths() const {
     return compare::arc_lengths_from(arc_lengths_);
@@ -26,8 +28,8 @@ class ShapeOptions {
   std::string arc_lengths_ = "auto";
 };
 
-/// How a shape was laid on its reference, in a few words.
-[[nodiscard]] std::string direction_text(const compare::Alignment& alignment);
+/// From which arc length to which a shape runs on its reference, in a few words.
+[[nodiscard]] std::string range_text(const compare::Alignment& alignment, double length);
 [[nodiscard]] std::string pose_text(const compare::RigidMotion& pose);
 [[nodiscard]] Json to_json(const compare::Alignment& alignment);
 

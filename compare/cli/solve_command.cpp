@@ -104,12 +104,35 @@ std::string equilibria_text(const std::vector<compare::Solution>& solutions) {
   return out;
 }
 
+/// What a format cannot say is not left out in silence.
+void require_format_for(const SolveOptions& options) {
+  const std::string& format = options.output.format;
+  if (format != "csv" && format != "vtk") return;
+  if (options.all) {
+    throw compare::InputError(
+        fmt::format("--all: format {} holds one shape (allowed: text or json)", format));
+  }
+  if (options.plan.explain()) {
+    throw compare::InputError(
+        fmt::format("--explain: format {} holds no plan (allowed: text or json)", format));
+  }
+}
+
+void warn_of_force_model_options(const SolveOptions& options) {
+  const std::string names = options.overrides.force_model_options();
+  if (names.empty()) return;
+  fmt::print(stderr, "dlo: {}: no effect on the shape of model {} (only on force and chain)\n",
+             names, options.model);
+}
+
 void run(const SolveOptions& options) {
+  require_format_for(options);
   const compare::Scene scene = options.overrides.load(options.scene);
   const compare::Model model = compare::model_from(options.model);
   constexpr int text_samples = 11;
   int samples = options.samples;
   const bool continuous = model == compare::Model::energy || model == compare::Model::exact;
+  if (continuous) warn_of_force_model_options(options);
   if (samples == 0 && continuous && options.output.kind() == Format::text) samples = text_samples;
   const std::vector<double> arc_lengths =
       samples > 0 ? compare::equal_arc_lengths(scene.length, samples) : std::vector<double>{};

@@ -72,8 +72,10 @@ std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length) 
   std::vector<double> s = shape.arc_length;
   for (std::size_t i = 0; i < s.size(); ++i) {
     if (s[i] < -1e-6 * length || s[i] > (1 + 1e-6) * length) {
-      throw InputError(fmt::format("{}: point {}: s = {:g} m (allowed: 0 to {:g} m, the rod)",
-                                   shape.file, i + 1, s[i], length));
+      throw InputError(
+          fmt::format("{}: point {}: s = {:g} m (allowed: 0 to {:g} m, the rod; "
+                      "--unit if the file is not in metres)",
+                      shape.file, i + 1, s[i], length));
     }
     s[i] = std::clamp(s[i], 0.0, length);
   }

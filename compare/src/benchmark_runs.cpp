@@ -23,60 +23,6 @@ double error_of(const Scene& scene, const energy_model::Equilibrium& a,
   return error_of(scene, {s, a.sample(s).points}, b);
 }
 
-void add_continuous(const Scene& scene, const ReferenceShape& reference, Stopwatch& watch,
-                    std::vector<BenchmarkRun>& runs) {
-  energy_model::Equilibrium result;
-  const auto add = [&](Model model, int terms) {
-    BenchmarkRun run{.scene = scene.name, .model = model, .size = terms};
-    const std::optional<Timing> time =
-        watch.time(fmt::format("{}: {}{}", scene.name, to_string(model),
-                               terms > 0 ? fmt::format(", K = {}", terms) : ""),
-                   0, [&] { result = solve_reference(scene, model, {.terms = terms}); });
-    if (!time) return;
-    run.time = *time;
-    run.work = result.evaluations;
-    run.rms_over_length =
-        model == Model::exact ? reference.agreement : error_of(scene, result, reference.rod);
-    if (model == Model::energy && terms == 0) run.setting = "K as needed";
-    runs.push_back(std::move(run));
-  };
-  if (reference.model == Model::exact) add(Model::exact, 0);
-  for (const int terms : {2, 3, 4, 6, 8, 12, 16, 24, 0}) add(Model::energy, terms);
-}
-
-/// One polygon over N, each predicted from the one before.
-void add_polygons(const Scene& scene, const ReferenceShape& reference, Model model,
-                  const ForceVariant& variant, Stopwatch& watch, std::vector<BenchmarkRun>& runs) {
-  double last_s = 0;
-  int last_points = 0;
-  for (const int points : {8, 16, 32, 64, 128, 256}) {
-    const ForceModelSettings settings = variant.settings(scene, points);
-    // Longer than most series: what takes more steps is said to be skipped.
-    SolveOptions options{.max_steps = 60'000'000 / points};
-    // A tenth of the hooke polygon's error at this N, about 0.1 / N^2.
-    options.rest_tolerance = std::clamp(0.01 / (points * points), 1e-7, 1e-4);
-    const double growth = last_points > 0 ? std::pow(1.0 * points / last_points, 3) : 1;
-    Solution solution;
-    const std::optional<Timing> time =
-        watch.time(fmt::format("{}: {}, N = {}, {}", scene.name, to_string(model), points,
-                               variant.text(model)),
-                   last_s * growth, [&] {
-                     solution = model == Model::chain ? solve_chain(scene, settings, options)
-                                                      : solve_force(scene, settings, options);
-                   });
-    if (!time) break;
-    last_s = time->median_s;
-    last_points = points;
-    runs.push_back({.scene = scene.name,
-                    .model = model,
-                    .size = points,
-                    .setting = variant.text(model),
-                    .time = *time,
-                    .work = model == Model::chain ? solution.evaluations : solution.steps,
-                    .rms_over_length = error_of(scene, solution.shape, reference.rod)});
-  }
-}
-
 }  // namespace
 
 double Stopwatch::seconds() const {
@@ -85,9 +31,11 @@ double Stopwatch::seconds() const {
 
 bool Stopwatch::fits(const std::string& name, double predicted_s) {
   constexpr double largest_share = 0.25;
-  if (predicted_s <= largest_share * left() && left() > 0) return true;
-  skipped_.push_back(
-      fmt::format("{} (predicted {:.2g} s, {:.2g} s left)", name, predicted_s, left()));
+  const double now_left = left();
+  if (now_left > 0 && predicted_s <= largest_share * now_left) return true;
+  skipped_.push_back(now_left > 0 ? fmt::format("{} (predicted {:.2g} s, {:.2g} s left)", name,
+                                                predicted_s, now_left)
+                                  : fmt::format("{} (no time left)", name));
   return false;
 }
 
@@ -149,10 +97,8 @@ ReferenceShape benchmark_reference(const Scene& scene) {
   return result;
 }
 
-std::vector<BenchmarkRun> static_runs(const Scene& scene, const ReferenceShape& reference,
-                                      Stopwatch& watch) {
-  std::vector<BenchmarkRun> runs;
-  add_continuous(scene, reference, watch, runs);
+StaticRuns::StaticRuns(const Scene& scene, const ReferenceShape& reference, Stopwatch& watch)
+    : scene_(scene), reference_(reference), watch_(watch) {
   const ForceVariant hooke;
   ForceVariant soft;
   soft.stretch_share = 1e-3;
@@ -163,12 +109,93 @@ std::vector<BenchmarkRun> static_runs(const Scene& scene, const ReferenceShape& 
   paper_chain.stretch_share = 1;
   ForceVariant dynamic = soft;
   dynamic.stepper = StepperName::dynamic;
-  add_polygons(scene, reference, Model::chain, hooke, watch, runs);
-  add_polygons(scene, reference, Model::chain, paper_chain, watch, runs);
+  const auto add = [&](Model model, const ForceVariant& variant, const std::vector<int>& sizes) {
+    series_.push_back({.model = model, .variant = variant, .sizes = sizes});
+  };
+  const std::vector<int> points = {8, 16, 32, 64, 128, 256};
+  if (reference.model == Model::exact) add(Model::exact, {}, {0});
+  add(Model::energy, {}, {2, 3, 4, 6, 8, 12, 16, 24, 0});
+  for (const ForceVariant& variant : {hooke, paper_chain}) add(Model::chain, variant, points);
   for (const ForceVariant& variant : {soft, hooke, dynamic, paper_law}) {
-    add_polygons(scene, reference, Model::force, variant, watch, runs);
+    add(Model::force, variant, points);
   }
-  return runs;
+}
+
+bool StaticRuns::next_round() {
+  bool ran = false;
+  for (StaticSeries& series : series_) {
+    if (series.sizes.empty()) continue;
+    ran = true;
+    const int size = series.sizes.front();
+    series.sizes.erase(series.sizes.begin());
+    if (series.model == Model::exact || series.model == Model::energy) {
+      run_continuous(series, size);
+    } else {
+      run_polygon(series, size);
+    }
+  }
+  return ran;
+}
+
+std::vector<BenchmarkRun> StaticRuns::runs() const {
+  std::vector<BenchmarkRun> all;
+  for (const StaticSeries& series : series_) {
+    all.insert(all.end(), series.runs.begin(), series.runs.end());
+  }
+  return all;
+}
+
+void StaticRuns::run_continuous(StaticSeries& series, int terms) {
+  const Model model = series.model;
+  energy_model::Equilibrium result;
+  const std::optional<Timing> time = watch_.time(
+      fmt::format("{}: {}{}", scene_.name, to_string(model),
+                  terms > 0 ? fmt::format(", K = {}", terms) : ""),
+      series.last_s, [&] { result = solve_reference(scene_, model, {.terms = terms}); });
+  if (!time) return;
+  series.last_s = time->median_s;
+  BenchmarkRun run{.scene = scene_.name,
+                   .model = model,
+                   .size = terms,
+                   .time = *time,
+                   .work = result.evaluations,
+                   .rms_over_length = model == Model::exact
+                                          ? reference_.agreement
+                                          : error_of(scene_, result, reference_.rod)};
+  if (model == Model::energy && terms == 0) run.setting = "K as needed";
+  series.runs.push_back(std::move(run));
+}
+
+/// Each is predicted from the one before; what does not fit in, larger ones do not either.
+void StaticRuns::run_polygon(StaticSeries& series, int points) {
+  const Model model = series.model;
+  const std::string setting = series.variant.text(model);
+  const ForceModelSettings settings = series.variant.settings(scene_, points);
+  // Longer than most series: what takes more steps is said to be skipped.
+  SolveOptions options{.max_steps = 60'000'000 / points};
+  // A tenth of the hooke polygon's error at this N, about 0.1 / N^2.
+  options.rest_tolerance = std::clamp(0.01 / (points * points), 1e-7, 1e-4);
+  const double growth = series.last_points > 0 ? std::pow(1.0 * points / series.last_points, 3) : 1;
+  Solution solution;
+  const std::optional<Timing> time =
+      watch_.time(fmt::format("{}: {}, N = {}, {}", scene_.name, to_string(model), points, setting),
+                  series.last_s * growth, [&] {
+                    solution = model == Model::chain ? solve_chain(scene_, settings, options)
+                                                     : solve_force(scene_, settings, options);
+                  });
+  if (!time) {
+    series.sizes.clear();
+    return;
+  }
+  series.last_s = time->median_s;
+  series.last_points = points;
+  series.runs.push_back({.scene = scene_.name,
+                         .model = model,
+                         .size = points,
+                         .setting = setting,
+                         .time = *time,
+                         .work = model == Model::chain ? solution.evaluations : solution.steps,
+                         .rms_over_length = error_of(scene_, solution.shape, reference_.rod)});
 }
 
 ForceModelSettings ForceVariant::settings(const Scene& scene, int points) const {

@@ -50,15 +50,6 @@ struct ReferenceShape {
 
 [[nodiscard]] ReferenceShape benchmark_reference(const Scene& scene);
 
-[[nodiscard]] std::vector<BenchmarkRun> static_runs(const Scene& scene,
-                                                    const ReferenceShape& reference,
-                                                    Stopwatch& watch);
-
-[[nodiscard]] std::vector<BenchmarkRun> tracking_runs(const Scene& scene,
-                                                      const ReferenceShape& reference,
-                                                      const BenchmarkOptions& options,
-                                                      Stopwatch& watch);
-
 /// A force model of the benchmark.
 struct ForceVariant {
   Law law = Law::hooke;
@@ -69,5 +60,42 @@ struct ForceVariant {
   [[nodiscard]] ForceModelSettings settings(const Scene& scene, int points) const;
   [[nodiscard]] std::string text(Model model) const;
 };
+
+/// One model of the static runs over its sizes, the cheapest first.
+struct StaticSeries {
+  Model model = Model::exact;
+  ForceVariant variant;    ///< of chain and force
+  std::vector<int> sizes;  ///< K or N, not yet run
+  std::vector<BenchmarkRun> runs;
+  double last_s = 0;    ///< time of the run before
+  int last_points = 0;  ///< its N
+};
+
+/// The static runs, in rounds: the first size of every model, then the second and so on, so that a
+/// small budget leaves some runs of each.
+class StaticRuns {
+ public:
+  /// All are kept by reference.
+  StaticRuns(const Scene& scene, const ReferenceShape& reference, Stopwatch& watch);
+
+  /// One round; false if nothing is left to run.
+  bool next_round();
+  /// All so far, by model and size.
+  [[nodiscard]] std::vector<BenchmarkRun> runs() const;
+
+ private:
+  void run_continuous(StaticSeries& series, int terms);
+  void run_polygon(StaticSeries& series, int points);
+
+  const Scene& scene_;
+  const ReferenceShape& reference_;
+  Stopwatch& watch_;
+  std::vector<StaticSeries> series_;
+};
+
+[[nodiscard]] std::vector<BenchmarkRun> tracking_runs(const Scene& scene,
+                                                      const ReferenceShape& reference,
+                                                      const BenchmarkOptions& options,
+                                                      Stopwatch& watch);
 
 }  // namespace dlo::compare

@@ -151,26 +151,40 @@ std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape
       reference.rod.seconds * options.frames / static_cast<double>(Track::stride);
   const auto find = [&] { track = track_of(scene, reference.model, options); };
   if (!watch.run_once(scene.name + ": tracking, reference", predicted_track, find)) return runs;
-  const auto add = [&](const std::string& name, const std::function<BenchmarkRun()>& work) {
+  const auto add = [&](const std::string& name, double predicted, std::vector<BenchmarkRun>& to,
+                       const std::function<BenchmarkRun()>& work) {
     BenchmarkRun run;
-    const double predicted = options.frames * frame_s;
     if (watch.run_once(fmt::format("{}: tracking, {}", scene.name, name), predicted,
                        [&] { run = work(); })) {
-      runs.push_back(std::move(run));
+      to.push_back(std::move(run));
     }
   };
-  for (const int terms : {3, 6, 12, 0}) {
-    add(fmt::format("energy, K = {}", terms),
+  const auto add_energy = [&](int terms) {
+    // Each is about as fast as the one before; the first is short.
+    const double predicted = runs.empty() ? 0 : runs.back().time.median_s * options.frames;
+    add(terms > 0 ? fmt::format("energy, K = {}", terms) : "energy, K as needed", predicted, runs,
         [&] { return track_energy(scene, terms, track, options); });
+  };
+  std::vector<BenchmarkRun> force_runs;
+  const auto add_force = [&](double share, int points) {
+    ForceVariant variant;
+    variant.stretch_share = share;
+    add(fmt::format("force, N = {}, {}", points, variant.text(Model::force)),
+        options.frames * frame_s, force_runs,
+        [&] { return track_force(scene, variant, points, track, options); });
+  };
+  // The cheapest of both models first.
+  add_energy(3);
+  for (const double share : {1e-3, 1.0}) add_force(share, 8);
+  for (const int terms : {6, 12, 0}) add_energy(terms);
+  for (const int points : {16, 32}) {
+    for (const double share : {1e-3, 1.0}) add_force(share, points);
   }
-  for (const double share : {1e-3, 1.0}) {
-    for (const int points : {8, 16, 32}) {
-      ForceVariant variant;
-      variant.stretch_share = share;
-      add(fmt::format("force, N = {}, {}", points, variant.text(Model::force)),
-          [&] { return track_force(scene, variant, points, track, options); });
-    }
-  }
+  const auto softer = [](const BenchmarkRun& a, const BenchmarkRun& b) {
+    return a.setting > b.setting;  // "c_c = AE/1000" before "c_c = AE"
+  };
+  std::stable_sort(force_runs.begin(), force_runs.end(), softer);
+  runs.insert(runs.end(), force_runs.begin(), force_runs.end());
   return runs;
 }
 

@@ -121,14 +121,12 @@ std::string axis_labels(const std::string& x, const std::string& y, int height, 
                      1 - (top - above) / height);
 }
 
-std::string gnuplot_version() {
-  const std::filesystem::path folder = std::filesystem::temp_directory_path();
-  const std::string stem = fmt::format("dlo_gnuplot_{}", ::getpid());
-  const Child child = run_gnuplot(folder, "--version", stem + ".out", stem + ".err");
-  std::string version = child.good() ? joined_lines(text_of(folder / (stem + ".out"))) : "";
+std::string gnuplot_version(const std::filesystem::path& folder) {
+  const std::string out = "gnuplot_version.out";
+  const Child child = run_gnuplot(folder, "--version", out, "/dev/null");
+  std::string version = child.good() ? joined_lines(text_of(folder / out)) : "";
   std::error_code ignored;
-  std::filesystem::remove(folder / (stem + ".out"), ignored);
-  std::filesystem::remove(folder / (stem + ".err"), ignored);
+  std::filesystem::remove(folder / out, ignored);
   return version;
 }
 

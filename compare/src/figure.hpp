@@ -12,6 +12,7 @@ struct Figure {
   std::string title;        ///< one line
   std::string description;  ///< what it shows, for those who do not see it
   std::string command;      ///< of a shell in the report's folder, gives the numbers
+  std::string given;        ///< which of the numbers, if not all
   std::string csv_file;
   std::string csv;     ///< what is in it; empty if another figure has the same file
   std::string script;  ///< for gnuplot, run in the report's folder
@@ -41,7 +42,8 @@ inline constexpr int top_margin = 38;
 [[nodiscard]] int height_besides_plot(int key_rows);
 
 /// Version of the gnuplot that would draw, as it says it; empty if there is none.
-[[nodiscard]] std::string gnuplot_version();
+/// @param folder  the report's own, where nobody else has files, to run it in
+[[nodiscard]] std::string gnuplot_version(const std::filesystem::path& folder);
 
 /// Draws NAME.svg in the folder, where its CSV file and NAME.gp are.
 /// @return why not, in one line; empty if it is drawn

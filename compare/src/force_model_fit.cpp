@@ -97,6 +97,7 @@ class ForceModelFitter {
     }
     result_.holdouts = holdouts.size();
     result_.target = options.target;
+    result_.points_were_given = options.points.has_value();
     settings_ = scenes.front().force_model;
     settings_.stepper = StepperName::dynamic;
   }
@@ -253,7 +254,8 @@ class ForceModelFitter {
   }
 
   void choose_stretch() {
-    if (settings_.c_c) return;
+    result_.c_c_was_given = settings_.c_c.has_value();
+    if (result_.c_c_was_given) return;
     double stiffness = 0;
     double axial = std::numeric_limits<double>::infinity();
     for (const FittedCase& entry : cases_) {
@@ -261,7 +263,7 @@ class ForceModelFitter {
       axial = std::min(axial, entry.scene.axial_stiffness());
     }
     settings_.c_c = stiffness > 0 ? std::min(stiffness, axial) : axial;
-    result_.c_c_is_physical = stiffness > axial;
+    result_.c_c_is_physical = !(stiffness > 0 && stiffness <= axial);
   }
 
   /// Modes of all scenes at their starts and at rest.
@@ -291,11 +293,15 @@ class ForceModelFitter {
       settings_.c_h = ball.c_h;
       result_.steps.clear();
       result_.stepped_rms_over_length.clear();
+      result_.stretch_rms_over_length.clear();
       try {
         for (const FittedCase& entry : cases_) {
           const Solution force = solve_force(entry.scene, settings_, options_.solve);
           result_.steps.push_back(force.steps);
           result_.stepped_rms_over_length.push_back(entry.rms_over_length(force.shape));
+          const Shape rigid = solve_chain(entry.scene, settings_, options_.solve).shape;
+          result_.stretch_rms_over_length.push_back(
+              rms(rigid.arc_length, force.shape.points - rigid.points) / entry.scene.length);
         }
         return;
       } catch (const ConvergenceError&) {
@@ -313,26 +319,12 @@ class ForceModelFitter {
   ProgressCounter counter_;  // of scenes, then the runs to rest
 };
 
-double largest_of(const std::vector<double>& values, std::size_t begin, std::size_t end) {
-  double result = 0;
-  for (std::size_t i = begin; i < end; ++i) result = std::max(result, values[i]);
-  return result;
-}
-
 }  // namespace
 
 const char* to_string(StiffnessRule rule) {
   constexpr const char* names[] = {"physical", "formula_21", "moment_matched", "fitted",
                                    "fitted_alone"};
   return names[static_cast<std::size_t>(rule)];
-}
-
-double ForceModelFit::worst() const {
-  return largest_of(stepped_rms_over_length, 0, stepped_rms_over_length.size() - holdouts);
-}
-double ForceModelFit::worst_holdout() const {
-  const std::size_t all = stepped_rms_over_length.size();
-  return largest_of(stepped_rms_over_length, all - holdouts, all);
 }
 
 ForceModelFit fit_force_model(const std::vector<Scene>& scenes, const std::vector<Scene>& holdouts,

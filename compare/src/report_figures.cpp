@@ -230,7 +230,16 @@ std::string map_command(const Report& report) {
 }
 
 std::string history_command(const Report& report) {
-  return report.paper ? "dlo paper --format csv" : "dlo report scenes -o again";
+  return report.paper ? "dlo paper --format csv" : report_command(report, "scenes");
+}
+
+std::string report_command(const Report& report, const std::string& scenes) {
+  std::string command = "dlo report " + scenes;
+  if (report.options.quick) command += " --quick";
+  if (report.options.tolerance != ReportOptions{}.tolerance) {
+    command += fmt::format(" --tolerance {}", report.options.tolerance);
+  }
+  return command + " -o ../again";  // this folder has to stay a report and nothing else
 }
 
 std::vector<Figure> report_figures(const Report& report) {
@@ -257,7 +266,7 @@ std::vector<Figure> report_figures(const Report& report) {
   }
   if (report.benchmark) {
     for (std::size_t i = 0; i < report.benchmark->scenes.size(); ++i) {
-      figures.push_back(front_figure(report, i));
+      if (has_run(report.benchmark->scenes[i].runs)) figures.push_back(front_figure(report, i));
     }
   }
   if (report.map) figures.push_back(map_figure(report));

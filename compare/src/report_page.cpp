@@ -35,15 +35,20 @@ class Page {
                         escape_html(line));
   }
   void commands(const std::string& summary, const std::vector<std::string>& lines) {
+    if (lines.empty()) return;
     out_ += "<details open><summary>" + escape_html(summary) + "</summary>\n<ul>\n";
     for (const std::string& line : lines) {
       out_ += "<li><code>" + escape_html(line) + "</code></li>\n";
     }
     out_ += "</ul>\n</details>\n";
   }
-  void list(const std::vector<std::string>& items) {
+  /// @param bold  how many of the first ones
+  void list(const std::vector<std::string>& items, std::size_t bold = 0) {
     out_ += "<ul>\n";
-    for (const std::string& item : items) out_ += "<li>" + escape_html(item) + "</li>\n";
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const std::string text = escape_html(items[i]);
+      out_ += "<li>" + (i < bold ? "<strong>" + text + "</strong>" : text) + "</li>\n";
+    }
     out_ += "</ul>\n";
   }
   void open_box() { out_ += "<div class=\"verdict\">\n"; }
@@ -53,7 +58,14 @@ class Page {
     list(items);
     out_ += "</details>\n";
   }
-  void table(const HtmlTable& table) { out_ += to_html(table); }
+  /// A table, or a sentence if nothing is in it.
+  void table(const HtmlTable& table) {
+    if (!table.rows.empty()) {
+      out_ += to_html(table);
+    } else {
+      paragraph(table.caption + ": none. What failed is named at the top of the page.");
+    }
+  }
   void facts(const std::vector<std::pair<std::string, std::string>>& facts) {
     out_ += "<dl>\n";
     for (const auto& [name, value] : facts) {
@@ -63,6 +75,10 @@ class Page {
   }
   /// Figures of a section whose names begin with a text.
   void figures(const std::string& section) {
+    if (std::none_of(figures_.begin(), figures_.end(),
+                     [&](const PageFigure& entry) { return entry.figure.section == section; })) {
+      return;
+    }
     out_ += "<div class=\"figures\">\n";
     for (const PageFigure& entry : figures_) {
       if (entry.figure.section == section) add_figure(entry);
@@ -96,10 +112,11 @@ class Page {
                       "the tables and in {}.</p>\n",
                       escape_html(entry.failure), figure.csv_file);
     out_ += fmt::format(
-        "<figcaption><strong>{0}</strong><br>{1}<br>Numbers: <a href=\"{2}\">{2}</a>, again by "
-        "<code>{3}</code>; picture: <code>gnuplot {4}.gp</code></figcaption>\n</figure>\n",
+        "<figcaption><strong>{0}</strong><br>{1}<br>Numbers: <a href=\"{2}\">{2}</a>{3} again by "
+        "<code>{4}</code>; picture: <code>gnuplot {5}.gp</code></figcaption>\n</figure>\n",
         escape_html(figure.title), escape_html(figure.description), figure.csv_file,
-        escape_html(figure.command), figure.name);
+        figure.given.empty() ? "," : "; " + escape_html(figure.given), escape_html(figure.command),
+        figure.name);
   }
 
   const std::vector<PageFigure>& figures_;
@@ -110,8 +127,13 @@ class Page {
 
 void add_verdict(const Report& report, Page& page) {
   page.section("verdict", "Verdict");
+  if (report.options.quick) {
+    page.paragraph(
+        "A quick report (--quick): a short benchmark, a coarse map, no hard cases. Without it the "
+        "times and limits are surer.");
+  }
   page.open_box();
-  page.list(report_verdict(report));
+  page.list(report_verdict(report), report.failures.size());
   page.close_box();
   page.paragraph(fmt::format(
       "Every number names its law (how a joint's moment grows with its angle: paper, cubic; hooke, "
@@ -129,6 +151,19 @@ void add_verdict(const Report& report, Page& page) {
   page.table(scene_table(report));
 }
 
+/// Comparisons that no options of dlo compare give, one after the other.
+std::string rows_without_command(const Report& report) {
+  std::string names;
+  for (const SceneReport& scene : report.scenes) {
+    for (const Comparison& comparison : scene.comparisons) {
+      if (!compare_command(scene.file, comparison).empty()) continue;
+      if (!names.empty()) names += "; ";
+      names += comparison.scene + ", " + setting_name(comparison.settings);
+    }
+  }
+  return names;
+}
+
 void add_shapes(const Report& report, Page& page) {
   page.section("shapes", "Shapes and curvature");
   page.paragraph(
@@ -141,10 +176,18 @@ void add_shapes(const Report& report, Page& page) {
   std::vector<std::string> commands;
   for (const SceneReport& scene : report.scenes) {
     for (const Comparison& comparison : scene.comparisons) {
-      commands.push_back(compare_command(scene.file, comparison));
+      std::string command = compare_command(scene.file, comparison);
+      if (!command.empty()) commands.push_back(std::move(command));
     }
   }
   page.commands("Each row again", commands);
+  const std::string no_command = rows_without_command(report);
+  if (!no_command.empty()) {
+    page.paragraph(
+        "Rows without a command, since their scenes name numbers that only their own "
+        "law or bookkeeping has: " +
+        no_command + ".");
+  }
   page.table(state_table(report));
   page.section("budget", "Why: the error budget");
   page.paragraph(
@@ -169,13 +212,14 @@ void add_modulus(const Report& report, Page& page) {
   page.table(history_table(report));
   page.command(report.paper ? "The paper's poses again:" : "Again:", history_command(report));
   if (report.paper) {
-    page.command("The others:", "dlo report scenes/long_rod.toml scenes/side_load.toml -o again");
+    page.command("The others:",
+                 report_command(report, "scenes/long_rod.toml scenes/side_load.toml"));
   }
 }
 
 void add_speed(const Report& report, Page& page) {
   page.section("speed", "Speed against error");
-  if (!report.benchmark) return page.paragraph("The benchmark was left out.");
+  if (!report.benchmark) return page.paragraph("The benchmark was left out, or not computed.");
   const BenchmarkReport& benchmark = *report.benchmark;
   page.paragraph(fmt::format(
       "From straight to the shape, on one thread while nothing else of this report ran, medians of "
@@ -232,12 +276,11 @@ void add_stability(const Report& report, Page& page) {
 }
 
 void add_provenance(const Report& report, const std::vector<PageFigure>& figures,
-                    const ReportMaker& maker, Page& page) {
+                    const ReportMaker& maker, const std::string& drawn_by, Page& page) {
   page.section("provenance", "Provenance");
   std::vector<std::pair<std::string, std::string>> facts = {{"dlo", maker.version},
                                                             {"command", maker.command}};
   for (const auto& fact : provenance()) facts.push_back(fact);
-  const std::string drawn_by = gnuplot_version();
   facts.emplace_back("figures", drawn_by.empty() ? "none: no gnuplot was found" : drawn_by);
   facts.emplace_back("time to compute", page_number(report.seconds) + " s");
   page.facts(facts);
@@ -262,14 +305,14 @@ void add_provenance(const Report& report, const std::vector<PageFigure>& figures
 }  // namespace
 
 std::string report_page(const Report& report, const std::vector<PageFigure>& figures,
-                        const ReportMaker& maker) {
+                        const ReportMaker& maker, const std::string& drawn_by) {
   Page page(figures);
   add_verdict(report, page);
   add_shapes(report, page);
   add_modulus(report, page);
   add_speed(report, page);
   add_stability(report, page);
-  add_provenance(report, figures, maker, page);
+  add_provenance(report, figures, maker, drawn_by, page);
   return page.finished(report.paper ? "The paper's rod: how far a fast model is from physics"
                                     : "How far a fast rod model is from physics");
 }

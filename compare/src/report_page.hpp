@@ -17,7 +17,8 @@ struct PageFigure {
 };
 
 /// The whole page, in one file: style and figures in it, no script, nothing to be fetched.
+/// @param drawn_by  see gnuplot_version
 [[nodiscard]] std::string report_page(const Report& report, const std::vector<PageFigure>& figures,
-                                      const ReportMaker& maker);
+                                      const ReportMaker& maker, const std::string& drawn_by);
 
 }  // namespace dlo::compare

@@ -283,6 +283,8 @@ std::string setting_name(const ForceModelSettings& settings) {
 std::string compare_command(const SceneFile& file, const Comparison& comparison) {
   const ForceModelSettings& own = file.scene.force_model;
   const ForceModelSettings& settings = comparison.settings;
+  const bool other = settings.law != own.law || settings.bookkeeping != own.bookkeeping;
+  if (other && (own.c_b || own.design_curvature || own.point_weight)) return {};
   std::string command = "dlo compare scenes/" + file.name;
   if (settings.law != own.law) command += std::string(" --law ") + to_string(settings.law);
   if (settings.bookkeeping != own.bookkeeping) {
@@ -296,14 +298,16 @@ std::vector<Figure> scene_figures(const SceneReport& scene, std::size_t number) 
   const std::vector<View> views =
       views_of(scene.file.scene, scene.comparisons.front().reference.points);
   const std::vector<Series> all = series_of(scene, views.front());
-  Figure shapes{
-      .name = fmt::format("shapes_{}", number),
-      .section = "shapes",
-      .title = scene.file.scene.name + ": shapes",
-      .description = shapes_description(scene, views),
-      .command = compare_command(scene.file, scene.comparisons.front()) + " --format json",
-      .csv_file = fmt::format("shapes_{}.csv", number),
-      .csv = scene_csv(all)};
+  std::string command = compare_command(scene.file, scene.comparisons.front());
+  if (command.empty()) command = "dlo compare scenes/" + scene.file.name;
+  Figure shapes{.name = fmt::format("shapes_{}", number),
+                .section = "shapes",
+                .title = scene.file.scene.name + ": shapes",
+                .description = shapes_description(scene, views),
+                .command = command + " --format json",
+                .given = "distances and points",
+                .csv_file = fmt::format("shapes_{}.csv", number),
+                .csv = scene_csv(all)};
   shapes.script = shapes_script(shapes.name, shapes.csv_file, all, views);
   Figure curvature{
       .name = fmt::format("curvature_{}", number),
@@ -313,7 +317,8 @@ std::vector<Figure> scene_figures(const SceneReport& scene, std::size_t number) 
           "Curvature of {} against arc length: the energy model's as a solid line, those of the "
           "force model's joints (turning angle over the mean length of both segments) as points.",
           scene.file.scene.name),
-      .command = compare_command(scene.file, scene.comparisons.front()) + " --format json",
+      .command = command + " --format json",
+      .given = "distances and points",
       .csv_file = shapes.csv_file};
   curvature.script =
       curvature_script(curvature.name, curvature.csv_file, all, scene.file.scene.planar());

@@ -41,8 +41,9 @@ std::string hold_of(const Scene& scene) {
   return text;
 }
 
-std::string answer_text(const std::vector<BenchmarkRun>& runs, std::optional<std::size_t> best) {
-  if (!best) return "none";
+std::string answer_text(const std::vector<BenchmarkRun>& runs, std::optional<std::size_t> best,
+                        std::optional<Model> model) {
+  if (!best) return has_run(runs, model) ? "none" : "not run";
   return fmt::format("{}: {} ms", run_name(runs[*best]),
                      page_number(runs[*best].time.median_s * 1e3));
 }
@@ -50,11 +51,10 @@ std::string answer_text(const std::vector<BenchmarkRun>& runs, std::optional<std
 void add_answers(const SceneBenchmark& scene, const char* kind,
                  const std::vector<BenchmarkRun>& runs, const std::vector<BenchmarkAnswer>& answers,
                  HtmlTable& table) {
-  if (runs.empty()) return;  // all were skipped, as the page says
   for (const BenchmarkAnswer& answer : answers) {
-    table.rows.push_back({scene.scene, kind, page_percent(answer.error),
-                          answer_text(runs, answer.best),
-                          answer_text(runs, fastest_within(runs, answer.error, Model::force))});
+    table.rows.push_back(
+        {scene.scene, kind, page_percent(answer.error), answer_text(runs, answer.best, {}),
+         answer_text(runs, fastest_within(runs, answer.error, Model::force), Model::force)});
   }
 }
 

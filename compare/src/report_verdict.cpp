@@ -103,6 +103,7 @@ void say_shapes(const Report& report, std::vector<std::string>& verdict) {
 }
 
 void say_claim_of_a_third(const Report& report, std::vector<std::string>& verdict) {
+  constexpr int poses_of_the_paper = 3;
   if (!report.paper || report.printed_weight.empty()) return;
   Extent rest;
   Extent own;
@@ -118,9 +119,13 @@ void say_claim_of_a_third(const Report& report, std::vector<std::string>& verdic
   if (rest.empty() || own.empty() || printed.empty()) return;
   verdict.push_back(fmt::format(
       "The paper says that its shapes look like the energy model's for E/3. At rest E*/E is {} in "
-      "its three poses. It is 1/3 on the way there, after {} s of simulated time ({} s with the "
+      "{}. It is 1/3 on the way there, after {} s of simulated time ({} s with the "
       "weight that Table 5 prints); the paper's simulations took 28\u00a0s.",
-      rest.text(), own.text(), printed.text()));
+      rest.text(),
+      rest.count() == poses_of_the_paper
+          ? "its three poses"
+          : fmt::format("{} of its {} poses", rest.count(), poses_of_the_paper),
+      own.text(), printed.text()));
 }
 
 void say_speed(const Report& report, std::vector<std::string>& verdict) {
@@ -176,13 +181,13 @@ void say_stability(const Report& report, std::vector<std::string>& verdict) {
 
 std::vector<std::string> report_verdict(const Report& report) {
   std::vector<std::string> verdict;
+  for (const std::string& failure : report.failures) {
+    verdict.push_back("Not computed: " + failure);
+  }
   say_shapes(report, verdict);
   say_claim_of_a_third(report, verdict);
   say_speed(report, verdict);
   say_stability(report, verdict);
-  for (const std::string& failure : report.failures) {
-    verdict.push_back("Not computed: " + failure);
-  }
   return verdict;
 }
 

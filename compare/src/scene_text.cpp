@@ -11,21 +11,24 @@
 namespace dlo::compare {
 namespace {
 
+std::string toml_string(const std::string& value) {
+  std::string text = "\"";
+  for (const char c : value) {
+    if (static_cast<unsigned char>(c) < ' ') continue;
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text + "\"";
+}
+
 /// Numbers and vectors as they are, all else as a TOML string.
 std::string toml_value(const std::string& value) {
   if (value.starts_with('[')) return value;
   try {
-    (void)parse_quantity(value, Dimension::number);
     // TOML knows neither ".5" nor "5.".
-    return fmt::format("{}", std::stod(value));
+    return fmt::format("{}", parse_quantity(value, Dimension::number));
   } catch (const InputError&) {
-    std::string text = "\"";
-    for (const char c : value) {
-      if (static_cast<unsigned char>(c) < ' ') continue;
-      if (c == '"' || c == '\\') text += '\\';
-      text += c;
-    }
-    return text + "\"";
+    return toml_string(value);
   }
 }
 
@@ -42,7 +45,7 @@ std::string material_lines(const SceneChoices& choices, const std::vector<Materi
       "#   {}\n",
       names);
   if (choices.youngs_modulus.empty()) {
-    return head + fmt::format("material = {}\n", toml_value(choices.material));
+    return head + fmt::format("material = {}\n", toml_string(choices.material));
   }
   return head + fmt::format("material = {{ youngs_modulus = {}, density = {} }}\n",
                             toml_value(choices.youngs_modulus), toml_value(choices.density));
@@ -72,7 +75,7 @@ hold = "clamp"
 # down; without unit: rad), or a vector such as [1, 0, 0]. A pin has none.
 direction = {direction}
 )",
-      fmt::arg("name", toml_value(choices.name)), fmt::arg("length", toml_value(choices.length)),
+      fmt::arg("name", toml_string(choices.name)), fmt::arg("length", toml_value(choices.length)),
       fmt::arg("diameter", toml_value(choices.diameter)),
       fmt::arg("material", material_lines(choices, known)),
       fmt::arg("direction", toml_value(choices.direction)));
@@ -133,6 +136,12 @@ std::string optional_part(const Scene& scene) {
 std::string scene_text(const SceneChoices& choices, const std::vector<Material>& known_materials) {
   std::string text = required_part(choices, known_materials);
   const Scene scene = parse_scene(text, "the new scene", known_materials);
+  if (scene.diameter > scene.length) {
+    throw InputError(
+        fmt::format("the new scene: rod.diameter = {}: thicker than long (allowed: at most the "
+                    "length, {:g} m)",
+                    choices.diameter, scene.length));
+  }
   text += optional_part(scene);
   (void)parse_scene(text, "the new scene", known_materials);
   return text;

@@ -92,6 +92,22 @@ Eigen::Vector3d up_of(const Scene& scene, PoseFreedom pose) {
   return -scene.gravity.normalized();
 }
 
+ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
+  ShapeJudgement result;
+  result.judged_m = tolerance.largest ? check.deviation.max_m : check.deviation.rms_m;
+  const bool near = result.judged_m <= tolerance.allowed_m;
+  const bool seen = check.seen_share >= tolerance.least_seen_share;
+  result.pass = near && seen;
+  result.reason = fmt::format(
+      "{} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of l", tolerance.largest ? "largest" : "RMS",
+      result.judged_m * 1e3, tolerance.allowed_m * 1e3, tolerance.allowed_m / check.length_m * 100);
+  if (seen) return result;
+  const std::string unseen = fmt::format("only {:.4g} % of the rod is seen, needed {:.4g} %",
+                                         check.seen_share * 100, tolerance.least_seen_share * 100);
+  result.reason = near ? unseen : result.reason + "; " + unseen;
+  return result;
+}
+
 ShapeCheck check_shape(const Scene& given, const MeasuredShape& shape,
                        const ShapeCheckOptions& options) {
   const Scene scene = without_far_obstacles(given).scene;
@@ -115,6 +131,7 @@ ShapeCheck check_shape(const Scene& given, const MeasuredShape& shape,
   result.scene = scene.name;
   result.file = shape.file;
   result.gamma = scene.gamma();
+  result.length_m = scene.length;
   result.alignment = std::move(alignments[nearest]);
   result.state = describe_state(scene, states, nearest, from_shape);
   const Alignment& alignment = result.alignment;
@@ -140,6 +157,7 @@ ShapeCheck check_shape(const Scene& given, const MeasuredShape& shape,
   const Eigen::Index segments = shape.points.cols() - 1;
   result.polyline_length_m =
       (shape.points.rightCols(segments) - shape.points.leftCols(segments)).colwise().norm().sum();
+  result.seen_share = (s.back() - s.front()) / scene.length;
   result.direction_is_clear = alignment.other_rms_m > 1.05 * alignment.rms_m;
   const double offset = distance_from_line(alignment.shape.points);
   result.turn_is_clear = options.pose != PoseFreedom::rigid ||

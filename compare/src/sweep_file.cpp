@@ -5,6 +5,7 @@
 #include <chrono>
 #include <filesystem>
 #include <string_view>
+#include <system_error>
 
 #include "dlo/compare/error.hpp"
 #include "locked_file.hpp"
@@ -107,10 +108,11 @@ SweepOutcome write_sweep(const Sweep& sweep, const std::optional<Shard>& shard,
                          const std::string& path, const SweepFileOptions& options) {
   const SweepHead head = head_of(sweep, shard);
   const std::string part = path + ".part";
-  if (std::filesystem::is_directory(path)) {
+  std::error_code unknown;  // writing tells what is wrong with a name
+  if (std::filesystem::is_directory(path, unknown)) {
     throw InputError(fmt::format("{}: cannot be written (it is a directory)", path));
   }
-  if (shard && !options.restart && std::filesystem::exists(path)) {
+  if (shard && !options.restart && std::filesystem::exists(path, unknown)) {
     return finished_shard(sweep, head, path);
   }
   LockedFile file(part);

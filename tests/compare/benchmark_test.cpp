@@ -1,5 +1,6 @@
 #include "dlo/compare/benchmark.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -23,6 +24,9 @@ TEST(Benchmark, FrontIsWhatNoOtherRunBeats) {
   EXPECT_EQ(fastest_within(runs, 5e-4), 3U);
   EXPECT_EQ(fastest_within(runs, 1e-3), 1U);
   EXPECT_FALSE(fastest_within(runs, 1e-9));
+  EXPECT_TRUE(has_run(runs));
+  EXPECT_TRUE(has_run(runs, Model::energy));
+  EXPECT_FALSE(has_run(runs, Model::force));
 }
 
 /// Times are of the machine; these are the facts that hold on every one.
@@ -81,8 +85,15 @@ TEST(Benchmark, RunsEveryModelAndItsAnswersFitTheRows) {
 
 TEST(Benchmark, SaysWhatItSkipped) {
   const BenchmarkReport report =
-      run_benchmark(benchmark_scenes(), {.budget_s = 0.01, .repeats = 1, .frames = 100});
-  EXPECT_FALSE(report.skipped.empty());
+      run_benchmark(benchmark_scenes(), {.budget_s = 1e-9, .repeats = 1, .frames = 100});
+  for (const SceneBenchmark& scene : report.scenes) {
+    EXPECT_FALSE(has_run(scene.runs));
+    EXPECT_FALSE(has_run(scene.tracking));
+  }
+  ASSERT_FALSE(report.skipped.empty());
+  for (const std::string& skipped : report.skipped) {
+    EXPECT_THAT(skipped, testing::EndsWith("(no time left)"));
+  }
 }
 
 TEST(Benchmark, OptionsOutOfRangeAreRefused) {

@@ -131,6 +131,46 @@ TEST_F(CalibrateCommand, AMissedTargetIsStatusOne) {
   EXPECT_EQ(run("calibrate " + a + " --law paper").status, 0);
 }
 
+TEST_F(CalibrateCommand, TellsWhatMadeTheTargetMissed) {
+  const std::string stiff = scene_of("a.toml", "5 GPa", 0);
+  const auto missed = [&](const std::string& arguments) {
+    const Outcome result = run("calibrate " + arguments);
+    EXPECT_EQ(result.status, 1) << arguments;
+    return result.out;
+  };
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  // Segments alone are off: stretch is not what is wrong.
+  const std::string coarse = missed(stiff + " --target 0.01% --points 8");
+  EXPECT_TRUE(has(coarse, "N = 8 is too few")) << coarse;
+  EXPECT_TRUE(has(coarse, "without\n  --points") || has(coarse, "without --points")) << coarse;
+  EXPECT_FALSE(has(coarse, "A E: the rod")) << coarse;
+  // A rod of 500 kPa stretches under its weight by more than the target.
+  const std::string soft = scene_of("soft.toml", "500 kPa", -90);
+  const json fit = json::parse(missed(soft + " --target 0.01% --points 24 --format json"));
+  EXPECT_FALSE(fit.at("reached").get<bool>());
+  const double stretch = fit.at("scenes")[0].at("stretch_rms_over_length").get<double>();
+  // Hanging straight, l = 1 m: u(s) = rho g (s - s^2 / 2) / E, from the half of a segment on that
+  // the gripper holds.
+  const double held = fit.at("parameters").at("segment_length_m").get<double>() / 2;
+  const double scale = 1200 * 9.81 / 500e3;
+  const auto u = [&](double s) { return scale * (s - s * s / 2); };
+  const double mean_square = scale * scale * 2 / 15 - 2 * u(held) * scale / 3 + u(held) * u(held);
+  EXPECT_NEAR(stretch, std::sqrt(mean_square), 0.005 * stretch);
+  ASSERT_EQ(fit.at("why_missed").size(), 1U);
+  EXPECT_TRUE(has(fit.at("why_missed")[0], "c_c is A E")) << fit;
+  EXPECT_TRUE(has(missed(stiff + " --law paper --target 0.001%"), "law paper"));
+  // The parameter file says where c_c is from and whether it is good enough.
+  const std::string toml =
+      run("calibrate " + soft + " --target 0.01% --points 24 --format toml").out;
+  EXPECT_TRUE(has(toml, "# Target 0.01 %: not reached.")) << toml;
+  EXPECT_TRUE(has(toml, "stretch stiffness: A E of the rod\n")) << toml;
+  EXPECT_TRUE(has(run("calibrate " + stiff + " --c-c 200 --format toml").out,
+                  "stretch stiffness: as given\n"));
+  EXPECT_TRUE(has(run("calibrate " + stiff + " --format toml").out, "tenth of the target at most"));
+}
+
 TEST_F(CalibrateCommand, EveryFormatIsWritten) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string shape = seen(a, "a.csv");

@@ -98,6 +98,59 @@ TEST_F(CheckCommand, ShapesComeInAnyUnitAndFrame) {
   EXPECT_NE(text.out.find("found (rigid): turned"), std::string::npos) << text.out;
 }
 
+TEST_F(CheckCommand, AWrongUnitIsNoPass) {
+  // The whole rod in metres, said to be in millimetres: half a millimetre beside the gripper.
+  const std::string file = path("solved.csv");
+  ASSERT_EQ(run("solve " + steel() + " --model exact --samples 9 --format csv -o " + file).status,
+            0);
+  std::string points;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) {
+    points += line.substr(0, line.rfind(',')) + "\n";
+  }
+  const std::string check = "check " + steel() + " --shape " + shape(points);
+  const Outcome wrong = run(check + " --unit mm --tolerance 1%");
+  EXPECT_EQ(wrong.status, 1);
+  EXPECT_NE(wrong.out.find("fail: only 0."), std::string::npos) << wrong.out;
+  EXPECT_NE(wrong.out.find("of the rod: --unit m?"), std::string::npos) << wrong.out;
+  EXPECT_EQ(wrong.out.find("from arc length 0 to l"), std::string::npos) << wrong.out;
+  const json document = json::parse(run(check + " --unit mm --tolerance 1% --format json").out);
+  EXPECT_EQ(document.at("verdict"), "fail");
+  EXPECT_LT(document.at("seen").at("share").get<double>(), 0.01);
+  EXPECT_NE(document.at("reason").get<std::string>().find("seen"), std::string::npos);
+  EXPECT_NE(run(check + " --unit mm --tolerance 1% --format csv").out.find(",fail,"),
+            std::string::npos);
+  EXPECT_EQ(run(check + " --unit mm --tolerance 1% --min-seen 0.01%").status, 0);
+  EXPECT_EQ(run(check + " --tolerance 1%").status, 0);
+  // Files with arc lengths say that they are too long, others fail and give a hint.
+  expect_error("check " + steel() + " --shape " + shape("x,y,s\n0,0,0\n-500,0,500\n"), 2,
+               {"s = 500 m", "--unit"});
+  std::string millimetres;
+  std::istringstream lines(points);
+  std::getline(lines, millimetres);
+  millimetres += "\n";
+  for (double x = 0, y = 0, z = 0; std::getline(lines, points);) {
+    ASSERT_EQ(std::sscanf(points.c_str(), "%lf,%lf,%lf", &x, &y, &z), 3);
+    millimetres += std::to_string(1e3 * x) + "," + std::to_string(1e3 * y) + ",0\n";
+  }
+  const Outcome large = run("check " + steel() + " --shape " + shape(millimetres));
+  EXPECT_NE(large.out.find("times the rod: --unit mm?"), std::string::npos) << large.out;
+}
+
+TEST_F(CheckCommand, SeenRangeAndDirectionAreSaid) {
+  const std::string file = shape("x,y,s\n-0.1,0,0.1\n-0.3,0,0.3\n-0.4,-0.01,0.4\n");
+  const std::string check = "check " + steel() + " --shape " + file;
+  EXPECT_NE(run(check).out.find("3 points, from s = 0.1 to 0.4 m"), std::string::npos);
+  EXPECT_EQ(run(check + " --tolerance \"1 m\" --min-seen 59%").status, 0);
+  EXPECT_EQ(run(check + " --tolerance \"1 m\" --min-seen 61%").status, 1);
+  for (const std::string share : {"0", "100%", "x"}) {
+    expect_error(words({check, "--tolerance 1% --min-seen", share}), 2, {"--min-seen"});
+  }
+  expect_error(check + " --register upright", 2, {"did you mean --register=upright?"});
+  // It would change nothing.
+  expect_error(check + " --law hooke", 2, {"--law"});
+}
+
 TEST_F(CheckCommand, BadInputIsOneLineAndStatusTwo) {
   const std::string bad = shape("x,y,z\n0,0,0\n1,oops,0\n");
   expect_error("check " + steel() + " --shape " + bad, 2, {bad + ":3", "oops"});

@@ -92,12 +92,38 @@ TEST_F(Command, InitNeverOverwritesUnasked) {
   EXPECT_EQ(read(file), "mine");
   // A wrong value leaves no file, nor half of one, and the old one as it was.
   expect_error("init --force " + file + " --length '2 feet'", 2,
-               {"rod.length", "feet", "m, cm, mm, um"});
+               {"--length", "feet", "m, cm, mm, um"});
   EXPECT_EQ(read(file), "mine");
-  expect_error("init " + path("new.toml") + " --diameter -1", 2, {"rod.diameter", "-1"});
+  expect_error("init " + path("new.toml") + " --diameter -1", 2, {"--diameter", "-1"});
   EXPECT_FALSE(std::filesystem::exists(path("new.toml")));
   EXPECT_EQ(run("init --force " + file).status, 0);
   EXPECT_NO_THROW((void)dlo::compare::load_scene(file));
+}
+
+TEST_F(Command, InitTakesAnyNameAndNamesTheOptionThatIsWrong) {
+  // Names that look like numbers, need quotes in a shell, or are too long for a file.
+  for (const std::string name : {"2025", "nan", "it's", "a \"b\""}) {
+    const std::string quoted = name == "it's" ? "it\\'s" : "'" + name + "'";
+    const Outcome result = run("init " + path("") + quoted);
+    ASSERT_EQ(result.status, 0) << result.err;
+    // The command that the text gives is one that a shell takes.
+    const std::size_t at = result.out.find("dlo solve ") + 4;
+    EXPECT_EQ(run(result.out.substr(at, result.out.find("      ", at) - at)).status, 0)
+        << result.out;
+  }
+  EXPECT_EQ(dlo::compare::load_scene(path("2025.toml")).name, "2025");
+  expect_error("init " + path(std::string(300, 'a')), 2, {"too long"});
+  expect_error("regress " + steel() + " --update --baseline " + path(std::string(300, 'a')), 2,
+               {"too long"});
+  expect_error("sweep " + steel() + " --vary gamma=1 -o " + path(std::string(300, 'a')), 2,
+               {"too long"});
+  const std::string init = "init " + path("b") + " ";
+  expect_error(init + "--length 1e-320", 2, {"--length = 1e-320", "1e-06"});
+  expect_error(init + "--length '6 mm' --diameter '2 m'", 2, {"--diameter = 2 m", "thicker"});
+  expect_error(init + "--direction '[0, 0]'", 2, {"--direction", "three numbers"});
+  expect_error(init + "--youngs-modulus -3 --density 3", 2, {"--youngs-modulus", "> 0"});
+  expect_error(init + "--youngs-modulus 3 --density x", 2, {"--density", "kg/m^3"});
+  expect_error(init + "--material 7", 2, {"--material", "unknown material"});
 }
 
 // Rods that are stiff and soft, thin and thick, in directions of the plane and of space.

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -281,6 +282,42 @@ TEST_F(ReportFolder, LeavesNoHalfReports) {
     names.push_back(entry.path().filename().string());
   }
   EXPECT_THAT(names, testing::ElementsAre("report"));
+}
+
+TEST_F(ReportFolder, TakesNothingFromFoldersOfOthers) {
+  write("report." + std::to_string(::getpid()) + ".tmp/stale.txt", "of a report that was stopped");
+  const mode_t before = ::umask(027);
+  (void)write_report(make_report({heavy_file()}, small_report()), {}, folder());
+  ::umask(before);
+  EXPECT_EQ(contents(folder()).count("stale.txt"), 0U);
+  EXPECT_EQ(fs::status(folder()).permissions(), static_cast<fs::perms>(0750));
+  EXPECT_EQ(fs::status(folder() + "/index.html").permissions(), static_cast<fs::perms>(0640));
+}
+
+/// What cannot be replaced is refused before anything is computed.
+TEST_F(ReportFolder, RefusesPlacesThatCannotBeReplaced) {
+  fs::create_directories(place() / "work" / "inner");
+  const fs::path before = fs::current_path();
+  fs::current_path(place() / "work" / "inner");
+  const auto refusal = [](const std::string& to) -> std::string {
+    try {
+      check_report_folder(to);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "not refused";
+  };
+  for (const char* to : {".", "..", "../../work/", "/"}) {
+    EXPECT_THAT(refusal(to), AllOf(HasSubstr("the working directory"), HasSubstr("allowed")));
+  }
+  EXPECT_EQ(refusal("../inner2"), "not refused");
+  EXPECT_EQ(refusal("report"), "not refused");
+  fs::current_path(before);
+  EXPECT_THAT(refusal("/proc"), HasSubstr("is where a file system is mounted"));
+  EXPECT_THAT(refusal("/proc/report"), HasSubstr("cannot be written"));
+  fs::create_directory_symlink(place() / "nowhere", place() / "link");
+  EXPECT_THAT(refusal((place() / "link").string()), HasSubstr("a link to nothing"));
+  EXPECT_TRUE(fs::is_empty(place() / "work" / "inner"));
 }
 
 TEST_F(ReportFolder, SaysWhatDidNotConverge) {

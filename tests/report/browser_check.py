@@ -2,6 +2,7 @@
 """Looks at a report's page in headless Chromium, as a reader would.
 
     browser_check.py DLO SCENE... [--screenshots FOLDER] [--report FOLDER]
+                     [--chromedriver PATH]
 
 Makes a quick report of the scenes with the command DLO (or takes a finished one) and checks at 375,
 768 and 1440 pixels, in light and in dark: no console message, no request but for the page itself,
@@ -12,6 +13,7 @@ import argparse
 import base64
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -68,13 +70,13 @@ return {figures, pale, width: document.documentElement.clientWidth,
 """
 
 
-def open_browser():
+def open_browser(chromedriver):
     options = webdriver.ChromeOptions()
     for argument in ("--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage",
                      "--hide-scrollbars"):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
-    return webdriver.Chrome(service=Service("/usr/bin/chromedriver"), options=options)
+    return webdriver.Chrome(service=Service(chromedriver), options=options)
 
 
 def set_view(browser, width, scheme, media=""):
@@ -123,9 +125,9 @@ def problems_of(seen):
             yield f"{name}: text {figure['smallest']:.1f} pixels high"
 
 
-def check(page, screenshots):
+def check(page, chromedriver, screenshots):
     problems = []
-    browser = open_browser()
+    browser = open_browser(chromedriver)
     try:
         browser.execute_cdp_cmd("Network.enable", {})
         for width in WIDTHS:
@@ -156,9 +158,13 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("dlo")
     parser.add_argument("scenes", nargs="*")
+    parser.add_argument("--chromedriver", default="/usr/bin/chromedriver")
     parser.add_argument("--report", type=pathlib.Path)
     parser.add_argument("--screenshots", type=pathlib.Path)
     options = parser.parse_args()
+    if not options.report and not shutil.which("gnuplot"):
+        print("gnuplot is not installed: there would be no figures to look at")
+        return 77  # skipped
     if options.screenshots:
         options.screenshots.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
@@ -167,7 +173,8 @@ def main():
             report = pathlib.Path(folder) / "report"
             subprocess.run([options.dlo, "report", *options.scenes, "--quick", "-o", str(report)],
                            check=True, stdout=subprocess.DEVNULL)
-        problems = check((report / "index.html").resolve(), options.screenshots)
+        problems = check((report / "index.html").resolve(), options.chromedriver,
+                         options.screenshots)
     for problem in problems:
         print(problem)
     return 1 if problems else 0

@@ -79,7 +79,13 @@ void mark_front(std::vector<BenchmarkRun>& runs);
                                                         double error,
                                                         std::optional<Model> model = {});
 
-/// Times every model on every scene, one thread. Static: `exact`, `energy` over K, `chain` over N,
+/// Whether there is any run (of any model, or of one). Without one, that no run is within an error
+/// says nothing: nothing was run.
+[[nodiscard]] bool has_run(const std::vector<BenchmarkRun>& runs, std::optional<Model> model = {});
+
+/// Times every model on every scene, one thread. The smallest K or N of every model comes first,
+/// then the tracking runs, then the other sizes in turn, so that a small budget leaves some runs of
+/// each model. Static: `exact`, `energy` over K, `chain` over N,
 /// `force` over N, laws, steppers (auto, and dynamic with the paper's constants) and c_c (AE and
 /// AE/1000, which the paper used), each from straight, or from its own start, to rest. Times are of
 /// the solver with the scene's set-up, as a caller sees it. The rest tolerance of `force` is a

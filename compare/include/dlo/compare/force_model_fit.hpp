@@ -46,9 +46,11 @@ struct ForceModelFit {
   /// and l_s.
   ForceModelSettings settings;
   bool c_b_was_given = false;  ///< `fitted` is then the given one
-  /// The target asked for a stiffer rod than the material makes: c_c is AE, and the rod's own
-  /// stretch, which the energy model leaves out, is part of the deviation.
+  bool c_c_was_given = false;
+  /// The target asked for a stiffer rod than the material makes, or nothing pulls at it: c_c is AE,
+  /// and the rod's own stretch, which the energy model leaves out, is part of the deviation.
   bool c_c_is_physical = false;
+  bool points_were_given = false;
   double target = 0;                  ///< RMS deviation over the length that was asked for [-]
   std::vector<std::string> scenes;    ///< names, hold-out scenes last
   std::vector<double> gammas;         ///< w l^3 / (EI) of each scene [-]
@@ -56,6 +58,9 @@ struct ForceModelFit {
   std::vector<RuleDeviations> rules;  ///< every rule that was tried
   /// The force model itself, stepped to rest with `settings`.
   std::vector<double> stepped_rms_over_length;
+  /// RMS distance of that shape from the rigid segments' at the same N, over the length: what the
+  /// stretch makes. It hardly depends on N.
+  std::vector<double> stretch_rms_over_length;
   std::vector<long> steps;       ///< that it took, of each scene
   double order = 0;              ///< of convergence in the segment length, as measured; 0: not used
   double segment_length = 0;     ///< L of the first scene [m]
@@ -65,6 +70,9 @@ struct ForceModelFit {
   [[nodiscard]] double worst() const;
   /// The same of the hold-out scenes; 0 without any.
   [[nodiscard]] double worst_holdout() const;
+  [[nodiscard]] bool reached() const;
+  /// Sentences on what keeps the target from being reached; empty if it is.
+  [[nodiscard]] std::vector<std::string> why_missed() const;
 };
 
 /// Derives the force model's parameters from physics.

@@ -10,7 +10,7 @@ namespace dlo::compare {
 /// thread, but one call at a time, and `done` grows by one from call to call.
 using Progress = std::function<void(std::int64_t done, std::int64_t total)>;
 
-/// Called by the calling thread with what is being done, where no share of the whole is known.
+/// Called with what is being done, where no share of the whole is known; one call at a time.
 using Stages = std::function<void(const std::string& what)>;
 
 }  // namespace dlo::compare

@@ -32,6 +32,7 @@ struct ReportOptions {
   /// RMS over the length up to which a shape counts as right, > 0. The report's own choice: there
   /// is no norm.
   double tolerance = 0.01;
+  bool quick = false;   ///< of quick_report_options: the page and its commands say so
   bool history = true;  ///< E*/E against simulated time
   /// The parts that take longest; none: the report leaves it out, and says so.
   std::optional<BenchmarkOptions> benchmark = BenchmarkOptions{.budget_s = 20};
@@ -40,6 +41,9 @@ struct ReportOptions {
       StabilityOptions{.steps_at_rest = 1'000'000, .left_out = {"N = 1000"}};
   int threads = 0;  ///< at most; 0: as many as the machine has. The benchmark has one, alone
 };
+
+/// For a report in seconds: a benchmark of 1 s, a coarse map, no hard cases.
+[[nodiscard]] ReportOptions quick_report_options();
 
 /// E*/E of one scene on its way to rest.
 struct SceneHistory {
@@ -80,11 +84,11 @@ struct Report {
 /// takes the given scenes with the least and the largest Gamma, and the map the first one.
 ///
 /// Histories take c_c = AE / 1000 (the paper's proportion: 659.734 N) unless a scene names a c_c,
-/// and only rods with one clamp, which start straight. What does not converge is said in `failures`
-/// and left out.
-/// @param progress  called with what is being done, by the calling thread
+/// and only rods with one clamp, which start straight. What does not converge, or what a model
+/// refuses, is said in `failures` and left out; the rest of the report is not touched by it.
+/// @param progress  called with what is being done, also by other threads, but one call at a time
 /// @throws InputError if a scene cannot be made into points, before anything is computed;
-/// std::invalid_argument if an option is out of range
+/// std::invalid_argument if tolerance or threads is out of range
 [[nodiscard]] Report make_report(const std::vector<SceneFile>& files, const ReportOptions& options,
                                  const Stages& progress = {});
 

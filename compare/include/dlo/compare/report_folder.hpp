@@ -21,7 +21,9 @@ struct WrittenReport {
 };
 
 /// Whether a report may be written to a folder: if there is nothing of that name, or an empty
-/// folder, or a report with nothing else in it, which is then replaced.
+/// folder, or a report with nothing else in it, which is then replaced; not to the working
+/// directory or one that holds it, nor where a file system is mounted. To be called before a report
+/// is computed: it makes a folder beside that one and removes it, as proof that it can be done.
 /// @throws InputError naming the folder, what is in the way and what is allowed
 void check_report_folder(const std::string& folder);
 

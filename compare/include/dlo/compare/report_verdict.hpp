@@ -7,7 +7,7 @@
 
 namespace dlo::compare {
 
-/// What a report comes to, most important first, one plain sentence each; the last ones are the
+/// What a report comes to, most important first, one plain sentence each; the first ones are the
 /// report's failures.
 [[nodiscard]] std::vector<std::string> report_verdict(const Report& report);
 

@@ -22,7 +22,8 @@ struct SceneChoices {
 /// A scene file of one clamp at the origin, with comments that explain every key, its unit and what
 /// is allowed. Lines that begin with # and no blank are optional parts; the file is valid with any
 /// of these paragraphs, and with all of them, uncommented.
-/// @throws InputError naming rod.length and the like, as reading the file does
+/// @throws InputError naming rod.length and the like, as reading the file does, also for a rod that
+/// is thicker than long
 [[nodiscard]] std::string scene_text(const SceneChoices& choices,
                                      const std::vector<Material>& known_materials = materials());
 

@@ -24,6 +24,7 @@ struct ShapeCheck {
   std::string scene;    ///< its name
   std::string file;     ///< the shape's name
   double gamma = 0;     ///< w l^3 / (EI) [-]
+  double length_m = 0;  ///< l of the rod
   Alignment alignment;  ///< the shape as laid on the reference
   ComparedState state;  ///< the stable one that the shape comes nearest to
   Shape reference;      ///< the energy model at the alignment's arc lengths
@@ -34,6 +35,7 @@ struct ShapeCheck {
   Eigen::Vector3d worst_position = Eigen::Vector3d::Zero();  ///< in the scene's frame [m]
   double movement_m = 0;         ///< RMS way of the reference from straight, same stretch; or NaN
   double polyline_length_m = 0;  ///< of the points as they are
+  double seen_share = 0;         ///< arc length from the first point to the last, over l [-]
   double largest_gap_m = 0;      ///< largest arc length between neighbours
   double largest_gap_at_m = 0;   ///< where it begins
   bool direction_is_clear = false;  ///< the other direction fits at least 5 % worse
@@ -42,6 +44,24 @@ struct ShapeCheck {
   EffectiveModulus effective_modulus;  ///< aligned anew for each modulus, in the same state
   double modulus = 0;                  ///< E* [Pa]
 };
+
+/// What a deviation is held against.
+struct ShapeTolerance {
+  double allowed_m = 0;           ///< largest deviation that passes [m], > 0
+  bool largest = false;           ///< the largest deviation is held against it, not the RMS
+  double least_seen_share = 0.5;  ///< of the rod that the points have to cover [-], 0 to 1
+};
+
+/// Whether a shape is right.
+struct ShapeJudgement {
+  double judged_m = 0;  ///< the deviation that was held against the tolerance [m]
+  bool pass = false;    ///< near enough, and enough of the rod seen
+  std::string reason;   ///< one clause: of all that made it fail, or why it passes
+};
+
+/// Holds a compared shape against a tolerance. Points that cover next to nothing of the rod lie
+/// near it whatever its shape is, so few of them are no pass.
+[[nodiscard]] ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance);
 
 /// Solves the scene with the energy model and compares the shape with the nearest stable state.
 /// @throws InputError, ConvergenceError
