@@ -15,18 +15,18 @@ inline constexpr double last_history_time = 200;
 
 /// E*/E of a shape that is still on its way to rest.
 struct ModulusAtTime {
-  double time_s = 0;  ///< simulated, at paper_steps_per_second
-  long steps = 0;
-  EffectiveModulus modulus;
+  double time_s = 0;                     ///< simulated, at paper_steps_per_second
+  long steps = 0;                        ///< to that time
+  EffectiveModulus modulus;              ///< at that time
   double rms_over_length = 0;            ///< against the energy model at E
   double rest_distance_over_length = 0;  ///< RMS distance to the force model's own rest shape
 };
 
 /// How E*/E changes while the force model creeps to rest.
 struct ModulusHistory {
-  double c_c = 0;  ///< [N]
-  double c_F = 0;  ///< [m/N]
-  std::vector<ModulusAtTime> times;
+  double c_c = 0;                    ///< [N]
+  double c_F = 0;                    ///< [m/N]
+  std::vector<ModulusAtTime> times;  ///< by time
 };
 
 /// Steps a scene from its start (straight, for a single gripper) with the stepper `basic` and

@@ -16,8 +16,8 @@ namespace dlo::compare {
 /// A scene with the text that it was read from, so that a report can hand it on.
 struct SceneFile {
   std::string name;  ///< letters, digits and "._-" only, ends with ".toml", unique in a report
-  std::string text;
-  Scene scene;
+  std::string text;  ///< the file as it is
+  Scene scene;       ///< as read from it
 };
 
 /// Reads scene files; of a folder all "*.toml" in it, by name.
@@ -28,6 +28,7 @@ struct SceneFile {
 /// space.
 [[nodiscard]] std::vector<SceneFile> report_scene_files();
 
+/// What a report computes.
 struct ReportOptions {
   /// RMS over the length up to which a shape counts as right, > 0. The report's own choice: there
   /// is no norm.
@@ -36,7 +37,9 @@ struct ReportOptions {
   bool history = true;  ///< E*/E against simulated time
   /// The parts that take longest; none: the report leaves it out, and says so.
   std::optional<BenchmarkOptions> benchmark = BenchmarkOptions{.budget_s = 20};
+  /// The map of the largest stable c_F over c_c.
   std::optional<StabilityMapOptions> map = StabilityMapOptions{};
+  /// The hard cases, with all steppers.
   std::optional<StabilityOptions> hard_cases =
       StabilityOptions{.steps_at_rest = 1'000'000, .left_out = {"N = 1000"}};
   int threads = 0;  ///< at most; 0: as many as the machine has. The benchmark has one, alone
@@ -47,34 +50,34 @@ struct ReportOptions {
 
 /// E*/E of one scene on its way to rest.
 struct SceneHistory {
-  std::string scene;
+  std::string scene;            ///< its name
   std::string file;             ///< name of its SceneFile
   double point_weight = 0;      ///< of an inner point [N]
   bool printed_weight = false;  ///< Table 5's, not rho A l g / N
-  EffectiveModulus rest;
-  ModulusHistory history;
+  EffectiveModulus rest;        ///< at rest
+  ModulusHistory history;       ///< before
 };
 
 /// What a report says of a scene.
 struct SceneReport {
-  SceneFile file;
+  SceneFile file;  ///< the scene
   /// As the scene says, then, unless it says so, with law hooke and bookkeeping consistent.
   std::vector<Comparison> comparisons;
-  std::optional<SceneHistory> history;
+  std::optional<SceneHistory> history;  ///< for rods that start straight
 };
 
 /// All that a report shows.
 struct Report {
-  ReportOptions options;
-  bool paper = false;  ///< of report_scene_files
-  std::vector<SceneReport> scenes;
+  ReportOptions options;            ///< as given
+  bool paper = false;               ///< of report_scene_files
+  std::vector<SceneReport> scenes;  ///< in the files' order
   /// The paper's scenes with Table 5's weight of a point; of a report on the paper.
   std::vector<SceneHistory> printed_weight;
-  std::optional<BenchmarkReport> benchmark;
+  std::optional<BenchmarkReport> benchmark;  ///< speed against error
   std::vector<std::string> benchmark_files;  ///< names of its scene files; none: benchmark_scenes
-  std::optional<StabilityMap> map;
-  std::string map_file;  ///< empty: hard_case_scene
-  std::vector<StabilityResult> hard_cases;
+  std::optional<StabilityMap> map;           ///< measured and predicted limits of c_F
+  std::string map_file;                      ///< empty: hard_case_scene
+  std::vector<StabilityResult> hard_cases;   ///< case by case, stepper by stepper
   std::vector<std::string> failures;  ///< what was asked for but did not converge, one line each
   double seconds = 0;                 ///< wall time of all of it
 };

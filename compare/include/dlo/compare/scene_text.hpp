@@ -10,13 +10,13 @@ namespace dlo::compare {
 /// What a new scene file is to say; values as a scene file spells them, without quotes: "2 m", 0.5,
 /// "[0, 0, 1]".
 struct SceneChoices {
-  std::string name = "rod";
-  std::string length = "1 m";
-  std::string diameter = "6 mm";
+  std::string name = "rod";           ///< of the scene
+  std::string length = "1 m";         ///< of the rod
+  std::string diameter = "6 mm";      ///< of the rod, round and solid
   std::string material = "silicone";  ///< a name; not looked at if a modulus is given
   std::string youngs_modulus;         ///< with density: a material of one's own
-  std::string density;
-  std::string direction = "0 deg";  ///< of the clamp at arc length 0
+  std::string density;                ///< with youngs_modulus
+  std::string direction = "0 deg";    ///< of the clamp at arc length 0
 };
 
 /// A scene file of one clamp at the origin, with comments that explain every key, its unit and what
