@@ -212,7 +212,12 @@ std::string parse_message(const CLI::App& app, const CLI::ParseError& error) {
   if (chosen.empty()) return error.what();
   const CLI::App& command = *chosen.front();
   const std::vector<std::string> unexpected_words = app.remaining(true);
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unexpected_words.empty()) {
+  // An option that there is not explains more than an argument that is then missing.
+  const bool unknown_option =
+      std::any_of(unexpected_words.begin(), unexpected_words.end(),
+                  [](const std::string& word) { return word.starts_with('-'); });
+  const bool too_many = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  if (unknown_option || (too_many && !unexpected_words.empty())) {
     return unexpected(command, unexpected_words);
   }
   return fmt::format("{}: {} (see dlo {} --help)", command.get_name(), error.what(),
