@@ -18,8 +18,8 @@ std::string names_of(const std::vector<const CLI::Option*>& options) {
   return names;
 }
 
-/// What sets `values` or `files` for a word that follows an option or stands alone; empty for a
-/// flag.
+/// What sets `values`, `files` or `folders` for a word that follows an option or stands alone;
+/// empty for a flag.
 std::string completion_of(const OptionText& text) {
   if (!text.choices.empty()) return fmt::format("values='{}'", fmt::join(text.choices, " "));
   if (text.value == "MATERIAL") {
@@ -29,6 +29,7 @@ std::string completion_of(const OptionText& text) {
   }
   if (text.value.starts_with("SCENE") || text.names.front() == "SCENE") return "files='*.toml'";
   if (text.value.starts_with("FILE") || text.names.front() == "FILE") return "files='*'";
+  if (text.value == "DIR") return "folders=1";
   return text.value.empty() ? "" : "values=' '";
 }
 
@@ -43,7 +44,7 @@ std::string command_case(const CLI::App& command) {
     const OptionText text = option_text(*option);
     const std::string completion = completion_of(text);
     if (completion.empty() || text.optional_value) continue;
-    append(out, "        {}) values= files= options= {} ;;\n", fmt::join(text.names, "|"),
+    append(out, "        {}) values= files= folders= options= {} ;;\n", fmt::join(text.names, "|"),
            completion);
   }
   append(out, "      esac ;;\n");
@@ -62,7 +63,7 @@ std::string bash_completion(const CLI::App& app) {
   return R"(# Completion of dlo for bash; written by dlo --bash-completion.
 _dlo() {
   local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]}
-  local options= values= files=
+  local options= values= files= folders=
   # bash makes --model=chain three words.
   if [[ $cur == = ]]; then
     cur=
@@ -82,6 +83,9 @@ _dlo() {
     mapfile -t COMPREPLY < <(compgen -W "$options" -- "$cur")
   elif [[ -n $values ]]; then
     mapfile -t COMPREPLY < <(compgen -W "$values" -- "$cur")
+  elif [[ -n $folders ]]; then
+    compopt -o filenames 2>/dev/null
+    mapfile -t COMPREPLY < <(compgen -d -- "$cur")
   elif [[ -n $files ]]; then
     compopt -o filenames 2>/dev/null
     mapfile -t COMPREPLY < <(compgen -f -X "!$files" -- "$cur"; compgen -d -- "$cur")

@@ -194,13 +194,30 @@ void require_known_command(const CLI::App& app, const std::string& written) {
                   compare::did_you_mean(written, names), fmt::join(names, ", ")));
 }
 
+void require_known_option(const CLI::App& app, const std::string& written) {
+  std::vector<std::string> names;
+  for (const CLI::Option* known : options_of(app)) {
+    for (std::string& name : option_text(*known).names) names.push_back(std::move(name));
+  }
+  const std::string name = written.substr(0, written.find('='));
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  throw compare::InputError(fmt::format("unknown option {}{} (allowed without a command: {})", name,
+                                        compare::did_you_mean(name, names),
+                                        fmt::join(names, ", ")));
+}
+
 std::string parse_message(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<const CLI::App*> chosen =
       app.get_subcommands([](const CLI::App* command) { return command->count() > 0; });
   if (chosen.empty()) return error.what();
   const CLI::App& command = *chosen.front();
   const std::vector<std::string> unexpected_words = app.remaining(true);
-  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !unexpected_words.empty()) {
+  // An option that there is not explains more than an argument that is then missing.
+  const bool unknown_option =
+      std::any_of(unexpected_words.begin(), unexpected_words.end(),
+                  [](const std::string& word) { return word.starts_with('-'); });
+  const bool too_many = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  if (unknown_option || (too_many && !unexpected_words.empty())) {
     return unexpected(command, unexpected_words);
   }
   return fmt::format("{}: {} (see dlo {} --help)", command.get_name(), error.what(),

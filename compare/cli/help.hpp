@@ -40,6 +40,10 @@ struct OptionText {
 /// @throws compare::InputError with the nearest command
 void require_known_command(const CLI::App& app, const std::string& written);
 
+/// Of a word that begins with "-" and stands before any command.
+/// @throws compare::InputError with the nearest option
+void require_known_option(const CLI::App& app, const std::string& written);
+
 /// What is wrong with a command line, with the nearest option.
 [[nodiscard]] std::string parse_message(const CLI::App& app, const CLI::ParseError& error);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
@@ -89,10 +90,20 @@ int run(int argc, char** argv) {
     fmt::print("{}", app.help());
     return good;
   }
-  const std::string first = argv[1];
-  if (!first.starts_with('-')) dlo::cli::require_known_command(app, first);
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.front() == "help") {
+    // "help solve" is "solve --help".
+    words.erase(words.begin());
+    words.emplace_back("--help");
+  }
+  if (words.front().starts_with('-')) {
+    dlo::cli::require_known_option(app, words.front());
+  } else {
+    dlo::cli::require_known_command(app, words.front());
+  }
+  std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {
-    app.parse(argc, argv);
+    app.parse(words);
   } catch (const CLI::RuntimeError& status) {
     return status.get_exit_code();
   } catch (const CLI::ParseError& error) {

@@ -49,6 +49,25 @@ long count(const std::vector<RegressionResult>& results, RegressionVerdict verdi
                        [verdict](const auto& result) { return result.verdict == verdict; });
 }
 
+/// What --update did to each case of the baseline.
+std::string update_text(const std::vector<RegressionResult>& results) {
+  std::string out;
+  for (const RegressionResult& result : results) {
+    const char* done = "same";
+    if (!result.expected) {
+      done = "added";
+    } else if (!result.measured) {
+      done = "removed";
+    } else if (result.verdict != RegressionVerdict::same) {
+      done = "changed";
+    }
+    append(out, "{:<20} {}\n", done, result.name);
+    // Of a case that is new or gone the message says what to do, which has been done.
+    if (result.expected && result.measured) append(out, "{:<20} {}\n", "", result.message);
+  }
+  return out;
+}
+
 std::string text(const std::vector<RegressionResult>& results, const std::string& file) {
   std::string out;
   for (const RegressionResult& result : results) {
@@ -111,14 +130,16 @@ std::string csv(const std::vector<RegressionResult>& results) {
   return out;
 }
 
-void print(const RegressOptions& options, const std::vector<RegressionResult>& results, bool good) {
+void print(const RegressOptions& options, const std::vector<RegressionResult>& results, bool good,
+           bool updated) {
   switch (options.output.kind()) {
     case Format::json:
       return write_output(options.output, json(results, good).dump(2) + "\n");
     case Format::csv:
       return write_output(options.output, csv(results));
     case Format::text:
-      return write_output(options.output, text(results, options.output.file));
+      return write_output(options.output,
+                          updated ? update_text(results) : text(results, options.output.file));
   }
 }
 
@@ -156,7 +177,7 @@ void run(const RegressOptions& options) {
     for (const MeasuredCase& entry : measured) cases.push_back(entry.entry);
     write_output({.file = options.baseline}, compare::baseline_text(cases));
   }
-  print(options, results, good);
+  print(options, results, good, options.update && solved);
   if (options.update) {
     fmt::print(stderr, "dlo: {} {}\n", options.baseline, solved ? "written" : "left as it was");
   }

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 
 #include "commands.hpp"
@@ -34,6 +35,11 @@ std::string csv(const compare::Solution& solution) {
   return text;
 }
 
+/// Eight decimals; what rounds to zero has no sign.
+std::string coordinate(double value) {
+  return fmt::format("{:.8f}", std::abs(value) < 0.5e-8 ? 0.0 : value);
+}
+
 std::string text(const compare::Solution& solution, const compare::Scene& scene) {
   std::string out;
   append(out, "scene      {}\n", scene.name);
@@ -48,28 +54,32 @@ std::string text(const compare::Solution& solution, const compare::Scene& scene)
     append(out, "\n");
   }
   append(out, "wall time  {:.3g} ms\n", solution.seconds * 1e3);
-  const compare::SceneEnergies& e = solution.energy;
+  compare::SceneEnergies e = solution.energy;
+  // Adding zero turns -0 into 0.
+  for (double* part : {&e.bending, &e.gravity, &e.load, &e.stretch}) *part += 0.0;
   append(out, "energy     bending {:.9g} J, gravity {:.9g} J, load {:.9g} J, stretch {:.3g} J\n",
          e.bending, e.gravity, e.load, e.stretch);
   for (const Eigen::Vector3d& force : solution.obstacles) {
     append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
            force.z());
   }
-  for (compare::GripperLoad load : solution.grippers) {
-    // Adding zero turns -0 into 0.
+  for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
+    compare::GripperLoad load = solution.grippers[i];
+    const compare::Gripper& gripper = scene.grippers[i];
     load.force.array() += 0.0;
     load.torque.array() += 0.0;
     append(out,
-           "gripper    force [{:.6g}, {:.6g}, {:.6g}] N, torque [{:.6g}, {:.6g}, {:.6g}] Nm on the "
+           "gripper {} at s = {:.4g} m ({}): force [{:.6g}, {:.6g}, {:.6g}] N, torque [{:.6g}, "
+           "{:.6g}, {:.6g}] Nm on the "
            "rod\n",
-           load.force.x(), load.force.y(), load.force.z(), load.torque.x(), load.torque.y(),
-           load.torque.z());
+           i + 1, gripper.at, gripper.direction ? "clamp" : "pin", load.force.x(), load.force.y(),
+           load.force.z(), load.torque.x(), load.torque.y(), load.torque.z());
   }
   append(out, "\n{:>12} {:>13} {:>13} {:>13}\n", "s [m]", "x [m]", "y [m]", "z [m]");
   for (std::size_t i = 0; i < solution.shape.arc_length.size(); ++i) {
     const auto point = solution.shape.points.col(static_cast<Eigen::Index>(i));
-    append(out, "{:12.6f} {:13.8f} {:13.8f} {:13.8f}\n", solution.shape.arc_length[i], point.x(),
-           point.y(), point.z());
+    append(out, "{:12.6f} {:>13} {:>13} {:>13}\n", solution.shape.arc_length[i],
+           coordinate(point.x()), coordinate(point.y()), coordinate(point.z()));
   }
   return out;
 }

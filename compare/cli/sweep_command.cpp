@@ -58,6 +58,12 @@ compare::Sweep sweep_of(const SweepOptions& options) {
           options.scene.solve()};
 }
 
+void warn_of_unresolved(const compare::SweepOutcome& outcome, const std::string& file) {
+  if (outcome.unresolved == 0) return;
+  fmt::print(stderr, "dlo: {}: {} of {} scenes have no result, the column status says why\n", file,
+             outcome.unresolved, outcome.rows);
+}
+
 void print_sweep(const compare::Sweep& sweep, const std::optional<compare::Shard>& shard,
                  int threads) {
   const auto print = [](const std::string& text) {
@@ -71,13 +77,15 @@ void print_sweep(const compare::Sweep& sweep, const std::optional<compare::Shard
   if (shard) print(compare::sweep_identity(sweep, shard));
   print(sweep.header());
   const std::int64_t rows = sweep.grid().size();
-  sweep.run(shard ? compare::rows_of(*shard, rows) : compare::RowRange{0, rows}, threads, print);
-}
-
-void warn_of_unresolved(const compare::SweepOutcome& outcome, const std::string& file) {
-  if (outcome.unresolved == 0) return;
-  fmt::print(stderr, "dlo: {}: {} of {} scenes have no result, the column status says why\n", file,
-             outcome.unresolved, outcome.rows);
+  compare::SweepOutcome outcome;
+  const auto print_row = [&](const std::string& line) {
+    print(line);
+    ++outcome.rows;
+    if (!line.ends_with(",ok\n")) ++outcome.unresolved;
+  };
+  sweep.run(shard ? compare::rows_of(*shard, rows) : compare::RowRange{0, rows}, threads,
+            print_row);
+  warn_of_unresolved(outcome, "sweep");
 }
 
 void run_merge(const SweepOptions& options) {
@@ -167,6 +175,8 @@ void add_sweep(CLI::App& app) {
   command->add_flag("--merge", options->merge, "put finished shards together");
   options->scene.add_solvers_to(*command);
   command->footer(
+      "Exit status is 0 also if rows have no result: a line on standard error counts them, their\n"
+      "column status says why.\n"
       "Example:\n"
       "  dlo sweep data/scenes/spring_steel_175.toml --vary gamma=log:0.1:10:5 \\\n"
       "      --vary gripper.0.direction=\"-90 deg\",\"0 deg\" -o map.csv\n"

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "dlo/compare/csv.hpp"
+#include "dlo/compare/error.hpp"
 #include "report_figures.hpp"
 
 namespace dlo::compare {
@@ -283,8 +284,14 @@ std::string setting_name(const ForceModelSettings& settings) {
 std::string compare_command(const SceneFile& file, const Comparison& comparison) {
   const ForceModelSettings& own = file.scene.force_model;
   const ForceModelSettings& settings = comparison.settings;
-  const bool other = settings.law != own.law || settings.bookkeeping != own.bookkeeping;
-  if (other && (own.c_b || own.design_curvature || own.point_weight)) return {};
+  ForceModelSettings switched = own;
+  switched.law = settings.law;
+  switched.bookkeeping = settings.bookkeeping;
+  try {
+    check(switched, file.name);
+  } catch (const InputError&) {
+    return {};
+  }
   std::string command = "dlo compare scenes/" + file.name;
   if (settings.law != own.law) command += std::string(" --law ") + to_string(settings.law);
   if (settings.bookkeeping != own.bookkeeping) {

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "dlo/compare/error.hpp"
 #include "fingerprint.hpp"
@@ -41,12 +42,28 @@ void place_value(const FieldValue& field, const std::string& file, const Place& 
   place(*array);
 }
 
+/// What people write for a field, and its path.
+constexpr std::pair<std::string_view, std::string_view> short_field_names[] = {
+    {"E", "rod.material.youngs_modulus"},
+    {"youngs_modulus", "rod.material.youngs_modulus"},
+    {"rod.youngs_modulus", "rod.material.youngs_modulus"},
+    {"density", "rod.material.density"},
+    {"rod.density", "rod.material.density"},
+    {"length", "rod.length"},
+    {"diameter", "rod.diameter"},
+    {"material", "rod.material"},
+    {"points", "force_model.points"},
+    {"law", "force_model.law"}};
+
 class Overrider {
  public:
   Overrider(toml::table& root, const std::string& file, const std::vector<Material>& materials)
       : root_(root), file_(file), materials_(materials) {}
 
   void set(const FieldValue& field) const {
+    for (const auto& [written, meant] : short_field_names) {
+      if (field.field == written) refuse(field.field, fmt::format("did you mean {}?", meant));
+    }
     toml::node* parent = &root_;
     std::string_view rest = field.field;
     for (std::size_t dot = rest.find('.'); dot != std::string_view::npos; dot = rest.find('.')) {

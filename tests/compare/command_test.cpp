@@ -376,7 +376,7 @@ TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
   expect_error("solve " + steel() + " -o " + path("no/such/folder/x.json"), 2,
                {"no/such/folder/x.json", "cannot be written"});
   EXPECT_EQ(run("solve " + steel() + " -o " + output).status, 0);
-  EXPECT_NE(read(output).find("Gamma"), std::string::npos);
+  EXPECT_NE(read(output).find("\"gamma\""), std::string::npos);
   std::filesystem::create_symlink("kept.json", path("link.json"));
   EXPECT_EQ(run("solve " + steel() + " --format csv -o " + path("link.json")).status, 0);
   EXPECT_TRUE(std::filesystem::is_symlink(path("link.json")));
@@ -385,6 +385,52 @@ TEST_F(Command, OutputThatCannotBeWrittenLeavesTheOldFileAlone) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("")),
                           std::filesystem::directory_iterator()),
             2);  // kept.json and stderr: no temporary file is left
+}
+
+TEST_F(Command, TheExtensionIsTheFormatUnlessOneIsGiven) {
+  const auto first_line = [&](const std::string& arguments, const std::string& file) {
+    EXPECT_EQ(run(arguments + " -o " + path(file)).status, 0) << arguments;
+    const std::string text = read(path(file));
+    return text.substr(0, text.find('\n'));
+  };
+  const std::string solve = "solve " + steel();
+  EXPECT_EQ(first_line(solve, "a.csv"), "x,y,z,s");
+  EXPECT_EQ(first_line(solve, "a.json"), "{");
+  EXPECT_EQ(first_line(solve, "a.vtk").substr(0, 5), "# vtk");
+  EXPECT_EQ(first_line(solve, "a.txt").substr(0, 5), "scene");
+  EXPECT_EQ(first_line(solve + " --format json", "b.csv"), "{");
+  EXPECT_EQ(first_line("compare " + steel(), "c.csv").substr(0, 6), "scene,");
+  EXPECT_EQ(first_line("calibrate " + steel(), "c.json"), "{");
+}
+
+TEST_F(Command, NoOptionIsLeftOutInSilence) {
+  for (const std::string format : {"csv", "vtk"}) {
+    for (const std::string option : {"--all", "--explain"}) {
+      expect_error(words({"solve", steel(), option, "--format", format}), 2, {option, format});
+    }
+  }
+  const Outcome warned = run("solve " + steel() + " --points 9 --law hooke");
+  EXPECT_EQ(warned.status, 0);
+  EXPECT_NE(warned.err.find("--points, --law: no effect"), std::string::npos) << warned.err;
+  EXPECT_EQ(run("solve " + steel() + " --points 9 --model chain").err, "");
+  EXPECT_EQ(run("solve " + steel()).err, "");
+}
+
+TEST_F(Command, HelpIsACommandAndUnknownOptionsAreNamed) {
+  EXPECT_EQ(run("help").out, run("--help").out);
+  EXPECT_EQ(run("help solve").out, run("solve --help").out);
+  EXPECT_EQ(run("help solve").status, 0);
+  expect_error("help nothing", 2, {"unknown command nothing"});
+  expect_error("-V", 2, {"unknown option -V", "--version"});
+  expect_error("--modle", 2, {"unknown option --modle"});
+  expect_error("solve --modle", 2, {"--modle", "did you mean --model?"});
+}
+
+TEST_F(Command, SolveSaysWhichGripperHoldsAndPrintsNoMinusZero) {
+  const std::string text = run("solve " + scene(good)).out;
+  EXPECT_NE(text.find("gripper 1 at s = 0 m (clamp): force ["), std::string::npos) << text;
+  EXPECT_EQ(text.find("-0 J"), std::string::npos) << text;
+  EXPECT_EQ(text.find("-0.00000000"), std::string::npos) << text;
 }
 
 TEST_F(Command, HelpHasAnExampleThatWorks) {

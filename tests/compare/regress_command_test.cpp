@@ -49,6 +49,18 @@ TEST_F(RegressCommand, UpdateIsStableAndTheSameShapesPass) {
   EXPECT_EQ(read(path("b.toml")), before);
 }
 
+TEST_F(RegressCommand, UpdateSaysWhatItDid) {
+  const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
+  EXPECT_EQ(run(arguments_ + steel() + " --update").out.substr(0, 5), "same ");
+  const std::string both = run(arguments_ + steel() + " " + other + " --update").out;
+  EXPECT_EQ(both.find("--update adds it"), std::string::npos) << both;
+  EXPECT_NE(both.find("added "), std::string::npos) << both;
+  const std::string removed = run(arguments_ + steel() + " --update").out;
+  EXPECT_NE(removed.find("removed "), std::string::npos) << removed;
+  set("rms_over_length", "0.3");
+  EXPECT_EQ(run(arguments_ + steel() + " --update").out.substr(0, 8), "changed ");
+}
+
 TEST_F(RegressCommand, AWorseErrorFailsAndABetterOneIsReported) {
   set("rms_over_length", "0.2");
   dlo::test::Outcome result = run(arguments_ + steel());

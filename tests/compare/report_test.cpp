@@ -331,6 +331,30 @@ TEST_F(ReportFolder, SaysWhatDidNotConverge) {
   EXPECT_THAT(page(), HasSubstr("Not computed: heavy"));
 }
 
+TEST_F(ReportFolder, PrintsOnlyCommandsThatAreTaken) {
+  SceneFile file = heavy_file();
+  file.scene.force_model.c_b = 0.1;  // refused with law hooke
+  ReportOptions options = small_report();
+  options.history = true;
+  options.tolerance = 0.02;
+  options.quick = true;
+  (void)write_report(make_report({file}, options), {}, folder());
+  EXPECT_THAT(page(), AllOf(Not(HasSubstr("--law hooke")), HasSubstr("Rows without a command"),
+                            HasSubstr("--quick --tolerance 0.02 -o ../again"),
+                            HasSubstr("A quick report")));
+  file.scene.force_model.c_b.reset();
+  (void)write_report(make_report({file}, options), {}, folder());
+  EXPECT_THAT(page(), HasSubstr("--law hooke --bookkeeping consistent"));
+}
+
+TEST_F(ReportFolder, SaysThatNothingWasRun) {
+  ReportOptions options = small_report();
+  options.benchmark = BenchmarkOptions{.budget_s = 1e-9, .repeats = 1};
+  (void)write_report(make_report({heavy_file()}, options), {}, folder());
+  EXPECT_THAT(page(), AllOf(HasSubstr(">not run<"), Not(HasSubstr(">none<")),
+                            HasSubstr("(no time left)"), Not(HasSubstr("<tbody>\n</tbody>"))));
+}
+
 TEST(Report, PutsTheVerdictInNumbers) {
   ReportOptions options = small_report();
   const std::vector<std::string> verdict = report_verdict(make_report({heavy_file()}, options));

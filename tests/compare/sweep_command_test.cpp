@@ -156,6 +156,16 @@ TEST_F(SweepCommand, TasksOfASlurmArrayAreShards) {
   expect_same_files("whole.csv", "merged.csv");
 }
 
+TEST_F(SweepCommand, CountsRowsWithoutResultAndSuggestsFields) {
+  const dlo::test::Outcome result =
+      run("sweep " + steel() + " --vary gamma=1,10 --max-evaluations 1");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("2 of 2 scenes have no result"), std::string::npos) << result.err;
+  EXPECT_EQ(run("sweep " + steel() + " --vary gamma=1,10").err, "");
+  expect_error("sweep " + steel() + " --vary E=1,2", 2,
+               {"did you mean rod.material.youngs_modulus?"});
+}
+
 TEST_F(SweepCommand, HelpHasAnExample) {
   EXPECT_NE(run("sweep --help").out.find("Example:"), std::string::npos);
 }
