@@ -24,17 +24,16 @@ double share_from(const std::string& text) {
 }  // namespace
 
 CLI::Validator share_of_length() {
-  return CLI::Validator(
-      [](std::string& text) -> std::string {
-        const double share = share_from(text);
-        if (!(share > 0 && share < 1)) {
-          return fmt::format("{} is no share of the length (allowed: 0.1% or 0.001, > 0, < 1)",
-                             text);
-        }
-        text = fmt::format("{:.17g}", share);
-        return {};
-      },
-      "SHARE");
+  return {[](std::string& text) {
+            const double share = share_from(text);
+            if (!(share > 0 && share < 1)) {
+              return fmt::format("{} is no share of the length (allowed: 0.1% or 0.001, > 0, < 1)",
+                                 text);
+            }
+            text = fmt::format("{:.17g}", share);
+            return std::string();
+          },
+          "SHARE"};
 }
 
 }  // namespace dlo::cli

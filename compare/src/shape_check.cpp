@@ -108,14 +108,14 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
   return result;
 }
 
-ShapeCheck check_shape(const Scene& given, const MeasuredShape& shape,
+ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                        const ShapeCheckOptions& options) {
-  const Scene scene = without_far_obstacles(given).scene;
+  const Scene near = without_far_obstacles(scene).scene;
   const AlignOptions align_options{
       .pose = options.pose, .arc_lengths = options.arc_lengths, .up = up_of(scene, options.pose)};
   const Aligner aligner(shape, scene.length, align_options);
-  const energy_model::Equilibrium lowest = solve_reference(scene, Model::energy, options.solve);
-  const std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options.solve);
+  const energy_model::Equilibrium lowest = solve_reference(near, Model::energy, options.solve);
+  const std::vector<energy_model::Equilibrium> states = all_states(near, lowest, options.solve);
   std::vector<Alignment> alignments;
   std::vector<double> from_shape;
   std::size_t nearest = 0;
@@ -168,7 +168,7 @@ ShapeCheck check_shape(const Scene& given, const MeasuredShape& shape,
     return thin.align(Curve(reference.sample, scene.length)).rms_m;
   };
   result.effective_modulus =
-      fit_effective_modulus(scene, distance, result.state.only_lowest() ? nullptr : &energy);
+      fit_effective_modulus(near, distance, result.state.only_lowest() ? nullptr : &energy);
   result.modulus = result.effective_modulus.ratio * scene.material.youngs_modulus;
   return result;
 }

@@ -68,7 +68,7 @@ TEST_F(Command, InitWritesASceneThatSolves) {
   EXPECT_EQ(scene.diameter, 0.006);
   EXPECT_EQ(scene.material.name, "silicone");
   for (const std::string model : {"energy", "chain", "exact", "force"}) {
-    EXPECT_EQ(run("solve " + file + " --model " + model).status, 0) << model;
+    EXPECT_EQ(run(words({"solve", file, "--model", model})).status, 0) << model;
   }
 }
 

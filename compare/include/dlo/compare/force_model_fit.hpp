@@ -46,11 +46,11 @@ struct ForceModelFit {
   /// and l_s.
   ForceModelSettings settings;
   bool c_b_was_given = false;  ///< `fitted` is then the given one
-  bool c_c_was_given = false;
+  bool c_c_was_given = false;  ///< by the scene or an option
   /// The target asked for a stiffer rod than the material makes, or nothing pulls at it: c_c is AE,
   /// and the rod's own stretch, which the energy model leaves out, is part of the deviation.
   bool c_c_is_physical = false;
-  bool points_were_given = false;
+  bool points_were_given = false;     ///< N was not chosen
   double target = 0;                  ///< RMS deviation over the length that was asked for [-]
   std::vector<std::string> scenes;    ///< names, hold-out scenes last
   std::vector<double> gammas;         ///< w l^3 / (EI) of each scene [-]
@@ -70,6 +70,7 @@ struct ForceModelFit {
   [[nodiscard]] double worst() const;
   /// The same of the hold-out scenes; 0 without any.
   [[nodiscard]] double worst_holdout() const;
+  /// No scene's stepped deviation is above the target.
   [[nodiscard]] bool reached() const;
   /// Sentences on what keeps the target from being reached; empty if it is.
   [[nodiscard]] std::vector<std::string> why_missed() const;
