@@ -112,9 +112,10 @@ void run(SweepOptions options) {
     throw compare::InputError(
         fmt::format("sweep: {} scene files given (allowed: 1)", options.files.size()));
   }
-  if (options.vary.empty())
+  if (options.vary.empty()) {
     throw compare::InputError(
         "sweep: no --vary FIELD=VALUES given (allowed: such as --vary gamma=1,10)");
+  }
   const compare::Sweep sweep = sweep_of(options);
   const std::optional<compare::Shard> shard = chosen_shard(options.shard);
   if (options.output.empty()) return print_sweep(sweep, shard, options.threads);
