@@ -9,12 +9,12 @@ namespace dlo::compare {
 namespace {
 
 /// Between which given arc lengths another one lies.
-struct Place {
+struct Bracket {
   std::size_t right;  // of the two
   double share;       // of the way from the left one, 0 to 1
 };
 
-Place place_of(const std::vector<double>& s, double at) {
+Bracket bracket_of(const std::vector<double>& s, double at) {
   const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
   const double left = *(above - 1);
   return {static_cast<std::size_t>(above - s.begin()),
@@ -56,9 +56,9 @@ std::vector<double> interpolated(const std::vector<double>& values, const std::v
   std::vector<double> result;
   result.reserve(to.size());
   for (const double s : to) {
-    const Place place = place_of(from, s);
-    result.push_back((1 - place.share) * values[place.right - 1] +
-                     place.share * values[place.right]);
+    const Bracket bracket = bracket_of(from, s);
+    result.push_back((1 - bracket.share) * values[bracket.right - 1] +
+                     bracket.share * values[bracket.right]);
   }
   return result;
 }
@@ -72,10 +72,10 @@ Shape resample(const Shape& shape, const std::vector<double>& arc_lengths) {
   result.arc_length = arc_lengths;
   result.points.resize(3, static_cast<Eigen::Index>(arc_lengths.size()));
   for (std::size_t i = 0; i < arc_lengths.size(); ++i) {
-    const Place place = place_of(s, arc_lengths[i]);
-    const auto right = static_cast<Eigen::Index>(place.right);
+    const Bracket bracket = bracket_of(s, arc_lengths[i]);
+    const auto right = static_cast<Eigen::Index>(bracket.right);
     result.points.col(static_cast<Eigen::Index>(i)) =
-        (1 - place.share) * shape.points.col(right - 1) + place.share * shape.points.col(right);
+        (1 - bracket.share) * shape.points.col(right - 1) + bracket.share * shape.points.col(right);
   }
   return result;
 }
