@@ -14,6 +14,7 @@ import base64
 import json
 import pathlib
 import shutil
+import socket
 import subprocess
 import sys
 import tempfile
@@ -154,6 +155,15 @@ def check(page, chromedriver, screenshots):
     return problems
 
 
+def has_localhost():
+    """A bare chroot has no /etc/hosts, and selenium asks for chromedriver by that name."""
+    try:
+        socket.getaddrinfo("localhost", None)
+    except OSError:
+        return False
+    return True
+
+
 def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("dlo")
@@ -164,6 +174,9 @@ def main():
     options = parser.parse_args()
     if not options.report and not shutil.which("gnuplot"):
         print("gnuplot is not installed: there would be no figures to look at")
+        return 77  # skipped
+    if not has_localhost():
+        print("localhost is not known here: chromedriver cannot be talked to")
         return 77  # skipped
     if options.screenshots:
         options.screenshots.mkdir(parents=True, exist_ok=True)
