@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -165,26 +166,26 @@ std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape
     add(terms > 0 ? fmt::format("energy, K = {}", terms) : "energy, K as needed", predicted, runs,
         [&] { return track_energy(scene, terms, track, options); });
   };
-  std::vector<BenchmarkRun> force_runs;
-  const auto add_force = [&](double share, int points) {
-    ForceVariant variant;
-    variant.stretch_share = share;
-    add(fmt::format("force, N = {}, {}", points, variant.text(Model::force)),
-        options.frames * frame_s, force_runs,
-        [&] { return track_force(scene, variant, points, track, options); });
+  // Of c_c = AE/1000 and AE.
+  constexpr std::array<double, 2> shares = {1e-3, 1.0};
+  std::array<std::vector<BenchmarkRun>, shares.size()> force_runs;
+  const auto add_force = [&](int points) {
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      ForceVariant variant;
+      variant.stretch_share = shares[i];
+      add(fmt::format("force, N = {}, {}", points, variant.text(Model::force)),
+          options.frames * frame_s, force_runs[i],
+          [&] { return track_force(scene, variant, points, track, options); });
+    }
   };
   // The cheapest of both models first.
   add_energy(3);
-  for (const double share : {1e-3, 1.0}) add_force(share, 8);
+  add_force(8);
   for (const int terms : {6, 12, 0}) add_energy(terms);
-  for (const int points : {16, 32}) {
-    for (const double share : {1e-3, 1.0}) add_force(share, points);
+  for (const int points : {16, 32}) add_force(points);
+  for (const std::vector<BenchmarkRun>& of_share : force_runs) {
+    runs.insert(runs.end(), of_share.begin(), of_share.end());
   }
-  const auto softer = [](const BenchmarkRun& a, const BenchmarkRun& b) {
-    return a.setting > b.setting;  // "c_c = AE/1000" before "c_c = AE"
-  };
-  std::stable_sort(force_runs.begin(), force_runs.end(), softer);
-  runs.insert(runs.end(), force_runs.begin(), force_runs.end());
   return runs;
 }
 

@@ -167,7 +167,7 @@ std::string inline_svg(const std::string& svg, const Figure& figure) {
   const std::size_t attributes = body.find('>');
   const std::string head =
       fmt::format(">\n<title id=\"{0}-title\">{1}</title>\n<desc id=\"{0}-desc\">{2}</desc>",
-                  figure.name, escape_html(figure.title), escape_html(figure.description));
+                  figure.name, escape_markup(figure.title), escape_markup(figure.description));
   body.replace(attributes, 1, head);
   return fmt::format(
       "<svg role=\"img\" aria-labelledby=\"{0}-title\" aria-describedby=\"{0}-desc\"{1}</svg>\n",

@@ -6,32 +6,6 @@
 
 namespace dlo::compare {
 
-std::string escape_html(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
-    }
-  }
-  return result;
-}
-
 std::string page_number(double value) {
   if (std::isnan(value)) return "–";
   if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
@@ -43,7 +17,7 @@ std::string page_percent(double share) {
 }
 
 std::string to_html(const HtmlTable& table) {
-  const std::string caption = escape_html(table.caption);
+  const std::string caption = escape_markup(table.caption);
   std::string out = fmt::format(
       "<div class=\"table\" role=\"region\" aria-label=\"{0}\" tabindex=\"0\">\n"
       "<table>\n<caption><span>{0}</span></caption>\n<thead><tr>",
@@ -60,15 +34,15 @@ std::string to_html(const HtmlTable& table) {
     return "";
   };
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
-    out +=
-        fmt::format("<th scope=\"col\"{}>{}</th>", class_of(i), escape_html(table.columns[i].head));
+    out += fmt::format("<th scope=\"col\"{}>{}</th>", class_of(i),
+                       escape_markup(table.columns[i].head));
   }
   out += "</tr></thead>\n<tbody>\n";
   for (const std::vector<std::string>& row : table.rows) {
     out += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
-      out += i == 0 ? fmt::format("<th scope=\"row\"{}>{}</th>", class_of(i), escape_html(row[i]))
-                    : fmt::format("<td{}>{}</td>", class_of(i), escape_html(row[i]));
+      out += i == 0 ? fmt::format("<th scope=\"row\"{}>{}</th>", class_of(i), escape_markup(row[i]))
+                    : fmt::format("<td{}>{}</td>", class_of(i), escape_markup(row[i]));
     }
     out += "</tr>\n";
   }

@@ -3,10 +3,9 @@
 #include <string>
 #include <vector>
 
-namespace dlo::compare {
+#include "markup.hpp"
 
-/// A text as HTML shows it, in elements and in attributes; control characters become blanks.
-[[nodiscard]] std::string escape_html(const std::string& text);
+namespace dlo::compare {
 
 /// A number with 4 significant digits; a dash for NaN, which says that there is none.
 [[nodiscard]] std::string page_number(double value);

@@ -11,6 +11,7 @@
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/error.hpp"
+#include "markup.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -49,30 +50,6 @@ void compare_errors(RegressionResult& result, const RegressionTolerance& toleran
       result.verdict = verdict;
     }
   }
-}
-
-std::string escaped_xml(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        // XML 1.0 has no way to write most control characters; attributes lose line ends.
-        result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
-    }
-  }
-  return result;
 }
 
 }  // namespace
@@ -166,17 +143,17 @@ std::string junit_xml(const std::vector<RegressionResult>& results) {
   std::string cases;
   for (const RegressionResult& result : results) {
     cases += fmt::format("    <testcase classname=\"dlo.regress\" name=\"{}\"",
-                         escaped_xml(result.name));
+                         escape_markup(result.name));
     if (!failed(result.verdict)) {
       cases += fmt::format(">\n      <system-out>{}: {}</system-out>\n    </testcase>\n",
-                           to_string(result.verdict), escaped_xml(result.message));
+                           to_string(result.verdict), escape_markup(result.message));
       continue;
     }
     const bool error = result.verdict == RegressionVerdict::not_solved;
     ++(error ? errors : failures);
     cases += fmt::format(">\n      <{0} type=\"{1}\" message=\"{2}\"/>\n    </testcase>\n",
                          error ? "error" : "failure", to_string(result.verdict),
-                         escaped_xml(result.message));
+                         escape_markup(result.message));
   }
   const std::string counts =
       fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\"", results.size(), failures, errors);

@@ -25,20 +25,20 @@ class Page {
   void section(const std::string& id, const std::string& heading) {
     if (open_) out_ += "</section>\n";
     open_ = true;
-    out_ += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", id, escape_html(heading));
+    out_ += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", id, escape_markup(heading));
     sections_.emplace_back(id, heading);
   }
-  void heading(const std::string& text) { out_ += "<h3>" + escape_html(text) + "</h3>\n"; }
-  void paragraph(const std::string& text) { out_ += "<p>" + escape_html(text) + "</p>\n"; }
+  void heading(const std::string& text) { out_ += "<h3>" + escape_markup(text) + "</h3>\n"; }
+  void paragraph(const std::string& text) { out_ += "<p>" + escape_markup(text) + "</p>\n"; }
   void command(const std::string& what, const std::string& line) {
-    out_ += fmt::format("<p class=\"faint\">{} <code>{}</code></p>\n", escape_html(what),
-                        escape_html(line));
+    out_ += fmt::format("<p class=\"faint\">{} <code>{}</code></p>\n", escape_markup(what),
+                        escape_markup(line));
   }
   void commands(const std::string& summary, const std::vector<std::string>& lines) {
     if (lines.empty()) return;
-    out_ += "<details open><summary>" + escape_html(summary) + "</summary>\n<ul>\n";
+    out_ += "<details open><summary>" + escape_markup(summary) + "</summary>\n<ul>\n";
     for (const std::string& line : lines) {
-      out_ += "<li><code>" + escape_html(line) + "</code></li>\n";
+      out_ += "<li><code>" + escape_markup(line) + "</code></li>\n";
     }
     out_ += "</ul>\n</details>\n";
   }
@@ -46,7 +46,7 @@ class Page {
   void list(const std::vector<std::string>& items, std::size_t bold = 0) {
     out_ += "<ul>\n";
     for (std::size_t i = 0; i < items.size(); ++i) {
-      const std::string text = escape_html(items[i]);
+      const std::string text = escape_markup(items[i]);
       out_ += "<li>" + (i < bold ? "<strong>" + text + "</strong>" : text) + "</li>\n";
     }
     out_ += "</ul>\n";
@@ -54,7 +54,7 @@ class Page {
   void open_box() { out_ += "<div class=\"verdict\">\n"; }
   void close_box() { out_ += "</div>\n"; }
   void folded_list(const std::string& summary, const std::vector<std::string>& items) {
-    out_ += "<details open><summary>" + escape_html(summary) + "</summary>\n";
+    out_ += "<details open><summary>" + escape_markup(summary) + "</summary>\n";
     list(items);
     out_ += "</details>\n";
   }
@@ -69,7 +69,7 @@ class Page {
   void facts(const std::vector<std::pair<std::string, std::string>>& facts) {
     out_ += "<dl>\n";
     for (const auto& [name, value] : facts) {
-      out_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_html(name), escape_html(value));
+      out_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_markup(name), escape_markup(value));
     }
     out_ += "</dl>\n";
   }
@@ -92,10 +92,10 @@ class Page {
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
         "<meta name=\"generator\" content=\"dlo report\">\n<link rel=\"icon\" href=\"data:,\">\n"
         "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n",
-        escape_html(title), report_style);
+        escape_markup(title), report_style);
     page += "<nav aria-label=\"Sections\"><ul>\n";
     for (const auto& [id, heading] : sections_) {
-      page += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, escape_html(heading));
+      page += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, escape_markup(heading));
     }
     return page + "</ul></nav>\n</header>\n<main>\n" + out_ + (open_ ? "</section>\n" : "") +
            "</main>\n</body>\n</html>\n";
@@ -110,13 +110,13 @@ class Page {
                 : fmt::format(
                       "<p class=\"missing\">This figure is missing: {}. Its numbers are in "
                       "the tables and in {}.</p>\n",
-                      escape_html(entry.failure), figure.csv_file);
+                      escape_markup(entry.failure), figure.csv_file);
     out_ += fmt::format(
         "<figcaption><strong>{0}</strong><br>{1}<br>Numbers: <a href=\"{2}\">{2}</a>{3} again by "
         "<code>{4}</code>; picture: <code>gnuplot {5}.gp</code></figcaption>\n</figure>\n",
-        escape_html(figure.title), escape_html(figure.description), figure.csv_file,
-        figure.given.empty() ? "," : "; " + escape_html(figure.given), escape_html(figure.command),
-        figure.name);
+        escape_markup(figure.title), escape_markup(figure.description), figure.csv_file,
+        figure.given.empty() ? "," : "; " + escape_markup(figure.given),
+        escape_markup(figure.command), figure.name);
   }
 
   const std::vector<PageFigure>& figures_;

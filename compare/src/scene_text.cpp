@@ -134,7 +134,7 @@ std::string optional_part(const Scene& scene) {
 }  // namespace
 
 std::string scene_text(const SceneChoices& choices, const std::vector<Material>& known_materials) {
-  std::string text = required_part(choices, known_materials);
+  const std::string text = required_part(choices, known_materials);
   const Scene scene = parse_scene(text, "the new scene", known_materials);
   if (scene.diameter > scene.length) {
     throw InputError(
@@ -142,9 +142,7 @@ std::string scene_text(const SceneChoices& choices, const std::vector<Material>&
                     "length, {:g} m)",
                     choices.diameter, scene.length));
   }
-  text += optional_part(scene);
-  (void)parse_scene(text, "the new scene", known_materials);
-  return text;
+  return text + optional_part(scene);
 }
 
 }  // namespace dlo::compare

@@ -64,8 +64,8 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
   const double root_points = std::sqrt(static_cast<double>(shape.points.cols()));
   const double distance = shape.forces.norm() / estimate_.modes().slowest / root_points;
   const bool seems_at_rest = std::max(distance, shape.momentum) < target_;
-  // Rounding of many stiff points' positions makes forces that hide rest from these signs for good.
   bounces_ = false;
+  // Rounding of many stiff points' positions makes forces that hide rest from these signs for good.
   const bool due = result_.steps >= next_measurement_;
   if (!seems_at_rest && !due) return {};
   next_measurement_ = std::max(next_measurement_, result_.steps + result_.steps / 4);

@@ -55,7 +55,12 @@ class Command : public testing::Test {
   }
 
   [[nodiscard]] Outcome run(const std::string& arguments) const {
-    const std::string line = std::string(DLO_COMMAND) + " " + arguments + " 2>" + path("stderr");
+    return run_line(std::string(DLO_COMMAND) + " " + arguments);
+  }
+
+  /// Any line of a shell, a single command.
+  [[nodiscard]] Outcome run_line(const std::string& command) const {
+    const std::string line = command + " 2>" + path("stderr");
     std::FILE* pipe = ::popen(line.c_str(), "r");
     Outcome result;
     std::array<char, 4096> buffer{};

@@ -23,18 +23,7 @@ class Reference : public Command {
                                   << DLO_DATA << " data\nexport PATH=" << command.parent_path()
                                   << ":$PATH\n"
                                   << script << "\n";
-    const std::string line = "bash " + path("script") + " 2>" + path("stderr");
-    std::FILE* pipe = ::popen(line.c_str(), "r");
-    Outcome result;
-    std::array<char, 4096> buffer{};
-    std::size_t count = 0;
-    while ((count = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0) {
-      result.out.append(buffer.data(), count);
-    }
-    const int status = ::pclose(pipe);
-    result.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    result.err = read(path("stderr"));
-    return result;
+    return run_line("bash " + path("script"));
   }
 
   /// What the completion offers for the last of these words.

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <string>
+
+namespace dlo::compare {
+
+/// A text as HTML and XML show it, in elements and in attributes; control characters, most of which
+/// XML 1.0 has no way to write, become blanks.
+[[nodiscard]] std::string escape_markup(const std::string& text);
+
+}  // namespace dlo::compare
