@@ -113,6 +113,10 @@ void SceneOptions::add_solvers_to(CLI::App& command) {
       ->check(CLI::Range(1, 1000000000))
       ->capture_default_str()
       ->group(solvers);
+  command.add_option("--time-limit", solve_.time_limit, "of each solve [s]")
+      ->check(CLI::Range(1e-3, 1e9))
+      ->capture_default_str()
+      ->group(solvers);
   command.add_option("--max-steps", solve_.max_steps, "of the force model")
       ->check(CLI::Range(1L, 1000000000000L))
       ->capture_default_str()

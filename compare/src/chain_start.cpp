@@ -61,6 +61,7 @@ energy_model::Equilibrium solve_from_chain(const Scene& scene, const SolveOption
       energy_problem(scene),
       {.terms = options.terms,
        .max_evaluations = std::min(options.max_evaluations, most_evaluations),
+       .time_limit = options.time_limit,
        .start = &start});
 }
 

@@ -48,7 +48,9 @@ class Misfit {
   Misfit(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
          const MaterialFitOptions& options)
       : scenes_(scenes),
-        solver_({.terms = options.solve.terms, .max_evaluations = options.solve.max_evaluations}) {
+        solver_({.terms = options.solve.terms,
+                 .max_evaluations = options.solve.max_evaluations,
+                 .time_limit = options.solve.time_limit}) {
     for (std::size_t i = 0; i < scenes.size(); ++i) {
       AlignOptions align{.pose = options.pose,
                          .arc_lengths = options.arc_lengths,

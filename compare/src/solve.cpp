@@ -91,9 +91,10 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
   energy_model::Equilibrium result;
   try {
     result = model == Model::exact
-                 ? energy_model::solve_exact(problem)
+                 ? energy_model::solve_exact(problem, {.time_limit = options.time_limit})
                  : energy_model::solve_energy(problem, {.terms = options.terms,
                                                         .max_evaluations = options.max_evaluations,
+                                                        .time_limit = options.time_limit,
                                                         .start = options.start});
     const bool searched = model == Model::energy && options.start == nullptr;
     if (!energy_model::succeeded(result.status) && searched && !scene.obstacles.empty()) {
@@ -139,7 +140,9 @@ std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
   try {
     states = energy_model::all_energy(
         energy_problem(scene),
-        {.terms = options.terms, .max_evaluations = options.max_evaluations});
+        {.terms = options.terms,
+         .max_evaluations = options.max_evaluations,
+         .time_limit = options.time_limit});
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }

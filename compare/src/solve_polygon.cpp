@@ -61,6 +61,7 @@ Solution solve_rigid_chain(const Scene& scene, const Discretisation& discretisat
                            const ChainScene& chain, const SolveOptions& options) {
   energy_model::ChainOptions chain_options;
   chain_options.max_evaluations = options.max_evaluations;
+  chain_options.time_limit = options.time_limit;
   const energy_model::ChainResult result = energy_model::solve_chain(chain.problem, chain_options);
   if (!energy_model::succeeded(result.status)) {
     throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
@@ -91,6 +92,7 @@ LowestPolygon lowest_polygon(const Scene& scene, const Discretisation& discretis
   const energy_model::PolygonProblem problem = polygon_problem(discretisation.rod);
   energy_model::PolygonOptions polygon_options;
   polygon_options.max_evaluations = options.max_evaluations;
+  polygon_options.time_limit = options.time_limit;
   LowestPolygon lowest;
   for (std::size_t i = 0; i < discretisation.starts.size(); ++i) {
     energy_model::PolygonResult result =
@@ -165,6 +167,7 @@ Shape chain_from(const Scene& scene, const ForceModelSettings& settings, const S
   const Discretisation discretisation = discretise(scene, settings);
   energy_model::PolygonOptions polygon_options;
   polygon_options.max_evaluations = options.max_evaluations;
+  polygon_options.time_limit = options.time_limit;
   const energy_model::PolygonResult result = energy_model::solve_polygon(
       polygon_problem(discretisation.rod), resample(start, discretisation.arc_length).points,
       polygon_options);

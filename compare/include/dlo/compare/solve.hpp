@@ -17,6 +17,7 @@ struct SolveOptions {
   int terms = 0;                 ///< of the energy model, 0: as many as needed
   int max_evaluations = 20000;   ///< of the minimisers
   long max_steps = 20'000'000;   ///< of the force model
+  double time_limit = 20;        ///< of each solve of a model [s], > 0
   double rest_tolerance = 1e-7;  ///< of the force model, share of the rod's length
   /// Of the energy model: an equilibrium of a similar scene to follow, instead of the lowest.
   const energy_model::Equilibrium* start = nullptr;

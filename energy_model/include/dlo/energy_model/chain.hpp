@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 
 #include "dlo/energy_model/status.hpp"
@@ -30,6 +31,8 @@ struct ChainOptions {
   Eigen::VectorXd start_angles;
   double tolerance = 1e-12;  ///< of the gradient, over the moment of all forces about the grip; > 0
   int max_evaluations = 20000;  ///< of the energy
+  /// Of the whole call [s], > 0; the status is then `time_limit`.
+  double time_limit = std::numeric_limits<double>::infinity();
 };
 
 /// A shape of a chain, and how it was found.

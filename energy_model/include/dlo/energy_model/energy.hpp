@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <vector>
 
@@ -15,6 +16,8 @@ struct EnergyOptions {
   int terms = 0;
   double tolerance = 1e-10;     ///< of the shape, in units of l; > 0
   int max_evaluations = 20000;  ///< per descent
+  /// Of the whole call [s], > 0; the status is then `time_limit`.
+  double time_limit = std::numeric_limits<double>::infinity();
   /// A known equilibrium of a similar problem to start from instead of searching: it is followed,
   /// so that snapping shows where the branch ends. Same length and same clamps.
   const Equilibrium* start = nullptr;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
 
@@ -8,6 +10,8 @@ namespace dlo::energy_model {
 /// How well to integrate, and from where.
 struct ExactOptions {
   double tolerance = 1e-13;  ///< local error of the integrator per step, > 0
+  /// Of the whole call [s], > 0; the status is then `time_limit`.
+  double time_limit = std::numeric_limits<double>::infinity();
   /// A shape to confirm or correct, of this problem or a similar one, with its grips' reactions:
   /// Newton's method starts from it, without a search. Has to outlive the call.
   const Equilibrium* start = nullptr;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -48,6 +49,8 @@ struct PolygonProblem {
 struct PolygonOptions {
   double tolerance = 1e-12;     ///< of Newton's step, RMS over the points, in polygon lengths; > 0
   int max_evaluations = 20000;  ///< of the energy
+  /// Of the whole call [s], > 0; the status is then `time_limit`.
+  double time_limit = std::numeric_limits<double>::infinity();
 };
 
 /// A shape of a polygon, and how it was found.

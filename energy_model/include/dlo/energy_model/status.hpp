@@ -9,7 +9,10 @@ enum class SolveStatus {
   converged,         ///< gradient below its tolerance at a minimum (positive second variation)
   roundoff_limited,  ///< no further progress in double precision; the shape is usable
   saddle,            ///< an equilibrium, but the second variation has a negative direction
+  near_singular,     ///< next to a fold or bifurcation: not determined to the tolerance
+  not_resolved,      ///< a shape, but what is claimed of it is not proven: see the message
   evaluation_limit,
+  time_limit,
   failed,  ///< the solver gave up, see the message
 };
 
@@ -29,8 +32,14 @@ enum class SolveStatus {
       return "limited by roundoff";
     case SolveStatus::saddle:
       return "an unstable equilibrium (saddle)";
+    case SolveStatus::near_singular:
+      return "next to a fold or bifurcation";
+    case SolveStatus::not_resolved:
+      return "not resolved";
     case SolveStatus::evaluation_limit:
       return "evaluation limit reached";
+    case SolveStatus::time_limit:
+      return "time limit reached";
     case SolveStatus::failed:
       break;
   }
