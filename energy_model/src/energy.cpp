@@ -7,6 +7,7 @@
 
 #include "assemble.hpp"
 #include "legendre.hpp"
+#include "polygon_fields.hpp"
 #include "require.hpp"
 #include "span_solver.hpp"
 #include "split.hpp"
@@ -21,6 +22,7 @@ void check(const EnergyOptions& options) {
   require(options.terms >= 0 && options.terms <= max_terms, "solve_energy", "terms", options.terms,
           "0 to " + std::to_string(max_terms));
   require_positive("solve_energy", "tolerance", options.tolerance);
+  require(options.time_limit > 0, "solve_energy", "time_limit", options.time_limit, "> 0");
   require(options.max_evaluations >= 1, "solve_energy", "max_evaluations", options.max_evaluations,
           ">= 1");
 }
@@ -39,13 +41,23 @@ TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double
   };
 }
 
-std::vector<Equilibrium> combine(const Problem& problem, const std::vector<PlacedSpan>& placed,
-                                 const std::vector<std::vector<SpanSolution>>& solutions) {
+/// An equilibrium of a span, and the frame that it is found in.
+struct PlacedSolution {
+  PlacedSpan placed;
+  SpanSolution solution;
+};
+
+std::vector<Equilibrium> combine(const Problem& problem,
+                                 const std::vector<std::vector<PlacedSolution>>& solutions) {
   std::vector<Equilibrium> result;
-  std::vector<std::size_t> choice(placed.size(), 0);
+  std::vector<std::size_t> choice(solutions.size(), 0);
   for (bool more = true; more && result.size() < most_combinations;) {
+    std::vector<PlacedSpan> placed;
     std::vector<const SpanSolution*> chosen;
-    for (std::size_t i = 0; i < placed.size(); ++i) chosen.push_back(&solutions[i][choice[i]]);
+    for (std::size_t i = 0; i < solutions.size(); ++i) {
+      placed.push_back(solutions[i][choice[i]].placed);
+      chosen.push_back(&solutions[i][choice[i]].solution);
+    }
     result.push_back(assemble(problem, placed, chosen));
     more = false;
     for (std::size_t i = 0; i < choice.size() && !more; ++i) {
@@ -68,17 +80,24 @@ class EnergySolver::State {
 
   std::vector<Equilibrium> solve(const Problem& problem, bool all, bool follow) {
     const auto begin = std::chrono::steady_clock::now();
-    std::vector<PlacedSpan> placed = split(problem);
+    const Deadline deadline(options_.time_limit);
+    const std::vector<PlacedSpan> placed = split(problem);
     const bool warm = follow && remembered_.size() == placed.size();
     remembered_.resize(placed.size());
-    std::vector<std::vector<SpanSolution>> solutions;
+    std::vector<std::vector<PlacedSolution>> solutions;
     solutions.reserve(placed.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
-      Remembered* last = warm ? &remembered_[i] : nullptr;
-      solutions.push_back(solve_placed(placed[i], problem, all, last));
-      remember(placed[i], solutions.back().front(), remembered_[i]);
+      const Remembered* last = warm ? &remembered_[i] : nullptr;
+      SpanOptions options;
+      options.terms = options_.terms;
+      options.tolerance = options_.tolerance;
+      options.max_evaluations = options_.max_evaluations;
+      options.all = all;
+      options.deadline = deadline;
+      solutions.push_back(solve_placed(placed[i], problem, options, last));
+      remember(solutions.back().front(), remembered_[i]);
     }
-    std::vector<Equilibrium> result = combine(problem, placed, solutions);
+    std::vector<Equilibrium> result = combine(problem, solutions);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
@@ -94,50 +113,128 @@ class EnergySolver::State {
     [[nodiscard]] bool planar() const { return !model || model->span().planar; }
   };
 
-  std::vector<SpanSolution> solve_placed(PlacedSpan& placed, const Problem& problem, bool all,
-                                         const Remembered* last) {
-    SpanOptions options;
-    options.terms = options_.terms;
-    options.tolerance = options_.tolerance;
-    options.max_evaluations = options_.max_evaluations;
-    options.all = all;
+  [[nodiscard]] std::vector<PlacedSolution> solve_placed(const PlacedSpan& placed,
+                                                         const Problem& problem,
+                                                         SpanOptions options,
+                                                         const Remembered* last) {
+    TangentField start;
     if (options_.start != nullptr) {
-      options.start = field_of(*options_.start, placed, problem.length);
+      start = field_of(*options_.start, placed, problem.length);
     } else if (last != nullptr && last->model) {
       options.least_terms = last->model->terms();
-      options.start = [&placed, last = *last](const Eigen::VectorXd& s) {
+      start = [&placed, last = *last](const Eigen::VectorXd& s) {
         return follow_field(placed, last, s);
       };
     }
-    const bool may_leave_plane = options_.start != nullptr || (last && !last->planar());
-    if (placed.span.planar && options.start && may_leave_plane) leave_plane(placed, options.start);
-    const PlacedSpan as_placed = placed;
     int spent = 0;
-    constexpr std::size_t attempts = 3;
-    for (std::size_t attempt = 0;; ++attempt) {
-      options.first_start = attempt * followed_starts;
-      std::vector<SpanSolution> solutions = search(placed, options);
-      SpanSolution& best = solutions.front();
-      spent = best.evaluations += spent;
-      if (all || options.start || best.is_equilibrium() || attempt + 1 == attempts)
-        return solutions;
-      placed = as_placed;
+    if (start && !options.all) {
+      PlacedSolution followed = from_field(placed, start, options,
+                                           options_.start != nullptr || (last && !last->planar()));
+      if (followed.solution.is_equilibrium()) return one(std::move(followed));
+      // The branch has ended, or the step was too large for it.
+      spent = followed.solution.evaluations;
+      options.least_terms = 0;
+    }
+    std::vector<PlacedSolution> found = search(placed, options);
+    spent += found.front().solution.evaluations;
+    const SolveStatus status = found.front().solution.status;
+    const bool at_limit =
+        status == SolveStatus::evaluation_limit || status == SolveStatus::time_limit;
+    if (options.all || !(succeeded(status) || at_limit))
+      add_polygon_minima(placed, problem, options, found, spent);
+    sort(found);
+    found.front().solution.evaluations = spent;
+    if (!options.all) found.resize(1, found.front());
+    return found;
+  }
+
+  [[nodiscard]] static std::vector<PlacedSolution> one(PlacedSolution solution) {
+    std::vector<PlacedSolution> result;
+    result.push_back(std::move(solution));
+    return result;
+  }
+
+  static void sort(std::vector<PlacedSolution>& found) {
+    const auto rank = [](const SpanSolution& solution) {
+      if (succeeded(solution.status)) return 0;
+      return solution.is_equilibrium() ? 1 : 2;
+    };
+    std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) {
+      const int of_a = rank(a.solution);
+      const int of_b = rank(b.solution);
+      return of_a != of_b ? of_a < of_b : a.solution.energy < b.solution.energy;
+    });
+  }
+
+  /// What the minima of a coarse polygon lead to, in the plane and out of it.
+  void add_polygon_minima(const PlacedSpan& placed, const Problem& problem,
+                          const SpanOptions& options, std::vector<PlacedSolution>& found,
+                          int& spent) {
+    if (!placed.span.walls.empty()) return;
+    for (const TangentField& field : polygon_fields(problem, placed, options.deadline)) {
+      if (options.deadline.passed()) return;
+      SpanOptions own = options;
+      own.approach = Approach::descend;
+      PlacedSolution solution = from_field(placed, field, own, true);
+      spent += solution.solution.evaluations;
+      if (!solution.solution.is_equilibrium()) continue;
+      const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
+        return other.solution.is_equilibrium() && is_same(solution, other);
+      });
+      if (known) continue;
+      if (!found.front().solution.is_equilibrium()) found.clear();
+      found.push_back(std::move(solution));
+      if (!options.all && succeeded(found.back().solution.status)) return;
     }
   }
 
+  [[nodiscard]] static bool is_same(const PlacedSolution& a, const PlacedSolution& b) {
+    const double scale = 1 + std::abs(a.solution.energy);
+    if (std::abs(a.solution.energy - b.solution.energy) > 1e-8 * scale) return false;
+    const double length = a.placed.span.length;
+    const std::vector<double> s = {0.3 * length, 0.6 * length, length};
+    const auto points = [&](const PlacedSolution& p) {
+      const SpanSamples samples = p.solution.model->shape(p.solution.x).sample(s);
+      return Eigen::Matrix3Xd(p.placed.frame.transpose() * samples.points);
+    };
+    return (points(a) - points(b)).norm() < 1e-6 * length;
+  }
+
+  /// From tangents in the span's frame; out of its plane if they are and may be.
+  [[nodiscard]] PlacedSolution from_field(const PlacedSpan& placed, const TangentField& field,
+                                          SpanOptions options, bool may_leave_plane) {
+    PlacedSpan own = placed;
+    options.start = field;
+    options.all = false;
+    if (placed.span.planar && may_leave_plane) leave_plane(own, options.start);
+    const Eigen::Matrix3d turn = own.frame * placed.frame.transpose();
+    options.start = [&field, turn](const Eigen::VectorXd& s) {
+      return Eigen::Matrix3Xd(turn * field(s));
+    };
+    return std::move(search(own, options).front());
+  }
+
   /// solve_span(), again about another axis while the solution comes too near to its own.
-  std::vector<SpanSolution> search(PlacedSpan& placed, SpanOptions options) {
-    std::vector<SpanSolution> solutions = solve_span(placed.span, options, workspace_);
-    // The search may have left the plane.
-    if (!solutions.front().model->span().planar) placed.span.planar = false;
-    if (placed.span.planar || options.all) return solutions;
-    constexpr int most_turns = 3;
-    for (int turn = 1; turn <= most_turns; ++turn) {
-      if (solutions.front().model->elevation() < largest_elevation) break;
-      options.past_poles = turn == most_turns;
-      solutions = {with_axis_turned(placed, solutions.front(), options)};
+  [[nodiscard]] std::vector<PlacedSolution> search(const PlacedSpan& placed, SpanOptions options) {
+    std::vector<PlacedSolution> found;
+    for (SpanSolution& solution : solve_span(placed.span, options, workspace_)) {
+      found.push_back({placed, std::move(solution)});
+      PlacedSolution& last = found.back();
+      // The search may have left the plane.
+      last.placed.span.planar = last.solution.model->span().planar;
+      if (!last.placed.span.planar) away_from_poles(last, options);
     }
-    return solutions;
+    return found;
+  }
+
+  void away_from_poles(PlacedSolution& found, SpanOptions options) {
+    constexpr int most_turns = 3;
+    for (int turn = 1; turn <= most_turns && !options.deadline.passed(); ++turn) {
+      if (found.solution.model->elevation() < largest_elevation) return;
+      options.past_poles = turn == most_turns;
+      options.all = false;
+      found.solution = with_axis_turned(found.placed, found.solution, options);
+    }
   }
 
   /// A span that could lie in its plane is spatial if its start has left it.
@@ -185,9 +282,9 @@ class EnergySolver::State {
     return nearest;
   }
 
-  static void remember(const PlacedSpan& placed, const SpanSolution& solution, Remembered& last) {
-    last.model = succeeded(solution.status) ? solution.model : nullptr;
-    last.frame = placed.frame;
+  static void remember(const PlacedSolution& found, Remembered& last) {
+    last.model = succeeded(found.solution.status) ? found.solution.model : nullptr;
+    last.frame = found.placed.frame;
   }
 
   EnergyOptions options_;

@@ -7,8 +7,13 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Relative residual whose next Newton step squares it to below rounding.
+/// Relative residual at which rounding may be what is left of it.
 constexpr double last_residual = 1e-8;
+
+/// Newton's step, of which the shape's error is a part, at which it need not go on, and above which
+/// a residual that does not fall any more is not taken for a solution [rad].
+constexpr double finest_step = 1e-11;
+constexpr double coarsest_step = 1e-8;
 
 /// A factor is used again for a last step as long as x has moved less than this since: the residual
 /// still falls by that much.
@@ -112,32 +117,70 @@ double Newton::step_length(SpanSolution& solution, double size) {
   return best;
 }
 
+/// Moves along the step, by a quarter as much as long as the residual is no smaller there.
+/// @return the residual there; the solution is where it was if there is no such part
+double Newton::cut_move(SpanSolution& solution, double size) {
+  constexpr double longest = 2;        // of a step; angles of this size have left the path
+  constexpr double least_part = 1e-8;  // of a step
+  trial_x_ = solution.x;
+  trial_multipliers_ = solution.multipliers;
+  const double first = std::min(1.0, longest / step_.head(gradient_.size()).norm());
+  for (double part = first; part > least_part; part /= 4) {
+    move(solution, part);
+    const double trial = evaluate(solution);
+    if (trial < size) return trial;
+    solution.x = trial_x_;
+    solution.multipliers = trial_multipliers_;
+  }
+  return evaluate(solution);
+}
+
 void Newton::polish(SpanSolution& solution, double load) {
   load_ = load;
   begin(solution);
   const bool walls = solution.model->has_walls();
-  const int most_steps = walls ? 60 : 12;
-  double previous = HUGE_VAL;
-  double moved = HUGE_VAL;
-  for (int step = 0; step < most_steps; ++step) {
-    const double size = evaluate(solution);
+  const int most_steps = walls ? 60 : 30;
+  double size = evaluate(solution);
+  bool factored = false;
+  const auto finish = [&] {
     solution.residual = size;
-    const bool stalled = size > 0.5 * previous && size > 1e-9 * (1 + load);
-    if (!std::isfinite(size) || (stalled && !walls)) break;
-    previous = size;
-    const bool last = size <= last_residual * (1 + load);
-    if (!last || moved * (1 + load) > factor_reach) factor(solution);
+    const bool minimum = definite_ || jacobian_.rows() > 0;
+    solution.finish(minimum ? SolveStatus::converged : SolveStatus::saddle);
+  };
+  for (int step = 0; step < most_steps; ++step) {
+    if (!std::isfinite(size)) break;
+    if (!factored) factor(solution);
     solve();
-    if (last) {
-      const bool minimum = definite_ || jacobian_.rows() > 0;
-      move(solution, 1);
-      // No evaluation has to prove that this step has squared the residual.
-      return solution.finish(minimum ? SolveStatus::converged : SolveStatus::saddle);
+    const double moved = step_.head(gradient_.size()).norm();
+    solution.next_step = moved;
+    const bool small = size <= last_residual * (1 + load);
+    if (moved <= finest_step || (walls && small)) return finish();
+    const double before = size;
+    if (walls) {
+      move(solution, step_length(solution, size));
+      size = evaluate(solution);
+    } else {
+      size = cut_move(solution, size);
     }
-    const double length = step_length(solution, size);
-    move(solution, length);
-    moved = length * step_.norm();
+    if (!(size < before) && !walls) {
+      // Rounding is all that is left.
+      if (small && moved <= coarsest_step) return finish();
+      if (factored) {
+        // The factor was another point's.
+        factored = false;
+        continue;
+      }
+      solution.residual = size;
+      if (!small) break;
+      return solution.finish(SolveStatus::near_singular);
+    }
+    // The steps shrink as the residuals do.
+    const double next = moved * size / before;
+    solution.next_step = next;
+    if (small && next <= finest_step) return finish();
+    factored = !walls && moved * (1 + load) <= factor_reach;
   }
+  solution.residual = size;
   solution.fail("Newton's method did not reduce the residual to rounding");
 }
 

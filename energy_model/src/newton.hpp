@@ -12,8 +12,10 @@ namespace dlo::energy_model {
 /// constraints and walls it allocates nothing once they have their size.
 class Newton {
  public:
-  /// From solution.x to a residual at rounding. Without constraints the Hessian then tells a
-  /// minimum (`converged`) from a `saddle`; with them the caller has to look. Ends as `failed`
+  /// From solution.x to where the residual is at rounding and Newton's next step, evaluated there,
+  /// is below 1e-8; steps are cut while they make the residual larger. Without constraints the
+  /// Hessian then tells a minimum (`converged`) from a `saddle`; with them the caller has to look.
+  /// Ends as `near_singular` where the residual is at rounding and the step is not, and as `failed`
   /// where the residual does not fall.
   /// @param load  sum of weight and loads, the scale of the residuals
   void polish(SpanSolution& solution, double load);
@@ -30,6 +32,7 @@ class Newton {
   void move(SpanSolution& solution, double length);
   [[nodiscard]] double step_length(SpanSolution& solution, double size);
   [[nodiscard]] double step_length_by_energy(SpanSolution& solution);
+  [[nodiscard]] double cut_move(SpanSolution& solution, double size);
 
   double load_ = 0;
   Eigen::VectorXd gradient_, residual_, right_, step_;

@@ -8,4 +8,11 @@ double Span::total_load() const {
   return total;
 }
 
+bool Span::pulled_one_way() const {
+  Eigen::Vector3d sum = weight * length;
+  for (const Load& load : loads) sum += load.force;
+  constexpr double rounding = 1e-12;
+  return sum.norm() >= (1 - rounding) * total_load();
+}
+
 }  // namespace dlo::energy_model

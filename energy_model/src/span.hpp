@@ -40,6 +40,8 @@ struct Span {
 
   /// Sum of weight and loads, for scales.
   [[nodiscard]] double total_load() const;
+  /// Weight and loads all point the same way.
+  [[nodiscard]] bool pulled_one_way() const;
   /// One clamp and nothing but weight and loads, in a plane.
   [[nodiscard]] bool is_plain_cantilever() const {
     return planar && start_direction && holds.empty() && walls.empty();

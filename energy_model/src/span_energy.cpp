@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "legendre.hpp"
+#include "stability.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -243,8 +244,9 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
   }
 }
 
-void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                          Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
+/// Into along_: weight of the node times n.t - kappa^2, which is what the square of an elevation
+/// costs there.
+void SpanEnergy::carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
   carry(multipliers);
   const LegendreTable& table = legendre_table(terms_);
   const Eigen::Index Q = table.nodes.size();
@@ -254,6 +256,22 @@ void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
         table.values.leftCols(terms_) * x_.segment(free_start_ + e * terms_, terms_) / root;
   }
   along_.array() -= weights_.array() * kappa_.array().square();
+}
+
+bool SpanEnergy::resists_sideways() {
+  carry_sideways(Eigen::VectorXd());
+  // int beta'^2 >= (pi / 2L)^2 int beta^2 for what a clamp holds at one end.
+  const double bending = pi * pi / (4 * span_.length * span_.length);
+  if (((along_.array() + bending * weights_.array()) > 0).all()) return true;
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Identity(columns_, columns_);
+  scaled_.noalias() = along_.asDiagonal() * angle_;
+  hessian.noalias() += angle_.transpose() * scaled_;
+  return is_minimum(hessian, Eigen::MatrixXd(0, columns_));
+}
+
+void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                          Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
+  carry_sideways(multipliers);
   hessian.setIdentity(columns_, columns_);
   if (free_start_ == 1) hessian(0, 0) = 0;
   scaled_.noalias() = along_.asDiagonal() * angle_;

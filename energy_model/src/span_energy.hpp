@@ -39,6 +39,9 @@ class SpanEnergy {
   /// For a planar span: the same for bending out of the plane, with its constraints' Jacobian.
   void sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& hessian,
                 Eigen::MatrixXd& jacobian);
+  /// For a planar span held by one clamp and nothing else: whether bending out of the plane stores
+  /// energy, at the point of the last value().
+  [[nodiscard]] bool resists_sideways();
 
   /// Arc lengths of the nodes, and tangents there at the point of the last value(), 3 x nodes.
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return s_; }
@@ -73,6 +76,7 @@ class SpanEnergy {
   void tabulate_angles();
   void tabulate_forces();
   void carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
+  void carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
   [[nodiscard]] Eigen::VectorXd fit_field(const Eigen::VectorXd& angles, double start) const;
 
   Span span_;

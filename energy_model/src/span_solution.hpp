@@ -16,7 +16,10 @@ struct [[nodiscard]] SpanSolution {
   int evaluations = 0;
   int terms = 0;
   double residual = -1;  ///< of the gradient and the constraints
-  double energy = 0;     ///< in EI/l
+  /// Norm of Newton's step from x, which would be the next one: what x may still be wrong by.
+  double next_step = std::numeric_limits<double>::infinity();
+  double energy = 0;      ///< in EI/l
+  bool resolved = false;  ///< more terms would not change the shape
   /// Eigenvalue of the projected second variation, sideways included; NaN: not looked at.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   std::shared_ptr<SpanEnergy> model;

@@ -6,10 +6,12 @@
 #include <string>
 #include <utility>
 
+#include "certify.hpp"
 #include "legendre.hpp"
 #include "minimise.hpp"
 #include "span_starts.hpp"
 #include "stability.hpp"
+#include "trust_region.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -29,25 +31,24 @@ constexpr int most_unknowns = 480;
 constexpr int few_terms = 10;
 constexpr int least_terms = 7;
 
-/// Unknowns with which SLSQP looks for a minimum between grips.
+/// Unknowns with which a minimum between grips is looked for.
 constexpr int coarse_unknowns = 100;
-
-/// Evaluations with which NLopt looks for a minimum between grips.
-constexpr int most_slsqp_evaluations = 300;
 
 /// Gradient over the load that a shape may have in more terms than its own.
 constexpr double largest_residual = 1e-5;
 
-/// SLSQP's work grows with the cube of the unknowns in every iteration.
-constexpr Eigen::Index most_descended = 120;
+/// A step of the trust region works with the cube of the unknowns.
+constexpr Eigen::Index most_descended = 160;
 
-/// Unstable equilibria that are followed to where they fall.
-constexpr std::size_t most_falls = 8;
+/// Unstable equilibria that are left for what lies below them.
+constexpr std::size_t most_saddles = 8;
 
-/// Coefficients of each piece that resolve a rod under this load to about 1e-10 of its length. A
-/// softer rod has the layers at its clamps in pieces of their own.
-int first_terms(double load) {
-  return static_cast<int>(std::ceil(9 * std::pow(std::clamp(load, 0.7, 1000.0), 0.24)));
+/// Coefficients of each piece that resolve a rod under this load (which a piece of length h feels
+/// as a rod of length 1 feels h^2 of it) to about 1e-10 of its length. A softer rod has the layers
+/// at its clamps in pieces of their own.
+int first_terms(double load, double longest_piece) {
+  const double own_load = load * longest_piece * longest_piece;
+  return static_cast<int>(std::ceil(9 * std::pow(std::clamp(own_load, 0.7, 1000.0), 0.24)));
 }
 
 /// Whether the lowest of the equilibria found can hold itself.
@@ -63,22 +64,30 @@ bool has_stable_lowest(const std::vector<SpanSolution>& found) {
 class Search {
  public:
   Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
-      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {}
+      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
+    for (const Piece& piece : pieces_of(span)) {
+      longest_piece_ = std::max(longest_piece_, piece.length);
+    }
+  }
 
   [[nodiscard]] std::vector<SpanSolution> run() {
     if (options_.start) {
       SpanSolution solution = refined(from_start());
-      if (!span_.is_plain_cantilever() && solution.is_equilibrium()) measure_stability(solution);
+      certify(solution, load_);
       return {std::move(solution)};
     }
-    if (span_.is_plain_cantilever() && !options_.all) return {plain_cantilever()};
-    const std::vector<TangentField> fields = ranked_fields();
-    const std::size_t followed =
-        options_.all ? fields.size() : options_.first_start + followed_starts;
     std::vector<SpanSolution> found;
+    if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
+      SpanSolution solution = plain_cantilever();
+      certify_sideways(solution);
+      if (solution.status != SolveStatus::saddle) return {std::move(solution)};
+      add(std::move(solution), found);
+    }
+    const std::vector<TangentField> fields = ranked_fields();
+    const std::size_t followed = options_.all ? fields.size() : followed_starts;
     std::vector<SpanSolution> coarse;
-    for (std::size_t i = options_.first_start; i < fields.size(); ++i) {
-      // The other starts only where the first ones and what they fall to do not hold.
+    for (std::size_t i = 0; i < fields.size() && !out_of_time(); ++i) {
+      // The other starts only where the first ones and what they lead to do not hold.
       if (i >= followed && has_stable_lowest(found)) break;
       SpanSolution solution = from_field(fields[i]);
       spent_ += solution.evaluations;
@@ -89,22 +98,18 @@ class Search {
       }
       // Descending leaves unstable equilibria; Newton's method alone stays near them.
       if (options_.all) add(refined(near_field(fields[i])), found);
-      if (i + 1 >= followed) add_falls(found);
-    }
-    if (found.empty()) {
-      // A second search, which begins after the starts of the first, may have none left.
-      SpanSolution none = empty_solution(terms());
-      none.x.setZero(none.model->size());
-      none.fail("no shape to start from is left");
-      found.push_back(std::move(none));
+      if (i + 1 >= followed) leave_saddles(found);
     }
     return sorted(std::move(found));
   }
 
  private:
   [[nodiscard]] int terms() const {
-    return options_.terms > 0 ? options_.terms : std::max(first_terms(load_), options_.least_terms);
+    return options_.terms > 0 ? options_.terms
+                              : std::max(first_terms(load_, longest_piece_), options_.least_terms);
   }
+
+  [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
 
   /// NLopt comes near with few terms; Newton's method adds the others.
   [[nodiscard]] int coarse_terms() const {
@@ -160,24 +165,40 @@ class Search {
     return ordered;
   }
 
+  /// Downhill from a field, with as many terms as it takes to meet the grips.
   [[nodiscard]] SpanSolution from_field(const TangentField& field) {
-    SpanSolution solution = empty_solution(coarse_terms());
-    solution.x = solution.model->fit(field(solution.model->nodes()));
-    const Eigen::VectorXd start = solution.x;
-    descend(solution);
-    if (solution.is_equilibrium() || solution.model->constraints() == 0) return solution;
-    solution.x = start;
-    workspace_.newton().lead(solution, load_, options_.max_evaluations);
-    return solution;
+    SpanSolution solution;
+    int spent = 0;
+    for (int count = coarse_terms();; count *= 2) {
+      solution = empty_solution(std::min(count, max_terms));
+      solution.x = solution.model->fit(field(solution.model->nodes()));
+      const Eigen::VectorXd start = solution.x;
+      descend(solution);
+      spent += solution.evaluations;
+      solution.evaluations = spent;
+      if (solution.is_equilibrium() || solution.model->constraints() == 0) return solution;
+      const bool more = 2 * solution.model->size() <= most_descended && options_.terms == 0;
+      if (more && !out_of_time()) continue;
+      solution.x = start;
+      workspace_.newton().lead(solution, load_, options_.max_evaluations);
+      return solution;
+    }
   }
 
-  /// The caller's own start is followed by Newton's method alone, if it can.
+  /// From the caller's own start.
   [[nodiscard]] SpanSolution from_start() {
-    SpanSolution solution = near_field(options_.start);
-    if (!succeeded(solution.status) || solution.model->has_walls()) {
+    if (!span_.walls.empty()) {
+      SpanSolution solution = empty_solution(terms());
       solution.x = solution.model->fit(options_.start(solution.model->nodes()));
       descend(solution);
+      return solution;
     }
+    const bool follow = options_.approach == Approach::follow;
+    SpanSolution solution = follow ? near_field(options_.start) : from_field(options_.start);
+    if (succeeded(solution.status)) return solution;
+    const int spent = solution.evaluations;
+    solution = follow ? from_field(options_.start) : near_field(options_.start);
+    solution.evaluations += spent;
     return solution;
   }
 
@@ -213,26 +234,18 @@ class Search {
 
   void minimise(SpanSolution& solution) const {
     SpanEnergy& model = *solution.model;
+    if (model.constraints() > 0) {
+      descend_in_trust_region(
+          solution,
+          {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
+      return;
+    }
     const Objective objective = [&model](const Eigen::Ref<const Eigen::VectorXd>& x,
                                          Eigen::Ref<Eigen::VectorXd> gradient) {
       return model.value(x, gradient);
     };
-    MinimiseResult result;
-    if (model.constraints() == 0) {
-      result = minimise_lbfgs(objective, solution.x,
-                              {handover_gradient * (1 + load_), options_.max_evaluations});
-    } else {
-      const Constraints constraints = [&model](Eigen::Ref<Eigen::VectorXd> residual,
-                                               Eigen::Ref<Eigen::MatrixXd> jacobian) {
-        model.constraint(residual, jacobian);
-      };
-      const int limit = std::min(options_.max_evaluations, most_slsqp_evaluations);
-      result = minimise_slsqp(objective, constraints, model.constraints(), solution.x, limit);
-      // Where SLSQP has lost its way Newton's method may still find it.
-      if (result.status == SolveStatus::evaluation_limit && limit < options_.max_evaluations) {
-        result.status = SolveStatus::roundoff_limited;
-      }
-    }
+    const MinimiseResult result = minimise_lbfgs(
+        objective, solution.x, {handover_gradient * (1 + load_), options_.max_evaluations});
     solution.evaluations += result.evaluations;
     solution.status = result.status;
     solution.message = result.message;
@@ -244,12 +257,19 @@ class Search {
     const int affordable = std::max(32, most_unknowns / (fields * solution.model->pieces()));
     // With walls the curvature has kinks where contact begins; more terms help only so far.
     const int most_terms = span_.walls.empty() ? std::min(max_terms, affordable) : 32;
-    while (options_.terms == 0 && solution.is_equilibrium() && !resolved(solution)) {
+    while (options_.terms == 0 && solution.is_equilibrium()) {
+      solution.resolved = resolved(solution);
+      if (solution.resolved) break;
+      if (out_of_time()) {
+        solution.finish(SolveStatus::time_limit);
+        break;
+      }
       // Near the poles polynomials need many terms; the caller turns the axis instead.
       const bool near_pole = fields == 2 && solution.model->elevation() > largest_elevation;
       if (near_pole && !options_.all && !options_.past_poles) break;
       if (solution.terms >= most_terms) {
-        if (!span_.walls.empty()) break;
+        solution.resolved = !span_.walls.empty();
+        if (solution.resolved) break;
         solution.fail("the curvature is not resolved by " + std::to_string(solution.terms) +
                       " terms");
         break;
@@ -258,7 +278,8 @@ class Search {
           solution.terms < terms() ? terms() : solution.terms + std::max(2, solution.terms / 6);
       // Grips may pull harder than weight and loads do.
       if (solution.multipliers.size() > 0) {
-        more = std::max(more, first_terms(solution.multipliers.cwiseAbs().maxCoeff()));
+        more =
+            std::max(more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), longest_piece_));
       }
       solution = with_terms(solution, std::min(most_terms, more));
     }
@@ -306,11 +327,11 @@ class Search {
   /// Keeps an equilibrium that is not known yet, or the first failure until there is one.
   void add(SpanSolution solution, std::vector<SpanSolution>& found) {
     spent_ += solution.evaluations;
+    certify(solution, load_);
     if (!solution.is_equilibrium()) {
       if (found.empty()) found.push_back(std::move(solution));
       return;
     }
-    measure_stability(solution);
     if (!found.empty() && !found.front().is_equilibrium()) found.clear();
     if (!is_known(solution, found)) found.push_back(std::move(solution));
   }
@@ -330,37 +351,19 @@ class Search {
     return difference.norm() < 1e-6 * span_.length;
   }
 
-  static void measure_stability(SpanSolution& solution) {
-    SpanEnergy& model = *solution.model;
-    Eigen::VectorXd gradient(model.size());
-    solution.energy = model.value(solution.x, gradient);
-    Eigen::MatrixXd hessian;
-    Eigen::MatrixXd jacobian(model.constraints(), model.size());
-    Eigen::VectorXd residual(model.constraints());
-    model.constraint(residual, jacobian);
-    model.hessian(solution.multipliers, hessian);
-    solution.smallest_curvature = smallest_eigenvalue(hessian, jacobian);
-    if (model.span().planar) {
-      model.sideways(solution.multipliers, hessian, jacobian);
-      solution.smallest_curvature =
-          std::min(solution.smallest_curvature, smallest_eigenvalue(hessian, jacobian));
-    }
-    if (solution.smallest_curvature < -neutral) solution.finish(SolveStatus::saddle);
-  }
-
-  /// What cannot hold itself falls, once more where it lands on another ridge.
-  void add_falls(std::vector<SpanSolution>& found) {
-    for (; fallen_ < found.size() && fallen_ < most_falls; ++fallen_) {
+  /// Descends from the unstable equilibria, once more from those that it leads to.
+  void leave_saddles(std::vector<SpanSolution>& found) {
+    for (; left_ < found.size() && left_ < most_saddles && !out_of_time(); ++left_) {
       if (!options_.all && has_stable_lowest(found)) return;
-      if (found[fallen_].status != SolveStatus::saddle) continue;
-      std::optional<SpanSolution> fallen = fall(found[fallen_]);
-      if (fallen) add(std::move(*fallen), found);
+      if (found[left_].status != SolveStatus::saddle) continue;
+      std::optional<SpanSolution> lower = leave_saddle(found[left_]);
+      if (lower) add(std::move(*lower), found);
     }
   }
 
   /// Where an equilibrium that cannot hold itself comes to rest; out of its plane if that is the
   /// only way in which it gives way.
-  [[nodiscard]] std::optional<SpanSolution> fall(const SpanSolution& solution) {
+  [[nodiscard]] std::optional<SpanSolution> leave_saddle(const SpanSolution& solution) {
     SpanEnergy& model = *solution.model;
     Eigen::VectorXd gradient(model.size());
     (void)model.value(solution.x, gradient);
@@ -371,7 +374,7 @@ class Search {
     model.hessian(solution.multipliers, hessian);
     const std::optional<Eigen::VectorXd> within = falling_direction(hessian, jacobian);
     constexpr double push = 0.5;
-    if (within) return fallen_from(model.span(), solution, push * *within);
+    if (within) return pushed_from(model.span(), solution, push * *within);
     if (!model.span().planar) return std::nullopt;
     model.sideways(solution.multipliers, hessian, jacobian);
     const std::optional<Eigen::VectorXd> sideways = falling_direction(hessian, jacobian);
@@ -380,27 +383,33 @@ class Search {
     space.planar = false;
     Eigen::VectorXd lift = Eigen::VectorXd::Zero(2 * model.size());
     lift.tail(model.size()) = push * *sideways;
-    return fallen_from(space, solution, lift);
+    return pushed_from(space, solution, lift);
   }
 
-  [[nodiscard]] SpanSolution fallen_from(const Span& span, const SpanSolution& solution,
+  [[nodiscard]] SpanSolution pushed_from(const Span& span, const SpanSolution& solution,
                                          const Eigen::VectorXd& disturbance) {
     Search search(span, options_, workspace_);
     const std::shared_ptr<SpanEnergy> model = workspace_.model(span, solution.terms);
     const Eigen::VectorXd pushed = model->adopt(*solution.model, solution.x) + disturbance;
-    SpanSolution fallen = search.empty_solution(std::min(solution.terms, search.coarse_terms()));
-    fallen.x = fallen.model->adopt(*model, pushed);
-    search.descend(fallen);
-    return search.refined(std::move(fallen));
+    SpanSolution lower = search.empty_solution(std::min(solution.terms, search.coarse_terms()));
+    lower.x = lower.model->adopt(*model, pushed);
+    search.descend(lower);
+    return search.refined(std::move(lower));
   }
 
-  [[nodiscard]] std::vector<SpanSolution> sorted(std::vector<SpanSolution> found) const {
+  [[nodiscard]] std::vector<SpanSolution> sorted(std::vector<SpanSolution> found) {
     std::stable_sort(found.begin(), found.end(), [](const SpanSolution& a, const SpanSolution& b) {
       const bool a_stable = succeeded(a.status);
       const bool b_stable = succeeded(b.status);
       if (a_stable != b_stable) return a_stable;
       return a.energy < b.energy;
     });
+    if (found.empty()) {
+      found.push_back(empty_solution(terms()));
+      found.back().x.setZero(found.back().model->size());
+      found.back().multipliers.setZero(found.back().model->constraints());
+      found.back().finish(SolveStatus::time_limit);
+    }
     found.front().evaluations = spent_;
     if (!options_.all) found.resize(1);
     return found;
@@ -410,8 +419,9 @@ class Search {
   const SpanOptions& options_;
   SpanWorkspace& workspace_;
   double load_;
-  int spent_ = 0;           // evaluations of everything that was looked at
-  std::size_t fallen_ = 0;  // how many of the equilibria found have been let fall
+  double longest_piece_ = 0;
+  int spent_ = 0;         // evaluations of everything that was looked at
+  std::size_t left_ = 0;  // how many of the equilibria found have been looked at for a way down
 };
 
 }  // namespace

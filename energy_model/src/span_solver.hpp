@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "deadline.hpp"
 #include "dlo/energy_model/status.hpp"
 #include "newton.hpp"
 #include "span_energy.hpp"
@@ -23,15 +24,22 @@ inline constexpr double largest_elevation = 1.2;
 /// Starts, in the order of their energy, that the search for the lowest minimum follows.
 inline constexpr std::size_t followed_starts = 2;
 
+/// How a given start is left.
+enum class Approach {
+  follow,   ///< by Newton's method, to the equilibrium next to it, stable or not
+  descend,  ///< downhill, to a minimum
+};
+
 struct SpanOptions {
   int terms = 0;  ///< 0: as many as `tolerance` needs
   double tolerance = 1e-10;
   int max_evaluations = 2000;
-  bool all = false;             ///< every equilibrium that the starts lead to
-  TangentField start;           ///< instead of the search
-  std::size_t first_start = 0;  ///< leaves out starts of lower energy, which came to nothing
-  int least_terms = 0;          ///< what resolves the start
-  bool past_poles = false;      ///< go on where the tangent nears its axis: no better one is left
+  bool all = false;                      ///< every equilibrium that the starts lead to
+  TangentField start;                    ///< instead of the search
+  Approach approach = Approach::follow;  ///< from `start`
+  int least_terms = 0;                   ///< what resolves the start
+  bool past_poles = false;  ///< go on where the tangent nears its axis: no better one is left
+  Deadline deadline;        ///< of the whole solve
 };
 
 /// Buffers that survive a solve: models that no solution holds any more are used again.

@@ -282,7 +282,8 @@ double fold_gamma(double degrees, double from) {
   while (high - low > 1e-5 * high) {
     const double gamma = std::max(high - step, (high + low) / 2);
     const Equilibrium next = solve_energy(heavy_cantilever(gamma, degrees), {.start = &on_branch});
-    if (succeeded(next.status) && next.sample(tip).points(0, 0) < 0) {
+    // Beyond the fold it snaps to the front. (Out of the plane it does not hold itself, see above.)
+    if (next.status != SolveStatus::failed && next.sample(tip).points(0, 0) < 0) {
       high = gamma;
       on_branch = next;
     } else {
