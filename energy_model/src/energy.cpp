@@ -7,6 +7,7 @@
 
 #include "assemble.hpp"
 #include "legendre.hpp"
+#include "penetration.hpp"
 #include "require.hpp"
 #include "span_solver.hpp"
 #include "split.hpp"
@@ -47,6 +48,7 @@ std::vector<Equilibrium> combine(const Problem& problem, const std::vector<Place
     std::vector<const SpanSolution*> chosen;
     for (std::size_t i = 0; i < placed.size(); ++i) chosen.push_back(&solutions[i][choice[i]]);
     result.push_back(assemble(problem, placed, chosen));
+    judge_contact(problem, chosen, result.back());
     more = false;
     for (std::size_t i = 0; i < choice.size() && !more; ++i) {
       more = ++choice[i] < solutions[i].size();
