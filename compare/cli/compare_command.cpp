@@ -4,6 +4,7 @@
 
 #include "commands.hpp"
 #include "comparison_text.hpp"
+#include "dlo/compare/error.hpp"
 #include "json.hpp"
 #include "output.hpp"
 #include "plan_text.hpp"
@@ -50,13 +51,20 @@ std::string csv(const std::vector<compare::Comparison>& comparisons) {
 void run(const CompareOptions& options) {
   std::vector<compare::Comparison> comparisons;
   std::string content;
+  std::string unresolved;
+  compare::SolveOptions solve = options.overrides.solve();
+  solve.accept_unresolved = true;
   const bool explain = options.plan.explain() && options.output.kind() == Format::text;
   {
     ProgressBar bar("compare");
     for (const std::string& path : options.scenes) {
       const compare::Scene scene = options.overrides.load(path);
-      comparisons.push_back(
-          compare::compare(scene, options.overrides.solve(), options.plan.plan()));
+      comparisons.push_back(compare::compare(scene, solve, options.plan.plan()));
+      const std::string& why = comparisons.back().unresolved;
+      if (!why.empty()) {
+        append(unresolved, "{}{}: the energy model: {}", unresolved.empty() ? "" : "; ", scene.file,
+               why);
+      }
       if (explain) content += plan_text(comparisons.back().plan, scene);
       bar.show(static_cast<std::int64_t>(comparisons.size()),
                static_cast<std::int64_t>(options.scenes.size()));
@@ -80,6 +88,7 @@ void run(const CompareOptions& options) {
       break;
   }
   write_output(options.output, content);
+  if (!unresolved.empty()) throw compare::ConvergenceError(unresolved);
 }
 
 }  // namespace

@@ -57,6 +57,9 @@ std::string comparison_text(const compare::Comparison& c) {
          c.settings.points, p.c_c);
   if (p.c_b > 0) append(out, ", c_b = {:.6g} N", p.c_b);
   append(out, "\n");
+  if (!c.unresolved.empty()) {
+    append(out, "  reference       {}: nothing below is proven\n", c.unresolved);
+  }
   const compare::Deviation& d = c.deviation;
   append(out, "  deviation       RMS {:.4g} mm = {:.4g} % of l", d.rms_m * 1e3,
          d.rms_over_length * 100);
@@ -72,12 +75,14 @@ std::string comparison_text(const compare::Comparison& c) {
     append(out, "                  (the unbent rod would be {:.4g} % of l off)\n",
            c.undeformed_rms_over_length * 100);
   }
-  append(out, "  E*/E            {:.4f}, where the RMS is {:.4g} mm", c.effective_modulus.ratio,
-         c.effective_modulus.rms_m * 1e3);
-  if (std::isfinite(c.residual_over_movement)) {
-    append(out, " = {:.4g} % of the movement", c.residual_over_movement * 100);
+  if (c.unresolved.empty()) {
+    append(out, "  E*/E            {:.4f}, where the RMS is {:.4g} mm", c.effective_modulus.ratio,
+           c.effective_modulus.rms_m * 1e3);
+    if (std::isfinite(c.residual_over_movement)) {
+      append(out, " = {:.4g} % of the movement", c.residual_over_movement * 100);
+    }
+    append(out, " ({} optimum)\n", compare::to_string(c.effective_modulus.optimum));
   }
-  append(out, " ({} optimum)\n", compare::to_string(c.effective_modulus.optimum));
   add_budget(out, c.budget);
   add_state(out, c.state, c.length, "force");
   append(out, "  cost            force {} steps, {:.3g} ms; energy {} evaluations, {:.3g} ms\n\n",

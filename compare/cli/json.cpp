@@ -101,6 +101,27 @@ Json to_json(const compare::Plan& plan) {
           {"left_out", std::move(left_out)}};
 }
 
+namespace {
+
+const char* status_name(energy_model::SolveStatus status) {
+  switch (status) {
+    case energy_model::SolveStatus::converged:
+      return "converged";
+    case energy_model::SolveStatus::roundoff_limited:
+      return "roundoff_limited";
+    case energy_model::SolveStatus::saddle:
+      return "saddle";
+    case energy_model::SolveStatus::near_singular:
+      return "near_singular";
+    case energy_model::SolveStatus::not_resolved:
+      return "not_resolved";
+    default:
+      return "failed";
+  }
+}
+
+}  // namespace
+
 Json to_json(const compare::Solution& solution, const compare::Scene& scene,
              const compare::Plan& plan) {
   Json grippers = Json::array();
@@ -111,7 +132,8 @@ Json to_json(const compare::Solution& solution, const compare::Scene& scene,
   Json result = {{"schema", "dlo/solve/1"},
                  {"scene", scene.name},
                  {"model", compare::to_string(solution.model)},
-                 {"converged", true},
+                 {"converged", energy_model::succeeded(solution.status)},
+                 {"status", status_name(solution.status)},
                  {"arc_length_m", solution.shape.arc_length},
                  {"points_m", points_json(solution.shape.points)},
                  {"energy_J",
@@ -135,6 +157,7 @@ Json to_json(const compare::Solution& solution, const compare::Scene& scene,
       obstacles.push_back({{"force_N", to_json(force)}});
     }
     result["obstacles"] = std::move(obstacles);
+    if (solution.model == compare::Model::energy) result["penetration_m"] = solution.penetration;
   }
   if (solution.model == compare::Model::chain || solution.model == compare::Model::force) {
     result["parameters"] = parameters_json(solution, scene.force_model);
@@ -168,6 +191,7 @@ Json to_json(const compare::Comparison& comparison) {
                         {"stretch", budget.stretch.share},
                         {"not_at_rest", budget.not_at_rest.share},
                         {"interaction", budget.interaction.share}}}};
+  result["reference_resolved"] = comparison.unresolved.empty();
   result["state"] = to_json(comparison.state);
   result["cost"] = {{"force_s", comparison.force.seconds},
                     {"force_steps", comparison.force.steps},

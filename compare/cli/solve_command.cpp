@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 
@@ -135,6 +136,13 @@ void warn_of_force_model_options(const SolveOptions& options) {
              names, options.model);
 }
 
+/// A shape that is not resolved has been shown, which is no success.
+void require_resolved(const compare::Solution& solution, const compare::Scene& scene) {
+  if (solution.status != energy_model::SolveStatus::not_resolved) return;
+  throw compare::ConvergenceError(
+      fmt::format("{}: the energy model: {}", scene.file, solution.message));
+}
+
 void run(const SolveOptions& options) {
   require_format_for(options);
   const compare::Scene scene = options.overrides.load(options.scene);
@@ -149,15 +157,22 @@ void run(const SolveOptions& options) {
   if (options.all && model != compare::Model::energy) {
     throw compare::InputError("--all: only model energy searches for all equilibria");
   }
+  compare::SolveOptions solve = options.overrides.solve();
+  solve.accept_unresolved = true;
   const std::vector<compare::Solution> solutions =
-      options.all ? compare::solve_all(scene, options.overrides.solve(), arc_lengths)
-                  : std::vector<compare::Solution>{
-                        compare::solve(scene, model, options.overrides.solve(), arc_lengths)};
+      options.all
+          ? compare::solve_all(scene, solve, arc_lengths)
+          : std::vector<compare::Solution>{compare::solve(scene, model, solve, arc_lengths)};
   const compare::Solution& solution = solutions.front();
   if (options.output.format == "vtk") {
-    return write_output(options.output, compare::vtk_polyline(solution, scene.name));
+    write_output(options.output, compare::vtk_polyline(solution, scene.name));
+    return require_resolved(solution, scene);
   }
-  const auto plan = [&] { return compare::make_plan(scene, options.plan.plan()); };
+  const auto plan = [&] {
+    compare::PlanOptions plan_options = options.plan.plan();
+    plan_options.time_limit = std::min(plan_options.time_limit, solve.time_limit);
+    return compare::make_plan(scene, plan_options);
+  };
   std::string content;
   switch (options.output.kind()) {
     case Format::json:
@@ -173,6 +188,7 @@ void run(const SolveOptions& options) {
       break;
   }
   write_output(options.output, content);
+  require_resolved(solution, scene);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ std::size_t state_of(const Scene& scene, const Shape& force,
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < states.size(); ++i) {
-    if (!energy_model::succeeded(states[i].status)) continue;
+    if (states[i].status == energy_model::SolveStatus::saddle) continue;
     const double distance =
         rms(fallen.arc_length, fallen.points - states[i].sample(fallen.arc_length).points);
     if (distance >= least) continue;
@@ -81,6 +81,7 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   from_force.reserve(states.size());
   for (const energy_model::Equilibrium& state : states) from_force.push_back(distance(state));
   result.state = describe_state(near, states, compared, from_force);
+  if (!energy_model::succeeded(energy.status)) result.unresolved = energy.message;
 
   const std::vector<double>& s = force.arc_length;
   result.reference = {s, energy.sample(s).points};
@@ -90,7 +91,9 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   result.undeformed_rms_over_length =
       straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
   result.effective_modulus =
-      fit_effective_modulus(near, distance, result.state.only_lowest() ? nullptr : &energy);
+      result.unresolved.empty()
+          ? fit_effective_modulus(near, distance, result.state.only_lowest() ? nullptr : &energy)
+          : EffectiveModulus{NAN, NAN, Optimum::flat};
   result.residual_over_movement =
       result.deviation.rms_over_movement / result.deviation.rms_m * result.effective_modulus.rms_m;
   result.budget = error_budget(near, result.force, energy.sample, options);

@@ -153,20 +153,75 @@ force_model::Grip grip_of(const Gripper& gripper, const Layout& layout, Eigen::I
   return hold;
 }
 
-/// Few points have long held segments, which may leave too little rod between two grips.
-void require_within_reach(const Scene& scene, const ForceModelSettings& settings,
-                          const Layout& layout, const force_model::Rod& rod) {
+/// What two neighbouring grips leave between the points that they hold.
+struct Between {
+  double apart = 0;  // the two points [m]
+  double rod = 0;    // the segments' rest lengths [m]
+  Eigen::Index segments = 0;
+
+  /// One segment alone is as long as the grips are apart; more of them may bend.
+  [[nodiscard]] bool fits(double strain) const {
+    if (apart > rod * (1 + 1e-9)) return false;
+    return segments > 1 || apart >= rod * (1 - strain);
+  }
+};
+
+std::vector<Between> between_grips(const Layout& layout,
+                                   const std::vector<force_model::Grip>& grips) {
+  std::vector<Between> result;
   for (std::size_t k = 0; k + 1 < layout.along.size(); ++k) {
-    const force_model::Grip& a = rod.grips[layout.along[k]];
-    const force_model::Grip& b = rod.grips[layout.along[k + 1]];
+    const force_model::Grip& a = grips[layout.along[k]];
+    const force_model::Grip& b = grips[layout.along[k + 1]];
     const Eigen::Index last = a.first_point + a.targets.cols() - 1;
-    const double apart = (b.targets.col(0) - a.targets.rightCols<1>()).norm();
-    const double between = rod.rest_lengths.segment(last, b.first_point - last).sum();
-    if (apart <= between * (1 + 1e-9)) continue;
-    throw InputError(fmt::format(
-        "{}: force_model.points = {}: held segments of {:g} m leave {:g} m of rod between points "
-        "that two grippers hold {:g} m apart (allowed: more points)",
-        scene.file, settings.points, layout.segment_length, between, apart));
+    const Eigen::Index segments = b.first_point - last;
+    result.push_back({(b.targets.col(0) - a.targets.rightCols<1>()).norm(),
+                      layout.rest_lengths.segment(last, segments).sum(), segments});
+  }
+  return result;
+}
+
+std::vector<force_model::Grip> grips_of(const Scene& scene, const Layout& layout) {
+  std::vector<force_model::Grip> grips;
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    grips.push_back(grip_of(scene.grippers[i], layout, layout.first_held[i]));
+  }
+  return grips;
+}
+
+bool grips_fit(const Layout& layout, const std::vector<force_model::Grip>& grips, double strain) {
+  const std::vector<Between> all = between_grips(layout, grips);
+  return std::all_of(all.begin(), all.end(),
+                     [strain](const Between& between) { return between.fits(strain); });
+}
+
+/// The fewest points, above those of the settings, whose held segments leave rod enough; 0: none
+/// among the next thousands.
+int points_that_fit(const Scene& scene, ForceModelSettings settings, double strain) {
+  constexpr int most_more = 3000;
+  const int last = settings.points + most_more;
+  for (++settings.points; settings.points <= last; ++settings.points) {
+    const Layout layout = lay_out(scene, settings);
+    if (grips_fit(layout, grips_of(scene, layout), strain)) return settings.points;
+  }
+  return 0;
+}
+
+/// Few points have long held segments, which may leave too little rod between two grips, or a
+/// single segment that would have to be shorter than it is.
+void require_fit(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
+                 const std::vector<force_model::Grip>& grips) {
+  const double strain = largest_strain(scene, settings);
+  if (grips_fit(layout, grips, strain)) return;
+  const int needed = points_that_fit(scene, settings, strain);
+  const std::string allowed =
+      needed > 0 ? fmt::format("{} or more", needed) : std::string("more points");
+  for (const Between& between : between_grips(layout, grips)) {
+    if (between.fits(strain)) continue;
+    throw InputError(
+        fmt::format("{}: force_model.points = {}: held segments of {:g} m leave {:g} m of rod in "
+                    "{} segment{} between points that two grippers hold {:g} m apart (allowed: {})",
+                    scene.file, settings.points, layout.segment_length, between.rod,
+                    between.segments, between.segments == 1 ? "" : "s", between.apart, allowed));
   }
 }
 
@@ -186,6 +241,11 @@ double paper_bending_stiffness(BendingRule rule, double bending_stiffness, doubl
   return rule == BendingRule::formula_21 ? formula_21 : formula_21 / alpha;
 }
 
+double largest_strain(const Scene& scene, const ForceModelSettings& settings) {
+  const bool asked = settings.c_c && *settings.c_c <= scene.axial_stiffness();
+  return asked ? 0.5 : 0.01;
+}
+
 Discretisation discretise(const Scene& scene, const ForceModelSettings& settings) {
   const Layout layout = lay_out(scene, settings);
   const double L = layout.segment_length;
@@ -196,10 +256,8 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
   result.parameters.c_c = settings.c_c.value_or(scene.axial_stiffness());
   result.rod.rest_lengths = layout.rest_lengths;
   result.rod.c_c = result.parameters.c_c;
-  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
-    result.rod.grips.push_back(grip_of(scene.grippers[i], layout, layout.first_held[i]));
-  }
-  require_within_reach(scene, settings, layout, result.rod);
+  result.rod.grips = grips_of(scene, layout);
+  require_fit(scene, settings, layout, result.rod.grips);
   const std::vector<Side> sides = scene.grippers.size() == 1
                                       ? std::vector<Side>{Side::along_load}
                                       : std::vector<Side>{Side::along_load, Side::against_load};
@@ -208,6 +266,7 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
     for (const force_model::Grip& grip : result.rod.grips) {
       start.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
     }
+    keep_free_ends_clear(scene, result.rod.grips, start);
     result.starts.push_back(std::move(start));
   }
   derive_bending(scene, settings, layout, result);

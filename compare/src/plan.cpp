@@ -4,7 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <exception>
 #include <optional>
 #include <stdexcept>
 
@@ -23,6 +25,22 @@ constexpr double largest_response = 0.03;
 /// Points of the polygon that stands for the rod itself.
 constexpr int rod_points = 97;
 constexpr double largest_joint_angle = 0.5;  // [rad]
+
+/// The time that a plan may take.
+class PlanClock {
+ public:
+  explicit PlanClock(double limit) : limit_(limit) {}
+
+  /// [s]
+  [[nodiscard]] double left() const {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
+    return limit_ - spent.count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double limit_;
+};
 
 std::vector<const Gripper*> grippers_along(const Scene& scene) {
   std::vector<const Gripper*> along;
@@ -63,9 +81,12 @@ std::vector<PlannedSpan> spans_of(const Scene& scene) {
 }
 
 /// The rod's own shape; nothing, and why, if the energy model finds none, as for a taut rod.
-std::optional<energy_model::Equilibrium> rod_shape(const Scene& scene, std::string& why) {
+std::optional<energy_model::Equilibrium> rod_shape(const Scene& scene, double time_limit,
+                                                   std::string& why) {
   try {
-    return solve_reference(scene, Model::energy);
+    SolveOptions options;
+    options.time_limit = time_limit;
+    return solve_reference(scene, Model::energy, options);
   } catch (const ConvergenceError&) {
     why = "the energy model did not converge";
   } catch (const InputError&) {
@@ -103,8 +124,9 @@ double polygon_bound(const Scene& scene, const energy_model::Equilibrium& rod, i
   return bounded(PolygonResponse(scene, *polygon, rod).discretisation(), scene.length);
 }
 
-/// From the error at one N to the next, by the order of convergence, until it is met.
-int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, double target) {
+/// From the error at one N to the next, by the order of convergence, until it is met or time is up.
+int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, double target,
+                      const PlanClock& clock) {
   const std::vector<double> s = equal_arc_lengths(scene.length, rod_points);
   const double curvature = std::sqrt(rod.sample(s).curvature.colwise().squaredNorm().maxCoeff());
   int points = 5;
@@ -112,7 +134,7 @@ int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, 
     points = force_model::points_for_radius(scene.length, 1 / curvature, largest_joint_angle);
   }
   const double order = scene.force_model.bookkeeping == Bookkeeping::consistent ? 2 : 1;
-  while (points <= most_planned_points) {
+  while (points <= most_planned_points && clock.left() > 0) {
     const double bound = polygon_bound(scene, rod, points);
     if (bound <= target * scene.length) return points;
     const double growth =
@@ -187,11 +209,12 @@ double Plan::bound(const std::string& what) const {
 }
 
 Plan make_plan(const Scene& scene, const PlanOptions& options) {
-  if (!(options.target > 0) || !(options.gripper_speed >= 0)) {
-    throw std::invalid_argument(
-        fmt::format("make_plan: target = {}, gripper_speed = {}, must be > 0 and >= 0",
-                    options.target, options.gripper_speed));
+  if (!(options.target > 0) || !(options.gripper_speed >= 0) || !(options.time_limit > 0)) {
+    throw std::invalid_argument(fmt::format(
+        "make_plan: target = {}, gripper_speed = {}, time_limit = {}, must be > 0, >= 0 and > 0",
+        options.target, options.gripper_speed, options.time_limit));
   }
+  const PlanClock clock(options.time_limit);
   const ReachedScene reached = without_far_obstacles(scene);
   const Scene& near = reached.scene;
   const std::vector<double> clearances = obstacle_clearances(scene);
@@ -205,33 +228,42 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     plan.obstacles.push_back({clearances[i], reached.in_reach[i]});
   }
 
-  std::string why;
-  const std::optional<energy_model::Equilibrium> rod = rod_shape(near, why);
-  plan.contact = !rod || touches(*rod);
   LeftOut stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
   LeftOut shear{.what = "shear", .models = "all"};
   LeftOut polygon{.what = "polygon", .models = "chain, force"};
-  const std::optional<Discretisation> fine = hooke_polygon(near, rod_points);
-  if (plan.contact || !fine) {
-    if (rod) {
-      why = plan.contact ? "the rod touches an obstacle"
-                         : "the grips lie closer than any polygon looked at";
-    }
+  const auto no_bound = [&](const std::string& why) {
     for (LeftOut* item : {&stretch, &shear, &polygon}) {
       item->bound_m = unbounded;
       item->why = why;
     }
-  } else {
-    const PolygonResponse response(near, *fine, *rod);
-    const double EA = scene.axial_stiffness();
-    stretch.bound_m = bounded(response.stretch(EA), scene.length);
-    stretch.why = "tension over EA, as the shape answers it";
-    shear.bound_m = bounded(response.shear(0.3 * EA), scene.length);
-    shear.why = "force across over kGA, kG >= 0.3 E";
-    polygon.bound_m = polygon_bound(near, *rod, scene.force_model.points);
-    polygon.why = fmt::format("segments instead of curves, hooke law, bookkeeping {}, N = {}",
-                              to_string(scene.force_model.bookkeeping), plan.scene_points);
-    plan.points = points_for_target(near, *rod, options.target);
+  };
+  plan.contact = true;
+  try {
+    std::string why;
+    const std::optional<energy_model::Equilibrium> rod = rod_shape(near, options.time_limit, why);
+    plan.contact = !rod || touches(*rod);
+    const std::optional<Discretisation> fine = hooke_polygon(near, rod_points);
+    if (!rod) {
+      no_bound(why);
+    } else if (plan.contact) {
+      no_bound("the rod touches an obstacle");
+    } else if (!fine) {
+      no_bound("the grips lie closer than any polygon looked at");
+    } else {
+      const PolygonResponse response(near, *fine, *rod);
+      const double EA = scene.axial_stiffness();
+      stretch.bound_m = bounded(response.stretch(EA), scene.length);
+      stretch.why = "tension over EA, as the shape answers it";
+      shear.bound_m = bounded(response.shear(0.3 * EA), scene.length);
+      shear.why = "force across over kGA, kG >= 0.3 E";
+      polygon.bound_m = polygon_bound(near, *rod, scene.force_model.points);
+      polygon.why = fmt::format("segments instead of curves, hooke law, bookkeeping {}, N = {}",
+                                to_string(scene.force_model.bookkeeping), plan.scene_points);
+      plan.points = points_for_target(near, *rod, options.target, clock);
+    }
+  } catch (const std::exception& error) {
+    // A plan is no reason for a solve to fail.
+    no_bound(fmt::format("not found out: {}", error.what()));
   }
   plan.stretch = stretch.bound_m > options.target * scene.length / 10;
   plan.left_out = {stretch,

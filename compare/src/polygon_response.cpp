@@ -1,6 +1,7 @@
 #include "polygon_response.hpp"
 
 #include <Eigen/Geometry>
+#include <Eigen/SparseCholesky>
 #include <Eigen/SparseLU>
 #include <algorithm>
 #include <cmath>
@@ -98,11 +99,14 @@ void PolygonResponse::find_forces(const energy_model::Equilibrium& rod) {
   }
 }
 
-PolygonResponse::Turns PolygonResponse::turns(const Eigen::Matrix3Xd& f,
-                                              const Eigen::Matrix3Xd& gaps) const {
+Eigen::Index PolygonResponse::constraints() const {
+  return 3 * (static_cast<Eigen::Index>(along_.size()) - 1);
+}
+
+Eigen::SparseMatrix<double> PolygonResponse::matrix(double joints) const {
   const Eigen::VectorXd& L = polygon_.rod.rest_lengths;
   const std::vector<force_model::Grip>& grips = polygon_.rod.grips;
-  const Eigen::Index size = 2 * n_ + 3 * gaps.cols();
+  const Eigen::Index size = 2 * n_ + constraints();
   std::vector<Eigen::Triplet<double>> entries;
   const auto add = [&](Eigen::Index row, Eigen::Index column, const Eigen::MatrixXd& block) {
     for (Eigen::Index i = 0; i < block.rows(); ++i) {
@@ -111,7 +115,6 @@ PolygonResponse::Turns PolygonResponse::turns(const Eigen::Matrix3Xd& f,
       }
     }
   };
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(size);
   const auto is_held = [&](Eigen::Index i) { return held_[static_cast<std::size_t>(i)]; };
   const auto across = [&](Eigen::Index i) -> const Eigen::Matrix<double, 3, 2>& {
     return across_[static_cast<std::size_t>(i)];
@@ -123,7 +126,7 @@ PolygonResponse::Turns PolygonResponse::turns(const Eigen::Matrix3Xd& f,
       const Eigen::Vector3d u = tangents_.col(i);
       const Eigen::Vector3d v = tangents_.col(other);
       const JointDerivatives joint =
-          joint_derivatives(2 * scene_.bending_stiffness() / (L[i] + L[other]), u, v);
+          joint_derivatives(2 * joints * scene_.bending_stiffness() / (L[i] + L[other]), u, v);
       diagonal += joint.slope * u.dot(v);
       const Eigen::Vector2d gu = across(i).transpose() * v;
       const Eigen::Vector2d gv = across(other).transpose() * u;
@@ -134,33 +137,58 @@ PolygonResponse::Turns PolygonResponse::turns(const Eigen::Matrix3Xd& f,
               joint.slope * across(i).transpose() * across(other));
     }
     add(2 * i, 2 * i, diagonal * Eigen::Matrix2d::Identity());
-    if (!is_held(i)) right.segment<2>(2 * i) = across(i).transpose() * f.col(i);
   }
-  for (Eigen::Index k = 0; k < gaps.cols(); ++k) {
-    const Eigen::Index row = 2 * n_ + 3 * k;
-    const Eigen::Index begin = grips[along_[static_cast<std::size_t>(k)]].first_point;
-    const Eigen::Index end = grips[along_[static_cast<std::size_t>(k) + 1]].first_point;
-    for (Eigen::Index i = begin; i < end; ++i) {
+  for (std::size_t k = 0; k + 1 < along_.size(); ++k) {
+    const Eigen::Index row = 2 * n_ + 3 * static_cast<Eigen::Index>(k);
+    for (Eigen::Index i = grips[along_[k]].first_point; i < grips[along_[k + 1]].first_point; ++i) {
       if (is_held(i)) continue;
       // In units of EI, so that the matrix has entries of one size.
       const Eigen::MatrixXd block = L[i] * scene_.bending_stiffness() * across(i);
       add(row, 2 * i, block);
       add(2 * i, row, block.transpose());
     }
-    right.segment<3>(row) = scene_.bending_stiffness() * gaps.col(k);
   }
-  Eigen::SparseMatrix<double> matrix(size, size);
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(matrix);
+  Eigen::SparseMatrix<double> result(size, size);
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+bool PolygonResponse::is_positive(const Eigen::SparseMatrix<double>& matrix) const {
+  // The constraints come last, so that no pivot is a zero of the border.
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower,
+                              Eigen::NaturalOrdering<int>>
+      factors(matrix);
+  if (factors.info() != Eigen::Success) return false;
+  const Eigen::VectorXd pivots = factors.vectorD();
+  return pivots.allFinite() && (pivots.array() < 0).count() == constraints() &&
+         (pivots.array() == 0).count() == 0;
+}
+
+PolygonResponse::Turns PolygonResponse::turns(const Eigen::Matrix3Xd& f,
+                                              const Eigen::Matrix3Xd& gaps) const {
+  constexpr double less_stiff = 0.95;
   Turns result;
+  const Eigen::SparseMatrix<double> bordered = matrix(1);
+  if (!is_positive(bordered) || !is_positive(matrix(less_stiff))) return result;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(bordered.rows());
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    if (held_[static_cast<std::size_t>(i)]) continue;
+    right.segment<2>(2 * i) = across_[static_cast<std::size_t>(i)].transpose() * f.col(i);
+  }
+  for (Eigen::Index k = 0; k < gaps.cols(); ++k) {
+    right.segment<3>(2 * n_ + 3 * k) = scene_.bending_stiffness() * gaps.col(k);
+  }
+  const Eigen::SparseLU<Eigen::SparseMatrix<double>> factors(bordered);
   if (factors.info() != Eigen::Success) return result;
   const Eigen::VectorXd solution = factors.solve(right);
   if (!solution.allFinite()) return result;
   // A nearly singular matrix: the answer does not solve its own equations.
-  if ((matrix * solution - right).norm() > 1e-6 * right.norm()) return result;
+  if ((bordered * solution - right).norm() > 1e-6 * right.norm()) return result;
   result.possible = true;
   result.dt.resize(3, n_);
-  for (Eigen::Index i = 0; i < n_; ++i) result.dt.col(i) = across(i) * solution.segment<2>(2 * i);
+  for (Eigen::Index i = 0; i < n_; ++i) {
+    result.dt.col(i) = across_[static_cast<std::size_t>(i)] * solution.segment<2>(2 * i);
+  }
   return result;
 }
 

@@ -55,7 +55,9 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
       arc_lengths.empty() ? equal_arc_lengths(scene.length, default_samples) : arc_lengths;
   Solution solution;
   solution.model = model;
+  solution.status = equilibrium.status;
   solution.message = equilibrium.message;
+  solution.penetration = equilibrium.penetration;
   const energy_model::Samples shape = equilibrium.sample(samples);
   solution.shape = {samples, shape.points};
   solution.energy = {.bending = equilibrium.energy.bending,
@@ -82,6 +84,33 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   return solution;
 }
 
+/// Whether a shape may be handed on: proven, or unproven and asked for.
+bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
+  return energy_model::succeeded(status) ||
+         (options.accept_unresolved && status == energy_model::SolveStatus::not_resolved);
+}
+
+/// A search among obstacles once more, from the chain's shape. Of two failures the one with a shape
+/// that can be shown stays.
+void try_from_chain(const Scene& scene, const SolveOptions& options,
+                    energy_model::Equilibrium& result) {
+  energy_model::Equilibrium other;
+  try {
+    other = solve_from_chain(scene, options);
+  } catch (const ConvergenceError&) {
+    return;
+  } catch (const InputError&) {
+    return;
+  }
+  const int spent = result.evaluations + other.evaluations;
+  const double seconds = result.seconds + other.seconds;
+  const bool shows = other.status == energy_model::SolveStatus::not_resolved &&
+                     result.status != energy_model::SolveStatus::not_resolved;
+  if (energy_model::succeeded(other.status) || shows) result = std::move(other);
+  result.evaluations = spent;
+  result.seconds = seconds;
+}
+
 }  // namespace
 
 energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
@@ -97,15 +126,15 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                                         .time_limit = options.time_limit,
                                                         .start = options.start});
     const bool searched = model == Model::energy && options.start == nullptr;
+    SolveOptions rest = options;
+    rest.time_limit = std::max(options.time_limit - result.seconds, options.time_limit / 4);
     if (!energy_model::succeeded(result.status) && searched && !scene.obstacles.empty()) {
-      const int spent = result.evaluations;
-      result = solve_from_chain(scene, options);
-      result.evaluations += spent;
+      try_from_chain(scene, rest, result);
     }
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }
-  if (!energy_model::succeeded(result.status)) {
+  if (!acceptable(result.status, options)) {
     throw ConvergenceError(fmt::format(
         "{}: the {} model did not converge: {} ({} evaluations{})", scene.file, to_string(model),
         result.message, result.evaluations,
@@ -138,17 +167,15 @@ std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
                                                         const SolveOptions& options) {
   std::vector<energy_model::Equilibrium> states;
   try {
-    states = energy_model::all_energy(
-        energy_problem(scene),
-        {.terms = options.terms,
-         .max_evaluations = options.max_evaluations,
-         .time_limit = options.time_limit});
+    states =
+        energy_model::all_energy(energy_problem(scene), {.terms = options.terms,
+                                                         .max_evaluations = options.max_evaluations,
+                                                         .time_limit = options.time_limit});
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }
-  std::erase_if(states, [](const energy_model::Equilibrium& state) {
-    return !energy_model::succeeded(state.status) &&
-           state.status != energy_model::SolveStatus::saddle;
+  std::erase_if(states, [&](const energy_model::Equilibrium& state) {
+    return !acceptable(state.status, options) && state.status != energy_model::SolveStatus::saddle;
   });
   if (states.empty()) {
     throw ConvergenceError(fmt::format("{}: the energy model found no equilibrium", scene.file));

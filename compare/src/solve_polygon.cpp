@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
+#include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solve.hpp"
 #include "dlo/force_model/simulation.hpp"
@@ -43,6 +45,39 @@ Solution polygon_solution(const Discretisation& discretisation, const Eigen::Mat
   return solution;
 }
 
+/// The segment that differs most from its rest length.
+struct Strain {
+  Eigen::Index segment = 0;
+  double share = 0;  // of its rest length, positive where longer
+};
+
+Strain largest_of(const force_model::Rod& rod, const Eigen::Matrix3Xd& points) {
+  const Eigen::Index n = rod.rest_lengths.size();
+  const Eigen::ArrayXd lengths = (points.rightCols(n) - points.leftCols(n)).colwise().norm();
+  const Eigen::ArrayXd strain = lengths / rod.rest_lengths.array() - 1;
+  Strain result;
+  strain.abs().maxCoeff(&result.segment);
+  result.share = strain[result.segment];
+  return result;
+}
+
+/// A polygon that had to stretch or to shrink is no shape of the rod, however well it balances.
+void require_unstrained(const Scene& scene, const ForceModelSettings& settings,
+                        const Discretisation& discretisation, const Eigen::Matrix3Xd& points,
+                        const char* model) {
+  const Strain strain = largest_of(discretisation.rod, points);
+  const double allowed = largest_strain(scene, settings);
+  if (std::abs(strain.share) <= allowed) return;
+  const double c_c = discretisation.rod.c_c;
+  throw ConvergenceError(fmt::format(
+      "{}: the {} model did not converge to a shape: segment {} of {} is {:.3g} % {} than at rest, "
+      "a tension of {:.3g} N with c_c = {:.4g} N (allowed: {:g} %; more points than {} may do{})",
+      scene.file, model, strain.segment + 1, discretisation.rod.rest_lengths.size(),
+      std::abs(strain.share) * 100, strain.share > 0 ? "longer" : "shorter", strain.share * c_c,
+      c_c, allowed * 100, settings.points,
+      settings.c_c ? "" : ", and a rod that is this soft needs its c_c given"));
+}
+
 /// What the gripper of a polygon without stretch exerts: its tension is a constraint, so it follows
 /// from the balance of the whole polygon.
 GripperLoad balancing_load(const Discretisation& discretisation, const Eigen::Matrix3Xd& points) {
@@ -72,12 +107,28 @@ Solution solve_rigid_chain(const Scene& scene, const Discretisation& discretisat
     points = points.rowwise().reverse().eval();
   }
   Solution solution = polygon_solution(discretisation, points);
+  solution.status = result.status;
   solution.message = result.message;
   solution.grippers = {balancing_load(discretisation, points)};
   solution.evaluations = result.evaluations;
   solution.seconds = result.seconds;
   return solution;
 }
+
+/// What is left of a limit of time [s].
+class TimeLeft {
+ public:
+  explicit TimeLeft(double seconds) : seconds_(seconds) {}
+
+  [[nodiscard]] double now() const {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
+    return seconds_ - spent.count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double seconds_;
+};
 
 /// The lowest of the shapes that a polygon's starts lead to.
 struct LowestPolygon {
@@ -87,14 +138,18 @@ struct LowestPolygon {
   double seconds = 0;
 };
 
-LowestPolygon lowest_polygon(const Scene& scene, const Discretisation& discretisation,
-                             const SolveOptions& options) {
+LowestPolygon lowest_polygon(const Scene& scene, const ForceModelSettings& settings,
+                             const Discretisation& discretisation, const SolveOptions& options) {
   const energy_model::PolygonProblem problem = polygon_problem(discretisation.rod);
+  const double allowed = largest_strain(scene, settings);
+  const TimeLeft left(options.time_limit);
   energy_model::PolygonOptions polygon_options;
   polygon_options.max_evaluations = options.max_evaluations;
-  polygon_options.time_limit = options.time_limit;
   LowestPolygon lowest;
+  bool lowest_is_shape = false;
   for (std::size_t i = 0; i < discretisation.starts.size(); ++i) {
+    polygon_options.time_limit = left.now();
+    if (i > 0 && polygon_options.time_limit <= 0) break;
     energy_model::PolygonResult result =
         energy_model::solve_polygon(problem, discretisation.starts[i], polygon_options);
     lowest.evaluations += result.evaluations;
@@ -102,24 +157,30 @@ LowestPolygon lowest_polygon(const Scene& scene, const Discretisation& discretis
     // Mirror images have the same energy but for rounding; the first start keeps them.
     const double size = std::abs(result.energy) + std::abs(lowest.result.energy);
     const bool lower = result.energy < lowest.result.energy - 1e-9 * size;
-    const bool better = energy_model::succeeded(result.status) &&
-                        (!energy_model::succeeded(lowest.result.status) || lower);
+    const bool is_shape = energy_model::succeeded(result.status) &&
+                          std::abs(largest_of(discretisation.rod, result.points).share) <= allowed;
+    const bool solved =
+        energy_model::succeeded(result.status) && !energy_model::succeeded(lowest.result.status);
+    const bool better = is_shape ? !lowest_is_shape || lower : !lowest_is_shape && solved;
     if (i > 0 && !better) continue;
     lowest.start = i;
     lowest.result = std::move(result);
+    lowest_is_shape = is_shape;
   }
   if (!energy_model::succeeded(lowest.result.status)) {
     throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
                                        scene.file, lowest.result.message, lowest.evaluations));
   }
+  require_unstrained(scene, settings, discretisation, lowest.result.points, "chain");
   return lowest;
 }
 
-Solution solve_elastic_chain(const Scene& scene, const Discretisation& discretisation,
-                             const SolveOptions& options) {
-  const LowestPolygon lowest = lowest_polygon(scene, discretisation, options);
+Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& settings,
+                             const Discretisation& discretisation, const SolveOptions& options) {
+  const LowestPolygon lowest = lowest_polygon(scene, settings, discretisation, options);
   const Eigen::Matrix3Xd& points = lowest.result.points;
   Solution solution = polygon_solution(discretisation, points);
+  solution.status = lowest.result.status;
   solution.message = lowest.result.message;
   Eigen::Index next = 0;  // grip_forces are in the order of the grips' points
   for (const force_model::Grip& grip : discretisation.rod.grips) {
@@ -137,17 +198,31 @@ Solution solve_elastic_chain(const Scene& scene, const Discretisation& discretis
   return solution;
 }
 
-/// Where the simulation starts. Of several starts it is the one from which the chain comes lowest,
-/// since the two are to be compared in the same state; and it is moved by a thousandth of the way
-/// to the chain's shape, for starts are as symmetric as their scene and may lead to a saddle, on
-/// which a simulation would balance.
-Eigen::Matrix3Xd simulation_start(const Scene& scene, const Discretisation& discretisation,
-                                  const SolveOptions& options) {
-  if (discretisation.starts.size() == 1) return discretisation.starts.front();
+/// Where a simulation starts, and where it should come to rest.
+struct SimulationStart {
+  Eigen::Matrix3Xd points;
+  std::optional<Eigen::Matrix3Xd> rest;  // of the chain, where there are several states
+};
+
+/// Of several starts it is the one from which the chain comes lowest, since the two are to be
+/// compared in the same state; and it is moved by a thousandth of the way to the chain's shape, for
+/// starts are as symmetric as their scene and may lead to a saddle, on which a simulation would
+/// balance.
+SimulationStart simulation_start(const Scene& scene, const ForceModelSettings& settings,
+                                 const Discretisation& discretisation,
+                                 const SolveOptions& options) {
+  if (discretisation.starts.size() == 1) return {discretisation.starts.front(), std::nullopt};
   constexpr double nudge = 1e-3;
-  const LowestPolygon lowest = lowest_polygon(scene, discretisation, options);
+  LowestPolygon lowest = lowest_polygon(scene, settings, discretisation, options);
   const Eigen::Matrix3Xd& start = discretisation.starts[lowest.start];
-  return start + nudge * (lowest.result.points - start);
+  return {start + nudge * (lowest.result.points - start), std::move(lowest.result.points)};
+}
+
+/// Whether a simulation has come to rest elsewhere than the chain, by more than the laws differ.
+bool in_another_state(const Scene& scene, const Discretisation& discretisation,
+                      const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& rest) {
+  constexpr double apart = 0.01;
+  return rms(discretisation.arc_length, points - rest) > apart * scene.length;
 }
 
 }  // namespace
@@ -157,7 +232,7 @@ Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
   const Discretisation discretisation = discretise(scene, settings);
   const std::optional<ChainScene> chain = chain_scene(scene, discretisation, settings);
   Solution solution = chain ? solve_rigid_chain(scene, discretisation, *chain, options)
-                            : solve_elastic_chain(scene, discretisation, options);
+                            : solve_elastic_chain(scene, settings, discretisation, options);
   solution.model = Model::chain;
   return solution;
 }
@@ -175,25 +250,39 @@ Shape chain_from(const Scene& scene, const ForceModelSettings& settings, const S
     throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
                                        scene.file, result.message, result.evaluations));
   }
+  require_unstrained(scene, settings, discretisation, result.points, "chain");
   return discretisation.shape(result.points);
 }
 
 Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                      const SolveOptions& options) {
   const Discretisation discretisation = discretise(scene, settings);
-  const Eigen::Matrix3Xd start = simulation_start(scene, discretisation, options);
+  const SimulationStart start = simulation_start(scene, settings, discretisation, options);
   const auto begin = std::chrono::steady_clock::now();
-  const auto simulation_of = [&] {
+  const auto simulation_from = [&](const Eigen::Matrix3Xd& points) {
     try {
-      return force_model::Simulation(discretisation.rod, start,
+      return force_model::Simulation(discretisation.rod, points,
                                      step_options(settings, discretisation));
     } catch (const std::invalid_argument& error) {
       throw InputError(fmt::format("{}: the force model: {}", scene.file, error.what()));
     }
   };
-  force_model::Simulation simulation = simulation_of();
-  const force_model::RelaxResult result =
-      simulation.relax({.tolerance = options.rest_tolerance, .max_steps = options.max_steps});
+  const force_model::RelaxOptions limits{.tolerance = options.rest_tolerance,
+                                         .max_steps = options.max_steps};
+  force_model::Simulation simulation = simulation_from(start.points);
+  force_model::RelaxResult result = simulation.relax(limits);
+  const auto strayed = [&] {
+    return result.status == force_model::RelaxStatus::at_rest && start.rest &&
+           in_another_state(scene, discretisation, simulation.points(), *start.rest);
+  };
+  if (strayed()) {
+    // It has swung past the chain's state; from a tenth of the way before it it cannot.
+    constexpr double near = 0.9;
+    const long steps = result.steps;
+    simulation = simulation_from(start.points + near * (*start.rest - start.points));
+    result = simulation.relax(limits);
+    result.steps += steps;
+  }
   if (result.status != force_model::RelaxStatus::at_rest) {
     throw ConvergenceError(fmt::format(
         "{}: the force model did not come to rest: {} after {} steps, about {:.2g} m from it "
@@ -205,9 +294,11 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
             : "; stepper auto chooses its constants, a lower c_c lets the others take larger "
               "steps"));
   }
+  require_unstrained(scene, settings, discretisation, simulation.points(), "force");
   Solution solution = polygon_solution(discretisation, simulation.points());
   solution.model = Model::force;
   solution.message = result.message;
+  if (strayed()) solution.message += ", in another state than the chain";
   // What an obstacle does to a held point inside a gripper is not felt outside.
   force_model::Rod without_walls = simulation.rod();
   without_walls.walls.clear();

@@ -161,4 +161,50 @@ Eigen::Matrix3Xd start_shape(const Scene& scene, const std::vector<std::size_t>&
   return points;
 }
 
+namespace {
+
+/// The direction of a segment of length L from `from`, turned into the face of a wall that it would
+/// enter; `last` is where it goes if it points straight into the wall.
+Eigen::Vector3d turned_along(const Obstacle& wall, const Eigen::Vector3d& from,
+                             const Eigen::Vector3d& direction, double L,
+                             const Eigen::Vector3d& last) {
+  const Eigen::Vector3d normal = wall.normal.normalized();
+  const double height = std::max(0.0, (from - wall.point).dot(normal));
+  if (height + L * direction.dot(normal) >= 0) return direction;
+  Eigen::Vector3d face = across(direction, normal);
+  if (face.norm() < 1e-3) face = across(last, normal);
+  face = face.norm() < 1e-3 ? any_across(normal) : Eigen::Vector3d(face.normalized());
+  const double down = std::min(1.0, height / L);
+  return std::sqrt(1 - down * down) * face - down * normal;
+}
+
+}  // namespace
+
+void keep_free_ends_clear(const Scene& scene, const std::vector<force_model::Grip>& grips,
+                          Eigen::Ref<Eigen::Matrix3Xd> points) {
+  if (scene.obstacles.empty()) return;
+  Eigen::Index first = points.cols();
+  Eigen::Index last = 0;
+  for (const force_model::Grip& grip : grips) {
+    first = std::min(first, grip.first_point);
+    last = std::max(last, grip.first_point + grip.targets.cols() - 1);
+  }
+  const Eigen::Matrix3Xd start = points;
+  const auto walk = [&](Eigen::Index begin, Eigen::Index end, Eigen::Index way) {
+    Eigen::Vector3d before = Eigen::Vector3d::Zero();
+    for (Eigen::Index i = begin; i != end; i += way) {
+      const Eigen::Vector3d step = start.col(i + way) - start.col(i);
+      const double L = step.norm();
+      Eigen::Vector3d direction = step / L;
+      for (const Obstacle& wall : scene.obstacles) {
+        direction = turned_along(wall, points.col(i), direction, L, before);
+      }
+      before = direction;
+      points.col(i + way) = points.col(i) + L * direction;
+    }
+  };
+  walk(last, points.cols() - 1, 1);
+  walk(first, 0, -1);
+}
+
 }  // namespace dlo::compare

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
+#include "dlo/force_model/rod.hpp"
 
 namespace dlo::compare {
 
@@ -25,5 +26,11 @@ enum class Side {
 [[nodiscard]] Eigen::Matrix3Xd start_shape(const Scene& scene,
                                            const std::vector<std::size_t>& along,
                                            const std::vector<double>& arc_length, Side side);
+
+/// Turns the parts of a start beyond its outermost grips out of the obstacles: where a segment
+/// would enter one it lies along its face, at its own length.
+/// @param[in,out] points  [m], 3 x M
+void keep_free_ends_clear(const Scene& scene, const std::vector<force_model::Grip>& grips,
+                          Eigen::Ref<Eigen::Matrix3Xd> points);
 
 }  // namespace dlo::compare

@@ -9,6 +9,11 @@ namespace {
 
 using energy_model::Equilibrium;
 
+/// Stable, as far as is known of a shape that is not resolved.
+bool is_stable(const Equilibrium& state) {
+  return succeeded(state.status) || state.status == energy_model::SolveStatus::not_resolved;
+}
+
 /// Shapes that are nearer than this share of the length are the same.
 constexpr double same_shape = 1e-4;
 
@@ -56,8 +61,8 @@ std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowes
     }
   }
   std::stable_sort(states.begin(), states.end(), [](const Equilibrium& a, const Equilibrium& b) {
-    const bool a_stable = succeeded(a.status);
-    const bool b_stable = succeeded(b.status);
+    const bool a_stable = is_stable(a);
+    const bool b_stable = is_stable(b);
     if (a_stable != b_stable) return a_stable;
     return a.energy.total() < b.energy.total();
   });
@@ -70,7 +75,7 @@ ComparedState describe_state(const Scene& scene, const std::vector<Equilibrium>&
   result.energy_J = states[compared].energy.total();
   result.stable = 0;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    const bool stable = succeeded(states[i].status);
+    const bool stable = is_stable(states[i]);
     ++(stable ? result.stable : result.unstable);
     if (i == compared) {
       result.rank = result.stable;

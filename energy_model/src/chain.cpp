@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "deadline.hpp"
 #include "fold_angle.hpp"
 #include "minimise.hpp"
 #include "require.hpp"
@@ -69,6 +70,7 @@ void check(const ChainProblem& problem, const ChainOptions& options) {
   require_positive("ChainOptions", "tolerance", options.tolerance);
   require(options.max_evaluations >= 1, "ChainOptions", "max_evaluations", options.max_evaluations,
           ">= 1");
+  require(options.time_limit > 0, "ChainOptions", "time_limit", options.time_limit, "> 0");
   require(options.start_angles.size() == 0 || options.start_angles.size() == n, "ChainOptions",
           "size of start_angles", static_cast<double>(options.start_angles.size()),
           "0 or the number of segments");
@@ -164,8 +166,8 @@ Eigen::Matrix2Xd chain_points(const ChainProblem& problem, const Eigen::VectorXd
 }
 
 /// Damped Newton steps; each must lower the energy or the gradient.
-void polish(const ChainProblem& problem, const ChainOptions& options, double moment_scale,
-            ChainResult& result) {
+void polish(const ChainProblem& problem, const ChainOptions& options, const Deadline& deadline,
+            double moment_scale, ChainResult& result) {
   const Eigen::Matrix2Xd forces = segment_forces(problem);
   const Eigen::Index free = result.angles.size() - 1;
   Eigen::VectorXd gradient(result.angles.size());
@@ -180,6 +182,10 @@ void polish(const ChainProblem& problem, const ChainOptions& options, double mom
       std::max(options.tolerance * moment_scale, std::min(rounding_moment, 1e-6 * moment_scale));
   double damping = 0;
   while (result.evaluations < options.max_evaluations) {
+    if (deadline.passed()) {
+      result.status = SolveStatus::time_limit;
+      return;
+    }
     result.residual = gradient.norm();
     Tridiagonal matrix = second_derivative(problem, forces, result.angles);
     const double scale = matrix.diagonal.cwiseAbs().maxCoeff();
@@ -250,6 +256,7 @@ double chain_energy(const ChainProblem& problem, const Eigen::Ref<const Eigen::V
 ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   check(problem, options);
+  const Deadline deadline(options.time_limit);
   const Eigen::Index n = problem.segment_lengths.size();
   ChainResult result;
   result.angles =
@@ -273,6 +280,8 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
       sum += gradient[i];
       by_turn[i - 1] = sum;
     }
+    // What the minimiser stops at; the status says what it was.
+    if (deadline.passed()) by_turn.setZero();
     return energy;
   };
   const double moment_scale =
@@ -284,7 +293,7 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   Eigen::VectorXd by_turn(n - 1);
   (void)objective(turns, by_turn);
   result.status = first.status;
-  if (succeeded(first.status)) polish(problem, options, moment_scale, result);
+  if (succeeded(first.status)) polish(problem, options, deadline, moment_scale, result);
   result.message = to_string(result.status);
 
   const double total = chain_energy(problem, result.angles, gradient);

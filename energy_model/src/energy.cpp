@@ -8,6 +8,7 @@
 #include "assemble.hpp"
 #include "legendre.hpp"
 #include "polygon_fields.hpp"
+#include "penetration.hpp"
 #include "require.hpp"
 #include "span_solver.hpp"
 #include "split.hpp"
@@ -59,6 +60,7 @@ std::vector<Equilibrium> combine(const Problem& problem,
       chosen.push_back(&solutions[i][choice[i]].solution);
     }
     result.push_back(assemble(problem, placed, chosen));
+    judge_contact(problem, chosen, result.back());
     more = false;
     for (std::size_t i = 0; i < choice.size() && !more; ++i) {
       more = ++choice[i] < solutions[i].size();

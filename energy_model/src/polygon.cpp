@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
+#include "deadline.hpp"
 #include "polygon_energy.hpp"
 #include "require.hpp"
 
@@ -25,6 +27,10 @@ constexpr double rounding_step = 1e-7;
 /// No point moves further in one step, in polygon lengths.
 constexpr double largest_step = 0.2;
 constexpr int most_escapes = 10;
+/// Force on a free point that may be left, over the forces that act [-]; above what rounding of the
+/// positions makes of the stiffest segment (proof()). A polygon whose Newton step is rounding is
+/// far below it, one that is pressed between two constraints far above.
+constexpr double force_left = 1e-6;
 
 void check(const PolygonProblem& problem, const Points& start, const PolygonOptions& options) {
   constexpr const char* name = "PolygonProblem";
@@ -59,6 +65,7 @@ void check(const PolygonProblem& problem, const Points& start, const PolygonOpti
   require_positive("PolygonOptions", "tolerance", options.tolerance);
   require(options.max_evaluations >= 1, "PolygonOptions", "max_evaluations",
           options.max_evaluations, ">= 1");
+  require(options.time_limit > 0, "PolygonOptions", "time_limit", options.time_limit, "> 0");
   require(start.cols() == n + 1, "solve_polygon", "columns of start",
           static_cast<double>(start.cols()), "one more than segments");
   const double closest = (start.rightCols(n) - start.leftCols(n)).colwise().norm().minCoeff();
@@ -69,9 +76,11 @@ void check(const PolygonProblem& problem, const Points& start, const PolygonOpti
 /// Descends on one problem; holds what all steps need.
 class Descent {
  public:
-  Descent(const PolygonProblem& problem, const PolygonOptions& options, PolygonResult& result)
+  Descent(const PolygonProblem& problem, const PolygonOptions& options, const Deadline& deadline,
+          PolygonResult& result)
       : problem_(problem),
         options_(options),
+        deadline_(deadline),
         result_(result),
         length_(problem.rest_lengths.sum()),
         index_(static_cast<std::size_t>(problem.node_forces.cols()), 0),
@@ -94,6 +103,7 @@ class Descent {
     int escapes = 0;
     assemble();
     while (result_.evaluations < options_.max_evaluations) {
+      if (deadline_.passed()) return SolveStatus::time_limit;
       if (!factor(damping)) {
         damping = std::max(4 * damping, first_damping);
         if (damping > most_damping) return SolveStatus::failed;
@@ -138,22 +148,59 @@ class Descent {
     return SolveStatus::evaluation_limit;
   }
 
-  [[nodiscard]] double energy() const { return energy_; }
-  [[nodiscard]] const Eigen::Matrix3Xd& gradient() const { return gradient_; }
-  [[nodiscard]] double largest_free_force() const {
-    double largest = 0;
-    for (Eigen::Index i = 0; i < gradient_.cols(); ++i) {
-      if (index_[static_cast<std::size_t>(i)] >= 0) {
-        largest = std::max(largest, gradient_.col(i).norm());
+  /// Evaluates the returned points anew, whatever run() has left, and takes back a success that
+  /// they do not prove: the Hessian there is positive definite, Newton's step from there is
+  /// rounding, and no force that is left on a free point counts among those that act. (A step below
+  /// the tolerance may leave one, since segments are stiff: then it is taken.)
+  void prove() {
+    constexpr int most_steps = 3;
+    for (int taken = 0;; ++taken) {
+      const double acting = evaluate();
+      if (!succeeded(result_.status) || free_ == 0) return;
+      assemble();
+      if (!factor(0)) return refuse("the second derivative is not positive");
+      const Eigen::VectorXd step = solver_.solve(free_part(-gradient_));
+      const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
+      const double rounding = 16 * epsilon * largest_ * result_.points.cwiseAbs().maxCoeff();
+      std::ostringstream why;
+      if (!(size <= rounding_step)) {
+        why << "Newton's step is " << size << " lengths";
+        return refuse(why.str());
       }
+      if (result_.residual <= std::max(rounding, force_left * acting)) return;
+      if (taken == most_steps) {
+        why << result_.residual << " N are left on a point among forces of " << acting << " N";
+        return refuse(why.str());
+      }
+      result_.points = moved(step);
     }
-    return largest;
   }
+
+  [[nodiscard]] const Eigen::Matrix3Xd& gradient() const { return gradient_; }
 
  private:
   // Shares of the largest diagonal element.
   static constexpr double first_damping = 1e-12;
   static constexpr double most_damping = 1e3;
+
+  /// Energy, gradient and residual of the points. @return the largest force that acts on them [N]
+  double evaluate() {
+    result_.energy = energy_ = polygon_energy(problem_, result_.points, gradient_);
+    ++result_.evaluations;
+    result_.residual = 0;
+    double acting = problem_.node_forces.colwise().norm().sum();
+    for (Eigen::Index i = 0; i < gradient_.cols(); ++i) {
+      const bool held = index_[static_cast<std::size_t>(i)] < 0;
+      double& largest = held ? acting : result_.residual;
+      largest = std::max(largest, gradient_.col(i).norm());
+    }
+    return acting;
+  }
+
+  void refuse(const std::string& why) {
+    result_.status = SolveStatus::not_resolved;
+    result_.message = std::string(to_string(result_.status)) + ": " + why;
+  }
 
   [[nodiscard]] double rounding_energy() const {
     const Eigen::Vector3d first = problem_.held.front().position;
@@ -228,6 +275,7 @@ class Descent {
 
   const PolygonProblem& problem_;
   const PolygonOptions& options_;
+  const Deadline& deadline_;
   PolygonResult& result_;
   double length_;
   double tolerance_ = 0;
@@ -262,6 +310,7 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
                             const PolygonOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
   check(problem, start, options);
+  const Deadline deadline(options.time_limit);
   PolygonResult result;
   result.points = start;
   for (const HeldPoint& held : problem.held) result.points.col(held.point) = held.position;
@@ -276,20 +325,21 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
       const double stiffness = problem.walls[i].stiffness;
       stage.walls[i].stiffness = last ? stiffness : std::min(stiffness, c_c / shortest);
     }
-    Descent descent(stage, options, result);
+    Descent descent(stage, options, deadline, result);
     result.status = descent.run(last ? options.tolerance : stage_tolerance);
+    result.message = to_string(result.status);
     const bool go_on = succeeded(result.status) || result.status == SolveStatus::saddle;
     if (!last && go_on) continue;
-    result.energy = descent.energy();
-    result.residual = descent.largest_free_force();
+    // A softer stage may have failed; what is returned belongs to the problem that was asked.
+    Descent asked(problem, options, deadline, result);
+    asked.prove();
     result.grip_forces.resize(3, static_cast<Eigen::Index>(problem.held.size()));
     for (std::size_t i = 0; i < problem.held.size(); ++i) {
       result.grip_forces.col(static_cast<Eigen::Index>(i)) =
-          descent.gradient().col(problem.held[i].point);
+          asked.gradient().col(problem.held[i].point);
     }
     break;
   }
-  result.message = to_string(result.status);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }

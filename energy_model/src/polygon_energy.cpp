@@ -60,14 +60,16 @@ double joint_length(const PolygonProblem& problem, Eigen::Index i) {
   return (problem.rest_lengths[i - 1] + problem.rest_lengths[i]) / 2;
 }
 
-/// How far a free point is behind a wall; a held one does not feel it [m].
-double depth(const PolygonProblem& problem, const PointWall& wall, const Points& points,
-             Eigen::Index i) {
-  const double behind = (wall.point - points.col(i)).dot(wall.normal);
-  if (!(behind > 0)) return 0;
-  const bool held = std::any_of(problem.held.begin(), problem.held.end(),
-                                [i](const HeldPoint& point) { return point.point == i; });
-  return held ? 0 : behind;
+/// Whether a point is held, for each; a held one does not feel walls.
+std::vector<bool> held_points(const PolygonProblem& problem) {
+  std::vector<bool> held(static_cast<std::size_t>(problem.node_forces.cols()), false);
+  for (const HeldPoint& point : problem.held) held[static_cast<std::size_t>(point.point)] = true;
+  return held;
+}
+
+/// How far a point is behind a wall [m].
+double depth(const PointWall& wall, const Points& points, Eigen::Index i) {
+  return std::max(0.0, (wall.point - points.col(i)).dot(wall.normal));
 }
 
 /// Adds the Hessian H of a function of the differences d_p = P_(p+1) - P_p, d_q likewise.
@@ -106,9 +108,12 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
     gradient.col(i) += by_a - by_b;
     gradient.col(i + 1) += by_b;
   }
+  if (problem.walls.empty()) return energy;
+  const std::vector<bool> held = held_points(problem);
   for (const PointWall& wall : problem.walls) {
     for (Eigen::Index i = 0; i <= n; ++i) {
-      const double d = depth(problem, wall, points, i);
+      if (held[static_cast<std::size_t>(i)]) continue;
+      const double d = depth(wall, points, i);
       energy += wall.stiffness * d * d / 2;
       gradient.col(i) -= wall.stiffness * d * wall.normal;
     }
@@ -151,9 +156,11 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, const 
     add_difference_block(i - 1, i, ab, add);
     add_difference_block(i, i - 1, ab.transpose(), add);
   }
+  if (problem.walls.empty()) return;
+  const std::vector<bool> held = held_points(problem);
   for (const PointWall& wall : problem.walls) {
     for (Eigen::Index i = 0; i <= n; ++i) {
-      if (depth(problem, wall, points, i) <= 0) continue;
+      if (held[static_cast<std::size_t>(i)] || depth(wall, points, i) <= 0) continue;
       add(i, i, wall.stiffness * wall.normal * wall.normal.transpose());
     }
   }

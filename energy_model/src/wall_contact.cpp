@@ -76,16 +76,24 @@ void WallContact::add_hessian(const Eigen::MatrixX3d& by_theta, const Eigen::Mat
   }
 }
 
-double WallContact::update() {
-  double violation = 0;
+double WallContact::violation() const {
+  double largest = 0;
   for (std::size_t i = 0; i < walls_.size(); ++i) {
     if (std::isfinite(walls_[i].stiffness)) continue;
     const auto column = static_cast<Eigen::Index>(i);
     const double change = (pressure_.col(column) - contact_.col(column)).cwiseAbs().maxCoeff();
-    violation = std::max(violation, change / rigid_stiffness_);
-    contact_.col(column) = pressure_.col(column);
+    largest = std::max(largest, change / rigid_stiffness_);
   }
-  return violation;
+  return largest;
+}
+
+double WallContact::update() {
+  const double before = violation();
+  for (std::size_t i = 0; i < walls_.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    if (std::isinf(walls_[i].stiffness)) contact_.col(column) = pressure_.col(column);
+  }
+  return before;
 }
 
 std::vector<Eigen::Vector3d> WallContact::forces() const {

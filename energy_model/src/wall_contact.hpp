@@ -25,6 +25,8 @@ class WallContact {
   void add_hessian(const Eigen::MatrixX3d& by_theta, const Eigen::MatrixX3d* by_beta,
                    const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const;
 
+  /// What update() would return after the last add().
+  [[nodiscard]] double violation() const;
   /// Moves the multipliers of rigid walls towards complementarity. @return largest violation, in l
   double update();
   /// Force of each wall on the span.

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/error.hpp"
@@ -162,6 +163,7 @@ TEST_P(SceneOfGrips, GrippersAndObstaclesCarryAllThatHangsOnTheRod) {
     const Discretisation d = discretise(scene, scene.force_model);
     const energy_model::PolygonResult rest =
         energy_model::solve_polygon(polygon_problem(d.rod), d.starts.front());
+    ASSERT_TRUE(energy_model::succeeded(rest.status)) << rest.message;
     Vector3d force = d.rod.loads.rowwise().sum();
     Vector3d torque = Vector3d::Zero();
     for (Eigen::Index i = 0; i < rest.points.cols(); ++i) {
@@ -228,6 +230,47 @@ TEST(Walls, RigidOnesAreEnteredByLessThanTheStretchOfTheRod) {
   EXPECT_NEAR(chain.obstacles[0].y(), force.obstacles[0].y(), 1e-3 * weight);
 }
 
+TEST(Walls, AShapeThatIsNotResolvedIsShownOnlyToWhoAcceptsIt) {
+  // Its tip leans against the wall, where nodes of the quadrature end before it.
+  Scene scene = parse_scene(R"(
+gravity = [0, -9.81, 0]
+[rod]
+length = "30 cm"
+diameter = "0.5 mm"
+material = "copper"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+[[obstacle]]
+point = ["25 cm", 0, 0]
+normal = [-1, 0, 0]
+[force_model]
+law = "hooke"
+bookkeeping = "consistent"
+)",
+                            "copper.toml");
+  try {
+    (void)solve_reference(scene, Model::energy);
+    FAIL() << "no error";
+  } catch (const ConvergenceError& error) {
+    EXPECT_NE(std::string(error.what()).find("behind a rigid wall"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_THROW((void)solve(scene, Model::energy), ConvergenceError);
+  EXPECT_THROW((void)compare(scene), ConvergenceError);
+  SolveOptions options;
+  options.accept_unresolved = true;
+  const Solution shown = solve(scene, Model::energy, options);
+  EXPECT_EQ(shown.status, energy_model::SolveStatus::not_resolved);
+  EXPECT_GT(shown.penetration, 1e-4 * scene.length);
+  EXPECT_NEAR(shown.penetration, shown.shape.points.row(0).maxCoeff() - 0.25, 1e-5);
+  const Comparison comparison = compare(scene, options);
+  EXPECT_NE(comparison.unresolved.find("behind a rigid wall"), std::string::npos);
+  EXPECT_TRUE(std::isnan(comparison.effective_modulus.ratio));
+  EXPECT_LT(comparison.deviation.rms_over_length, 5e-3);
+}
+
 TEST(PaperLaw, HasATorqueOfItsOwnWhereSegmentsDiffer) {
   // Two clamps leave one part of the rod, of equal segments: chain and force model are one model
   // but for the stretch of the segments, which makes them a little unequal.
@@ -244,6 +287,164 @@ TEST(PaperLaw, HasATorqueOfItsOwnWhereSegmentsDiffer) {
   const double apart = distance(unequal);
   EXPECT_GT(apart, 1e-6);
   EXPECT_LT(apart, 1e-3);
+}
+
+/// A pin just above a rigid floor: a start that hangs straight down would be crushed on it.
+Scene pin_above_floor() {
+  Scene scene = heavy_scene(100, 0);
+  scene.grippers = {{.at = 0, .position = {0, 0.02, 0}}};
+  scene.obstacles = {Obstacle{}};
+  return scene;
+}
+
+TEST(Chain, LiesOnAFloorBelowItsPin) {
+  double last = 0;
+  for (const int points : {16, 64, 240}) {
+    Scene scene = pin_above_floor();
+    scene.force_model.points = points;
+    scene.force_model.law = Law::hooke;
+    scene.force_model.bookkeeping = Bookkeeping::consistent;
+    const Solution chain = solve_chain(scene, scene.force_model);
+    const double weight = 100 * scene.bending_stiffness();
+    EXPECT_NEAR(chain.grippers[0].force.y() + chain.obstacles[0].y(), weight, 1e-6 * weight);
+    const Eigen::Matrix3Xd& p = chain.shape.points;
+    const Eigen::Index n = p.cols() - 1;
+    const double length = (p.rightCols(n) - p.leftCols(n)).colwise().norm().sum();
+    EXPECT_NEAR(length, 1, 1e-4);
+    EXPECT_GT(p.row(1).minCoeff(), -1e-5);
+    if (points > 16) {
+      EXPECT_NEAR(chain.grippers[0].force.y(), last, 0.02 * last);
+    }
+    last = chain.grippers[0].force.y();
+  }
+}
+
+/// A clamp and a pin so near on the rod that few points leave one segment between them, longer than
+/// they are apart.
+Scene grips_near_each_other() {
+  Scene scene = heavy_scene(5, 0);
+  scene.grippers.push_back({.at = 0.186, .position = {0.12, 0.05, 0}});
+  scene.force_model.law = Law::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  return scene;
+}
+
+TEST(Chain, AndForceRefuseASegmentThatCannotFitAndSayHowManyPointsDo) {
+  Scene scene = grips_near_each_other();
+  for (const int points : {9, 10}) {
+    scene.force_model.points = points;
+    for (const auto solver : {&solve_chain, &solve_force}) {
+      try {
+        (void)solver(scene, scene.force_model, {});
+        FAIL() << "no error";
+      } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("in 1 segment between points"), std::string::npos)
+            << error.what();
+        EXPECT_NE(std::string(error.what()).find("allowed: 11 or more"), std::string::npos)
+            << error.what();
+      }
+    }
+  }
+  scene.force_model.points = 11;
+  const Solution chain = solve_chain(scene, scene.force_model);
+  EXPECT_LT(chain.energy.stretch, 1e-3 * chain.energy.bending);
+}
+
+TEST(Chain, StretchAboveAHundredthIsNoResultUnlessAskedFor) {
+  // Hangs from a clamp inside, w l / (E A) = Gamma d^2 / (16 l^2) = 1.9 %
+  Scene scene = heavy_scene(30, -90);
+  scene.grippers[0].at = 0.2;
+  scene.material.youngs_modulus /= std::pow(0.1 / scene.diameter, 4);
+  scene.material.density /= std::pow(0.1 / scene.diameter, 2);
+  scene.diameter = 0.1;
+  ASSERT_NEAR(scene.gamma(), 30, 1e-9);
+  for (const auto solver : {&solve_chain, &solve_force}) {
+    try {
+      (void)solver(scene, scene.force_model, {});
+      FAIL() << "no error";
+    } catch (const ConvergenceError& error) {
+      EXPECT_NE(std::string(error.what()).find("longer than at rest"), std::string::npos)
+          << error.what();
+    }
+  }
+  scene.force_model.c_c = scene.axial_stiffness();
+  EXPECT_GT(solve_chain(scene, scene.force_model).energy.stretch, 0);
+}
+
+TEST(Force, RestsInTheStateOfTheChain) {
+  // From the chain's own start it swings into an arch with half as much energy again.
+  Scene scene;
+  scene.file = scene.name = "clamps in space";
+  scene.length = 1;
+  scene.diameter = 0.004;
+  scene.material = {.name = "own", .youngs_modulus = 79577471545.94765, .density = 2788.27335};
+  scene.gravity = {0, -9.81, 0};
+  scene.grippers = {
+      {.at = 0.127,
+       .position = {0.2986607170328106, 0.611656186051831, -0.2478694131670547},
+       .direction = Vector3d(-0.21736416854540283, -0.3883106916406705, -0.8955264513067773)},
+      {.at = 0.567,
+       .position = {0.3675062348836809, 0.4192120289768312, -0.2173591936662226},
+       .direction = Vector3d(-0.37780616912170295, -0.8845221558642805, -0.2736476829041102)}};
+  scene.force_model.law = Law::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  for (const int points : {9, 17}) {
+    scene.force_model.points = points;
+    const Solution chain = solve_chain(scene, scene.force_model);
+    const Solution force = solve_force(scene, scene.force_model);
+    EXPECT_EQ(force.message, "at rest");
+    EXPECT_NEAR(force.energy.bending, chain.energy.bending, 1e-4 * chain.energy.bending);
+  }
+}
+
+TEST(Torque, IsAboutTheGrippersOwnPositionInEveryModelThatBalancesIt) {
+  const Vector3d away(3, -2, 1);
+  for (Scene scene : {heavy_scene(8, 20), loaded_clamps(), clamp_inside(), spatial_clamps()}) {
+    scene.force_model.points = 24;
+    for (const Model model : {Model::energy, Model::chain}) {
+      const Solution there = solve(scene, model);
+      Scene moved = scene;
+      for (Gripper& gripper : moved.grippers) gripper.position += away;
+      const Solution here = solve(moved, model);
+      for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+        const GripperLoad& a = there.grippers[i];
+        const GripperLoad& b = here.grippers[i];
+        const double size = 1e-3 * scene.bending_stiffness() + a.torque.norm();
+        EXPECT_LT((a.torque - b.torque).norm(), 1e-4 * size) << to_string(model) << " " << i;
+        EXPECT_LT((a.force - b.force).norm(), 1e-4 * (a.force.norm() + size)) << to_string(model);
+      }
+      // The balance about the origin: the lever is the gripper's position.
+      Vector3d torque = Vector3d::Zero();
+      for (std::size_t i = 0; i < moved.grippers.size(); ++i) {
+        torque +=
+            here.grippers[i].torque + moved.grippers[i].position.cross(here.grippers[i].force);
+      }
+      const Discretisation d = discretise(moved, moved.force_model);
+      double carried = 0;
+      if (model == Model::energy) {
+        // Weight per length on a fine grid of the shape, and point loads.
+        const energy_model::Equilibrium rod = solve_reference(moved, Model::energy);
+        constexpr int cells = 2000;
+        std::vector<double> middles;
+        for (int k = 0; k < cells; ++k) middles.push_back((k + 0.5) / cells);
+        const Eigen::Matrix3Xd p = rod.sample(middles).points;
+        const Vector3d w = moved.weight_per_length() / cells;
+        for (Eigen::Index k = 0; k < p.cols(); ++k) torque += p.col(k).cross(w);
+        for (const PointLoad& load : moved.loads) {
+          torque += rod.sample(std::vector<double>{load.at}).points.col(0).cross(load.force);
+        }
+      } else {
+        const Solution chain = solve_chain(moved, moved.force_model);
+        // Of the polygon's own points; those inside a gripper weigh nothing.
+        for (Eigen::Index k = 0; k < chain.shape.points.cols(); ++k) {
+          torque += Vector3d(chain.shape.points.col(k)).cross(Vector3d(d.rod.loads.col(k)));
+        }
+      }
+      carried = moved.weight_per_length().norm();
+      for (const PointLoad& load : moved.loads) carried += load.force.norm();
+      EXPECT_LT(torque.norm(), 1e-4 * carried) << to_string(model);
+    }
+  }
 }
 
 TEST(Chain, FindsTheLowestOfTwoArches) {

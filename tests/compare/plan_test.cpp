@@ -221,6 +221,53 @@ TEST(Plan, MotionCountsWhenItsKineticEnergyDoes) {
   EXPECT_LT(fast.bound("inertia"), 1.3 * unit * (1.566 / 3.516));
 }
 
+TEST(Plan, NoBoundIsGivenNextToBuckling) {
+  // An upright rod buckles at 7.8373; a coarse polygon does before.
+  for (const double gamma : {7.6, 7.8}) {
+    Scene scene = heavy_scene(gamma, 90);
+    scene.force_model.points = 8;
+    scene.force_model.bookkeeping = Bookkeeping::consistent;
+    const Plan plan = make_plan(scene);
+    for (const char* what : {"stretch", "shear", "polygon"}) {
+      EXPECT_TRUE(std::isinf(plan.bound(what))) << gamma << " " << what;
+    }
+    EXPECT_EQ(plan.points, 0);
+  }
+  const Plan far = make_plan(heavy_scene(6, 90));
+  EXPECT_LT(far.bound("polygon"), 1e-6);
+  EXPECT_GT(far.points, 0);
+}
+
+TEST(Plan, BoundsThePolygonOnTheWayToBucklingOrSaysThatItDoesNot) {
+  int bounded = 0;
+  for (const double gamma : {2.0, 6.0, 7.0, 7.5, 7.8, 8.5}) {
+    for (const double degrees : {85.0, 89.0, 89.99}) {
+      Scene scene = heavy_scene(gamma, degrees);
+      scene.force_model.points = 12;
+      scene.force_model.law = Law::hooke;
+      scene.force_model.bookkeeping = Bookkeeping::consistent;
+      const double bound = make_plan(scene).bound("polygon");
+      if (std::isinf(bound)) continue;
+      ++bounded;
+      const Shape shape = solve_chain(scene, scene.force_model).shape;
+      const energy_model::Equilibrium rod = solve_reference(scene, Model::energy);
+      const double measured =
+          rms(shape.arc_length, shape.points - rod.sample(shape.arc_length).points);
+      EXPECT_GE(bound, measured) << gamma << " " << degrees;
+      EXPECT_LE(bound, 10 * measured + 1e-9) << gamma << " " << degrees;
+    }
+  }
+  EXPECT_GE(bounded, 6);
+}
+
+TEST(Plan, IsMadeInTimeAndNeverFails) {
+  Scene scene = heavy_scene(10, 0);
+  scene.grippers.push_back({.at = 1, .position = {1.5, 0, 0}});  // out of reach
+  const Plan plan = make_plan(scene);
+  EXPECT_TRUE(std::isinf(plan.bound("polygon")));
+  EXPECT_THROW((void)make_plan(scene, {.time_limit = 0}), std::invalid_argument);
+}
+
 TEST(Plan, NoBoundIsGivenWhereTheRodTouches) {
   Scene scene = heavy_scene(20, 0);
   scene.obstacles = {{.point = {0, -0.15, 0}}};

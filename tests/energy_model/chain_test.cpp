@@ -80,6 +80,17 @@ INSTANTIATE_TEST_SUITE_P(Laws, ChainOfBothLaws, testing::Values(JointLaw::paper,
                            return instance.param == JointLaw::paper ? "paper" : "hooke";
                          });
 
+TEST(Chain, StopsAtItsTimeLimit) {
+  ChainProblem problem;
+  problem.segment_lengths = Eigen::VectorXd::Constant(50, 0.02);
+  problem.node_forces.setZero(2, 51);
+  problem.node_forces.row(1).setConstant(-0.2);
+  problem.stiffness = 1;
+  EXPECT_EQ(solve_chain(problem, {.time_limit = 1e-9}).status, SolveStatus::time_limit);
+  EXPECT_EQ(solve_chain(problem).status, SolveStatus::converged);
+  EXPECT_THROW((void)solve_chain(problem, {.time_limit = 0}), std::invalid_argument);
+}
+
 TEST(Chain, EvaluationsOfAHookeanChainDoNotGrowWithItsPoints) {
   EXPECT_LE(solve_chain(heavy_chain(JointLaw::hooke, 1000, 2)).evaluations,
             solve_chain(heavy_chain(JointLaw::hooke, 15, 2)).evaluations + 5);

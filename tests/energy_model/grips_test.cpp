@@ -180,8 +180,16 @@ TEST(TwoClamps, TautAndSlackConvergeInBoundedWork) {
     for (const double gamma : {0.0, 10.0, 1000.0, 1e5}) {
       const Equilibrium result = solve_energy(two_clamps(gamma, span));
       EXPECT_LT(result.evaluations, 2000);
-      EXPECT_EQ(result.status, SolveStatus::converged)
+      ASSERT_EQ(result.status, SolveStatus::converged)
           << "span " << span << ", Gamma " << gamma << ": " << result.message;
+      EXPECT_GT(result.smallest_curvature, -1e-7 * (1 + gamma)) << span << ", Gamma " << gamma;
+      const Samples ends = result.sample(std::vector<double>{0, 1});
+      EXPECT_NEAR((ends.points.col(1) - ends.points.col(0)).norm(), span, 1e-9);
+      EXPECT_LT((ends.tangents.colwise() - Eigen::Vector3d::UnitX()).norm(), 1e-9);
+      // The grips carry the weight, and nothing else acts.
+      EXPECT_LT(
+          (result.grips[0].force + result.grips[1].force - Eigen::Vector3d(0, gamma, 0)).norm(),
+          1e-6 * (1 + gamma));
     }
   }
 }

@@ -166,6 +166,31 @@ TEST(Polygon, StoppedEarlyIsAFailure) {
             SolveStatus::evaluation_limit);
 }
 
+TEST(Polygon, StopsAtItsTimeLimit) {
+  const PolygonProblem problem = two_clamps(JointLaw::hooke, 20, 0.8, 5);
+  const PolygonResult late = solve_polygon(problem, arch(problem, 0.8, 0), {.time_limit = 1e-9});
+  EXPECT_EQ(late.status, SolveStatus::time_limit);
+  EXPECT_THROW((void)solve_polygon(problem, arch(problem, 0.8, 0), {.time_limit = 0}),
+               std::invalid_argument);
+}
+
+TEST(Polygon, ReturnsTheResidualOfThePointsThatItReturns) {
+  for (const int most : {2, 5, 10, 20000}) {
+    const PolygonProblem problem = two_clamps(JointLaw::hooke, 20, 0.8, 5);
+    const PolygonResult result =
+        solve_polygon(problem, arch(problem, 0.8, 0.2), {.max_evaluations = most});
+    Eigen::Matrix3Xd gradient(3, 20);
+    EXPECT_EQ(result.energy, polygon_energy(problem, result.points, gradient));
+    const double left = gradient.middleCols(2, 16).colwise().norm().maxCoeff();
+    EXPECT_DOUBLE_EQ(result.residual, left);
+    // Forces that act are about 5 (the weight) and more; rounding of a position moves a stiff
+    // segment's force by 1e-16 x 4e6 x 18.
+    if (succeeded(result.status)) {
+      EXPECT_LT(left, 1e-6);
+    }
+  }
+}
+
 TEST(Polygon, RefusesBadProblems) {
   const PolygonProblem good = two_clamps(JointLaw::hooke, 10, 0.8, 5);
   const Eigen::Matrix3Xd start = arch(good, 0.8, 0);

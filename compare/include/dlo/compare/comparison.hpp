@@ -23,6 +23,9 @@ struct Comparison {
   Solution force;               ///< the force model at rest
   Shape reference;              ///< the energy model at the force model's arc lengths
   Reference reference_rod;      ///< and anywhere from 0 to l
+  /// Why nothing may be concluded from the reference; empty if it is proven. Only where
+  /// SolveOptions::accept_unresolved is set.
+  std::string unresolved;
   /// Which equilibrium `reference` is: of the stable ones the nearest (RMS) to where the Hookean
   /// polygon falls from the force model's shape. That is the state that the force model is in, and
   /// not always the one of lowest energy.
@@ -30,7 +33,8 @@ struct Comparison {
   Deviation deviation;  ///< of `force` from `reference`
   /// The straight rod's own deviation from the reference; NaN without a straight rod.
   double undeformed_rms_over_length = 0;
-  /// Of several stable states in the one that was compared, followed to each E*.
+  /// Of several stable states in the one that was compared, followed to each E*. NaN where the
+  /// reference is not resolved.
   EffectiveModulus effective_modulus;
   /// What even E* does not explain, against the reference's way from the straight rod; NaN without.
   double residual_over_movement = 0;

@@ -73,9 +73,16 @@ struct Discretisation {
 /// obstacle gets c_c / L: as stiff as the rod's own segments, so that points enter it by the weight
 /// of a segment over c_c / L; stiffer ones would only slow the steps down.
 /// @throws InputError if there are too few points for the grippers (with the number needed), two
-/// grippers hold the same arc length, or grippers, or the segments that they hold, are further
-/// apart than the rod between them
+/// grippers hold the same arc length, grippers, or the segments that they hold, are further apart
+/// than the rod between them, or a single segment between two held points does not fit (with the
+/// number of points that do)
 [[nodiscard]] Discretisation discretise(const Scene& scene, const ForceModelSettings& settings);
+
+/// Largest share by which a segment's length may differ from its rest length in a result [-]: a
+/// hundredth, so that a rod that is stretched or crushed because its polygon is too coarse, or its
+/// solver lost, is not taken for a shape. Who gives a c_c of A E or less asks for the stretch: a
+/// half, beyond which a segment is crushed or torn.
+[[nodiscard]] double largest_strain(const Scene& scene, const ForceModelSettings& settings);
 
 /// The same polygon for the rigid chain solver.
 struct ChainScene {

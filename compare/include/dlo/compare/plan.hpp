@@ -13,6 +13,8 @@ struct PlanOptions {
   double target = 1e-3;  ///< wanted error, RMS over the rod's length [-], > 0
   /// Fastest that a gripper moves, starts or stops [m/s], >= 0; 0: the scene stands still.
   double gripper_speed = 0;
+  /// Of all that the plan solves [s], > 0; what is not known by then has no bound.
+  double time_limit = 5;
 };
 
 /// A part of the rod that can be solved by itself: from clamp to clamp or end.
@@ -73,7 +75,9 @@ inline constexpr int most_planned_points = 4000;
 ///   the last. Stretch adds at most 2 l sqrt(P / EA), P the sum of all loads: the stretch energy
 ///   EA d^2 / (2 l) is no more than what the loads do over a way of 2 l. The smaller of EA and c_c.
 /// - Stretch, shear and the polygon: twice the first-order answer of the rod's own shape
-///   (PolygonResponse), while that is below 3 % of the length; else they are said to have no bound.
+///   (PolygonResponse), while that is below 3 % of the length and the answer's matrix far from
+///   singular: next to buckling or snapping the shape's next terms decide, and of a symmetric rod
+///   the first vanishes. Else they are said to have no bound.
 ///   The shape is the energy model's, solved once, without obstacles out of reach; a rod that
 ///   touches an obstacle has no bound either, since where it touches may change.
 ///   Shear: k G >= 0.3 E. A round section has k = 6 (1 + nu) / (7 + 6 nu) (Cowper 1966) and
@@ -86,6 +90,7 @@ inline constexpr int most_planned_points = 4000;
 ///   d, so the rod leaves its static shape by d <= v l^2 sqrt(rho A / (3 EI)) (small deflections).
 ///   A single pin lets the rod swing: no bound.
 /// - Twist: a round, naturally straight rod whose grips leave the twist free has none: nothing.
+/// A scene that cannot be planned in time or at all has a plan without bounds, and why.
 /// @throws std::invalid_argument if an option is out of range
 [[nodiscard]] Plan make_plan(const Scene& scene, const PlanOptions& options = {});
 

@@ -19,6 +19,9 @@ struct SolveOptions {
   long max_steps = 20'000'000;   ///< of the force model
   double time_limit = 20;        ///< of each solve of a model [s], > 0
   double rest_tolerance = 1e-7;  ///< of the force model, share of the rod's length
+  /// Take a shape of the energy model whose status is `not_resolved`, to show it with that status;
+  /// nothing may be concluded from it.
+  bool accept_unresolved = false;
   /// Of the energy model: an equilibrium of a similar scene to follow, instead of the lowest.
   const energy_model::Equilibrium* start = nullptr;
 };
@@ -41,11 +44,15 @@ struct GripperLoad {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
 };
 
-/// A shape and what it cost. Only converged shapes are ever returned.
+/// A shape and what it cost. Only converged shapes are returned, and those that are not resolved to
+/// whoever accepts them (SolveOptions::accept_unresolved).
 struct Solution {
   Model model = Model::energy;  ///< that solved it
-  std::string message;          ///< how the solver ended
-  Shape shape;                  ///< the converged shape
+  /// `converged`, `roundoff_limited` or `not_resolved`; of solve_all() `saddle` too.
+  energy_model::SolveStatus status = energy_model::SolveStatus::converged;
+  std::string message;     ///< how the solver ended
+  double penetration = 0;  ///< of energy: Equilibrium::penetration [m]
+  Shape shape;             ///< of the rod
   /// From solve() and solve_all(), at the shape's points: curvature [1/m], a polygon's that of its
   /// joints.
   std::vector<double> curvature;
@@ -69,7 +76,8 @@ struct Solution {
 };
 
 /// The continuous reference of a scene: `energy` or `exact`.
-/// @throws InputError, ConvergenceError
+/// @throws InputError, ConvergenceError; that too where a shape is not resolved, unless
+/// `accept_unresolved` is set
 [[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                                         const SolveOptions& options = {});
 
@@ -92,7 +100,8 @@ struct Solution {
 
 /// The polygon of minimal energy: one clamp at an end, forces in a plane and no obstacle, of rigid
 /// segments; else of segments with the force model's c_c, of several starts' shapes the lowest.
-/// @throws InputError, ConvergenceError
+/// @throws InputError, ConvergenceError; that too where a segment differs from its rest length by
+/// more than largest_strain(), with the number of points that would do
 [[nodiscard]] Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
                                    const SolveOptions& options = {});
 
@@ -104,7 +113,9 @@ struct Solution {
                                const Shape& start, const SolveOptions& options = {});
 
 /// The force model at rest. Between several grippers it starts where the chain's lowest shape came
-/// from, so that both are in the same state. @throws InputError, ConvergenceError
+/// from, and from near that shape where it ends in another state, so that both are in the same one;
+/// where it still does not, the message says so. @throws InputError, ConvergenceError as
+/// solve_chain
 [[nodiscard]] Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                                    const SolveOptions& options = {});
 

@@ -9,6 +9,10 @@
 
 namespace dlo::energy_model {
 
+/// Depth behind a rigid wall up to which a shape is called converged, in lengths of the rod: what a
+/// lying rod keeps to everywhere, and a touching tip does not.
+inline constexpr double allowed_penetration = 1e-4;
+
 /// How well to solve, and from where.
 struct EnergyOptions {
   /// Curvature coefficients K of each smooth piece of the rod; 0 chooses them so that the last ones
@@ -39,9 +43,12 @@ struct EnergyOptions {
 /// lead to nothing stable), and what cannot hold itself is followed to where it falls, also out of
 /// its plane.
 ///
-/// Rigid walls are met by an augmented Lagrangian whose multipliers settle to 1e-9 l; the curvature
-/// has kinks where contact begins, so shapes on walls are right to 1e-4 l and their forces to 1e-3
-/// of the weight only (a lying rod against its exact solution: 5e-5 l, 5e-4).
+/// Rigid walls are met by an augmented Lagrangian whose multipliers live at the quadrature's nodes,
+/// between which a shape may enter a wall: a tip that just touches one by up to 1e-3 l. Equilibrium
+/// has the depth as `penetration`; a shape deeper than `allowed_penetration`, or whose contact
+/// forces have not settled, has the status `not_resolved`. The curvature has kinks where contact
+/// begins: a lying rod against its exact solution is right to 5e-5 l, its force to 5e-4 of the
+/// weight.
 /// @throws std::invalid_argument if the problem or an option is out of range, with the numbers
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 

@@ -23,6 +23,9 @@ struct [[nodiscard]] Equilibrium {
   /// Smallest eigenvalue of the second variation over EI/l, with the constraints and, for planar
   /// shapes, with bending out of the plane; NaN where a solver did not look. Negative: unstable.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
+  /// Largest depth of the shape behind a rigid wall, between the solver's own nodes too [m]; 0
+  /// without such walls. A shape that is deeper than `allowed_penetration` lengths is not_resolved.
+  double penetration = 0;
   Energies energy;                     ///< of the shape [J]
   std::vector<Eigen::Vector3d> walls;  ///< force of each wall on the rod [N]
   std::vector<Reaction> grips;         ///< in the order of Problem::grips

@@ -71,9 +71,12 @@ struct [[nodiscard]] PolygonResult {
 /// starts so low that forces stretch the rod by about a hundredth, and grows tenfold a stage: a
 /// stiff rod's steps would be confined to a narrow curved valley.
 ///
-/// `converged` and `roundoff_limited` mean that the Hessian over all free points, in space, is
-/// positive definite (to rounding: a shape that is free to turn is not called unstable). At a
-/// saddle the solver leaves along the lowest curvature and goes on.
+/// `converged` and `roundoff_limited` mean, at the points that are returned, that the Hessian over
+/// all free points, in space, is positive definite (to rounding: a shape that is free to turn is
+/// not called unstable), that Newton's step from there is below 1e-7 polygon lengths, and that no
+/// force above 1e-6 of those that act is left on a free point, but for rounding; else the status is
+/// `not_resolved` and the message has the number. At a saddle the solver leaves along the lowest
+/// curvature and goes on.
 /// @param start  positions to start from [m], 3 x (n+1), no segment of zero length; held points
 ///               are put where they are held
 /// @throws std::invalid_argument if the problem, an option or the start is out of range
