@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "dlo/energy_model/status.hpp"
 #include "shooting_system.hpp"
 
 namespace dlo::energy_model {
@@ -99,7 +100,7 @@ std::optional<double> levenberg_step(const ShootingSystem& system, Triplets deri
 ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector<RodState>& start,
                      const ShootingOptions& options) {
   const ShootingSystem system(span, mesh, options.planar, options.tolerance,
-                              largest_force(span, start));
+                              largest_force(span, start), options.deadline);
   std::vector<ShootingNode> nodes;
   nodes.reserve(start.size());
   for (const RodState& state : start) nodes.push_back(system.make_node(state));
@@ -107,6 +108,10 @@ ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector
   result.message = "Newton's method took too many steps";
   Eigen::VectorXd equations;
   for (int iteration = 0; iteration < options.max_iterations && !result.converged; ++iteration) {
+    if (options.deadline.passed()) {
+      result.message = to_string(SolveStatus::time_limit);
+      break;
+    }
     Triplets derivatives;
     ++result.shots;
     if (!system.evaluate(nodes, equations, &derivatives)) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "deadline.hpp"
 #include "rod_flow.hpp"
 #include "rod_span.hpp"
 
@@ -36,7 +37,7 @@ class ShootingSystem {
   /// @param tolerance  of the integrator
   /// @param span, mesh  have to outlive the system
   ShootingSystem(const RodSpan& span, const RodMesh& mesh, bool planar, double tolerance,
-                 double force);
+                 double force, const Deadline& deadline);
 
   [[nodiscard]] Eigen::Index size() const { return layout_.size() * mesh_.s.size(); }
 
@@ -51,7 +52,7 @@ class ShootingSystem {
                                                 const Eigen::VectorXd& step) const;
 
   /// All equations, and their derivatives if asked for.
-  /// @return false if the integrator gave up
+  /// @return false if the integrator gave up or the deadline has passed
   [[nodiscard]] bool evaluate(const std::vector<ShootingNode>& nodes, Eigen::VectorXd& equations,
                               Triplets* derivatives) const;
 
@@ -84,6 +85,7 @@ class ShootingSystem {
   const RodSpan& span_;
   const RodMesh& mesh_;
   double tolerance_;
+  Deadline deadline_;
   double rate_;  // unit of v; its square is that of n
   Eigen::Matrix3Xd axes_;
   NodeLayout layout_{3};

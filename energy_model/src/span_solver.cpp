@@ -234,7 +234,8 @@ class Search {
       }
     }
     solution.evaluations += result.evaluations;
-    solution.status = result.status;
+    // Newton's method has to prove the shape anyway.
+    solution.status = result.is_a_start() ? SolveStatus::roundoff_limited : result.status;
     solution.message = result.message;
   }
 
