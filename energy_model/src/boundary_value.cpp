@@ -53,7 +53,7 @@ std::optional<double> newton_step(const ShootingSystem& system, const Triplets& 
     return closed ? std::optional(largest) : std::nullopt;
   }
   double part = std::min(1.0, largest_turn / std::max(system.turn(step), 1e-300));
-  for (; part > smallest_part; part /= 2) {
+  for (; part > smallest_part && !system.out_of_time(); part /= 2) {
     const std::vector<ShootingNode> trial = system.moved(nodes, part * step);
     ++shots;
     if (!system.evaluate(trial, trial_equations, nullptr)) continue;
@@ -75,7 +75,7 @@ std::optional<double> levenberg_step(const ShootingSystem& system, Triplets deri
   Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
   right.head(size) = -equations;
   Eigen::VectorXd trial_equations;
-  for (double weight = equations.norm(); weight < 1e6; weight *= 8) {
+  for (double weight = equations.norm(); weight < 1e6 && !system.out_of_time(); weight *= 8) {
     derivatives.resize(own);
     for (Eigen::Index i = 0; i < size; ++i) {
       derivatives.emplace_back(static_cast<int>(size + i), static_cast<int>(i), std::sqrt(weight));

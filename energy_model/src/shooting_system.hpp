@@ -41,6 +41,8 @@ class ShootingSystem {
 
   [[nodiscard]] Eigen::Index size() const { return layout_.size() * mesh_.s.size(); }
 
+  [[nodiscard]] bool out_of_time() const { return deadline_.passed(); }
+
   /// Gaps that count as closed: steps of the integrator come and go as the nodes move, so that
   /// they cannot be closed to less than its tolerance.
   [[nodiscard]] double closed() const { return std::max(1e-11, 10 * tolerance_); }

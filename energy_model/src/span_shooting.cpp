@@ -22,7 +22,8 @@ constexpr double departure = 0.3;         // largest change of a tangent when a 
 constexpr double variation_tolerance = 1e-10;
 constexpr int finer_polygons = 2;              // after a shot that has failed
 constexpr Eigen::Index most_intervals = 1000;  // of a polygon that is made finer
-constexpr double polygons_share = 0.5;         // of the time that is left
+constexpr int search_iterations = 30;   // of Newton's method, which takes 6 to 12 near a minimum
+constexpr double polygons_share = 0.5;  // of the time that is left
 
 /// Intervals that resolve boundary layers under a force, and the bends of a span without any.
 double longest_interval(const RodSpan& span, double force) {
@@ -165,7 +166,7 @@ class SpanSearch {
     const Deadline polygons(polygons_share * deadline_.remaining());
     bool complete = polygon_starts(span_, mesh_, polygons, starts);
     for (std::size_t i = 0; i < starts.size(); ++i) {
-      if (i >= most_descents && lowest_stable() < INFINITY) break;
+      if (i >= (lowest_stable() < INFINITY ? most_descents : 2 * most_descents)) break;
       if (deadline_.passed()) break;
       descend(starts[i]);
     }
@@ -187,26 +188,36 @@ class SpanSearch {
 
  private:
   SpanEquilibrium shoot_from(const RodMesh& mesh, const RelaxedPolygon& polygon, bool planar) {
-    SpanEquilibrium equilibrium =
-        shoot_span(span_, mesh, states_of(span_, mesh, polygon),
-                   {.tolerance = tolerance_, .planar = planar, .deadline = deadline_});
+    SpanEquilibrium equilibrium = shoot_span(span_, mesh, states_of(span_, mesh, polygon),
+                                             {.tolerance = tolerance_,
+                                              .planar = planar,
+                                              .max_iterations = search_iterations,
+                                              .deadline = deadline_});
     shots_ += equilibrium.shots;
     return equilibrium;
   }
 
   void descend(const PolygonStart& start) {
-    SpanEquilibrium equilibrium = shoot_from(mesh_, start.polygon, start.planar);
-    // Under a large reaction the coarse polygon is not near enough.
     RodMesh mesh = mesh_;
     RelaxedPolygon polygon = start.polygon;
-    for (int level = 0; level < finer_polygons && !equilibrium.converged; ++level) {
-      if (deadline_.passed() || mesh.intervals() > most_intervals) break;
-      const double longest =
-          (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
-      RodMesh finer = make_mesh(span_, longest / 3);
+    const auto longest_of = [&] {
+      return (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
+    };
+    const auto refine = [&](double longest) {
+      RodMesh finer = make_mesh(span_, longest);
       polygon = relax_polygon(span_, finer, tangents_on(mesh, polygon.tangents, finer),
                               start.planar, deadline_);
       mesh = std::move(finer);
+    };
+    // Under a large reaction the coarse polygon is not near enough.
+    const double force = polygon.force.colwise().norm().maxCoeff();
+    const double resolved = std::max(1 / std::sqrt(std::max(force, 1.0)),
+                                     span_.length / static_cast<double>(most_intervals));
+    if (longest_of() > 1.5 * resolved) refine(resolved);
+    SpanEquilibrium equilibrium = shoot_from(mesh, polygon, start.planar);
+    for (int level = 0; level < finer_polygons && !equilibrium.converged; ++level) {
+      if (deadline_.passed() || mesh.intervals() > most_intervals / 3) break;
+      refine(longest_of() / 3);
       equilibrium = shoot_from(mesh, polygon, start.planar);
     }
     if (!equilibrium.converged) {

@@ -33,11 +33,11 @@ struct SpanSearchResult {
 };
 
 /// Equilibria that Newton's method finds from the minima of polygons (relaxed_polygon.hpp), in the
-/// span's plane and out of it: from the six lowest ones, from the others while none of what they
-/// led to is stable. Where Newton's method does not converge, the polygon is relaxed again on a
-/// mesh three and nine times as fine. What is unstable and lower than all that is stable is left
-/// both ways along the mode of its smallest eigenvalue, and the polygon is relaxed from there. If
-/// nothing is found, one that has failed.
+/// span's plane and out of it: from the six lowest ones, from six more while none of what they led
+/// to is stable. Where a polygon's force is large for its mesh, or Newton's method does not
+/// converge, it is relaxed again on a finer one. What is unstable and lower than all that is stable
+/// is left both ways along the mode of its smallest eigenvalue, and the polygon is relaxed from
+/// there. If nothing is found, one that has failed.
 [[nodiscard]] SpanSearchResult search_span(const RodSpan& span, double tolerance,
                                            const Deadline& deadline);
 
