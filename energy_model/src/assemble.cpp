@@ -3,8 +3,10 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
 
+#include "ordered_grips.hpp"
 #include "require.hpp"
 
 namespace dlo::energy_model {
@@ -119,13 +121,10 @@ Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& plac
     }
   }
   for (const Load& load : problem.loads) {
-    for (std::size_t g = 0; g < problem.grips.size(); ++g) {
-      const Grip& grip = problem.grips[g];
-      if (!grip.direction || grip.at != load.at) continue;
-      result.grips[g].force -= load.force;
-      result.energy.load -= load.force.dot(grip.position - origin);
-      break;
-    }
+    const std::optional<std::size_t> clamp = clamp_under(problem, load);
+    if (!clamp) continue;
+    result.grips[*clamp].force -= load.force;
+    result.energy.load -= load.force.dot(problem.grips[*clamp].position - origin);
   }
   std::vector<PlacedShape> shapes;
   for (std::size_t i = 0; i < placed.size(); ++i) {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "dlo/energy_model/status.hpp"
 #include "shooting_system.hpp"
 
 namespace dlo::energy_model {
@@ -52,7 +53,7 @@ std::optional<double> newton_step(const ShootingSystem& system, const Triplets& 
     return closed ? std::optional(largest) : std::nullopt;
   }
   double part = std::min(1.0, largest_turn / std::max(system.turn(step), 1e-300));
-  for (; part > smallest_part; part /= 2) {
+  for (; part > smallest_part && !system.out_of_time(); part /= 2) {
     const std::vector<ShootingNode> trial = system.moved(nodes, part * step);
     ++shots;
     if (!system.evaluate(trial, trial_equations, nullptr)) continue;
@@ -74,7 +75,7 @@ std::optional<double> levenberg_step(const ShootingSystem& system, Triplets deri
   Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
   right.head(size) = -equations;
   Eigen::VectorXd trial_equations;
-  for (double weight = equations.norm(); weight < 1e6; weight *= 8) {
+  for (double weight = equations.norm(); weight < 1e6 && !system.out_of_time(); weight *= 8) {
     derivatives.resize(own);
     for (Eigen::Index i = 0; i < size; ++i) {
       derivatives.emplace_back(static_cast<int>(size + i), static_cast<int>(i), std::sqrt(weight));
@@ -99,7 +100,7 @@ std::optional<double> levenberg_step(const ShootingSystem& system, Triplets deri
 ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector<RodState>& start,
                      const ShootingOptions& options) {
   const ShootingSystem system(span, mesh, options.planar, options.tolerance,
-                              largest_force(span, start));
+                              largest_force(span, start), options.deadline);
   std::vector<ShootingNode> nodes;
   nodes.reserve(start.size());
   for (const RodState& state : start) nodes.push_back(system.make_node(state));
@@ -107,6 +108,10 @@ ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector
   result.message = "Newton's method took too many steps";
   Eigen::VectorXd equations;
   for (int iteration = 0; iteration < options.max_iterations && !result.converged; ++iteration) {
+    if (options.deadline.passed()) {
+      result.message = to_string(SolveStatus::time_limit);
+      break;
+    }
     Triplets derivatives;
     ++result.shots;
     if (!system.evaluate(nodes, equations, &derivatives)) {

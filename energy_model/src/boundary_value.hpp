@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "deadline.hpp"
 #include "rod_flow.hpp"
 #include "rod_span.hpp"
 
@@ -12,6 +13,7 @@ struct ShootingOptions {
   double tolerance = 1e-13;  ///< of the integrator, see follow_rod
   bool planar = false;       ///< stay in the span's plane
   int max_iterations = 60;   ///< Newton steps
+  Deadline deadline{};       ///< the result is a failure once it has passed
 };
 
 struct [[nodiscard]] ShootingResult {

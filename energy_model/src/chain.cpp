@@ -293,7 +293,7 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   Eigen::VectorXd by_turn(n - 1);
   (void)objective(turns, by_turn);
   result.status = first.status;
-  if (succeeded(first.status)) polish(problem, options, deadline, moment_scale, result);
+  if (first.is_a_start()) polish(problem, options, deadline, moment_scale, result);
   result.message = to_string(result.status);
 
   const double total = chain_energy(problem, result.angles, gradient);

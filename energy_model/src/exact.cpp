@@ -13,10 +13,14 @@
 #include <string>
 #include <utility>
 
+#include "deadline.hpp"
+#include "lowest_combinations.hpp"
+#include "ordered_grips.hpp"
 #include "planar_shooting.hpp"
 #include "reduction.hpp"
 #include "require.hpp"
 #include "rod_span.hpp"
+#include "second_variation.hpp"
 #include "silence_gsl.hpp"
 #include "span_shooting.hpp"
 
@@ -59,13 +63,11 @@ void add_reactions(const RodSpan& span, const SpanEquilibrium& equilibrium, doub
 /// Loads on clamps belong to no span.
 void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
   for (const Load& load : problem.loads) {
-    for (std::size_t g = 0; g < problem.grips.size(); ++g) {
-      const Grip& grip = problem.grips[g];
-      if (!grip.direction || !same_arc_length(grip.at, load.at, problem.length)) continue;
-      result.grips[g].force -= load.force;
-      result.energy.load -= load.force.dot(grip.position - problem.grips.front().position);
-      break;
-    }
+    const std::optional<std::size_t> clamp = clamp_under(problem, load);
+    if (!clamp) continue;
+    const Eigen::Vector3d& position = problem.grips[*clamp].position;
+    result.grips[*clamp].force -= load.force;
+    result.energy.load -= load.force.dot(position - problem.grips.front().position);
   }
 }
 
@@ -95,11 +97,11 @@ Samples sample(const Problem& problem, const Pieces& pieces, double tolerance,
 
 Equilibrium assemble(const Problem& problem, const Pieces& pieces, double tolerance) {
   Equilibrium result;
-  result.status = SolveStatus::converged;
-  result.message = to_string(result.status);
   result.grips.resize(problem.grips.size());
   const double torque_unit = problem.bending_stiffness / problem.length;
   const double force_unit = torque_unit / problem.length;
+  SecondVariation stability{
+      .negative = 0, .neutral = 0, .smallest = INFINITY, .s = {}, .direction = {}};
   for (std::size_t i = 0; i < pieces.spans.size(); ++i) {
     const RodSpan& span = pieces.spans[i];
     const SpanEquilibrium& equilibrium = pieces.equilibria[i];
@@ -116,77 +118,119 @@ Equilibrium assemble(const Problem& problem, const Pieces& pieces, double tolera
     result.energy.gravity += energy.gravity;
     result.energy.load += energy.load;
     add_reactions(span, equilibrium, force_unit, torque_unit, result.grips);
+    stability.negative += equilibrium.stability.negative;
+    stability.neutral += equilibrium.stability.neutral;
+    stability.smallest = std::min(stability.smallest, equilibrium.stability.smallest);
   }
-  if (!succeeded(result.status)) return result;
+  if (result.status == SolveStatus::failed) {
+    result.energy = {NAN, NAN, NAN};
+    result.grips.clear();
+    return result;
+  }
   add_loads_on_clamps(problem, result);
+  judge(stability, result);
   result.sample = [problem, pieces, tolerance](std::span<const double> arc_lengths) {
     return sample(problem, pieces, tolerance, arc_lengths);
   };
   return result;
 }
 
-/// Every combination of what is found for the spans, lowest energy first.
-std::vector<Equilibrium> solve_spans(const Problem& problem, const ExactOptions& options) {
+/// What a search has found: equilibria, stable ones first, by energy; and what it has not done.
+struct Found {
+  std::vector<Equilibrium> equilibria;
+  bool out_of_time = false;
+  std::string left_out;  // empty: nothing
+};
+
+/// The lowest combinations of what is found for the spans.
+Found solve_spans(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
   Pieces pieces;
   pieces.spans = cut_at_clamps(problem);
+  Found result;
   std::vector<std::vector<SpanEquilibrium>> found;
+  std::vector<std::vector<SpanCandidate>> candidates;
   for (const RodSpan& span : pieces.spans) {
-    found.push_back(
-        options.start == nullptr
-            ? search_span(span, options.tolerance)
-            : std::vector{refine_span(span, problem, *options.start, options.tolerance)});
-  }
-  std::vector<Equilibrium> result;
-  std::vector<std::size_t> choice(found.size(), 0);
-  for (bool more = true; more && result.size() < most_results;) {
-    pieces.equilibria.clear();
-    for (std::size_t i = 0; i < found.size(); ++i) pieces.equilibria.push_back(found[i][choice[i]]);
-    result.push_back(assemble(problem, pieces, options.tolerance));
-    more = false;
-    for (std::size_t i = 0; i < choice.size() && !more; ++i) {
-      more = ++choice[i] < found[i].size();
-      if (!more) choice[i] = 0;
+    if (options.start == nullptr) {
+      SpanSearchResult search = search_span(span, options.tolerance, deadline);
+      result.out_of_time = result.out_of_time || !search.complete;
+      found.push_back(std::move(search.found));
+    } else {
+      found.push_back({refine_span(span, problem, *options.start, options.tolerance, deadline)});
+      result.out_of_time = result.out_of_time || deadline.passed();
+    }
+    candidates.emplace_back();
+    for (const SpanEquilibrium& equilibrium : found.back()) {
+      candidates.back().push_back({equilibrium.stable(), equilibrium.energy.total()});
     }
   }
-  // Each span's equilibria come by energy, so the first combination is the lowest.
-  std::stable_sort(result.begin() + 1, result.end(), [](const auto& a, const auto& b) {
-    return a.energy.total() < b.energy.total();
-  });
+  const Combinations combinations = lowest_combinations(candidates, most_results);
+  for (const std::vector<std::size_t>& choice : combinations.choices) {
+    pieces.equilibria.clear();
+    for (std::size_t i = 0; i < found.size(); ++i) pieces.equilibria.push_back(found[i][choice[i]]);
+    result.equilibria.push_back(assemble(problem, pieces, options.tolerance));
+  }
+  if (combinations.truncated) {
+    result.left_out =
+        "only the lowest " + std::to_string(most_results) + " combinations of spans are listed";
+  }
   return result;
 }
 
+Found scan_tip(const Problem& problem, const ReducedCantilever& cantilever,
+               const ExactOptions& options, const Deadline& deadline) {
+  TipShots shots = shoot_from_tip(problem, cantilever, options.tolerance, deadline);
+  Found result{std::move(shots.equilibria), shots.out_of_time, ""};
+  if (!shots.complete) result.left_out = "some of the tip's angles could not be shot from";
+  if (result.equilibria.empty()) {
+    result.equilibria.emplace_back();
+    result.equilibria.front().status = SolveStatus::failed;
+    result.equilibria.front().message = "no shot from the tip met the clamp's direction";
+    result.equilibria.front().evaluations = shots.shots;
+  }
+  return result;
+}
+
+/// Never empty. Out of time, what is found is marked: it is an equilibrium, but others were not
+/// looked for to the end.
 std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& options) {
+  const Deadline deadline(options.time_limit);
   const auto begin = std::chrono::steady_clock::now();
   require_positive("solve_exact", "tolerance", options.tolerance);
+  require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
   require(problem.walls.empty(), "solve_exact", "number of walls",
           static_cast<double>(problem.walls.size()), "0");
   const std::optional<ReducedCantilever> cantilever = reduce_cantilever(problem);
   const bool from_tip =
       options.start == nullptr && cantilever && planar_shots_are_well_posed(cantilever->rod);
-  std::vector<Equilibrium> result = from_tip
-                                        ? shoot_from_tip(problem, *cantilever, options.tolerance)
-                                        : solve_spans(problem, options);
+  Found found = from_tip ? scan_tip(problem, *cantilever, options, deadline)
+                         : solve_spans(problem, options, deadline);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
-  return result;
+  for (Equilibrium& equilibrium : found.equilibria) {
+    equilibrium.seconds = seconds;
+    if (!found.left_out.empty()) equilibrium.message += "; " + found.left_out;
+    if (!found.out_of_time) continue;
+    const bool holds = static_cast<bool>(equilibrium.sample);
+    equilibrium.status = SolveStatus::time_limit;
+    equilibrium.message = std::string(to_string(equilibrium.status)) + " after " +
+                          std::to_string(options.time_limit) + " s" +
+                          (holds ? ": others may be lower" : "");
+  }
+  return std::move(found.equilibria);
 }
 
 }  // namespace
 
 std::vector<Equilibrium> all_exact(const Problem& problem, const ExactOptions& options) {
   std::vector<Equilibrium> equilibria = solve(problem, options);
-  if (!equilibria.empty() && !succeeded(equilibria.front().status)) equilibria.clear();
+  std::erase_if(equilibria, [](const Equilibrium& equilibrium) {
+    return !succeeded(equilibrium.status) && equilibrium.status != SolveStatus::saddle;
+  });
   return equilibria;
 }
 
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options) {
-  std::vector<Equilibrium> equilibria = solve(problem, options);
-  if (!equilibria.empty()) return std::move(equilibria.front());
-  Equilibrium failed;
-  failed.status = SolveStatus::failed;
-  failed.message = "no shot from the tip met the clamp's direction";
-  return failed;
+  return std::move(solve(problem, options).front());
 }
 
 double self_buckling_gamma() {

@@ -2,7 +2,10 @@
 
 #include <nlopt.h>
 
+#include <cmath>
+#include <exception>
 #include <memory>
+#include <string>
 
 namespace dlo::energy_model {
 namespace {
@@ -15,19 +18,37 @@ struct Call {
   Eigen::VectorXd best;  // x where the gradient was small enough
   bool small_gradient = false;
   int evaluations = 0;
+  std::exception_ptr thrown;  // by the objective
 };
+
+/// Exceptions may not cross NLopt, which is C: calls `body`, keeps what it throws and stops.
+/// @return false if it has thrown
+template <class Call, class Body>
+bool keep_exceptions(Call& call, const Body& body) {
+  if (call.thrown) return false;
+  try {
+    body();
+    return true;
+  } catch (...) {
+    call.thrown = std::current_exception();
+    nlopt_force_stop(call.optimiser);
+    return false;
+  }
+}
 
 double evaluate(unsigned n, const double* x, double* gradient, void* data) {
   auto& call = *static_cast<Call*>(data);
-  ++call.evaluations;
-  const Eigen::Map<const Eigen::VectorXd> point(x, n);
-  const double value = (*call.objective)(point, call.gradient);
-  if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n) = call.gradient;
-  if (call.gradient.norm() <= call.gradient_tolerance) {
+  double value = NAN;
+  keep_exceptions(call, [&] {
+    ++call.evaluations;
+    const Eigen::Map<const Eigen::VectorXd> point(x, n);
+    value = (*call.objective)(point, call.gradient);
+    if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n) = call.gradient;
+    if (!(call.gradient.norm() <= call.gradient_tolerance)) return;
     call.small_gradient = true;
     call.best = point;
     nlopt_force_stop(call.optimiser);
-  }
+  });
   return value;
 }
 
@@ -35,12 +56,14 @@ double evaluate(unsigned n, const double* x, double* gradient, void* data) {
 struct ConstrainedCall {
   const Objective* objective = nullptr;
   const Constraints* constraints = nullptr;
+  nlopt_opt optimiser = nullptr;
   Eigen::VectorXd x;
   double value = 0;
   Eigen::VectorXd gradient;
   Eigen::VectorXd residual;
   Eigen::MatrixXd jacobian;
   int evaluations = 0;
+  std::exception_ptr thrown;  // by the objective or a constraint
 
   void move_to(const Eigen::Map<const Eigen::VectorXd>& point) {
     if (evaluations > 0 && point == x) return;
@@ -53,7 +76,8 @@ struct ConstrainedCall {
 
 double constrained_value(unsigned n, const double* x, double* gradient, void* data) {
   auto& call = *static_cast<ConstrainedCall*>(data);
-  call.move_to(Eigen::Map<const Eigen::VectorXd>(x, n));
+  const auto move = [&] { call.move_to(Eigen::Map<const Eigen::VectorXd>(x, n)); };
+  if (!keep_exceptions(call, move)) return NAN;
   if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n) = call.gradient;
   return call.value;
 }
@@ -61,7 +85,11 @@ double constrained_value(unsigned n, const double* x, double* gradient, void* da
 void constrained_residual(unsigned m, double* result, unsigned n, const double* x, double* gradient,
                           void* data) {
   auto& call = *static_cast<ConstrainedCall*>(data);
-  call.move_to(Eigen::Map<const Eigen::VectorXd>(x, n));
+  const auto move = [&] { call.move_to(Eigen::Map<const Eigen::VectorXd>(x, n)); };
+  if (!keep_exceptions(call, move)) {
+    Eigen::Map<Eigen::VectorXd>(result, m).setConstant(NAN);
+    return;
+  }
   Eigen::Map<Eigen::VectorXd>(result, m) = call.residual;
   if (gradient == nullptr) return;
   // NLopt wants the Jacobian by rows.
@@ -69,7 +97,9 @@ void constrained_residual(unsigned m, double* result, unsigned n, const double* 
       gradient, m, n) = call.jacobian;
 }
 
-MinimiseResult translate(nlopt_result code) {
+}  // namespace
+
+MinimiseResult translate_nlopt(int code) {
   switch (code) {
     case NLOPT_SUCCESS:
     case NLOPT_FTOL_REACHED:
@@ -78,35 +108,44 @@ MinimiseResult translate(nlopt_result code) {
     case NLOPT_ROUNDOFF_LIMITED:
       return {SolveStatus::roundoff_limited, "NLopt made no further progress"};
     case NLOPT_MAXEVAL_REACHED:
-    case NLOPT_MAXTIME_REACHED:
       return {SolveStatus::evaluation_limit, "NLopt reached its evaluation limit"};
+    case NLOPT_MAXTIME_REACHED:
+      return {SolveStatus::time_limit, "NLopt reached its time limit"};
     case NLOPT_FORCED_STOP:
-      return {SolveStatus::converged, "converged"};
-    case NLOPT_OUT_OF_MEMORY:
-      return {SolveStatus::failed, "NLopt ran out of memory"};
+      return {SolveStatus::failed, "NLopt was stopped"};
+    case NLOPT_FAILURE:
+      // Also said by its line search when rounding leaves it no descent: that the point is good
+      // then, a residual has to prove.
+      return {SolveStatus::not_resolved, "NLopt's line search failed"};
     case NLOPT_INVALID_ARGS:
       return {SolveStatus::failed, "NLopt refused its arguments"};
+    case NLOPT_OUT_OF_MEMORY:
+      return {SolveStatus::failed, "NLopt ran out of memory"};
     default:
-      // Its line search says so when rounding leaves it no descent; the point is kept.
-      return {SolveStatus::roundoff_limited, "NLopt's line search failed"};
+      return {SolveStatus::failed, "NLopt returned an unknown code, " + std::to_string(code)};
   }
 }
-
-}  // namespace
 
 MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
                               const MinimiseOptions& options) {
   const auto n = static_cast<unsigned>(x.size());
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimiser(
       nlopt_create(NLOPT_LD_LBFGS, n), nlopt_destroy);
-  Call call{&objective, optimiser.get(), options.gradient_tolerance, Eigen::VectorXd(x.size()),
-            Eigen::VectorXd(x.size())};
+  Call call{&objective,
+            optimiser.get(),
+            options.gradient_tolerance,
+            Eigen::VectorXd(x.size()),
+            Eigen::VectorXd(x.size()),
+            false,
+            0,
+            nullptr};
   nlopt_set_min_objective(optimiser.get(), evaluate, &call);
   nlopt_set_maxeval(optimiser.get(), options.max_evaluations);
   nlopt_set_vector_storage(optimiser.get(), n);
   double minimum = 0;
   const nlopt_result code = nlopt_optimize(optimiser.get(), x.data(), &minimum);
-  MinimiseResult result = translate(code);
+  if (call.thrown) std::rethrow_exception(call.thrown);
+  MinimiseResult result = translate_nlopt(code);
   if (call.small_gradient) {
     x = call.best;
     result = {SolveStatus::converged, "converged"};
@@ -123,6 +162,7 @@ MinimiseResult minimise_slsqp(const Objective& objective, const Constraints& con
   ConstrainedCall call;
   call.objective = &objective;
   call.constraints = &constraints;
+  call.optimiser = optimiser.get();
   call.gradient.setZero(x.size());
   call.residual.setZero(count);
   call.jacobian.setZero(count, x.size());
@@ -134,7 +174,8 @@ MinimiseResult minimise_slsqp(const Objective& objective, const Constraints& con
   nlopt_set_xtol_rel(optimiser.get(), 1e-5);
   double minimum = 0;
   const nlopt_result code = nlopt_optimize(optimiser.get(), x.data(), &minimum);
-  MinimiseResult result = translate(code);
+  if (call.thrown) std::rethrow_exception(call.thrown);
+  MinimiseResult result = translate_nlopt(code);
   result.evaluations = call.evaluations;
   return result;
 }

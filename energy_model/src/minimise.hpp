@@ -24,15 +24,26 @@ struct [[nodiscard]] MinimiseResult {
   SolveStatus status = SolveStatus::not_run;
   std::string message = "never ran";
   int evaluations = 0;
+
+  /// A point that Newton's method may start from, or that a residual may prove to be good enough:
+  /// a failed line search may mean that rounding left no descent, or anything else.
+  [[nodiscard]] bool is_a_start() const {
+    return succeeded(status) || status == SolveStatus::not_resolved;
+  }
 };
 
+/// Every result code of NLopt by name; one that is unknown is a failure. NLOPT_FORCED_STOP is a
+/// failure too unless the caller has stopped it: who has, knows. NLOPT_FAILURE is `not_resolved`.
+[[nodiscard]] MinimiseResult translate_nlopt(int code);
+
 /// NLopt's LD_LBFGS from and into `x`. NLopt itself cannot stop on the gradient, so the objective's
-/// wrapper stops it; the point with that gradient is what `x` then holds.
+/// wrapper stops it; the point with that gradient is what `x` then holds. What the objective throws
+/// stops NLopt and is thrown again from here.
 MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
                               const MinimiseOptions& options);
 
 /// NLopt's LD_SLSQP under `count` equality constraints, from and into `x`, to a relative change of
-/// x of 1e-5: near enough for Newton's method.
+/// x of 1e-5: near enough for Newton's method. Exceptions as above.
 MinimiseResult minimise_slsqp(const Objective& objective, const Constraints& constraints,
                               Eigen::Index count, Eigen::VectorXd& x, int max_evaluations);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "dlo/energy_model/problem.hpp"
@@ -15,5 +16,9 @@ struct OrderedGrip {
 /// @throws std::invalid_argument if two are further apart than the rod between them, or at one arc
 /// length
 [[nodiscard]] std::vector<OrderedGrip> ordered_grips(const Problem& problem);
+
+/// The clamp that carries a load alone, because they are within 1e-9 l of each other: its index in
+/// Problem::grips. Every other load is carried by exactly one span, so that each counts once.
+[[nodiscard]] std::optional<std::size_t> clamp_under(const Problem& problem, const Load& load);
 
 }  // namespace dlo::energy_model

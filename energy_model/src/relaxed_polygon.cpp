@@ -179,7 +179,7 @@ std::vector<Eigen::Matrix3Xd> starts_of(const RodSpan& span, const RodMesh& mesh
 }  // namespace
 
 RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh, Eigen::Matrix3Xd tangents,
-                             bool planar) {
+                             bool planar, const Deadline& deadline) {
   const Eigen::Matrix3Xd carried = carried_force(span, mesh).on_interval;
   std::vector<Closure> closures = closures_of(span, mesh);
   const Eigen::Index count = mesh.intervals();
@@ -192,7 +192,7 @@ RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh, Eigen::Ma
     closure.force = fitting_force(span, mesh, t, carried, closure);
   }
   polygon.force = carried;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < most_rounds && !deadline.passed(); ++round) {
     const Eigen::Matrix3Xd before = t;
     for (int sweep = 0; sweep < sweeps; ++sweep) {
       const auto lay = [&](Eigen::Index i, Eigen::Vector3d pull) {
@@ -229,10 +229,16 @@ RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh, Eigen::Ma
   return polygon;
 }
 
-std::vector<RelaxedPolygon> polygon_minima(const RodSpan& span, const RodMesh& mesh, bool planar) {
-  std::vector<RelaxedPolygon> found;
+PolygonMinima polygon_minima(const RodSpan& span, const RodMesh& mesh, bool planar,
+                             const Deadline& deadline) {
+  PolygonMinima minima;
+  std::vector<RelaxedPolygon>& found = minima.found;
   for (const Eigen::Matrix3Xd& start : starts_of(span, mesh, planar)) {
-    RelaxedPolygon polygon = relax_polygon(span, mesh, start, planar);
+    RelaxedPolygon polygon = relax_polygon(span, mesh, start, planar, deadline);
+    if (deadline.passed()) {
+      minima.complete = false;
+      if (!found.empty()) break;
+    }
     const bool known = std::any_of(found.begin(), found.end(), [&](const RelaxedPolygon& other) {
       return (other.tangents - polygon.tangents).colwise().norm().maxCoeff() < same_shape;
     });
@@ -240,7 +246,7 @@ std::vector<RelaxedPolygon> polygon_minima(const RodSpan& span, const RodMesh& m
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const auto& a, const auto& b) { return a.energy < b.energy; });
-  return found;
+  return minima;
 }
 
 std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,

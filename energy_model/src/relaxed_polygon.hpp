@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "deadline.hpp"
 #include "rod_flow.hpp"
 #include "rod_span.hpp"
 
@@ -23,8 +24,16 @@ struct RelaxedPolygon {
 /// instead of near a saddle.
 /// @param tangents  where it starts
 /// @param planar    stay in the span's plane
+/// @param deadline  once it has passed, what has been reached is returned as it is
 [[nodiscard]] RelaxedPolygon relax_polygon(const RodSpan& span, const RodMesh& mesh,
-                                           Eigen::Matrix3Xd tangents, bool planar);
+                                           Eigen::Matrix3Xd tangents, bool planar,
+                                           const Deadline& deadline = Deadline());
+
+/// What polygon_minima() has found, lowest first, and whether it came to its end.
+struct PolygonMinima {
+  std::vector<RelaxedPolygon> found;
+  bool complete = true;  ///< false: the deadline has cut the search short
+};
 
 /// Local minima of the polygon, lowest first, from these starts: the tangents along the force that
 /// is carried, straight along a line, and at an angle a(x) to it, x in [0, 1] along the span,
@@ -33,8 +42,8 @@ struct RelaxedPolygon {
 ///     2 pi x (loop),
 /// where A fits the distance of the outermost grips. The line is theirs, or a clamp's direction. In
 /// the plane the normals are its two, in space six around the line.
-[[nodiscard]] std::vector<RelaxedPolygon> polygon_minima(const RodSpan& span, const RodMesh& mesh,
-                                                         bool planar);
+[[nodiscard]] PolygonMinima polygon_minima(const RodSpan& span, const RodMesh& mesh, bool planar,
+                                           const Deadline& deadline = Deadline());
 
 /// Cross-sections at the nodes of a mesh.
 [[nodiscard]] std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,

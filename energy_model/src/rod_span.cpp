@@ -58,9 +58,7 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
   }
   for (const Load& load : problem.loads) {
     const double at = own_arc_length(load.at, l);
-    const bool on_clamp = (span.start_direction && same_arc_length(at, begin, 1)) ||
-                          (span.end_direction && same_arc_length(at, end, 1));
-    if (at < begin || at > end || on_clamp) continue;
+    if (at < begin || at > end || clamp_under(problem, load)) continue;
     span.loads.push_back({at - begin, load.force / force_unit});
   }
   std::stable_sort(span.loads.begin(), span.loads.end(),
@@ -70,10 +68,6 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
 }
 
 }  // namespace
-
-bool same_arc_length(double a, double b, double length) {
-  return std::abs(a - b) < same_place * length;
-}
 
 std::vector<RodSpan> cut_at_clamps(const Problem& problem) {
   check(problem);
@@ -102,7 +96,16 @@ RodMesh make_mesh(const RodSpan& span, double longest) {
   std::vector<double> nodes = {0};
   for (std::size_t i = 0; i + 1 < fixed.size(); ++i) {
     const double width = fixed[i + 1] - fixed[i];
-    const int parts = static_cast<int>(std::ceil(width / longest));
+    // Rod to spare between two grips has to bend: one interval could not.
+    constexpr int least_parts = 8;
+    const auto next =
+        std::upper_bound(span.holds.begin(), span.holds.end(), fixed[i],
+                         [](double at, const RodSpan::Hold& hold) { return at < hold.at; });
+    double own = longest;
+    if (next != span.holds.begin() && next != span.holds.end()) {
+      own = std::min(own, (next->at - (next - 1)->at) / least_parts);
+    }
+    const int parts = static_cast<int>(std::ceil(width / own));
     for (int k = 1; k < parts; ++k) nodes.push_back(fixed[i] + width * k / parts);
     nodes.push_back(fixed[i + 1]);
   }

@@ -33,9 +33,6 @@ struct RodSpan {
   std::optional<Plane> plane;  ///< if grips and forces lie in one
 };
 
-/// Arc lengths that differ by less than 1e-9 l.
-[[nodiscard]] bool same_arc_length(double a, double b, double length);
-
 /// Cuts a problem at its clamps. Grips within 1e-9 l of an end of the rod are at that end.
 /// @throws std::invalid_argument if the problem is out of range, has walls, or grips are further
 /// apart than the rod between them
@@ -50,7 +47,7 @@ struct RodMesh {
   [[nodiscard]] Eigen::Index intervals() const { return s.size() - 1; }
 };
 
-/// @param longest  no interval is longer
+/// @param longest  no interval is longer; between two grips there are eight at least
 [[nodiscard]] RodMesh make_mesh(const RodSpan& span, double longest);
 
 /// The inner force n, of what lies beyond on what lies before, if the first grip alone carried

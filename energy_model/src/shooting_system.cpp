@@ -19,8 +19,12 @@ void add_block(Triplets& triplets, Eigen::Index row, Eigen::Index column,
 }  // namespace
 
 ShootingSystem::ShootingSystem(const RodSpan& span, const RodMesh& mesh, bool planar,
-                               double tolerance, double force)
-    : span_(span), mesh_(mesh), tolerance_(tolerance), rate_(std::sqrt(force)) {
+                               double tolerance, double force, const Deadline& deadline)
+    : span_(span),
+      mesh_(mesh),
+      tolerance_(tolerance),
+      deadline_(deadline),
+      rate_(std::sqrt(force)) {
   if (planar) {
     axes_.resize(3, 2);
     axes_ << span.plane->x, span.plane->y;
@@ -80,6 +84,7 @@ bool ShootingSystem::evaluate(const std::vector<ShootingNode>& nodes, Eigen::Vec
   const Eigen::Index last = mesh_.intervals();
   Eigen::Index row = start_equations(nodes.front(), equations, derivatives);
   for (Eigen::Index i = 0; i < last; ++i) {
+    if (deadline_.passed()) return false;
     if (!interval_equations(nodes, i, row, equations, derivatives)) return false;
     row += layout_.size();
   }

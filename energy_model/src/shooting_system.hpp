@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "deadline.hpp"
 #include "rod_flow.hpp"
 #include "rod_span.hpp"
 
@@ -36,9 +37,11 @@ class ShootingSystem {
   /// @param tolerance  of the integrator
   /// @param span, mesh  have to outlive the system
   ShootingSystem(const RodSpan& span, const RodMesh& mesh, bool planar, double tolerance,
-                 double force);
+                 double force, const Deadline& deadline);
 
   [[nodiscard]] Eigen::Index size() const { return layout_.size() * mesh_.s.size(); }
+
+  [[nodiscard]] bool out_of_time() const { return deadline_.passed(); }
 
   /// Gaps that count as closed: steps of the integrator come and go as the nodes move, so that
   /// they cannot be closed to less than its tolerance.
@@ -51,7 +54,7 @@ class ShootingSystem {
                                                 const Eigen::VectorXd& step) const;
 
   /// All equations, and their derivatives if asked for.
-  /// @return false if the integrator gave up
+  /// @return false if the integrator gave up or the deadline has passed
   [[nodiscard]] bool evaluate(const std::vector<ShootingNode>& nodes, Eigen::VectorXd& equations,
                               Triplets* derivatives) const;
 
@@ -84,6 +87,7 @@ class ShootingSystem {
   const RodSpan& span_;
   const RodMesh& mesh_;
   double tolerance_;
+  Deadline deadline_;
   double rate_;  // unit of v; its square is that of n
   Eigen::Matrix3Xd axes_;
   NodeLayout layout_{3};

@@ -15,7 +15,15 @@ constexpr double largest_load = 1e6;      // of weight and loads, in EI/l^2
 constexpr double largest_growth = 3;      // of an interval: its length times |n|^(1/2)
 constexpr double in_plane = 1e-6;         // of tangents
 constexpr double same_tangents = 1e-6;    // of two equilibria
-constexpr std::size_t most_descents = 6;  // polygons that are shot from
+constexpr std::size_t most_descents = 6;  // polygons that are shot from if one leads to a minimum
+constexpr int most_departures = 8;        // saddles that are left
+constexpr double departure = 0.3;         // largest change of a tangent when a saddle is left
+/// Of the integrator for the second variation, whose elements are right to 1e-8.
+constexpr double variation_tolerance = 1e-10;
+constexpr int finer_polygons = 2;              // after a shot that has failed
+constexpr Eigen::Index most_intervals = 1000;  // of a polygon that is made finer
+constexpr int search_iterations = 30;   // of Newton's method, which takes 6 to 12 near a minimum
+constexpr double polygons_share = 0.5;  // of the time that is left
 
 /// Intervals that resolve boundary layers under a force, and the bends of a span without any.
 double longest_interval(const RodSpan& span, double force) {
@@ -47,9 +55,12 @@ void add_energies(const RodSpan& span, const RodMesh& mesh, double tolerance,
     equilibrium.energy.load -= mesh.load.col(i).dot(state.r);
     if (i == mesh.intervals()) break;
     RodIntegrals integrals;
-    equilibrium.converged =
-        equilibrium.converged &&
-        follow_rod(span.weight, mesh.s[i + 1] - mesh.s[i], tolerance, state, integrals);
+    if (!follow_rod(span.weight, mesh.s[i + 1] - mesh.s[i], tolerance, state, integrals)) {
+      equilibrium.converged = false;
+      equilibrium.message = "the integrator gave up on the energies";
+      equilibrium.energy = {NAN, NAN, NAN};
+      return;
+    }
     equilibrium.energy.bending += integrals.bending;
     equilibrium.energy.gravity += integrals.gravity;
   }
@@ -78,11 +89,213 @@ SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh, std::vector<RodSta
     }
     start.back().n.setZero();
   }
-  if (equilibrium.converged) add_energies(span, mesh, options.tolerance, equilibrium);
+  if (!equilibrium.converged) return equilibrium;
+  add_energies(span, mesh, options.tolerance, equilibrium);
+  equilibrium.stability = second_variation(span, [&](const std::vector<double>& s) {
+    return states_at(equilibrium, span.weight, s, std::max(options.tolerance, variation_tolerance));
+  });
+  std::vector<double> probes;
+  for (int i = 0; i <= 32; ++i) probes.push_back(span.length * i / 32);
+  equilibrium.tangents.resize(3, static_cast<Eigen::Index>(probes.size()));
+  Eigen::Index column = 0;
+  for (const RodState& state : states_at(equilibrium, span.weight, probes, variation_tolerance)) {
+    equilibrium.tangents.col(column++) = state.t;
+  }
+  if (equilibrium.stability.negative < 0 || !equilibrium.tangents.allFinite()) {
+    equilibrium.converged = false;
+    equilibrium.message = "the integrator gave up on the second variation";
+  }
   return equilibrium;
 }
 
-/// Force after the arc length s that the results of a solver imply, in units of the rod.
+bool same(const SpanEquilibrium& a, const SpanEquilibrium& b) {
+  return (a.tangents - b.tangents).colwise().norm().maxCoeff() < same_tangents;
+}
+
+/// Tangents of a polygon on another mesh, constant along its intervals.
+Eigen::Matrix3Xd tangents_on(const RodMesh& from, const Eigen::Matrix3Xd& tangents,
+                             const RodMesh& to) {
+  Eigen::Matrix3Xd result(3, to.intervals());
+  for (Eigen::Index i = 0; i < to.intervals(); ++i) {
+    const double middle = (to.s[i] + to.s[i + 1]) / 2;
+    const Eigen::Index after =
+        std::upper_bound(from.s.begin(), from.s.end(), middle) - from.s.begin();
+    result.col(i) = tangents.col(std::clamp<Eigen::Index>(after - 1, 0, from.intervals() - 1));
+  }
+  return result;
+}
+
+/// A polygon to shoot from.
+struct PolygonStart {
+  RelaxedPolygon polygon;
+  bool planar;
+};
+
+/// Minima of polygons, lowest first. @return false if the deadline has cut the search short
+bool polygon_starts(const RodSpan& span, const RodMesh& mesh, const Deadline& deadline,
+                    std::vector<PolygonStart>& starts) {
+  bool complete = true;
+  const auto search = [&](bool planar) {
+    PolygonMinima minima = polygon_minima(span, mesh, planar, deadline);
+    complete = complete && minima.complete;
+    constexpr double nearly_in_plane = 0.01;
+    for (RelaxedPolygon& polygon : minima.found) {
+      if (!planar && stays_in_plane(span, polygon.tangents, nearly_in_plane)) continue;
+      starts.push_back({std::move(polygon), planar});
+    }
+  };
+  if (span.plane) search(true);
+  search(false);
+  std::stable_sort(starts.begin(), starts.end(), [](const PolygonStart& a, const PolygonStart& b) {
+    return a.polygon.energy < b.polygon.energy;
+  });
+  return complete;
+}
+
+/// What search_span() has found so far.
+class SpanSearch {
+ public:
+  SpanSearch(const RodSpan& span, double tolerance, const Deadline& deadline)
+      : span_(span),
+        mesh_(make_mesh(span, longest_interval(span, total_load(span)))),
+        tolerance_(tolerance),
+        deadline_(deadline) {}
+
+  SpanSearchResult run() {
+    std::vector<PolygonStart> starts;
+    const Deadline polygons(polygons_share * deadline_.remaining());
+    bool complete = polygon_starts(span_, mesh_, polygons, starts);
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      if (i >= (lowest_stable() < INFINITY ? most_descents : 2 * most_descents)) break;
+      if (deadline_.passed()) break;
+      descend(starts[i]);
+    }
+    leave_saddles();
+    complete = complete && !deadline_.passed();
+    if (found_.empty()) {
+      if (!complete) failed_.message = to_string(SolveStatus::time_limit);
+      found_.push_back(std::move(failed_));
+    }
+    // Mirror images have the same energy up to rounding and keep their order.
+    std::stable_sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) {
+      if (a.stable() != b.stable()) return a.stable();
+      const double rounding = 1e-11 * (1 + std::abs(a.energy.total()));
+      return a.energy.total() < b.energy.total() - rounding;
+    });
+    found_.front().shots = shots_;
+    return {std::move(found_), complete};
+  }
+
+ private:
+  SpanEquilibrium shoot_from(const RodMesh& mesh, const RelaxedPolygon& polygon, bool planar) {
+    SpanEquilibrium equilibrium = shoot_span(span_, mesh, states_of(span_, mesh, polygon),
+                                             {.tolerance = tolerance_,
+                                              .planar = planar,
+                                              .max_iterations = search_iterations,
+                                              .deadline = deadline_});
+    shots_ += equilibrium.shots;
+    return equilibrium;
+  }
+
+  void descend(const PolygonStart& start) {
+    RodMesh mesh = mesh_;
+    RelaxedPolygon polygon = start.polygon;
+    const auto longest_of = [&] {
+      return (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
+    };
+    const auto refine = [&](double longest) {
+      RodMesh finer = make_mesh(span_, longest);
+      polygon = relax_polygon(span_, finer, tangents_on(mesh, polygon.tangents, finer),
+                              start.planar, deadline_);
+      mesh = std::move(finer);
+    };
+    // Under a large reaction the coarse polygon is not near enough.
+    const double force = polygon.force.colwise().norm().maxCoeff();
+    const double resolved = std::max(1 / std::sqrt(std::max(force, 1.0)),
+                                     span_.length / static_cast<double>(most_intervals));
+    if (longest_of() > 1.5 * resolved) refine(resolved);
+    SpanEquilibrium equilibrium = shoot_from(mesh, polygon, start.planar);
+    for (int level = 0; level < finer_polygons && !equilibrium.converged; ++level) {
+      if (deadline_.passed() || mesh.intervals() > most_intervals / 3) break;
+      refine(longest_of() / 3);
+      equilibrium = shoot_from(mesh, polygon, start.planar);
+    }
+    if (!equilibrium.converged) {
+      failed_ = std::move(equilibrium);
+      return;
+    }
+    const bool known = std::any_of(found_.begin(), found_.end(),
+                                   [&](const auto& other) { return same(other, equilibrium); });
+    if (!known) found_.push_back(std::move(equilibrium));
+  }
+
+  [[nodiscard]] double lowest_stable() const {
+    double lowest = INFINITY;
+    for (const SpanEquilibrium& equilibrium : found_) {
+      if (equilibrium.stable()) lowest = std::min(lowest, equilibrium.energy.total());
+    }
+    return lowest;
+  }
+
+  /// An unstable equilibrium below all stable ones shows that a minimum has been missed.
+  void leave_saddles() {
+    std::vector<double> energies;  // of those that have been left
+    for (int i = 0; i < most_departures && !deadline_.passed(); ++i) {
+      const SpanEquilibrium* lowest = nullptr;
+      for (const SpanEquilibrium& equilibrium : found_) {
+        const double energy = equilibrium.energy.total();
+        const bool known = std::find(energies.begin(), energies.end(), energy) != energies.end();
+        if (equilibrium.stable() || known || energy > lowest_stable()) continue;
+        if (lowest == nullptr || energy < lowest->energy.total()) lowest = &equilibrium;
+      }
+      if (lowest == nullptr) return;
+      energies.push_back(lowest->energy.total());
+      const SpanEquilibrium saddle = *lowest;
+      for (const double side : {1.0, -1.0}) leave(saddle, side * departure);
+    }
+  }
+
+  /// Relaxes the polygon from beside a saddle.
+  void leave(const SpanEquilibrium& saddle, double amplitude) {
+    const SecondVariation& mode = saddle.stability;
+    if (mode.s.size() == 0) return;
+    std::vector<double> middles;
+    for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
+      middles.push_back((mesh_.s[i] + mesh_.s[i + 1]) / 2);
+    }
+    const std::vector<RodState> states = states_at(saddle, span_.weight, middles, tolerance_);
+    Eigen::Matrix3Xd tangents(3, mesh_.intervals());
+    for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
+      const double at = middles[static_cast<std::size_t>(i)];
+      const Eigen::Index after = std::clamp<Eigen::Index>(
+          std::upper_bound(mode.s.begin(), mode.s.end(), at) - mode.s.begin(), 1,
+          mode.s.size() - 1);
+      const double part = (at - mode.s[after - 1]) / (mode.s[after] - mode.s[after - 1]);
+      const Eigen::Vector3d change =
+          (1 - part) * mode.direction.col(after - 1) + part * mode.direction.col(after);
+      tangents.col(i) = (states[static_cast<std::size_t>(i)].t + amplitude * change).normalized();
+    }
+    const bool planar = stays_in_plane(span_, tangents, in_plane);
+    RelaxedPolygon polygon = relax_polygon(span_, mesh_, std::move(tangents), planar, deadline_);
+    descend({std::move(polygon), planar});
+  }
+
+  const RodSpan& span_;
+  RodMesh mesh_;
+  double tolerance_;
+  Deadline deadline_;
+  std::vector<SpanEquilibrium> found_;
+  SpanEquilibrium failed_;
+  int shots_ = 0;
+};
+
+}  // namespace
+
+SpanSearchResult search_span(const RodSpan& span, double tolerance, const Deadline& deadline) {
+  check_load(span);
+  return SpanSearch(span, tolerance, deadline).run();
+}
+
 Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, double s) {
   const double at = s * problem.length * (1 + 1e-12);
   Eigen::Vector3d n = -s * problem.length * problem.weight_per_length;
@@ -95,64 +308,8 @@ Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, 
   return n * problem.length * problem.length / problem.bending_stiffness;
 }
 
-bool same(const SpanEquilibrium& a, const SpanEquilibrium& b) {
-  if (a.nodes.size() != b.nodes.size()) return false;
-  for (std::size_t i = 0; i < a.nodes.size(); ++i) {
-    if ((a.nodes[i].t - b.nodes[i].t).norm() > same_tangents) return false;
-  }
-  return true;
-}
-
-}  // namespace
-
-std::vector<SpanEquilibrium> search_span(const RodSpan& span, double tolerance) {
-  check_load(span);
-  const RodMesh mesh = make_mesh(span, longest_interval(span, total_load(span)));
-  struct Start {
-    RelaxedPolygon polygon;
-    bool planar;
-  };
-  std::vector<Start> starts;
-  if (span.plane) {
-    for (RelaxedPolygon& polygon : polygon_minima(span, mesh, true)) {
-      starts.push_back({std::move(polygon), true});
-    }
-  }
-  constexpr double nearly_in_plane = 0.01;
-  for (RelaxedPolygon& polygon : polygon_minima(span, mesh, false)) {
-    if (stays_in_plane(span, polygon.tangents, nearly_in_plane)) continue;
-    starts.push_back({std::move(polygon), false});
-  }
-  std::stable_sort(starts.begin(), starts.end(), [](const Start& a, const Start& b) {
-    return a.polygon.energy < b.polygon.energy;
-  });
-  std::vector<SpanEquilibrium> found;
-  SpanEquilibrium failed;
-  int shots = 0;
-  for (std::size_t i = 0; i < std::min(starts.size(), most_descents); ++i) {
-    SpanEquilibrium equilibrium = shoot_span(span, mesh, states_of(span, mesh, starts[i].polygon),
-                                             {.tolerance = tolerance, .planar = starts[i].planar});
-    shots += equilibrium.shots;
-    if (!equilibrium.converged) {
-      failed = std::move(equilibrium);
-      continue;
-    }
-    const bool known = std::any_of(found.begin(), found.end(),
-                                   [&](const auto& other) { return same(other, equilibrium); });
-    if (!known) found.push_back(std::move(equilibrium));
-  }
-  // Mirror images have the same energy up to rounding and keep their order.
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
-    const double rounding = 1e-11 * (1 + std::abs(a.energy.total()));
-    return a.energy.total() < b.energy.total() - rounding;
-  });
-  if (found.empty()) found.push_back(std::move(failed));
-  found.front().shots = shots;
-  return found;
-}
-
 SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const Equilibrium& shape,
-                            double tolerance) {
+                            double tolerance, const Deadline& deadline) {
   check_load(span);
   double force = total_load(span);
   for (const Reaction& grip : shape.grips) {
@@ -174,21 +331,47 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
     if (i < mesh.intervals()) state.n = implied_force(problem, shape, span.begin + mesh.s[i]);
     start.push_back(state);
   }
-  return shoot_span(
-      span, mesh, std::move(start),
-      {.tolerance = tolerance, .planar = stays_in_plane(span, samples.tangents, in_plane)});
+  return shoot_span(span, mesh, std::move(start),
+                    {.tolerance = tolerance,
+                     .planar = stays_in_plane(span, samples.tangents, in_plane),
+                     .deadline = deadline});
 }
 
 RodState state_at(const SpanEquilibrium& span, const Eigen::Vector3d& weight, double s,
                   double tolerance) {
+  return states_at(span, weight, {s}, tolerance).front();
+}
+
+std::vector<RodState> states_at(const SpanEquilibrium& span, const Eigen::Vector3d& weight,
+                                const std::vector<double>& s, double tolerance) {
   const auto last = static_cast<std::ptrdiff_t>(span.nodes.size()) - 2;
-  const auto after = std::upper_bound(span.s.begin(), span.s.end(), s) - span.s.begin();
-  const std::ptrdiff_t i = std::clamp<std::ptrdiff_t>(after - 1, 0, last);
-  if (s >= span.s[i + 1]) return span.nodes.back();
-  RodState state = span.nodes[static_cast<std::size_t>(i)];
-  RodIntegrals integrals;
-  (void)follow_rod(weight, s - span.s[i], tolerance, state, integrals);
-  return state;
+  std::vector<RodState> states;
+  states.reserve(s.size());
+  RodState state;
+  std::ptrdiff_t interval = -1;
+  double reached = 0;
+  for (const double at : s) {
+    const auto after = std::upper_bound(span.s.begin(), span.s.end(), at) - span.s.begin();
+    const std::ptrdiff_t i = std::clamp<std::ptrdiff_t>(after - 1, 0, last);
+    if (at >= span.s[i + 1]) {
+      states.push_back(span.nodes.back());
+      continue;
+    }
+    if (i != interval) {
+      state = span.nodes[static_cast<std::size_t>(i)];
+      interval = i;
+      reached = span.s[i];
+    }
+    RodIntegrals integrals;
+    if (at > reached && !follow_rod(weight, at - reached, tolerance, state, integrals)) {
+      state.r.setConstant(NAN);
+      state.t.setConstant(NAN);
+      state.v.setConstant(NAN);
+    }
+    reached = at;
+    states.push_back(state);
+  }
+  return states;
 }
 
 }  // namespace dlo::energy_model

@@ -247,7 +247,8 @@ class Search {
     const MinimiseResult result = minimise_lbfgs(
         objective, solution.x, {handover_gradient * (1 + load_), options_.max_evaluations});
     solution.evaluations += result.evaluations;
-    solution.status = result.status;
+    // Newton's method has to prove the shape anyway.
+    solution.status = result.is_a_start() ? SolveStatus::roundoff_limited : result.status;
     solution.message = result.message;
   }
 

@@ -141,8 +141,7 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   for (const Load& load : problem.loads) {
     const bool inside = load.at >= begin && load.at <= end;
     // A load on a clamp is the gripper's alone.
-    const bool on_clamp = (clamped_begin && load.at == begin) || (clamped_end && load.at == end);
-    if (!inside || on_clamp) continue;
+    if (!inside || clamp_under(problem, load)) continue;
     span.loads.push_back({placed.s_of(load.at, l), load.force / force_unit});
     directions.forces.push_back(span.loads.back().force);
   }

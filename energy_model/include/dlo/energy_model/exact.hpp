@@ -10,7 +10,8 @@ namespace dlo::energy_model {
 /// How well to integrate, and from where.
 struct ExactOptions {
   double tolerance = 1e-13;  ///< local error of the integrator per step, > 0
-  /// Of the whole call [s], > 0; the status is then `time_limit`.
+  /// Of the whole call [s], > 0; the status is then `time_limit`, with the lowest shape so far if
+  /// there is one: it is an equilibrium, but others were not looked for.
   double time_limit = std::numeric_limits<double>::infinity();
   /// A shape to confirm or correct, of this problem or a similar one, with its grips' reactions:
   /// Newton's method starts from it, without a search. Has to outlive the call.
@@ -23,20 +24,31 @@ struct ExactOptions {
 /// n the force of what lies beyond s on what lies before.
 ///
 /// A planar rod with one clamp at an end is shot from its tip and all of the tip's angles are
-/// scanned, so that no equilibrium is missed; for sums of weight and loads over EI/l^2 up to 4e5 if
-/// they are parallel, up to 60 if not.
+/// scanned; for sums of weight and loads over EI/l^2 up to 4e5 if they are parallel, up to 60 if
+/// not. The scan's cells are halved until a cubic describes the miss of the clamp's angle in them,
+/// and pairs of roots are looked for at its extrema: found are all equilibria in the plane but
+/// those that lie closer together than the scan resolves (at a fold: within 1e-7 of its Gamma).
+/// Those out of the plane are not.
 ///
 /// All others (any clamps and pins, in the plane or in space, up to 1e6 EI/l^2) are cut at their
 /// clamps and solved by multiple shooting: Newton's method closes the gaps between integrations
-/// over short intervals. It starts from `start`, or from the six lowest minima that a coarse
-/// polygon finds when it is relaxed from straight, arched, S-shaped and looped shapes, in the plane
-/// and out of it. The equilibrium of lowest energy is returned; its second variation is not
-/// looked at.
+/// over short intervals. It starts from `start`, or from the six lowest minima (twelve while
+/// nothing is stable) that a coarse polygon finds when it is relaxed from straight, arched,
+/// S-shaped and looped shapes, in the plane and out of it, and from beside the unstable equilibria
+/// that lie below all stable ones. That is a search: it may miss equilibria.
+///
+/// The second variation of each equilibrium is looked at on its own shape, by finite elements, in
+/// space and under the grips' constraints: `smallest_curvature` is its smallest eigenvalue over
+/// int |eta'|^2 + |eta|^2 ds, eta the change of the tangent, lengths in l. The stable equilibrium
+/// of lowest energy is returned; if none is stable the lowest one, as `saddle`. The message names
+/// what moves for nothing (turning about a line), combinations of spans beyond the 64 lowest, and
+/// tips that could not be shot from.
 /// @throws std::invalid_argument if the problem or an option is out of range, or has walls
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
-/// Every equilibrium that the scan or the search finds, lowest energy first, unstable ones
-/// included.
+/// Every equilibrium that the scan or the search finds, stable ones first, by energy; unstable ones
+/// have the status `saddle`. Of several spans the 64 lowest combinations; the message says if there
+/// are more. Empty if nothing was found.
 [[nodiscard]] std::vector<Equilibrium> all_exact(const Problem& problem,
                                                  const ExactOptions& options = {});
 

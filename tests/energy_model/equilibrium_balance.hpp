@@ -1,0 +1,159 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "dlo/energy_model/equilibrium.hpp"
+#include "dlo/energy_model/problem.hpp"
+
+namespace dlo::test {
+
+/// How far a shape is from what defines an equilibrium, from its samples and reactions alone.
+struct BalanceDefects {
+  double force = 0;     ///< |sum of all forces on the rod| over the largest of them
+  double torque = 0;    ///< of all torques about a section, the largest of all sections, over
+                        ///< largest force times l plus largest torque
+  double moment = 0;    ///< largest |EI t x t' - torque of all that lies beyond|, over the same
+  double grips = 0;     ///< positions over l, and directions
+  double integral = 0;  ///< largest |r(b) - r(a) - int t ds| over l, and ||t| - 1|
+
+  [[nodiscard]] double worst() const {
+    const double kinematic = std::max(grips, integral);
+    return std::max({force, torque, moment, kinematic});
+  }
+};
+
+/// Force and torque of a part of the rod on the point where it begins.
+struct CarriedLoad {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque_about_origin = Eigen::Vector3d::Zero();
+
+  void add(const Eigen::Vector3d& at, const Eigen::Vector3d& own_force) {
+    force += own_force;
+    torque_about_origin += at.cross(own_force);
+  }
+};
+
+/// The arc lengths where something happens: ends, grips, loads; growing, each once.
+inline std::vector<double> events_of(const energy_model::Problem& problem) {
+  std::vector<double> events = {0, problem.length};
+  for (const energy_model::Grip& grip : problem.grips) events.push_back(grip.at);
+  for (const energy_model::Load& load : problem.loads) events.push_back(load.at);
+  std::sort(events.begin(), events.end());
+  events.erase(std::unique(events.begin(), events.end()), events.end());
+  return events;
+}
+
+/// Weighs a shape: cuts it at panels of Gauss-Legendre quadrature no longer than `panel`, goes from
+/// the far end to the near one and adds up what pulls and turns beyond each cut.
+/// @param panel  of arc length [m]; a quarter of the length over which the rod's shape changes
+inline BalanceDefects balance_of(const energy_model::Problem& problem,
+                                 const energy_model::Equilibrium& shape, double panel) {
+  // Nodes and weights of the six-point rule on [-1, 1] (Abramowitz and Stegun, table 25.4).
+  constexpr std::array<double, 3> node = {0.238619186083196909, 0.661209386466264514,
+                                          0.932469514203152028};
+  constexpr std::array<double, 3> weight = {0.467913934572691047, 0.360761573048138608,
+                                            0.171324492379170345};
+  const double l = problem.length;
+  const std::vector<double> events = events_of(problem);
+  std::vector<double> cuts = {0};
+  for (std::size_t e = 0; e + 1 < events.size(); ++e) {
+    const int parts = static_cast<int>(std::ceil((events[e + 1] - events[e]) / panel));
+    for (int k = 1; k < parts; ++k) {
+      cuts.push_back(events[e] + (events[e + 1] - events[e]) * k / parts);
+    }
+    cuts.push_back(events[e + 1]);
+  }
+  std::vector<double> inner;
+  std::vector<double> share;  // of the arc length
+  for (std::size_t c = 0; c + 1 < cuts.size(); ++c) {
+    const double middle = (cuts[c] + cuts[c + 1]) / 2;
+    const double half = (cuts[c + 1] - cuts[c]) / 2;
+    for (std::size_t k = 0; k < node.size(); ++k) {
+      for (const double side : {-1.0, 1.0}) {
+        inner.push_back(middle + side * half * node[k]);
+        share.push_back(half * weight[k]);
+      }
+    }
+  }
+  const energy_model::Samples at_cuts = shape.sample(cuts);
+  const energy_model::Samples between = shape.sample(inner);
+  const auto point_at = [&](double s) {
+    const auto i = std::lower_bound(cuts.begin(), cuts.end(), s) - cuts.begin();
+    return Eigen::Vector3d(at_cuts.points.col(i));
+  };
+
+  double largest_force = problem.bending_stiffness / (l * l);
+  double largest_torque = problem.bending_stiffness / l;
+  largest_force = std::max(largest_force, l * problem.weight_per_length.norm());
+  for (const energy_model::Load& load : problem.loads) {
+    largest_force = std::max(largest_force, load.force.norm());
+  }
+  for (const energy_model::Reaction& grip : shape.grips) {
+    largest_force = std::max(largest_force, grip.force.norm());
+    largest_torque = std::max(largest_torque, grip.torque.norm());
+  }
+  const double torque_unit = largest_torque + l * largest_force;
+
+  BalanceDefects defects;
+  const auto raise = [](double& worst, double value) {
+    worst = value <= worst ? worst : value;  // NaN raises it too
+  };
+  for (std::size_t i = 0; i < problem.grips.size(); ++i) {
+    const energy_model::Grip& grip = problem.grips[i];
+    raise(defects.grips, (point_at(grip.at) - grip.position).norm() / l);
+    if (!grip.direction) continue;
+    const auto at = std::lower_bound(cuts.begin(), cuts.end(), grip.at) - cuts.begin();
+    raise(defects.grips, (at_cuts.tangents.col(at) - grip.direction->normalized()).norm());
+  }
+
+  constexpr std::size_t per_panel = 2 * node.size();
+  CarriedLoad beyond;
+  for (std::size_t c = cuts.size(); c-- > 0;) {
+    const auto here = static_cast<Eigen::Index>(c);
+    const Eigen::Vector3d point = at_cuts.points.col(here);
+    for (std::size_t i = 0; i < problem.grips.size(); ++i) {
+      if (problem.grips[i].at != cuts[c]) continue;
+      beyond.add(point, shape.grips[i].force);
+      beyond.torque_about_origin += shape.grips[i].torque;
+    }
+    for (const energy_model::Load& load : problem.loads) {
+      if (load.at == cuts[c]) beyond.add(point, load.force);
+    }
+    raise(defects.integral, std::abs(at_cuts.tangents.col(here).norm() - 1));
+    if (c == 0) break;
+    Eigen::Vector3d run = Eigen::Vector3d::Zero();
+    for (std::size_t k = 0; k < per_panel; ++k) {
+      const auto q = static_cast<Eigen::Index>((c - 1) * per_panel + k);
+      const double ds = share[static_cast<std::size_t>(q)];
+      run += ds * between.tangents.col(q);
+      raise(defects.integral, std::abs(between.tangents.col(q).norm() - 1));
+    }
+    raise(defects.integral, (point - at_cuts.points.col(here - 1) - run).norm() / l);
+    // Where something happens, the curvature has a kink or a jump.
+    const bool event = std::binary_search(events.begin(), events.end(), cuts[c]);
+    if (!event) {
+      const Eigen::Vector3d moment =
+          problem.bending_stiffness * Eigen::Vector3d(at_cuts.tangents.col(here))
+                                          .cross(Eigen::Vector3d(at_cuts.curvature.col(here)));
+      const Eigen::Vector3d carried = beyond.torque_about_origin - point.cross(beyond.force);
+      raise(defects.moment, (moment - carried).norm() / torque_unit);
+    }
+    for (std::size_t k = 0; k < per_panel; ++k) {
+      const auto q = static_cast<Eigen::Index>((c - 1) * per_panel + k);
+      beyond.add(between.points.col(q),
+                 share[static_cast<std::size_t>(q)] * problem.weight_per_length);
+    }
+  }
+  defects.force = beyond.force.norm() / largest_force;
+  const Eigen::Vector3d origin = at_cuts.points.col(0);
+  defects.torque = (beyond.torque_about_origin - origin.cross(beyond.force)).norm() / torque_unit;
+  return defects;
+}
+
+}  // namespace dlo::test

@@ -1,0 +1,184 @@
+// The exact solver's verdict on stability, against theory; what it finds and what it says that it
+// has not looked for; loads beside clamps.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "equilibrium_balance.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using std::numbers::pi;
+using test::heavy_cantilever;
+
+bool says(const Equilibrium& equilibrium, const std::string& words) {
+  return equilibrium.message.find(words) != std::string::npos;
+}
+
+TEST(SecondVariation, OfAnUnloadedRodIsThatOfTheLinearTheory) {
+  // Modes sin((k + 1/2) pi s): Q / int (|eta'|^2 + |eta|^2) = q / (q + 1) with q = (pi / 2)^2.
+  const double q = pi * pi / 4;
+  EXPECT_NEAR(solve_exact(heavy_cantilever(0, 0)).smallest_curvature, q / (q + 1), 1e-7);
+  // Clamped on both sides of the same rod the shorter span is the stiffer one.
+  Problem middle = heavy_cantilever(0, 0);
+  middle.grips[0].at = 0.25;
+  const double longer = pi * pi / 4 / (0.75 * 0.75);
+  EXPECT_NEAR(solve_exact(middle).smallest_curvature, longer / (longer + 1), 1e-7);
+}
+
+TEST(SecondVariation, ChangesItsSignWhereAnUprightRodBuckles) {
+  const double critical = self_buckling_gamma();
+  for (const double off : {-1e-4, 1e-4}) {
+    const std::vector<Equilibrium> found = all_exact(heavy_cantilever(critical * (1 + off), 90));
+    // Straight is the only one below, and unstable above.
+    const auto straight =
+        std::find_if(found.begin(), found.end(), [](const Equilibrium& equilibrium) {
+          const std::vector<double> tip = {1.0};
+          return std::abs(equilibrium.sample(tip).points(0, 0)) < 1e-6;
+        });
+    ASSERT_NE(straight, found.end());
+    EXPECT_EQ(straight->status, off < 0 ? SolveStatus::converged : SolveStatus::saddle);
+    EXPECT_EQ(straight->smallest_curvature > 0, off < 0);
+    // Linear in the load: d mu / d Gamma is of the order of -1 / Gamma.
+    EXPECT_NEAR(straight->smallest_curvature, 0, std::abs(off));
+  }
+}
+
+TEST(SecondVariation, SeesWhatGivesWaySideways) {
+  // A clamp along +x, no weight, loads (0, 3) at 0.5 and (-6, -1) at the tip.
+  Problem problem = heavy_cantilever(0, 0);
+  problem.loads = {{0.5, {0, 3, 0}}, {1.0, {-6, -1, 0}}};
+  const std::vector<Equilibrium> found = all_exact(problem);
+  ASSERT_GE(found.size(), 2U);
+  EXPECT_EQ(found[0].status, SolveStatus::converged);
+  EXPECT_NEAR(found[0].energy.total(), 3.117, 5e-4);
+  bool saddle = false;
+  for (const Equilibrium& equilibrium : found) {
+    if (std::abs(equilibrium.energy.total() - 3.802) > 5e-4) continue;
+    saddle = true;
+    EXPECT_EQ(equilibrium.status, SolveStatus::saddle);
+    EXPECT_LT(equilibrium.smallest_curvature, 0);
+  }
+  EXPECT_TRUE(saddle);
+}
+
+TEST(SecondVariation, NamesTheWayInWhichARodMovesForNothing) {
+  // An arch between two pins without weight turns about the line through them.
+  Problem arch = heavy_cantilever(0, 0);
+  arch.grips = {{0, Eigen::Vector3d::Zero(), std::nullopt}, {1, {0.8, 0, 0}, std::nullopt}};
+  const Equilibrium result = solve_exact(arch);
+  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
+  EXPECT_TRUE(says(result, "moves for nothing in 1 way")) << result.message;
+  EXPECT_NEAR(result.smallest_curvature, 0, 1e-7);
+  EXPECT_FALSE(says(solve_exact(heavy_cantilever(1, 0)), "for nothing"));
+}
+
+TEST(Exact, PutsStableEquilibriaFirst) {
+  // Above buckling both mirror images hold, and turn about the vertical for nothing.
+  const std::vector<Equilibrium> above = all_exact(heavy_cantilever(8, 90));
+  ASSERT_EQ(above.size(), 3U);
+  EXPECT_EQ(above[0].status, SolveStatus::converged);
+  EXPECT_EQ(above[1].status, SolveStatus::converged);
+  EXPECT_EQ(above[2].status, SolveStatus::saddle);
+  EXPECT_TRUE(says(above[0], "moves for nothing in 1 way")) << above[0].message;
+  EXPECT_LT(above[2].smallest_curvature, 0);
+}
+
+TEST(Exact, FindsPairsOfRootsWithinACellOfItsScan) {
+  EXPECT_EQ(all_exact(heavy_cantilever(41.4, 0)).size(), 3U);
+  const double fold = test::reference_values().at("bistability_fold_Gamma").at("0").get<double>();
+  for (const double off : {1e-5, 1e-6, 1e-7}) {
+    EXPECT_EQ(all_exact(heavy_cantilever(fold * (1 + off), 0)).size(), 3U) << off;
+    EXPECT_EQ(all_exact(heavy_cantilever(fold * (1 - off), 0)).size(), 1U) << off;
+  }
+}
+
+TEST(Exact, ReturnsTheStableShapeOfTwoPinsNearEachOther) {
+  // It returned an unstable one of 65.4 EI/l: between the pins the polygon had one interval.
+  Problem problem = heavy_cantilever(2.0506, 0);
+  problem.grips = {{0.506, {0, 0, 0}, std::nullopt},
+                   {0.567, {-0.0539556788779, -0.0106264590638, 0}, std::nullopt}};
+  const Equilibrium result = solve_exact(problem);
+  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  EXPECT_GT(result.smallest_curvature, -1e-7);
+  EXPECT_LT(result.energy.bending, 17);
+  EXPECT_LT(test::balance_of(problem, result, 0.01).worst(), 1e-9);
+}
+
+TEST(Exact, SaysThatCombinationsAreLeftOutAndKeepsTheLowest) {
+  // Five arches between clamps, each with several shapes.
+  Problem problem = heavy_cantilever(0, 0);
+  problem.grips.clear();
+  for (int i = 0; i <= 5; ++i) {
+    problem.grips.push_back({i / 5.0, {0.12 * i, 0, 0}, Eigen::Vector3d(1, 0, 0)});
+  }
+  const std::vector<Equilibrium> all = all_exact(problem);
+  ASSERT_EQ(all.size(), 64U);
+  EXPECT_TRUE(says(all.front(), "only the lowest 64 combinations")) << all.front().message;
+  for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+    if (succeeded(all[i].status) != succeeded(all[i + 1].status)) continue;
+    EXPECT_LE(all[i].energy.total(), all[i + 1].energy.total() + 1e-9) << i;
+  }
+}
+
+TEST(Exact, EndsWhenItsTimeIsOver) {
+  Problem pins = heavy_cantilever(10, 0);
+  pins.grips.clear();
+  for (int i = 0; i < 100; ++i) {
+    pins.grips.push_back({i / 99.0, {0.9 * i / 99.0, 0, 0}, std::nullopt});
+  }
+  const Equilibrium result = solve_exact(pins, {.time_limit = 1e-3});
+  EXPECT_EQ(result.status, SolveStatus::time_limit);
+  EXPECT_TRUE(says(result, "time limit")) << result.message;
+  EXPECT_EQ(solve_exact(heavy_cantilever(10, 0), {.time_limit = 1e-9}).status,
+            SolveStatus::time_limit);
+  EXPECT_THROW((void)solve_exact(pins, {.time_limit = 0}), std::invalid_argument);
+}
+
+TEST(LoadBesideAClamp, CountsOnce) {
+  // Nearer than 1e-9 l it is the clamp's, on either side of it and at either end.
+  struct Case {
+    double clamp;
+    double load;
+  };
+  for (const Case place : {Case{5e-10, 0}, Case{0, 5e-10}, Case{0, 0}, Case{5e-10, 1.2e-9},
+                           Case{1, 1 - 5e-10}, Case{1 - 5e-10, 1}, Case{0.4, 0.4 + 5e-10}}) {
+    SCOPED_TRACE(testing::Message() << place.clamp << ", " << place.load);
+    Problem problem = heavy_cantilever(0, 0);
+    problem.grips[0].at = place.clamp;
+    const double other = place.clamp > 0.5 ? 0 : 1;
+    problem.loads = {{place.load, {0, 100, 0}}, {other, {0, 1, 0}}};
+    for (const Equilibrium& result : {solve_energy(problem), solve_exact(problem)}) {
+      ASSERT_TRUE(succeeded(result.status)) << result.message;
+      EXPECT_NEAR(result.grips[0].force.y(), -101, 1e-9);
+      // The work of the load at the other end; that at the clamp does none.
+      const std::vector<double> at = {other};
+      const double way = result.sample(at).points(1, 0) - problem.grips[0].position.y();
+      EXPECT_NEAR(result.energy.load, -way, 1e-6);
+    }
+  }
+}
+
+TEST(LoadBesideAClamp, DoesItsWorkAtThatClamp) {
+  for (const double at : {1.0, 1 - 5e-10}) {
+    Problem problem = test::two_clamps(30, 0.9);
+    problem.grips[1].position.y() = 0.1;
+    problem.grips[1].at = at;
+    problem.loads = {{1, {0, 100, 0}}};
+    for (const Equilibrium& result : {solve_energy(problem), solve_exact(problem)}) {
+      ASSERT_TRUE(succeeded(result.status)) << result.message;
+      EXPECT_NEAR(result.energy.load, -10, 1e-9);
+      EXPECT_NEAR(result.grips[0].force.y() + result.grips[1].force.y(), 30 - 100, 1e-7);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dlo::energy_model

@@ -1,0 +1,87 @@
+#include "minimise.hpp"
+
+#include <gtest/gtest.h>
+#include <nlopt.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+
+namespace dlo::energy_model {
+namespace {
+
+/// A parabola around (1, 1, ...) that throws at its third evaluation.
+struct ThrowsAtThird {
+  int calls = 0;
+
+  double operator()(const Eigen::Ref<const Eigen::VectorXd>& x,
+                    Eigen::Ref<Eigen::VectorXd> gradient) {
+    if (++calls == 3) throw std::runtime_error("third evaluation");
+    const Eigen::VectorXd off = x - Eigen::VectorXd::Ones(x.size());
+    gradient = 4 * off.array().cube();
+    return off.array().pow(4).sum();
+  }
+};
+
+TEST(Minimise, ThrowsWhatTheObjectiveThrowsAndStops) {
+  ThrowsAtThird objective;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(3);
+  try {
+    (void)minimise_lbfgs(std::ref(objective), x, {1e-12, 100});
+    FAIL() << "nothing was thrown";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "third evaluation");
+  }
+  EXPECT_EQ(objective.calls, 3);
+}
+
+TEST(Minimise, ThrowsWhatAConstraintThrows) {
+  int calls = 0;
+  const Objective objective = [](const Eigen::Ref<const Eigen::VectorXd>& x,
+                                 Eigen::Ref<Eigen::VectorXd> gradient) {
+    gradient = 2 * x;
+    return x.squaredNorm();
+  };
+  const Constraints constraints = [&](Eigen::Ref<Eigen::VectorXd> residual,
+                                      Eigen::Ref<Eigen::MatrixXd> jacobian) {
+    if (++calls == 2) throw std::out_of_range("second evaluation");
+    residual.setOnes();
+    jacobian.setOnes();
+  };
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(2);
+  EXPECT_THROW((void)minimise_slsqp(objective, constraints, 1, x, 100), std::out_of_range);
+  EXPECT_EQ(calls, 2);
+}
+
+TEST(Minimise, CallsNothingASuccessThatNLoptDoesNot) {
+  for (const int code : {static_cast<int>(NLOPT_FAILURE), static_cast<int>(NLOPT_INVALID_ARGS),
+                         static_cast<int>(NLOPT_OUT_OF_MEMORY), static_cast<int>(NLOPT_FORCED_STOP),
+                         static_cast<int>(NLOPT_MAXEVAL_REACHED),
+                         static_cast<int>(NLOPT_MAXTIME_REACHED), 0, -17, 99}) {
+    const MinimiseResult result = translate_nlopt(code);
+    EXPECT_FALSE(succeeded(result.status)) << code;
+    EXPECT_NE(result.status, SolveStatus::not_run) << code;
+  }
+  EXPECT_EQ(translate_nlopt(NLOPT_MAXTIME_REACHED).status, SolveStatus::time_limit);
+  EXPECT_EQ(translate_nlopt(NLOPT_MAXEVAL_REACHED).status, SolveStatus::evaluation_limit);
+  EXPECT_NE(translate_nlopt(99).message.find("99"), std::string::npos);
+  // A failed line search is a start for a method that proves what it finds, nothing more.
+  EXPECT_TRUE(translate_nlopt(NLOPT_FAILURE).is_a_start());
+  EXPECT_FALSE(translate_nlopt(NLOPT_OUT_OF_MEMORY).is_a_start());
+  EXPECT_FALSE(translate_nlopt(99).is_a_start());
+}
+
+TEST(Minimise, StopsAtASmallGradient) {
+  const Objective objective = [](const Eigen::Ref<const Eigen::VectorXd>& x,
+                                 Eigen::Ref<Eigen::VectorXd> gradient) {
+    gradient = 2 * x;
+    return x.squaredNorm();
+  };
+  Eigen::VectorXd x = Eigen::VectorXd::Ones(2);
+  const MinimiseResult result = minimise_lbfgs(objective, x, {1e-6, 100});
+  EXPECT_EQ(result.status, SolveStatus::converged);
+  EXPECT_LE(2 * x.norm(), 1e-6);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model

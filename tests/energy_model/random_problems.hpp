@@ -1,0 +1,154 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "dlo/energy_model/problem.hpp"
+
+namespace dlo::test {
+
+/// Where a random rod, its grips and its forces lie: in the x-y plane or anywhere.
+enum class RandomSpace { plane, space };
+
+/// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine and with every library,
+/// which the distributions of <random> do not promise.
+class RandomNumbers {
+ public:
+  explicit RandomNumbers(std::uint64_t seed) : state_(seed) {}
+
+  std::uint64_t bits() {
+    state_ += 0x9e3779b97f4a7c15U;
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30U)) * 0xbf58476d1ce4e5b9U;
+    z = (z ^ (z >> 27U)) * 0x94d049bb133111ebU;
+    return z ^ (z >> 31U);
+  }
+  double uniform(double low = 0, double high = 1) {
+    return low + (high - low) * static_cast<double>(bits() >> 11U) * 0x1p-53;
+  }
+  /// In [0, count).
+  int below(int count) { return static_cast<int>(uniform() * count); }
+  bool chance(double probability) { return uniform() < probability; }
+
+  Eigen::Vector3d direction(RandomSpace space) {
+    const double angle = uniform(-std::numbers::pi, std::numbers::pi);
+    const double z = space == RandomSpace::plane ? 0 : uniform(-1, 1);
+    const double r = std::sqrt(1 - z * z);
+    return {r * std::cos(angle), r * std::sin(angle), z};
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+/// A smooth inextensible curve of unit length: the tangent turns at a rate that is a short Fourier
+/// sum with random coefficients, in small rotations, so that no two points are further apart than
+/// the curve between them.
+class RandomCurve {
+ public:
+  RandomCurve(RandomNumbers& random, RandomSpace space) {
+    const double bend = random.uniform(0.3, 8);  // curvature [1/l]
+    constexpr int waves = 3;
+    std::vector<Eigen::Vector3d> amplitudes;
+    std::vector<double> phases;
+    for (int k = 0; k <= waves; ++k) {
+      Eigen::Vector3d axis = random.direction(RandomSpace::space);
+      if (space == RandomSpace::plane) axis = {0, 0, axis.z()};
+      amplitudes.push_back(bend * random.uniform() * axis);
+      phases.push_back(random.uniform(0, 2 * std::numbers::pi));
+    }
+    tangents_.resize(3, steps);
+    points_.setZero(3, steps + 1);
+    Eigen::Vector3d t = random.direction(space);
+    for (Eigen::Index i = 0; i < steps; ++i) {
+      const double s = (static_cast<double>(i) + 0.5) / steps;
+      Eigen::Vector3d rate = amplitudes[0];
+      for (std::size_t k = 1; k < amplitudes.size(); ++k) {
+        rate +=
+            amplitudes[k] * std::sin(2 * std::numbers::pi * static_cast<double>(k) * s + phases[k]);
+      }
+      if (rate.norm() > 0) {
+        t = Eigen::AngleAxisd(rate.norm() / steps, rate.normalized()) * t;
+        t.normalize();
+      }
+      tangents_.col(i) = t;
+      points_.col(i + 1) = points_.col(i) + t / static_cast<double>(steps);
+    }
+  }
+
+  [[nodiscard]] Eigen::Vector3d point(double s) const { return points_.col(index(s)); }
+  [[nodiscard]] Eigen::Vector3d tangent(double s) const {
+    return tangents_.col(std::min(index(s), steps - 1));
+  }
+
+ private:
+  static constexpr Eigen::Index steps = 1000;
+  static Eigen::Index index(double s) { return static_cast<Eigen::Index>(std::lround(s * steps)); }
+
+  Eigen::Matrix3Xd tangents_;
+  Eigen::Matrix3Xd points_;
+};
+
+/// A multiple of 1/1000 in [low, high], so that a scene can be written down.
+inline double random_arc_length(RandomNumbers& random, double low, double high) {
+  return std::round(1000 * random.uniform(low, high)) / 1000;
+}
+
+/// Arc lengths of `count` grips, at least 0.05 l apart, the first and the last one often at an end.
+inline std::vector<double> random_grip_places(RandomNumbers& random, int count) {
+  constexpr double least = 0.05;
+  for (;;) {
+    std::vector<double> places;
+    for (int i = 0; i < count; ++i) places.push_back(random_arc_length(random, 0, 1));
+    std::sort(places.begin(), places.end());
+    if (random.chance(0.5)) places.front() = 0;
+    if (random.chance(count == 1 ? 0.2 : 0.4)) places.back() = 1;
+    bool apart = true;
+    for (std::size_t i = 0; i + 1 < places.size(); ++i) {
+      apart = apart && places[i + 1] - places[i] >= least;
+    }
+    if (apart) return places;
+  }
+}
+
+/// A rod of unit length and stiffness under a weight along -y with Gamma = w l^3 / (EI) between
+/// 1e-2 and 1e4, 1 to 3 clamps and pins and 0 to 3 loads of up to 0.6 (1 + Gamma) EI/l^2 each.
+/// Grips can be reached: they are read off a random curve, and then in one of three problems turned
+/// at random, in one of three moved towards each other. The same number always gives the same
+/// problem.
+inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace space) {
+  RandomNumbers random(2 * number + (space == RandomSpace::space ? 1 : 0));
+  energy_model::Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  const double gamma = std::pow(10, random.uniform(-2, 4));
+  problem.weight_per_length = {0, -gamma, 0};
+  const RandomCurve curve(random, space);
+  const int kind = random.below(3);
+  const bool turned = kind == 1;
+  const double nearer = kind == 2 ? random.uniform(0.05, 1) : 0.999;
+  const int grips = 1 + random.below(3);
+  for (const double at : random_grip_places(random, grips)) {
+    energy_model::Grip grip;
+    grip.at = at;
+    grip.position = nearer * curve.point(at);
+    if (random.chance(grips == 1 ? 0.85 : 0.55)) {
+      grip.direction = turned ? random.direction(space) : curve.tangent(at);
+    }
+    problem.grips.push_back(grip);
+  }
+  const int loads = random.below(4);
+  for (int j = 0; j < loads; ++j) {
+    const double size = random.uniform(0, 0.6) * (1 + gamma);
+    const double at = random.chance(0.3) ? 1 : random_arc_length(random, 0, 1);
+    problem.loads.push_back({at, size * random.direction(space)});
+  }
+  return problem;
+}
+
+}  // namespace dlo::test

@@ -1,0 +1,175 @@
+// Random scenes, the minimiser against multiple shooting, each shape against force and torque
+// balance. Prints what converged, what was refused and why, the slowest, and how both agree.
+//   dlo_random_scenes [--plane N] [--space N] [--first K] [--time-limit SECONDS] [--write FOLDER]
+// Ends with 0 if no two converged shapes contradict each other, no equilibrium is out of balance
+// and no solve overran the limit; 1 if not; 2 for bad usage.
+
+#include "random_scenes.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <stdexcept>
+
+namespace {
+
+using dlo::energy_model::Equilibrium;
+using dlo::test::Agreement;
+using dlo::test::ComparedScene;
+using dlo::test::RandomSpace;
+
+struct Options {
+  std::uint64_t plane = 200;
+  std::uint64_t space = 200;
+  std::uint64_t first = 0;
+  double time_limit = 20;
+  std::string folder;
+};
+
+Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; i += 2) {
+    const std::string name = argv[i];
+    if (i + 1 == argc) throw std::invalid_argument(name + " wants a value");
+    const std::string value = argv[i + 1];
+    std::size_t used = 0;
+    if (name == "--plane") {
+      options.plane = std::stoul(value, &used);
+    } else if (name == "--space") {
+      options.space = std::stoul(value, &used);
+    } else if (name == "--first") {
+      options.first = std::stoul(value, &used);
+    } else if (name == "--time-limit") {
+      options.time_limit = std::stod(value, &used);
+    } else if (name == "--write") {
+      options.folder = value;
+      used = value.size();
+    } else {
+      throw std::invalid_argument("unknown option " + name);
+    }
+    if (used != value.size()) throw std::invalid_argument(name + ": \"" + value + "\"");
+  }
+  if (!(options.time_limit > 0)) throw std::invalid_argument("--time-limit must be > 0");
+  return options;
+}
+
+/// What happened to one model in all scenes of a kind.
+struct Tally {
+  int converged = 0;
+  std::map<std::string, int> refused;  // messages
+  double slowest = 0;
+  std::uint64_t slowest_scene = 0;
+  double worst_defect = 0;
+  std::uint64_t worst_scene = 0;
+
+  void add(std::uint64_t number, const Equilibrium& result, double defect, double seconds) {
+    if (succeeded(result.status)) {
+      ++converged;
+      if (!(defect <= worst_defect)) {
+        worst_defect = defect;
+        worst_scene = number;
+      }
+    } else {
+      ++refused[result.message];
+    }
+    if (seconds > slowest) {
+      slowest = seconds;
+      slowest_scene = number;
+    }
+  }
+
+  void print(const char* model, std::uint64_t count) const {
+    std::printf(
+        "  %-6s converged %d of %lu (%.1f %%), slowest %.2f s (scene %lu), largest defect "
+        "of balance %.1e (scene %lu)\n",
+        model, converged, count, 100.0 * converged / static_cast<double>(count), slowest,
+        slowest_scene, worst_defect, worst_scene);
+    for (const auto& [message, times] : refused) {
+      std::printf("         refused %d: %s\n", times, message.c_str());
+    }
+  }
+};
+
+/// A shape whose forces and torques do not balance to this is no equilibrium.
+constexpr double largest_defect = 1e-6;
+
+/// @return how many scenes must not be as they are
+int run(const Options& options, RandomSpace space, std::uint64_t count) {
+  const char* kind = space == RandomSpace::plane ? "plane" : "space";
+  if (count == 0) return 0;
+  Tally energy;
+  Tally exact;
+  std::map<Agreement, int> agreements;
+  int lower = 0;
+  int bad = 0;
+  for (std::uint64_t number = options.first; number < options.first + count; ++number) {
+    const dlo::energy_model::Problem problem = dlo::test::random_problem(number, space);
+    const auto complain = [&](const std::string& what) {
+      std::printf("  %s %lu: %s\n", kind, number, what.c_str());
+      if (options.folder.empty()) return;
+      const std::string name = std::string(kind) + "_" + std::to_string(number);
+      std::ofstream(options.folder + "/" + name + ".toml") << dlo::test::scene_text(problem, name);
+    };
+    const ComparedScene scene = dlo::test::compare_models(number, problem, options.time_limit);
+    energy.add(number, scene.energy, scene.energy_defects.worst(), scene.energy.seconds);
+    exact.add(number, scene.exact, scene.exact_defects.worst(), scene.exact.seconds);
+    ++agreements[scene.agreement];
+    if (!succeeded(scene.energy.status)) complain("energy: " + scene.energy.message);
+    if (!succeeded(scene.exact.status)) complain("exact: " + scene.exact.message);
+    bool wrong = false;
+    if (scene.agreement == Agreement::contradict) {
+      complain("shapes " + std::to_string(scene.distance) + " l apart, energies " +
+               std::to_string(scene.energy.energy.total()) + " and " +
+               std::to_string(scene.exact.energy.total()) + ", smallest curvature " +
+               std::to_string(scene.energy.smallest_curvature) + " and " +
+               std::to_string(scene.exact.smallest_curvature));
+      wrong = true;
+    }
+    if (scene.agreement == Agreement::both_stable &&
+        scene.exact.energy.total() < scene.energy.energy.total()) {
+      ++lower;
+    }
+    const double defect = std::max(scene.energy_defects.worst(), scene.exact_defects.worst());
+    if (!(defect <= largest_defect)) {
+      complain("out of balance: " + std::to_string(defect));
+      wrong = true;
+    }
+    // A solve may finish the evaluation that it is in.
+    const double slowest = std::max(scene.energy.seconds, scene.exact.seconds);
+    if (slowest > 1.5 * options.time_limit) {
+      complain("took " + std::to_string(slowest) + " s");
+      wrong = true;
+    }
+    bad += wrong ? 1 : 0;
+  }
+  std::printf("%s, %lu scenes\n", kind, count);
+  energy.print("energy", count);
+  exact.print("exact", count);
+  std::printf(
+      "  both converged: %d the same to 1e-8 l, %d images, %d other stable ones (exact "
+      "lower in %d), %d contradict\n",
+      agreements[Agreement::same], agreements[Agreement::image], agreements[Agreement::both_stable],
+      lower, agreements[Agreement::contradict]);
+  return bad;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  try {
+    options = read_options(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "dlo_random_scenes: " << error.what() << "\n";
+    return 2;
+  }
+  const int bad = run(options, RandomSpace::plane, options.plane) +
+                  run(options, RandomSpace::space, options.space);
+  std::printf("%d scenes contradict, are out of balance or overran the limit\n", bad);
+  return bad == 0 ? 0 : 1;
+}

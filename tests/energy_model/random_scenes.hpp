@@ -1,0 +1,129 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <sstream>
+#include <string>
+
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "equilibrium_balance.hpp"
+#include "random_problems.hpp"
+
+namespace dlo::test {
+
+/// How two solutions of one problem compare.
+enum class Agreement {
+  same,         ///< to 1e-8 l everywhere
+  image,        ///< the same curvature and energy: a mirror image, or turned about a free axis
+  both_stable,  ///< two equilibria of different energy, each proven stable
+  contradict,   ///< none of these
+  missing       ///< one of them at least did not converge
+};
+
+/// Both models on one problem.
+struct ComparedScene {
+  std::uint64_t number = 0;
+  energy_model::Equilibrium energy;
+  energy_model::Equilibrium exact;
+  BalanceDefects energy_defects;
+  BalanceDefects exact_defects;
+  Agreement agreement = Agreement::missing;
+  double distance = std::numeric_limits<double>::quiet_NaN();  ///< of the two shapes [l]
+};
+
+/// Length over which a rod under these forces changes its shape: (EI / force)^(1/2), at most l / 8.
+inline double shape_length(const energy_model::Problem& problem,
+                           const energy_model::Equilibrium& shape) {
+  double force = problem.weight_per_length.norm() * problem.length;
+  for (const energy_model::Load& load : problem.loads) force += load.force.norm();
+  for (const energy_model::Reaction& grip : shape.grips) {
+    force = std::max(force, grip.force.norm());
+  }
+  const double soft = std::sqrt(problem.bending_stiffness / std::max(force, 1e-300));
+  return std::min(problem.length / 8, soft);
+}
+
+inline BalanceDefects defects_of(const energy_model::Problem& problem,
+                                 const energy_model::Equilibrium& shape) {
+  return balance_of(problem, shape, shape_length(problem, shape) / 2);
+}
+
+/// Same shape, image of it, or another one: `distance` is the largest of points at equal arc
+/// length.
+inline Agreement agreement_of(const energy_model::Problem& problem,
+                              const energy_model::Equilibrium& a,
+                              const energy_model::Equilibrium& b, double& distance) {
+  constexpr double same_shape = 1e-8;
+  constexpr double same_curvature = 1e-6;  // relative to the largest
+  constexpr double stable = -1e-7;         // smallest eigenvalue, rounding included
+  const std::vector<double> s = energy_model::equal_arc_lengths(problem.length, 101);
+  const energy_model::Samples left = a.sample(s);
+  const energy_model::Samples right = b.sample(s);
+  distance = (left.points - right.points).colwise().norm().maxCoeff() / problem.length;
+  if (distance <= same_shape) return Agreement::same;
+  const Eigen::VectorXd one = left.curvature.colwise().norm();
+  const Eigen::VectorXd other = right.curvature.colwise().norm();
+  const double largest = std::max(one.maxCoeff(), 1 / problem.length);
+  const double scale = problem.bending_stiffness / problem.length + std::abs(a.energy.total());
+  if ((one - other).cwiseAbs().maxCoeff() <= same_curvature * largest &&
+      std::abs(a.energy.total() - b.energy.total()) <= 1e-8 * scale) {
+    return Agreement::image;
+  }
+  // NaN, nobody has looked, proves nothing.
+  const bool proven = a.smallest_curvature >= stable && b.smallest_curvature >= stable;
+  return proven ? Agreement::both_stable : Agreement::contradict;
+}
+
+/// @param time_limit  of each solve [s]
+inline ComparedScene compare_models(std::uint64_t number, const energy_model::Problem& problem,
+                                    double time_limit) {
+  ComparedScene scene;
+  scene.number = number;
+  scene.energy = energy_model::solve_energy(problem, {.time_limit = time_limit});
+  scene.exact = energy_model::solve_exact(problem, {.time_limit = time_limit});
+  const bool energy = succeeded(scene.energy.status);
+  const bool exact = succeeded(scene.exact.status);
+  if (energy) scene.energy_defects = defects_of(problem, scene.energy);
+  if (exact) scene.exact_defects = defects_of(problem, scene.exact);
+  if (energy && exact) {
+    scene.agreement = agreement_of(problem, scene.energy, scene.exact, scene.distance);
+  }
+  return scene;
+}
+
+/// The problem as a scene file of dlo, to run it by hand.
+inline std::string scene_text(const energy_model::Problem& problem, const std::string& name) {
+  // A rod of 10 mm with this modulus has EI = 1 N m^2; its density makes the weight.
+  constexpr double pi = 3.14159265358979323846;
+  const double diameter = 0.01;
+  const double modulus = problem.bending_stiffness * 64 / (pi * std::pow(diameter, 4));
+  const double density = problem.weight_per_length.norm() / 9.81 / (pi * diameter * diameter / 4);
+  std::ostringstream text;
+  text.precision(17);
+  const auto vector = [&](const Eigen::Vector3d& v) {
+    text << "[" << v.x() << ", " << v.y() << ", " << v.z() << "]\n";
+  };
+  text << "name = \"" << name << "\"\ngravity = [0, -9.81, 0]\n\n[rod]\nlength = " << problem.length
+       << "\ndiameter = " << diameter << "\nmaterial = { youngs_modulus = " << modulus
+       << ", density = " << density << " }\n";
+  for (const energy_model::Grip& grip : problem.grips) {
+    text << "\n[[gripper]]\nat = " << grip.at << "\nposition = ";
+    vector(grip.position);
+    if (grip.direction) {
+      text << "direction = ";
+      vector(*grip.direction);
+    }
+    text << "hold = \"" << (grip.direction ? "clamp" : "pin") << "\"\n";
+  }
+  for (const energy_model::Load& load : problem.loads) {
+    text << "\n[[load]]\nat = " << load.at << "\nforce = ";
+    vector(load.force);
+  }
+  return text.str();
+}
+
+}  // namespace dlo::test

@@ -1,0 +1,80 @@
+// The energy model against multiple shooting on random rods, and both against equilibrium from
+// their samples. The program dlo_random_scenes does the same for as many as are asked for.
+
+#include "random_scenes.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dlo::energy_model {
+namespace {
+
+using test::Agreement;
+using test::RandomSpace;
+
+class RandomScenes : public testing::TestWithParam<RandomSpace> {};
+
+TEST_P(RandomScenes, HoldTheEnergyModelAgainstMultipleShooting) {
+  constexpr std::uint64_t count = 50;
+  // Of `count`, as measured: these must not grow.
+  constexpr int most_refused_by_energy = 6;
+  constexpr int most_refused_by_exact = 1;
+  // The energy model's curvature is right to its last coefficient, 1e-10 of the largest; moments
+  // near a clamp under a large force see the sum of them.
+  constexpr double energy_defect = 1e-6;
+  constexpr double exact_defect = 1e-9;
+  int refused_by_energy = 0;
+  int refused_by_exact = 0;
+  for (std::uint64_t number = 0; number < count; ++number) {
+    SCOPED_TRACE(number);
+    const Problem problem = test::random_problem(number, GetParam());
+    const test::ComparedScene scene = test::compare_models(number, problem, 20);
+    refused_by_energy += succeeded(scene.energy.status) ? 0 : 1;
+    refused_by_exact += succeeded(scene.exact.status) ? 0 : 1;
+    EXPECT_LE(scene.energy_defects.worst(), energy_defect);
+    EXPECT_LE(scene.exact_defects.worst(), exact_defect);
+    EXPECT_NE(scene.agreement, Agreement::contradict)
+        << scene.distance << " l apart, energies " << scene.energy.energy.total() << " and "
+        << scene.exact.energy.total() << ", smallest curvature " << scene.energy.smallest_curvature
+        << " and " << scene.exact.smallest_curvature;
+  }
+  EXPECT_LE(refused_by_energy, most_refused_by_energy);
+  EXPECT_LE(refused_by_exact, most_refused_by_exact);
+}
+
+INSTANTIATE_TEST_SUITE_P(PlaneAndSpace, RandomScenes,
+                         testing::Values(RandomSpace::plane, RandomSpace::space),
+                         [](const auto& space) {
+                           return space.param == RandomSpace::plane ? "plane" : "space";
+                         });
+
+TEST(BalanceDefects, AreSeenInShapesThatAreNoEquilibrium) {
+  // Each claim of balance_of() with a result that breaks it, by 1e-4.
+  const Problem problem = test::random_problem(3, RandomSpace::space);
+  const Equilibrium good = solve_exact(problem);
+  ASSERT_TRUE(succeeded(good.status)) << good.message;
+  ASSERT_LT(test::defects_of(problem, good).worst(), 1e-9);
+  Equilibrium force = good;
+  force.grips[0].force *= 1 + 1e-4;
+  EXPECT_GT(test::defects_of(problem, force).worst(), 1e-6);
+  Equilibrium torque = good;
+  torque.grips[0].torque += 1e-4 * (1 + torque.grips[0].torque.norm()) * Eigen::Vector3d::UnitX();
+  EXPECT_GT(test::defects_of(problem, torque).worst(), 1e-8);
+  Equilibrium points = good;
+  points.sample = [good](std::span<const double> s) {
+    Samples samples = good.sample(s);
+    samples.points *= 1 + 1e-4;
+    return samples;
+  };
+  EXPECT_GT(test::defects_of(problem, points).integral, 1e-7);
+  EXPECT_GT(test::defects_of(problem, points).grips, 1e-7);
+  Equilibrium curvature = good;
+  curvature.sample = [good](std::span<const double> s) {
+    Samples samples = good.sample(s);
+    samples.curvature *= 1 + 1e-4;
+    return samples;
+  };
+  EXPECT_GT(test::defects_of(problem, curvature).moment, 1e-8);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
