@@ -192,8 +192,9 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
     }
   };
   force_model::Simulation simulation = simulation_of();
-  const force_model::RelaxResult result =
-      simulation.relax({.tolerance = options.rest_tolerance, .max_steps = options.max_steps});
+  const force_model::RelaxResult result = simulation.relax({.tolerance = options.rest_tolerance,
+                                                            .max_steps = options.max_steps,
+                                                            .time_limit = options.time_limit});
   if (result.status != force_model::RelaxStatus::at_rest) {
     throw ConvergenceError(fmt::format(
         "{}: the force model did not come to rest: {} after {} steps, about {:.2g} m from it "
