@@ -112,8 +112,8 @@ Work cold_solve(double gamma) {
   problem.bending_stiffness = 1;
   problem.weight_per_length = {0, -gamma, 0};
   problem.grips = {{.at = 0, .direction = Eigen::Vector3d(1, 0, 0)}};
-  return Work([problem, solver = EnergySolver()]() mutable {
-    if (!succeeded(solver.solve(problem).status)) throw std::runtime_error("no equilibrium");
+  return Work([problem, solver = std::make_shared<EnergySolver>()] {
+    if (!succeeded(solver->solve(problem).status)) throw std::runtime_error("no equilibrium");
   });
 }
 
