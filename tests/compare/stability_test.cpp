@@ -141,7 +141,8 @@ TEST(HardCases, AThousandPointsCreepOnAndAreNotSaidToRest) {
 }
 
 TEST(HardCases, AnotherEquilibriumPassesAndSaysSo) {
-  // Above buckling the rod falls to the side on which it starts; one of them is the reference's.
+  // Above buckling the rod falls to the side on which it starts; the reference has one side at
+  // most.
   const std::vector<HardCase> cases = hard_cases(1);
   const auto buckling = std::find_if(cases.begin(), cases.end(), [](const HardCase& hard) {
     return hard.name.find("above buckling") != std::string::npos;
@@ -165,7 +166,7 @@ TEST(HardCases, AnotherEquilibriumPassesAndSaysSo) {
     const std::size_t second = result.note.find("there ") + 6;
     EXPECT_EQ(result.note.substr(first, 9), result.note.substr(second, 9)) << result.note;
   }
-  EXPECT_EQ(others, 1);
+  EXPECT_GE(others, 1);
 }
 
 TEST(Stability, IsTheSameForAnyNumberOfThreads) {
