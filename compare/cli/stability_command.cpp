@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "comparison_text.hpp"
+#include "dlo/compare/csv.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/hard_case.hpp"
 #include "dlo/compare/stability.hpp"
@@ -100,9 +101,9 @@ std::string cases_text(const std::vector<StabilityResult>& results, std::size_t 
 std::string cases_csv(const std::vector<StabilityResult>& results) {
   std::string text = "case,stepper,outcome,steps,error_over_length,at_rest,note\n";
   for (const StabilityResult& r : results) {
-    append(text, "{},{},{},{},{:.10g},{},{}\n", csv_field(r.name), compare::to_string(r.stepper),
-           compare::to_string(r.outcome), r.steps, r.error_over_length, r.at_rest,
-           csv_field(r.note));
+    append(text, "{},{},{},{},{},{},{}\n", csv_field(r.name), compare::to_string(r.stepper),
+           compare::to_string(r.outcome), r.steps, compare::csv_number(r.error_over_length),
+           r.at_rest, csv_field(r.note));
   }
   return text;
 }
@@ -153,8 +154,9 @@ std::string map_csv(const compare::StabilityMap& map) {
   for (std::size_t i = 0; i < map.points.size(); ++i) {
     const compare::MapPoint& p = map.points[i];
     const MapColumn& c = map.columns[i / rows];
-    append(text, "{:.10g},{:.10g},{:.10g},{},{:.10g},{:.10g},{:.10g}\n", p.c_c, p.c_h, p.c_F,
-           state(p.outcome), c.fastest_mode, c.predicted, c.measured);
+    append(text, "{},{},{},{},{},{},{}\n", compare::csv_number(p.c_c), compare::csv_number(p.c_h),
+           compare::csv_number(p.c_F), state(p.outcome), compare::csv_number(c.fastest_mode),
+           compare::csv_number(c.predicted), compare::csv_number(c.measured));
   }
   return text;
 }

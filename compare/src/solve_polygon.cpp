@@ -268,7 +268,8 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
     }
   };
   const force_model::RelaxOptions limits{.tolerance = options.rest_tolerance,
-                                         .max_steps = options.max_steps};
+                                         .max_steps = options.max_steps,
+                                         .time_limit = options.time_limit};
   force_model::Simulation simulation = simulation_from(start.points);
   force_model::RelaxResult result = simulation.relax(limits);
   const auto strayed = [&] {

@@ -120,7 +120,7 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
   std::vector<RestSearch> searches;
   searches.reserve(rods_.size());
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
-    searches.emplace_back(rods_[rod], controls_[rod].estimate(), options, points(rod));
+    searches.emplace_back(rods_[rod], controls_[rod].estimate(), options);
   }
   const PerLane active_before = active_;
   const auto stop_if_done = [&](std::size_t rod) {

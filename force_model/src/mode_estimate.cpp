@@ -12,9 +12,7 @@ constexpr double memory = 0.8;  // weight of older blocks
 }  // namespace
 
 ModeEstimate::ModeEstimate(const Rod& rod, const Eigen::Matrix3Xd& points)
-    : modes_(mode_bounds(rod, points)),
-      slowest_expected_(modes_.slowest),
-      constraints_(constraint_stiffness(rod)) {
+    : modes_(mode_bounds(rod, points)), constraints_(constraint_stiffness(rod)) {
   const double rounding = std::numeric_limits<double>::epsilon() * points.cwiseAbs().maxCoeff();
   rounding_ = 2 * static_cast<double>(points.cols()) * rounding * rounding;
 }

@@ -32,11 +32,9 @@ class ModeEstimate {
   void change_environment(const Rod& rod, const Eigen::Matrix3Xd& points);
 
   [[nodiscard]] const ModeBounds& modes() const { return modes_; }
-  [[nodiscard]] double slowest_expected() const { return slowest_expected_; }
 
  private:
   ModeBounds modes_;
-  double slowest_expected_ = 0;  // before anything moved
   double constraints_ = 0;
   double rounding_ = 0;  // 2 N (eps x)^2 [m^2]
   double force_change_ = 0;

@@ -1,8 +1,8 @@
 #include "rest_search.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "require.hpp"
@@ -11,6 +11,7 @@ namespace dlo::force_model {
 namespace {
 
 constexpr long unconditional_after = 50'000;  // steps; looks are cheap against so many
+constexpr long clock_steps = 64;  // between two looks at the clock, which costs as much as one
 
 }  // namespace
 
@@ -20,23 +21,21 @@ const char* to_string(RelaxStatus status) {
       return "at rest";
     case RelaxStatus::step_limit:
       return "step limit";
+    case RelaxStatus::time_limit:
+      return "time limit";
     case RelaxStatus::diverged:
       break;
   }
   return "diverged";
 }
 
-RestSearch::RestSearch(const Rod& rod, const ModeEstimate& estimate, const RelaxOptions& options,
-                       const Eigen::Matrix3Xd& points)
+RestSearch::RestSearch(const Rod& rod, const ModeEstimate& estimate, const RelaxOptions& options)
     : rod_(rod), estimate_(estimate), options_(options) {
   require_positive("Simulation::relax", "tolerance", options.tolerance);
+  require(options.time_limit > 0, "Simulation::relax", "time_limit", options.time_limit, "> 0");
   result_.status = RelaxStatus::step_limit;
   next_measurement_ = unconditional_after;
-  // Forces of stiff segments carry the rounding of the positions; no step gets below what it moves.
-  const double rounding = std::numeric_limits<double>::epsilon() * rod.c_c *
-                          points.cwiseAbs().maxCoeff() / rod.rest_lengths.minCoeff() /
-                          std::min(estimate.slowest_expected(), estimate.modes().slowest);
-  target_ = std::max(options.tolerance * rod.length(), rounding);
+  target_ = options.tolerance * rod.length();
 }
 
 bool RestSearch::open() const {
@@ -49,12 +48,21 @@ bool RestSearch::count(const StepResult& step) {
     return false;
   }
   ++result_.steps;
+  if (result_.steps % clock_steps == 0 && std::isfinite(options_.time_limit)) {
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin_;
+    if (taken.count() > options_.time_limit) result_.status = RelaxStatus::time_limit;
+  }
   return result_.steps % block_steps == 0 && result_.steps >= next_check_;
+}
+
+bool RestSearch::rests(const EquilibriumCheck& check) const {
+  return check.stable && check.proven && result_.remaining_error < target_;
 }
 
 EquilibriumCheck RestSearch::measure(const MovingShape& shape) {
   result_.residual_force = std::sqrt(shape.forces.colwise().squaredNorm().maxCoeff());
   EquilibriumCheck check = check_equilibrium(rod_, shape.points);
+  neutral_modes_ = check.neutral_modes;
   result_.remaining_error = std::max(check.remaining_error, shape.momentum);
   return check;
 }
@@ -70,10 +78,11 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
   if (!seems_at_rest && !due) return {};
   next_measurement_ = std::max(next_measurement_, result_.steps + result_.steps / 4);
   EquilibriumCheck check = measure(shape);
-  if (check.stable && result_.remaining_error < target_) {
+  if (rests(check)) {
     result_.status = RelaxStatus::at_rest;
     return {};
   }
+  // The chord of a contact that opens and closes proves nothing; calm it all the same.
   bounces_ = due && check.stable && check.remaining_error < target_;
   if (bounces_) next_measurement_ = result_.steps + descent_steps;
   if (!seems_at_rest) return {};
@@ -82,11 +91,15 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
 }
 
 RelaxResult RestSearch::finish(const MovingShape& shape) {
-  if (result_.status == RelaxStatus::step_limit) {
+  if (result_.status == RelaxStatus::step_limit || result_.status == RelaxStatus::time_limit) {
     const EquilibriumCheck check = measure(shape);
-    if (check.stable && result_.remaining_error < target_) result_.status = RelaxStatus::at_rest;
+    if (rests(check)) result_.status = RelaxStatus::at_rest;
   }
   result_.message = to_string(result_.status);
+  if (result_.status == RelaxStatus::at_rest && neutral_modes_ > 0) {
+    result_.message += ", but for " + std::to_string(neutral_modes_) +
+                       (neutral_modes_ == 1 ? " movement" : " movements") + " without stiffness";
+  }
   return result_;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <chrono>
 
 #include "dlo/force_model/relax.hpp"
 #include "dlo/force_model/tangent_stiffness.hpp"
@@ -19,8 +20,7 @@ struct MovingShape {
 class RestSearch {
  public:
   /// @param rod, estimate  outlive this
-  RestSearch(const Rod& rod, const ModeEstimate& estimate, const RelaxOptions& options,
-             const Eigen::Matrix3Xd& points);
+  RestSearch(const Rod& rod, const ModeEstimate& estimate, const RelaxOptions& options);
 
   /// Whether another step is to be made.
   [[nodiscard]] bool open() const;
@@ -42,14 +42,18 @@ class RestSearch {
 
  private:
   EquilibriumCheck measure(const MovingShape& shape);
+  /// Of the shape that was measured last.
+  [[nodiscard]] bool rests(const EquilibriumCheck& check) const;
 
   const Rod& rod_;
   const ModeEstimate& estimate_;
   RelaxOptions options_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   double target_ = 0;
   long next_check_ = 2 * block_steps;
   long next_measurement_ = 0;  // at the latest
   bool bounces_ = false;
+  int neutral_modes_ = 0;
   RelaxResult result_;
 };
 

@@ -1,6 +1,7 @@
 #include "dlo/force_model/rod.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 #include "dlo/force_model/contraction.hpp"
 #include "require.hpp"
@@ -18,6 +19,21 @@ void check_grip(const Grip& grip, Eigen::Index points) {
           "so that the grip's points exist");
   require(grip.targets.allFinite(), "Rod", "targets of a grip", grip.targets.norm(), "finite");
   if (grip.hold == GripHold::spring) require_positive("Rod", "grip stiffness", grip.stiffness);
+}
+
+/// A rigid grip exerts all that acts on its points, so no two may hold the same one.
+void require_own_points(std::string_view function, const std::vector<Grip>& grips) {
+  for (std::size_t i = 0; i < grips.size(); ++i) {
+    if (grips[i].hold == GripHold::spring) continue;
+    for (std::size_t j = 0; j < i; ++j) {
+      if (grips[j].hold == GripHold::spring) continue;
+      const Eigen::Index begin = std::max(grips[i].first_point, grips[j].first_point);
+      const Eigen::Index end = std::min(grips[i].first_point + grips[i].targets.cols(),
+                                        grips[j].first_point + grips[j].targets.cols());
+      require(begin >= end, function, "point held by two rigid grips", static_cast<double>(begin),
+              "held by one of them");
+    }
+  }
 }
 
 Eigen::Vector3d on_held_point(const Grip& grip, Eigen::Index k, const Points& points,
@@ -42,6 +58,7 @@ void check(const Rod& rod) {
   require(rod.loads.allFinite(), "Rod", "loads", rod.loads.norm(), "finite");
   for (const Wall& wall : rod.walls) check(wall);
   for (const Grip& grip : rod.grips) check_grip(grip, rod.points());
+  require_own_points("Rod", rod.grips);
 }
 
 void total_forces(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matrix3Xd> forces) {
@@ -68,6 +85,7 @@ void grip_reactions(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matr
                     std::span<GripReaction> reactions) {
   require(reactions.size() == rod.grips.size(), "grip_reactions", "number of reactions",
           static_cast<double>(reactions.size()), "the number of grips");
+  require_own_points("grip_reactions", rod.grips);
   total_forces(rod, points, forces);
   for (std::size_t g = 0; g < rod.grips.size(); ++g) {
     const Grip& grip = rod.grips[g];

@@ -7,6 +7,12 @@
 #include "require.hpp"
 
 namespace dlo::force_model {
+namespace {
+
+/// The c_m sum to whole numbers up to rounding, which is not worth another step [steps].
+constexpr double rounding_of_sum = 5e-7;
+
+}  // namespace
 
 Simulation::Simulation(Rod rod, Eigen::Matrix3Xd points, const StepOptions& options) {
   const BatchRod start{std::move(rod), std::move(points), options};
@@ -35,13 +41,14 @@ StepResult Simulation::advance(double steps, long max_steps) {
   require_positive("Simulation::advance", "steps", steps);
   owed_steps_ += steps;
   StepResult result{.status = StepStatus::good};
-  // Text 1 makes a step even when none is owed; calls for less than one step would run ahead. The
-  // c_m sum to whole numbers up to rounding, which is not worth another step either.
-  for (long i = 0; i < max_steps && owed_steps_ > 5e-7; ++i) {
+  // Text 1 makes a step even when none is owed; calls for less than one step would run ahead.
+  for (long i = 0; i < max_steps && owed_steps_ > rounding_of_sum; ++i) {
     result = step();
     if (result.status == StepStatus::diverged) break;
     owed_steps_ -= result.c_m;
   }
+  if (result.status == StepStatus::good && owed_steps_ > rounding_of_sum)
+    result.status = StepStatus::behind;
   return result;
 }
 
@@ -57,6 +64,8 @@ void Simulation::move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matri
 void Simulation::move_wall(std::size_t wall, const Wall& moved) {
   lockstep_->move_wall(0, wall, moved);
 }
+
+double Simulation::owed_steps() const { return owed_steps_; }
 
 const Rod& Simulation::rod() const { return lockstep_->rod(0); }
 Eigen::Matrix3Xd Simulation::points() const { return lockstep_->points(0); }

@@ -1,15 +1,19 @@
 #include "dlo/force_model/tangent_stiffness.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "require.hpp"
 
 namespace dlo::force_model {
 namespace {
 
-constexpr Eigen::Index coupling = 2;  // points to either side that a point's force depends on
-constexpr Eigen::Index stride = 2 * coupling + 1;
+/// A second Newton step shorter than this share of the rod is rounding of the positions and forces.
+constexpr double rounding_share = 1e-12;
 
 /// Index of each point among the free ones, -1 for rigidly held points.
 std::vector<Eigen::Index> free_indices(const Rod& rod, Eigen::Index& count) {
@@ -53,71 +57,291 @@ Eigen::Matrix3Xd falling_direction(const Factor& factor, const std::vector<Eigen
   return direction;
 }
 
+/// Minus the derivative of the total forces by the positions of the free points, symmetric: the
+/// paper's law between unequal segments has no potential, half of what is off goes to either side.
+/// With x the points that a term depends on and f its force on them, each adds -df/dx.
+class TangentStiffness {
+ public:
+  explicit TangentStiffness(const Rod& rod) : index_(free_indices(rod, count_)) {
+    entries_.reserve(static_cast<std::size_t>(45 * count_));
+  }
+
+  [[nodiscard]] Eigen::Index free_points() const { return count_; }
+  [[nodiscard]] const std::vector<Eigen::Index>& index() const { return index_; }
+
+  /// @param block  -df_i/dx_j, with its transpose when i != j
+  void add(Eigen::Index i, Eigen::Index j, const Eigen::Matrix3d& block) {
+    const Eigen::Index row = index_[static_cast<std::size_t>(i)];
+    const Eigen::Index column = index_[static_cast<std::size_t>(j)];
+    if (row < 0 || column < 0) return;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      for (Eigen::Index m = 0; m < 3; ++m) {
+        entries_.emplace_back(3 * row + k, 3 * column + m, block(k, m));
+        if (i != j) entries_.emplace_back(3 * column + m, 3 * row + k, block(k, m));
+      }
+    }
+  }
+
+  [[nodiscard]] Eigen::SparseMatrix<double> matrix() const {
+    Eigen::SparseMatrix<double> result(3 * count_, 3 * count_);
+    result.setFromTriplets(entries_.begin(), entries_.end());
+    return result;
+  }
+
+  [[nodiscard]] Eigen::VectorXd gathered(const Eigen::Matrix3Xd& of_points) const {
+    Eigen::VectorXd result(3 * count_);
+    for (std::size_t i = 0; i < index_.size(); ++i) {
+      if (index_[i] < 0) continue;
+      result.segment<3>(3 * index_[i]) = of_points.col(static_cast<Eigen::Index>(i));
+    }
+    return result;
+  }
+
+  [[nodiscard]] Eigen::Matrix3Xd scattered(const Eigen::VectorXd& of_free_points) const {
+    Eigen::Matrix3Xd result = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(index_.size()));
+    for (std::size_t i = 0; i < index_.size(); ++i) {
+      if (index_[i] < 0) continue;
+      result.col(static_cast<Eigen::Index>(i)) = of_free_points.segment<3>(3 * index_[i]);
+    }
+    return result;
+  }
+
+ private:
+  Eigen::Index count_ = 0;
+  std::vector<Eigen::Index> index_;
+  std::vector<Eigen::Triplet<double>> entries_;
+};
+
+/// Contraction: c_c/L along the segment, and across it what its tension resists.
+void add_segments(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                  TangentStiffness& stiffness) {
+  // A segment without length is pushed apart in any direction: it gives way to all.
+  constexpr double no_length = 1e-9;
+  for (Eigen::Index i = 0; i < rod.rest_lengths.size(); ++i) {
+    const double L = rod.rest_lengths[i];
+    const Eigen::Vector3d segment = points.col(i + 1) - points.col(i);
+    const double length = std::max(segment.norm(), no_length * L);
+    const Eigen::Vector3d u = segment / length;
+    const double tension = rod.c_c * (length - L) / L;
+    const Eigen::Matrix3d along = u * u.transpose();
+    const Eigen::Matrix3d block =
+        rod.c_c / L * along + tension / length * (Eigen::Matrix3d::Identity() - along);
+    stiffness.add(i, i, block);
+    stiffness.add(i + 1, i + 1, block);
+    stiffness.add(i, i + 1, -block);
+  }
+}
+
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// Both laws' forces by the two segments a, b of a joint are S dc/d(a, b), with c the cosine of
+/// its angle. S and its derivative by (a, b):
+///     hooke:  S = 2 (EI/L) / (1 + c),              beyond the fold angle M / sin(alpha)
+///     paper:  S = c_b (1 - c) |a| |b| / |a + b|
+struct JointFactor {
+  double S = 0;
+  Vector6d slope = Vector6d::Zero();
+};
+
+JointFactor joint_factor(const Bending& bending, double L, const Eigen::Vector3d& a,
+                         const Eigen::Vector3d& b, double c, const Vector6d& slope_of_c) {
+  JointFactor factor;
+  if (bending.law == BendingLaw::paper) {
+    const double a_length = a.norm();
+    const double b_length = b.norm();
+    const Eigen::Vector3d chord = a + b;
+    const double ratio = a_length * b_length / chord.norm();
+    Vector6d slope;
+    slope.head<3>() = a / (a_length * a_length) - chord / chord.squaredNorm();
+    slope.tail<3>() = b / (b_length * b_length) - chord / chord.squaredNorm();
+    factor.S = bending.stiffness * (1 - c) * ratio;
+    factor.slope = factor.S * slope - bending.stiffness * ratio * slope_of_c;
+    return factor;
+  }
+  static const double fold_cosine = std::cos(hooke_fold_angle);
+  if (c >= fold_cosine) {
+    factor.S = 2 * bending.stiffness / L / (1 + c);
+    factor.slope = -factor.S / (1 + c) * slope_of_c;
+    return factor;
+  }
+  const double sine_squared = std::max(0.0, 1 - c * c);
+  factor.S = 2 * bending.stiffness / L * std::tan(hooke_fold_angle / 2) / std::sqrt(sine_squared);
+  factor.slope = factor.S * c / sine_squared * slope_of_c;
+  return factor;
+}
+
+void add_joints(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                TangentStiffness& stiffness) {
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  for (Eigen::Index i = 1; i < rod.rest_lengths.size(); ++i) {
+    const Eigen::Vector3d a = points.col(i) - points.col(i - 1);
+    const Eigen::Vector3d b = points.col(i + 1) - points.col(i);
+    const double a_length = a.norm();
+    const double b_length = b.norm();
+    if (!(a_length > 0 && b_length > 0)) continue;
+    const Eigen::Vector3d u = a / a_length;
+    const Eigen::Vector3d v = b / b_length;
+    const double c = u.dot(v);
+    const Eigen::Vector3d by_a = v - c * u;  // |a| dc/da
+    const Eigen::Vector3d by_b = u - c * v;  // |b| dc/db
+    Vector6d slope;
+    slope << by_a / a_length, by_b / b_length;
+    const Eigen::Matrix3d aa = by_a * u.transpose();
+    const Eigen::Matrix3d bb = by_b * v.transpose();
+    Matrix6d second;  // of c
+    second.topLeftCorner<3, 3>() =
+        -(aa + aa.transpose() + c * (one - u * u.transpose())) / (a_length * a_length);
+    second.bottomRightCorner<3, 3>() =
+        -(bb + bb.transpose() + c * (one - v * v.transpose())) / (b_length * b_length);
+    second.topRightCorner<3, 3>() =
+        (one - v * v.transpose() - u * by_b.transpose()) / (a_length * b_length);
+    second.bottomLeftCorner<3, 3>() = second.topRightCorner<3, 3>().transpose();
+    const double L = (rod.rest_lengths[i - 1] + rod.rest_lengths[i]) / 2;
+    const JointFactor factor = joint_factor(rod.bending, L, a, b, c, slope);
+    const Matrix6d turning = slope * factor.slope.transpose();
+    const Matrix6d by_segments = -(turning + turning.transpose()) / 2 - factor.S * second;
+    const Eigen::Matrix3d A = by_segments.topLeftCorner<3, 3>();
+    const Eigen::Matrix3d B = by_segments.bottomRightCorner<3, 3>();
+    const Eigen::Matrix3d AB = by_segments.topRightCorner<3, 3>();
+    // a = P_i - P_{i-1}, b = P_{i+1} - P_i
+    stiffness.add(i - 1, i - 1, A);
+    stiffness.add(i, i, A + B - AB - AB.transpose());
+    stiffness.add(i + 1, i + 1, B);
+    stiffness.add(i - 1, i, AB - A);
+    stiffness.add(i - 1, i + 1, -AB);
+    stiffness.add(i, i + 1, AB - B);
+  }
+}
+
+void add_springs(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                 TangentStiffness& stiffness) {
+  for (const Wall& wall : rod.walls) {
+    const Eigen::Matrix3d block = wall.stiffness * wall.normal * wall.normal.transpose();
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      if ((wall.point - points.col(i)).dot(wall.normal) > 0) stiffness.add(i, i, block);
+    }
+  }
+  for (const Grip& grip : rod.grips) {
+    if (grip.hold == GripHold::rigid) continue;
+    const Eigen::Matrix3d block = grip.stiffness * Eigen::Matrix3d::Identity();
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+      stiffness.add(grip.first_point + k, grip.first_point + k, block);
+    }
+  }
+}
+
+/// The smallest eigenvalues of K and their modes, by subspace iteration with a factor of K, or of K
+/// plus a shift of rounding size: from above, and within some percent.
+struct SlowModes {
+  static constexpr Eigen::Index most = 3;
+  Eigen::Vector3d eigenvalues = Eigen::Vector3d::Zero();  // ascending
+  Eigen::MatrixX3d modes;                                 // orthonormal, one a column
+};
+
+/// Gram and Schmidt's, twice for nearly parallel columns.
+void orthonormalise(Eigen::MatrixX3d& block) {
+  for (Eigen::Index i = 0; i < SlowModes::most; ++i) {
+    block.col(i).normalize();
+    for (int turn = 0; turn < 2; ++turn) {
+      for (Eigen::Index j = 0; j < i; ++j) {
+        block.col(i) -= block.col(j).dot(block.col(i)) * block.col(j);
+      }
+      block.col(i).normalize();
+    }
+  }
+}
+
+SlowModes slow_modes(const Eigen::SparseMatrix<double>& K, const Factor& factor) {
+  constexpr int iterations = 8;
+  Eigen::MatrixX3d block(K.rows(), 3);  // of no symmetry that a mode could be orthogonal to
+  for (Eigen::Index i = 0; i < block.size(); ++i) {
+    block.reshaped()[i] = std::sin(1 + 2.3999632 * static_cast<double>(i));
+  }
+  for (int i = 0; i < iterations; ++i) {
+    orthonormalise(block);
+    block = factor.solve(block).eval();
+  }
+  orthonormalise(block);
+  const Eigen::MatrixX3d K_block = K * block;
+  const Eigen::Matrix3d projected = block.transpose() * K_block;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> ritz(projected);
+  return {ritz.eigenvalues(), block * ritz.eigenvectors()};
+}
+
+/// Bound of the largest eigenvalue (Gershgorin).
+double fastest_mode(const Eigen::SparseMatrix<double>& K) {
+  return (Eigen::RowVectorXd::Ones(K.rows()) * K.cwiseAbs()).maxCoeff();
+}
+
 }  // namespace
 
 EquilibriumCheck check_equilibrium(const Rod& rod,
                                    const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
   require_polygon("check_equilibrium", points, rod.rest_lengths);
-  const Eigen::Index N = points.cols();
-  Eigen::Index count = 0;
-  const std::vector<Eigen::Index> index = free_indices(rod, count);
   EquilibriumCheck result;
-  result.step.setZero(3, N);
-  if (count == 0) {
+  result.step.setZero(3, points.cols());
+  TangentStiffness stiffness(rod);
+  if (stiffness.free_points() == 0) {
     result.stable = true;
+    result.proven = true;
     result.remaining_error = 0;
     return result;
   }
-
-  const double h = 1e-6 * rod.rest_lengths.minCoeff();
-  Eigen::Matrix3Xd moved = points;
-  Eigen::Matrix3Xd above(3, N);
-  Eigen::Matrix3Xd below(3, N);
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(9 * stride * count));
-  for (Eigen::Index first = 0; first < stride; ++first) {
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      for (Eigen::Index i = first; i < N; i += stride) moved(axis, i) = points(axis, i) + h;
-      total_forces(rod, moved, above);
-      for (Eigen::Index i = first; i < N; i += stride) moved(axis, i) = points(axis, i) - h;
-      total_forces(rod, moved, below);
-      for (Eigen::Index i = first; i < N; i += stride) {
-        moved(axis, i) = points(axis, i);
-        const Eigen::Index column = index[static_cast<std::size_t>(i)];
-        if (column < 0) continue;
-        const Eigen::Index end = std::min(N, i + coupling + 1);
-        for (Eigen::Index j = std::max<Eigen::Index>(0, i - coupling); j < end; ++j) {
-          const Eigen::Index row = index[static_cast<std::size_t>(j)];
-          if (row < 0) continue;
-          for (Eigen::Index k = 0; k < 3; ++k) {
-            // Half to either side of the diagonal: the paper's law is not quite symmetric.
-            const double value = (below(k, j) - above(k, j)) / (4 * h);
-            entries.emplace_back(3 * row + k, 3 * column + axis, value);
-            entries.emplace_back(3 * column + axis, 3 * row + k, value);
-          }
-        }
-      }
-    }
-  }
-  Eigen::SparseMatrix<double> stiffness(3 * count, 3 * count);
-  stiffness.setFromTriplets(entries.begin(), entries.end());
-  total_forces(rod, points, above);
-  Eigen::VectorXd force(3 * count);
-  for (Eigen::Index i = 0; i < N; ++i) {
-    const Eigen::Index row = index[static_cast<std::size_t>(i)];
-    if (row >= 0) force.segment<3>(3 * row) = above.col(i);
-  }
-  const Factor factor(stiffness);
+  add_segments(rod, points, stiffness);
+  add_joints(rod, points, stiffness);
+  add_springs(rod, points, stiffness);
+  const Eigen::SparseMatrix<double> K = stiffness.matrix();
+  // Rounding of K, which is banded, leaves no sign to a mode below this.
+  const double rounding = 64 * std::numeric_limits<double>::epsilon() * fastest_mode(K);
+  Factor factor(K);
   if (factor.info() != Eigen::Success) return result;
-  const Eigen::VectorXd step = factor.solve(force);
-  for (Eigen::Index i = 0; i < N; ++i) {
-    const Eigen::Index row = index[static_cast<std::size_t>(i)];
-    if (row >= 0) result.step.col(i) = step.segment<3>(3 * row);
+  SlowModes slow;
+  if (factor.vectorD().minCoeff() > 0) slow = slow_modes(K, factor);
+  if (!(slow.eigenvalues[0] > rounding)) {
+    // A rod that turns freely about its grips has modes without stiffness: they are left out.
+    Eigen::Matrix3Xd falling;
+    if (factor.vectorD().minCoeff() < 0) falling = falling_direction(factor, stiffness.index());
+    Eigen::SparseMatrix<double> shifted = K;
+    for (Eigen::Index i = 0; i < K.rows(); ++i) shifted.coeffRef(i, i) += rounding;
+    factor.compute(shifted);
+    if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) {
+      result.falling_direction = std::move(falling);
+      return result;
+    }
+    slow = slow_modes(K, factor);
+    result.neutral_modes = static_cast<int>((slow.eigenvalues.array() <= rounding).count());
+    if (result.neutral_modes == SlowModes::most) return result;  // of how many more?
   }
-  const double remaining = step.norm() / std::sqrt(static_cast<double>(N));
-  result.stable = factor.vectorD().minCoeff() > 0 && std::isfinite(remaining);
-  result.remaining_error = remaining;
-  if (factor.vectorD().minCoeff() < 0) result.falling_direction = falling_direction(factor, index);
+  const Eigen::MatrixXd neutral = slow.modes.leftCols(result.neutral_modes);
+  const double rounding_of_force = rounding * points.cwiseAbs().maxCoeff();
+  const auto newton_step = [&](const Eigen::Matrix3Xd& at) -> Eigen::VectorXd {
+    Eigen::Matrix3Xd forces(3, at.cols());
+    total_forces(rod, at, forces);
+    Eigen::VectorXd force = stiffness.gathered(forces);
+    const Eigen::VectorXd along = neutral.transpose() * force;
+    if (along.norm() > rounding_of_force) return Eigen::VectorXd::Constant(force.size(), NAN);
+    return factor.solve(force - neutral * along);
+  };
+  const Eigen::VectorXd step = newton_step(points);
+  if (!step.allFinite()) return result;
+  const double root_points = std::sqrt(static_cast<double>(points.cols()));
+  const double error = step.norm() / root_points;
+  result.remaining_error = error;
+  result.step = stiffness.scattered(step);
+  result.slowest_mode = slow.eigenvalues[result.neutral_modes];
+  result.stable = true;
+  // The step is evaluated: by Kantorovich's theorem the equilibrium exists, and its distance is
+  // bounded by the step's, if a second step with the same K is at most a quarter of the first.
+  const double second = newton_step(points + result.step).norm() / root_points;
+  const double share = second / error;
+  if (!(second > rounding_share * rod.length())) {
+    result.proven = std::isfinite(second);
+    result.remaining_error = error + second;
+  } else if (share <= 0.25) {
+    result.proven = true;
+    result.remaining_error = error * (1 - std::sqrt(1 - 4 * share)) / (2 * share);
+  }
   return result;
 }
 

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
+#include <string>
 
 namespace dlo::compare {
 namespace {
@@ -29,8 +31,16 @@ TEST(Benchmark, FrontIsWhatNoOtherRunBeats) {
   EXPECT_FALSE(has_run(runs, Model::force));
 }
 
-/// Times are of the machine; these are the facts that hold on every one.
-TEST(Benchmark, RunsEveryModelAndItsAnswersFitTheRows) {
+/// Whether a model's runs of a scene were left out for want of time, and said to be.
+bool said_to_be_skipped(const BenchmarkReport& report, const std::string& scene, Model model) {
+  return std::any_of(report.skipped.begin(), report.skipped.end(), [&](const std::string& one) {
+    return one.starts_with(scene + ": " + to_string(model));
+  });
+}
+
+/// Times are of the machine; these are the facts that hold on every one, however slow: what does
+/// not fit in is said to be skipped.
+TEST(Benchmark, RunsEveryModelOrSaysThatItDidNotAndItsAnswersFitTheRows) {
   const BenchmarkReport report =
       run_benchmark(benchmark_scenes(), {.budget_s = 3, .repeats = 1, .frames = 10});
   ASSERT_EQ(report.scenes.size(), 2U);
@@ -58,11 +68,14 @@ TEST(Benchmark, RunsEveryModelAndItsAnswersFitTheRows) {
       }
     }
     for (const Model model : {Model::exact, Model::energy, Model::chain, Model::force}) {
-      EXPECT_GT(count[model], 0) << to_string(model);
+      EXPECT_TRUE(count[model] > 0 || said_to_be_skipped(report, scene.scene, model))
+          << to_string(model);
     }
+    const bool energy_skipped = said_to_be_skipped(report, scene.scene, Model::energy);
     ASSERT_EQ(scene.answers.size(), 4U);
     for (const BenchmarkAnswer& answer : scene.answers) {
-      ASSERT_TRUE(answer.best) << answer.error;
+      ASSERT_TRUE(answer.best || energy_skipped) << answer.error;
+      if (!answer.best) continue;
       const BenchmarkRun& best = scene.runs[*answer.best];
       EXPECT_LE(best.rms_over_length, answer.error);
       EXPECT_TRUE(best.front || answer.error > best.rms_over_length);
@@ -70,9 +83,11 @@ TEST(Benchmark, RunsEveryModelAndItsAnswersFitTheRows) {
         EXPECT_FALSE(run.rms_over_length <= answer.error && run.time.median_s < best.time.median_s);
       }
     }
-    ASSERT_TRUE(scene.energy_at_1e6);
-    EXPECT_EQ(scene.runs[*scene.energy_at_1e6].model, Model::energy);
-    EXPECT_FALSE(scene.tracking.empty());
+    ASSERT_TRUE(scene.energy_at_1e6 || energy_skipped);
+    if (scene.energy_at_1e6) {
+      EXPECT_EQ(scene.runs[*scene.energy_at_1e6].model, Model::energy);
+    }
+    EXPECT_TRUE(!scene.tracking.empty() || !report.skipped.empty());
     for (const BenchmarkRun& run : scene.tracking) {
       if (run.model == Model::energy && run.size == 0) {
         EXPECT_LT(run.rms_over_length, 1e-8);

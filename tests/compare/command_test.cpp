@@ -277,6 +277,8 @@ TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAuto) {
   EXPECT_GT(last.at("steps").get<long>(), 100);
   EXPECT_EQ(run("stability --case crossed --stepper auto --max-steps-auto 100").status, 1);
   const Outcome refused = run("stability --case \"pulled too far\" --stepper auto");
+  const Outcome no_number = run("stability --case \"pulled too far\" --stepper auto --format csv");
+  EXPECT_NE(no_number.out.find("\npulled too far,auto,refused,0,,false,"), std::string::npos);
   EXPECT_EQ(refused.status, 0);
   EXPECT_NE(refused.out.find("allowed: no more than the 0.5 m of rod"), std::string::npos);
   EXPECT_EQ(run("stability --case crossed --stepper auto --format csv").out.substr(0, 13),

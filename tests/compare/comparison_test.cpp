@@ -276,6 +276,36 @@ TEST(Solve, AllModelsAgreeOnForcesAndEnergies) {
   }
 }
 
+TEST(Solve, TorquesAreAboutTheGripperWhereverItIs) {
+  const Eigen::Vector3d away(3, -2, 1.5);  // six lengths: a lever from the origin is far off
+  Scene one = heavy_scene(1, -20);
+  one.force_model.points = 16;
+  one.force_model.c_c = one.axial_stiffness() / 1000;
+  Scene two = one;  // solved by the chain with stretch
+  two.grippers.push_back({.at = 0.71 * one.length,
+                          .position = Eigen::Vector3d(0.5, 0.1, 0.05) * one.length,
+                          .where = "test"});
+  const auto torques = [](const Scene& scene, Model model) {
+    std::vector<Eigen::Vector3d> result;
+    for (const GripperLoad& load : solve(scene, model).grippers) result.push_back(load.torque);
+    return result;
+  };
+  for (const Scene& scene : {one, two}) {
+    Scene far = scene;
+    for (Gripper& gripper : far.grippers) gripper.position += away;
+    for (const Model model : {Model::exact, Model::energy, Model::chain, Model::force}) {
+      const std::vector<Eigen::Vector3d> here = torques(scene, model);
+      const std::vector<Eigen::Vector3d> there = torques(far, model);
+      ASSERT_EQ(here.size(), scene.grippers.size());
+      ASSERT_EQ(there.size(), here.size());
+      ASSERT_GT(here[0].norm(), 0) << to_string(model);
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        EXPECT_LT((there[i] - here[i]).norm(), 1e-3 * here[0].norm()) << to_string(model);
+      }
+    }
+  }
+}
+
 // A search ends on a saddle here; the chain's shape leads to the table.
 TEST(Solve, ACableBetweenClampsLiesOnATable) {
   const Scene scene = parse_scene(R"(

@@ -86,27 +86,32 @@ TEST(HardCases, AreLeftOutByName) {
   EXPECT_EQ(results[1].name, "crumpled 3");
 }
 
-/// N = 1000 needs eight million steps, which belong into the command's own run; here it has to be
-/// on its way.
+/// N = 1000 needs eight million steps, which belong into the command's own run.
+bool needs_millions_of_steps(const HardCase& hard) { return hard.start.cols() > 500; }
+
+std::vector<int> cases_within_a_million_steps() {
+  std::vector<int> indices;
+  const std::vector<HardCase> cases = hard_cases(1);
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    if (!needs_millions_of_steps(cases[i])) indices.push_back(static_cast<int>(i));
+  }
+  return indices;
+}
+
 class AutomaticStepper : public testing::TestWithParam<int> {};
 
-TEST_P(AutomaticStepper, PassesTheHardCase) {
+TEST_P(AutomaticStepper, PassesTheHardCaseOrRefusesIt) {
   StabilityOptions options;
   options.max_steps_auto = 1'000'000;
   const HardCase hard = hard_cases(200'000).at(static_cast<std::size_t>(GetParam()));
-  const bool long_way = hard.start.cols() > 500;
-  if (long_way) options.max_steps_auto = 10'000;
   const StabilityResult result = run_hard_case(hard, StepperName::automatic, options);
   RecordProperty("case", hard.name);
   RecordProperty("steps", static_cast<int>(result.steps));
+  EXPECT_EQ(!hard.refusal.empty(), hard.name == "pulled too far") << hard.name;
   if (!hard.refusal.empty()) {
     EXPECT_EQ(result.outcome, Outcome::refused);
+    EXPECT_EQ(result.note, hard.refusal);
     EXPECT_TRUE(std::isnan(result.error_over_length));
-    return;
-  }
-  if (long_way) {
-    EXPECT_EQ(result.outcome, Outcome::wrong);
-    EXPECT_EQ(result.note, "still creeping");
     return;
   }
   EXPECT_EQ(result.outcome, Outcome::pass) << hard.name << ": " << result.note;
@@ -114,21 +119,54 @@ TEST_P(AutomaticStepper, PassesTheHardCase) {
   EXPECT_EQ(result.at_rest, hard.steps_at_rest == 0) << hard.name;
 }
 
-constexpr int number_of_cases = 26;
+INSTANTIATE_TEST_SUITE_P(HardCases, AutomaticStepper,
+                         testing::ValuesIn(cases_within_a_million_steps()));
 
-INSTANTIATE_TEST_SUITE_P(HardCases, AutomaticStepper, testing::Range(0, number_of_cases));
+TEST(HardCases, AreAllRunByTheTestAboveButOne) {
+  EXPECT_EQ(hard_cases(1).size(), 26U);
+  EXPECT_EQ(cases_within_a_million_steps().size(), 25U);
+}
 
-TEST(HardCases, AreAllRunByTheTestAbove) { EXPECT_EQ(hard_cases(1).size(), number_of_cases); }
+TEST(HardCases, AThousandPointsCreepOnAndAreNotSaidToRest) {
+  StabilityOptions options;
+  options.max_steps_auto = 10'000;
+  const std::vector<HardCase> cases = hard_cases(1);
+  const auto found = std::find_if(cases.begin(), cases.end(), needs_millions_of_steps);
+  ASSERT_NE(found, cases.end());
+  const StabilityResult result = run_hard_case(*found, StepperName::automatic, options);
+  EXPECT_EQ(result.outcome, Outcome::wrong);
+  EXPECT_EQ(result.note, "still creeping");
+  EXPECT_FALSE(result.at_rest);
+  EXPECT_GT(result.error_over_length, 0.01);
+}
 
 TEST(HardCases, AnotherEquilibriumPassesAndSaysSo) {
-  StabilityOptions options;
-  options.name_contains = "above buckling";
-  options.steppers = {StepperName::automatic};
-  const std::vector<StabilityResult> results = stability(options);
-  ASSERT_EQ(results.size(), 1U);
-  EXPECT_EQ(results[0].outcome, Outcome::pass);
-  // It falls to +x or -x; a note has to say if that is not the reference's side.
-  EXPECT_LT(results[0].error_over_length, 1e-5);
+  // Above buckling the rod falls to the side on which it starts; the reference has one side at
+  // most.
+  const std::vector<HardCase> cases = hard_cases(1);
+  const auto buckling = std::find_if(cases.begin(), cases.end(), [](const HardCase& hard) {
+    return hard.name.find("above buckling") != std::string::npos;
+  });
+  ASSERT_NE(buckling, cases.end());
+  int others = 0;
+  for (const double lean : {0.01, -0.01}) {
+    HardCase hard = *buckling;
+    for (Eigen::Index i = 2; i < hard.start.cols(); ++i) {
+      hard.start(0, i) += lean * (hard.start(1, i) - hard.start(1, 0));
+    }
+    const StabilityResult result = run_hard_case(hard, StepperName::automatic, {});
+    EXPECT_EQ(result.outcome, Outcome::pass) << result.note;
+    EXPECT_TRUE(result.at_rest);
+    EXPECT_LT(result.error_over_length, 1e-5);
+    if (result.note.empty()) continue;
+    ++others;
+    EXPECT_EQ(result.note.find("another stable equilibrium, "), 0U) << result.note;
+    // Mirror images have the same energy, to the nine digits that are printed.
+    const std::size_t first = result.note.find("energy ") + 7;
+    const std::size_t second = result.note.find("there ") + 6;
+    EXPECT_EQ(result.note.substr(first, 9), result.note.substr(second, 9)) << result.note;
+  }
+  EXPECT_GE(others, 1);
 }
 
 TEST(Stability, IsTheSameForAnyNumberOfThreads) {

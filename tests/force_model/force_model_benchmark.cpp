@@ -1,30 +1,11 @@
 // What a step costs: the kernel against steps written with Eigen, one rod and many, and how long a
 // rod takes to come to rest. Ratios (`speedup`) are taken within one benchmark, the two sides
 // taking turns.
-//
-// The arithmetic limit. Counted in the kernel's source, with a product and the sum it goes into as
-// one operation, a step of one point (hooke, in the plane, stepper `dynamic`) does
-//     segment    2 differences, 2 for the square, 1 root                                      4
-//     joint      a b, s.s' (2), opening, its bound, comparison and selection, 1 division of
-//                1 / (b opening), product before it, 1/b, m (2)                              12
-//     force      tension (2), h (4), h.s (2), along (2), T (4), inner (2), load, held (4)    20
-//     proposal   dP (4), its product with the last, comparison, selection, count (5),
-//                difference, square, segment (5), largest, sum (2)                           16
-//     movement   scale, selection, addition                                                   6
-// that is 58 operations, a division and a root; a third axis adds 22. A core that does two
-// operations on 256 bits in a cycle, or one on 512 (Zen 4 splits those), needs 58/8 = 7.3 cycles a
-// point. The divider works beside it, and about 1.3 cycles a division and 2.3 a root are less. So
-// N = 16 cannot take less than 116 cycles, 35 ns at 3.3 GHz; `share_of_limit` compares with that,
-// at the clock that DLO_BENCHMARK_GHZ gives if it is another. What is above it: of a batch, loads
-// and stores, some 40 registers for 58 operations; of one rod, the way from the first root to the
-// scaling of the last movement, which no width shortens, and the registers that 16 points leave
-// empty; with SSE2 the limit is four times as high.
 
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <ctime>
 #include <vector>
 
@@ -36,18 +17,9 @@
 namespace dlo::force_model {
 namespace {
 
-constexpr double operations_in_plane = 58;
-constexpr double operations_in_space = 80;
-constexpr double operations_per_cycle = 8;
-
 /// Processor time: what other programs on the machine take away does not count.
 double seconds_since(std::clock_t start) {
   return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
-
-double clock_hertz() {
-  const char* const gigahertz = std::getenv("DLO_BENCHMARK_GHZ");
-  return 1e9 * (gigahertz != nullptr ? std::strtod(gigahertz, nullptr) : 3.3);
 }
 
 /// The paper's rod with a force to bend it out of the plane, or none.
@@ -65,14 +37,10 @@ BatchRod steel_rod(int points, Stepper stepper, double side_force = 0) {
 }
 
 void report(benchmark::State& state, double plain, double kernel, double rods) {
-  const auto points = static_cast<double>(state.range(0));
-  const double operations = state.range(3) == 0 ? operations_in_plane : operations_in_space;
-  const double limit = points * operations / operations_per_cycle / clock_hertz();
   state.counters["plain_ns"] = 1e9 * plain;
   state.counters["kernel_ns"] = 1e9 * kernel / rods;
   state.counters["steps_per_s"] = rods / kernel;
   state.counters["speedup"] = plain / (kernel / rods);
-  state.counters["share_of_limit"] = limit / (kernel / rods);
 }
 
 /// Steps both in turns, `steps` at a time, and keeps the fastest turn of each.

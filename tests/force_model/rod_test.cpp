@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "dlo/force_model/contraction.hpp"
+#include "dlo/force_model/simulation.hpp"
 #include "polygons.hpp"
 #include "rods.hpp"
 
@@ -84,6 +85,84 @@ TEST(GripReaction, SpringHandsBackForceAndTorqueOfItsTwoPoints) {
   EXPECT_NEAR(reaction.force.y(), 10 * 0.001 - 10 * 0.002, 1e-15);
   const double half = steel.segment() / 2;
   EXPECT_NEAR(reaction.torque.z(), -half * 0.01 - half * 0.02, 1e-15);
+}
+
+/// What the loads do about a point, with the opposite sign: a rod at rest under them, held by one
+/// gripper, is balanced by it.
+GripReaction balancing(const Rod& rod, const Eigen::Matrix3Xd& points,
+                       const Eigen::Vector3d& about) {
+  GripReaction result;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d load = rod.loads.col(i);
+    const Eigen::Vector3d arm = points.col(i) - about;
+    result.force -= load;
+    result.torque -= arm.cross(load);
+  }
+  return result;
+}
+
+/// A wire held far from the origin, pointing anywhere.
+struct FarWire {
+  Eigen::Vector3d gripper = {3, -2, 1.5};
+  SteelRod steel;
+  Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
+  Eigen::Matrix3Xd points;
+
+  explicit FarWire(GripHold hold) {
+    const Eigen::Vector3d direction = Eigen::Vector3d(1, 0.5, -0.7).normalized();
+    const double L = steel.segment();
+    rod.loads(0, 15) = 0.02;
+    rod.loads(2, 9) = -0.01;
+    rod.grips.front().targets = grip_targets(gripper, direction, L, L / 2);
+    rod.grips.front().reference = gripper;
+    rod.grips.front().hold = hold;
+    rod.grips.front().stiffness = 500;
+    points.resize(3, 16);
+    for (int i = 0; i < 16; ++i) points.col(i) = gripper + (i - 0.5) * L * direction;
+  }
+};
+
+TEST(GripReaction, BalancesTheLoadsAboutAGripperFarFromTheOriginAndAfterItMoved) {
+  for (const GripHold hold : {GripHold::rigid, GripHold::spring}) {
+    FarWire wire(hold);
+    Simulation simulation(wire.rod, wire.points, {});
+    const auto expect_balance = [&](const Eigen::Vector3d& about) {
+      ASSERT_EQ(simulation.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest);
+      const Eigen::Matrix3Xd points = simulation.points();
+      const GripReaction reaction = grip_reactions(simulation.rod(), points).front();
+      const GripReaction expected = balancing(simulation.rod(), points, about);
+      EXPECT_GT(expected.torque.norm(), 0.01);  // of 0.12 N on 0.5 m
+      EXPECT_LT((reaction.force - expected.force).norm(), 1e-7);
+      EXPECT_LT((reaction.torque - expected.torque).norm(), 1e-7);
+    };
+    expect_balance(wire.gripper);
+    const Eigen::Vector3d moved(-4, 0.3, 7);
+    const Eigen::Matrix3Xd targets =
+        wire.rod.grips.front().targets.colwise() + (moved - wire.gripper);
+    simulation.move_grip(0, targets, moved);
+    expect_balance(moved);
+  }
+}
+
+TEST(GripReaction, OfTwoGripsIsNotCountedTwice) {
+  FarWire wire(GripHold::rigid);
+  Grip second = wire.rod.grips.front();
+  second.first_point = 1;  // which the first one holds too
+  wire.rod.grips.push_back(second);
+  EXPECT_THROW(check(wire.rod), std::invalid_argument);
+  EXPECT_THROW((void)grip_reactions(wire.rod, wire.points), std::invalid_argument);
+  EXPECT_THROW(Simulation(wire.rod, wire.points, {}), std::invalid_argument);
+  // Springs may pull at the same point: each exerts its own force, a rigid grip what is left.
+  for (const GripHold first : {GripHold::spring, GripHold::rigid}) {
+    wire.rod.grips[0].hold = first;
+    wire.rod.grips[1].hold = GripHold::spring;
+    EXPECT_NO_THROW(check(wire.rod));
+    Simulation simulation(wire.rod, wire.points, {});
+    ASSERT_EQ(simulation.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest);
+    Eigen::Vector3d sum = wire.rod.loads.rowwise().sum();
+    for (const GripReaction& one : grip_reactions(wire.rod, simulation.points())) sum += one.force;
+    EXPECT_LT(sum.norm(), 1e-7);
+  }
 }
 
 TEST(GripReaction, IsTheSameWithoutAnAllocation) {

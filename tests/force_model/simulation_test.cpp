@@ -122,6 +122,21 @@ TEST(CatchUpLoop, RepeatsUntilTheSumOfScalingsIsReached) {
   EXPECT_EQ(free.steps(), 10);
 }
 
+TEST(CatchUpLoop, SaysWhatItOwesWhenItsStepsAreUsedUp) {
+  Simulation simulation(steel_rod(), SteelRod().straight(), options(Stepper::basic, 1e-5));
+  EXPECT_EQ(simulation.advance(1000, 3).status, StepStatus::behind);
+  EXPECT_EQ(simulation.steps(), 3);
+  EXPECT_EQ(simulation.owed_steps(), 997);
+  const Simulation copy(simulation);
+  EXPECT_EQ(copy.owed_steps(), 997);
+  EXPECT_EQ(simulation.advance(3, 1000).status, StepStatus::good);
+  EXPECT_EQ(simulation.steps(), 1003);
+  EXPECT_EQ(simulation.owed_steps(), 0);
+  // Also where it has no steps to begin with.
+  EXPECT_EQ(simulation.advance(2, 0).status, StepStatus::behind);
+  EXPECT_EQ(simulation.owed_steps(), 2);
+}
+
 TEST(CatchUpLoop, CarriesTheOvershootToTheNextCall) {
   Simulation simulation(steel_rod(), SteelRod().straight(), options(Stepper::basic, 1e-5));
   for (int i = 0; i < 10; ++i) (void)simulation.advance(0.5);
@@ -339,8 +354,13 @@ TEST(Simulation, SpringGripYieldsByWeightOverStiffness) {
   rod.grips.front().stiffness = 50;
   Simulation simulation(rod, steel.straight(), {});
   ASSERT_EQ(simulation.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest);
+  const double weight = steel.weight_per_length * steel.length;
   const GripReaction reaction = grip_reactions(rod, simulation.points()).front();
-  EXPECT_NEAR(reaction.force.y(), steel.weight_per_length * steel.length, 1e-7);
+  EXPECT_NEAR(reaction.force.y(), weight, 1e-7);
+  // Two points share the weight, so the gripper's two springs yield by half of it on the average.
+  const Eigen::Matrix3Xd yielded = rod.grips.front().targets - simulation.points().leftCols(2);
+  EXPECT_NEAR(yielded.row(1).mean(), weight / 2 / 50, 1e-9);
+  EXPECT_LT(yielded.row(0).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 TEST(Simulation, WallHoldsTheRodUp) {

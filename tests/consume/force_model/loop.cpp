@@ -28,6 +28,8 @@ int main() {
   rod.loads.setZero(3, points);
   rod.loads.row(1).tail(points - 1).setConstant(-weight * segment);
   rod.loads(1, points - 1) /= 2;
+  // A hand's gripper yields: at rest the tip hangs 0.89 mm lower than a clamped rod's, with
+  // GripHold::rigid, which a hand cannot hold but a robot can, it is 0.06 mm off.
   rod.grips = {{.first_point = 0,
                 .targets = hold_at(0),
                 .hold = GripHold::spring,
@@ -57,4 +59,7 @@ int main() {
                   1e3 * reaction[0].torque.z());
     }
   }
+  // Chosen anew every 16 steps; other steppers take the ones they are given.
+  const StepOptions& steps = simulation.options();
+  std::printf("in use: c_F = %.3g m/N, c_h = %.5f\n", steps.c_F, steps.c_h);
 }

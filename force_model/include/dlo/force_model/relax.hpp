@@ -1,19 +1,21 @@
 #pragma once
 
+#include <limits>
 #include <string>
 
 namespace dlo::force_model {
 
 /// When a simulation is at rest.
 struct RelaxOptions {
-  /// Stop when the estimated distance to the rest shape falls below this share of the rod's length
-  /// [-], > 0; or below what rounding of stiff segments' forces leaves, if that is more.
+  /// Stop when the RMS distance of the points to the rest shape, bounded by Newton's steps, falls
+  /// below this share of the rod's length [-], > 0.
   double tolerance = 1e-7;
-  long max_steps = 2'000'000;  ///< gives up after so many
+  long max_steps = 2'000'000;                                   ///< gives up after so many
+  double time_limit = std::numeric_limits<double>::infinity();  ///< gives up after so long [s], > 0
 };
 
 /// How a search for rest ended.
-enum class RelaxStatus { diverged, step_limit, at_rest };
+enum class RelaxStatus { diverged, step_limit, time_limit, at_rest };
 
 /// In words, for messages.
 [[nodiscard]] const char* to_string(RelaxStatus status);
@@ -24,7 +26,8 @@ struct [[nodiscard]] RelaxResult {
   std::string message = "never ran";           ///< the same in words
   long steps = 0;                              ///< made by this call
   double residual_force = -1;                  ///< largest force on a free point [N]
-  double remaining_error = -1;                 ///< estimated RMS distance of the points to rest [m]
+  double remaining_error = -1;                 ///< RMS distance of the points to rest; a bound if
+                                               ///< at rest, else an estimate [m]
 };
 
 }  // namespace dlo::force_model

@@ -18,7 +18,7 @@ struct Rod {
   Eigen::Matrix3Xd loads;        ///< constant force on each point: gravity and loads (Formula 5,
                                  ///< constraint 1) [N], 3 x (n+1)
   std::vector<Wall> walls;       ///< each acts on every point
-  std::vector<Grip> grips;       ///< each holds points of its own
+  std::vector<Grip> grips;       ///< rigid ones hold points of their own
 
   /// N = n + 1.
   [[nodiscard]] Eigen::Index points() const { return rest_lengths.size() + 1; }
@@ -38,13 +38,14 @@ void total_forces(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& poin
                   Eigen::Ref<Eigen::Matrix3Xd> forces);
 
 /// What each grip exerts on the rod in this shape, in the order of rod.grips.
+/// @throws std::invalid_argument if a shape is wrong or two rigid grips hold the same point
 [[nodiscard]] std::vector<GripReaction> grip_reactions(
     const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
 /// The same without an allocation, for a loop that may not wait for one.
 /// @param[out] forces     the total forces on the points [N], 3 x (n+1)
 /// @param[out] reactions  as many as rod.grips
-/// @throws std::invalid_argument if a shape is wrong
+/// @throws std::invalid_argument as above
 void grip_reactions(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                     Eigen::Ref<Eigen::Matrix3Xd> forces, std::span<GripReaction> reactions);
 

@@ -33,8 +33,13 @@ class Simulation {
   /// The catch-up loop of Text 1: steps until the sum of c_m has grown by `steps`, so that a force
   /// goes on meaning a displacement per second while movements are scaled down.
   /// @param steps  nominal steps, > 0; @param max_steps  gives up after so many evaluations
-  /// @return the last step's result (c_m = 0 if none was owed); `diverged` if one diverged
+  /// @return the last step's result (c_m = 0 if none was owed); `diverged` if one diverged,
+  ///         `behind` if max_steps were not enough: owed_steps() are left to the next call
   [[nodiscard]] StepResult advance(double steps, long max_steps = 10'000'000);
+
+  /// What advance() still owes: nominal steps asked for minus the sum of c_m; below 0 after an
+  /// overshoot, which is less than a step.
+  [[nodiscard]] double owed_steps() const;
 
   /// Steps until the rod rests. A shape is at rest when its tangent stiffness is positive definite
   /// and both Newton's step to the equilibrium and the momentum that is left are below the

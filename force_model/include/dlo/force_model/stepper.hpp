@@ -48,6 +48,7 @@ struct StepOptions {
 /// How a step ended.
 enum class StepStatus {
   diverged,  ///< a force or movement was not finite; the points were left as they were
+  behind,    ///< Simulation::advance only: all good, but fewer steps than were asked for
   good,
 };
 

@@ -9,17 +9,27 @@ namespace dlo::force_model {
 
 /// What a shape's tangent stiffness says about its distance from equilibrium.
 struct [[nodiscard]] EquilibriumCheck {
-  bool stable = false;          ///< the stiffness of the free points is positive definite
-  double remaining_error = -1;  ///< RMS over the points of Newton's step to the equilibrium [m]
-  Eigen::Matrix3Xd step;        ///< that step [m], 3 x rod.points()
+  /// The stiffness of the free points is positive definite, by more than rounding, but for
+  /// `neutral_modes`.
+  bool stable = false;
+  /// Movements with neither stiffness nor force, at most two: a rod between two pins turns about
+  /// their line. What follows leaves them out.
+  int neutral_modes = 0;
+  /// Newton's step, evaluated, leads to an equilibrium: a second one is at most a quarter of it
+  /// (Kantorovich), or rounding. Without it `remaining_error` is no bound.
+  bool proven = false;
+  double remaining_error = -1;  ///< RMS distance of the points to that equilibrium, bounded from
+                                ///< both steps [m]
+  double slowest_mode = 0;      ///< estimate of the smallest eigenvalue, 0 unless stable [N/m]
+  Eigen::Matrix3Xd step;        ///< Newton's step [m], 3 x rod.points()
   /// A movement of the free points that the stiffness does not resist, the furthest by 1 and on the
-  /// whole towards +x, else +y, else +z [-], 3 x rod.points(); empty if stable.
+  /// whole towards +x, else +y, else +z [-], 3 x rod.points(); empty if there is none.
   Eigen::Matrix3Xd falling_direction;
 };
 
-/// Solves K dx = F, K minus the derivative of the total forces by the free points' positions, taken
-/// by central differences of every fifth point at a time (a joint couples five), F the total forces
-/// on them. O(N) in time and memory; allocates.
+/// Solves K dx = F twice, K minus the derivative of the total forces by the free points' positions,
+/// with what tension and pressure add to it, and F the total forces on them, here and after the
+/// first step. O(N) in time and memory; allocates.
 /// @param points  [m], 3 x rod.points()
 /// @throws std::invalid_argument if a shape or number is out of range
 EquilibriumCheck check_equilibrium(const Rod& rod,

@@ -1,0 +1,219 @@
+// Holds the speeds that the project promises, as ratios of times measured side by side: a promise
+// that is not kept ends in exit status 1.
+//
+//     dlo_performance
+//
+// Both sides of a ratio take turns, some milliseconds each, by the clock of this thread's computing
+// time; the ratio of a turn is that of two neighbours, and the median over the turns is taken.
+// Other programs slow both sides, but not alike: a median may miss its promise by `margin`, and it
+// has `attempts` to keep it. A loss that no noise explains fails all of them.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "../force_model/plain_simulation.hpp"
+#include "../force_model/rods.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/force_model/batch.hpp"
+#include "dlo/force_model/simulation.hpp"
+
+namespace {
+
+using namespace dlo::force_model;
+using dlo::energy_model::EnergySolver;
+using dlo::energy_model::Problem;
+using dlo::test::PlainSimulation;
+using dlo::test::SteelRod;
+
+constexpr double margin = 0.8;
+constexpr int attempts = 5;
+constexpr int turns = 25;
+constexpr double turn_seconds = 2e-3;
+
+double computing_time() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Work that is repeated, and how often in a turn.
+struct Work {
+  std::function<void()> run;
+  long repeats = 1;
+
+  explicit Work(std::function<void()> work) : run(std::move(work)) {
+    double taken = 0;
+    while (taken < turn_seconds / 2) {
+      repeats *= 2;
+      taken = static_cast<double>(repeats) * seconds();
+    }
+  }
+
+  /// Of one repetition [s].
+  [[nodiscard]] double seconds() const {
+    const double begin = computing_time();
+    for (long i = 0; i < repeats; ++i) run();
+    return (computing_time() - begin) / static_cast<double>(repeats);
+  }
+};
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// How much longer `slow` takes than `fast`.
+double ratio(const Work& slow, const Work& fast) {
+  std::vector<double> ratios;
+  for (int turn = 0; turn < turns; ++turn) ratios.push_back(slow.seconds() / fast.seconds());
+  return median(ratios);
+}
+
+/// The paper's rod with the stepper that costs most, in its plane.
+BatchRod steel_rod(int points) {
+  SteelRod steel;
+  steel.points = points;
+  return {steel.rod({BendingLaw::hooke, steel.EI}, 660), steel.straight(), {}};
+}
+
+Work plain_step(int points) {
+  const BatchRod one = steel_rod(points);
+  return Work([plain = PlainSimulation(one.rod, one.points, one.options)]() mutable {
+    (void)plain.step();
+  });
+}
+
+Work step(int points) {
+  const BatchRod one = steel_rod(points);
+  return Work([simulation = Simulation(one.rod, one.points, one.options)]() mutable {
+    (void)simulation.step();
+  });
+}
+
+/// A step of each of 64 rods.
+Work batch_step(int points) {
+  auto batch = std::make_shared<Batch>(std::vector<BatchRod>(64, steel_rod(points)));
+  return Work([batch] { batch->step(1); });
+}
+
+/// A horizontal clamp, solved from nothing.
+Work cold_solve(double gamma) {
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.weight_per_length = {0, -gamma, 0};
+  problem.grips = {{.at = 0, .direction = Eigen::Vector3d(1, 0, 0)}};
+  return Work([problem, solver = std::make_shared<EnergySolver>()] {
+    if (!succeeded(solver->solve(problem).status)) throw std::runtime_error("no equilibrium");
+  });
+}
+
+/// Exponent of the cost of a step against N, by least squares over logarithms.
+double slope_against_points() {
+  const std::vector<int> sizes = {64, 128, 256, 512, 1024, 2048};
+  std::vector<Work> works;
+  for (const int points : sizes) works.push_back(step(points));
+  std::vector<std::vector<double>> seconds(sizes.size());
+  for (int turn = 0; turn < turns; ++turn) {
+    for (std::size_t i = 0; i < works.size(); ++i) seconds[i].push_back(works[i].seconds());
+  }
+  double n = 0;
+  double x = 0;
+  double y = 0;
+  double xx = 0;
+  double xy = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const double log_points = std::log(sizes[i]);
+    const double log_seconds = std::log(median(seconds[i]));
+    n += 1;
+    x += log_points;
+    y += log_seconds;
+    xx += log_points * log_points;
+    xy += log_points * log_seconds;
+  }
+  return (n * xy - x * y) / (n * xx - x * x);
+}
+
+struct Promise {
+  const char* what = "";
+  double least = 0;        ///< promised, 0: no lower limit
+  double most = INFINITY;  ///< promised
+  double allowance = 0;    ///< by how much noise may miss it, as a share
+  std::function<double()> measure;
+};
+
+/// The promises for these registers. Ratios to plain Eigen code, which uses two of a register's
+/// numbers at any width, grow with it; promised is what holds for AVX2 and what is wider.
+std::vector<Promise> promises(InstructionSet set) {
+  const bool wide = set != InstructionSet::baseline;
+  const Work plain_16 = plain_step(16);
+  const auto times_faster = [](const Work& plain, const Work& work, double rods) {
+    return [=] { return rods * ratio(plain, work); };
+  };
+  const double share = 1 - margin;
+  return {
+      {"a rod's step, N = 16: times faster than plain", wide ? 4.0 : 2.5, INFINITY, share,
+       times_faster(plain_16, step(16), 1)},
+      {"a rod's step, N = 64: times faster than plain", wide ? 3.0 : 2.5, INFINITY, share,
+       times_faster(plain_step(64), step(64), 1)},
+      {"64 rods, N = 16: times faster a rod than plain", wide ? 10.0 : 3.5, INFINITY, share,
+       times_faster(plain_16, batch_step(16), 64)},
+      {"cold solve, Gamma = 0.18: plain steps, N = 16", 0, 10, share,
+       [=, solve = cold_solve(0.18)] { return ratio(solve, plain_16); }},
+      {"cold solve, Gamma = 18: plain steps, N = 16", 0, 40, share,
+       [=, solve = cold_solve(18)] { return ratio(solve, plain_16); }},
+      {"cost of a step goes like N to the power of", 0.9, 1.1, 0.05, slope_against_points},
+  };
+}
+
+/// Prints a line. @return whether the promise is kept
+bool keep(const Promise& promise) {
+  const double least = promise.least * (1 - promise.allowance);
+  const double most = promise.most / (1 - promise.allowance);
+  double measured = 0;
+  int attempt = 0;
+  bool kept = false;
+  while (!kept && attempt < attempts) {
+    measured = promise.measure();
+    kept = measured >= least && measured <= most;
+    ++attempt;
+  }
+  char promised[64];
+  if (std::isinf(promise.most)) {
+    std::snprintf(promised, sizeof promised, ">= %.3g", promise.least);
+  } else if (promise.least > 0) {
+    std::snprintf(promised, sizeof promised, "%.3g to %.3g", promise.least, promise.most);
+  } else {
+    std::snprintf(promised, sizeof promised, "<= %.3g", promise.most);
+  }
+  std::printf("  %-48s %8.3g   promised %-11s  %s", promise.what, measured, promised,
+              kept ? "kept" : "BROKEN");
+  if (attempt > 1) std::printf(" (attempt %d)", attempt);
+  std::printf("\n");
+  return kept;
+}
+
+}  // namespace
+
+int main() {
+  try {
+    const InstructionSet set = fastest_instruction_set();
+    std::printf("speed on %s; a promise may be missed by %.0f %% (the exponent by 5 %%)\n",
+                to_string(set), 100 * (1 - margin));
+    int broken = 0;
+    for (const Promise& promise : promises(set)) broken += keep(promise) ? 0 : 1;
+    return broken == 0 ? 0 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 3;
+  }
+}
