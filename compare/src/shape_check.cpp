@@ -116,8 +116,9 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
   const Alignment& alignment = check.alignment;
   const Eigen::Matrix3Xd& points = alignment.shape.points;
   const std::vector<double>& s = alignment.shape.arc_length;
-  // A unit, rather.
+  // Another unit, rather.
   if (check.polyline_length_m > 2 * check.length_m) return {};
+  if (check.polyline_length_m < check.length_m / 50) return {};
   if (alignment.arc_lengths != ArcLengths::nearest) {
     const double stretch = check.polyline_length_m / (s.back() - s.front()) - 1;
     if (!(stretch > 0.01)) return {};
@@ -136,7 +137,7 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
     const bool straight_on = share > 0.866;
     return fmt::format("longer than the rod by {:.4g} mm past {}: {}", check.excess_m * 1e3,
                        at_end ? "arc length l" : "arc length 0",
-                       straight_on ? fmt::format("stretched by {:.3g} %, or another rod",
+                       straight_on ? fmt::format("stretched by {:.2g} %, or another rod",
                                                  check.excess_m / check.length_m * 100)
                                    : "the points there turn away from it");
   }

@@ -52,6 +52,10 @@ struct Right {
   }
 };
 
+/// What 20 chords are shorter than their arcs: the sum of k^2 h^3 / 24, for Gamma = 20 with its
+/// layer of length Gamma^(-1/2) and curvature Gamma^(1/2) at the clamp.
+constexpr double bow = 20.0 / 24 * 0.05 * 0.05 * 0.25;
+
 /// Whether it passes as the whole rod, RMS and largest deviation held against the same length.
 bool passes(const ShapeCheck& check, double allowed_m) {
   return judge(check, {.allowed_m = allowed_m}).pass &&
@@ -86,7 +90,7 @@ TEST_P(AnyRightShape, Passes) {
 
 TEST_P(AnyRightShape, NoPointMovesUnseen) {
   constexpr double d = 0.02;
-  for_each([](const Right& right) {
+  for_each([=](const Right& right) {
     const Eigen::Matrix3Xd tangents = right.rod.sample(right.s).tangents;
     for (Eigen::Index i = 0; i < 21; ++i) {
       const Eigen::Vector3d t = tangents.col(i);
@@ -152,11 +156,12 @@ TEST_P(AnyRightShape, AStretchedPartShows) {
     const ShapeCheck check = right.check(right.points(at), column_s());
     EXPECT_NEAR(check.deviation.max_m, 0.03, 0.003);
     EXPECT_NEAR(check.deviation.tip_m, 0.03, 1e-6);
-    // All beyond the part is off by 0.03 in the rod's own direction; evenly spread it is 0.03 s.
-    EXPECT_GT(check.deviation.rms_m, 0.03 / 2);
+    // Given arc lengths: the stretch grows over the part and stays beyond. Else it is spread.
+    const double share = column_s() ? 1 - b + (b - a) / 3 : 1.0 / 3;
+    EXPECT_NEAR(check.deviation.rms_m, 0.03 * std::sqrt(share), column_s() ? 5e-4 : 4e-3);
     EXPECT_FALSE(passes(check, 0.01));
     if (!column_s()) {
-      EXPECT_NEAR(check.excess_m, 0.03, 1e-6);
+      EXPECT_NEAR(check.excess_m, 0.03, bow);
       EXPECT_NE(check.hint.find("stretched by 3"), std::string::npos) << check.hint;
     }
   });
@@ -173,7 +178,7 @@ TEST_P(AnyRightShape, ACutFileIsNamed) {
       EXPECT_LT(check.deviation.max_m, 1e-7);
       EXPECT_NEAR(check.whole_max_m, (ends.col(1) - ends.col(0)).norm(), 1e-3);
       // The rod leaves the outermost point by at most what is missing, and by about that.
-      EXPECT_LE(check.whole_rms_m, std::sqrt(std::pow(1 - seen, 3) / 3) + 1e-6);
+      EXPECT_LE(check.whole_rms_m, (1 + 1e-4) * std::sqrt(std::pow(1 - seen, 3) / 3));
       EXPECT_GT(check.whole_rms_m, 0.5 * std::sqrt(std::pow(1 - seen, 3) / 3));
       const ShapeJudgement whole = judge(check, {.allowed_m = 0.0015});
       EXPECT_FALSE(whole.pass) << kept;
@@ -215,7 +220,7 @@ TEST(ShapeMeasure, PointsPastTheTipCount) {
       points.conservativeResize(3, 22);
       points.col(21) = points.col(20) + 0.1 * way;
       const ShapeCheck check = right.check(points, false);
-      EXPECT_NEAR(check.excess_m, 0.1, 1e-6);
+      EXPECT_NEAR(check.excess_m, 0.1, bow);
       EXPECT_NEAR(check.deviation.max_m, 0.1, 1e-6);
       EXPECT_NEAR(check.deviation.tip_m, 0.1, 1e-6);
       EXPECT_EQ(check.worst_point, 22);

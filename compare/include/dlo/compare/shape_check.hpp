@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -62,7 +63,7 @@ struct ShapeCheck {
   /// The points lie so nearly on a line that nothing tells how the shape is turned about it.
   bool turn_is_clear = true;
   EffectiveModulus effective_modulus;  ///< aligned anew for each modulus, in the same state
-  double modulus = 0;                  ///< E* [Pa]
+  double modulus = std::numeric_limits<double>::quiet_NaN();  ///< E* [Pa]; NaN without one
 };
 
 /// What a deviation is held against.
