@@ -157,6 +157,12 @@ EffectiveModulus no_modulus(std::string why) {
 EffectiveModulus search(FollowedState& mean_square, double resolution) {
   const Scan values = scan_both_ways(mean_square, resolution);
   const std::size_t best = values.best();
+  const auto known = [&](std::size_t at) {
+    return at < values.value.size() && std::isfinite(values.value[at]);
+  };
+  if (!known(best + 1) && !(best > 0 && known(best - 1))) {
+    return no_modulus("the equilibrium is lost at the moduli beside the scene's");
+  }
   double largest = 0;
   for (const double value : values.value) {
     if (std::isfinite(value)) largest = std::max(largest, value);
@@ -164,8 +170,7 @@ EffectiveModulus search(FollowedState& mean_square, double resolution) {
   if (!(std::sqrt(largest) - std::sqrt(values.value[best]) > resolution)) {
     return no_modulus("the shape does not change with E");
   }
-  const bool bracketed = values.is_bracketed() && std::isfinite(values.value[best - 1]) &&
-                         std::isfinite(values.value[best + 1]);
+  const bool bracketed = values.is_bracketed() && known(best - 1) && known(best + 1);
   // No exception may cross GSL.
   std::exception_ptr error;
   const Function function = [&](double x) {
