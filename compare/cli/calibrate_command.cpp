@@ -161,7 +161,7 @@ void add_calibrate(CLI::App& app) {
                    "standard deviation of one coordinate such as \"0.5 mm\"; default: estimated")
       ->needs(shape)
       ->group(measured);
-  options->shape_options.add_to(*command);
+  options->shape_options.add_to(*command, ChordLengths::not_exact_enough);
   options->overrides.add_to(*command);
   std::vector<std::string> formats = format_names();
   formats.emplace_back("toml");

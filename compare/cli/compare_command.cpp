@@ -16,6 +16,7 @@ namespace {
 
 struct CompareOptions {
   std::vector<std::string> scenes;
+  bool no_modulus = false;
   SceneOptions overrides;
   PlanOptions plan;
   OutputOptions output;
@@ -29,21 +30,38 @@ std::string csv(const std::vector<compare::Comparison>& comparisons) {
       "budget_interaction_m,budget_parts_share,residual_over_movement,state_rank,states_stable,"
       "force_steps,force_s,energy_evaluations,energy_s\n";
   for (const compare::Comparison& c : comparisons) {
-    append(text,
-           "{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{:.10g},"
-           "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{},{},{:.4g}"
-           ",{},"
-           "{:.4g}\n",
-           csv_field(c.scene), compare::to_string(c.settings.law),
-           compare::to_string(c.settings.bookkeeping), c.settings.points, c.gamma,
-           c.deviation.rms_m, c.deviation.max_m, c.deviation.tip_m, c.deviation.rms_over_length,
-           c.deviation.rms_over_movement, c.effective_modulus.ratio, c.effective_modulus.rms_m,
-           compare::to_string(c.effective_modulus.optimum), c.force.parameters.c_b,
-           c.force.parameters.c_c, c.budget.law.rms_m, c.budget.bookkeeping.rms_m,
-           c.budget.discretisation.rms_m, c.budget.stretch.rms_m, c.budget.not_at_rest.rms_m,
-           c.budget.interaction.rms_m, 1 - c.budget.interaction.share, c.residual_over_movement,
-           c.state.rank, c.state.stable, c.force.steps, c.force.seconds, c.energy_evaluations,
-           c.energy_seconds);
+    const bool has_modulus = c.effective_modulus.optimum != compare::Optimum::none;
+    const std::string fields[] = {
+        csv_field(c.scene),
+        compare::to_string(c.settings.law),
+        compare::to_string(c.settings.bookkeeping),
+        std::to_string(c.settings.points),
+        csv_number(c.gamma),
+        csv_number(c.deviation.rms_m),
+        csv_number(c.deviation.max_m),
+        csv_number(c.deviation.tip_m),
+        csv_number(c.deviation.rms_over_length),
+        csv_number(c.deviation.rms_over_movement),
+        csv_number(c.effective_modulus.ratio),
+        csv_number(c.effective_modulus.rms_m),
+        has_modulus ? compare::to_string(c.effective_modulus.optimum) : "",
+        csv_number(c.force.parameters.c_b),
+        csv_number(c.force.parameters.c_c),
+        csv_number(c.budget.law.rms_m),
+        csv_number(c.budget.bookkeeping.rms_m),
+        csv_number(c.budget.discretisation.rms_m),
+        csv_number(c.budget.stretch.rms_m),
+        csv_number(c.budget.not_at_rest.rms_m),
+        csv_number(c.budget.interaction.rms_m),
+        csv_number(1 - c.budget.interaction.share),
+        csv_number(c.residual_over_movement),
+        std::to_string(c.state.rank),
+        std::to_string(c.state.stable),
+        std::to_string(c.force.steps),
+        fmt::format("{:.4g}", c.force.seconds),
+        std::to_string(c.energy_evaluations),
+        fmt::format("{:.4g}", c.energy_seconds)};
+    append(text, "{}\n", fmt::join(fields, ","));
   }
   return text;
 }
@@ -59,7 +77,9 @@ void run(const CompareOptions& options) {
     ProgressBar bar("compare");
     for (const std::string& path : options.scenes) {
       const compare::Scene scene = options.overrides.load(path);
-      comparisons.push_back(compare::compare(scene, solve, options.plan.plan()));
+      comparisons.push_back(compare::compare(
+          scene, solve, options.plan.plan(),
+          options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes));
       const std::string& why = comparisons.back().unresolved;
       if (!why.empty()) {
         append(unresolved, "{}{}: the energy model: {}", unresolved.empty() ? "" : "; ", scene.file,
@@ -98,6 +118,7 @@ void add_compare(CLI::App& app) {
       app.add_subcommand("compare", "how far the force model is from the energy model, and why");
   const auto options = std::make_shared<CompareOptions>();
   command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
+  command->add_flag("--no-modulus", options->no_modulus, "leave E*/E out");
   options->overrides.add_to(*command);
   options->plan.add_to(*command);
   add_output_options(*command, options->output);

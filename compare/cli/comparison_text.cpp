@@ -31,21 +31,41 @@ void add_budget(std::string& out, const compare::Budget& b) {
 
 void add_state(std::string& out, const compare::ComparedState& state, double length,
                const char* shape) {
-  append(out, "  state           {}, {:.6g} J",
-         state.only_lowest() ? "the only stable one found" : "one of several stable ones",
-         state.energy_J);
-  if (state.others.empty()) {
-    out += "; no other equilibrium found\n";
-    return;
-  }
-  append(out, "; number {} of {} stable, {} unstable found\n", state.rank, state.stable,
-         state.unstable);
+  const std::string unstable =
+      state.unstable == 0 ? "no unstable one" : fmt::format("{} unstable", state.unstable);
+  append(out, "  state           {}, {:.6g} J; {}\n",
+         state.only_lowest()
+             ? "the only stable one found"
+             : fmt::format("number {} by energy of {} stable ones found", state.rank, state.stable),
+         state.energy_J,
+         state.others.empty() ? "no other equilibrium found" : "besides " + unstable);
   for (const compare::OtherState& other : state.others) {
     append(out,
            "                  other: {}, {:+.4g} J, RMS {:.4g} % of l away, {:.4g} % from {}\n",
            other.stable ? "stable" : "unstable", other.energy_difference_J,
            other.rms_from_compared_m / length * 100, other.rms_from_shape_m / length * 100, shape);
   }
+}
+
+void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, double movement_m,
+                 double modulus_Pa) {
+  if (modulus.optimum == compare::Optimum::none) {
+    append(out, "  E*/E            not determined: {}\n", modulus.why_none);
+    return;
+  }
+  append(out, "  E*/E            {:.4f}", modulus.ratio);
+  if (std::isfinite(modulus_Pa)) append(out, " (E* = {:.4g} Pa)", modulus_Pa);
+  append(out, ", where the RMS is {:.4g} mm", modulus.rms_m * 1e3);
+  if (std::isfinite(movement_m)) {
+    append(out, " = {:.4g} % of the movement", modulus.rms_m / movement_m * 100);
+  }
+  append(out, " ({} optimum", compare::to_string(modulus.optimum));
+  if (std::isfinite(modulus.explained_share)) {
+    // Not 100 % where something is left.
+    append(out, ": E* explains {:.4g} % of the mean square",
+           std::floor(modulus.explained_share * 1e4) / 100);
+  }
+  out += ")\n";
 }
 
 std::string comparison_text(const compare::Comparison& c) {
@@ -76,12 +96,8 @@ std::string comparison_text(const compare::Comparison& c) {
            c.undeformed_rms_over_length * 100);
   }
   if (c.unresolved.empty()) {
-    append(out, "  E*/E            {:.4f}, where the RMS is {:.4g} mm", c.effective_modulus.ratio,
-           c.effective_modulus.rms_m * 1e3);
-    if (std::isfinite(c.residual_over_movement)) {
-      append(out, " = {:.4g} % of the movement", c.residual_over_movement * 100);
-    }
-    append(out, " ({} optimum)\n", compare::to_string(c.effective_modulus.optimum));
+    const double movement_m = c.deviation.rms_m / c.deviation.rms_over_movement;
+    add_modulus(out, c.effective_modulus, movement_m, NAN);
   }
   add_budget(out, c.budget);
   add_state(out, c.state, c.length, "force");

@@ -15,6 +15,13 @@ namespace dlo::cli {
 void add_state(std::string& out, const compare::ComparedState& state, double length,
                const char* shape);
 
+/// The lines about E*/E.
+/// @param movement_m  RMS way of the rod from straight [m], NaN without
+/// @param modulus_Pa  E*, to be printed; NaN if not
+void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, double movement_m,
+                 double modulus_Pa);
+
 using compare::csv_field;
+using compare::csv_number;
 
 }  // namespace dlo::cli

@@ -3,9 +3,13 @@
 namespace dlo::cli {
 
 Json modulus_json(const compare::EffectiveModulus& modulus) {
+  const bool none = modulus.optimum == compare::Optimum::none;
+  // NaN is null.
   return {{"effective_modulus_ratio", modulus.ratio},
           {"rms_at_effective_modulus_m", modulus.rms_m},
-          {"optimum", compare::to_string(modulus.optimum)}};
+          {"effective_modulus_explains_share", modulus.explained_share},
+          {"optimum", none ? Json() : Json(compare::to_string(modulus.optimum))},
+          {"why_no_effective_modulus", none ? Json(modulus.why_none) : Json()}};
 }
 
 Json deviation_json(const compare::Deviation& deviation) {

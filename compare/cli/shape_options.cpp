@@ -17,8 +17,12 @@ const std::vector<std::string>& unit_names() {
 
 }  // namespace
 
-void ShapeOptions::add_to(CLI::App& command) {
+void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {
   const std::string group = "Shape files";
+  std::vector<std::string> rules = compare::arc_lengths_names();
+  if (chord == ChordLengths::not_exact_enough) {
+    std::erase(rules, compare::to_string(compare::ArcLengths::chord));
+  }
   command.add_option("--unit", unit_, "what the numbers are in: m, cm, mm or um")
       ->check(CLI::IsMember(unit_names()))
       ->capture_default_str()
@@ -33,9 +37,13 @@ void ShapeOptions::add_to(CLI::App& command) {
   command
       .add_option(
           "--arc-lengths", arc_lengths_,
-          "of the points: the file's column s, chord lengths of a whole rod, nearest points "
-          "of the reference, or auto")
-      ->check(CLI::IsMember(compare::arc_lengths_names()))
+          chord == ChordLengths::offered
+              ? "of the points: file (its column s), nearest (points of the reference), chord "
+                "(lengths along the polyline of a whole rod) or auto: file if there is a column s, "
+                "else nearest"
+              : "of the points: file (its column s), nearest (points of the rod) or auto: file if "
+                "there is a column s, else nearest")
+      ->check(CLI::IsMember(rules))
       ->capture_default_str()
       ->group(group);
 }

@@ -8,10 +8,14 @@
 
 namespace dlo::cli {
 
+/// Whether a command takes arc lengths from the chords between points, known to 1e-4 l.
+enum class ChordLengths { offered, not_exact_enough };
+
 /// Options that say what a shape file's numbers mean.
 class ShapeOptions {
  public:
-  void add_to(CLI::App& command);
+  /// @param chord  chord lengths of a whole rod are good enough for the command
+  void add_to(CLI::App& command, ChordLengths chord);
 
   /// Reads a shape file in the unit that was given. @throws compare::InputError
   [[nodiscard]] compare::MeasuredShape load(const std::string& path) const;

@@ -11,12 +11,11 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
+#include "shape_measure.hpp"
 
 namespace dlo::compare {
 namespace {
 
-/// A polyline this near to the rod's length is taken for the whole rod.
-constexpr double whole_rod_tolerance = 0.005;
 /// Points with which starts are looked for.
 constexpr Eigen::Index most_coarse_points = 200;
 /// Places along the rod at which a part of it may lie.
@@ -49,13 +48,6 @@ std::vector<double> lengths_along(const Eigen::Matrix3Xd& points) {
   return result;
 }
 
-double chord_sum(const Eigen::Matrix3Xd& points) {
-  return (points.rightCols(points.cols() - 1) - points.leftCols(points.cols() - 1))
-      .colwise()
-      .norm()
-      .sum();
-}
-
 /// l - s, so that it grows again.
 std::vector<double> mirrored(const std::vector<double>& s, double length) {
   std::vector<double> result(s.rbegin(), s.rend());
@@ -80,6 +72,10 @@ std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length) 
     s[i] = std::clamp(s[i], 0.0, length);
   }
   return s;
+}
+
+double weighted_mean_square(const Eigen::Matrix3Xd& gaps, const Eigen::VectorXd& weight) {
+  return gaps.colwise().squaredNorm().transpose().dot(weight);
 }
 
 }  // namespace
@@ -113,15 +109,7 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
 void Aligner::choose_rule(const MeasuredShape& shape) {
   rule_ = options_.arc_lengths;
   if (rule_ != ArcLengths::automatic) return;
-  const double seen = lengths_along(shape.points).back() / length_;
-  if (!shape.arc_length.empty()) {
-    rule_ = ArcLengths::file;
-  } else if (std::abs(seen - 1) < whole_rod_tolerance ||
-             std::abs(chord_sum(shape.points) / length_ - 1) < whole_rod_tolerance) {
-    rule_ = ArcLengths::chord;
-  } else {
-    rule_ = ArcLengths::nearest;
-  }
+  rule_ = shape.arc_length.empty() ? ArcLengths::nearest : ArcLengths::file;
 }
 
 Eigen::Index Aligner::free_coordinates() const {
@@ -129,23 +117,11 @@ Eigen::Index Aligner::free_coordinates() const {
   return counts[static_cast<std::size_t>(options_.pose)];
 }
 
-Eigen::VectorXd Aligner::weights(const std::vector<double>& s) const {
+Eigen::VectorXd Aligner::weights(const std::vector<double>& s,
+                                 const Eigen::Matrix3Xd& points) const {
+  if (options_.weights == PointWeights::by_length) return point_weights(s, points);
   const auto count = static_cast<Eigen::Index>(s.size());
-  const double total = s.back() - s.front();
-  if (options_.weights == PointWeights::equal || !(total > 0)) {
-    return Eigen::VectorXd::Constant(count, 1 / static_cast<double>(count));
-  }
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(count);
-  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
-    const double share = (s[i + 1] - s[i]) / (2 * total);
-    result[static_cast<Eigen::Index>(i)] += share;
-    result[static_cast<Eigen::Index>(i) + 1] += share;
-  }
-  return result;
-}
-
-double Aligner::mean_square(const Eigen::Matrix3Xd& gaps, const std::vector<double>& s) const {
-  return gaps.colwise().squaredNorm().transpose().dot(weights(s));
+  return Eigen::VectorXd::Constant(count, 1 / static_cast<double>(count));
 }
 
 RigidMotion Aligner::closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
@@ -178,8 +154,9 @@ Aligner::Placed Aligner::place_given(const Way& way, const Curve& curve) const {
   const Eigen::Matrix3Xd reference = curve.points(way.arc_length);
   Placed placed;
   placed.arc_length = way.arc_length;
-  placed.pose = closest_pose(way.points, reference, weights(way.arc_length));
-  placed.mean_square = mean_square(placed.pose.applied(way.points) - reference, way.arc_length);
+  const Eigen::VectorXd weight = weights(way.arc_length, way.points);
+  placed.pose = closest_pose(way.points, reference, weight);
+  placed.mean_square = weighted_mean_square(placed.pose.applied(way.points) - reference, weight);
   return placed;
 }
 
@@ -202,11 +179,12 @@ std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve&
     for (double& s : placed.arc_length) s = std::clamp(s + offset, 0.0, length_);
     for (int round = 0; round < 3; ++round) {
       placed.pose =
-          closest_pose(points, curve.points(placed.arc_length), weights(placed.arc_length));
+          closest_pose(points, curve.points(placed.arc_length), weights(placed.arc_length, points));
       placed.arc_length = curve.nearest_in_order(placed.pose.applied(points));
     }
-    placed.mean_square = mean_square(placed.pose.applied(points) - curve.points(placed.arc_length),
-                                     placed.arc_length);
+    placed.mean_square =
+        weighted_mean_square(placed.pose.applied(points) - curve.points(placed.arc_length),
+                             weights(placed.arc_length, points));
     result.push_back(std::move(placed));
   }
   std::stable_sort(result.begin(), result.end(),
@@ -232,7 +210,7 @@ Aligner::Placed Aligner::polish(const Way& way, const Curve& curve,
 
 void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
                            Placed& placed) const {
-  const Eigen::VectorXd weight = weights(placed.arc_length);
+  const Eigen::VectorXd weight = weights(placed.arc_length, points);
   const auto cost = [&](const Eigen::Matrix3Xd& moved, const std::vector<double>& s) {
     return (moved - curve.points(s)).colwise().squaredNorm().transpose().dot(weight);
   };
@@ -316,7 +294,7 @@ Alignment Aligner::finished(const Placed& placed, bool reversed, const Curve& cu
                    [](double before, double next) { return std::max(before, next); });
   result.shape.points = placed.pose.applied(ways_[reversed ? 1 : 0].points);
   const Eigen::Matrix3Xd gaps = result.shape.points - curve.points(s);
-  result.rms_m = std::sqrt(mean_square(gaps, s));
+  result.rms_m = std::sqrt(weighted_mean_square(gaps, weights(s, result.shape.points)));
   result.mean_square =
       (result.shape.points - curve.points(placed.arc_length)).colwise().squaredNorm().mean();
   return result;

@@ -38,9 +38,8 @@ class Aligner {
 
   void choose_rule(const MeasuredShape& shape);
   [[nodiscard]] bool has_free_arc_lengths() const { return rule_ == ArcLengths::nearest; }
-  [[nodiscard]] Eigen::VectorXd weights(const std::vector<double>& s) const;
-  [[nodiscard]] double mean_square(const Eigen::Matrix3Xd& gaps,
-                                   const std::vector<double>& s) const;
+  [[nodiscard]] Eigen::VectorXd weights(const std::vector<double>& s,
+                                        const Eigen::Matrix3Xd& points) const;
   [[nodiscard]] RigidMotion closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                                          const Eigen::VectorXd& weight) const;
   [[nodiscard]] Placed place_given(const Way& way, const Curve& curve) const;

@@ -58,8 +58,8 @@ Deviation shape_deviation(const Scene& scene, const Shape& shape, const Referenc
                    free_end(scene, shape.arc_length));
 }
 
-Comparison compare(const Scene& scene, const SolveOptions& options,
-                   const PlanOptions& plan_options) {
+Comparison compare(const Scene& scene, const SolveOptions& options, const PlanOptions& plan_options,
+                   ModulusSearch modulus) {
   const Scene near = without_far_obstacles(scene).scene;
   Comparison result;
   result.scene = scene.name;
@@ -90,10 +90,9 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   result.deviation = shape_deviation(scene, force, energy.sample);
   result.undeformed_rms_over_length =
       straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
-  result.effective_modulus =
-      result.unresolved.empty()
-          ? fit_effective_modulus(near, distance, result.state.only_lowest() ? nullptr : &energy)
-          : EffectiveModulus{NAN, NAN, Optimum::flat};
+  if (modulus == ModulusSearch::yes && result.unresolved.empty()) {
+    result.effective_modulus = fit_effective_modulus(near, distance, energy, options);
+  }
   result.residual_over_movement =
       result.deviation.rms_over_movement / result.deviation.rms_m * result.effective_modulus.rms_m;
   result.budget = error_budget(near, result.force, energy.sample, options);

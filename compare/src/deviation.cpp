@@ -1,6 +1,7 @@
 #include "dlo/compare/deviation.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -64,10 +65,11 @@ Deviation deviation(const Shape& shape, const Reference& reference,
   const energy_model::Samples samples = reference(shape.arc_length);
   const Eigen::Matrix3Xd difference = shape.points - samples.points;
   Deviation result;
-  result.rms_m = rms(shape.arc_length, difference);
   Eigen::Index worst = 0;
   result.max_m = std::sqrt(difference.colwise().squaredNorm().maxCoeff(&worst));
   result.max_at_m = shape.arc_length[static_cast<std::size_t>(worst)];
+  // A mean is not above the largest; only its rounding is.
+  result.rms_m = std::min(rms(shape.arc_length, difference), result.max_m);
   result.tip_m = tip ? difference.col(*tip).norm() : NAN;
   result.rms_over_length = result.rms_m / (shape.arc_length.back() - shape.arc_length.front());
   const double movement = straight ? rms(shape.arc_length, samples.points - *straight) : 0;

@@ -45,7 +45,7 @@ Scan scan(const Function& function, double low, double high, int steps) {
   return result;
 }
 
-Minimum minimum_near(const Function& function, const Scan& scan) {
+Minimum minimum_near(const Function& function, const Scan& scan, double tolerance) {
   const std::size_t best = scan.best();
   Minimum result{scan.x[best], scan.value[best]};
   keep_gsl_from_aborting();
@@ -62,7 +62,7 @@ Minimum minimum_near(const Function& function, const Scan& scan) {
   for (int i = 0; i < 100; ++i) {
     if (gsl_min_fminimizer_iterate(minimiser.get()) != GSL_SUCCESS) break;
     if (gsl_min_test_interval(gsl_min_fminimizer_x_lower(minimiser.get()),
-                              gsl_min_fminimizer_x_upper(minimiser.get()), 1e-7,
+                              gsl_min_fminimizer_x_upper(minimiser.get()), tolerance,
                               0) == GSL_SUCCESS) {
       break;
     }

@@ -25,8 +25,9 @@ struct Minimum {
   double value = 0;
 };
 
-/// GSL's Brent minimiser about the best point of a bracketed scan, to 1e-7 in x.
-[[nodiscard]] Minimum minimum_near(const Function& function, const Scan& scan);
+/// GSL's Brent minimiser about the best point of a bracketed scan, to `tolerance` in x.
+[[nodiscard]] Minimum minimum_near(const Function& function, const Scan& scan,
+                                   double tolerance = 1e-7);
 
 /// GSL's Brent root finder: where the function crosses `level` between `inside`, where it is below,
 /// and `outside`, where it is above; to 1e-5 in x.

@@ -81,7 +81,7 @@ void say_shapes(const Report& report, std::vector<std::string>& verdict) {
     std::ptrdiff_t right = 0;
     for (const Comparison* c : group) {
       rms.add(c->deviation.rms_over_length);
-      if (c->effective_modulus.optimum == Optimum::clear) ratio.add(c->effective_modulus.ratio);
+      if (is_told(c->effective_modulus.optimum)) ratio.add(c->effective_modulus.ratio);
       if (c->deviation.rms_over_length <= report.options.tolerance) ++right;
     }
     const Comparison& worst = **std::max_element(

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <span>
 
 #include "dlo/compare/error.hpp"
 #include "measured_shapes.hpp"
@@ -167,8 +168,44 @@ TEST(Alignment, RulesForArcLengthsAreChosenByWhatTheFileHas) {
     return align(shape, energy.sample, 1).arc_lengths;
   };
   EXPECT_EQ(rule({0, 0.3, 0.6, 1}, true), ArcLengths::file);
-  EXPECT_EQ(rule({0, 0.3, 0.6, 1}, false), ArcLengths::chord);
-  EXPECT_EQ(rule({0.02, 0.3, 0.6, 1}, false), ArcLengths::nearest);
+  EXPECT_EQ(rule({0, 0.3, 0.6, 1}, false), ArcLengths::nearest);
+}
+
+// A helix turns one way; only a reflection, which is no motion, makes it turn the other.
+TEST(Alignment, AMirrorImageIsNotTheSameShape) {
+  constexpr double radius = 0.1;
+  constexpr double pitch = 0.05;
+  const double turn = 1 / std::hypot(radius, pitch);
+  const Reference helix = [&](std::span<const double> s) {
+    const auto count = static_cast<Eigen::Index>(s.size());
+    energy_model::Samples samples;
+    samples.points.resize(3, count);
+    samples.tangents.resize(3, count);
+    samples.curvature = Eigen::Matrix3Xd::Zero(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double angle = turn * s[static_cast<std::size_t>(i)];
+      samples.points.col(i) << radius * std::cos(angle), radius * std::sin(angle), pitch * angle;
+      samples.tangents.col(i) << -radius * std::sin(angle), radius * std::cos(angle), pitch;
+      samples.tangents.col(i) *= turn;
+    }
+    return samples;
+  };
+  std::mt19937 random(8);
+  const std::vector<double> s = equal_arc_lengths(1, 41);
+  const Eigen::Matrix3Xd points = helix(s).points;
+  for (const bool column_s : {false, true}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Eigen::Matrix3Xd mirrored = points;
+      mirrored.row(axis) *= -1;
+      const RigidMotion pose = random_pose(random);
+      const std::vector<double> column = column_s ? s : std::vector<double>();
+      EXPECT_LT(align({"own", pose.applied(points), column}, helix, 1, any_motion).rms_m, 1e-6);
+      const Alignment other =
+          align({"mirrored", pose.applied(mirrored), column}, helix, 1, any_motion);
+      EXPECT_GT(other.rms_m, 0.2 * radius) << column_s << ", " << axis;
+      EXPECT_NEAR(other.pose.rotation.determinant(), 1, 1e-12);
+    }
+  }
 }
 
 TEST(Alignment, RefusesWhatCannotBeAnswered) {

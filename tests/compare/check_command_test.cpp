@@ -73,6 +73,119 @@ TEST_F(CheckCommand, EveryFormatHasTheSameDeviation) {
   EXPECT_NE(run(check).out.find("RMS 106.2 mm = 21.23 % of l"), std::string::npos);
 }
 
+TEST_F(CheckCommand, AHookPastTheTipFailsAndIsNamed) {
+  const std::string data = std::string(DLO_DATA) + "/failures/";
+  const Outcome result = run(words(
+      {"check", data + "check_hang.toml", "--shape", data + "check_hook.csv", "--tolerance 1%"}));
+  EXPECT_EQ(result.status, 1) << result.out;
+  EXPECT_NE(result.out.find("longer than the rod by 509.9 mm past arc length l: the points there "
+                            "turn away from it"),
+            std::string::npos)
+      << result.out;
+  EXPECT_NE(result.out.find("tip 509.9 mm"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("E*/E            not determined: the shape does not change with E"),
+            std::string::npos)
+      << result.out;
+}
+
+TEST_F(CheckCommand, AStretchedOrCutRopeFailsAndIsNamed) {
+  const std::string check = "check " + std::string(DLO_DATA) +
+                            "/failures/check_hang.toml --no-modulus --tolerance 2% --shape ";
+  const auto hanging = [&](double length) {
+    std::string text = "x,y\n";
+    for (int i = 0; i <= 10; ++i) text += "0," + std::to_string(-length * i / 10) + "\n";
+    return shape(text);
+  };
+  EXPECT_EQ(run(check + hanging(1)).status, 0);
+  const Outcome stretched = run(check + hanging(1.1));
+  EXPECT_EQ(stretched.status, 1);
+  EXPECT_NE(
+      stretched.out.find("longer than the rod by 100 mm past arc length l: stretched by 10 %"),
+      std::string::npos)
+      << stretched.out;
+  EXPECT_NE(stretched.out.find("tip 100 mm"), std::string::npos) << stretched.out;
+  const Outcome cut = run(check + hanging(0.8));
+  EXPECT_EQ(cut.status, 1);
+  EXPECT_NE(cut.out.find("shorter than the rod by 200 mm"), std::string::npos) << cut.out;
+  EXPECT_NE(cut.out.find(", with s = 0.8 to 1 m, which the file does not have"), std::string::npos)
+      << cut.out;
+  const Outcome part = run(check + hanging(0.8) + " --min-seen 70%");
+  EXPECT_EQ(part.status, 0) << part.out;
+  EXPECT_NE(part.out.find("not judged: s = 0.8 to 1 m"), std::string::npos) << part.out;
+}
+
+TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
+  // The tip is not seen, and the rod does not move.
+  const std::string check = "check " + std::string(DLO_DATA) +
+                            "/failures/check_hang.toml --shape " +
+                            shape("x,y\n0,0\n0,-0.4\n0,-0.8\n") + " --tolerance 1% --format ";
+  for (const std::string modulus : {"", " --no-modulus"}) {
+    const Outcome csv = run(check + "csv" + modulus);
+    EXPECT_EQ(csv.out.find("nan"), std::string::npos) << csv.out;
+    EXPECT_NE(csv.out.find(",,"), std::string::npos);
+    const json document = json::parse(run(check + "json" + modulus).out);
+    EXPECT_TRUE(document.at("deviation").at("tip_m").is_null());
+    EXPECT_TRUE(document.at("effective_modulus_ratio").is_null());
+    EXPECT_TRUE(document.at("effective_modulus_Pa").is_null());
+    EXPECT_TRUE(document.at("optimum").is_null());
+    EXPECT_EQ(document.at("why_no_effective_modulus"),
+              modulus.empty() ? "the shape does not change with E" : "skipped");
+  }
+  EXPECT_NE(run(check + "text --no-modulus").out.find("E*/E            not determined: skipped"),
+            std::string::npos);
+  // Both ends held, without gravity
+  const std::string held = scene(R"(gravity = [0, 0, 0]
+[rod]
+length = 1
+diameter = 0.006
+material = "silicone"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = [1, 0, 0]
+[[gripper]]
+at = 1
+position = [0.9, 0, 0]
+direction = [1, 0, 0]
+)");
+  const Outcome compared = run("compare " + held + " --no-modulus --format csv");
+  EXPECT_EQ(compared.status, 0) << compared.err;
+  EXPECT_EQ(compared.out.find("nan"), std::string::npos) << compared.out;
+  EXPECT_EQ(compared.out.find("inf"), std::string::npos) << compared.out;
+  const std::string row = compared.out.substr(compared.out.find('\n') + 1);
+  EXPECT_EQ(std::count(row.begin(), row.end(), ','),
+            std::count(compared.out.begin(),
+                       compared.out.begin() + static_cast<long>(compared.out.find('\n')), ','));
+}
+
+TEST_F(CheckCommand, AToleranceIsAShareOrALength) {
+  const std::string file = path("chain.csv");
+  ASSERT_EQ(run("solve " + steel() + " --model chain --format csv -o " + file).status, 0);
+  const std::string check = "check " + steel() + " --no-modulus --format json --shape " + file;
+  for (const std::string tolerance : {"22%", "0.22", "\"110 mm\"", "0.11m"}) {
+    const Outcome result = run(words({check, "--tolerance", tolerance}));
+    EXPECT_EQ(result.status, 0) << tolerance << result.err;
+    EXPECT_NEAR(json::parse(result.out).at("tolerance").at("allowed_m").get<double>(), 0.11, 1e-12);
+  }
+}
+
+TEST_F(CheckCommand, TheStateIsSaidOnceInWords) {
+  const std::string file = path("solved.csv");
+  ASSERT_EQ(run("solve " + steel() + " --model exact --format csv -o " + file).status, 0);
+  const std::string one = run("check " + steel() + " --no-modulus --shape " + file).out;
+  EXPECT_NE(one.find("the only stable one found, -0.00293052 J; no other equilibrium found\n"),
+            std::string::npos)
+      << one;
+  EXPECT_EQ(one.find("number"), std::string::npos) << one;
+}
+
+TEST_F(CheckCommand, ChordLengthsAreOfferedWhereTheyWork) {
+  EXPECT_NE(run("check --help").out.find("chord"), std::string::npos);
+  EXPECT_EQ(run("calibrate --help").out.find("chord"), std::string::npos);
+  expect_error("calibrate " + steel() + " --shape x.csv --arc-lengths chord", 2,
+               {"--arc-lengths", "chord", "nearest"});
+}
+
 TEST_F(CheckCommand, ShapesComeInAnyUnitAndFrame) {
   const std::string file = path("solved.csv");
   ASSERT_EQ(run("solve " + steel() + " --model exact --samples 9 --format csv -o " + file).status,
@@ -157,7 +270,8 @@ TEST_F(CheckCommand, BadInputIsOneLineAndStatusTwo) {
   expect_error("check " + steel() + " --shape " + path("none.csv"), 2, {"none.csv", "read"});
   expect_error("check " + steel(), 2, {"--shape"});
   const std::string good = shape("0,0\n-0.2,0\n-0.4,-0.1\n");
-  for (const std::string tolerance : {"1", "0%", "-1%", "x", "\"1 kg\"", "nan%", "%"}) {
+  for (const std::string tolerance :
+       {"1", "0", "0%", "-1%", "100%", "x", "\"1 kg\"", "nan%", "%"}) {
     expect_error(words({"check", steel(), "--shape", good, "--tolerance", tolerance}), 2,
                  {"--tolerance"});
   }

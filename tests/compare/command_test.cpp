@@ -249,8 +249,12 @@ TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
   // The average forces of Tables 2 and 4 are met within 10 % RMS with c_F and l_s in centimetres.
   const json& moving = document.at("moving");
   EXPECT_EQ(moving.at("rows").size(), 16U);
-  EXPECT_LT(moving.at("scan")[0].at("distance").at("force_factor").get<double>(), 1.1);
-  EXPECT_TRUE(moving.at("scan")[1].at("distance").at("force_factor").is_null());  // in metres
+  const auto scanned = [&](int row, const char* key) { return moving.at("scan")[row].at(key); };
+  EXPECT_EQ(scanned(0, "choices").at("length_unit_m"), 0.01);
+  EXPECT_LT(scanned(0, "distance").at("force_factor").get<double>(), 1.1);
+  EXPECT_GT(scanned(0, "distance").at("force_factor").get<double>(), 1);
+  EXPECT_EQ(scanned(1, "choices").at("length_unit_m"), 1);
+  EXPECT_TRUE(scanned(1, "distance").at("force_factor").is_null());
   // Each run solves everything again: under sanitizers the one above has to do.
   if (dlo::test::sanitized) return;
   EXPECT_EQ(run("paper --format csv").out.substr(0, 8), "section,");
@@ -305,10 +309,13 @@ TEST_F(Command, BenchWritesRowsAndAnswers) {
   const std::string arguments = "bench " + steel() + " --seconds 0.5 --repeats 1";
   const json document = json::parse(run(arguments + " --format json").out);
   EXPECT_EQ(document.at("schema"), "dlo/bench/1");
-  ASSERT_GT(document.at("runs").size(), 5U);
-  for (const char* key :
-       {"scene", "model", "law", "size", "time_s", "work", "rms_over_length", "front"}) {
-    EXPECT_TRUE(document.at("runs")[0].contains(key)) << key;
+  // How many fit into half a second is the machine's affair; what does not is named.
+  EXPECT_GT(document.at("runs").size() + document.at("skipped").size(), 5U);
+  for (const json& row : document.at("runs")) {
+    for (const char* key :
+         {"scene", "model", "law", "size", "time_s", "work", "rms_over_length", "front"}) {
+      EXPECT_TRUE(row.contains(key)) << key;
+    }
   }
   EXPECT_EQ(document.at("answers")[0].at("static").size(), 4U);
   EXPECT_EQ(run(arguments + " --format csv").out.substr(0, 11), "scene,kind,");
@@ -435,7 +442,7 @@ TEST_F(Command, SolveSaysWhichGripperHoldsAndPrintsNoMinusZero) {
   EXPECT_EQ(text.find("-0.00000000"), std::string::npos) << text;
 }
 
-TEST_F(Command, HelpHasAnExampleThatWorks) {
+TEST_F(Command, HelpHasAnExample) {
   for (const std::string command : {"solve", "compare", "paper", "bench", "stability"}) {
     const Outcome help = run(command + " --help");
     EXPECT_EQ(help.status, 0);

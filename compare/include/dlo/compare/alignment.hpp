@@ -20,8 +20,7 @@ enum class PoseFreedom {
 
 /// Where the points' arc lengths come from.
 enum class ArcLengths {
-  automatic,  ///< the file's, if it has them; else `chord` if the points' polyline is as long as
-              ///< the rod to 0.5 %, as a simulator's is; else `nearest`
+  automatic,  ///< the file's, if it has them; else `nearest`
   file,       ///< the file's column s
   chord,      ///< the points are the whole rod: lengths along the polyline, with a correction for
               ///< the bow over each chord, scaled to the rod's; a dozen points know them to 1e-4 l
@@ -56,7 +55,9 @@ struct RigidMotion {
 /// How much a point counts.
 enum class PointWeights {
   equal,      ///< all the same: measured points with the same noise
-  by_length,  ///< by the arc length up to its neighbours' middles, so that sums are integrals
+  by_length,  ///< by the length up to its neighbours' middles, so that sums are integrals: the
+              ///< longer of the rod's arc length and the polyline's own, so that no point is left
+              ///< out
 };
 
 /// How a shape is to be laid on a reference.

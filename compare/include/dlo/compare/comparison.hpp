@@ -33,7 +33,7 @@ struct Comparison {
   Deviation deviation;  ///< of `force` from `reference`
   /// The straight rod's own deviation from the reference; NaN without a straight rod.
   double undeformed_rms_over_length = 0;
-  /// Of several stable states in the one that was compared, followed to each E*. NaN where the
+  /// In the state that was compared, followed to each E*; none if it was not searched or the
   /// reference is not resolved.
   EffectiveModulus effective_modulus;
   /// What even E* does not explain, against the reference's way from the straight rod; NaN without.
@@ -47,7 +47,8 @@ struct Comparison {
 /// out of reach, and compares the shapes.
 /// @throws InputError, ConvergenceError
 [[nodiscard]] Comparison compare(const Scene& scene, const SolveOptions& options = {},
-                                 const PlanOptions& plan_options = {});
+                                 const PlanOptions& plan_options = {},
+                                 ModulusSearch modulus = ModulusSearch::yes);
 
 /// The straight rod of a scene with a single clamp, at arc lengths s [m], 3 x M. Several grips, or
 /// a pin, leave no straight shape to start from: nothing.

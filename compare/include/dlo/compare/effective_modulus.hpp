@@ -1,53 +1,84 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
+#include "dlo/compare/solve.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 
 namespace dlo::compare {
 
 /// What the optimum of an effective modulus is worth.
 enum class Optimum {
-  clear,
-  flat,       ///< a modulus twice or half as large fits less than 10 % worse
-  one_sided,  ///< the fit still improves at the end of the range that was searched
+  none,       ///< there is no E*, see EffectiveModulus::why_none
+  clear,      ///< E* is told, and it explains the deviation
+  partial,    ///< E* is told, but it explains less than `clear_share` of the mean square deviation
+  flat,       ///< a modulus twice or half as large fits less than 10 % worse, or no worse than the
+              ///< energy model's own error
+  one_sided,  ///< the fit still improves where the search ended: at the end of the range, or where
+              ///< the equilibrium that was followed ends
 };
 
 /// In words, for messages.
 [[nodiscard]] const char* to_string(Optimum optimum);
 
+/// E* itself is told, whether or not it explains the deviation.
+[[nodiscard]] constexpr bool is_told(Optimum optimum) {
+  return optimum == Optimum::clear || optimum == Optimum::partial;
+}
+
+/// Whether E*/E is looked for.
+enum class ModulusSearch { yes, no };
+
 /// The modulus E* at which the energy model comes nearest to a shape.
 struct EffectiveModulus {
-  double ratio = 0;                  ///< E*/E
-  double rms_m = 0;                  ///< what even E* does not explain
-  Optimum optimum = Optimum::clear;  ///< what `ratio` is worth
+  double ratio = std::numeric_limits<double>::quiet_NaN();  ///< E*/E; NaN without one
+  double rms_m = std::numeric_limits<double>::quiet_NaN();  ///< what even E* does not explain
+  /// Of the mean square distance at E, the share that E* takes away: 1 - (rms_m / rms at E)^2;
+  /// NaN where the distance at E is no more than the energy model's own error.
+  double explained_share = std::numeric_limits<double>::quiet_NaN();
+  Optimum optimum = Optimum::none;        ///< what `ratio` is worth
+  std::string why_none = "skipped";       ///< why there is no E*; empty if there is one
+  int solves = 0;                         ///< of the energy model
 };
 
 /// Range of E*/E that is searched.
 inline constexpr double smallest_modulus_ratio = 1e-4;
 /// The other end of the range.
 inline constexpr double largest_modulus_ratio = 1e4;
+/// Share of the mean square distance that a clear optimum explains: E* leaves half of the RMS or
+/// less, so that what it explains (sqrt(3)/2 of the RMS, as a field orthogonal to the rest) is at
+/// least 1.7 times what it leaves.
+inline constexpr double clear_share = 0.75;
+/// RMS distance below which nothing is told, share of the length: the energy model's own error.
+inline constexpr double modulus_resolution = 1e-8;
 
-/// Minimises the RMS distance at equal arc length over E*, everything else as in the scene: a scan
-/// over the range, then GSL's Brent minimiser.
-/// @throws InputError, ConvergenceError as solve_reference
-[[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape);
+/// Minimises the RMS distance at equal arc length over E*, everything else as in the scene.
+///
+/// The scene's equilibrium is followed from E*/E = 1 to both sides in steps of a quarter of a
+/// decade, each until the distance has not got less for half a decade; then GSL's Brent minimiser of the
+/// mean square. Every modulus is solved from the nearest one that is known, and a shape counts as
+/// the same equilibrium if it is stable and moves by less than a tenth of the length, in smaller
+/// steps if need be; else the equilibrium ends there.
+/// The time limit is for the whole search. Beyond it, and where the distance changes by no more
+/// than the energy model's own error, there is no E*, and the result says why.
+/// @throws InputError, ConvergenceError as solve_reference for the scene's own modulus
+[[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape,
+                                                     const SolveOptions& options = {});
 
 /// Distance of a shape from the energy model's [m].
 using ShapeDistance = std::function<double(const energy_model::Equilibrium&)>;
 
 /// The same for any distance.
 /// @param scene  the scene;  @param distance  what is minimised
-/// @param state  an equilibrium of the scene that is followed both ways from E*/E = 1 to the
-/// nearest
-///               minimum; without one the lowest that each modulus has
-/// @throws InputError, ConvergenceError as solve_reference
-[[nodiscard]] EffectiveModulus fit_effective_modulus(
-    const Scene& scene, const ShapeDistance& distance,
-    const energy_model::Equilibrium* state = nullptr);
+/// @param state  the equilibrium of the scene that is followed
+[[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene,
+                                                     const ShapeDistance& distance,
+                                                     const energy_model::Equilibrium& state,
+                                                     const SolveOptions& options = {});
 
 /// RMS distance at equal arc length.
 [[nodiscard]] ShapeDistance distance_from(const Shape& shape);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/compared_state.hpp"
@@ -16,7 +18,16 @@ namespace dlo::compare {
 struct ShapeCheckOptions {
   PoseFreedom pose = PoseFreedom::known;           ///< what is unknown of its frame
   ArcLengths arc_lengths = ArcLengths::automatic;  ///< where its arc lengths come from
+  ModulusSearch modulus = ModulusSearch::yes;      ///< whether E*/E is looked for
   SolveOptions solve;                              ///< limits of the solvers
+};
+
+/// A part of the rod between two neighbouring points.
+struct RodPart {
+  double from_m = 0;    ///< arc length
+  double to_m = 0;      ///< arc length
+  double untold_m = 0;  ///< how far a smooth curve through the reference at the points is from the
+                        ///< reference in the middle: what is nearer cannot be told apart there
 };
 
 /// A measured shape against the energy model of its scene, without obstacles out of reach.
@@ -28,10 +39,20 @@ struct ShapeCheck {
   Alignment alignment;  ///< the shape as laid on the reference
   ComparedState state;  ///< the stable one that the shape comes nearest to
   Shape reference;      ///< the energy model at the alignment's arc lengths
-  /// RMS along the rod from the first point to the last, straight across what is missing; its share
-  /// of the length is that of the whole rod. Tangent and curvature only for given arc lengths: NaN.
+  /// Of all points from the reference, each with the longer of the rod's arc length and the
+  /// polyline's own between its neighbours; parts of the rod that are missing at the ends do not
+  /// count. RMS over length is of the whole rod. For `nearest` distances are from the nearest
+  /// points in order, but where points go on past an end the file is longer than the rod, and the
+  /// excess is spread along it. Tangent and curvature only for given arc lengths: NaN.
   Deviation deviation;
-  long worst_point = 0;  ///< of the largest deviation, counted from 1 as in the file
+  double excess_m = 0;  ///< `nearest`: by which the file is longer than the rod, past its ends
+  /// RMS and largest deviation of the file as the whole rod: what is missing of the rod at an end
+  /// counts with its distance from the outermost point.
+  double whole_rms_m = 0;
+  double whole_max_m = 0;        ///< the largest of those
+  std::vector<RodPart> between;  ///< parts longer than 1e-3 l between neighbouring points
+  std::string hint;              ///< what looks wrong: a clause, or empty
+  long worst_point = 0;          ///< of the largest deviation, counted from 1 as in the file
   Eigen::Vector3d worst_position = Eigen::Vector3d::Zero();  ///< in the scene's frame [m]
   double movement_m = 0;         ///< RMS way of the reference from straight, same stretch; or NaN
   double polyline_length_m = 0;  ///< of the points as they are
@@ -42,14 +63,17 @@ struct ShapeCheck {
   /// The points lie so nearly on a line that nothing tells how the shape is turned about it.
   bool turn_is_clear = true;
   EffectiveModulus effective_modulus;  ///< aligned anew for each modulus, in the same state
-  double modulus = 0;                  ///< E* [Pa]
+  double modulus = std::numeric_limits<double>::quiet_NaN();  ///< E* [Pa]; NaN without one
 };
 
 /// What a deviation is held against.
 struct ShapeTolerance {
   double allowed_m = 0;           ///< largest deviation that passes [m], > 0
   bool largest = false;           ///< the largest deviation is held against it, not the RMS
-  double least_seen_share = 0.5;  ///< of the rod that the points have to cover [-], 0 to 1
+  double least_seen_share = 0.5;  ///< of the rod that the points have to tell [-], 0 to 1
+  /// The file is said to be a part of the rod: only what it has is judged. Else it is the whole
+  /// rod, and what is missing counts.
+  bool part = false;
 };
 
 /// Whether a shape is right.
@@ -59,8 +83,12 @@ struct ShapeJudgement {
   std::string reason;   ///< one clause: of all that made it fail, or why it passes
 };
 
-/// Holds a compared shape against a tolerance. Points that cover next to nothing of the rod lie
-/// near it whatever its shape is, so few of them are no pass.
+/// Holds a compared shape against a tolerance: every point and every part of the rod. Parts missing
+/// at the ends count with their distance from the outermost point unless the file is said to be a
+/// part; a part between neighbouring points is seen if a smooth curve through points there tells it
+/// within the tolerance, and the whole rod has to be. Points that cover next to nothing of the rod
+/// lie near it whatever its shape is, so less than `least_seen_share` is never a pass. The reason
+/// names what was left out.
 [[nodiscard]] ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance);
 
 /// Solves the scene with the energy model and compares the shape with the nearest stable state.
