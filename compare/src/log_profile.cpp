@@ -12,11 +12,9 @@ namespace {
 constexpr int steps_per_decade = 4;
 const double profile_step = std::log(10.0) / steps_per_decade;
 /// A sum of squares this many times the least is outside any interval of interest (Student's t
-/// beyond 97.5 % with 2 degrees of freedom: 1 + 4.3^2 / 2 = 10).
+/// beyond 97.5 % with 2 degrees of freedom: 1 + 4.3^2 / 2 = 10), and between steps of a quarter of
+/// a decade a local minimum above it is no rival of the least.
 constexpr double far_above = 100;
-/// Local minima this many times the least are looked at closely: between steps of a quarter of a
-/// decade one may be lower.
-constexpr double near_least = 9;
 
 }  // namespace
 
@@ -75,7 +73,7 @@ void LogProfile::refine() {
     const auto before = std::prev(at);
     const auto after = std::next(at);
     const bool lowest = at->second <= before->second && at->second <= after->second;
-    if (!lowest || !(at->second <= near_least * minimum_.value)) continue;
+    if (!lowest || !(at->second <= far_above * minimum_.value)) continue;
     const Scan around{{before->first, at->first, after->first},
                       {before->second, at->second, after->second}};
     const Minimum found = minimum_near(function_, around);
@@ -114,10 +112,15 @@ LogProfile::Interval LogProfile::below(double level) {
   Interval result;
   result.low = outermost(level, -1);
   result.high = outermost(level, 1);
+  return result;
+}
+
+std::vector<Minimum> LogProfile::minima_below(double level) const {
+  std::vector<Minimum> result;
   for (auto at = values_.begin(); at != values_.end(); ++at) {
     const bool left = at == values_.begin() || std::prev(at)->second > at->second;
     const bool right = std::next(at) == values_.end() || std::next(at)->second >= at->second;
-    if (left && right && at->second <= level) result.minima.push_back(at->first);
+    if (left && right && at->second <= level) result.push_back({at->first, at->second});
   }
   return result;
 }

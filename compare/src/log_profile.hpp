@@ -13,7 +13,7 @@ class LogProfile {
  public:
   /// Looks at steps of a quarter of a decade from 0 to both sides, as far as `low` and `high`; a
   /// side ends before where the function has risen for a decade, to above a hundred times its
-  /// least. Then at every local minimum among these that is below nine times the least.
+  /// least. Then at every local minimum among these that is not above that.
   LogProfile(Function function, double low, double high);
 
   [[nodiscard]] const Minimum& minimum() const { return minimum_; }
@@ -23,10 +23,11 @@ class LogProfile {
   /// it is taken to be below.
   struct Interval {
     std::optional<double> low, high;
-    /// Minima below the level.
-    std::vector<double> minima;
   };
   [[nodiscard]] Interval below(double level);
+
+  /// Local minima up to a level, the least among them, by growing parameter.
+  [[nodiscard]] std::vector<Minimum> minima_below(double level) const;
 
  private:
   [[nodiscard]] double value_at(int step);

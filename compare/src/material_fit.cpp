@@ -28,28 +28,44 @@ struct Name {
   double scene_value;  // in that unit
 };
 
-FittedValue fitted(const LogProfile::Interval& interval, const Minimum& minimum, double unit,
-                   double told_within) {
+/// What a profile says of a number.
+struct Finding {
+  LogProfile::Interval interval;  // reaches to every one of `optima`
+  std::vector<Minimum> optima;    // that the shapes do not tell apart
+  Minimum best;
+};
+
+Finding finding(LogProfile& profile, double level, double rival_level) {
+  Finding result{profile.below(level), profile.minima_below(rival_level), profile.minimum()};
+  if (result.optima.empty()) return result;
+  LogProfile::Interval& interval = result.interval;
+  if (interval.low) interval.low = std::min(*interval.low, result.optima.front().x);
+  if (interval.high) interval.high = std::max(*interval.high, result.optima.back().x);
+  return result;
+}
+
+FittedValue fitted(const Finding& found, double unit, double told_within) {
+  const LogProfile::Interval& interval = found.interval;
   FittedValue result;
   if (interval.low) result.low = unit * std::exp(*interval.low);
   if (interval.high) result.high = unit * std::exp(*interval.high);
   const bool closed = result.low && result.high;
   if (closed && *result.high <= told_within * *result.low) {
-    result.value = unit * std::exp(minimum.x);
+    result.value = unit * std::exp(found.best.x);
   }
   return result;
 }
 
-std::string what_is_not_told(const FittedValue& value, const LogProfile::Interval& interval,
-                             const Name& name, double told_within) {
+std::string what_is_not_told(const FittedValue& value, const Finding& found, const Name& name,
+                             double told_within) {
   if (value.value) return {};
   if (value.low && value.high) {
     std::string where;
-    if (interval.minima.size() > 1) {
+    if (found.optima.size() > 1) {
       where = ", best";
-      for (std::size_t i = 0; i < interval.minima.size(); ++i) {
+      for (std::size_t i = 0; i < found.optima.size(); ++i) {
         where += fmt::format("{} near {:.3g}", i == 0 ? "" : " and",
-                             name.scene_value * std::exp(interval.minima[i]));
+                             name.scene_value * std::exp(found.optima[i].x));
       }
     }
     return fmt::format(
@@ -152,12 +168,10 @@ class MaterialFitter {
     }
     measure_noise(least, best);
     const Material& material = scenes_.front().material;
-    const LogProfile::Interval moduli = over_modulus->below(level(least, 0));
-    const Name modulus{"E", "Pa", material.youngs_modulus};
-    result_.youngs_modulus =
-        fitted(moduli, over_modulus->minimum(), material.youngs_modulus, options_.told_within);
-    result_.not_told =
-        what_is_not_told(result_.youngs_modulus, moduli, modulus, options_.told_within);
+    const Finding found = finding(*over_modulus, level(least, 0), rival_level(least, 0));
+    result_.youngs_modulus = fitted(found, material.youngs_modulus, options_.told_within);
+    result_.not_told = what_is_not_told(result_.youngs_modulus, found,
+                                        {"E", "Pa", material.youngs_modulus}, options_.told_within);
     if (both_) fit_density(least);
     if (options_.density && !both_ && result_.not_told.empty()) {
       result_.not_told =
@@ -167,6 +181,8 @@ class MaterialFitter {
     refuse_unresolved(std::max(level(least, 0), both_ ? level(least, 1) : 0));
     const auto points = static_cast<double>(misfit_.points());
     result_.rms_m = std::sqrt(least / points);
+    result_.equilibria = misfit_.solves();
+    result_.evaluations = misfit_.evaluations();
     result_.warning = warning_of(least, points, freedom(), scenes_.front().length, options_.noise);
     const std::vector<Alignment> alignments = misfit_.alignments(best);
     for (std::size_t i = 0; i < alignments.size(); ++i) {
@@ -252,6 +268,17 @@ class MaterialFitter {
     return least + std::pow(quantile(number), 2) * excess(number) * variance(least);
   }
 
+  /// Up to which another local minimum is as good an explanation. Its frames are others as well, so
+  /// it is outside the joint region of all fitted numbers only where its sum of squares is so much
+  /// larger with a chance of 1e-3 (F distribution; a given noise: chi-squared).
+  [[nodiscard]] double rival_level(double least, std::size_t number) const {
+    const double nu = std::max(1.0, effects_[number].degrees_of_freedom);
+    const double fitted = misfit_.frame_numbers() + static_cast<double>(effects_.size());
+    const double excess_of_all = options_.noise ? gsl_cdf_chisq_Qinv(1e-3, fitted)
+                                                : fitted * gsl_cdf_fdist_Qinv(1e-3, fitted, nu);
+    return std::max(level(least, number), least + variance(least) * excess(number) * excess_of_all);
+  }
+
   void fit_density(double least) {
     LogProfile profile(
         [this](double y) {
@@ -260,11 +287,11 @@ class MaterialFitter {
         },
         low_ / 2, high_ / 2);
     const double unit = scenes_.front().material.density;
-    const LogProfile::Interval interval = profile.below(level(least, 1));
-    result_.density = fitted(interval, profile.minimum(), unit, options_.told_within);
+    const Finding found = finding(profile, level(least, 1), rival_level(least, 1));
+    result_.density = fitted(found, unit, options_.told_within);
     if (result_.not_told.empty()) {
-      result_.not_told = what_is_not_told(*result_.density, interval,
-                                          {"the density", "kg/m^3", unit}, options_.told_within);
+      result_.not_told = what_is_not_told(*result_.density, found, {"the density", "kg/m^3", unit},
+                                          options_.told_within);
     }
   }
 

@@ -34,13 +34,17 @@ bool lies_in_a_plane(const Eigen::Matrix3Xd& points) {
   return eigen.eigenvalues()[0] < 1e-15 * eigen.eigenvalues()[2];
 }
 
-/// Numbers that a shape contributes, less those of its frame.
-int free_numbers(const Aligner& aligner, bool flat, PoseFreedom pose) {
+/// Numbers that are measured of a shape.
+int measured_numbers(const Aligner& aligner, bool flat) {
+  const int per_point = (aligner.arc_lengths() == ArcLengths::nearest ? 2 : 3) - (flat ? 1 : 0);
+  return per_point * static_cast<int>(aligner.points());
+}
+
+/// Numbers of a shape's frame.
+int numbers_of_frame(bool flat, PoseFreedom pose) {
   constexpr int frame[] = {0, 3, 4, 6};
   constexpr int flat_frame[] = {0, 2, 2, 3};
-  const int per_point = (aligner.arc_lengths() == ArcLengths::nearest ? 2 : 3) - (flat ? 1 : 0);
-  const auto index = static_cast<std::size_t>(pose);
-  return per_point * static_cast<int>(aligner.points()) - (flat ? flat_frame : frame)[index];
+  return (flat ? flat_frame : frame)[static_cast<std::size_t>(pose)];
 }
 
 /// How deep a shape sinks into the scene's rigid obstacles [m].
@@ -122,7 +126,9 @@ ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, const std::vector<Mea
     scenes_.push_back(without_far_obstacles(scenes[i]).scene);
     aligners_.emplace_back(shapes[i], scenes[i].length, align);
     flat_.push_back(lies_in_a_plane(shapes[i].points));
-    numbers_ += free_numbers(aligners_.back(), flat_.back(), options.pose);
+    const int of_frame = numbers_of_frame(flat_.back(), options.pose);
+    frame_numbers_ += of_frame;
+    numbers_ += measured_numbers(aligners_.back(), flat_.back()) - of_frame;
   }
 }
 
@@ -162,6 +168,7 @@ std::shared_ptr<ShapeMisfit::Solved> ShapeMisfit::solve(std::size_t i,
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }
+  evaluations_ += result->equilibrium.evaluations;
   if (result->equilibrium.status == energy_model::SolveStatus::not_resolved) {
     result->penetration = depth_in_obstacles(scene, result->equilibrium);
   }

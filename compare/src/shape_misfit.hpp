@@ -37,6 +37,8 @@ class ShapeMisfit {
 
   /// Numbers measured, less those that place the shapes.
   [[nodiscard]] int numbers() const { return numbers_; }
+  /// Numbers that place the shapes.
+  [[nodiscard]] int frame_numbers() const { return frame_numbers_; }
   [[nodiscard]] Eigen::Index points() const;
 
   /// Sum of squared distances [m^2], computed once for each material; infinite where the energy
@@ -69,6 +71,8 @@ class ShapeMisfit {
 
   /// Equilibria solved so far.
   [[nodiscard]] long solves() const { return solves_; }
+  /// Of the energy model's objective, for these.
+  [[nodiscard]] long evaluations() const { return evaluations_; }
 
  private:
   struct Solved {
@@ -91,7 +95,9 @@ class ShapeMisfit {
   std::vector<Aligner> aligners_;
   std::vector<bool> flat_;
   int numbers_ = 0;
+  int frame_numbers_ = 0;
   long solves_ = 0;
+  long evaluations_ = 0;
   std::vector<int> searches_;
   std::map<MaterialPoint, double> values_;
   std::deque<std::shared_ptr<const Solved>> kept_;

@@ -68,6 +68,8 @@ struct MaterialFit {
   bool noise_is_estimated = true;   ///< else it was given
   int degrees_of_freedom = 0;       ///< numbers measured less numbers fitted
   double rms_m = 0;                 ///< of the distances between points and rod at the fit
+  long equilibria = 0;              ///< of the energy model that were solved
+  long evaluations = 0;             ///< of its objective for these
   std::vector<FittedShape> shapes;  ///< in the order given
 };
 
@@ -83,8 +85,11 @@ struct MaterialFit {
 /// The interval is that of the profile likelihood: all E at which the sum of squares, minimised
 /// over everything else, is below S_min (1 + t^2 / nu) with Student's t of nu degrees of freedom
 /// at 97.5 %; with a given noise, below S_min + (1.96 sigma)^2. It needs no linearisation and may
-/// be open on a side, or, with several minima, reach from one to another. Then, and where it is
-/// wider than `told_within`, the shapes do not tell E and no value is given.
+/// be open on a side. It reaches to every other local minimum in the joint region of all fitted
+/// numbers, frames included, that is left with a chance of 1e-3 (F distribution; a given noise:
+/// chi-squared), since a piece of a soft rod in an unknown frame also looks like
+/// another piece of a stiffer one. Where it is open or wider than `told_within`, the shapes do not
+/// tell E and no value is given.
 ///
 /// Where the residuals show that errors along the rod are correlated (likelihood ratio against
 /// white noise plus a first-order autoregression in arc length, restricted maximum likelihood), the
