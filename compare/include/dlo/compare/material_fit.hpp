@@ -21,15 +21,15 @@ struct MaterialFitOptions {
   double largest_ratio = 1e4;    ///< the upper end of that range
   /// A number is told only if its interval's ends are within this factor of each other.
   double told_within = 4;
-  SolveOptions solve;            ///< limits of the solvers
+  SolveOptions solve;  ///< limits of the solvers
 };
 
 /// A fitted quantity and its 95 % interval; a side without a number is open as far as was searched.
 struct FittedValue {
   /// Only if the interval is closed and no wider than MaterialFitOptions::told_within.
   std::optional<double> value;
-  std::optional<double> low;    ///< lower end of the interval
-  std::optional<double> high;   ///< upper end of the interval
+  std::optional<double> low;   ///< lower end of the interval
+  std::optional<double> high;  ///< upper end of the interval
 };
 
 /// How one shape was laid on the rod of the fitted modulus.
