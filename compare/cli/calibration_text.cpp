@@ -30,6 +30,18 @@ std::optional<double> half_width(const FittedValue& value) {
   return std::max(*value.high - *value.value, *value.value - *value.low);
 }
 
+/// What makes the interval wider than that of independent errors.
+std::string correlation_text(const MaterialReport& report) {
+  const compare::CorrelatedErrors& errors = *report.fit.correlation;
+  return fmt::format(
+      "            errors along the rod are correlated: {:.2g} % of their variance over about "
+      "{:.2g} "
+      "m\n            ({:.2g} % of the rod); the interval is {:.3g} times as wide for it ({:.3g} "
+      "degrees of freedom)\n",
+      errors.share * 100, errors.length_m, errors.length_m / report.scenes.front().length * 100,
+      errors.widening, errors.degrees_of_freedom);
+}
+
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 void add_value(Json& result, const std::string& name, const std::string& unit,
@@ -57,6 +69,7 @@ std::string material_text(const MaterialReport& report) {
   append(out, "noise       {:.4g} mm in each coordinate, {} ({} degrees of freedom)\n",
          fit.noise_m * 1e3, fit.noise_is_estimated ? "estimated from the residuals" : "given",
          fit.degrees_of_freedom);
+  if (fit.correlation) append(out, "{}", correlation_text(report));
   append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
     const compare::Alignment& a = fit.shapes[i].alignment;
@@ -78,10 +91,17 @@ std::string material_csv(const MaterialReport& report) {
   const FittedValue density = fit.density.value_or(FittedValue());
   std::string out =
       "youngs_modulus_Pa,low_Pa,high_Pa,density_kg_per_m3,density_low,density_high,noise_m,"
-      "degrees_of_freedom,rms_m,not_told,warning\n";
-  append(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{},{}\n", field(E.value), field(E.low),
+      "degrees_of_freedom,rms_m,not_told,warning,errors_are_correlated,correlation_length_m,"
+      "correlation_share,interval_widened_by,effective_degrees_of_freedom\n";
+  append(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{},{},", field(E.value), field(E.low),
          field(E.high), field(density.value), field(density.low), field(density.high), fit.noise_m,
          fit.degrees_of_freedom, fit.rms_m, csv_field(fit.not_told), csv_field(fit.warning));
+  if (fit.correlation) {
+    append(out, "true,{:.10g},{:.10g},{:.10g},{:.10g}\n", fit.correlation->length_m,
+           fit.correlation->share, fit.correlation->widening, fit.correlation->degrees_of_freedom);
+  } else {
+    append(out, "{},,,,\n", fit.correlation_was_tested ? "false" : "");
+  }
   return out;
 }
 
@@ -95,6 +115,16 @@ Json material_json(const MaterialReport& report) {
   result["noise_m"] = fit.noise_m;
   result["noise_is_estimated"] = fit.noise_is_estimated;
   result["degrees_of_freedom"] = fit.degrees_of_freedom;
+  result["errors_are_correlated"] =
+      fit.correlation_was_tested ? Json(fit.correlation.has_value()) : Json(nullptr);
+  if (fit.correlation) {
+    result["correlation"] = {{"length_m", fit.correlation->length_m},
+                             {"share_of_variance", fit.correlation->share},
+                             {"interval_widened_by", fit.correlation->widening},
+                             {"effective_degrees_of_freedom", fit.correlation->degrees_of_freedom}};
+  } else {
+    result["correlation"] = nullptr;
+  }
   result["rms_m"] = fit.rms_m;
   Json shapes = Json::array();
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
@@ -124,8 +154,9 @@ std::string material_toml(const MaterialReport& report) {
   append(out, "density = {:.8e}  # kg/m^3, {}\n", density,
          fit.density ? fmt::format("95 %: {:.4g} to {:.4g}", *fit.density->low, *fit.density->high)
                      : std::string("of the scene"));
-  append(out, "source = \"least squares of {} measured shape{}, noise {:.3g} m\"\n",
-         fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s", fit.noise_m);
+  append(out, "source = \"least squares of {} measured shape{}, noise {:.3g} m{}\"\n",
+         fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s", fit.noise_m,
+         fit.correlation ? ", correlated along the rod" : "");
   return out;
 }
 

@@ -3,170 +3,88 @@
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <limits>
-#include <map>
 #include <memory>
+#include <utility>
 
-#include "aligner.hpp"
 #include "dlo/compare/error.hpp"
-#include "dlo/compare/shape_check.hpp"
-#include "dlo/energy_model/energy.hpp"
-#include "log_search.hpp"
+#include "error_correlation.hpp"
+#include "log_profile.hpp"
+#include "shape_misfit.hpp"
 
 namespace dlo::compare {
 namespace {
 
-constexpr int scan_steps_per_decade = 4;
 /// What the energy model's own error may be, so that a perfect shape gets no interval of rounding.
 constexpr double least_noise = 1e-8;
+/// Searches for another state between several grippers, at the optimum of the one followed.
+constexpr int most_other_states = 2;
 
-/// Points that lie in a plane to rounding: their third coordinate was not measured.
-bool is_flat(const Eigen::Matrix3Xd& points) {
-  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
-  const Eigen::Matrix3d moments = centred * centred.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(moments);
-  return eigen.eigenvalues()[0] < 1e-15 * eigen.eigenvalues()[2];
-}
-
-/// Numbers that a shape contributes, less those of its frame.
-int free_numbers(const Aligner& aligner, const MeasuredShape& shape, PoseFreedom pose) {
-  constexpr int frame[] = {0, 3, 4, 6};
-  constexpr int flat_frame[] = {0, 2, 2, 3};
-  const bool flat = is_flat(shape.points);
-  const int per_point = (aligner.arc_lengths() == ArcLengths::nearest ? 2 : 3) - (flat ? 1 : 0);
-  const auto index = static_cast<std::size_t>(pose);
-  return per_point * static_cast<int>(aligner.points()) - (flat ? flat_frame : frame)[index];
-}
-
-/// The measured shapes against the energy model's for any modulus and density.
-class Misfit {
- public:
-  Misfit(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-         const MaterialFitOptions& options)
-      : scenes_(scenes),
-        solver_({.terms = options.solve.terms,
-                 .max_evaluations = options.solve.max_evaluations,
-                 .time_limit = options.solve.time_limit}) {
-    for (std::size_t i = 0; i < scenes.size(); ++i) {
-      AlignOptions align{.pose = options.pose,
-                         .arc_lengths = options.arc_lengths,
-                         .weights = PointWeights::equal,
-                         .up = up_of(scenes[i], options.pose)};
-      if (align.arc_lengths == ArcLengths::automatic) {
-        align.arc_lengths = shapes[i].arc_length.empty() ? ArcLengths::nearest : ArcLengths::file;
-      }
-      aligners_.emplace_back(shapes[i], scenes[i].length, align);
-      numbers_ += free_numbers(aligners_.back(), shapes[i], options.pose);
-    }
-  }
-
-  /// Numbers measured, less those that place the shapes.
-  [[nodiscard]] int numbers() const { return numbers_; }
-  [[nodiscard]] Eigen::Index points() const {
-    Eigen::Index sum = 0;
-    for (const Aligner& aligner : aligners_) sum += aligner.points();
-    return sum;
-  }
-
-  /// Sum of squared distances [m^2]; infinite where the energy model finds no shape.
-  double operator()(double modulus, double density_factor) {
-    alignments_.clear();
-    double sum = 0;
-    for (std::size_t i = 0; i < scenes_.size(); ++i) {
-      Scene& scene = scenes_[i];
-      const double density = scene.material.density;
-      scene.material.youngs_modulus = modulus;
-      scene.material.density = density * density_factor;
-      const energy_model::Equilibrium energy = solver_.solve(energy_problem(scene));
-      scene.material.density = density;
-      if (!energy_model::succeeded(energy.status)) return std::numeric_limits<double>::infinity();
-      alignments_.push_back(aligners_[i].align(Curve(energy.sample, scene.length)));
-      sum += alignments_.back().mean_square * static_cast<double>(aligners_[i].points());
-    }
-    return sum;
-  }
-
-  /// Of the last call.
-  [[nodiscard]] const std::vector<Alignment>& alignments() const { return alignments_; }
-
- private:
-  std::vector<Scene> scenes_;
-  std::vector<Aligner> aligners_;
-  std::vector<Alignment> alignments_;
-  energy_model::EnergySolver solver_;
-  int numbers_ = 0;
+/// A number that was fitted, for messages.
+struct Name {
+  const char* name;
+  const char* unit;
+  double scene_value;  // in that unit
 };
 
-/// A minimum, and how far the function stays below a level to both sides of it.
-struct Profile {
-  Scan values;
-  Minimum minimum;
-  std::optional<double> low, high;
+/// What a profile says of a number.
+struct Finding {
+  LogProfile::Interval interval;  // reaches to every one of `optima`
+  std::vector<Minimum> optima;    // that the shapes do not tell apart
+  Minimum best;
 };
 
-/// @param level  of the minimum
-Profile profile(const Function& function, double low, double high,
-                const std::function<double(double)>& level) {
-  const int steps =
-      static_cast<int>(std::ceil(scan_steps_per_decade * (high - low) / std::log(10)));
-  Profile result;
-  result.values = scan(function, low, high, steps);
-  const Scan& values = result.values;
-  const std::size_t best = values.best();
-  result.minimum = {values.x[best], values.value[best]};
-  if (!std::isfinite(result.minimum.value)) return result;
-  if (values.is_bracketed()) result.minimum = minimum_near(function, values);
-  const double limit = level(result.minimum.value);
-  const auto inside = [limit](double value) { return value <= limit; };
-  const auto first = std::find_if(values.value.begin(), values.value.end(), inside);
-  const auto last = std::find_if(values.value.rbegin(), values.value.rend(), inside);
-  // A narrow minimum lies between two points of the scan.
-  const double none = std::numeric_limits<double>::infinity();
-  const double leftmost = std::min(
-      result.minimum.x, first == values.value.end()
-                            ? none
-                            : values.x[static_cast<std::size_t>(first - values.value.begin())]);
-  const double rightmost = std::max(
-      result.minimum.x, last == values.value.rend()
-                            ? -none
-                            : values.x[static_cast<std::size_t>(values.value.rend() - last - 1)]);
-  const auto outside_left = std::lower_bound(values.x.begin(), values.x.end(), leftmost);
-  if (outside_left != values.x.begin()) {
-    result.low = crossing(function, leftmost, *(outside_left - 1), limit);
-  }
-  const auto outside_right = std::upper_bound(values.x.begin(), values.x.end(), rightmost);
-  if (outside_right != values.x.end()) {
-    result.high = crossing(function, rightmost, *outside_right, limit);
-  }
+Finding finding(LogProfile& profile, double level, double rival_level) {
+  Finding result{profile.below(level), profile.minima_below(rival_level), profile.minimum()};
+  if (result.optima.empty()) return result;
+  LogProfile::Interval& interval = result.interval;
+  if (interval.low) interval.low = std::min(*interval.low, result.optima.front().x);
+  if (interval.high) interval.high = std::max(*interval.high, result.optima.back().x);
   return result;
 }
 
-FittedValue fitted(const Profile& profile, double unit) {
+FittedValue fitted(const Finding& found, double unit, double told_within) {
+  const LogProfile::Interval& interval = found.interval;
   FittedValue result;
-  if (profile.low) result.low = unit * std::exp(*profile.low);
-  if (profile.high) result.high = unit * std::exp(*profile.high);
-  if (profile.low && profile.high) result.value = unit * std::exp(profile.minimum.x);
+  if (interval.low) result.low = unit * std::exp(*interval.low);
+  if (interval.high) result.high = unit * std::exp(*interval.high);
+  const bool closed = result.low && result.high;
+  if (closed && *result.high <= told_within * *result.low) {
+    result.value = unit * std::exp(found.best.x);
+  }
   return result;
 }
 
-std::string what_is_not_told(const FittedValue& value, const char* name, const char* unit) {
+std::string what_is_not_told(const FittedValue& value, const Finding& found, const Name& name,
+                             double told_within) {
   if (value.value) return {};
+  if (value.low && value.high) {
+    std::string where;
+    if (found.optima.size() > 1) {
+      where = ", best";
+      for (std::size_t i = 0; i < found.optima.size(); ++i) {
+        where += fmt::format("{} near {:.3g}", i == 0 ? "" : " and",
+                             name.scene_value * std::exp(found.optima[i].x));
+      }
+    }
+    return fmt::format(
+        "these shapes do not tell {0}: {1:.4g} to {2:.4g} {3} fit{4} (told: within a factor of "
+        "{5:g})",
+        name.name, *value.low, *value.high, name.unit, where, told_within);
+  }
   if (value.low) {
-    return fmt::format("these shapes do not tell {0}: {0} > {1:.4g} {2}, any larger one fits", name,
-                       *value.low, unit);
+    return fmt::format("these shapes do not tell {0}: {0} > {1:.4g} {2}, any larger one fits",
+                       name.name, *value.low, name.unit);
   }
   if (value.high) {
     return fmt::format("these shapes do not tell {0}: {0} < {1:.4g} {2}, any smaller one fits",
-                       name, *value.high, unit);
+                       name.name, *value.high, name.unit);
   }
   return fmt::format(
       "these shapes do not tell {0}: any {0} that was tried fits them within their "
       "noise",
-      name);
+      name.name);
 }
 
 std::string warning_of(double least_squares, double points, double nu, double length,
@@ -213,80 +131,197 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
   }
 }
 
+/// The fit of one or two numbers to shapes.
+class MaterialFitter {
+ public:
+  MaterialFitter(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                 const MaterialFitOptions& options)
+      : scenes_(scenes),
+        options_(options),
+        misfit_(scenes, shapes, options),
+        both_(options.density && has_forces_beside_weight(scenes)),
+        low_(std::log(options.smallest_ratio)),
+        high_(std::log(options.largest_ratio)) {
+    const int unknowns = both_ ? 2 : 1;
+    result_.degrees_of_freedom = misfit_.numbers() - unknowns;
+    result_.noise_is_estimated = !options.noise;
+    const int fewest = options.noise ? 0 : 1;
+    if (result_.degrees_of_freedom < fewest) {
+      throw InputError(fmt::format(
+          "calibrate: {} numbers measured beside the frames, {} to be found (allowed: {} or more, "
+          "so more points{})",
+          misfit_.numbers(), unknowns, unknowns + fewest,
+          options.noise ? "" : ", or a given noise"));
+    }
+  }
+
+  [[nodiscard]] MaterialFit run() {
+    std::unique_ptr<LogProfile> over_modulus = modulus_profile();
+    for (int i = 0; i < most_other_states && misfit_.search_at(best_with(*over_modulus)); ++i) {
+      over_modulus = modulus_profile();
+    }
+    const MaterialPoint best = best_with(*over_modulus);
+    const double least = over_modulus->minimum().value;
+    if (!std::isfinite(least)) {
+      throw ConvergenceError(fmt::format(
+          "{}: the energy model has a shape at no modulus that was tried", scenes_.front().file));
+    }
+    measure_noise(least, best);
+    const Material& material = scenes_.front().material;
+    const Finding found = finding(*over_modulus, level(least, 0), rival_level(least, 0));
+    result_.youngs_modulus = fitted(found, material.youngs_modulus, options_.told_within);
+    result_.not_told = what_is_not_told(result_.youngs_modulus, found,
+                                        {"E", "Pa", material.youngs_modulus}, options_.told_within);
+    if (both_) fit_density(least);
+    if (options_.density && !both_ && result_.not_told.empty()) {
+      result_.not_told =
+          "these shapes do not tell the density: nothing but gravity bends the rod, so only "
+          "density / E shows; E is for the density of the scene (a known load would tell both)";
+    }
+    refuse_unresolved(std::max(level(least, 0), both_ ? level(least, 1) : 0));
+    const auto points = static_cast<double>(misfit_.points());
+    result_.rms_m = std::sqrt(least / points);
+    result_.equilibria = misfit_.solves();
+    result_.evaluations = misfit_.evaluations();
+    result_.warning = warning_of(least, points, freedom(), scenes_.front().length, options_.noise);
+    const std::vector<Alignment> alignments = misfit_.alignments(best);
+    for (std::size_t i = 0; i < alignments.size(); ++i) {
+      result_.shapes.push_back({scenes_[i].name, alignments[i]});
+    }
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] double freedom() const { return result_.degrees_of_freedom; }
+
+  // With both unknown each is profiled with the other at its own best.
+  [[nodiscard]] Minimum over_density(double log_modulus) {
+    const LogProfile inner(
+        [&](double y) {
+          return misfit_({log_modulus, y});
+        },
+        low_ / 2, high_ / 2);
+    return inner.minimum();
+  }
+
+  [[nodiscard]] std::unique_ptr<LogProfile> modulus_profile() {
+    return std::make_unique<LogProfile>(
+        [this](double x) {
+          return both_ ? over_density(x).value : misfit_({x, 0});
+        },
+        low_, high_);
+  }
+
+  [[nodiscard]] MaterialPoint best_with(const LogProfile& over_modulus) {
+    const double x = over_modulus.minimum().x;
+    return {x, both_ ? over_density(x).x : 0};
+  }
+
+  /// Variance of one coordinate [m^2] if errors were independent.
+  [[nodiscard]] double variance(double least) const {
+    const double floor = std::pow(least_noise * scenes_.front().length, 2);
+    return options_.noise ? std::pow(*options_.noise, 2) : std::max(least / freedom(), floor);
+  }
+
+  /// The noise and its correlation, from the residuals of the best fit.
+  void measure_noise(double least, const MaterialPoint& best) {
+    result_.noise_m = std::sqrt(variance(least));
+    effects_.assign(both_ ? 2 : 1, {.degrees_of_freedom = freedom()});
+    if (!(least / std::max(1.0, freedom()) > std::pow(least_noise * scenes_.front().length, 2))) {
+      return;
+    }
+    const std::vector<ResidualSeries> series = misfit_.residuals(best, both_);
+    if (series.empty()) return;
+    const CorrelationEstimate estimate = correlation_of(series);
+    result_.correlation_was_tested = estimate.tested;
+    if (!estimate.significant) return;
+    const Eigen::Index frames = series.front().design.cols() - (both_ ? 2 : 1);
+    for (std::size_t k = 0; k < effects_.size(); ++k) {
+      effects_[k] =
+          correlation_effect(series, frames + static_cast<Eigen::Index>(k), estimate.covariance);
+    }
+    if (!options_.noise) result_.noise_m /= std::sqrt(effects_[0].residual_factor);
+    result_.correlation =
+        CorrelatedErrors{.length_m = estimate.covariance.length,
+                         .share = estimate.covariance.share,
+                         .widening = std::sqrt(excess(0)) * quantile(0) / independent_quantile(),
+                         .degrees_of_freedom = effects_[0].degrees_of_freedom};
+  }
+
+  /// Variance of a fitted number over that which independent errors would have, as they are taken
+  /// to be from the sum of squares (or given).
+  [[nodiscard]] double excess(std::size_t number) const {
+    const CorrelationEffect& effect = effects_[number];
+    return std::max(1.0, effect.variance_factor / (options_.noise ? 1 : effect.residual_factor));
+  }
+
+  [[nodiscard]] double independent_quantile() const {
+    return options_.noise ? gsl_cdf_ugaussian_Pinv(0.975) : gsl_cdf_tdist_Pinv(0.975, freedom());
+  }
+  [[nodiscard]] double quantile(std::size_t number) const {
+    return options_.noise ? independent_quantile()
+                          : gsl_cdf_tdist_Pinv(0.975, effects_[number].degrees_of_freedom);
+  }
+
+  /// Of the sum of squares, at the ends of a number's interval [m^2].
+  [[nodiscard]] double level(double least, std::size_t number) const {
+    return least + std::pow(quantile(number), 2) * excess(number) * variance(least);
+  }
+
+  /// Up to which another local minimum is as good an explanation. Its frames are others as well, so
+  /// it is outside the joint region of all fitted numbers only where its sum of squares is so much
+  /// larger with a chance of 1e-3 (F distribution; a given noise: chi-squared).
+  [[nodiscard]] double rival_level(double least, std::size_t number) const {
+    const double nu = std::max(1.0, effects_[number].degrees_of_freedom);
+    const double fitted = misfit_.frame_numbers() + static_cast<double>(effects_.size());
+    const double excess_of_all = options_.noise ? gsl_cdf_chisq_Qinv(1e-3, fitted)
+                                                : fitted * gsl_cdf_fdist_Qinv(1e-3, fitted, nu);
+    return std::max(level(least, number), least + variance(least) * excess(number) * excess_of_all);
+  }
+
+  void fit_density(double least) {
+    LogProfile profile(
+        [this](double y) {
+          const LogProfile inner([&](double x) { return misfit_({x, y}); }, low_, high_);
+          return inner.minimum().value;
+        },
+        low_ / 2, high_ / 2);
+    const double unit = scenes_.front().material.density;
+    const Finding found = finding(profile, level(least, 1), rival_level(least, 1));
+    result_.density = fitted(found, unit, options_.told_within);
+    if (result_.not_told.empty()) {
+      result_.not_told = what_is_not_told(*result_.density, found, {"the density", "kg/m^3", unit},
+                                          options_.told_within);
+    }
+  }
+
+  void refuse_unresolved(double highest_level) const {
+    const ShapeMisfit::Unresolved* unresolved = misfit_.unresolved_below(highest_level);
+    if (unresolved == nullptr) return;
+    const Scene& scene = scenes_[unresolved->scene];
+    throw ConvergenceError(fmt::format(
+        "{}: at E = {:.4g} Pa, which may fit, the rod is not resolved on its obstacles: it sinks "
+        "in "
+        "by {:.3g} m ({}), so the shapes cannot tell E",
+        scene.file, scene.material.youngs_modulus * std::exp(unresolved->material.log_modulus),
+        unresolved->penetration, unresolved->message));
+  }
+
+  const std::vector<Scene>& scenes_;
+  const MaterialFitOptions& options_;
+  ShapeMisfit misfit_;
+  bool both_;
+  double low_, high_;
+  std::vector<CorrelationEffect> effects_;  // on E, then on the density
+  MaterialFit result_;
+};
+
 }  // namespace
 
 MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                          const MaterialFitOptions& options) {
   require_pairs(scenes, shapes, options);
-  Misfit misfit(scenes, shapes, options);
-  MaterialFit result;
-  const bool both = options.density && has_forces_beside_weight(scenes);
-  const int unknowns = both ? 2 : 1;
-  result.degrees_of_freedom = misfit.numbers() - unknowns;
-  const int fewest = options.noise ? 0 : 1;
-  if (result.degrees_of_freedom < fewest) {
-    throw InputError(fmt::format(
-        "calibrate: {} numbers measured beside the frames, {} to be found (allowed: {} or more, so "
-        "more points{})",
-        misfit.numbers(), unknowns, unknowns + fewest, options.noise ? "" : ", or a given noise"));
-  }
-  const double length = scenes.front().length;
-  const double nu = result.degrees_of_freedom;
-  const double floor = std::pow(least_noise * length, 2);
-  result.noise_is_estimated = !options.noise;
-  const auto variance = [&](double least_squares) {
-    return options.noise ? std::pow(*options.noise, 2) : std::max(least_squares / nu, floor);
-  };
-  const double quantile =
-      options.noise ? gsl_cdf_ugaussian_Pinv(0.975) : gsl_cdf_tdist_Pinv(0.975, nu);
-  const auto level = [&](double least) { return least + quantile * quantile * variance(least); };
-
-  const double modulus = scenes.front().material.youngs_modulus;
-  const double low = std::log(options.smallest_ratio);
-  const double high = std::log(options.largest_ratio);
-  const auto at = [&](double log_modulus, double log_density) {
-    return misfit(modulus * std::exp(log_modulus), std::exp(log_density));
-  };
-  // With both unknown each is profiled with the other at its own best.
-  const auto best_over = [&](const Function& function) {
-    const Scan values = scan(function, low / 2, high / 2, scan_steps_per_decade * 4);
-    return values.is_bracketed() ? minimum_near(function, values)
-                                 : Minimum{values.x[values.best()], values.value[values.best()]};
-  };
-  const auto density_at = [&](double x) { return best_over([&](double y) { return at(x, y); }); };
-  const Profile over_modulus =
-      profile([&](double x) { return both ? density_at(x).value : at(x, 0); }, low, high, level);
-  if (!std::isfinite(over_modulus.minimum.value)) {
-    throw ConvergenceError(fmt::format(
-        "{}: the energy model has a shape at no modulus that was tried", scenes.front().file));
-  }
-  result.youngs_modulus = fitted(over_modulus, modulus);
-  result.not_told = what_is_not_told(result.youngs_modulus, "E", "Pa");
-  if (both) {
-    const Profile over_density =
-        profile([&](double y) { return best_over([&](double x) { return at(x, y); }).value; },
-                low / 2, high / 2, level);
-    result.density = fitted(over_density, scenes.front().material.density);
-    if (result.not_told.empty()) {
-      result.not_told = what_is_not_told(*result.density, "the density", "kg/m^3");
-    }
-  } else if (options.density && result.not_told.empty()) {
-    result.not_told =
-        "these shapes do not tell the density: nothing but gravity bends the rod, so only density "
-        "/ "
-        "E shows; E is for the density of the scene (a known load would tell both)";
-  }
-
-  const double best_density = both ? density_at(over_modulus.minimum.x).x : 0;
-  const double least = at(over_modulus.minimum.x, best_density);
-  result.noise_m = std::sqrt(variance(least));
-  result.rms_m = std::sqrt(least / static_cast<double>(misfit.points()));
-  result.warning =
-      warning_of(least, static_cast<double>(misfit.points()), nu, length, options.noise);
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    result.shapes.push_back({scenes[i].name, misfit.alignments()[i]});
-  }
-  return result;
+  return MaterialFitter(scenes, shapes, options).run();
 }
 
 }  // namespace dlo::compare

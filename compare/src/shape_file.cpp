@@ -58,6 +58,37 @@ void require_arc_lengths(const RawShape& raw, const std::string& file, double un
   }
 }
 
+/// Length of the polyline through 64 of the points at most: few enough that noise between
+/// neighbours hardly lengthens it.
+double coarse_polyline(const RawShape& raw) {
+  constexpr std::size_t most_chords = 63;
+  const std::size_t last = raw.points.size() - 1;
+  const std::size_t chords = std::min(most_chords, last);
+  double sum = 0;
+  for (std::size_t i = 0; i < chords; ++i) {
+    const auto& [x, y, z] = raw.points[last * i / chords];
+    const auto& [next_x, next_y, next_z] = raw.points[last * (i + 1) / chords];
+    sum += std::hypot(next_x - x, next_y - y, next_z - z);
+  }
+  return sum;
+}
+
+/// What one of the column s is [m]: the unit of the points, unless the polyline were more than
+/// twice as long as the arc lengths then, and not if they are metres.
+double arc_length_unit(const RawShape& raw, const std::string& file, double unit) {
+  if (raw.arc_length.empty()) return unit;
+  constexpr double longest = 5;
+  const double polyline = coarse_polyline(raw) * unit;
+  const double span = std::abs(raw.arc_length.back() - raw.arc_length.front());
+  if (polyline <= longest * span * unit) return unit;
+  if (polyline <= longest * span) return 1;
+  throw InputError(
+      fmt::format("{}: s: spans {:.4g} m where the points' polyline is {:.4g} m long (allowed: s "
+                  "in the unit of "
+                  "the points, see --unit, or in metres)",
+                  file, span * unit, polyline));
+}
+
 RawShape read_any_shape(std::string_view text, const std::string& file, double unit) {
   constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
   if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
@@ -114,7 +145,8 @@ MeasuredShape parse_shape(const std::string& text, const std::string& file, doub
     const auto& [x, y, z] = raw.points[i];
     shape.points.col(static_cast<Eigen::Index>(i)) = metres * Eigen::Vector3d(x, y, z);
   }
-  for (const double s : raw.arc_length) shape.arc_length.push_back(metres * s);
+  const double arc_metres = arc_length_unit(raw, file, metres);
+  for (const double s : raw.arc_length) shape.arc_length.push_back(arc_metres * s);
   return shape;
 }
 

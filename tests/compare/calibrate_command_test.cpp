@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "command_fixture.hpp"
 
@@ -93,6 +97,77 @@ TEST_F(CalibrateCommand, SaysWhenTheShapesDoNotTell) {
   expect_error("calibrate " + stiff + " --shape " + shape + " --format toml", 2, {"do not tell E"});
 }
 
+TEST_F(CalibrateCommand, SaysThatErrorsAreCorrelatedInEveryFormat) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const Outcome solved =
+      run("solve " + a + " --model exact --samples 41 --format csv -o " + path("all"));
+  ASSERT_EQ(solved.status, 0) << solved.err;
+  // A slow wave of 1 mm across the rod, as of a lens, and next to it noise that has no memory.
+  const auto shape = [&](const std::string& name, auto&& error) {
+    std::ifstream stream(path("all"));
+    std::ofstream out(path(name));
+    std::string line;
+    std::getline(stream, line);
+    out << "x,y,z\n";
+    for (int i = 0; std::getline(stream, line); ++i) {
+      std::array<double, 3> p{};
+      EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &p[0], &p[1], &p[2]), 3);
+      out << p[0] + error(i) << "," << p[1] + error(i + 13) << "," << p[2] + error(i + 29) << "\n";
+    }
+    return path(name);
+  };
+  const std::string wave = shape("wave.csv", [](int i) { return 1e-3 * std::sin(i / 4.0); });
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal(0, 1e-3);
+  const std::string noise = shape("noise.csv", [&](int) { return normal(random); });
+  const auto text = [&](const std::string& file, const std::string& format) {
+    const Outcome result = run(words({"calibrate", a, "--shape", file, "--format", format}));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return result.out;
+  };
+  EXPECT_NE(text(wave, "text").find("errors along the rod are correlated"), std::string::npos);
+  EXPECT_EQ(text(noise, "text").find("correlated"), std::string::npos);
+  const json said = json::parse(text(wave, "json"));
+  EXPECT_TRUE(said.at("errors_are_correlated").get<bool>());
+  EXPECT_GT(said.at("correlation").at("interval_widened_by").get<double>(), 1.5);
+  EXPECT_GT(said.at("correlation").at("length_m").get<double>(), 0.025);
+  const json not_said = json::parse(text(noise, "json"));
+  EXPECT_FALSE(not_said.at("errors_are_correlated").get<bool>());
+  EXPECT_TRUE(not_said.at("correlation").is_null());
+  EXPECT_NE(text(wave, "csv").find(",true,"), std::string::npos);
+  EXPECT_NE(text(noise, "csv").find(",false,,,,\n"), std::string::npos);
+}
+
+TEST_F(CalibrateCommand, AColumnSInMetresBesideMillimetresIsRead) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  ASSERT_EQ(run("solve " + a + " --model exact --samples 9 --format csv -o " + path("all")).status,
+            0);
+  const auto scaled = [&](const std::string& name, double xyz, double along) {
+    std::ifstream stream(path("all"));
+    std::ofstream out(path(name));
+    std::string line;
+    std::getline(stream, line);
+    out << "x,y,z,s\n";
+    while (std::getline(stream, line)) {
+      std::array<double, 4> p{};
+      EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", &p[0], &p[1], &p[2], &p[3]), 4);
+      out << p[0] * xyz << "," << p[1] * xyz << "," << p[2] * xyz << "," << p[3] * along << "\n";
+    }
+    return path(name);
+  };
+  const std::string guess = scene_of("a.toml", "9 GPa", 0);
+  for (const double along : {1.0, 1e3}) {
+    const std::string file = scaled("mm.csv", 1e3, along);
+    const Outcome result = run(
+        words({"calibrate", guess, "--shape", file, "--unit mm --arc-lengths file --format json"}));
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_NEAR(json::parse(result.out).at("youngs_modulus_Pa").get<double>(), 5e9, 1e6) << along;
+  }
+  // Neither millimetres nor metres: s must be at least as long as the polyline.
+  expect_error(words({"calibrate", guess, "--shape", scaled("cm.csv", 1e3, 1e-2), "--unit mm"}), 2,
+               {"cm.csv: s: spans", "--unit"});
+}
+
 TEST_F(CalibrateCommand, WritesParametersThatTheOtherCommandsRead) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string b = scene_of("b.toml", "5 GPa", -30);
@@ -110,6 +185,15 @@ TEST_F(CalibrateCommand, WritesParametersThatTheOtherCommandsRead) {
     EXPECT_EQ(compared.at("points"), fit.at("parameters").at("points"));
     EXPECT_NEAR(compared.at("deviation").at("rms_over_length").get<double>(),
                 fit.at("deviation").at("worst_holdout_rms_over_length").get<double>(), 1e-7);
+    // What is printed of every scene is what its printed parameters give.
+    const json fitted =
+        json::parse(run(words({"compare", a, "--parameters", file, "--format json"})).out)
+            .at("cases")[0];
+    EXPECT_NEAR(fitted.at("deviation").at("rms_over_length").get<double>(),
+                fit.at("scenes")[0].at("rms_over_length").get<double>(), 1e-7);
+    const double worst = std::max(fitted.at("deviation").at("rms_over_length").get<double>(),
+                                  compared.at("deviation").at("rms_over_length").get<double>());
+    EXPECT_EQ(fit.at("reached").get<bool>(), worst <= fit.at("target").get<double>());
     EXPECT_NEAR(compared.at("parameters").at("c_F").get<double>() /
                     fit.at("parameters").at("c_F").get<double>(),
                 1, 1e-8);

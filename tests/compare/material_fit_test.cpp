@@ -2,10 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <tuple>
+#include <utility>
 
+#include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/energy_model/energy.hpp"
 #include "measured_shapes.hpp"
 #include "sanitized.hpp"
 #include "scenes.hpp"
@@ -23,44 +29,64 @@ bool holds(const FittedValue& value, double truth) {
   return (!value.low || *value.low <= truth) && (!value.high || *value.high >= truth);
 }
 
+/// Of fits to one rod.
+struct Tally {
+  int held = 0;         // intervals that hold the truth
+  int told = 0;         // fits that tell E
+  int correlated = 0;   // that say that errors are correlated
+  double farthest = 0;  // |log(E / truth)| of those that tell it
+
+  void add(const MaterialFit& fit, double truth) {
+    EXPECT_EQ(fit.youngs_modulus.value.has_value(), fit.not_told.empty());
+    EXPECT_TRUE(fit.correlation_was_tested);
+    held += holds(fit.youngs_modulus, truth) ? 1 : 0;
+    correlated += fit.correlation ? 1 : 0;
+    if (!fit.youngs_modulus.value) return;
+    ++told;
+    farthest = std::max(farthest, std::abs(std::log(*fit.youngs_modulus.value / truth)));
+  }
+};
+
 class MaterialFitCoverage : public testing::TestWithParam<std::tuple<double, PoseFreedom>> {};
 
 // The exact shape at 7 uneven points, reversed, moved, with noise of 0.1 % of the length: of 100
 // draws an interval of 95 % misses the truth about 5 times, and more than 10 times once in 87 tests
-// if it is right. The scene's own modulus is not the truth.
+// if it is right; it never misses in one of 170. With the frame unknown and without arc lengths it
+// may be wider: how far the points slide is bounded by the rod's ends, and several optima count.
+// The scene's own modulus is not the truth.
 TEST_P(MaterialFitCoverage, IntervalHoldsTheTruthInNineOfTenDraws) {
   const auto& [gamma, pose] = GetParam();
+  const bool known = pose == PoseFreedom::known;
   const Scene truth = heavy_scene(gamma, 15);
   const double modulus = truth.material.youngs_modulus;
   Scene scene = truth;
   scene.material.youngs_modulus *= 1.7;
   const energy_model::Equilibrium exact = solve_reference(truth, Model::exact);
   std::mt19937 random(2024);
-  int held = 0;
-  int told = 0;
+  Tally tally;
   constexpr int draws = test::sanitized ? 10 : 100;
   for (int draw = 0; draw < draws; ++draw) {
     const std::vector<double> s = uneven_arc_lengths(random, 7, 1);
-    const RigidMotion motion = pose == PoseFreedom::known ? RigidMotion() : random_pose(random);
+    const RigidMotion motion = known ? RigidMotion() : random_pose(random);
     const MeasuredShape seen{
         "seen", with_noise(motion.applied(exact.sample(s).points), 1e-3, random), {}};
     const MaterialFit fit =
         fit_material({scene}, {test::reversed(seen)},
                      {.pose = pose, .smallest_ratio = 1.0 / 30, .largest_ratio = 30});
-    held += holds(fit.youngs_modulus, modulus) ? 1 : 0;
-    told += fit.youngs_modulus.value ? 1 : 0;
-    EXPECT_EQ(fit.youngs_modulus.value.has_value(), fit.not_told.empty());
-    if (pose != PoseFreedom::known) continue;
-    ASSERT_TRUE(fit.youngs_modulus.value);
-    EXPECT_TRUE(fit.shapes[0].alignment.reversed);
-    if (gamma >= 1) {
-      EXPECT_NEAR(*fit.youngs_modulus.value / modulus, 1, 0.05) << draw;
+    tally.add(fit, modulus);
+    if (known) {
+      EXPECT_TRUE(fit.shapes[0].alignment.reversed);
     }
   }
-  RecordProperty("held", held);
-  RecordProperty("told", told);
-  if (!test::sanitized) {
-    EXPECT_GE(held, 90);
+  RecordProperty("held", tally.held);
+  RecordProperty("told", tally.told);
+  EXPECT_LT(tally.farthest, std::log(known && gamma >= 1 ? 1.05 : 4));
+  if (test::sanitized) return;
+  EXPECT_GE(tally.held, 90);
+  EXPECT_LE(tally.correlated, 12);
+  if (known) {
+    EXPECT_LE(tally.held, 99);
+    EXPECT_EQ(tally.told, draws);
   }
 }
 
@@ -73,6 +99,177 @@ INSTANTIATE_TEST_SUITE_P(GammasAndPoses, MaterialFitCoverage,
                            name.replace(name.find('.'), 1, "_");
                            return "Gamma" + name + to_string(std::get<1>(instance.param));
                          });
+
+// With arc lengths an unknown frame leaves the problem as regular as a known one.
+TEST(MaterialFit, IntervalHoldsTheTruthInNineOfTenDrawsOfAnUnknownFrameWithArcLengths) {
+  const Scene scene = heavy_scene(5, 0);
+  const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);
+  std::mt19937 random(77);
+  Tally tally;
+  constexpr int draws = test::sanitized ? 10 : 100;
+  for (int draw = 0; draw < draws; ++draw) {
+    const std::vector<double> s = equal_arc_lengths(1, 31);
+    const MeasuredShape seen{
+        "seen", with_noise(random_pose(random).applied(exact.sample(s).points), 1e-3, random), s};
+    tally.add(fit_material({scene}, {seen}, {.pose = PoseFreedom::rigid}), 210e9);
+  }
+  RecordProperty("held", tally.held);
+  EXPECT_EQ(tally.told, draws);
+  if (test::sanitized) return;
+  EXPECT_GE(tally.held, 90);
+  EXPECT_LE(tally.held, 99);
+}
+
+/// Noise whose neighbours belong together over an arc length: a first-order autoregression.
+Eigen::Matrix3Xd correlated_noise(const std::vector<double>& s, double sigma, double length,
+                                  std::mt19937& random) {
+  std::normal_distribution<double> normal(0, sigma);
+  Eigen::Matrix3Xd noise(3, static_cast<Eigen::Index>(s.size()));
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    noise(k, 0) = normal(random);
+    for (Eigen::Index i = 1; i < noise.cols(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const double kept = std::exp(-(s[at] - s[at - 1]) / length);
+      noise(k, i) = kept * noise(k, i - 1) + std::sqrt(1 - kept * kept) * normal(random);
+    }
+  }
+  return noise;
+}
+
+// Taken for independent, such errors leave the truth outside in 25 and 60 of 100 draws.
+TEST(MaterialFit, CorrelatedErrorsAreSaidAndWidenTheInterval) {
+  const Scene scene = heavy_scene(5, 0);
+  const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);
+  constexpr int draws = test::sanitized ? 5 : 60;
+  for (const double length : {0.03, 0.2}) {
+    std::mt19937 random(11);
+    Tally tally;
+    for (int draw = 0; draw < draws; ++draw) {
+      const std::vector<double> s = equal_arc_lengths(1, 41);
+      const MeasuredShape seen{
+          "seen", exact.sample(s).points + correlated_noise(s, 1e-3, length, random), {}};
+      const MaterialFit fit = fit_material({scene}, {seen});
+      tally.add(fit, 210e9);
+      if (!fit.correlation) continue;
+      EXPECT_GE(fit.correlation->widening, 1);
+      EXPECT_LE(fit.correlation->degrees_of_freedom, fit.degrees_of_freedom);
+    }
+    RecordProperty("held_" + std::to_string(length), tally.held);
+    EXPECT_EQ(tally.told, draws);
+    EXPECT_GE(tally.correlated, 0.9 * draws) << length;
+    if (test::sanitized) continue;
+    EXPECT_GE(tally.held, 0.85 * draws) << length;
+    EXPECT_LE(tally.held, 0.99 * draws) << length;
+  }
+}
+
+// The length and the share come out of many points.
+TEST(MaterialFit, TheCorrelationIsMeasured) {
+  const Scene scene = heavy_scene(5, 0);
+  const std::vector<double> s = equal_arc_lengths(1, 801);
+  MeasuredShape shape = exact_shape(scene, s);
+  std::mt19937 random(12);
+  shape.points += correlated_noise(s, 1e-3, 0.02, random);
+  const MaterialFit smooth = fit_material({scene}, {shape});
+  ASSERT_TRUE(smooth.correlation);
+  // 50 lengths in each of two directions: known to about a fifth.
+  EXPECT_NEAR(std::log(smooth.correlation->length_m / 0.02), 0, std::log(1.8));
+  EXPECT_GE(smooth.correlation->share, 0.95);
+  // Of about 100 independent errors: 14 %.
+  EXPECT_NEAR(smooth.noise_m / 1e-3, 1, 0.4);
+  shape.points = with_noise(shape.points, 1e-3, random);
+  const MaterialFit half = fit_material({scene}, {shape});
+  ASSERT_TRUE(half.correlation);
+  EXPECT_NEAR(half.correlation->share, 0.5, 0.21);
+}
+
+// A piece of a soft rod looks like another piece of a stiffer one: E was told 3 to 20 times too
+// large from these.
+TEST(MaterialFit, APieceInAnUnknownFrameThatFitsTwoModuliTellsNeither) {
+  const std::string folder = std::string(DLO_DATA) + "/failures/";
+  const Scene scene = load_scene(folder + "calib_reg_G60.toml");
+  for (const char* draw : {"10", "37", "41", "49", "51", "79", "93"}) {
+    const MeasuredShape shape = load_shape(folder + "calib_reg_G60_" + draw + ".csv");
+    const MaterialFit fit = fit_material({scene}, {shape}, {.pose = PoseFreedom::rigid});
+    EXPECT_FALSE(fit.youngs_modulus.value) << draw;
+    EXPECT_TRUE(holds(fit.youngs_modulus, scene.material.youngs_modulus)) << draw;
+    EXPECT_NE(fit.not_told.find(", best near "), std::string::npos) << fit.not_told;
+  }
+}
+
+// Eight points of soft rods in an unknown frame: what is told is never far off, and something is.
+TEST(MaterialFit, WhatIsToldOfSoftRodsIsNear) {
+  for (const char* name : {"calib_reg_G60.toml", "calib_reg_G10.toml"}) {
+    const Scene scene = load_scene(std::string(DLO_DATA) + "/failures/" + name);
+    const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);
+    std::mt19937 random(2024);
+    Tally tally;
+    constexpr int draws = test::sanitized ? 3 : 20;
+    for (int draw = 0; draw < draws; ++draw) {
+      const std::vector<double> s = uneven_arc_lengths(random, 8, scene.length);
+      const MeasuredShape seen{
+          "seen",
+          with_noise(random_pose(random).applied(exact.sample(s).points), 1e-3, random),
+          {}};
+      tally.add(fit_material({scene}, {seen}, {.pose = PoseFreedom::rigid}),
+                scene.material.youngs_modulus);
+    }
+    RecordProperty("told", tally.told);
+    EXPECT_LT(tally.farthest, std::log(4)) << name;
+    if (test::sanitized) continue;
+    EXPECT_GE(tally.told, draws / 4) << name;
+    EXPECT_GE(tally.held, 0.85 * draws) << name;
+  }
+}
+
+// Between two clamps states are followed: a search at each modulus took 17 to 24 s in all.
+TEST(MaterialFit, TwoClampsAreFollowedFromOneModulusToTheNext) {
+  Scene truth = heavy_scene(30, 0);
+  truth.grippers.push_back(
+      {.at = 1, .position = Eigen::Vector3d(0.7, 0.1, 0), .direction = Eigen::Vector3d::UnitX()});
+  const energy_model::Equilibrium state = solve_reference(truth, Model::energy);
+  const MeasuredShape shape{"seen", state.sample(equal_arc_lengths(1, 15)).points, {}};
+  for (const double guess : {0.3, 1.8, 20.0}) {
+    Scene scene = truth;
+    scene.material.youngs_modulus *= guess;
+    const MaterialFit fit = fit_material({scene}, {shape});
+    ASSERT_TRUE(fit.youngs_modulus.value) << fit.not_told;
+    EXPECT_NEAR(*fit.youngs_modulus.value / truth.material.youngs_modulus, 1, 1e-4) << guess;
+    EXPECT_LT(fit.equilibria, 80) << guess;
+    EXPECT_LT(fit.evaluations, 100 * fit.equilibria) << guess;
+  }
+}
+
+TEST(MaterialFit, TheTimeLimitEndsItWithItsName) {
+  const Scene scene = heavy_scene(1, 0);
+  const MeasuredShape shape = exact_shape(scene, {0.2, 0.5, 0.9});
+  try {
+    (void)fit_material({scene}, {shape}, {.solve = {.time_limit = 1e-9}});
+    ADD_FAILURE() << "no time, and no error";
+  } catch (const ConvergenceError& error) {
+    EXPECT_NE(std::string(error.what()).find("--time-limit"), std::string::npos) << error.what();
+  }
+}
+
+// A shape on a wall that its solver does not vouch for is no reference; one that it does is.
+TEST(MaterialFit, ReferencesOnWallsAreUsedOnlyWhereTheyAreResolved) {
+  Scene scene = heavy_scene(1, 0);
+  scene.obstacles = {{.point = Eigen::Vector3d(0, -0.08, 0)}};
+  const energy_model::Equilibrium state = energy_model::solve_energy(energy_problem(scene));
+  const MeasuredShape shape{"seen", state.sample(equal_arc_lengths(1, 15)).points, {}};
+  const MaterialFitOptions options{.smallest_ratio = 0.6, .largest_ratio = 1.7};
+  if (state.status == energy_model::SolveStatus::not_resolved) {
+    try {
+      (void)fit_material({scene}, {shape}, options);
+      ADD_FAILURE() << "fitted a shape that is not resolved";
+    } catch (const ConvergenceError& error) {
+      EXPECT_NE(std::string(error.what()).find("sinks in"), std::string::npos) << error.what();
+    }
+  } else {
+    ASSERT_TRUE(energy_model::succeeded(state.status)) << state.message;
+    EXPECT_TRUE(holds(fit_material({scene}, {shape}, options).youngs_modulus, 210e9));
+  }
+}
 
 TEST(MaterialFit, APerfectShapeGivesItsModulusFromFarAway) {
   const Scene truth = heavy_scene(5, 0);
@@ -113,6 +310,44 @@ TEST(MaterialFit, IntervalHasTheWidthOfLinearTheory) {
   const MaterialFit estimated = fit_material({scene}, {shape});
   // A standard deviation from 62 degrees of freedom is known to 9 %.
   EXPECT_NEAR(estimated.noise_m / sigma, 1, 0.27);
+}
+
+// The same with a frame to be found: what it can take over of a change of E is taken out of it.
+TEST(MaterialFit, IntervalHasTheWidthOfLinearTheoryInAnUnknownFrame) {
+  const Scene scene = heavy_scene(2, 0);
+  const std::vector<double> s = equal_arc_lengths(1, 21);
+  const double sigma = 2e-4;
+  const Eigen::Matrix3Xd exact = exact_shape(scene, s).points;
+  std::mt19937 random(15);
+  const MeasuredShape shape{"seen", with_noise(exact, sigma, random), s};
+  Scene stiffer = scene;
+  const double step = 1e-4;
+  stiffer.material.youngs_modulus *= 1 + step;
+  const Eigen::Matrix3Xd moved = (exact_shape(stiffer, s).points - exact) / step;
+  // Columns: shifts along x, y, z, then turns about y (upright), x and z.
+  Eigen::MatrixXd frame(3 * 21, 6);
+  for (Eigen::Index i = 0; i < 21; ++i) {
+    frame.block<3, 3>(3 * i, 0).setIdentity();
+    frame.block<3, 1>(3 * i, 3) = Eigen::Vector3d::UnitY().cross(exact.col(i));
+    frame.block<3, 1>(3 * i, 4) = Eigen::Vector3d::UnitX().cross(exact.col(i));
+    frame.block<3, 1>(3 * i, 5) = Eigen::Vector3d::UnitZ().cross(exact.col(i));
+  }
+  const Eigen::VectorXd change = Eigen::Map<const Eigen::VectorXd>(moved.data(), moved.size());
+  for (const auto& [pose, freedom] :
+       {std::pair{PoseFreedom::translation, 3}, std::pair{PoseFreedom::upright, 4},
+        std::pair{PoseFreedom::rigid, 6}}) {
+    const Eigen::MatrixXd free = frame.leftCols(freedom);
+    const Eigen::VectorXd taken = free * free.colPivHouseholderQr().solve(change);
+    const double expected = 1.95996 * sigma / (change - taken).norm();
+    const MaterialFit given = fit_material({scene}, {shape}, {.pose = pose, .noise = sigma});
+    const double half = (*given.youngs_modulus.high - *given.youngs_modulus.low) / 2 / 210e9;
+    EXPECT_NEAR(half / expected, 1, 0.05) << to_string(pose);
+    // Estimated noise: Student's t for its normal quantile, of 3 * 21 - 7 or more.
+    const MaterialFit fit = fit_material({scene}, {shape}, {.pose = pose});
+    ASSERT_FALSE(fit.correlation);
+    const double width = (*fit.youngs_modulus.high - *fit.youngs_modulus.low) / 2 / 210e9;
+    EXPECT_NEAR(width / (half * fit.noise_m / sigma), 2.003 / 1.960, 0.02) << to_string(pose);
+  }
 }
 
 TEST(MaterialFit, AFlatPictureCountsTwoCoordinates) {

@@ -19,8 +19,9 @@ inline constexpr long most_shape_points = 100'000;
 
 /// Reads a shape; the content says which of three formats it is.
 ///     CSV: x,y or x,y,z or x,y,z,s a line, or any order of these under a header with their names
-///          (s: arc length). Fields are separated by commas, or else by semicolons, tabs or blanks;
-///          blank lines and lines that begin with # are skipped.
+///          (s: arc length, in the unit of the points or in metres, whichever is not less than a
+///          fifth of the polyline). Fields are separated by commas, or else by semicolons, tabs or
+///          blanks; blank lines and lines that begin with # are skipped.
 ///     JSON: [[x, y, z], ...], or an object with `points_m` and, if known, `arc_length_m` as `dlo
 ///          solve` writes it; `points` and `arc_length` are in the unit that is given.
 ///     VTK: legacy, ASCII, DATASET POLYDATA with POINTS and one polyline in LINES (or several that

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace dlo::compare {
+
+/// One coordinate of a shape's residuals, by growing arc length, and how the fitted numbers move
+/// it.
+struct ResidualSeries {
+  std::vector<double> arc_length;  ///< grows [m], n
+  Eigen::VectorXd residual;        ///< [m], n
+  Eigen::MatrixXd design;          ///< its derivatives by the fitted numbers, n x p, any scale
+};
+
+/// Errors e along the rod whose covariance is, up to a factor,
+///     C(s, s') = (1 - share) [s = s'] + share exp(-|s - s'| / length):
+/// white noise of the points plus a first-order autoregression in arc length.
+struct ErrorCovariance {
+  double share = 0;   ///< of the variance that is correlated, 0 to 1
+  double length = 0;  ///< of correlation [m]
+};
+
+/// What residuals say of the errors' correlation, see correlation_of().
+struct CorrelationEstimate {
+  ErrorCovariance covariance;  ///< the most likely one
+  /// Twice the gain in (restricted) log likelihood over independent errors.
+  double likelihood_gain = 0;
+  bool tested = false;       ///< there were enough residuals
+  bool significant = false;  ///< independent errors gain as much in less than one case of twenty
+};
+
+/// The most likely covariance by restricted maximum likelihood, which allows for what the fitted
+/// numbers took out of the residuals. The likelihood is that of a Kalman filter's innovations, so
+/// it costs O(n p) for n residuals.
+[[nodiscard]] CorrelationEstimate correlation_of(const std::vector<ResidualSeries>& series);
+
+/// What a covariance does to a least squares fit that takes errors for independent.
+struct CorrelationEffect {
+  /// Variance of a fitted number over that of independent errors with the same variance.
+  double variance_factor = 1;
+  /// Expected sum of squares of the residuals over that of independent errors with the same
+  /// variance; below 1, for the fitted numbers take out what neighbours have in common.
+  double residual_factor = 1;
+  /// Of the sum of squares (Satterthwaite: the chi-squared distribution of the same mean and
+  /// variance).
+  double degrees_of_freedom = 0;
+};
+
+/// @param column  of the design: the fitted number
+[[nodiscard]] CorrelationEffect correlation_effect(const std::vector<ResidualSeries>& series,
+                                                   Eigen::Index column,
+                                                   const ErrorCovariance& covariance);
+
+}  // namespace dlo::compare
