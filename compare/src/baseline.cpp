@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "input_file.hpp"
 #include "strict_table.hpp"
 
 namespace dlo::compare {

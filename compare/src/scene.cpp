@@ -11,6 +11,7 @@
 #include "builtin_data.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/nearest_word.hpp"
+#include "input_file.hpp"
 #include "read_scene.hpp"
 #include "strict_table.hpp"
 

@@ -12,6 +12,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "fingerprint.hpp"
+#include "input_file.hpp"
 #include "read_scene.hpp"
 #include "strict_table.hpp"
 

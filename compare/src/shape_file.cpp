@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "dlo/compare/error.hpp"
+#include "input_file.hpp"
 #include "raw_shape.hpp"
-#include "strict_table.hpp"
 
 namespace dlo::compare {
 namespace {

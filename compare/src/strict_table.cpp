@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/nearest_word.hpp"
+#include "nesting.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -235,6 +233,11 @@ void StrictTable::finish() const {
 }
 
 toml::table parse_toml(const std::string& text, const std::string& file) {
+  if (text.size() > largest_toml) {
+    throw InputError(
+        fmt::format("{}: {} bytes (allowed: up to {} of TOML)", file, text.size(), largest_toml));
+  }
+  require_shallow_toml(text, file);
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
@@ -244,20 +247,6 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
         "{}:{}: not valid TOML: {} (text, and a number with a unit, is in quotes: \"2 mm\")", file,
         error.source().begin.line, description));
   }
-}
-
-std::string read_file(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  errno = 0;
-  if (stream) text << stream.rdbuf();
-  if (!stream || (text.str().empty() && errno != 0)) {
-    const std::string reason = errno != 0 ? std::strerror(errno) : "no such file";
-    const bool scene = std::ifstream(path + ".toml").good();
-    throw InputError(fmt::format("{}: cannot be read ({}{})", path, reason,
-                                 scene ? ", but " + path + ".toml is there" : ""));
-  }
-  return text.str();
 }
 
 }  // namespace dlo::compare
