@@ -38,8 +38,12 @@ void add_state(std::string& out, const compare::ComparedState& state, double len
     out += "; no other equilibrium found\n";
     return;
   }
-  append(out, "; number {} of {} stable, {} unstable found\n", state.rank, state.stable,
-         state.unstable);
+  if (state.only_lowest()) {
+    append(out, "; {} unstable found\n", state.unstable);
+  } else {
+    append(out, "; number {} of {} stable, {} unstable found\n", state.rank, state.stable,
+           state.unstable);
+  }
   for (const compare::OtherState& other : state.others) {
     append(out,
            "                  other: {}, {:+.4g} J, RMS {:.4g} % of l away, {:.4g} % from {}\n",

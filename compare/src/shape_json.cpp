@@ -5,7 +5,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "nesting.hpp"
+#include "text_limits.hpp"
 #include "raw_shape.hpp"
 
 namespace dlo::compare {
@@ -18,7 +18,7 @@ constexpr const char* json_allowed =
     "points)";
 
 json parsed(std::string_view text, const std::string& file) {
-  require_shallow_json(text, file);
+  require_json_limits(text, file);
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {

@@ -9,7 +9,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/nearest_word.hpp"
-#include "nesting.hpp"
+#include "text_limits.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -237,15 +237,17 @@ toml::table parse_toml(const std::string& text, const std::string& file) {
     throw InputError(
         fmt::format("{}: {} bytes (allowed: up to {} of TOML)", file, text.size(), largest_toml));
   }
-  require_shallow_toml(text, file);
+  require_toml_limits(text, file);
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     std::string description(error.description());
     std::replace(description.begin(), description.end(), '\n', ' ');
-    throw InputError(fmt::format(
-        "{}:{}: not valid TOML: {} (text, and a number with a unit, is in quotes: \"2 mm\")", file,
-        error.source().begin.line, description));
+    const bool comma = description.ends_with("saw ','");
+    throw InputError(fmt::format("{}:{}: not valid TOML: {} ({})", file, error.source().begin.line,
+                                 description,
+                                 comma ? "a number has a decimal point: 2.5"
+                                       : "text, and a number with a unit, is in quotes: \"2 mm\""));
   }
 }
 

@@ -1,11 +1,13 @@
-#include "nesting.hpp"
+#include "text_limits.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
+#include "number_range.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -46,15 +48,18 @@ class NestingCounter {
 
   void bracket(char c) {
     if (c == '[' || c == '{') {
-      if (++depth_ > deepest_nesting) fail("brackets within brackets");
+      if (++depth_ > deepest_nesting) too_deep("brackets within brackets");
     } else if (c == ']' || c == '}') {
       --depth_;
     }
   }
 
-  [[noreturn]] void fail(const char* what) const {
-    throw InputError(
-        fmt::format("{}:{}: {} (allowed: {} levels)", file_, line_, what, deepest_nesting));
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw InputError(fmt::format("{}:{}: {}", file_, line_, problem));
+  }
+
+  [[noreturn]] void too_deep(const char* what) const {
+    fail(fmt::format("{} (allowed: {} levels)", what, deepest_nesting));
   }
 
  private:
@@ -63,20 +68,37 @@ class NestingCounter {
   int depth_ = 0;
 };
 
+/// A number without quotes that no double can hold, for which a parser takes zero or says little.
+void require_double(std::string_view rest, const NestingCounter& counter) {
+  if (std::string_view("0123456789+-.").find(rest.front()) == std::string_view::npos) return;
+  std::string number(rest.substr(0, rest.find_first_of(" \t\r\n,]}#=")));
+  number.erase(std::remove(number.begin(), number.end(), '_'), number.end());
+  const std::size_t sign = number.front() == '+' ? 1 : 0;
+  double value = 0;
+  const char* last = number.data() + number.size();
+  const auto [end, error] = std::from_chars(number.data() + sign, last, value);
+  if (end == last && error == std::errc::result_out_of_range) {
+    counter.fail(beyond_double(number));
+  }
+}
+
 }  // namespace
 
-void require_shallow_toml(std::string_view text, const std::string& file) {
+void require_toml_limits(std::string_view text, const std::string& file) {
   NestingCounter counter(file);
   int dots = 0;
+  bool begins = true;
   for (std::size_t length = 1; !text.empty(); text.remove_prefix(length)) {
     const char c = text.front();
     length = 1;
+    if (begins) require_double(text, counter);
+    begins = std::string_view(" \t\r\n=,[]{}").find(c) != std::string_view::npos;
     if (c == '"' || c == '\'') {
       length = toml_string_length(text);
     } else if (c == '#') {
       length = std::min(text.find('\n'), text.size());
     } else if (c == '.') {
-      if (++dots >= deepest_nesting) counter.fail("a key of too many dotted parts");
+      if (++dots >= deepest_nesting) counter.too_deep("a key of too many dotted parts");
     } else if (std::string_view("\n=,[]{}").find(c) != std::string_view::npos) {
       dots = 0;
       counter.bracket(c);
@@ -85,7 +107,7 @@ void require_shallow_toml(std::string_view text, const std::string& file) {
   }
 }
 
-void require_shallow_json(std::string_view text, const std::string& file) {
+void require_json_limits(std::string_view text, const std::string& file) {
   // A shape as dlo solve writes it has some twenty numbers a point.
   constexpr long most_values = 100 * most_shape_points;
   NestingCounter counter(file);

@@ -9,12 +9,12 @@ namespace dlo::compare {
 /// file may not decide how deep the stack gets. No scene or baseline has more than four levels.
 inline constexpr int deepest_nesting = 32;
 
-/// @throws InputError naming file and line if brackets are nested deeper than deepest_nesting, or a
-/// key has more dotted parts
-void require_shallow_toml(std::string_view text, const std::string& file);
+/// @throws InputError naming file and line if brackets are nested deeper than deepest_nesting, a
+/// key has more dotted parts, or a number is too large or too small for a double
+void require_toml_limits(std::string_view text, const std::string& file);
 
 /// @throws InputError naming file and line if brackets are nested deeper than deepest_nesting, or
 /// if there are more values than a shape of the most points has a use for
-void require_shallow_json(std::string_view text, const std::string& file);
+void require_json_limits(std::string_view text, const std::string& file);
 
 }  // namespace dlo::compare
