@@ -167,7 +167,7 @@ TEST(TextLimits, NothingIsNestedSoDeepThatAParserOverflows) {
   const auto scene = [](const std::string& text) {
     return input_error_of([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
   };
-  constexpr int many = 300'000;
+  constexpr int many = 100'000;
   const std::string dots = "s.toml:2: a key of too many dotted parts (allowed: 32 levels)";
   EXPECT_EQ(scene("\na" + repeated(".a", many) + " = 1"), dots);
   EXPECT_EQ(scene("\n[a" + repeated(".a", many) + "]"), dots);
@@ -233,8 +233,8 @@ TEST(TextLimits, OfShapesAndSweeps) {
   };
   EXPECT_EQ(shape(repeated("[", 300'000)),
             "s.json:1: brackets within brackets (allowed: 32 levels)");
-  EXPECT_EQ(shape("[" + repeated("0,", 10'000'000) + "0]"),
-            "s.json: too many values (allowed: 10000000)");
+  EXPECT_EQ(shape("[" + repeated("0,", 3'000'000) + "0]"),
+            "s.json: too many values (allowed: 3000000)");
   EXPECT_EQ(
       shape(R"({"a": "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[\"", "points": [[0, 0], [1, 0]]})"),
       "no error");
@@ -277,9 +277,9 @@ TEST_F(Reading, AForgedShardIsRefused) {
                        model + ", options " + fingerprint + "; shard 1/1; " + rows + "\nrow\n");
     return input_error_of([&] { (void)dlo::compare::merge_sweep({path("shard")}, path("o")); });
   };
-  EXPECT_NE(merge(std::string(900'000, 'a'), "1 rows from 0 of 1").find("not finished"),
+  EXPECT_NE(merge(std::string(300'000, 'a'), "1 rows from 0 of 1").find("not finished"),
             std::string::npos);
-  EXPECT_NE(merge(std::string(3'000'000, 'a'), "1 rows from 0 of 1").find("the line is too long"),
+  EXPECT_NE(merge(std::string(1'200'000, 'a'), "1 rows from 0 of 1").find("the line is too long"),
             std::string::npos);
   for (const std::string rows :
        {"2 rows from 0 of 1", "1 rows from 2 of 2", "99999999999999999 rows from 0 of 1",
