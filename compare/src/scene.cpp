@@ -98,7 +98,7 @@ void require_finite_rod(const Scene& scene, const StrictTable& rod) {
   // The negation makes a NaN out of range.
   if (!(scene.gamma() <= largest_gamma)) {
     rod.fail("length",
-             fmt::format("Gamma = w l^3 / (E I) = {:.4g} (allowed: 0 to {:g}), with w = {:.4g} N/m "
+             fmt::format("Gamma = w l^3 / (EI) = {:.4g} (allowed: 0 to {:g}), with w = {:.4g} N/m "
                          "and E I = {:.4g} N m^2",
                          scene.gamma(), largest_gamma, scene.weight_per_length().norm(),
                          scene.bending_stiffness()));
