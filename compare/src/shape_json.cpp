@@ -5,8 +5,8 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "text_limits.hpp"
 #include "raw_shape.hpp"
+#include "text_limits.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -46,7 +46,7 @@ class LineReader {
  private:
   std::string path_;
   InputFile file_;
-  std::string text_;       // read, but not handed out yet from begin_ on
+  std::string text_;  // read, but not handed out yet from begin_ on
   std::size_t begin_ = 0;
   bool ended_ = false;
   bool torn_ = false;
