@@ -6,6 +6,7 @@
 #include "comparison_text.hpp"
 #include "dlo/compare/benchmark.hpp"
 #include "json.hpp"
+#include "option_values.hpp"
 #include "output.hpp"
 #include "scene_options.hpp"
 #include "terminal.hpp"
@@ -219,13 +220,13 @@ void add_bench(CLI::App& app) {
   command->add_option("SCENE", options->scenes,
                       "scene files (TOML); none: a steel rod and one a hundred times softer");
   command->add_option("--seconds", options->benchmark.budget_s, "time for all runs together")
-      ->check(CLI::Range(0.1, 86400.0))
+      ->check(number_between(0.1, 86400))
       ->capture_default_str();
   command->add_option("--repeats", options->benchmark.repeats, "runs that a median is taken of")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_option("--speed", options->benchmark.gripper_speed, "of the moving gripper [m/s]")
-      ->check(CLI::Range(1e-9, 1e3))
+      ->check(number_between(1e-9, 1e3))
       ->capture_default_str();
   add_output_options(*command, options->output);
   command->footer("Example:\n  dlo bench data/scenes/spring_steel_175.toml --seconds 2");

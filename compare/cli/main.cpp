@@ -12,6 +12,7 @@
 #include "commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "help.hpp"
+#include "option_values.hpp"
 #include "reference.hpp"
 
 namespace {
@@ -86,6 +87,7 @@ int run(int argc, char** argv) {
       "dlo computes it from bending energy and gravity, and says how far others are from it.",
       "dlo");
   build(app);
+  dlo::cli::refuse_empty_values(app);
   if (argc == 1) {
     fmt::print("{}", app.help());
     return good;
@@ -101,6 +103,7 @@ int run(int argc, char** argv) {
   } else {
     dlo::cli::require_known_command(app, words.front());
   }
+  dlo::cli::require_values(words);
   std::reverse(words.begin(), words.end());  // as CLI11 takes them
   try {
     app.parse(words);

@@ -12,6 +12,7 @@
 #include "json.hpp"
 #include "output.hpp"
 #include "scene_options.hpp"
+#include "share.hpp"
 #include "terminal.hpp"
 
 namespace dlo::cli {
@@ -38,9 +39,7 @@ MeasuredCase measure(const RegressOptions& options, const std::string& path) {
   try {
     return {compare::measure_case(scene, model, options.overrides.solve()), ""};
   } catch (const compare::ConvergenceError& error) {
-    const compare::ForceModelSettings& settings = scene.force_model;
-    return {{scene.name, model, settings.law, settings.bookkeeping, settings.points, {}},
-            error.what()};
+    return {compare::case_of(scene, model), error.what()};
   }
 }
 
@@ -77,7 +76,7 @@ std::string text(const std::vector<RegressionResult>& results, const std::string
   }
   const char* separator = "";
   for (const RegressionVerdict verdict :
-       {RegressionVerdict::worse, RegressionVerdict::not_in_baseline,
+       {RegressionVerdict::worse, RegressionVerdict::changed, RegressionVerdict::not_in_baseline,
         RegressionVerdict::not_measured, RegressionVerdict::not_solved, RegressionVerdict::better,
         RegressionVerdict::same}) {
     const long number = count(results, verdict);
@@ -204,13 +203,13 @@ void add_regress(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--relative", options->tolerance.relative,
-                   "how much an error may change, as a share of it")
-      ->check(CLI::Range(0.0, 1e3))
+                   "how much an error may change, as a share of it such as 1%")
+      ->transform(share_up_to(1e3))
       ->capture_default_str();
   command
       ->add_option("--absolute", options->tolerance.absolute,
                    "and how much beside that, as a share of the rod's length")
-      ->check(CLI::Range(0.0, 1e3))
+      ->transform(share_up_to(1e3))
       ->capture_default_str();
   options->overrides.add_to(*command);
   add_output_options(*command, options->output);

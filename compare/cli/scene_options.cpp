@@ -8,6 +8,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/quantity.hpp"
+#include "option_values.hpp"
 #include "share.hpp"
 
 namespace dlo::cli {
@@ -114,7 +115,7 @@ void SceneOptions::add_solvers_to(CLI::App& command) {
       ->capture_default_str()
       ->group(solvers);
   command.add_option("--time-limit", solve_.time_limit, "of each solve [s]")
-      ->check(CLI::Range(1e-3, 1e9))
+      ->check(number_between(1e-3, 1e9))
       ->capture_default_str()
       ->group(solvers);
   command.add_option("--max-steps", solve_.max_steps, "of the force model")
@@ -124,7 +125,7 @@ void SceneOptions::add_solvers_to(CLI::App& command) {
   command
       .add_option("--rest-tolerance", solve_.rest_tolerance,
                   "distance from rest at which the force model stops, share of the length")
-      ->check(CLI::Range(1e-12, 1e-1))
+      ->check(number_between(1e-12, 1e-1))
       ->capture_default_str()
       ->group(solvers);
   command.add_option("--materials", materials_, "materials file instead of the built-in one")

@@ -8,4 +8,7 @@ namespace dlo::cli {
 /// below 1.
 [[nodiscard]] CLI::Validator share_of_length();
 
+/// For an option that takes "1%" and 0.01 alike, from 0 to `high`.
+[[nodiscard]] CLI::Validator share_up_to(double high);
+
 }  // namespace dlo::cli

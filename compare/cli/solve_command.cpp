@@ -201,7 +201,7 @@ void add_solve(CLI::App& app) {
       ->check(CLI::IsMember(compare::model_names()))
       ->capture_default_str();
   command->add_option("--samples", options->samples, "M points at equal arc lengths from 0 to l")
-      ->check(CLI::Range(2, 10000000));
+      ->check(CLI::Range(2, 1000000));
   command->add_flag("--all", options->all, "every equilibrium that is found, with its stability");
   options->overrides.add_to(*command);
   options->plan.add_to(*command);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "input_file.hpp"
 #include "strict_table.hpp"
 
 namespace dlo::compare {
@@ -25,6 +26,12 @@ BaselineCase read_case(StrictTable& table) {
   result.errors.rms = error("rms_over_length");
   result.errors.max = error("max_over_length");
   if (table.has("tip_over_length")) result.errors.tip = error("tip_over_length");
+  if (const auto digits = table.optional_text("fingerprint")) {
+    const bool whole =
+        digits->size() == 16 && digits->find_first_not_of("0123456789abcdef") == std::string::npos;
+    if (!whole) table.fail("fingerprint", "must be 16 hexadecimal digits");
+    result.fingerprint = *digits;
+  }
   table.finish();
   return result;
 }
@@ -93,6 +100,9 @@ std::string baseline_text(std::vector<BaselineCase> cases) {
         toml_number(entry.errors.max));
     if (entry.errors.tip) {
       text += fmt::format("tip_over_length = {}\n", toml_number(*entry.errors.tip));
+    }
+    if (!entry.fingerprint.empty()) {
+      text += fmt::format("fingerprint = \"{}\"\n", entry.fingerprint);
     }
   }
   return text;

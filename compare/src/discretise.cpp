@@ -356,6 +356,7 @@ energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod) {
 }
 
 energy_model::Problem energy_problem(const Scene& scene) {
+  require_slack(scene);
   energy_model::Problem problem;
   problem.length = scene.length;
   problem.bending_stiffness = scene.bending_stiffness();

@@ -35,34 +35,11 @@ struct Gap {
   }
 };
 
+/// Two grippers that are nearer than this share of the rod's length hold one point of it.
+constexpr double same_place = 1e-9;
+
 std::string where(const Scene& scene, const Gripper& gripper) {
   return gripper.where.empty() ? scene.file : gripper.where;
-}
-
-std::vector<std::size_t> order_along(const Scene& scene) {
-  std::vector<std::size_t> along(scene.grippers.size());
-  for (std::size_t i = 0; i < along.size(); ++i) along[i] = i;
-  std::stable_sort(along.begin(), along.end(), [&](std::size_t a, std::size_t b) {
-    return scene.grippers[a].at < scene.grippers[b].at;
-  });
-  for (std::size_t i = 0; i + 1 < along.size(); ++i) {
-    const Gripper& a = scene.grippers[along[i]];
-    const Gripper& b = scene.grippers[along[i + 1]];
-    const double rod = b.at - a.at;
-    const double apart = (b.position - a.position).norm();
-    if (!(rod > 0)) {
-      throw InputError(fmt::format(
-          "{}: gripper.at = {} m: two grippers hold this arc length (allowed: one at each)",
-          where(scene, b), b.at));
-    }
-    if (apart > rod * (1 + 1e-12)) {
-      throw InputError(fmt::format(
-          "{}: gripper.position: {} m from the gripper at = {} m (allowed: no more than the {} m "
-          "of rod between them)",
-          where(scene, b), apart, a.at, rod));
-    }
-  }
-  return along;
 }
 
 std::vector<Gap> gaps_between(const Scene& scene, const std::vector<std::size_t>& along,
@@ -127,6 +104,46 @@ void share_segments(std::vector<Gap>& gaps, Eigen::Index segments, double L) {
 }
 
 }  // namespace
+
+std::vector<std::size_t> order_along(const Scene& scene) {
+  std::vector<std::size_t> along(scene.grippers.size());
+  for (std::size_t i = 0; i < along.size(); ++i) along[i] = i;
+  std::stable_sort(along.begin(), along.end(), [&](std::size_t a, std::size_t b) {
+    return scene.grippers[a].at < scene.grippers[b].at;
+  });
+  for (std::size_t i = 0; i + 1 < along.size(); ++i) {
+    const Gripper& a = scene.grippers[along[i]];
+    const Gripper& b = scene.grippers[along[i + 1]];
+    const double rod = b.at - a.at;
+    const double apart = (b.position - a.position).norm();
+    if (!(rod > same_place * scene.length)) {
+      throw InputError(fmt::format(
+          "{}: gripper.at = {} m: two grippers hold this arc length (allowed: one at each)",
+          where(scene, b), b.at));
+    }
+    if (apart > rod * (1 + 1e-12)) {
+      throw InputError(fmt::format(
+          "{}: gripper.position: {} m from the gripper at = {} m (allowed: no more than the {} m "
+          "of rod between them)",
+          where(scene, b), apart, a.at, rod));
+    }
+  }
+  return along;
+}
+
+void require_slack(const Scene& scene) {
+  const std::vector<std::size_t> along = order_along(scene);
+  for (std::size_t i = 0; i + 1 < along.size(); ++i) {
+    const Gripper& a = scene.grippers[along[i]];
+    const Gripper& b = scene.grippers[along[i + 1]];
+    const double apart = (b.position - a.position).norm();
+    if (apart < b.at - a.at) continue;
+    throw InputError(fmt::format(
+        "{}: gripper.position: {} m from the gripper at = {} m (allowed: less than the {} m of rod "
+        "between them; models chain and force take a taut rod)",
+        where(scene, b), apart, a.at, b.at - a.at));
+  }
+}
 
 Layout lay_out(const Scene& scene, const ForceModelSettings& settings) {
   Layout layout;

@@ -16,6 +16,14 @@ struct Layout {
   std::vector<std::size_t> along;        ///< the grippers in the order of their arc lengths
 };
 
+/// The scene's grippers in the order of their arc lengths. @throws InputError naming file, line and
+/// key if two hold one arc length, or are further apart than the rod between them
+[[nodiscard]] std::vector<std::size_t> order_along(const Scene& scene);
+
+/// What a rod that does not stretch needs. @throws InputError as order_along, and if the rod
+/// between two grippers would be taut
+void require_slack(const Scene& scene);
+
 /// Lays out points as `discretise` says. @throws InputError as it does
 [[nodiscard]] Layout lay_out(const Scene& scene, const ForceModelSettings& settings);
 

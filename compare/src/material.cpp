@@ -1,6 +1,7 @@
 #include "dlo/compare/material.hpp"
 
 #include "builtin_data.hpp"
+#include "input_file.hpp"
 #include "strict_table.hpp"
 
 namespace dlo::compare {

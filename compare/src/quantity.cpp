@@ -8,6 +8,7 @@
 #include <span>
 
 #include "dlo/compare/error.hpp"
+#include "number_range.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -74,8 +75,15 @@ double parse_quantity(std::string_view text, Dimension dimension) {
   if (rest.front() == '+') rest.remove_prefix(1);
   double value = 0;
   const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  if (error == std::errc::result_out_of_range) {
+    const auto length = static_cast<std::size_t>(end - rest.data());
+    throw InputError(beyond_double(rest.substr(0, length)));
+  }
   if (error != std::errc()) throw not_a_number();
   rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+  if (rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9') {
+    throw InputError(fmt::format("\"{}\" has a comma (allowed: a decimal point)", text));
+  }
   const std::size_t unit_start = rest.find_first_not_of(" \t");
   std::string_view name =
       unit_start == std::string_view::npos ? std::string_view() : rest.substr(unit_start);

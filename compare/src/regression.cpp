@@ -11,6 +11,7 @@
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/error.hpp"
+#include "fingerprint.hpp"
 #include "markup.hpp"
 
 namespace dlo::compare {
@@ -52,18 +53,116 @@ void compare_errors(RegressionResult& result, const RegressionTolerance& toleran
   }
 }
 
+/// All that a scene's shape depends on and the case's name does not say. Twelve digits, so that
+/// "2 mm" is 0.002.
+std::string content_of(const Scene& scene) {
+  std::string text;
+  const auto add = [&](double value) { text += fmt::format("{:.12g} ", value + 0.0); };
+  const auto add_vector = [&](const Eigen::Vector3d& v) {
+    for (const double component : v) add(component);
+  };
+  const auto add_optional = [&](const std::optional<double>& value) {
+    value ? add(*value) : void(text += "- ");
+  };
+  add_vector(scene.gravity);
+  add(scene.length);
+  add(scene.diameter);
+  add(scene.material.youngs_modulus);
+  add(scene.material.density);
+  for (const Gripper& gripper : scene.grippers) {
+    text += "\ngripper ";
+    add(gripper.at);
+    add_vector(gripper.position);
+    if (gripper.direction) add_vector(*gripper.direction);
+  }
+  for (const PointLoad& load : scene.loads) {
+    text += "\nload ";
+    add(load.at);
+    add_vector(load.force);
+  }
+  for (const Obstacle& obstacle : scene.obstacles) {
+    text += "\nobstacle ";
+    add_vector(obstacle.point);
+    add_vector(obstacle.normal);
+    add(obstacle.stiffness);
+  }
+  const ForceModelSettings& settings = scene.force_model;
+  text += fmt::format("\n{} {} ", to_string(settings.stepper), to_string(settings.bending_rule));
+  for (const auto& value : {settings.design_curvature, settings.point_weight, settings.c_b,
+                            settings.c_c, settings.c_F, settings.c_h, settings.l_s}) {
+    add_optional(value);
+  }
+  return text;
+}
+
+/// Of measured cases, by name, the case of the baseline whose place they take: the only other one
+/// of the same scene and model.
+std::map<std::string, const BaselineCase*> replaced_cases(
+    const std::vector<BaselineCase>& baseline, const std::vector<MeasuredCase>& measured) {
+  std::map<std::string, const BaselineCase*> before;
+  std::map<std::string, const BaselineCase*> now;
+  for (const BaselineCase& entry : baseline) before[entry.name()] = &entry;
+  for (const MeasuredCase& measurement : measured) {
+    now[measurement.entry.name()] = &measurement.entry;
+  }
+  using Cases = std::vector<const BaselineCase*>;
+  std::map<std::pair<std::string, Model>, std::pair<Cases, Cases>> unmatched;
+  for (const auto& [name, entry] : before) {
+    if (!now.contains(name)) unmatched[{entry->scene, entry->model}].first.push_back(entry);
+  }
+  for (const auto& [name, entry] : now) {
+    if (!before.contains(name)) unmatched[{entry->scene, entry->model}].second.push_back(entry);
+  }
+  std::map<std::string, const BaselineCase*> replaced;
+  for (const auto& [scene, cases] : unmatched) {
+    if (cases.first.size() != 1 || cases.second.size() != 1) continue;
+    replaced[cases.second.front()->name()] = cases.first.front();
+  }
+  return replaced;
+}
+
+/// "law hooke, N = 16" where the settings of two cases of one scene differ.
+std::string settings_of(const BaselineCase& entry, const BaselineCase& other) {
+  std::string text;
+  const auto add = [&](bool differs, const std::string& setting) {
+    if (differs) text += (text.empty() ? "" : ", ") + setting;
+  };
+  add(entry.law != other.law, fmt::format("law {}", to_string(entry.law)));
+  add(entry.bookkeeping != other.bookkeeping,
+      fmt::format("bookkeeping {}", to_string(entry.bookkeeping)));
+  add(entry.points != other.points, fmt::format("N = {}", entry.points));
+  return text;
+}
+
+/// What a case is other than the baseline's in; empty if it is the same.
+std::string change_between(const BaselineCase& before, const BaselineCase& now) {
+  if (before.name() != now.name()) {
+    return fmt::format("{} (baseline {})", settings_of(now, before), settings_of(before, now));
+  }
+  const bool known = !before.fingerprint.empty() && !now.fingerprint.empty();
+  return known && before.fingerprint != now.fingerprint ? "the scene is another than the baseline's"
+                                                        : "";
+}
+
 }  // namespace
+
+BaselineCase case_of(const Scene& scene, Model model) {
+  BaselineCase result;
+  result.scene = scene.name;
+  result.model = model;
+  result.law = scene.force_model.law;
+  result.bookkeeping = scene.force_model.bookkeeping;
+  result.points = scene.force_model.points;
+  result.fingerprint = fingerprint(content_of(scene));
+  return result;
+}
 
 BaselineCase measure_case(const Scene& scene, Model model, const SolveOptions& options) {
   const Solution solution = solve(scene, model, options);
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
   const Deviation d = shape_deviation(scene, solution.shape, energy.sample);
-  BaselineCase result{scene.name,
-                      model,
-                      scene.force_model.law,
-                      scene.force_model.bookkeeping,
-                      scene.force_model.points,
-                      {d.rms_over_length, d.max_m / scene.length, std::nullopt}};
+  BaselineCase result = case_of(scene, model);
+  result.errors = {d.rms_over_length, d.max_m / scene.length, std::nullopt};
   if (std::isfinite(d.tip_m)) result.errors.tip = d.tip_m / scene.length;
   return result;
 }
@@ -76,6 +175,8 @@ const char* to_string(RegressionVerdict verdict) {
       return "better";
     case RegressionVerdict::worse:
       return "worse";
+    case RegressionVerdict::changed:
+      return "changed";
     case RegressionVerdict::not_in_baseline:
       return "not in the baseline";
     case RegressionVerdict::not_measured:
@@ -99,9 +200,17 @@ std::vector<RegressionResult> judge_regression(const std::vector<BaselineCase>& 
         fmt::format("judge_regression: tolerance relative = {}, absolute = {}, must be >= 0",
                     tolerance.relative, tolerance.absolute));
   }
+  const std::map<std::string, const BaselineCase*> replaced = replaced_cases(baseline, measured);
+  std::map<std::string, const BaselineCase*> expected;  // by the name that this run has for it
+  for (const BaselineCase& entry : baseline) expected[entry.name()] = &entry;
+  for (const auto& [name, entry] : replaced) {
+    expected.erase(entry->name());
+    expected[name] = entry;
+  }
   std::map<std::string, RegressionResult> results;
-  for (const BaselineCase& entry : baseline) {
-    RegressionResult& result = results[entry.name()];
+  for (const auto& [name, known] : expected) {
+    const BaselineCase& entry = *known;
+    RegressionResult& result = results[name];
     result.expected = entry.errors;
     result.verdict = RegressionVerdict::not_measured;
     result.message = "in the baseline, but no scene given is this case";
@@ -123,6 +232,11 @@ std::vector<RegressionResult> judge_regression(const std::vector<BaselineCase>& 
     result.measured = measurement.entry.errors;
     if (result.expected) {
       compare_errors(result, tolerance);
+      const std::string change = change_between(*expected.at(name), measurement.entry);
+      if (!change.empty()) {
+        result.verdict = RegressionVerdict::changed;
+        result.message = fmt::format("{}: {}", change, result.message);
+      }
     } else {
       result.verdict = RegressionVerdict::not_in_baseline;
       result.message = fmt::format("RMS {} of l, not in the baseline (--update adds it)",

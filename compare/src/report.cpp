@@ -15,7 +15,7 @@
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/hard_case.hpp"
-#include "strict_table.hpp"
+#include "input_file.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -14,9 +14,9 @@
 #include <system_error>
 
 #include "dlo/compare/error.hpp"
+#include "input_file.hpp"
 #include "report_figures.hpp"
 #include "report_page.hpp"
-#include "strict_table.hpp"
 
 namespace dlo::compare {
 namespace {

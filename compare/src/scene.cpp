@@ -11,6 +11,7 @@
 #include "builtin_data.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/nearest_word.hpp"
+#include "input_file.hpp"
 #include "read_scene.hpp"
 #include "strict_table.hpp"
 
@@ -19,6 +20,20 @@ namespace {
 
 /// Beyond it no solver resolves the layer at a clamp, and no rod looks any different.
 constexpr double largest_gamma = 1e12;
+
+/// Solvers of several spans take memory with the square of the number of grippers, some 250 MB for
+/// the most; of the others no scene has any use for more.
+constexpr std::size_t most_grippers = 500;
+constexpr std::size_t most_loads = 10'000;
+constexpr std::size_t most_obstacles = 1'000;
+
+std::vector<StrictTable> bounded_tables(StrictTable& table, const char* key, std::size_t most) {
+  std::vector<StrictTable> tables = table.tables(key);
+  if (tables.size() > most) {
+    table.fail(key, fmt::format("{} given (allowed: up to {})", tables.size(), most));
+  }
+  return tables;
+}
 
 template <typename Choice>
 Choice choice_from(const std::string& name, const std::vector<std::string>& names) {
@@ -68,6 +83,26 @@ Eigen::Vector3d read_direction(StrictTable& table) {
 
 double read_arc_length(StrictTable& table, double length) {
   return table.number("at", Dimension::length, Range::between(0, length, " m, the rod's length"));
+}
+
+/// Of numbers that are in range each on its own.
+void require_finite_rod(const Scene& scene, const StrictTable& rod) {
+  const auto usable = [](double stiffness) { return stiffness > 0 && std::isfinite(stiffness); };
+  if (!usable(scene.bending_stiffness()) || !usable(scene.axial_stiffness())) {
+    rod.fail("material",
+             fmt::format("E I = {:g} N m^2, E A = {:g} N (allowed: numbers > 0 that are "
+                         "finite), with diameter = {:g} m and E = {:g} Pa",
+                         scene.bending_stiffness(), scene.axial_stiffness(), scene.diameter,
+                         scene.material.youngs_modulus));
+  }
+  // The negation makes a NaN out of range.
+  if (!(scene.gamma() <= largest_gamma)) {
+    rod.fail("length",
+             fmt::format("Gamma = w l^3 / (EI) = {:.4g} (allowed: 0 to {:g}), with w = {:.4g} N/m "
+                         "and E I = {:.4g} N m^2",
+                         scene.gamma(), largest_gamma, scene.weight_per_length().norm(),
+                         scene.bending_stiffness()));
+  }
 }
 
 Gripper read_gripper(StrictTable& table, double length) {
@@ -234,12 +269,13 @@ Scene read_scene(const toml::table& root, const std::string& file,
   scene.length = rod.number("length", Dimension::length, Range::between(1e-6, 1e6, " m"));
   scene.diameter = rod.number("diameter", Dimension::length, Range::between(1e-9, 1e3, " m"));
   scene.material = read_material(rod, known_materials);
+  require_finite_rod(scene, rod);
   rod.finish();
 
-  for (StrictTable& entry : table.tables("obstacle")) {
+  for (StrictTable& entry : bounded_tables(table, "obstacle", most_obstacles)) {
     scene.obstacles.push_back(read_obstacle(entry));
   }
-  for (StrictTable& entry : table.tables("gripper")) {
+  for (StrictTable& entry : bounded_tables(table, "gripper", most_grippers)) {
     scene.grippers.push_back(read_gripper(entry, scene.length));
     for (const Obstacle& obstacle : scene.obstacles) {
       if ((scene.grippers.back().position - obstacle.point).dot(obstacle.normal) >= 0) continue;
@@ -251,7 +287,7 @@ Scene read_scene(const toml::table& root, const std::string& file,
         "{}: gripper: none given, nothing would hold the rod (allowed: one or more [[gripper]])",
         file));
   }
-  for (StrictTable& entry : table.tables("load")) {
+  for (StrictTable& entry : bounded_tables(table, "load", most_loads)) {
     PointLoad load;
     load.at = read_arc_length(entry, scene.length);
     load.force = entry.vector("force", Dimension::force);
@@ -263,11 +299,6 @@ Scene read_scene(const toml::table& root, const std::string& file,
     check(scene.force_model, settings->where());
   }
   table.finish();
-  if (!(scene.bending_stiffness() > 0) || !std::isfinite(scene.gamma()) ||
-      scene.gamma() > largest_gamma) {
-    throw InputError(fmt::format("{}: rod: w l^3 / (EI) = {:g} (allowed: 0 to {:g})", file,
-                                 scene.gamma(), largest_gamma));
-  }
   return scene;
 }
 

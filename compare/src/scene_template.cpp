@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
@@ -12,8 +13,10 @@
 
 #include "dlo/compare/error.hpp"
 #include "fingerprint.hpp"
+#include "input_file.hpp"
 #include "read_scene.hpp"
 #include "strict_table.hpp"
+#include "text_limits.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -63,6 +66,10 @@ class Overrider {
   void set(const FieldValue& field) const {
     for (const auto& [written, meant] : short_field_names) {
       if (field.field == written) refuse(field.field, fmt::format("did you mean {}?", meant));
+    }
+    if (std::count(field.field.begin(), field.field.end(), '.') >= deepest_nesting) {
+      refuse(field.field.substr(0, 40) + "...",
+             fmt::format("too many dotted parts (allowed: {})", deepest_nesting));
     }
     toml::node* parent = &root_;
     std::string_view rest = field.field;

@@ -7,8 +7,9 @@
 #include <cmath>
 
 #include "dlo/compare/error.hpp"
+#include "input_file.hpp"
+#include "number_range.hpp"
 #include "raw_shape.hpp"
-#include "strict_table.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -114,7 +115,7 @@ std::optional<double> shape_number(std::string_view field) {
   double value = 0;
   const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
   if (end != field.data() + field.size() || field.empty()) return std::nullopt;
-  if (error == std::errc::result_out_of_range) return INFINITY;
+  if (error == std::errc::result_out_of_range) return underflows(field) ? 0.0 : INFINITY;
   if (error != std::errc()) return std::nullopt;
   return value;
 }

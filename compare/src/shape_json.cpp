@@ -6,6 +6,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "raw_shape.hpp"
+#include "text_limits.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -17,6 +18,7 @@ constexpr const char* json_allowed =
     "points)";
 
 json parsed(std::string_view text, const std::string& file) {
+  require_json_limits(text, file);
   try {
     return json::parse(text);
   } catch (const json::parse_error& error) {

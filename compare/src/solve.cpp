@@ -29,8 +29,18 @@ void spread_obstacle_forces(Solution& solution, const std::vector<bool>& in_reac
 void require_exact_scene(const Scene& scene) {
   if (scene.obstacles.empty()) return;
   throw InputError(fmt::format(
-      "{}: obstacle: {} given (allowed for model exact: none; model energy takes every scene)",
+      "{}: obstacle: {} given (allowed for model exact: none; --model energy, chain or force takes "
+      "them)",
       scene.file, scene.obstacles.size()));
+}
+
+/// What a solver does not take, said of the scene's rod instead of the solver's function.
+[[noreturn]] void refuse_rod(const Scene& scene, Model model, const std::invalid_argument& error) {
+  const std::string_view message = error.what();
+  const std::size_t function = message.find(": ");
+  throw InputError(
+      fmt::format("{}: rod: model {}: {}", scene.file, to_string(model),
+                  message.substr(function == std::string_view::npos ? 0 : function + 2)));
 }
 
 /// What the part of the rod beyond `at` pulls the part before it with: the opposite of all that
@@ -46,6 +56,14 @@ Eigen::Vector3d section_force(const Scene& scene, const std::vector<GripperLoad>
     if (before(load.at)) sum += load.force;
   }
   return -sum;
+}
+
+/// What came of the searches for equilibria, for a message.
+std::string looked_from(const std::vector<energy_model::Equilibrium>& searches) {
+  if (searches.empty()) return "no start to look from";
+  return fmt::format("{} search{}, the first: {} after {} evaluations", searches.size(),
+                     searches.size() == 1 ? "" : "es", searches.front().message,
+                     searches.front().evaluations);
 }
 
 Solution sampled(const Scene& scene, Model model, const energy_model::Equilibrium& equilibrium,
@@ -132,12 +150,15 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
       try_from_chain(scene, rest, result);
     }
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
+    refuse_rod(scene, model, error);
   }
   if (!acceptable(result.status, options)) {
     throw ConvergenceError(fmt::format(
-        "{}: the {} model did not converge: {} ({} evaluations{})", scene.file, to_string(model),
+        "{}: the {} model did not converge: {} ({} evaluations{}{})", scene.file, to_string(model),
         result.message, result.evaluations,
+        result.status == energy_model::SolveStatus::time_limit
+            ? fmt::format("; --time-limit {:g} allows no more", options.time_limit)
+            : "",
         scene.obstacles.empty() ? "" : "; --model chain or an obstacle with a stiffness may do"));
   }
   return result;
@@ -172,13 +193,15 @@ std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
                                                          .max_evaluations = options.max_evaluations,
                                                          .time_limit = options.time_limit});
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
+    refuse_rod(scene, Model::energy, error);
   }
+  const std::string looked = looked_from(states);
   std::erase_if(states, [&](const energy_model::Equilibrium& state) {
     return !acceptable(state.status, options) && state.status != energy_model::SolveStatus::saddle;
   });
   if (states.empty()) {
-    throw ConvergenceError(fmt::format("{}: the energy model found no equilibrium", scene.file));
+    throw ConvergenceError(
+        fmt::format("{}: the energy model found no equilibrium ({})", scene.file, looked));
   }
   return states;
 }

@@ -3,15 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/nearest_word.hpp"
+#include "text_limits.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -235,29 +233,22 @@ void StrictTable::finish() const {
 }
 
 toml::table parse_toml(const std::string& text, const std::string& file) {
+  if (text.size() > largest_toml) {
+    throw InputError(
+        fmt::format("{}: {} bytes (allowed: up to {} of TOML)", file, text.size(), largest_toml));
+  }
+  require_toml_limits(text, file);
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
     std::string description(error.description());
     std::replace(description.begin(), description.end(), '\n', ' ');
-    throw InputError(fmt::format(
-        "{}:{}: not valid TOML: {} (text, and a number with a unit, is in quotes: \"2 mm\")", file,
-        error.source().begin.line, description));
+    const bool comma = description.ends_with("saw ','");
+    throw InputError(fmt::format("{}:{}: not valid TOML: {} ({})", file, error.source().begin.line,
+                                 description,
+                                 comma ? "a number has a decimal point: 2.5"
+                                       : "text, and a number with a unit, is in quotes: \"2 mm\""));
   }
-}
-
-std::string read_file(const std::string& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  errno = 0;
-  if (stream) text << stream.rdbuf();
-  if (!stream || (text.str().empty() && errno != 0)) {
-    const std::string reason = errno != 0 ? std::strerror(errno) : "no such file";
-    const bool scene = std::ifstream(path + ".toml").good();
-    throw InputError(fmt::format("{}: cannot be read ({}{})", path, reason,
-                                 scene ? ", but " + path + ".toml is there" : ""));
-  }
-  return text.str();
 }
 
 }  // namespace dlo::compare

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <set>
 #include <string>
@@ -81,10 +82,11 @@ class StrictTable {
   std::set<std::string, std::less<>> known_;
 };
 
-/// Parses a file's text. @throws InputError with file, line and what the parser says
-[[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& file);
+/// A scene of ten thousand loads has a tenth of it; parsed it takes some fifty times its size.
+inline constexpr std::size_t largest_toml = std::size_t{1} << 22;
 
-/// @throws InputError naming the file if it cannot be read
-[[nodiscard]] std::string read_file(const std::string& path);
+/// Parses a file's text. @throws InputError with file, line and what the parser says, or if the
+/// text is larger than largest_toml or nested deeper than deepest_nesting
+[[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& file);
 
 }  // namespace dlo::compare

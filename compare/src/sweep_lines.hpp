@@ -1,12 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "dlo/compare/sweep.hpp"
+#include "input_file.hpp"
 
 namespace dlo::compare {
 
@@ -28,10 +29,14 @@ struct SweepHead {
 /// Reads a file line by line and tells whole lines from one that was cut off.
 class LineReader {
  public:
+  /// More than any row of a sweep has [bytes].
+  static constexpr std::size_t longest_line = std::size_t{1} << 20;
+
   /// @throws InputError if the file cannot be read
   explicit LineReader(const std::string& path);
 
-  /// The next whole line without its end; false at the end of the file or at a torn line.
+  /// The next whole line without its end; false at the end of the file or at a torn line, of which
+  /// `line` is what there is. @throws InputError if the file cannot be read, or a line is too long
   bool next(std::string& line);
 
   [[nodiscard]] bool torn() const { return torn_; }
@@ -39,7 +44,11 @@ class LineReader {
   [[nodiscard]] std::int64_t line_number() const { return number_; }  ///< of the last whole line
 
  private:
-  std::ifstream stream_;
+  std::string path_;
+  InputFile file_;
+  std::string text_;  // read, but not handed out yet from begin_ on
+  std::size_t begin_ = 0;
+  bool ended_ = false;
   bool torn_ = false;
   std::int64_t bytes_ = 0;
   std::int64_t number_ = 0;

@@ -83,8 +83,44 @@ TEST_F(RegressCommand, AMissingBaselineOrCaseOnEitherSideFails) {
   EXPECT_NE(added.out.find("1 not in the baseline"), std::string::npos) << added.out;
   const dlo::test::Outcome changed = run(arguments_ + steel() + " --points 20");
   EXPECT_EQ(changed.status, 1);
-  EXPECT_NE(changed.out.find("1 not in the baseline, 1 not measured"), std::string::npos)
-      << changed.out;
+  EXPECT_NE(changed.out.find("N = 20 (baseline N = 16): RMS"), std::string::npos) << changed.out;
+  EXPECT_NE(changed.out.find("\n1 changed\n"), std::string::npos) << changed.out;
+}
+
+TEST_F(RegressCommand, AnotherSceneOfTheSameNameIsChanged) {
+  std::string text = read(steel());
+  ASSERT_NE(text.find("\n[rod]"), std::string::npos);
+  text.replace(text.find("\n[rod]"), 6, "\n[[load]]\nat = 0.5\nforce = [0, 1e-9, 0]\n[rod]");
+  const dlo::test::Outcome result = run(arguments_ + scene(text));
+  EXPECT_EQ(result.status, 1) << result.err;
+  EXPECT_EQ(result.out.substr(0, 8), "changed ") << result.out;
+  EXPECT_NE(result.out.find("another than the baseline's: RMS"), std::string::npos) << result.out;
+  // Written in another way it is the same scene.
+  std::string same = read(steel());
+  ASSERT_NE(same.find("\"50 cm\""), std::string::npos);
+  same.replace(same.find("\"50 cm\""), 7, "0.5");
+  EXPECT_EQ(run(arguments_ + scene(same)).status, 0);
+}
+
+TEST_F(RegressCommand, TakesPercentAndSharesAlikeAndOnePercentByDefault) {
+  const double rms = nlohmann::json::parse(run(arguments_ + steel() + " --format json").out)
+                         .at("cases")[0]
+                         .at("measured")
+                         .at("rms_over_length");
+  const auto status = [&](double before, const std::string& options) {
+    set("rms_over_length", std::to_string(before));
+    return run(arguments_ + steel() + options).status;
+  };
+  // std::to_string has six decimals, 1e-5 of an error of a tenth.
+  EXPECT_EQ(status(rms / 1.0099, ""), 0);
+  EXPECT_EQ(status(rms / 1.0102, ""), 1);
+  for (const std::string five : {" --relative 5%", " --relative 0.05"}) {
+    EXPECT_EQ(status(rms / 1.049, five), 0) << five;
+    EXPECT_EQ(status(rms / 1.051, five), 1) << five;
+  }
+  EXPECT_EQ(status(rms - 0.01, " --relative 0 --absolute 2%"), 0);
+  expect_error(arguments_ + steel() + " --relative nan", 2, {"--relative", "nan", "1% or 0.01"});
+  expect_error(arguments_ + steel() + " --absolute x", 2, {"--absolute", "x", "1% or 0.01"});
 }
 
 TEST_F(RegressCommand, WhatIsNotSolvedIsStatusThreeAndUpdatesNothing) {

@@ -130,11 +130,101 @@ TEST(Regression, CasesOfOneSideOnlyFail) {
   EXPECT_EQ(results[2].verdict, RegressionVerdict::not_solved);
   EXPECT_EQ(results[2].message, "stuck");
   EXPECT_EQ(results[3].verdict, RegressionVerdict::not_in_baseline);
-  // Other points are another case.
-  EXPECT_EQ(judge_regression({entry("a", 0.1)}, {{entry("a", 0.1, 17), ""}}).size(), 2U);
   EXPECT_THROW((void)judge_regression({}, {{entry("a", 0.1), ""}, {entry("a", 0.1), ""}}),
                InputError);
   EXPECT_THROW((void)judge_regression({}, {}, {.relative = -1}), std::invalid_argument);
+}
+
+TEST(Regression, ACaseWithOtherSettingsIsChangedWithBothErrors) {
+  const std::vector<RegressionResult> points = judge_regression(
+      {entry("a", 0.1), entry("b", 0.1)}, {{entry("a", 0.1, 17), ""}, {entry("b", 0.1), ""}});
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].verdict, RegressionVerdict::changed);
+  EXPECT_TRUE(failed(points[0].verdict));
+  EXPECT_EQ(points[0].name, entry("a", 0.1, 17).name());
+  EXPECT_EQ(points[0].expected->rms, 0.1);
+  EXPECT_EQ(points[0].measured->rms, 0.1);
+  EXPECT_EQ(points[0].message.find("N = 17 (baseline N = 16): RMS 10 % of l (baseline 10 %)"), 0U)
+      << points[0].message;
+  EXPECT_EQ(points[1].verdict, RegressionVerdict::same);
+  BaselineCase law = entry("a", 0.2);
+  law.law = dlo::compare::Law::paper;
+  const RegressionResult other = judge_regression({entry("a", 0.1)}, {{law, ""}}).front();
+  EXPECT_EQ(other.verdict, RegressionVerdict::changed);
+  EXPECT_EQ(other.message.find("law paper (baseline law hooke): RMS 20 %"), 0U) << other.message;
+  // Of several nobody knows which was which.
+  const std::vector<RegressionResult> several =
+      judge_regression({entry("a", 0.1)}, {{entry("a", 0.1, 17), ""}, {entry("a", 0.1, 18), ""}});
+  ASSERT_EQ(several.size(), 3U);
+  EXPECT_EQ(several[0].verdict, RegressionVerdict::not_measured);
+  EXPECT_EQ(several[1].verdict, RegressionVerdict::not_in_baseline);
+  // What is not solved is not one more that is missing.
+  const std::vector<RegressionResult> unsolved =
+      judge_regression({entry("a", 0.1)}, {{entry("a", 0, 17), "stuck"}});
+  ASSERT_EQ(unsolved.size(), 1U);
+  EXPECT_EQ(unsolved[0].verdict, RegressionVerdict::not_solved);
+}
+
+TEST(Regression, TheSameNameForAnotherSceneIsAChange) {
+  const auto of_scene = [](double error, const std::string& fingerprint) {
+    BaselineCase result = entry("a", error);
+    result.fingerprint = fingerprint;
+    return result;
+  };
+  const std::string here = "0123456789abcdef";
+  const std::string there = "fedcba9876543210";
+  EXPECT_EQ(verdict(of_scene(0.1, here), of_scene(0.1, here)), RegressionVerdict::same);
+  EXPECT_EQ(verdict(of_scene(0.1, here), of_scene(0.1, there)), RegressionVerdict::changed);
+  EXPECT_EQ(verdict(of_scene(0.1, here), of_scene(0.01, there)), RegressionVerdict::changed);
+  // A baseline from before there were fingerprints.
+  EXPECT_EQ(verdict(of_scene(0.1, ""), of_scene(0.1, there)), RegressionVerdict::same);
+  const std::string text = baseline_text({of_scene(0.1, here)});
+  EXPECT_EQ(read_baseline(text, "b.toml").front().fingerprint, here);
+}
+
+TEST(Regression, AFingerprintStandsForAllThatTheShapeDependsOn) {
+  using dlo::compare::Model;
+  const dlo::compare::Scene scene = dlo::test::heavy_scene(5, -30);
+  const auto digits = [](const dlo::compare::Scene& of) {
+    return dlo::compare::case_of(of, Model::chain).fingerprint;
+  };
+  dlo::compare::Scene renamed = scene;
+  renamed.name = "other";
+  renamed.file = "other.toml";
+  renamed.material.name = "other";
+  renamed.grippers.front().where = "other.toml:3";
+  EXPECT_EQ(digits(renamed), digits(scene));
+  const auto differs = [&](const auto& change) {
+    dlo::compare::Scene changed = scene;
+    change(changed);
+    EXPECT_NE(digits(changed), digits(scene));
+  };
+  differs([](auto& s) { s.gravity.z() += 1e-6; });
+  differs([](auto& s) { s.length *= 1.0001; });
+  differs([](auto& s) { s.diameter *= 1.0001; });
+  differs([](auto& s) { s.material.youngs_modulus *= 1.0001; });
+  differs([](auto& s) { s.material.density *= 1.0001; });
+  differs([](auto& s) { s.grippers.front().at += 1e-4; });
+  differs([](auto& s) { s.grippers.front().position.x() += 1e-4; });
+  differs([](auto& s) { s.grippers.front().direction.reset(); });
+  differs([](auto& s) { s.loads.push_back({.at = 0}); });
+  differs([](auto& s) { s.obstacles.push_back({}); });
+  differs([](auto& s) { s.force_model.c_c = 660; });
+  differs([](auto& s) { s.force_model.l_s = 660; });
+  differs([](auto& s) { s.force_model.stepper = dlo::compare::StepperName::basic; });
+}
+
+TEST(Regression, ToleratesOnePercentAndAMillionthUnlessToldOtherwise) {
+  const auto with_defaults = [](double before, double now) {
+    return judge_regression({entry("a", before)}, {{entry("a", now), ""}}).front().verdict;
+  };
+  EXPECT_EQ(with_defaults(0.1, 0.10099), RegressionVerdict::same);
+  EXPECT_EQ(with_defaults(0.1, 0.10102), RegressionVerdict::worse);
+  EXPECT_EQ(with_defaults(0.1, 0.09901), RegressionVerdict::same);
+  EXPECT_EQ(with_defaults(0.1, 0.09898), RegressionVerdict::better);
+  // Largest and tip are two and three times the RMS: the tip decides.
+  EXPECT_EQ(with_defaults(0, 0.33e-6), RegressionVerdict::same);
+  EXPECT_EQ(with_defaults(0, 0.34e-6), RegressionVerdict::worse);
 }
 
 TEST(Regression, MeasuresWhatCompareMeasures) {

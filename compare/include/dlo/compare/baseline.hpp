@@ -24,6 +24,8 @@ struct BaselineCase {
   Bookkeeping bookkeeping = Bookkeeping::consistent;  ///< of the polygon
   int points = 0;                                     ///< N
   ShapeErrors errors;                                 ///< those of this case
+  /// 16 hexadecimal digits that stand for the rest of the scene; empty: not known.
+  std::string fingerprint;
 
   /// "copper wire (force, law hooke, bookkeeping consistent, N = 16)": two cases with the same name
   /// are the same case.

@@ -103,7 +103,8 @@ struct ChainScene {
 /// The same polygon for the solver of elastic ones, which takes every scene.
 [[nodiscard]] energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod);
 
-/// The scene as the energy model sees it.
+/// The scene as the energy model sees it. @throws InputError naming file, line and key if two
+/// grippers hold one arc length, or are no less apart than the rod between them
 [[nodiscard]] energy_model::Problem energy_problem(const Scene& scene);
 
 /// The stepper a scene asks for. @throws InputError if it lacks a constant that its stepper needs

@@ -9,6 +9,9 @@
 
 namespace dlo::compare {
 
+/// The case that a scene is, before it is solved: without errors.
+[[nodiscard]] BaselineCase case_of(const Scene& scene, Model model);
+
 /// Solves a scene with `model` (chain or force) and with the energy model.
 /// @throws InputError, ConvergenceError
 [[nodiscard]] BaselineCase measure_case(const Scene& scene, Model model,
@@ -19,6 +22,7 @@ enum class RegressionVerdict {
   same,
   better,
   worse,
+  changed,          ///< of the same name, but its scene or settings are not the baseline's
   not_in_baseline,  ///< measured, but the baseline does not know it
   not_measured,     ///< in the baseline, but not measured
   not_solved,       ///< a solver did not converge
@@ -37,7 +41,7 @@ struct RegressionTolerance {
 
 /// One case against its baseline.
 struct RegressionResult {
-  std::string name;                                           ///< of the case, BaselineCase::name()
+  std::string name;  ///< of the case, BaselineCase::name(); of a changed one that of this run
   RegressionVerdict verdict = RegressionVerdict::not_solved;  ///< on all its errors
   std::optional<ShapeErrors> expected;  ///< of the baseline, if it knows the case
   std::optional<ShapeErrors> measured;  ///< of this run, if it was solved
@@ -51,7 +55,9 @@ struct MeasuredCase {
 };
 
 /// Every case of either side, sorted by name. A case is worse if any of its errors is, better if
-/// none is worse and any is better; an error that only one side has is worse.
+/// none is worse and any is better; an error that only one side has is worse. A case is changed,
+/// whatever its errors, if its scene's fingerprint is another, or if it is the only one of its
+/// scene and model that the baseline lacks, and the baseline has one of them that was not measured.
 /// @throws InputError if two measured cases have the same name, std::invalid_argument if a
 /// tolerance is negative or not finite
 [[nodiscard]] std::vector<RegressionResult> judge_regression(

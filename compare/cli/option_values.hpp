@@ -1,0 +1,21 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+namespace dlo::cli {
+
+/// For an option that takes a number: in [low, high], so neither NaN nor, unless `high` is,
+/// infinite.
+[[nodiscard]] CLI::Validator number_between(double low, double high);
+
+/// Of all commands, lets no option and no argument take an empty value, which a variable that is
+/// not set leaves in a script. Call when all options are there.
+void refuse_empty_values(CLI::App& app);
+
+/// The same of an option that ends with "=", behind which CLI11 would take the next word.
+/// @throws compare::InputError
+void require_values(const std::vector<std::string>& words);
+
+}  // namespace dlo::cli

@@ -1,0 +1,156 @@
+// Values of options: none may be empty, no number may be NaN, and what is wrong names its option.
+
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Command;
+using dlo::test::Outcome;
+
+/// Words of lines that begin with two blanks, of one kind.
+std::vector<std::string> first_words(const std::string& help, const std::string& start) {
+  std::vector<std::string> words;
+  std::istringstream lines(help);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.compare(0, start.size(), start) != 0) continue;
+    words.push_back(line.substr(2));
+  }
+  return words;
+}
+
+/// Commands as `dlo` lists them.
+std::vector<std::string> commands_in(const std::string& help) {
+  std::vector<std::string> commands;
+  for (const std::string& line : first_words(help, "  ")) {
+    const std::string word = line.substr(0, line.find(' '));
+    const bool name =
+        !word.empty() && word.find_first_not_of("abcdefghijklmnopqrstuvwxyz") == std::string::npos;
+    if (name && word != "dlo" && line.find("  ") != std::string::npos) commands.push_back(word);
+  }
+  return commands;
+}
+
+/// Of the options that take a value the long name, from a command's help.
+std::vector<std::string> options_with_value(const std::string& help) {
+  std::vector<std::string> options;
+  for (const std::string& line : first_words(help, "  -")) {
+    // "-o, --output FILE   description", the description behind two blanks or in the next line
+    const std::string names = line.substr(0, line.find("  "));
+    const std::size_t begin = names.find("--");
+    const std::size_t blank = names.find(' ', begin);
+    if (begin == std::string::npos || blank == std::string::npos) continue;
+    options.push_back(names.substr(begin, blank - begin));
+  }
+  return options;
+}
+
+TEST_F(Command, NoOptionOfAnyCommandTakesAnEmptyValue) {
+  const std::vector<std::string> commands = commands_in(run("--help").out);
+  EXPECT_GE(commands.size(), 12U);
+  std::size_t count = 0;
+  for (const std::string& command : commands) {
+    for (const std::string& option : options_with_value(run(command + " --help").out)) {
+      expect_error(command + " " + option + " ''", 2, {option, "the value is empty"});
+      ++count;
+    }
+  }
+  EXPECT_GE(count, 100U);
+  expect_error("solve " + steel() + " --time-limit= --samples 3", 2,
+               {"--time-limit", "the value is empty"});
+  expect_error("check " + steel() + " --tolerance= --shape x.csv", 2,
+               {"--tolerance", "the value is empty"});
+  expect_error("solve ''", 2, {"SCENE", "the value is empty"});
+}
+
+TEST_F(Command, NumbersOfOptionsAreInTheirRange) {
+  const std::string solve = "solve " + steel() + " --model force ";
+  for (const std::string value : {"nan", "inf", "-1", "0", "1e10", "1e-400", "1e400", "1,5", "x"}) {
+    expect_error(solve + "--time-limit " + value, 2, {"--time-limit", value, "0.001 to 1e+09"});
+  }
+  for (const std::string value : {"nan", "inf", "0", "0.2"}) {
+    expect_error(solve + "--rest-tolerance " + value, 2,
+                 {"--rest-tolerance", value, "1e-12 to 0.1"});
+  }
+  expect_error("bench " + steel() + " --seconds nan", 2, {"--seconds", "nan", "0.1 to 86400"});
+  expect_error("bench " + steel() + " --speed nan", 2, {"--speed", "nan", "1e-09 to 1000"});
+  expect_error(solve + "--target-error nan", 2, {"--target-error", "nan", "0.1% or 0.001"});
+  expect_error(solve + "--target-error 1e-400", 2, {"--target-error", "too small"});
+  expect_error(solve + "--target-error 0,1%", 2, {"--target-error", "comma"});
+  expect_error(solve + "--c-c nan", 2, {"--c-c", "nan", "not finite"});
+  expect_error(solve + "--c-c 1e400", 2, {"--c-c", "too large"});
+  expect_error("solve " + steel() + " --samples 1000001", 2, {"--samples", "2 to 1000000"});
+  EXPECT_NE(run("solve --help").out.find("0.001 to 1e+09"), std::string::npos);
+}
+
+constexpr const char* rod_of = R"(gravity = [0, -9.81, 0]
+[rod]
+length = "50 cm"
+diameter = "2 mm"
+material = "spring_steel"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)";
+
+TEST_F(Command, ContradictoryGripsNameFileLineAndKeyWithEveryModel) {
+  const auto with_pin = [&](const std::string& at, const std::string& x) {
+    return scene(rod_of +
+                 ("[[gripper]]\nat = " + at + "\nposition = [" + x + ", 0, 0]\nhold = \"pin\"\n"));
+  };
+  for (const std::string model : {"energy", "exact", "chain", "force"}) {
+    expect_error("solve " + with_pin("0.5", "0.6") + " --model " + model, 2,
+                 {"scene.toml:10: gripper.position", "0.6 m from the gripper at = 0 m",
+                  "the 0.5 m of rod between them"});
+    expect_error("solve " + with_pin("0", "0.1") + " --model " + model, 2,
+                 {"scene.toml:10: gripper.at", "two grippers hold this arc length"});
+  }
+  // Of a rod that does not stretch some has to be left over.
+  const std::string taut = with_pin("0.5", "0.5");
+  expect_error("solve " + taut, 2,
+               {"scene.toml:10: gripper.position", "less than the 0.5 m", "chain and force"});
+  EXPECT_EQ(run("solve " + taut + " --model chain").status, 0);
+}
+
+TEST_F(Command, RodsBeyondTheLimitsNameFileLineAndKey) {
+  const auto rod = [&](const std::string& from, const std::string& to) {
+    std::string text = rod_of;
+    return scene(text.replace(text.find(from), from.size(), to));
+  };
+  expect_error("solve " + rod("\"50 cm\"", "1e5"), 2,
+               {"scene.toml:3: rod.length = 100000", "Gamma", "(allowed: 0 to 1e+12)"});
+  expect_error("solve " + rod("\"2 mm\"\nmaterial = \"spring_steel\"",
+                              "1000\nmaterial = { youngs_modulus = 1e300, density = 0 }"),
+               2, {"scene.toml:5: rod.material", "E I = inf", "finite"});
+}
+
+TEST_F(Command, AModelThatDoesNotTakeASceneSaysWhichDoes) {
+  const std::string floor =
+      scene(std::string(rod_of) + "[[obstacle]]\npoint = [0, -0.2, 0]\nnormal = [0, 1, 0]\n");
+  expect_error("solve " + floor + " --model exact", 2,
+               {"scene.toml", "obstacle", "--model energy, chain or force"});
+  std::string soft = rod_of;
+  soft.replace(soft.find("\"50 cm\""), 7, "1000");
+  const std::string file = scene(soft);
+  expect_error("solve " + file + " --model exact", 2,
+               {"scene.toml: rod: model exact", "must be <= 1e6"});
+  EXPECT_EQ(run("solve " + file + " --model exact").err.find("solve_exact"), std::string::npos);
+}
+
+TEST_F(Command, TheOnlyStableStateIsNotNumberedAsWell) {
+  std::string soft = rod_of;
+  soft.replace(soft.find("\"spring_steel\""), 14,
+               "{ youngs_modulus = \"0.8 GPa\", density = 7850 }");
+  const Outcome result = run("compare " + scene(soft));
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out.find("number 1 of 1"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("the only stable one found"), std::string::npos) << result.out;
+}
+
+}  // namespace
