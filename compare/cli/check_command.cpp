@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "comparison_text.hpp"
+#include "dlo/compare/display.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/quantity.hpp"
 #include "dlo/compare/shape_check.hpp"
@@ -63,8 +64,8 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
   std::string out;
   const compare::Alignment& a = c.alignment;
   const std::vector<double>& s = a.shape.arc_length;
-  append(out, "{}   Gamma = {:.4g}\n", c.scene, c.gamma);
-  append(out, "  shape           {}: {} points, {}\n", c.file, s.size(),
+  append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
+  append(out, "  shape           {}: {} points, {}\n", compare::display(c.file), s.size(),
          range_text(a, scene.length));
   if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
   constexpr const char* rules[] = {"", "the file's own", "chord lengths of the whole rod",
@@ -164,20 +165,21 @@ std::string csv(const compare::ShapeCheck& c, const std::optional<Verdict>& verd
       "rms_over_movement,max_m,max_at_m,worst_point,tip_m,movement_m,effective_modulus_ratio,"
       "rms_at_effective_modulus_m,optimum,tolerance_m,verdict,seen_share,reason\n";
   const std::vector<double>& s = c.alignment.shape.arc_length;
-  append(out,
-         "{},{},{:.10g},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},"
-         "{:.10g},{:.10g},{:.10g},{:.10g},{},",
-         csv_field(c.scene), csv_field(c.file), c.gamma, s.size(), c.alignment.reversed,
-         compare::to_string(c.alignment.arc_lengths), s.front(), s.back(), d.rms_m,
-         d.rms_over_length, d.rms_over_movement, d.max_m, d.max_at_m, c.worst_point, d.tip_m,
-         c.movement_m, c.effective_modulus.ratio, c.effective_modulus.rms_m,
-         compare::to_string(c.effective_modulus.optimum));
+  append_csv(out,
+             "{},{},{:.10g},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},"
+             "{:.10g},{:.10g},{:.10g},{:.10g},{},",
+             csv_field(c.scene), csv_field(c.file), c.gamma, s.size(), c.alignment.reversed,
+             compare::to_string(c.alignment.arc_lengths), s.front(), s.back(), d.rms_m,
+             d.rms_over_length, d.rms_over_movement, d.max_m, d.max_at_m, c.worst_point, d.tip_m,
+             c.movement_m, c.effective_modulus.ratio, c.effective_modulus.rms_m,
+             compare::to_string(c.effective_modulus.optimum));
   if (verdict) {
-    append(out, "{:.10g},{},", verdict->tolerance.allowed_m, verdict->text());
+    append_csv(out, "{:.10g},{},", verdict->tolerance.allowed_m, verdict->text());
   } else {
     out += ",,";
   }
-  append(out, "{:.10g},{}\n", c.seen_share, verdict ? csv_field(verdict->judgement.reason) : "");
+  append_csv(out, "{:.10g},{}\n", c.seen_share,
+             verdict ? csv_field(verdict->judgement.reason) : "");
   return out;
 }
 
@@ -200,7 +202,7 @@ void run(const CheckOptions& options) {
   std::string content;
   switch (options.output.kind()) {
     case Format::json:
-      content = json(check, verdict, options).dump(2) + "\n";
+      content = json_text(json(check, verdict, options));
       break;
     case Format::csv:
       content = csv(check, verdict);

@@ -28,21 +28,22 @@ std::string csv(const std::vector<compare::Comparison>& comparisons) {
       "budget_interaction_m,budget_parts_share,residual_over_movement,state_rank,states_stable,"
       "force_steps,force_s,energy_evaluations,energy_s\n";
   for (const compare::Comparison& c : comparisons) {
-    append(text,
-           "{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{:.10g},"
-           "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{},{},{:.4g}"
-           ",{},"
-           "{:.4g}\n",
-           csv_field(c.scene), compare::to_string(c.settings.law),
-           compare::to_string(c.settings.bookkeeping), c.settings.points, c.gamma,
-           c.deviation.rms_m, c.deviation.max_m, c.deviation.tip_m, c.deviation.rms_over_length,
-           c.deviation.rms_over_movement, c.effective_modulus.ratio, c.effective_modulus.rms_m,
-           compare::to_string(c.effective_modulus.optimum), c.force.parameters.c_b,
-           c.force.parameters.c_c, c.budget.law.rms_m, c.budget.bookkeeping.rms_m,
-           c.budget.discretisation.rms_m, c.budget.stretch.rms_m, c.budget.not_at_rest.rms_m,
-           c.budget.interaction.rms_m, 1 - c.budget.interaction.share, c.residual_over_movement,
-           c.state.rank, c.state.stable, c.force.steps, c.force.seconds, c.energy_evaluations,
-           c.energy_seconds);
+    append_csv(
+        text,
+        "{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{:.10g},"
+        "{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{},{},{},{:.4g}"
+        ",{},"
+        "{:.4g}\n",
+        csv_field(c.scene), compare::to_string(c.settings.law),
+        compare::to_string(c.settings.bookkeeping), c.settings.points, c.gamma, c.deviation.rms_m,
+        c.deviation.max_m, c.deviation.tip_m, c.deviation.rms_over_length,
+        c.deviation.rms_over_movement, c.effective_modulus.ratio, c.effective_modulus.rms_m,
+        compare::to_string(c.effective_modulus.optimum), c.force.parameters.c_b,
+        c.force.parameters.c_c, c.budget.law.rms_m, c.budget.bookkeeping.rms_m,
+        c.budget.discretisation.rms_m, c.budget.stretch.rms_m, c.budget.not_at_rest.rms_m,
+        c.budget.interaction.rms_m, 1 - c.budget.interaction.share, c.residual_over_movement,
+        c.state.rank, c.state.stable, c.force.steps, c.force.seconds, c.energy_evaluations,
+        c.energy_seconds);
   }
   return text;
 }
@@ -67,7 +68,7 @@ void run(const CompareOptions& options) {
       Json cases = Json::array();
       for (const compare::Comparison& comparison : comparisons)
         cases.push_back(to_json(comparison));
-      content = Json{{"schema", "dlo/compare/1"}, {"cases", std::move(cases)}}.dump(2) + "\n";
+      content = json_text(Json{{"schema", "dlo/compare/1"}, {"cases", std::move(cases)}});
       break;
     }
     case Format::csv:

@@ -2,6 +2,10 @@
 
 namespace dlo::cli {
 
+std::string json_text(const Json& document) {
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Json modulus_json(const compare::EffectiveModulus& modulus) {
   return {{"effective_modulus_ratio", modulus.ratio},
           {"rms_at_effective_modulus_m", modulus.rms_m},

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "comparison_text.hpp"
+#include "dlo/compare/display.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/hard_case.hpp"
 #include "dlo/compare/stability.hpp"
@@ -100,9 +101,9 @@ std::string cases_text(const std::vector<StabilityResult>& results, std::size_t 
 std::string cases_csv(const std::vector<StabilityResult>& results) {
   std::string text = "case,stepper,outcome,steps,error_over_length,at_rest,note\n";
   for (const StabilityResult& r : results) {
-    append(text, "{},{},{},{},{:.10g},{},{}\n", csv_field(r.name), compare::to_string(r.stepper),
-           compare::to_string(r.outcome), r.steps, r.error_over_length, r.at_rest,
-           csv_field(r.note));
+    append_csv(text, "{},{},{},{},{:.10g},{},{}\n", csv_field(r.name),
+               compare::to_string(r.stepper), compare::to_string(r.outcome), r.steps,
+               r.error_over_length, r.at_rest, csv_field(r.note));
   }
   return text;
 }
@@ -124,7 +125,8 @@ Json cases_json(const std::vector<StabilityResult>& results) {
 
 std::string map_text(const compare::StabilityMap& map) {
   std::string out;
-  append(out, "{}: largest c_F of steps without limit or damping, from rest\n", map.scene);
+  append(out, "{}: largest c_F of steps without limit or damping, from rest\n",
+         compare::display(map.scene));
   append(out, "{:>12} {:>8} {:>15} {:>16} {:>16} {:>9} {:>17}\n", "c_c [N]", "c_h", "mode [N/m]",
          "predicted [m/N]", "measured [m/N]", "ratio", "Table 1 / limit");
   double least = INFINITY;
@@ -153,8 +155,8 @@ std::string map_csv(const compare::StabilityMap& map) {
   for (std::size_t i = 0; i < map.points.size(); ++i) {
     const compare::MapPoint& p = map.points[i];
     const MapColumn& c = map.columns[i / rows];
-    append(text, "{:.10g},{:.10g},{:.10g},{},{:.10g},{:.10g},{:.10g}\n", p.c_c, p.c_h, p.c_F,
-           state(p.outcome), c.fastest_mode, c.predicted, c.measured);
+    append_csv(text, "{:.10g},{:.10g},{:.10g},{},{:.10g},{:.10g},{:.10g}\n", p.c_c, p.c_h, p.c_F,
+               state(p.outcome), c.fastest_mode, c.predicted, c.measured);
   }
   return text;
 }
@@ -197,7 +199,7 @@ void run_map(StabilityOptions& options) {
   }();
   switch (options.output.kind()) {
     case Format::json:
-      return write_output(options.output, map_json(map).dump(2) + "\n");
+      return write_output(options.output, json_text(map_json(map)));
     case Format::csv:
       return write_output(options.output, map_csv(map));
     case Format::text:
@@ -221,7 +223,7 @@ void run_cases(StabilityOptions& options) {
   std::string content;
   switch (options.output.kind()) {
     case Format::json:
-      content = cases_json(results).dump(2) + "\n";
+      content = json_text(cases_json(results));
       break;
     case Format::csv:
       content = cases_csv(results);

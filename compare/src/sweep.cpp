@@ -9,9 +9,12 @@
 #include <algorithm>
 #include <new>
 #include <numeric>
+#include <stdexcept>
+#include <system_error>
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/csv.hpp"
+#include "dlo/compare/display.hpp"
 #include "dlo/compare/error.hpp"
 #include "fingerprint.hpp"
 
@@ -63,12 +66,6 @@ Model solver_of(SweepModel model) {
       break;
   }
   return Model::energy;
-}
-
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
-  return text;
 }
 
 }  // namespace
@@ -177,16 +174,29 @@ std::string Sweep::compared(const Scene& scene, const Solution& solution) const 
                      to_string(modulus.optimum), energy.evaluations);
 }
 
+std::string Sweep::without_results(const std::string& status) const {
+  const std::string columns = (gamma_varied_ ? "" : "gamma,") + result_columns(model_);
+  const auto empty = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ','));
+  return std::string(empty, ',') + csv_field(display(status)) + "\n";
+}
+
 std::string Sweep::row(std::int64_t row) const {
   const std::string start = row_start(row);
   try {
     return start + results(scene(row)) + "ok\n";
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const std::system_error&) {
+    throw;  // no threads: the machine's, not the scene's
+  } catch (const InputError& error) {
+    return start + without_results(error.what());
+  } catch (const ConvergenceError& error) {
+    return start + without_results(error.what());
+  } catch (const std::invalid_argument& error) {
+    return start + without_results(error.what());
   } catch (const std::exception& error) {
-    const std::string columns = (gamma_varied_ ? "" : "gamma,") + result_columns(model_);
-    const auto empty = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ','));
-    return start + std::string(empty, ',') + csv_field(one_line(error.what())) + "\n";
+    return start +
+           without_results(std::string("internal error, a mistake of dlo: ") + error.what());
   }
 }
 
