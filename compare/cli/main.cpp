@@ -72,7 +72,7 @@ ExitStatus report_exception() {
     dlo::cli::write_standard_error("dlo: out of memory\n");
     return no_resources;
   } catch (const std::system_error& error) {
-    say("the system has no more resources, such as threads ({})", error.what());
+    say("out of threads or memory ({})", error.what());
     return no_resources;
   } catch (const std::exception& error) {
     say("internal error, a mistake of dlo: {}", error.what());

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "arena.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/csv.hpp"
 #include "dlo/compare/display.hpp"
@@ -213,7 +214,7 @@ void Sweep::run(RowRange rows, int threads,
     return next++;
   };
   const auto compute = [this](std::int64_t number) { return row(number); };
-  arena.execute([&] {
+  execute(arena, [&] {
     tbb::parallel_pipeline(
         window,
         tbb::make_filter<void, std::int64_t>(tbb::filter_mode::serial_in_order, next_row) &

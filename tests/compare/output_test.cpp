@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -330,14 +331,27 @@ TEST_F(Output, WithoutFinishNothingHasHappened) {
 
 TEST_F(Output, OutOfMemoryIsALineAndAStatus) {
   if (dlo::test::sanitized) GTEST_SKIP() << "a sanitizer needs all address space";
-  for (const std::string arguments :
+  for (const std::string& arguments :
        {"solve " + steel() + " --samples 9000000 --format json",
         "solve " + steel() + " --model chain --points 1000000",
-        "sweep " + steel() + " --vary gamma=1,2,3,4 --model chain --points 1000000 --threads 2"}) {
+        "sweep " + steel() +
+            " --vary force_model.points=1000000,999999 --model chain --threads 2"}) {
     const Outcome result = bash("ulimit -v 150000; $dlo " + arguments + " >/dev/null");
     EXPECT_EQ(result.status, 4) << arguments << result.err;
     EXPECT_EQ(result.err, "dlo: out of memory\n") << arguments;
   }
+}
+
+TEST_F(Output, OutOfThreadsIsALineAndAStatus) {
+  // No limit holds for root.
+  const std::string nobody = ::geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
+  const std::string limited = nobody + "prlimit --nproc=0 $dlo ";
+  if (bash(limited + "--version").status != 0) GTEST_SKIP() << "threads cannot be limited";
+  const Outcome result = bash("cat " + steel() + " | " + limited +
+                              "sweep /dev/stdin --vary gamma=1,2,3 --threads 3 >/dev/null");
+  EXPECT_EQ(result.status, 4) << result.err;
+  EXPECT_EQ(result.err,
+            "dlo: out of threads or memory (a worker thread: Resource temporarily unavailable)\n");
 }
 
 TEST_F(Output, HelpAndManualPageSayEveryExitStatus) {
@@ -444,7 +458,7 @@ TEST_F(Output, NamesThatAreNoTextBreakNoFormat) {
   const auto quoted = [](const std::string& file) { return "'" + file + "'"; };
   const std::string scene = quoted(name + ".toml");
   ASSERT_EQ(bash("$dlo solve " + scene + " --format csv -o " + quoted(name)).status, 0);
-  for (const std::string command :
+  for (const std::string& command :
        {"solve " + scene, "check " + scene + " --shape " + quoted(name),
         "calibrate " + scene + " --shape " + quoted(name), "compare " + scene}) {
     const Outcome json = bash("$dlo " + command + " --format json");
