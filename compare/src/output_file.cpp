@@ -119,6 +119,8 @@ OutputTarget output_target(const std::string& file) {
     path = folder / name;
     if (!fs::is_symlink(fs::symlink_status(path, error))) {
       const std::optional<struct stat> existing = status_of(path.string());
+      // Only a name that is free may lead nowhere; one may also be too long.
+      if (!existing && errno != ENOENT) refuse_output(file, std::strerror(errno));
       if (existing && S_ISDIR(existing->st_mode)) refuse_output(file, "it is a folder");
       if (!existing || S_ISREG(existing->st_mode)) return regular_target(path, file);
       if (::access(path.c_str(), W_OK) != 0) refuse_output(file, std::strerror(errno));

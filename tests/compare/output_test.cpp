@@ -346,9 +346,11 @@ TEST_F(Output, OutOfThreadsIsALineAndAStatus) {
   // No limit holds for root.
   const std::string nobody = ::geteuid() == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
   const std::string limited = nobody + "prlimit --nproc=0 $dlo ";
-  if (bash(limited + "--version").status != 0) GTEST_SKIP() << "threads cannot be limited";
-  const Outcome result = bash("cat " + steel() + " | " + limited +
-                              "sweep /dev/stdin --vary gamma=1,2,3 --threads 3 >/dev/null");
+  if (bash(limited + "solve " + steel() + " >/dev/null").status != 0) {
+    GTEST_SKIP() << "threads cannot be limited, or others may not read here";
+  }
+  const Outcome result =
+      bash(limited + "sweep " + steel() + " --vary gamma=1,2,3 --threads 3 >/dev/null");
   EXPECT_EQ(result.status, 4) << result.err;
   EXPECT_EQ(result.err,
             "dlo: out of threads or memory (a worker thread: Resource temporarily unavailable)\n");

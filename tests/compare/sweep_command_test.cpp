@@ -123,8 +123,8 @@ TEST_F(SweepCommand, KilledTwentyTimesGivesTheFileOfAnUnbrokenRun) {
 
 TEST_F(SweepCommand, MergedShardsHoldEveryRowOfManyBlocks) {
   // Each shard is longer than the blocks of 64 KiB that merging writes.
-  constexpr int rows = 1601;
-  const std::string vary = "gamma=lin:1:17:1601";
+  constexpr int rows = 2401;
+  const std::string vary = "gamma=lin:1:17:2401";
   for (const char* shard : {"1/2", "2/2"}) {
     const std::string line = words({"sweep", steel(), "--vary", vary, "--shard", shard, "-o"});
     ASSERT_EQ(run(line + path("part.{shard}.csv")).status, 0);
