@@ -422,7 +422,8 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
       }
     }
     EXPECT_GT(rows, 0) << command;
-    if (command.starts_with("sweep")) continue;
+    // JSON has one writer; those with most numbers that are none have to do.
+    if (command != "compare both.toml" && command != "stability --case pulled") continue;
     const Outcome json = bash("$dlo " + command + " --format json");
     EXPECT_FALSE(nlohmann::json::parse(json.out, nullptr, false).is_discarded()) << command;
   }
