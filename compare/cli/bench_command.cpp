@@ -5,6 +5,7 @@
 #include "commands.hpp"
 #include "comparison_text.hpp"
 #include "dlo/compare/benchmark.hpp"
+#include "dlo/compare/display.hpp"
 #include "json.hpp"
 #include "option_values.hpp"
 #include "output.hpp"
@@ -89,8 +90,8 @@ void add_claim(std::string& out, const SceneBenchmark& scene) {
 std::string text(const compare::BenchmarkReport& report) {
   std::string out;
   for (const SceneBenchmark& scene : report.scenes) {
-    append(out, "{}   Gamma = {:.4g}, error against {}\n\n", scene.scene, scene.gamma,
-           compare::to_string(scene.reference));
+    append(out, "{}   Gamma = {:.4g}, error against {}\n\n", compare::display(scene.scene),
+           scene.gamma, compare::to_string(scene.reference));
     append(out, "  static: from straight to the shape (* no run is both faster and nearer)\n");
     add_runs(out, scene.runs);
     append(out,
@@ -100,10 +101,12 @@ std::string text(const compare::BenchmarkReport& report) {
     add_runs(out, scene.tracking);
     out += "\n";
   }
-  for (const std::string& skipped : report.skipped) append(out, "skipped: {}\n", skipped);
+  for (const std::string& skipped : report.skipped)
+    append(out, "skipped: {}\n", compare::display(skipped));
   out += "\nWhat to use\n";
   for (const SceneBenchmark& scene : report.scenes) {
-    append(out, "\n{}   Gamma = {:.4g}\n  for a static error of\n", scene.scene, scene.gamma);
+    append(out, "\n{}   Gamma = {:.4g}\n  for a static error of\n", compare::display(scene.scene),
+           scene.gamma);
     add_answers(out, scene.runs, scene.answers);
     append(out, "  for an error behind the moving gripper of\n");
     add_answers(out, scene.tracking, scene.tracking_answers);
@@ -178,10 +181,10 @@ std::string csv(const compare::BenchmarkReport& report) {
       "scene,kind,model,size,setting,time_s,lower_quartile_s,upper_quartile_s,repeats,work,"
       "rms_over_length,front\n";
   const auto add = [&](const BenchmarkRun& run, const char* kind) {
-    append(out, "{},{},{},{},{},{:.4g},{:.4g},{:.4g},{},{},{:.6g},{}\n", csv_field(run.scene), kind,
-           compare::to_string(run.model), run.size, csv_field(run.setting), run.time.median_s,
-           run.time.lower_quartile_s, run.time.upper_quartile_s, run.time.repeats, run.work,
-           run.rms_over_length, run.front);
+    append_csv(out, "{},{},{},{},{},{:.4g},{:.4g},{:.4g},{},{},{:.6g},{}\n", csv_field(run.scene),
+               kind, compare::to_string(run.model), run.size, csv_field(run.setting),
+               run.time.median_s, run.time.lower_quartile_s, run.time.upper_quartile_s,
+               run.time.repeats, run.work, run.rms_over_length, run.front);
   };
   for (const SceneBenchmark& scene : report.scenes) {
     for (const BenchmarkRun& run : scene.runs) add(run, "static");
@@ -201,7 +204,7 @@ void run(const BenchOptions& options) {
   }();
   switch (options.output.kind()) {
     case Format::json:
-      write_output(options.output, json(report).dump(2) + "\n");
+      write_output(options.output, json_text(json(report)));
       break;
     case Format::csv:
       write_output(options.output, csv(report));

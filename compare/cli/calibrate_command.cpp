@@ -66,7 +66,7 @@ void write_report(const Report& report, OutputOptions output, bool format_is_giv
     write_output(output, report.toml());
     write_output({}, report.text());
   } else if (output.format == "json") {
-    write_output(output, report.json().dump(2) + "\n");
+    write_output(output, json_text(report.json()));
   } else if (output.format == "csv") {
     write_output(output, report.csv());
   } else if (output.format == "toml") {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "comparison_text.hpp"
+#include "dlo/compare/display.hpp"
 #include "dlo/compare/error.hpp"
 #include "output.hpp"
 #include "shape_options.hpp"
@@ -73,8 +74,9 @@ std::string material_text(const MaterialReport& report) {
   append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
     const compare::Alignment& a = fit.shapes[i].alignment;
-    append(out, "shape       {} on {}: {} points, {}, RMS {:.4g} mm\n", report.files[i],
-           fit.shapes[i].scene, a.shape.points.cols(), range_text(a, report.scenes[i].length),
+    append(out, "shape       {} on {}: {} points, {}, RMS {:.4g} mm\n",
+           compare::display(report.files[i]), compare::display(fit.shapes[i].scene),
+           a.shape.points.cols(), range_text(a, report.scenes[i].length),
            std::sqrt(a.mean_square) * 1e3);
     append(out, "            arc lengths: {}\n", compare::to_string(a.arc_lengths));
     if (report.frame_was_found) append(out, "            frame {}\n", pose_text(a.pose));
@@ -84,7 +86,7 @@ std::string material_text(const MaterialReport& report) {
 
 std::string material_csv(const MaterialReport& report) {
   const auto field = [](const std::optional<double>& value) {
-    return value ? fmt::format("{:.10g}", *value) : std::string();
+    return value ? compare::csv_number(*value) : std::string();
   };
   const compare::MaterialFit& fit = report.fit;
   const FittedValue& E = fit.youngs_modulus;
@@ -93,14 +95,16 @@ std::string material_csv(const MaterialReport& report) {
       "youngs_modulus_Pa,low_Pa,high_Pa,density_kg_per_m3,density_low,density_high,noise_m,"
       "degrees_of_freedom,rms_m,not_told,warning,errors_are_correlated,correlation_length_m,"
       "correlation_share,interval_widened_by,effective_degrees_of_freedom\n";
-  append(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{},{},", field(E.value), field(E.low),
-         field(E.high), field(density.value), field(density.low), field(density.high), fit.noise_m,
-         fit.degrees_of_freedom, fit.rms_m, csv_field(fit.not_told), csv_field(fit.warning));
+  append_csv(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{},{},", field(E.value), field(E.low),
+             field(E.high), field(density.value), field(density.low), field(density.high),
+             fit.noise_m, fit.degrees_of_freedom, fit.rms_m, csv_field(fit.not_told),
+             csv_field(fit.warning));
   if (fit.correlation) {
-    append(out, "true,{:.10g},{:.10g},{:.10g},{:.10g}\n", fit.correlation->length_m,
-           fit.correlation->share, fit.correlation->widening, fit.correlation->degrees_of_freedom);
+    append_csv(out, "true,{:.10g},{:.10g},{:.10g},{:.10g}\n", fit.correlation->length_m,
+               fit.correlation->share, fit.correlation->widening,
+               fit.correlation->degrees_of_freedom);
   } else {
-    append(out, "{},,,,\n", fit.correlation_was_tested ? "false" : "");
+    append_csv(out, "{},,,,\n", fit.correlation_was_tested ? "false" : "");
   }
   return out;
 }

@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "comparison_text.hpp"
+#include "dlo/compare/display.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/quantity.hpp"
 #include "dlo/compare/shape_check.hpp"
@@ -70,8 +71,8 @@ std::string text(const compare::ShapeCheck& c, const compare::Scene& scene,
   std::string out;
   const compare::Alignment& a = c.alignment;
   const std::vector<double>& s = c.reference.arc_length;
-  append(out, "{}   Gamma = {:.4g}\n", c.scene, c.gamma);
-  append(out, "  shape           {}: {} points, {}\n", c.file, s.size(),
+  append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
+  append(out, "  shape           {}: {} points, {}\n", compare::display(c.file), s.size(),
          range_text(a, scene.length));
   if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
   constexpr const char* rules[] = {"", "the file's own", "chord lengths of the whole rod",
@@ -233,7 +234,7 @@ void run(const CheckOptions& options) {
   std::string content;
   switch (options.output.kind()) {
     case Format::json:
-      content = json(check, verdict, options).dump(2) + "\n";
+      content = json_text(json(check, verdict, options));
       break;
     case Format::csv:
       content = csv(check, verdict);

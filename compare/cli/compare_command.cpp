@@ -95,7 +95,7 @@ void run(const CompareOptions& options) {
       Json cases = Json::array();
       for (const compare::Comparison& comparison : comparisons)
         cases.push_back(to_json(comparison));
-      content = Json{{"schema", "dlo/compare/1"}, {"cases", std::move(cases)}}.dump(2) + "\n";
+      content = json_text(Json{{"schema", "dlo/compare/1"}, {"cases", std::move(cases)}});
       break;
     }
     case Format::csv:

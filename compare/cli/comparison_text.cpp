@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "dlo/compare/display.hpp"
 #include "output.hpp"
 
 namespace dlo::cli {
@@ -71,7 +72,7 @@ void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, dou
 std::string comparison_text(const compare::Comparison& c) {
   std::string out;
   const compare::Parameters& p = c.force.parameters;
-  append(out, "{}   Gamma = {:.4g}\n", c.scene, c.gamma);
+  append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
   append(out, "  force model     law {}, bookkeeping {}, N = {}, c_c = {:.6g} N",
          compare::to_string(c.settings.law), compare::to_string(c.settings.bookkeeping),
          c.settings.points, p.c_c);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "comparison_text.hpp"
+#include "dlo/compare/display.hpp"
 #include "help.hpp"
 #include "output.hpp"
 
@@ -56,7 +57,7 @@ std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
   }
   append(out, " {:>15} {:>9}\n", "stepped", "steps");
   for (std::size_t i = 0; i < fit.scenes.size(); ++i) {
-    const std::string name = fit.scenes[i].substr(0, 26);
+    const std::string name = compare::display(fit.scenes[i].substr(0, 26));
     append(out, "  {:<28} {:8.4g}", is_holdout(fit, i) ? name + " *" : name, fit.gammas[i]);
     for (const RuleDeviations& rule : fit.rules) {
       append(out, " {:>15}", percent(rule.rms_over_length[i]));
@@ -78,16 +79,18 @@ std::string force_model_csv(const ForceModelFit& fit) {
   const compare::ForceModelSettings& s = fit.settings;
   std::string out = "scene,gamma,holdout,law,bookkeeping,points,c_c,c_F,c_h,l_s,c_b";
   for (const RuleDeviations& rule : fit.rules) {
-    append(out, ",rms_over_length_{}", compare::to_string(rule.rule));
+    append_csv(out, ",rms_over_length_{}", compare::to_string(rule.rule));
   }
   out += ",rms_over_length_stepped,steps\n";
   for (std::size_t i = 0; i < fit.scenes.size(); ++i) {
-    append(out, "{},{:.10g},{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},", csv_field(fit.scenes[i]),
-           fit.gammas[i], is_holdout(fit, i), compare::to_string(s.law),
-           compare::to_string(s.bookkeeping), s.points, *s.c_c, *s.c_F, *s.c_h, *s.l_s);
-    if (s.c_b) append(out, "{:.10g}", *s.c_b);
-    for (const RuleDeviations& rule : fit.rules) append(out, ",{:.10g}", rule.rms_over_length[i]);
-    append(out, ",{:.10g},{}\n", fit.stepped_rms_over_length[i], fit.steps[i]);
+    append_csv(out, "{},{:.10g},{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},",
+               csv_field(fit.scenes[i]), fit.gammas[i], is_holdout(fit, i),
+               compare::to_string(s.law), compare::to_string(s.bookkeeping), s.points, *s.c_c,
+               *s.c_F, *s.c_h, *s.l_s);
+    if (s.c_b) append_csv(out, "{:.10g}", *s.c_b);
+    for (const RuleDeviations& rule : fit.rules)
+      append_csv(out, ",{:.10g}", rule.rms_over_length[i]);
+    append_csv(out, ",{:.10g},{}\n", fit.stepped_rms_over_length[i], fit.steps[i]);
   }
   return out;
 }

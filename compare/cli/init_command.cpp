@@ -85,6 +85,9 @@ void run(InitOptions options) {
     throw compare::InputError(
         fmt::format("{}: exists (allowed: another name, or --force to replace it)", file));
   }
+  std::vector<std::string> inputs;
+  if (!options.materials.empty()) inputs.push_back(options.materials);
+  check_output("init:", file, inputs);
   const std::vector<compare::Material> known =
       options.materials.empty() ? compare::materials() : compare::load_materials(options.materials);
   const std::string text = text_of(options.choices, known);

@@ -2,6 +2,10 @@
 
 namespace dlo::cli {
 
+std::string json_text(const Json& document) {
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 Json modulus_json(const compare::EffectiveModulus& modulus) {
   const bool none = modulus.optimum == compare::Optimum::none;
   // NaN is null.

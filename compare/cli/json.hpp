@@ -1,6 +1,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/paper_report.hpp"
@@ -9,6 +10,10 @@
 namespace dlo::cli {
 
 using Json = nlohmann::ordered_json;
+
+/// A document as every command writes it: NaN and infinity are null, and what is no UTF-8 in the
+/// name of a file becomes U+FFFD.
+[[nodiscard]] std::string json_text(const Json& document);
 
 [[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
 [[nodiscard]] Json deviation_json(const compare::Deviation& deviation);

@@ -1,32 +1,100 @@
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
+#include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
+#include <new>
+#include <sstream>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/output_file.hpp"
 #include "help.hpp"
 #include "option_values.hpp"
+#include "output.hpp"
 #include "reference.hpp"
 
 namespace {
 
 // 1, outside a tolerance, is a CLI::RuntimeError of a command that has printed its result.
-enum ExitStatus : int { good = 0, bad_input = 2, not_converged = 3 };
+enum ExitStatus : int {
+  good = 0,
+  bad_input = 2,
+  not_converged = 3,
+  no_resources = 4,  // and our own mistakes
+  not_written = 5
+};
 
-int report(ExitStatus status, const std::exception& error) {
-  std::string line = error.what();
-  for (char& c : line) {
-    if (c == '\n') c = ' ';
+/// Nobody reads the output: as other programs, gone without a word.
+[[noreturn]] void end_with_broken_pipe() {
+  (void)std::signal(SIGPIPE, SIG_DFL);
+  (void)std::raise(SIGPIPE);
+  constexpr int as_a_shell_calls_it = 128 + SIGPIPE;
+  ::_exit(as_a_shell_calls_it);  // if the caller has blocked the signal
+}
+
+/// Says what is being handled, and what that means for the exit status. It takes as little memory
+/// as it can.
+ExitStatus report_exception() {
+  using dlo::cli::say;
+  try {
+    throw;
+  } catch (const dlo::compare::BrokenPipe&) {
+    end_with_broken_pipe();
+  } catch (const dlo::compare::OutputError& error) {
+    say("{}", error.what());
+    return not_written;
+  } catch (const dlo::compare::ConvergenceError& error) {
+    say("{}", error.what());
+    return not_converged;
+  } catch (const dlo::compare::InputError& error) {
+    say("{}", error.what());
+    return bad_input;
+  } catch (const std::invalid_argument& error) {
+    // The models name what is out of range.
+    say("{}", error.what());
+    return bad_input;
+  } catch (const std::filesystem::filesystem_error& error) {
+    say("{}", error.what());
+    return bad_input;
+  } catch (const std::bad_alloc&) {
+    dlo::cli::write_standard_error("dlo: out of memory\n");
+    return no_resources;
+  } catch (const std::length_error&) {
+    // A container that is asked for more than it can ever hold.
+    dlo::cli::write_standard_error("dlo: out of memory\n");
+    return no_resources;
+  } catch (const std::system_error& error) {
+    say("out of threads or memory ({})", error.what());
+    return no_resources;
+  } catch (const std::exception& error) {
+    say("internal error, a mistake of dlo: {}", error.what());
+    return no_resources;
+  } catch (...) {
+    dlo::cli::write_standard_error("dlo: internal error, a mistake of dlo\n");
+    return no_resources;
   }
-  fmt::print(stderr, "dlo: {}\n", line);
-  return status;
+}
+
+/// What no caller could catch, such as memory that a thread of the scheduler does not get, ends
+/// like anything else: with a line and a status.
+[[noreturn]] void end_uncaught() {
+  int status = no_resources;
+  if (std::current_exception()) {
+    status = report_exception();
+  } else {
+    dlo::cli::write_standard_error("dlo: internal error, a mistake of dlo\n");
+  }
+  dlo::compare::remove_temporaries();
+  ::_exit(status);
 }
 
 /// Commands by what a user wants to do.
@@ -57,7 +125,7 @@ void build(CLI::App& app) {
   app.set_version_flag("--version", "dlo " DLO_VERSION, "the version");
   const std::string setup = "Set up";
   const auto print = [&app](std::string (*text)(const CLI::App&)) {
-    fmt::print("{}", text(app));
+    dlo::cli::write_standard_output(text(app));
     throw CLI::Success();
   };
   app.add_flag_callback(
@@ -78,7 +146,11 @@ void build(CLI::App& app) {
       "  dlo init cable.toml --length \"2 m\" --diameter \"6 mm\" --material silicone\n"
       "  dlo solve cable.toml\n\n"
       "Exit status: 0 good, 1 outside a tolerance, 2 bad usage or input, 3 a solver did\n"
-      "not converge. More, with examples: dlo COMMAND --help");
+      "not converge, 4 out of memory or threads, or a mistake of dlo, 5 an output could\n"
+      "not be written. More, with examples: dlo COMMAND --help");
+  app.parse_complete_callback([&app] {
+    for (const CLI::App* command : app.get_subcommands()) dlo::cli::check_outputs(*command);
+  });
 }
 
 int run(int argc, char** argv) {
@@ -89,7 +161,7 @@ int run(int argc, char** argv) {
   build(app);
   dlo::cli::refuse_empty_values(app);
   if (argc == 1) {
-    fmt::print("{}", app.help());
+    dlo::cli::write_standard_output(app.help());
     return good;
   }
   std::vector<std::string> words(argv + 1, argv + argc);
@@ -110,7 +182,12 @@ int run(int argc, char** argv) {
   } catch (const CLI::RuntimeError& status) {
     return status.get_exit_code();
   } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
+    if (error.get_exit_code() == 0) {
+      std::ostringstream out;
+      (void)app.exit(error, out, out);
+      dlo::cli::write_standard_output(out.str());
+      return good;
+    }
     throw dlo::compare::InputError(dlo::cli::parse_message(app, error));
   }
   return good;
@@ -119,15 +196,16 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  dlo::cli::reserve_standard_descriptors();
+  dlo::compare::remove_temporaries_at_signals();
+  // A limit of a file's size is an error of its write.
+  (void)std::signal(SIGXFSZ, SIG_IGN);
+  std::set_terminate(end_uncaught);
   try {
-    return run(argc, argv);
-  } catch (const dlo::compare::InputError& error) {
-    return report(bad_input, error);
-  } catch (const std::invalid_argument& error) {
-    return report(bad_input, error);
-  } catch (const std::filesystem::filesystem_error& error) {
-    return report(bad_input, error);
-  } catch (const std::exception& error) {
-    return report(not_converged, error);
+    const int status = run(argc, argv);
+    dlo::cli::close_standard_output();
+    return status;
+  } catch (...) {
+    return report_exception();
   }
 }

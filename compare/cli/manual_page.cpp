@@ -112,7 +112,8 @@ writes.
 Shapes are CSV
 .Pq columns x, y, z and perhaps s ,
 JSON, or legacy VTK polylines.
-Results are written whole or not at all.
+Results are written whole or not at all; devices, pipes and links stay what they are.
+An output that is also an input is refused.
 .Sh EXIT STATUS
 .Bl -tag -width Ds
 .It 0
@@ -123,6 +124,12 @@ A result is outside a tolerance.
 Bad usage or input.
 .It 3
 A solver did not converge.
+.It 4
+Out of memory or threads, or a mistake of
+.Nm
+itself.
+.It 5
+An output could not be written.
 .El
 .Sh EXAMPLES
 From nothing to parameters of the force model:

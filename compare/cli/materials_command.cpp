@@ -36,8 +36,8 @@ std::string text(const std::vector<Material>& materials) {
 std::string csv(const std::vector<Material>& materials) {
   std::string out = "material,youngs_modulus_Pa,density_kg_per_m3,source\n";
   for (const Material& material : materials) {
-    append(out, "{},{:.10g},{:.10g},{}\n", compare::csv_field(material.name),
-           material.youngs_modulus, material.density, compare::csv_field(material.source));
+    append_csv(out, "{},{:.10g},{:.10g},{}\n", compare::csv_field(material.name),
+               material.youngs_modulus, material.density, compare::csv_field(material.source));
   }
   return out;
 }
@@ -58,7 +58,7 @@ void run(const MaterialsOptions& options) {
       options.file.empty() ? compare::materials() : compare::load_materials(options.file);
   switch (options.output.kind()) {
     case Format::json:
-      return write_output(options.output, json(materials).dump(2) + "\n");
+      return write_output(options.output, json_text(json(materials)));
     case Format::csv:
       return write_output(options.output, csv(materials));
     case Format::text:

@@ -174,7 +174,7 @@ std::string moving_text(const compare::MovingReport& report) {
 std::string moving_csv(const compare::MovingReport& report) {
   std::string out;
   const auto add = [&](const std::string& item, const char* quantity, double value) {
-    append(out, "moving,,{},{},{:.12g}\n", csv_field(item), quantity, value);
+    append_csv(out, "moving,,{},{},{:.12g}\n", csv_field(item), quantity, value);
   };
   const auto add_rows = [&](const std::string& varied, const std::vector<MovingRow>& rows) {
     for (const MovingRow& row : rows) {

@@ -157,8 +157,8 @@ std::string csv(const PaperReport& report) {
   std::string out = "section,scene,item,quantity,value\n";
   const auto add = [&](const std::string& section, const std::string& scene,
                        const std::string& item, const std::string& quantity, double value) {
-    append(out, "{},{},{},{},{:.12g}\n", section, csv_field(scene), csv_field(item), quantity,
-           value);
+    append_csv(out, "{},{},{},{},{:.12g}\n", section, csv_field(scene), csv_field(item), quantity,
+               value);
   };
   for (const compare::TableRow& row : report.tables) {
     add("table", "", "table " + row.table + " " + row.quantity, "printed", std::stod(row.printed));
@@ -210,7 +210,7 @@ void run(const OutputOptions& options) {
     case Format::json: {
       Json document = to_json(report);
       document["moving"] = to_json(moving);
-      content = document.dump(2) + "\n";
+      content = json_text(document);
       break;
     }
     case Format::csv:

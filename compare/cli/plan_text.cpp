@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "dlo/compare/display.hpp"
 #include "output.hpp"
 
 namespace dlo::cli {
@@ -32,7 +33,7 @@ std::string left_out_text(const compare::LeftOut& item, double length) {
 
 std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
   std::string out;
-  append(out, "plan of {}   Gamma = {:.4g}\n", scene.name, plan.gamma);
+  append(out, "plan of {}   Gamma = {:.4g}\n", compare::display(scene.name), plan.gamma);
   append(out, "  geometry        {}\n", plan.planar ? "planar" : "spatial");
   append(out, "  time            {}\n", plan.moving ? "moving" : "static");
   for (std::size_t i = 0; i < plan.spans.size(); ++i) {

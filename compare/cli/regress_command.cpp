@@ -7,6 +7,7 @@
 
 #include "commands.hpp"
 #include "comparison_text.hpp"
+#include "dlo/compare/display.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/regression.hpp"
 #include "json.hpp"
@@ -60,9 +61,10 @@ std::string update_text(const std::vector<RegressionResult>& results) {
     } else if (result.verdict != RegressionVerdict::same) {
       done = "changed";
     }
-    append(out, "{:<20} {}\n", done, result.name);
+    append(out, "{:<20} {}\n", done, compare::display(result.name));
     // Of a case that is new or gone the message says what to do, which has been done.
-    if (result.expected && result.measured) append(out, "{:<20} {}\n", "", result.message);
+    if (result.expected && result.measured)
+      append(out, "{:<20} {}\n", "", compare::display(result.message));
   }
   return out;
 }
@@ -72,7 +74,7 @@ std::string text(const std::vector<RegressionResult>& results, const std::string
   for (const RegressionResult& result : results) {
     const std::string verdict = fmt::format("{:<20}", compare::to_string(result.verdict));
     append(out, "{} {}\n{:<20} {}\n", verdict_word(verdict, !compare::failed(result.verdict), file),
-           result.name, "", result.message);
+           compare::display(result.name), "", compare::display(result.message));
   }
   const char* separator = "";
   for (const RegressionVerdict verdict :
@@ -117,11 +119,11 @@ std::string csv(const std::vector<RegressionResult>& results) {
       out += ",,,";
       return;
     }
-    append(out, ",{},{},{}", compare::csv_number(errors->rms), compare::csv_number(errors->max),
-           errors->tip ? compare::csv_number(*errors->tip) : "");
+    append_csv(out, ",{},{},{}", compare::csv_number(errors->rms), compare::csv_number(errors->max),
+               errors->tip ? compare::csv_number(*errors->tip) : "");
   };
   for (const RegressionResult& result : results) {
-    append(out, "{},{}", csv_field(result.name), compare::to_string(result.verdict));
+    append_csv(out, "{},{}", csv_field(result.name), compare::to_string(result.verdict));
     add(result.expected);
     add(result.measured);
     out += "\n";
@@ -133,7 +135,7 @@ void print(const RegressOptions& options, const std::vector<RegressionResult>& r
            bool updated) {
   switch (options.output.kind()) {
     case Format::json:
-      return write_output(options.output, json(results, good).dump(2) + "\n");
+      return write_output(options.output, json_text(json(results, good)));
     case Format::csv:
       return write_output(options.output, csv(results));
     case Format::text:
@@ -178,7 +180,7 @@ void run(const RegressOptions& options) {
   }
   print(options, results, good, options.update && solved);
   if (options.update) {
-    fmt::print(stderr, "dlo: {} {}\n", options.baseline, solved ? "written" : "left as it was");
+    say("{} {}", options.baseline, solved ? "written" : "left as it was");
   }
   if (!solved) throw CLI::RuntimeError(3);
   if (!good) throw CLI::RuntimeError(1);

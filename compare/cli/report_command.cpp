@@ -1,11 +1,15 @@
 #include <fmt/format.h>
 
-#include <cstdio>
+#include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "commands.hpp"
+#include "dlo/compare/display.hpp"
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/report.hpp"
 #include "dlo/compare/report_folder.hpp"
 #include "dlo/compare/report_verdict.hpp"
@@ -35,6 +39,25 @@ std::string command_line(const ReportOptions& options) {
   return line + " -o " + shell_word(options.folder);
 }
 
+/// A report replaces what is in its folder.
+void refuse_scenes_inside(const ReportOptions& options) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const fs::path folder = fs::canonical(options.folder, error);
+  if (error) return;
+  for (const std::string& scene : options.scenes) {
+    const fs::path read = fs::canonical(scene, error);
+    if (error) continue;
+    if (std::mismatch(folder.begin(), folder.end(), read.begin(), read.end()).first !=
+        folder.end()) {
+      continue;
+    }
+    throw compare::InputError(
+        fmt::format("report: -o {}: holds {}, which is read too (allowed: another folder)",
+                    options.folder, scene));
+  }
+}
+
 compare::ReportOptions report_options(const ReportOptions& options) {
   compare::ReportOptions result =
       options.quick ? compare::quick_report_options() : compare::ReportOptions{};
@@ -44,6 +67,7 @@ compare::ReportOptions report_options(const ReportOptions& options) {
 }
 
 void run(const ReportOptions& options) {
+  refuse_scenes_inside(options);
   compare::check_report_folder(options.folder);
   const std::vector<compare::SceneFile> files = compare::load_scene_files(options.scenes);
   const compare::Report report = [&] {
@@ -54,13 +78,14 @@ void run(const ReportOptions& options) {
   const compare::WrittenReport written = compare::write_report(
       report, {.version = DLO_VERSION, .command = command_line(options)}, options.folder);
   std::string out;
-  for (const std::string& sentence : compare::report_verdict(report)) append(out, "{}\n", sentence);
-  append(out, "\n{}: {} scenes, {} figures, {:.3g} s\n", written.page, report.scenes.size(),
-         written.figures, report.seconds);
+  for (const std::string& sentence : compare::report_verdict(report))
+    append(out, "{}\n", compare::display(sentence));
+  append(out, "\n{}: {} scenes, {} figures, {:.3g} s\n", compare::display(written.page),
+         report.scenes.size(), written.figures, report.seconds);
   write_output({}, out);
   if (written.figures_missing > 0) {
-    fmt::print(stderr, "dlo: {} figures are missing: {}; install gnuplot-nox\n",
-               written.figures_missing, written.why_missing);
+    say("{} figures are missing: {}; install gnuplot-nox", written.figures_missing,
+        written.why_missing);
   }
   constexpr int not_converged = 3;
   if (!report.failures.empty()) throw CLI::RuntimeError(not_converged);
@@ -93,7 +118,7 @@ void add_report(CLI::App& app) {
       ->capture_default_str();
   command->footer(
       "Exit status 3: something did not converge; the page has the rest, and says what.\n"
-      "Example:\n  dlo report data/scenes/side_load.toml --quick -o report");
+      "Example:\n  dlo report data/scenes/cable.toml --quick -o report");
   command->callback([options] { run(*options); });
 }
 

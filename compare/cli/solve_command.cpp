@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "commands.hpp"
+#include "dlo/compare/display.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solve.hpp"
 #include "dlo/compare/vtk_polyline.hpp"
@@ -30,8 +31,8 @@ std::string csv(const compare::Solution& solution) {
   std::string text = "x,y,z,s\n";
   for (std::size_t i = 0; i < solution.shape.arc_length.size(); ++i) {
     const auto point = solution.shape.points.col(static_cast<Eigen::Index>(i));
-    append(text, "{:.17g},{:.17g},{:.17g},{:.17g}\n", point.x(), point.y(), point.z(),
-           solution.shape.arc_length[i]);
+    append_csv(text, "{:.17g},{:.17g},{:.17g},{:.17g}\n", point.x(), point.y(), point.z(),
+               solution.shape.arc_length[i]);
   }
   return text;
 }
@@ -43,7 +44,7 @@ std::string coordinate(double value) {
 
 std::string text(const compare::Solution& solution, const compare::Scene& scene) {
   std::string out;
-  append(out, "scene      {}\n", scene.name);
+  append(out, "scene      {}\n", compare::display(scene.name));
   append(out, "model      {}, {}\n", compare::to_string(solution.model), solution.message);
   append(out, "Gamma      {:.6g}   (w l^3 / EI)\n", scene.gamma());
   if (solution.steps > 0) {
@@ -132,8 +133,7 @@ void require_format_for(const SolveOptions& options) {
 void warn_of_force_model_options(const SolveOptions& options) {
   const std::string names = options.overrides.force_model_options();
   if (names.empty()) return;
-  fmt::print(stderr, "dlo: {}: no effect on the shape of model {} (only on force and chain)\n",
-             names, options.model);
+  say("{}: no effect on the shape of model {} (only on force and chain)", names, options.model);
 }
 
 /// A shape that is not resolved has been shown, which is no success.
@@ -176,7 +176,7 @@ void run(const SolveOptions& options) {
   std::string content;
   switch (options.output.kind()) {
     case Format::json:
-      content = json(solutions, scene, plan(), options.all).dump(2) + "\n";
+      content = json_text(json(solutions, scene, plan(), options.all));
       break;
     case Format::csv:
       content = csv(solution);

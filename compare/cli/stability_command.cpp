@@ -8,6 +8,7 @@
 #include "commands.hpp"
 #include "comparison_text.hpp"
 #include "dlo/compare/csv.hpp"
+#include "dlo/compare/display.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/hard_case.hpp"
 #include "dlo/compare/stability.hpp"
@@ -125,7 +126,8 @@ Json cases_json(const std::vector<StabilityResult>& results) {
 
 std::string map_text(const compare::StabilityMap& map) {
   std::string out;
-  append(out, "{}: largest c_F of steps without limit or damping, from rest\n", map.scene);
+  append(out, "{}: largest c_F of steps without limit or damping, from rest\n",
+         compare::display(map.scene));
   append(out, "{:>12} {:>8} {:>15} {:>16} {:>16} {:>9} {:>17}\n", "c_c [N]", "c_h", "mode [N/m]",
          "predicted [m/N]", "measured [m/N]", "ratio", "Table 1 / limit");
   double least = INFINITY;
@@ -199,7 +201,7 @@ void run_map(StabilityOptions& options) {
   }();
   switch (options.output.kind()) {
     case Format::json:
-      return write_output(options.output, map_json(map).dump(2) + "\n");
+      return write_output(options.output, json_text(map_json(map)));
     case Format::csv:
       return write_output(options.output, map_csv(map));
     case Format::text:
@@ -223,7 +225,7 @@ void run_cases(StabilityOptions& options) {
   std::string content;
   switch (options.output.kind()) {
     case Format::json:
-      content = cases_json(results).dump(2) + "\n";
+      content = json_text(cases_json(results));
       break;
     case Format::csv:
       content = cases_csv(results);

@@ -1,14 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 
 #include "commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/output_file.hpp"
 #include "dlo/compare/sweep_file.hpp"
+#include "output.hpp"
 #include "scene_options.hpp"
 #include "terminal.hpp"
 
@@ -33,7 +33,7 @@ std::optional<compare::Shard> chosen_shard(const std::string& text) {
   if (!text.empty()) return compare::parse_shard(text);
   std::optional<compare::Shard> shard =
       compare::shard_from_environment([](const char* name) { return std::getenv(name); });
-  if (shard) fmt::print(stderr, "dlo: shard {} (from {})\n", shard->name(), shard->source);
+  if (shard) say("shard {} (from {})", shard->name(), shard->source);
   return shard;
 }
 
@@ -60,26 +60,18 @@ compare::Sweep sweep_of(const SweepOptions& options) {
 
 void warn_of_unresolved(const compare::SweepOutcome& outcome, const std::string& file) {
   if (outcome.unresolved == 0) return;
-  fmt::print(stderr, "dlo: {}: {} of {} scenes have no result, the column status says why\n", file,
-             outcome.unresolved, outcome.rows);
+  say("{}: {} of {} scenes have no result, the column status says why", file, outcome.unresolved,
+      outcome.rows);
 }
 
 void print_sweep(const compare::Sweep& sweep, const std::optional<compare::Shard>& shard,
                  int threads) {
-  const auto print = [](const std::string& text) {
-    if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() &&
-        std::fflush(stdout) == 0) {
-      return;
-    }
-    throw compare::InputError(
-        fmt::format("standard output: cannot be written ({})", std::strerror(errno)));
-  };
-  if (shard) print(compare::sweep_identity(sweep, shard));
-  print(sweep.header());
+  if (shard) write_standard_output(compare::sweep_identity(sweep, shard));
+  write_standard_output(sweep.header());
   const std::int64_t rows = sweep.grid().size();
   compare::SweepOutcome outcome;
   const auto print_row = [&](const std::string& line) {
-    print(line);
+    write_standard_output(line);
     ++outcome.rows;
     if (!line.ends_with(",ok\n")) ++outcome.unresolved;
   };
@@ -105,7 +97,7 @@ void sort_words(SweepOptions& options) {
   options.files.erase(fields, options.files.end());
 }
 
-void run(SweepOptions options) {
+void run(SweepOptions options, const std::vector<std::string>& inputs) {
   if (options.merge) return run_merge(options);
   if (!options.vary.empty()) sort_words(options);
   if (options.files.size() != 1) {
@@ -120,17 +112,32 @@ void run(SweepOptions options) {
   const std::optional<compare::Shard> shard = chosen_shard(options.shard);
   if (options.output.empty()) return print_sweep(sweep, shard, options.threads);
   const std::string path = output_path(options.output, shard);
+  check_output("--output", path, inputs);
+  const compare::OutputTarget target = compare::output_target(path);
+  if (target.kind == compare::OutputTarget::Kind::file) {
+    check_output("--output", target.path + ".part", inputs);
+  }
+  bool was_resumed = false;
   const compare::SweepOutcome outcome = [&] {
     ProgressBar bar("sweep");
     const compare::SweepFileOptions file_options{
         .threads = options.threads,
         .restart = options.restart,
-        .progress = [&](std::int64_t done, std::int64_t rows) {
-          const std::int64_t rarely = rows / 1000 + 1;
-          if (done % rarely == 0 || done == rows) bar.show(done, rows);
-        }};
+        .progress =
+            [&](std::int64_t done, std::int64_t rows) {
+              const std::int64_t rarely = rows / 1000 + 1;
+              if (done % rarely == 0 || done == rows) bar.show(done, rows);
+            },
+        .resumed =
+            [&](std::int64_t rows) {
+              was_resumed = true;
+              bar.remark(fmt::format("{}: resumed: {} rows kept", path, rows));
+            }};
     return compare::write_sweep(sweep, shard, path, file_options);
   }();
+  if (shard && outcome.rows > 0 && outcome.found == outcome.rows && !was_resumed) {
+    say("{}: finished already, {} rows", path, outcome.rows);
+  }
   warn_of_unresolved(outcome, path);
 }
 
@@ -187,7 +194,7 @@ void add_sweep(CLI::App& app) {
       "  dlo sweep data/scenes/cable.toml --vary gamma=log:1:10:9 --shard 2/2 -o "
       "'part.{shard}.csv'\n"
       "  dlo sweep --merge part.*-of-*.csv -o all.csv");
-  command->callback([options] { run(*options); });
+  command->callback([options, command] { run(*options, input_files(*command)); });
 }
 
 }  // namespace dlo::cli

@@ -4,10 +4,12 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <string_view>
 #include <utility>
+
+#include "dlo/compare/display.hpp"
+#include "output.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -35,7 +37,7 @@ ProgressBar::ProgressBar(std::string what)
 }
 
 ProgressBar::~ProgressBar() {
-  if (visible_) std::fputs("\r\x1b[K", stderr);
+  if (visible_) write_standard_error("\r\x1b[K");
 }
 
 void ProgressBar::show(std::int64_t done, std::int64_t total) {
@@ -47,16 +49,22 @@ void ProgressBar::show(std::int64_t done, std::int64_t total) {
 }
 
 void ProgressBar::stage(const std::string& text) {
-  if (visible_) draw(text.empty() ? what_ + " ..." : fmt::format("{}: {} ...", what_, text));
+  if (visible_)
+    draw(text.empty() ? what_ + " ..." : fmt::format("{}: {} ...", what_, compare::display(text)));
+}
+
+void ProgressBar::remark(const std::string& line) {
+  if (visible_) write_standard_error("\r\x1b[K");
+  say_line(line);
+  drawn_.clear();
 }
 
 void ProgressBar::draw(const std::string& line) {
   // A line that wraps could not be erased.
-  std::string shown = line.substr(0, columns_of_terminal() - 1);
+  std::string shown = compare::valid_utf8(line.substr(0, columns_of_terminal() - 1));
   if (shown == drawn_) return;
   drawn_ = std::move(shown);
-  fmt::print(stderr, "\r{}\x1b[K", drawn_);
-  std::fflush(stderr);
+  write_standard_error(fmt::format("\r{}\x1b[K", drawn_));
 }
 
 std::string verdict_word(const std::string& word, bool good, const std::string& file) {

@@ -3,6 +3,9 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <stdexcept>
+#include <system_error>
+#include <typeinfo>
 
 namespace dlo::compare {
 
@@ -11,6 +14,20 @@ namespace dlo::compare {
 inline int arena_threads(int threads) {
   const int available = tbb::this_task_arena::max_concurrency();
   return threads > 0 ? std::min(threads, available) : available;
+}
+
+/// Runs a function in an arena. That the system gives no more threads oneTBB says with a bare
+/// std::runtime_error, which is no type that anything else throws here.
+/// @throws std::system_error then
+template <typename Function>
+void execute(tbb::task_arena& arena, const Function& function) {
+  try {
+    arena.execute(function);
+  } catch (const std::runtime_error& error) {
+    if (typeid(error) != typeid(std::runtime_error)) throw;
+    throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again),
+                            "a worker thread");
+  }
 }
 
 }  // namespace dlo::compare

@@ -16,8 +16,8 @@ std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
-std::string csv_number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.10g}", value + 0.0) : std::string();
+std::string csv_number(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value + 0.0, digits) : std::string();
 }
 
 }  // namespace dlo::compare

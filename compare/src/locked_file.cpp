@@ -11,28 +11,29 @@
 #include <cstring>
 
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/output_file.hpp"
 
 namespace dlo::compare {
 
 LockedFile::LockedFile(const std::string& path) : path_(path) {
   for (;;) {
     descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    if (descriptor_ < 0) fail(errno);
+    if (descriptor_ < 0) refuse(errno);
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
       ::close(descriptor_);
-      if (error != EWOULDBLOCK) fail(error);
+      if (error != EWOULDBLOCK) refuse(error);
       throw InputError(fmt::format(
           "{}: another process is writing it (allowed: one file for each process)", path));
     }
     // Between opening and locking, the process that had it may have renamed it.
     struct stat locked {};
     struct stat named {};
-    if (::fstat(descriptor_, &locked) == 0 && ::stat(path.c_str(), &named) == 0 &&
-        locked.st_ino == named.st_ino && locked.st_dev == named.st_dev) {
-      return;
-    }
+    const bool same = ::fstat(descriptor_, &locked) == 0 && ::stat(path.c_str(), &named) == 0 &&
+                      locked.st_ino == named.st_ino && locked.st_dev == named.st_dev;
+    if (same && S_ISREG(locked.st_mode)) return;
     ::close(descriptor_);
+    if (same) throw InputError(fmt::format("{}: cannot be written (it is no regular file)", path));
   }
 }
 
@@ -64,8 +65,12 @@ void LockedFile::remove() {
   if (::unlink(path_.c_str()) != 0) fail(errno);
 }
 
-void LockedFile::fail(int error) const {
+void LockedFile::refuse(int error) const {
   throw InputError(fmt::format("{}: cannot be written ({})", path_, std::strerror(error)));
+}
+
+void LockedFile::fail(int error) const {
+  throw OutputError(fmt::format("{}: cannot be written ({})", path_, std::strerror(error)));
 }
 
 }  // namespace dlo::compare

@@ -7,10 +7,10 @@
 namespace dlo::compare {
 
 /// A file that is written by one process at a time. Created if it is not there, never truncated by
-/// opening it; its end is where writing goes on. Errors are InputErrors that name the file.
+/// opening it; its end is where writing goes on. Errors are OutputErrors that name the file.
 class LockedFile {
  public:
-  /// @throws InputError if another process holds it
+  /// @throws InputError if it cannot be opened, is no regular file, or another process holds it
   explicit LockedFile(const std::string& path);
   ~LockedFile();
   LockedFile(const LockedFile&) = delete;
@@ -27,6 +27,7 @@ class LockedFile {
   void remove();
 
  private:
+  [[noreturn]] void refuse(int error) const;
   [[noreturn]] void fail(int error) const;
 
   std::string path_;

@@ -1,10 +1,12 @@
 #include "markup.hpp"
 
+#include "dlo/compare/display.hpp"
+
 namespace dlo::compare {
 
 std::string escape_markup(const std::string& text) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : valid_utf8(text)) {
     switch (c) {
       case '&':
         result += "&amp;";

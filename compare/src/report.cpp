@@ -124,7 +124,7 @@ void add_scenes(const std::vector<SceneFile>& files, std::size_t of_the_paper, R
   std::vector<SceneTask> tasks(files.size());
   for (std::size_t i = 0; i < files.size(); ++i) tasks[i].report.file = files[i];
   tbb::task_arena arena(arena_threads(report.options.threads));
-  arena.execute([&] {
+  execute(arena, [&] {
     tbb::parallel_for(std::size_t{0}, tasks.size(),
                       [&](std::size_t i) { run_task(tasks[i], report.options, i < of_the_paper); });
   });

@@ -10,13 +10,16 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <set>
 #include <system_error>
 
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/output_file.hpp"
 #include "input_file.hpp"
 #include "report_figures.hpp"
 #include "report_page.hpp"
+#include "temporary_path.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -63,7 +66,7 @@ std::string foreign_file(const fs::path& folder) {
 }
 
 [[noreturn]] void fail_to_write(const fs::path& path, const std::string& why) {
-  throw InputError(fmt::format("report: {}: cannot be written ({})", path.string(), why));
+  throw OutputError(fmt::format("report: {}: cannot be written ({})", path.string(), why));
 }
 
 /// A new folder beside the target, for nobody else and gone when it is left. The report is made in
@@ -75,9 +78,12 @@ class TemporaryFolder {
     std::string name = target.string() + ".XXXXXX";
     if (::mkdtemp(name.data()) == nullptr) fail_to_write(target, std::strerror(errno));
     path_ = name;
+    temporary_ = std::make_unique<TemporaryPath>(name);
     std::error_code error;
     fs::create_directory(report(), error);
-    if (error) fail_to_write(report(), error.message());
+    if (!error) return;
+    ::rmdir(path_.c_str());
+    fail_to_write(report(), error.message());
   }
   ~TemporaryFolder() {
     std::error_code ignored;
@@ -109,6 +115,8 @@ class TemporaryFolder {
     const fs::path old = path_ / "old";
     std::error_code error;
     const bool replace = fs::exists(to);
+    // A signal must not take the old report with it.
+    temporary_->keep();
     if (replace) fs::rename(to, old, error);
     if (error) fail_to_write(to, error.message());
     fs::rename(report(), to, error);
@@ -122,6 +130,7 @@ class TemporaryFolder {
 
  private:
   fs::path path_;
+  std::unique_ptr<TemporaryPath> temporary_;
   std::set<std::string> files_;
 };
 
@@ -205,7 +214,11 @@ void check_report_folder(const std::string& folder) {
     }
   }
   // The one proof that a report can be put here, also on a full or read-only file system.
-  const TemporaryFolder proof(path);
+  try {
+    const TemporaryFolder proof(path);
+  } catch (const OutputError& problem) {
+    throw InputError(problem.what());
+  }
 }
 
 WrittenReport write_report(const Report& report, const ReportMaker& maker,

@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "builtin_data.hpp"
+#include "dlo/compare/display.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/nearest_word.hpp"
 #include "input_file.hpp"
@@ -259,7 +260,7 @@ Scene read_scene(const toml::table& root, const std::string& file,
   StrictTable table(root, "", file);
   Scene scene;
   scene.file = file;
-  scene.name = table.optional_text("name").value_or(file);
+  scene.name = table.optional_text("name").value_or(valid_utf8(file));
   scene.gravity = table.optional_vector("gravity", Dimension::acceleration).value_or(scene.gravity);
 
   if (!table.has("rod")) {

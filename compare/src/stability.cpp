@@ -182,7 +182,7 @@ std::vector<StabilityResult> stability(const StabilityOptions& options) {
     counter.add_one();
   };
   tbb::task_arena arena(arena_threads(options.threads));
-  arena.execute([&] {
+  execute(arena, [&] {
     tbb::parallel_for(std::size_t{0}, cases.size(), find_reference);
     tbb::parallel_for(std::size_t{0}, results.size(), run);
   });

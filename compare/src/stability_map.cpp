@@ -134,7 +134,7 @@ class Trials {
       }
       counter_.add_one();
     };
-    arena_.execute([&] { tbb::parallel_for(std::size_t{0}, batch.blocks(), run_block); });
+    execute(arena_, [&] { tbb::parallel_for(std::size_t{0}, batch.blocks(), run_block); });
     return outcomes;
   }
 

@@ -9,9 +9,13 @@
 #include <algorithm>
 #include <new>
 #include <numeric>
+#include <stdexcept>
+#include <system_error>
 
+#include "arena.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/csv.hpp"
+#include "dlo/compare/display.hpp"
 #include "dlo/compare/error.hpp"
 #include "fingerprint.hpp"
 
@@ -63,12 +67,6 @@ Model solver_of(SweepModel model) {
       break;
   }
   return Model::energy;
-}
-
-std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < ' '; }, ' ');
-  return text;
 }
 
 }  // namespace
@@ -177,16 +175,29 @@ std::string Sweep::compared(const Scene& scene, const Solution& solution) const 
                      to_string(modulus.optimum), energy.evaluations);
 }
 
+std::string Sweep::without_results(const std::string& status) const {
+  const std::string columns = (gamma_varied_ ? "" : "gamma,") + result_columns(model_);
+  const auto empty = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ','));
+  return std::string(empty, ',') + csv_field(display(status)) + "\n";
+}
+
 std::string Sweep::row(std::int64_t row) const {
   const std::string start = row_start(row);
   try {
     return start + results(scene(row)) + "ok\n";
   } catch (const std::bad_alloc&) {
     throw;
+  } catch (const std::system_error&) {
+    throw;  // no threads: the machine's, not the scene's
+  } catch (const InputError& error) {
+    return start + without_results(error.what());
+  } catch (const ConvergenceError& error) {
+    return start + without_results(error.what());
+  } catch (const std::invalid_argument& error) {
+    return start + without_results(error.what());
   } catch (const std::exception& error) {
-    const std::string columns = (gamma_varied_ ? "" : "gamma,") + result_columns(model_);
-    const auto empty = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ','));
-    return start + std::string(empty, ',') + csv_field(one_line(error.what())) + "\n";
+    return start +
+           without_results(std::string("internal error, a mistake of dlo: ") + error.what());
   }
 }
 
@@ -203,7 +214,7 @@ void Sweep::run(RowRange rows, int threads,
     return next++;
   };
   const auto compute = [this](std::int64_t number) { return row(number); };
-  arena.execute([&] {
+  execute(arena, [&] {
     tbb::parallel_pipeline(
         window,
         tbb::make_filter<void, std::int64_t>(tbb::filter_mode::serial_in_order, next_row) &

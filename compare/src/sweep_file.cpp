@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/output_file.hpp"
 #include "locked_file.hpp"
 #include "sweep_lines.hpp"
 
@@ -69,6 +70,28 @@ Remains read_remains(const Sweep& sweep, const SweepHead& head, const std::strin
   return remains;
 }
 
+void count_row(std::string_view line, const SweepHead& head, const SweepFileOptions& options,
+               SweepOutcome& outcome) {
+  ++outcome.rows;
+  if (!row_is_ok(line.substr(0, line.size() - 1))) ++outcome.unresolved;
+  if (options.progress) options.progress(outcome.rows, head.range.last - head.range.first);
+}
+
+/// Into what is no file: nothing stays there to go on with.
+SweepOutcome stream_rows(const Sweep& sweep, const std::optional<Shard>& shard,
+                         const std::string& name, const SweepFileOptions& options) {
+  const SweepHead head = head_of(sweep, shard);
+  OutputFile file(name);
+  file.append(shard ? head.line() + sweep.header() : sweep.header());
+  SweepOutcome outcome;
+  sweep.run(head.range, options.threads, [&](const std::string& line) {
+    file.append(line);
+    count_row(line, head, options, outcome);
+  });
+  file.finish();
+  return outcome;
+}
+
 void compute_rows(const Sweep& sweep, const SweepHead& head, const SweepFileOptions& options,
                   LockedFile& file, SweepOutcome& outcome) {
   using Clock = std::chrono::steady_clock;
@@ -80,9 +103,7 @@ void compute_rows(const Sweep& sweep, const SweepHead& head, const SweepFileOpti
       file.sync();
       synced = Clock::now();
     }
-    ++outcome.rows;
-    if (!row_is_ok(std::string_view(line).substr(0, line.size() - 1))) ++outcome.unresolved;
-    if (options.progress) options.progress(outcome.rows, head.range.last - head.range.first);
+    count_row(line, head, options, outcome);
   };
   sweep.run({head.range.first + outcome.found, head.range.last}, options.threads, take);
   file.sync();
@@ -105,13 +126,14 @@ std::string sweep_identity(const Sweep& sweep, const std::optional<Shard>& shard
 }
 
 SweepOutcome write_sweep(const Sweep& sweep, const std::optional<Shard>& shard,
-                         const std::string& path, const SweepFileOptions& options) {
+                         const std::string& name, const SweepFileOptions& options) {
   const SweepHead head = head_of(sweep, shard);
+  const OutputTarget target = output_target(name);
+  if (target.kind != OutputTarget::Kind::file) return stream_rows(sweep, shard, name, options);
+  std::error_code unknown;
+  const bool link = std::filesystem::is_symlink(name, unknown);
+  const std::string path = link ? target.path : name;
   const std::string part = path + ".part";
-  std::error_code unknown;  // writing tells what is wrong with a name
-  if (std::filesystem::is_directory(path, unknown)) {
-    throw InputError(fmt::format("{}: cannot be written (it is a directory)", path));
-  }
   if (shard && !options.restart && std::filesystem::exists(path, unknown)) {
     return finished_shard(sweep, head, path);
   }
@@ -120,6 +142,7 @@ SweepOutcome write_sweep(const Sweep& sweep, const std::optional<Shard>& shard,
   file.cut(remains.bytes);
   if (remains.bytes == 0) file.append(head.line() + sweep.header());
   SweepOutcome outcome{remains.rows, remains.rows, remains.unresolved};
+  if (remains.rows > 0 && options.resumed) options.resumed(remains.rows);
   compute_rows(sweep, head, options, file, outcome);
   if (shard) {
     file.rename(path);

@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/output_file.hpp"
 #include "dlo/compare/sweep_file.hpp"
-#include "locked_file.hpp"
 #include "sweep_lines.hpp"
 
 namespace dlo::compare {
@@ -75,7 +75,7 @@ void require_whole(const std::vector<ShardFile>& shards) {
                                end - 1, front.head.rows, shards.size()));
 }
 
-void append_rows(const ShardFile& shard, LockedFile& target, SweepOutcome& outcome) {
+void append_rows(const ShardFile& shard, OutputFile& target, SweepOutcome& outcome) {
   LineReader reader(shard.path);
   std::string line;
   for (int preamble = 0; preamble < 2; ++preamble) (void)reader.next(line);
@@ -117,18 +117,11 @@ SweepOutcome merge_sweep(const std::vector<std::string>& files, const std::strin
            std::pair(b.head.range.first, b.head.range.last);
   });
   require_whole(shards);
-  LockedFile target(path + ".tmp");
+  OutputFile target(path);
   SweepOutcome outcome;
-  try {
-    target.cut(0);
-    target.append(shards.front().columns + "\n");
-    for (const ShardFile& shard : shards) append_rows(shard, target, outcome);
-    target.sync();
-    target.rename(path);
-  } catch (...) {
-    target.remove();
-    throw;
-  }
+  target.append(shards.front().columns + "\n");
+  for (const ShardFile& shard : shards) append_rows(shard, target, outcome);
+  target.finish();
   return outcome;
 }
 

@@ -10,10 +10,15 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <random>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include "command_fixture.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solve.hpp"
 
 namespace {
 
@@ -114,6 +119,67 @@ TEST_F(SweepCommand, KilledTwentyTimesGivesTheFileOfAnUnbrokenRun) {
   ASSERT_EQ(run("sweep " + steel() + " --vary " + vary + " -o " + path("killed.csv")).status, 0);
   expect_same_files("whole.csv", "killed.csv");
   EXPECT_FALSE(std::filesystem::exists(path("killed.csv.part")));
+}
+
+TEST_F(SweepCommand, MergedShardsHoldEveryRowOfManyBlocks) {
+  // Each shard is longer than the blocks of 64 KiB that merging writes.
+  constexpr int rows = 2401;
+  const std::string vary = "gamma=lin:1:17:2401";
+  for (const char* shard : {"1/2", "2/2"}) {
+    const std::string line = words({"sweep", steel(), "--vary", vary, "--shard", shard, "-o"});
+    ASSERT_EQ(run(line + path("part.{shard}.csv")).status, 0);
+  }
+  for (const char* part : {"part.1-of-2.csv", "part.2-of-2.csv"}) {
+    EXPECT_GT(std::filesystem::file_size(path(part)), 65536U + 1000U);
+  }
+  ASSERT_EQ(run("sweep --merge " + path("part.*") + " -o " + path("all.csv")).status, 0);
+  std::istringstream lines(read(path("all.csv")));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "row,gamma,tip_x_m,tip_y_m,tip_z_m,energy_J,evaluations,terms,status");
+  const dlo::compare::Scene scene = dlo::compare::load_scene(steel());
+  int count = 0;
+  for (; std::getline(lines, line); ++count) {
+    const double gamma = 1 + 16. * count / (rows - 1);
+    std::istringstream fields(line);
+    std::vector<double> numbers;
+    for (std::string field; numbers.size() < 8 && std::getline(fields, field, ',');) {
+      numbers.push_back(std::stod(field));
+    }
+    ASSERT_EQ(numbers.size(), 8U) << line;
+    EXPECT_EQ(numbers[0], count);
+    EXPECT_NEAR(numbers[1], gamma, 1e-10 * gamma);
+    EXPECT_TRUE(line.ends_with(",ok")) << line;
+    if (count % 80 != 0) continue;
+    // A single solve of the same scene.
+    dlo::compare::Scene alone = scene;
+    alone.gravity *= gamma / scene.gamma();
+    const dlo::compare::Solution solution =
+        dlo::compare::solve(alone, dlo::compare::Model::energy, {}, {alone.length});
+    const Eigen::Vector3d tip = solution.shape.points.rightCols<1>();
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(numbers[static_cast<std::size_t>(k) + 2], tip[k], 1e-9) << line;
+    }
+    EXPECT_NEAR(numbers[5], solution.energy.total(), 1e-9) << line;
+  }
+  EXPECT_EQ(count, rows);
+}
+
+TEST_F(SweepCommand, SaysThatItGoesOn) {
+  const std::string line = "sweep " + steel() + " --vary gamma=1,2,3,4 --shard 1/1 -o ";
+  ASSERT_EQ(run(line + path("a.csv")).status, 0);
+  const std::string whole = read(path("a.csv"));
+  // Two rows and a half are left of a run that was killed.
+  const std::string part = whole.substr(0, whole.find("\n2,") + 20);
+  std::ofstream(path("b.csv.part")) << part;
+  const dlo::test::Outcome result = run(line + path("b.csv"));
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err, "dlo: " + path("b.csv") + ": resumed: 2 rows kept\n");
+  EXPECT_EQ(read(path("b.csv")), whole);
+  // A finished shard is not computed again.
+  EXPECT_EQ(run(line + path("b.csv")).err,
+            "dlo: " + path("b.csv") + ": finished already, 4 rows\n");
+  EXPECT_EQ(run(line + path("b.csv") + " --restart").err, "");
 }
 
 TEST_F(SweepCommand, RanksOfMpirunAreShards) {

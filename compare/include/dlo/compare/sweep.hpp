@@ -77,6 +77,7 @@ class Sweep {
   [[nodiscard]] Scene scene(std::int64_t row) const;
   [[nodiscard]] std::string results(const Scene& scene) const;
   [[nodiscard]] std::string compared(const Scene& scene, const Solution& solution) const;
+  [[nodiscard]] std::string without_results(const std::string& status) const;
   void require_one_scene() const;
 
   SceneTemplate scene_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct SweepFileOptions {
   bool restart = false;  ///< throw away what an earlier run has left
   /// Called after every row with the rows that are done and all rows.
   Progress progress;
+  /// Called once, before anything is computed, with the rows that an earlier run has left, if any.
+  std::function<void(std::int64_t rows)> resumed;
 };
 
 /// First line of a file that is not a whole sweep: fingerprints of the scene (with its name and the
@@ -36,16 +39,19 @@ struct SweepFileOptions {
 /// finds such a file goes on behind its last whole line, a torn one is cut off; so a run may be
 /// killed at any moment and no row is lost or written twice. The file is locked while a process
 /// writes it. In the end a whole sweep is put into `path` at once, without its first line; a shard
-/// keeps it. A shard that is in `path` already is left as it is.
-/// @throws InputError if the files cannot be written, belong to another sweep or to a process that
-/// still writes them
+/// keeps it. A shard that is in `path` already is left as it is. Links are followed, `.part` is
+/// then beside their target. A device or a pipe gets the rows as they come and nothing is kept.
+/// @throws InputError if `path` is refused by output_target(), or if the files cannot be opened,
+/// belong to another sweep or to a process that still writes them;  @throws OutputError if writing
+/// fails
 SweepOutcome write_sweep(const Sweep& sweep, const std::optional<Shard>& shard,
                          const std::string& path, const SweepFileOptions& options = {});
 
 /// Puts the shards of a sweep together, in any order of files. The result is what one run over the
 /// whole grid would have written.
 /// @throws InputError naming the file, and nothing is written, if a file is no shard, is damaged or
-/// not finished, if shards belong to different sweeps, overlap, or leave rows out
+/// not finished, if shards belong to different sweeps, overlap, or leave rows out, or if `path` is
+/// refused by output_target();  @throws OutputError if writing fails
 SweepOutcome merge_sweep(const std::vector<std::string>& files, const std::string& path);
 
 }  // namespace dlo::compare

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <string>
+
+namespace dlo::compare {
+
+/// A file or folder that goes when the process is ended by a signal, see
+/// remove_temporaries_at_signals(). Beyond a fixed number at a time they stay.
+class TemporaryPath {
+ public:
+  /// @param path  absolute, or relative to a working directory that stays
+  explicit TemporaryPath(const std::string& path);
+  ~TemporaryPath();
+  TemporaryPath(const TemporaryPath&) = delete;
+  TemporaryPath& operator=(const TemporaryPath&) = delete;
+  TemporaryPath(TemporaryPath&&) = delete;
+  TemporaryPath& operator=(TemporaryPath&&) = delete;
+
+  /// From now on a signal leaves it.
+  void keep();
+
+ private:
+  int slot_ = -1;
+};
+
+}  // namespace dlo::compare
