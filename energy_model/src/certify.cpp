@@ -1,7 +1,6 @@
 #include "certify.hpp"
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
@@ -25,7 +24,7 @@ double newton_step(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobi
   right << -gradient, -residual;
   Eigen::VectorXd step = system.partialPivLu().solve(right);
   if (!((system * step - right).norm() <= 1e-6 * right.norm()) || !(step.norm() <= largest_step)) {
-    step = system.completeOrthogonalDecomposition().solve(right);
+    step = newton_step_across_neutral(system, right);
   }
   return step.head(n).norm();
 }

@@ -7,8 +7,9 @@
 
 #include "assemble.hpp"
 #include "legendre.hpp"
-#include "polygon_fields.hpp"
+#include "lowest_combinations.hpp"
 #include "penetration.hpp"
+#include "polygon_fields.hpp"
 #include "require.hpp"
 #include "span_solver.hpp"
 #include "split.hpp"
@@ -50,9 +51,16 @@ struct PlacedSolution {
 
 std::vector<Equilibrium> combine(const Problem& problem,
                                  const std::vector<std::vector<PlacedSolution>>& solutions) {
+  std::vector<std::vector<SpanCandidate>> candidates;
+  for (const std::vector<PlacedSolution>& of_span : solutions) {
+    std::vector<SpanCandidate>& own = candidates.emplace_back();
+    for (const PlacedSolution& found : of_span) {
+      own.push_back({succeeded(found.solution.status), found.solution.energy});
+    }
+  }
+  const Combinations lowest = lowest_combinations(candidates, most_combinations);
   std::vector<Equilibrium> result;
-  std::vector<std::size_t> choice(solutions.size(), 0);
-  for (bool more = true; more && result.size() < most_combinations;) {
+  for (const std::vector<std::size_t>& choice : lowest.choices) {
     std::vector<PlacedSpan> placed;
     std::vector<const SpanSolution*> chosen;
     for (std::size_t i = 0; i < solutions.size(); ++i) {
@@ -61,16 +69,15 @@ std::vector<Equilibrium> combine(const Problem& problem,
     }
     result.push_back(assemble(problem, placed, chosen));
     judge_contact(problem, chosen, result.back());
-    more = false;
-    for (std::size_t i = 0; i < choice.size() && !more; ++i) {
-      more = ++choice[i] < solutions[i].size();
-      if (!more) choice[i] = 0;
-    }
   }
   std::stable_sort(result.begin(), result.end(), [](const Equilibrium& a, const Equilibrium& b) {
     if (succeeded(a.status) != succeeded(b.status)) return succeeded(a.status);
     return a.energy.total() < b.energy.total();
   });
+  if (lowest.truncated) {
+    result.back().message += "; the " + std::to_string(most_combinations) +
+                             " lowest combinations of the spans' equilibria, there are more";
+  }
   return result;
 }
 

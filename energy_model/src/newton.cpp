@@ -1,8 +1,9 @@
 #include "newton.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+
+#include "stability.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -74,8 +75,13 @@ void Newton::solve() {
   step_ = lu_.solve(right_);
   // A neutral direction leaves the system singular; least squares stands still along it.
   if (!((system_ * step_ - right_).norm() <= 1e-6 * right_.norm()) || step_.norm() > 1e3) {
-    step_ = system_.completeOrthogonalDecomposition().solve(right_);
+    step_ = newton_step_across_neutral(system_, right_);
   }
+}
+
+void Newton::stand_still_where_neutral() {
+  right_ << -gradient_, -residual_;
+  step_ = newton_step_across_neutral(system_, right_);
 }
 
 void Newton::move(SpanSolution& solution, double length) {
@@ -154,7 +160,13 @@ void Newton::polish(SpanSolution& solution, double load) {
     const double moved = step_.head(gradient_.size()).norm();
     solution.next_step = moved;
     const bool small = size <= last_residual * (1 + load);
-    if (moved <= finest_step || (walls && small)) return finish();
+    if (moved <= finest_step) return finish();
+    if (walls && small) {
+      // One more step for the multipliers of the walls, which are updated from what it leaves.
+      move(solution, 1);
+      size = evaluate(solution);
+      return finish();
+    }
     const double before = size;
     if (walls) {
       move(solution, step_length(solution, size));
@@ -163,8 +175,12 @@ void Newton::polish(SpanSolution& solution, double load) {
       size = cut_move(solution, size);
     }
     if (!(size < before) && !walls) {
-      // Rounding is all that is left.
-      if (small && moved <= coarsest_step) return finish();
+      // Rounding is all that is left; what it moves a neutral direction by means nothing.
+      if (small && moved > coarsest_step && !definite_ && !factored) {
+        stand_still_where_neutral();
+        solution.next_step = step_.head(gradient_.size()).norm();
+      }
+      if (small && solution.next_step <= coarsest_step) return finish();
       if (factored) {
         // The factor was another point's.
         factored = false;

@@ -29,6 +29,7 @@ class Newton {
   [[nodiscard]] double evaluate(SpanSolution& solution);
   void factor(SpanSolution& solution);
   void solve();
+  void stand_still_where_neutral();
   void move(SpanSolution& solution, double length);
   [[nodiscard]] double step_length(SpanSolution& solution, double size);
   [[nodiscard]] double step_length_by_energy(SpanSolution& solution);

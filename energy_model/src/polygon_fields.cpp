@@ -42,9 +42,8 @@ std::vector<TangentField> polygon_fields(const Problem& problem, const PlacedSpa
   std::vector<RelaxedPolygon> minima;
   for (const bool planar : {true, false}) {
     if ((planar && !own->plane) || deadline.passed()) continue;
-    for (RelaxedPolygon& polygon : polygon_minima(*own, mesh, planar)) {
-      minima.push_back(std::move(polygon));
-    }
+    PolygonMinima found = polygon_minima(*own, mesh, planar, deadline);
+    for (RelaxedPolygon& polygon : found.found) minima.push_back(std::move(polygon));
   }
   std::stable_sort(minima.begin(), minima.end(),
                    [](const auto& a, const auto& b) { return a.energy < b.energy; });

@@ -65,6 +65,8 @@ class Search {
  public:
   Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
       : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
+    // Where contact begins inside a piece it takes more terms than the piece's length tells.
+    if (!span.walls.empty()) longest_piece_ = span.length;
     for (const Piece& piece : pieces_of(span)) {
       longest_piece_ = std::max(longest_piece_, piece.length);
     }
@@ -108,6 +110,9 @@ class Search {
     return options_.terms > 0 ? options_.terms
                               : std::max(first_terms(load_, longest_piece_), options_.least_terms);
   }
+
+  /// Evaluations of a residual homotopy, of which each step factors a matrix.
+  [[nodiscard]] int most_led() const { return std::min(options_.max_evaluations, 300); }
 
   [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
 
@@ -180,7 +185,7 @@ class Search {
       const bool more = 2 * solution.model->size() <= most_descended && options_.terms == 0;
       if (more && !out_of_time()) continue;
       solution.x = start;
-      workspace_.newton().lead(solution, load_, options_.max_evaluations);
+      workspace_.newton().lead(solution, load_, most_led());
       return solution;
     }
   }
@@ -296,7 +301,7 @@ class Search {
     if (descends && (!finer.is_equilibrium() || finer.model->has_walls())) descend(finer);
     if (!finer.is_equilibrium() && !finer.model->has_walls()) {
       finer.x = finer.model->adopt(*solution.model, solution.x);
-      workspace_.newton().lead(finer, load_, options_.max_evaluations);
+      workspace_.newton().lead(finer, load_, most_led());
     }
     finer.evaluations += solution.evaluations;
     return finer;

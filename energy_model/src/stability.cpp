@@ -3,8 +3,16 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <algorithm>
 
 namespace dlo::energy_model {
+
+Eigen::VectorXd newton_step_across_neutral(const Eigen::MatrixXd& system,
+                                           const Eigen::VectorXd& right) {
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(system.rows(), system.cols());
+  solver.setThreshold(neutral / std::max(1.0, system.cwiseAbs().maxCoeff()));
+  return solver.compute(system).solve(right);
+}
 
 Eigen::MatrixXd free_directions(const Eigen::MatrixXd& jacobian, Eigen::Index size) {
   if (jacobian.rows() == 0) return Eigen::MatrixXd::Identity(size, size);

@@ -110,7 +110,8 @@ TEST_F(DecimalComma, ChangesNothingThatIsWritten) {
 }
 
 TEST_F(DecimalComma, OfTheUsersEnvironmentChangesNoCommand) {
-  const std::string solve = " " + dlo::test::Command::words({"solve", scene(comma_scene)});
+  std::string solve(" ");
+  solve.append(dlo::test::Command::words({"solve", scene(comma_scene)}));
   for (const std::string format : {"text", "json", "csv", "vtk"}) {
     const std::string arguments = solve + "--samples 5 --target-error 0.5% --format " + format;
     const auto without_time = [](std::string text) {
