@@ -1,5 +1,6 @@
 #include "newton.hpp"
 
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
