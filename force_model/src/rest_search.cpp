@@ -56,7 +56,8 @@ bool RestSearch::count(const StepResult& step) {
 }
 
 bool RestSearch::rests(const EquilibriumCheck& check) const {
-  return check.stable && check.proven && result_.remaining_error < target_;
+  return check.stable && check.proven &&
+         result_.remaining_error < std::max(target_, check.rounding_error);
 }
 
 EquilibriumCheck RestSearch::measure(const MovingShape& shape) {
@@ -83,7 +84,8 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
     return {};
   }
   // The chord of a contact that opens and closes proves nothing; calm it all the same.
-  bounces_ = due && check.stable && check.remaining_error < target_;
+  constexpr double nearly = 100;
+  bounces_ = due && check.stable && check.remaining_error < nearly * target_;
   if (bounces_) next_measurement_ = result_.steps + descent_steps;
   if (!seems_at_rest) return {};
   next_check_ = result_.steps + std::max(block_steps, result_.steps / 10);

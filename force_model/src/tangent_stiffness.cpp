@@ -311,7 +311,16 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
     }
     slow = slow_modes(K, factor);
     result.neutral_modes = static_cast<int>((slow.eigenvalues.array() <= rounding).count());
-    if (result.neutral_modes == SlowModes::most) return result;  // of how many more?
+    if (result.neutral_modes == SlowModes::most) {
+      // Of how many more? Where no point feels a force none of them moves (the paper's law has no
+      // stiffness where the rod is straight); else nothing is known of them.
+      Eigen::Matrix3Xd forces(3, points.cols());
+      total_forces(rod, points, forces);
+      const double largest = stiffness.gathered(forces).cwiseAbs().maxCoeff();
+      result.stable = result.proven = largest <= rounding * points.cwiseAbs().maxCoeff();
+      if (result.stable) result.remaining_error = 0;
+      return result;
+    }
   }
   const Eigen::MatrixXd neutral = slow.modes.leftCols(result.neutral_modes);
   const double rounding_of_force = rounding * points.cwiseAbs().maxCoeff();
@@ -331,11 +340,14 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
   result.step = stiffness.scattered(step);
   result.slowest_mode = slow.eigenvalues[result.neutral_modes];
   result.stable = true;
+  result.rounding_error = std::numeric_limits<double>::epsilon() * rod.c_c *
+                          points.cwiseAbs().maxCoeff() / rod.rest_lengths.minCoeff() /
+                          result.slowest_mode;
   // The step is evaluated: by Kantorovich's theorem the equilibrium exists, and its distance is
   // bounded by the step's, if a second step with the same K is at most a quarter of the first.
   const double second = newton_step(points + result.step).norm() / root_points;
   const double share = second / error;
-  if (!(second > rounding_share * rod.length())) {
+  if (!(second > std::max(rounding_share * rod.length(), result.rounding_error))) {
     result.proven = std::isfinite(second);
     result.remaining_error = error + second;
   } else if (share <= 0.25) {

@@ -174,7 +174,15 @@ TEST(Discretise, SaysHowManyPointsTheGripsNeed) {
     EXPECT_NE(refusal(scene).find("needs at least " + std::to_string(needed) + " points"),
               std::string::npos)
         << refusal(scene);
+    // With the fewest a single segment is left free, which would be crushed; the next refusal says
+    // with how many it is long enough.
     scene.force_model.points = needed;
+    const std::string crushed = refusal(scene);
+    ASSERT_NE(crushed.find("in 1 segment"), std::string::npos) << crushed;
+    const std::size_t at = crushed.find("(allowed: ") + 10;
+    scene.force_model.points = std::stoi(crushed.substr(at)) - 1;
+    EXPECT_NE(refusal(scene), "taken");
+    ++scene.force_model.points;
     EXPECT_EQ(refusal(scene), "taken");
   }
 }
@@ -190,8 +198,8 @@ TEST(Discretise, RefusesGripsThatNoRodReaches) {
   scene.grippers.push_back(
       {.at = 1, .position = {0.9, 0, 0}, .direction = -Eigen::Vector3d::UnitX()});
   scene.force_model.points = 8;
-  EXPECT_NE(refusal(scene).find("more points"), std::string::npos) << refusal(scene);
-  scene.force_model.points = 64;
+  EXPECT_NE(refusal(scene).find("22 or more"), std::string::npos) << refusal(scene);
+  scene.force_model.points = 22;
   EXPECT_EQ(refusal(scene), "taken");
 }
 

@@ -119,7 +119,9 @@ TEST_F(Command, SolveWritesVtkThatCheckReadsBack) {
   const auto check =
       nlohmann::json::parse(run("check " + steel() + " --format json --shape " + file).out);
   EXPECT_EQ(check.at("arc_lengths"), "file");
-  EXPECT_LT(check.at("deviation").at("max_m").get<double>(), 1e-14);
+  // check compares with the state that it finds from a start of its own; the energy model's last
+  // step is 1e-11 l at most.
+  EXPECT_LT(check.at("deviation").at("max_m").get<double>(), 1e-11);
 }
 
 }  // namespace
