@@ -53,6 +53,7 @@ class RestSearch {
   long next_check_ = 2 * block_steps;
   long next_measurement_ = 0;  // at the latest
   bool bounces_ = false;
+  bool looked_without_force_ = false;
   int neutral_modes_ = 0;
   RelaxResult result_;
 };

@@ -78,14 +78,21 @@ inline Agreement agreement_of(const energy_model::Problem& problem,
   return proven ? Agreement::both_stable : Agreement::contradict;
 }
 
+/// Where exact comes from: a search of its own, or the energy model's shape, which it confirms or
+/// corrects without a search (and does not look at if there is none).
+enum class ExactFrom { search, energy };
+
 /// @param time_limit  of each solve [s]
 inline ComparedScene compare_models(std::uint64_t number, const energy_model::Problem& problem,
-                                    double time_limit) {
+                                    double time_limit, ExactFrom from = ExactFrom::search) {
   ComparedScene scene;
   scene.number = number;
   scene.energy = energy_model::solve_energy(problem, {.time_limit = time_limit});
-  scene.exact = energy_model::solve_exact(problem, {.time_limit = time_limit});
   const bool energy = succeeded(scene.energy.status);
+  if (from == ExactFrom::energy && !energy) return scene;
+  scene.exact = energy_model::solve_exact(
+      problem,
+      {.time_limit = time_limit, .start = from == ExactFrom::energy ? &scene.energy : nullptr});
   const bool exact = succeeded(scene.exact.status);
   if (energy) scene.energy_defects = defects_of(problem, scene.energy);
   if (exact) scene.exact_defects = defects_of(problem, scene.exact);
