@@ -13,7 +13,7 @@
 
 #include "dlo/compare/csv.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's own
 class App;
 }
 

@@ -9,8 +9,8 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int steps_per_decade = 4;
-const double profile_step = std::log(10.0) / steps_per_decade;
+constexpr int profile_steps_per_decade = 4;
+const double profile_step = std::log(10.0) / profile_steps_per_decade;
 /// A sum of squares this many times the least is outside any interval of interest (Student's t
 /// beyond 97.5 % with 2 degrees of freedom: 1 + 4.3^2 / 2 = 10), and between steps of a quarter of
 /// a decade a local minimum above it is no rival of the least.
@@ -44,7 +44,7 @@ bool LogProfile::has_risen(int way) const {
     return found == values_.end() ? std::numeric_limits<double>::quiet_NaN() : found->second;
   };
   if (!(value(end) > far_above * minimum_.value)) return false;
-  for (int k = 0; k < steps_per_decade; ++k) {
+  for (int k = 0; k < profile_steps_per_decade; ++k) {
     // Plateaus count: beyond them a soft rod hangs and a stiff one is straight.
     if (!(value(end - way * k) >= 0.9 * value(end - way * (k + 1)))) return false;
   }

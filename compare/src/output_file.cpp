@@ -53,7 +53,7 @@ std::optional<int> descriptor_named(const fs::path& folder, const std::string& n
 fs::path folder_of(const fs::path& path, const std::string& file) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   std::error_code error;
-  const fs::path real = fs::canonical(folder, error);
+  fs::path real = fs::canonical(folder, error);
   if (error == std::errc::no_such_file_or_directory) {
     refuse_output(file, fmt::format("there is no folder {}", folder.string()));
   }

@@ -97,7 +97,7 @@ std::vector<Eigen::Matrix3Xd> seen_directions(const Alignment& alignment, const 
 Eigen::Matrix3Xd frame_derivatives(PoseFreedom pose, const Eigen::Vector3d& arm,
                                    const Eigen::Vector3d& up) {
   const Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
-  if (pose == PoseFreedom::known) return Eigen::Matrix3Xd(3, 0);
+  if (pose == PoseFreedom::known) return shift.leftCols(0);
   if (pose == PoseFreedom::translation) return shift;
   const Eigen::Index turns = pose == PoseFreedom::upright ? 1 : 3;
   Eigen::Matrix3Xd result(3, 3 + turns);

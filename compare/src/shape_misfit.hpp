@@ -20,7 +20,12 @@ namespace dlo::compare {
 struct MaterialPoint {
   double log_modulus = 0;
   double log_density = 0;
-  auto operator<=>(const MaterialPoint&) const = default;
+  bool operator==(const MaterialPoint& other) const {
+    return log_modulus == other.log_modulus && log_density == other.log_density;
+  }
+  bool operator<(const MaterialPoint& other) const {
+    return std::pair(log_modulus, log_density) < std::pair(other.log_modulus, other.log_density);
+  }
 };
 
 /// Measured shapes against the energy model's, for any modulus and density.

@@ -11,7 +11,7 @@ namespace {
 
 /// Newton's step that a returned shape may have left; its points are then right to about as much of
 /// the rod's length.
-constexpr double largest_step = 1e-8;
+constexpr double largest_next_step = 1e-8;
 
 /// Norm of Newton's step from here; in neutral directions it stands still.
 double newton_step(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
@@ -23,7 +23,8 @@ double newton_step(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobi
   Eigen::VectorXd right(n + m);
   right << -gradient, -residual;
   Eigen::VectorXd step = system.partialPivLu().solve(right);
-  if (!((system * step - right).norm() <= 1e-6 * right.norm()) || !(step.norm() <= largest_step)) {
+  if (!((system * step - right).norm() <= 1e-6 * right.norm()) ||
+      !(step.norm() <= largest_next_step)) {
     step = newton_step_across_neutral(system, right);
   }
   return step.head(n).norm();
@@ -47,12 +48,13 @@ void certify(SpanSolution& solution, double load) {
   solution.residual = std::hypot(gradient.norm(), scale * residual.norm());
   // With rigid walls the multipliers have moved on since; how far the shape is behind them is told
   // apart.
-  if (!model.has_walls() && !(solution.residual <= largest_step * scale)) {
+  if (!model.has_walls() && !(solution.residual <= largest_next_step * scale)) {
     return solution.fail("the residual of the returned shape is not small");
   }
   if (!model.has_walls()) {
     solution.next_step = newton_step(hessian, jacobian, gradient, residual);
-    if (!(solution.next_step <= largest_step)) return solution.finish(SolveStatus::near_singular);
+    if (!(solution.next_step <= largest_next_step))
+      return solution.finish(SolveStatus::near_singular);
   }
   solution.smallest_curvature = smallest_eigenvalue(hessian, jacobian);
   if (model.span().planar) {
@@ -66,11 +68,7 @@ void certify(SpanSolution& solution, double load) {
 
 void certify_sideways(SpanSolution& solution) {
   if (solution.status != SolveStatus::converged) return;
-  SpanEnergy& model = *solution.model;
-  Eigen::VectorXd gradient(model.size());
-  solution.energy = model.value(solution.x, gradient);
-  ++solution.evaluations;
-  if (!model.resists_sideways()) solution.finish(SolveStatus::saddle);
+  if (!solution.model->resists_sideways()) solution.finish(SolveStatus::saddle);
 }
 
 }  // namespace dlo::energy_model

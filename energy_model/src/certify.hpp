@@ -14,7 +14,7 @@ void certify(SpanSolution& solution, double load);
 
 /// The same for a plain cantilever that Newton's method has just polished, and thereby looked at
 /// its step and its second variation in the plane: only that out of the plane is left, and only its
-/// sign is told.
+/// sign is told. The model's last value() was at solution.x.
 void certify_sideways(SpanSolution& solution);
 
 }  // namespace dlo::energy_model

@@ -51,12 +51,21 @@ struct PlacedSolution {
 
 std::vector<Equilibrium> combine(const Problem& problem,
                                  const std::vector<std::vector<PlacedSolution>>& solutions) {
+  if (solutions.size() == 1 && solutions.front().size() == 1) {
+    const PlacedSolution& only = solutions.front().front();
+    std::vector<Equilibrium> result;
+    result.push_back(assemble(problem, {only.placed}, {&only.solution}));
+    judge_contact(problem, {&only.solution}, result.back());
+    return result;
+  }
   std::vector<std::vector<SpanCandidate>> candidates;
   for (const std::vector<PlacedSolution>& of_span : solutions) {
-    std::vector<SpanCandidate>& own = candidates.emplace_back();
+    std::vector<SpanCandidate> own;
+    own.reserve(of_span.size());
     for (const PlacedSolution& found : of_span) {
       own.push_back({succeeded(found.solution.status), found.solution.energy});
     }
+    candidates.push_back(std::move(own));
   }
   const Combinations lowest = lowest_combinations(candidates, most_combinations);
   std::vector<Equilibrium> result;
@@ -224,7 +233,8 @@ class EnergySolver::State {
   }
 
   /// solve_span(), again about another axis while the solution comes too near to its own.
-  [[nodiscard]] std::vector<PlacedSolution> search(const PlacedSpan& placed, SpanOptions options) {
+  [[nodiscard]] std::vector<PlacedSolution> search(const PlacedSpan& placed,
+                                                   const SpanOptions& options) {
     std::vector<PlacedSolution> found;
     for (SpanSolution& solution : solve_span(placed.span, options, workspace_)) {
       found.push_back({placed, std::move(solution)});

@@ -39,11 +39,11 @@ enum Component : std::size_t {
 };
 using State = std::array<double, components_and_changes>;
 
-constexpr int most_steps = 100000;      // of the integrator, in a shot
-constexpr int most_shots = 20000;       // of a scan
-constexpr int deepest_cell = 6;         // halvings of a cell of the scan
-constexpr double cell_resolved = 0.02;  // a cubic's error in a cell over the miss there
-constexpr double double_root = 1e-11;   // of the miss: rounding of a shot
+constexpr int most_shot_steps = 100000;  // of the integrator, in a shot
+constexpr int most_shots = 20000;        // of a scan
+constexpr int deepest_cell = 6;          // halvings of a cell of the scan
+constexpr double cell_resolved = 0.02;   // a cubic's error in a cell over the miss there
+constexpr double double_root = 1e-11;    // of the miss: rounding of a shot
 
 /// Forces in the frame whose x axis is the last force.
 struct Frame {
@@ -151,7 +151,7 @@ bool shoot(const Frame& frame, double start, double tolerance, const std::vector
       while (sigma < until) {
         if (gsl_odeiv2_evolve_apply(evolve.get(), control.get(), step.get(), &system, &sigma, until,
                                     &h, state.data()) != GSL_SUCCESS ||
-            ++steps > most_steps) {
+            ++steps > most_shot_steps) {
           return false;
         }
       }

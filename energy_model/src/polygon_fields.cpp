@@ -51,6 +51,7 @@ std::vector<TangentField> polygon_fields(const Problem& problem, const PlacedSpa
   const Eigen::Index count = mesh.intervals();
   const Eigen::VectorXd middles = (mesh.s.head(count) + mesh.s.tail(count)) / 2;
   std::vector<TangentField> fields;
+  fields.reserve(minima.size());
   for (const RelaxedPolygon& polygon : minima) {
     fields.emplace_back([middles, tangents = polygon.tangents, length = own->length,
                          reversed = placed.reversed,

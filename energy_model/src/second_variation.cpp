@@ -61,6 +61,7 @@ struct ElementBasis {
 Eigen::VectorXd elements_of(const RodSpan& span, const SpanStates& states) {
   constexpr int probes = 64;
   std::vector<double> s;
+  s.reserve(probes);
   for (int i = 0; i < probes; ++i) s.push_back(span.length * (i + 0.5) / probes);
   double force = total_load(span);
   for (const RodState& state : states(s)) {

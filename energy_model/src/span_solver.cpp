@@ -66,7 +66,10 @@ class Search {
   Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
       : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
     // Where contact begins inside a piece it takes more terms than the piece's length tells.
-    if (!span.walls.empty()) longest_piece_ = span.length;
+    if (!span.walls.empty() || span.is_plain_cantilever()) {
+      longest_piece_ = span.length;
+      return;
+    }
     for (const Piece& piece : pieces_of(span)) {
       longest_piece_ = std::max(longest_piece_, piece.length);
     }

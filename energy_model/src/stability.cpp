@@ -30,6 +30,11 @@ double smallest_eigenvalue(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd
 }
 
 bool is_minimum(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
+  if (jacobian.rows() == 0) {
+    Eigen::MatrixXd shifted = hessian;
+    shifted.diagonal().array() += neutral;
+    return shifted.llt().info() == Eigen::Success;
+  }
   const Eigen::MatrixXd Z = free_directions(jacobian, hessian.rows());
   if (Z.cols() == 0) return true;
   Eigen::MatrixXd projected = Z.transpose() * hessian * Z;

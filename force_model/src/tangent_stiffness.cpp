@@ -13,7 +13,7 @@ namespace dlo::force_model {
 namespace {
 
 /// A second Newton step shorter than this share of the rod is rounding of the positions and forces.
-constexpr double rounding_share = 1e-12;
+constexpr double step_rounding_share = 1e-12;
 
 /// Index of each point among the free ones, -1 for rigidly held points.
 std::vector<Eigen::Index> free_indices(const Rod& rod, Eigen::Index& count) {
@@ -347,7 +347,7 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
   // bounded by the step's, if a second step with the same K is at most a quarter of the first.
   const double second = newton_step(points + result.step).norm() / root_points;
   const double share = second / error;
-  if (!(second > std::max(rounding_share * rod.length(), result.rounding_error))) {
+  if (!(second > std::max(step_rounding_share * rod.length(), result.rounding_error))) {
     result.proven = std::isfinite(second);
     result.remaining_error = error + second;
   } else if (share <= 0.25) {

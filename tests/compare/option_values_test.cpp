@@ -55,8 +55,8 @@ TEST_F(Command, NoOptionOfAnyCommandTakesAnEmptyValue) {
   EXPECT_GE(commands.size(), 12U);
   std::size_t count = 0;
   for (const std::string& command : commands) {
-    for (const std::string& option : options_with_value(run(command + " --help").out)) {
-      expect_error(command + " " + option + " ''", 2, {option, "the value is empty"});
+    for (const std::string& option : options_with_value(run(words({command, "--help"})).out)) {
+      expect_error(words({command, option, "''"}), 2, {option, "the value is empty"});
       ++count;
     }
   }
@@ -69,12 +69,13 @@ TEST_F(Command, NoOptionOfAnyCommandTakesAnEmptyValue) {
 }
 
 TEST_F(Command, NumbersOfOptionsAreInTheirRange) {
-  const std::string solve = "solve " + steel() + " --model force ";
+  const std::string solve = words({"solve", steel(), "--model force"});
   for (const std::string value : {"nan", "inf", "-1", "0", "1e10", "1e-400", "1e400", "1,5", "x"}) {
-    expect_error(solve + "--time-limit " + value, 2, {"--time-limit", value, "0.001 to 1e+09"});
+    expect_error(words({solve, "--time-limit", value}), 2,
+                 {"--time-limit", value, "0.001 to 1e+09"});
   }
   for (const std::string value : {"nan", "inf", "0", "0.2"}) {
-    expect_error(solve + "--rest-tolerance " + value, 2,
+    expect_error(words({solve, "--rest-tolerance", value}), 2,
                  {"--rest-tolerance", value, "1e-12 to 0.1"});
   }
   expect_error("bench " + steel() + " --seconds nan", 2, {"--seconds", "nan", "0.1 to 86400"});

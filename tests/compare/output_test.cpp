@@ -94,7 +94,7 @@ TEST_F(Output, ThatIsLostOnStandardOutputIsAnError) {
         "init mine.toml --force"}) {
     write_scene("cable.toml");
     for (const std::string lost : {">/dev/full", ">&-"}) {
-      const Outcome result = bash("$dlo " + arguments + " " + lost);
+      const Outcome result = bash(words({"$dlo", arguments, lost}));
       EXPECT_EQ(result.status, 5) << arguments << lost;
       EXPECT_TRUE(one_line(result.err)) << arguments << lost << "\n" << result.err;
       EXPECT_NE(result.err.find("standard output: cannot be written"), std::string::npos)
@@ -119,7 +119,7 @@ TEST_F(Output, StandardErrorThatIsGoneFailsNothing) {
   const std::string expected = bash(solve).out;
   EXPECT_EQ(expected.substr(0, 8), "x,y,z,s\n");
   for (const std::string gone : {"2>&-", "2>/dev/full"}) {
-    const Outcome result = bash(solve + " " + gone);
+    const Outcome result = bash(words({solve, gone}));
     EXPECT_EQ(result.status, 0) << gone;
     EXPECT_EQ(result.out, expected) << gone;
     EXPECT_EQ(bash("$dlo solve nothing.toml " + gone).status, 2) << gone;

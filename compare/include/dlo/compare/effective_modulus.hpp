@@ -40,9 +40,9 @@ struct EffectiveModulus {
   /// Of the mean square distance at E, the share that E* takes away: 1 - (rms_m / rms at E)^2;
   /// NaN where the distance at E is no more than the energy model's own error.
   double explained_share = std::numeric_limits<double>::quiet_NaN();
-  Optimum optimum = Optimum::none;        ///< what `ratio` is worth
-  std::string why_none = "skipped";       ///< why there is no E*; empty if there is one
-  int solves = 0;                         ///< of the energy model
+  Optimum optimum = Optimum::none;   ///< what `ratio` is worth
+  std::string why_none = "skipped";  ///< why there is no E*; empty if there is one
+  int solves = 0;                    ///< of the energy model
 };
 
 /// Range of E*/E that is searched.
@@ -59,12 +59,12 @@ inline constexpr double modulus_resolution = 1e-8;
 /// Minimises the RMS distance at equal arc length over E*, everything else as in the scene.
 ///
 /// The scene's equilibrium is followed from E*/E = 1 to both sides in steps of a quarter of a
-/// decade, each until the distance has not got less for half a decade; then GSL's Brent minimiser of the
-/// mean square. Every modulus is solved from the nearest one that is known, and a shape counts as
-/// the same equilibrium if it is stable and moves by less than a tenth of the length, in smaller
-/// steps if need be; else the equilibrium ends there.
-/// The time limit is for the whole search. Beyond it, and where the distance changes by no more
-/// than the energy model's own error, there is no E*, and the result says why.
+/// decade, each until the distance has not got less for half a decade; then GSL's Brent minimiser
+/// of the mean square. Every modulus is solved from the nearest one that is known, and a shape
+/// counts as the same equilibrium if it is stable and moves by less than a tenth of the length, in
+/// smaller steps if need be; else the equilibrium ends there. The time limit is for the whole
+/// search. Beyond it, and where the distance changes by no more than the energy model's own error,
+/// there is no E*, and the result says why.
 /// @throws InputError, ConvergenceError as solve_reference for the scene's own modulus
 [[nodiscard]] EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape,
                                                      const SolveOptions& options = {});

@@ -35,17 +35,17 @@ struct SweepFileOptions {
 
 /// Computes a sweep, or a shard of it, into a CSV file.
 ///
-/// Rows are appended in order to `path`.part, whose first line is sweep_identity(). A run that
+/// Rows are appended in order to `name`.part, whose first line is sweep_identity(). A run that
 /// finds such a file goes on behind its last whole line, a torn one is cut off; so a run may be
 /// killed at any moment and no row is lost or written twice. The file is locked while a process
-/// writes it. In the end a whole sweep is put into `path` at once, without its first line; a shard
-/// keeps it. A shard that is in `path` already is left as it is. Links are followed, `.part` is
+/// writes it. In the end a whole sweep is put into `name` at once, without its first line; a shard
+/// keeps it. A shard that is in `name` already is left as it is. Links are followed, `.part` is
 /// then beside their target. A device or a pipe gets the rows as they come and nothing is kept.
-/// @throws InputError if `path` is refused by output_target(), or if the files cannot be opened,
+/// @throws InputError if `name` is refused by output_target(), or if the files cannot be opened,
 /// belong to another sweep or to a process that still writes them;  @throws OutputError if writing
 /// fails
 SweepOutcome write_sweep(const Sweep& sweep, const std::optional<Shard>& shard,
-                         const std::string& path, const SweepFileOptions& options = {});
+                         const std::string& name, const SweepFileOptions& options = {});
 
 /// Puts the shards of a sweep together, in any order of files. The result is what one run over the
 /// whole grid would have written.

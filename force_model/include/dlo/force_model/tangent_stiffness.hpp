@@ -20,11 +20,11 @@ struct [[nodiscard]] EquilibriumCheck {
   bool proven = false;
   double remaining_error = -1;  ///< RMS distance of the points to that equilibrium, bounded from
                                 ///< both steps [m]
-  /// What the rounding of the points' positions, as a force in stiff segments (eps c_c |P| / L), moves
-  /// the slowest mode by, RMS over the points [m]: no stepping gets below.
+  /// What the rounding of the points' positions, as a force in stiff segments (eps c_c |P| / L),
+  /// moves the slowest mode by, RMS over the points [m]: no stepping gets below.
   double rounding_error = 0;
-  double slowest_mode = 0;      ///< estimate of the smallest eigenvalue, 0 unless stable [N/m]
-  Eigen::Matrix3Xd step;        ///< Newton's step [m], 3 x rod.points()
+  double slowest_mode = 0;  ///< estimate of the smallest eigenvalue, 0 unless stable [N/m]
+  Eigen::Matrix3Xd step;    ///< Newton's step [m], 3 x rod.points()
   /// A movement of the free points that the stiffness does not resist, the furthest by 1 and on the
   /// whole towards +x, else +y, else +z [-], 3 x rod.points(); empty if there is none.
   Eigen::Matrix3Xd falling_direction;
