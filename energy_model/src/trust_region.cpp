@@ -35,7 +35,7 @@ Eigen::VectorXd step_in_region(const Eigen::VectorXd& d, const Eigen::VectorXd& 
   };
   const double scale = std::max(1.0, d.cwiseAbs().maxCoeff());
   if (d[0] > 1e-12 * scale) {
-    const Eigen::VectorXd newton = step(0);
+    Eigen::VectorXd newton = step(0);
     if (newton.norm() <= radius) return newton;
   }
   // |p(shift)| falls from beyond the radius to zero as the shift grows above -d_0.
@@ -146,7 +146,7 @@ class Descent {
   /// Anything without a symmetry, in the lower coefficients of every piece.
   void bend(PointOnSpan& point, int which) {
     for (Eigen::Index k = 0; k < point.x.size(); ++k) {
-      const double order = static_cast<double>(k % model_.terms());
+      const auto order = static_cast<double>(k % model_.terms());
       point.x[k] += 0.3 * std::sin(which + 1.7 * static_cast<double>(k)) / (1 + order * order);
     }
     evaluate(point);

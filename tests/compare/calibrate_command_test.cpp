@@ -111,7 +111,7 @@ TEST_F(CalibrateCommand, SaysThatErrorsAreCorrelatedInEveryFormat) {
     out << "x,y,z\n";
     for (int i = 0; std::getline(stream, line); ++i) {
       std::array<double, 3> p{};
-      EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &p[0], &p[1], &p[2]), 3);
+      EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", p.data(), &p[1], &p[2]), 3);
       out << p[0] + error(i) << "," << p[1] + error(i + 13) << "," << p[2] + error(i + 29) << "\n";
     }
     return path(name);
@@ -150,7 +150,7 @@ TEST_F(CalibrateCommand, AColumnSInMetresBesideMillimetresIsRead) {
     out << "x,y,z,s\n";
     while (std::getline(stream, line)) {
       std::array<double, 4> p{};
-      EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", &p[0], &p[1], &p[2], &p[3]), 4);
+      EXPECT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf,%lf", p.data(), &p[1], &p[2], &p[3]), 4);
       out << p[0] * xyz << "," << p[1] * xyz << "," << p[2] * xyz << "," << p[3] * along << "\n";
     }
     return path(name);

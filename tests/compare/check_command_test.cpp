@@ -118,12 +118,12 @@ TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
   // The tip is not seen, and the rod does not move.
   const std::string check = "check " + std::string(DLO_DATA) +
                             "/failures/check_hang.toml --shape " +
-                            shape("x,y\n0,0\n0,-0.4\n0,-0.8\n") + " --tolerance 1% --format ";
-  for (const std::string modulus : {"", " --no-modulus"}) {
-    const Outcome csv = run(check + "csv" + modulus);
+                            shape("x,y\n0,0\n0,-0.4\n0,-0.8\n") + " --tolerance 1% --format";
+  for (const std::string modulus : {"", "--no-modulus"}) {
+    const Outcome csv = run(words({check, "csv", modulus}));
     EXPECT_EQ(csv.out.find("nan"), std::string::npos) << csv.out;
     EXPECT_NE(csv.out.find(",,"), std::string::npos);
-    const json document = json::parse(run(check + "json" + modulus).out);
+    const json document = json::parse(run(words({check, "json", modulus})).out);
     EXPECT_TRUE(document.at("deviation").at("tip_m").is_null());
     EXPECT_TRUE(document.at("effective_modulus_ratio").is_null());
     EXPECT_TRUE(document.at("effective_modulus_Pa").is_null());

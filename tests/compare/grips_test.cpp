@@ -426,6 +426,7 @@ TEST(Torque, IsAboutTheGrippersOwnPositionInEveryModelThatBalancesIt) {
         const energy_model::Equilibrium rod = solve_reference(moved, Model::energy);
         constexpr int cells = 2000;
         std::vector<double> middles;
+        middles.reserve(cells);
         for (int k = 0; k < cells; ++k) middles.push_back((k + 0.5) / cells);
         const Eigen::Matrix3Xd p = rod.sample(middles).points;
         const Vector3d w = moved.weight_per_length() / cells;

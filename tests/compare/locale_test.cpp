@@ -1,9 +1,9 @@
 // Where people write 2,5 for 2.5, files and outputs are the same.
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <clocale>
+#include <cstdlib>
 #include <fstream>
 #include <locale>
 #include <nlohmann/json.hpp>
@@ -113,7 +113,8 @@ TEST_F(DecimalComma, OfTheUsersEnvironmentChangesNoCommand) {
   std::string solve(" ");
   solve.append(dlo::test::Command::words({"solve", scene(comma_scene)}));
   for (const std::string format : {"text", "json", "csv", "vtk"}) {
-    const std::string arguments = solve + "--samples 5 --target-error 0.5% --format " + format;
+    const std::string arguments =
+        dlo::test::Command::words({solve, "--samples 5 --target-error 0.5% --format", format});
     const auto without_time = [](std::string text) {
       const std::size_t begin = std::min(text.find("wall"), text.size());
       return text.erase(begin, text.find('\n', begin) - begin);

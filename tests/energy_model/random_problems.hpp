@@ -59,7 +59,7 @@ class RandomCurve {
     for (int k = 0; k <= waves; ++k) {
       Eigen::Vector3d axis = random.direction(RandomSpace::space);
       if (space == RandomSpace::plane) axis = {0, 0, axis.z()};
-      amplitudes.push_back(bend * random.uniform() * axis);
+      amplitudes.emplace_back(bend * random.uniform() * axis);
       phases.push_back(random.uniform(0, 2 * std::numbers::pi));
     }
     tangents_.resize(3, steps);
@@ -104,6 +104,7 @@ inline std::vector<double> random_grip_places(RandomNumbers& random, int count) 
   constexpr double least = 0.05;
   for (;;) {
     std::vector<double> places;
+    places.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) places.push_back(random_arc_length(random, 0, 1));
     std::sort(places.begin(), places.end());
     if (random.chance(0.5)) places.front() = 0;

@@ -52,7 +52,7 @@ Options read_options(int argc, char** argv) {
     } else {
       throw std::invalid_argument("unknown option " + name);
     }
-    if (used != value.size()) throw std::invalid_argument(name + ": \"" + value + "\"");
+    if (used != value.size()) throw std::invalid_argument("not a number: " + value);
   }
   if (!(options.time_limit > 0)) throw std::invalid_argument("--time-limit must be > 0");
   return options;
