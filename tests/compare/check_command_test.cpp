@@ -131,8 +131,9 @@ TEST_F(CheckCommand, WhatIsNotThereIsEmptyOrNull) {
     EXPECT_EQ(document.at("why_no_effective_modulus"),
               modulus.empty() ? "the shape does not change with E" : "skipped");
   }
-  EXPECT_NE(run(check + "text --no-modulus").out.find("E*/E            not determined: skipped"),
-            std::string::npos);
+  EXPECT_NE(
+      run(words({check, "text --no-modulus"})).out.find("E*/E            not determined: skipped"),
+      std::string::npos);
   // Both ends held, without gravity
   const std::string held = scene(R"(gravity = [0, 0, 0]
 [rod]
