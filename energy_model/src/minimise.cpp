@@ -21,80 +21,26 @@ struct Call {
   std::exception_ptr thrown;  // by the objective
 };
 
-/// Exceptions may not cross NLopt, which is C: calls `body`, keeps what it throws and stops.
-/// @return false if it has thrown
-template <class Call, class Body>
-bool keep_exceptions(Call& call, const Body& body) {
-  if (call.thrown) return false;
+/// Exceptions may not cross NLopt, which is C: what the objective throws is kept, and stops it.
+double evaluate(unsigned n, const double* x, double* gradient, void* data) {
+  auto& call = *static_cast<Call*>(data);
+  if (call.thrown) return NAN;
   try {
-    body();
-    return true;
+    ++call.evaluations;
+    const Eigen::Map<const Eigen::VectorXd> point(x, n);
+    const double value = (*call.objective)(point, call.gradient);
+    if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n) = call.gradient;
+    if (call.gradient.norm() <= call.gradient_tolerance) {
+      call.small_gradient = true;
+      call.best = point;
+      nlopt_force_stop(call.optimiser);
+    }
+    return value;
   } catch (...) {
     call.thrown = std::current_exception();
     nlopt_force_stop(call.optimiser);
-    return false;
+    return NAN;
   }
-}
-
-double evaluate(unsigned n, const double* x, double* gradient, void* data) {
-  auto& call = *static_cast<Call*>(data);
-  double value = NAN;
-  keep_exceptions(call, [&] {
-    ++call.evaluations;
-    const Eigen::Map<const Eigen::VectorXd> point(x, n);
-    value = (*call.objective)(point, call.gradient);
-    if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n) = call.gradient;
-    if (!(call.gradient.norm() <= call.gradient_tolerance)) return;
-    call.small_gradient = true;
-    call.best = point;
-    nlopt_force_stop(call.optimiser);
-  });
-  return value;
-}
-
-/// Objective and constraints at one point, which SLSQP asks for one after the other.
-struct ConstrainedCall {
-  const Objective* objective = nullptr;
-  const Constraints* constraints = nullptr;
-  nlopt_opt optimiser = nullptr;
-  Eigen::VectorXd x;
-  double value = 0;
-  Eigen::VectorXd gradient;
-  Eigen::VectorXd residual;
-  Eigen::MatrixXd jacobian;
-  int evaluations = 0;
-  std::exception_ptr thrown;  // by the objective or a constraint
-
-  void move_to(const Eigen::Map<const Eigen::VectorXd>& point) {
-    if (evaluations > 0 && point == x) return;
-    x = point;
-    ++evaluations;
-    value = (*objective)(x, gradient);
-    (*constraints)(residual, jacobian);
-  }
-};
-
-double constrained_value(unsigned n, const double* x, double* gradient, void* data) {
-  auto& call = *static_cast<ConstrainedCall*>(data);
-  const auto move = [&] { call.move_to(Eigen::Map<const Eigen::VectorXd>(x, n)); };
-  if (!keep_exceptions(call, move)) return NAN;
-  if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n) = call.gradient;
-  return call.value;
-}
-
-void constrained_residual(unsigned m, double* result, unsigned n, const double* x, double* gradient,
-                          void* data) {
-  auto& call = *static_cast<ConstrainedCall*>(data);
-  const auto move = [&] { call.move_to(Eigen::Map<const Eigen::VectorXd>(x, n)); };
-  if (!keep_exceptions(call, move)) {
-    Eigen::Map<Eigen::VectorXd>(result, m).setConstant(NAN);
-    return;
-  }
-  Eigen::Map<Eigen::VectorXd>(result, m) = call.residual;
-  if (gradient == nullptr) return;
-  // NLopt wants the Jacobian by rows.
-  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(
-      gradient, m, n) = call.jacobian;
 }
 
 }  // namespace
@@ -150,32 +96,6 @@ MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
     x = call.best;
     result = {SolveStatus::converged, "converged"};
   }
-  result.evaluations = call.evaluations;
-  return result;
-}
-
-MinimiseResult minimise_slsqp(const Objective& objective, const Constraints& constraints,
-                              Eigen::Index count, Eigen::VectorXd& x, int max_evaluations) {
-  const auto n = static_cast<unsigned>(x.size());
-  const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimiser(
-      nlopt_create(NLOPT_LD_SLSQP, n), nlopt_destroy);
-  ConstrainedCall call;
-  call.objective = &objective;
-  call.constraints = &constraints;
-  call.optimiser = optimiser.get();
-  call.gradient.setZero(x.size());
-  call.residual.setZero(count);
-  call.jacobian.setZero(count, x.size());
-  const Eigen::VectorXd tolerance = Eigen::VectorXd::Constant(count, 1e-6);
-  nlopt_set_min_objective(optimiser.get(), constrained_value, &call);
-  nlopt_add_equality_mconstraint(optimiser.get(), static_cast<unsigned>(count),
-                                 constrained_residual, &call, tolerance.data());
-  nlopt_set_maxeval(optimiser.get(), max_evaluations);
-  nlopt_set_xtol_rel(optimiser.get(), 1e-5);
-  double minimum = 0;
-  const nlopt_result code = nlopt_optimize(optimiser.get(), x.data(), &minimum);
-  if (call.thrown) std::rethrow_exception(call.thrown);
-  MinimiseResult result = translate_nlopt(code);
   result.evaluations = call.evaluations;
   return result;
 }

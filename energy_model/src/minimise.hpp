@@ -12,9 +12,6 @@ namespace dlo::energy_model {
 using Objective =
     std::function<double(const Eigen::Ref<const Eigen::VectorXd>&, Eigen::Ref<Eigen::VectorXd>)>;
 
-/// Residuals of equality constraints and their Jacobian at the point of the objective's last call.
-using Constraints = std::function<void(Eigen::Ref<Eigen::VectorXd>, Eigen::Ref<Eigen::MatrixXd>)>;
-
 struct MinimiseOptions {
   double gradient_tolerance = 0;  ///< stop at a Euclidean gradient norm below this
   int max_evaluations = 0;
@@ -41,10 +38,5 @@ struct [[nodiscard]] MinimiseResult {
 /// stops NLopt and is thrown again from here.
 MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
                               const MinimiseOptions& options);
-
-/// NLopt's LD_SLSQP under `count` equality constraints, from and into `x`, to a relative change of
-/// x of 1e-5: near enough for Newton's method. Exceptions as above.
-MinimiseResult minimise_slsqp(const Objective& objective, const Constraints& constraints,
-                              Eigen::Index count, Eigen::VectorXd& x, int max_evaluations);
 
 }  // namespace dlo::energy_model

@@ -33,9 +33,9 @@ struct EnergyOptions {
 /// and forces do. The tangent's angle (in space: azimuth and elevation against an axis that the
 /// tangent stays away from) has a derivative expanded in orthonormal Legendre polynomials on each
 /// piece between loads and grips, so that planar bending is |a|^2 / 2 and the Hessian the identity
-/// plus a compact part. NLopt's LD_LBFGS (LD_SLSQP where grips are constraints) comes near the
-/// minimum with few terms, Newton steps with all of them finish, and their projected Hessian proves
-/// that it is one.
+/// plus a compact part. NLopt's LD_LBFGS (where grips are constraints a trust region) comes near
+/// the minimum with few terms, Newton steps with all of them finish, and their projected Hessian
+/// proves that it is one.
 ///
 /// Of several minima the lowest that the search finds is returned: one clamp turns towards the load
 /// by the shorter way, which is the lowest of all under parallel forces; other spans start from the
