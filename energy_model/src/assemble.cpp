@@ -57,7 +57,7 @@ Samples sample(const std::vector<PlacedShape>& shapes, double length,
 
 }  // namespace
 
-Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& placed,
+Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*>& placed,
                      const std::vector<const SpanSolution*>& solutions) {
   const double l = problem.length;
   const double energy_unit = problem.bending_stiffness / l;
@@ -71,7 +71,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& plac
   result.walls.assign(problem.walls.size(), Eigen::Vector3d::Zero());
   result.smallest_curvature = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < placed.size(); ++i) {
-    const PlacedSpan& place = placed[i];
+    const PlacedSpan& place = *placed[i];
     const SpanSolution& solution = *solutions[i];
     result.evaluations += solution.evaluations;
     result.terms = std::max(result.terms, solution.terms);
@@ -129,7 +129,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& plac
   std::vector<PlacedShape> shapes;
   for (std::size_t i = 0; i < placed.size(); ++i) {
     if (solutions[i]->x.size() == 0) continue;
-    const PlacedSpan& place = placed[i];
+    const PlacedSpan& place = *placed[i];
     const double end = place.reversed ? place.start : place.start + place.span.length * l;
     shapes.push_back({solutions[i]->model->shape(solutions[i]->x), place.reversed, place.start, end,
                       place.frame.transpose(), place.anchor_position});

@@ -9,7 +9,8 @@
 namespace dlo::energy_model {
 
 /// One solution of each span, put together in space and SI units.
-[[nodiscard]] Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& placed,
+[[nodiscard]] Equilibrium assemble(const Problem& problem,
+                                   const std::vector<const PlacedSpan*>& placed,
                                    const std::vector<const SpanSolution*>& solutions);
 
 }  // namespace dlo::energy_model

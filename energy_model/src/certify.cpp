@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "stability.hpp"
 
@@ -69,6 +70,13 @@ void certify(SpanSolution& solution, double load) {
 void certify_sideways(SpanSolution& solution) {
   if (solution.status != SolveStatus::converged) return;
   if (!solution.model->resists_sideways()) solution.finish(SolveStatus::saddle);
+}
+
+void certify_resolved(SpanSolution& solution) {
+  if (!solution.is_equilibrium() || solution.resolved) return;
+  solution.status = SolveStatus::not_resolved;
+  solution.message =
+      "the curvature is not resolved by " + std::to_string(solution.terms) + " terms";
 }
 
 }  // namespace dlo::energy_model

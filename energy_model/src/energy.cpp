@@ -6,6 +6,7 @@
 #include <string>
 
 #include "assemble.hpp"
+#include "certify.hpp"
 #include "legendre.hpp"
 #include "lowest_combinations.hpp"
 #include "penetration.hpp"
@@ -54,7 +55,7 @@ std::vector<Equilibrium> combine(const Problem& problem,
   if (solutions.size() == 1 && solutions.front().size() == 1) {
     const PlacedSolution& only = solutions.front().front();
     std::vector<Equilibrium> result;
-    result.push_back(assemble(problem, {only.placed}, {&only.solution}));
+    result.push_back(assemble(problem, {&only.placed}, {&only.solution}));
     judge_contact(problem, {&only.solution}, result.back());
     return result;
   }
@@ -70,10 +71,10 @@ std::vector<Equilibrium> combine(const Problem& problem,
   const Combinations lowest = lowest_combinations(candidates, most_combinations);
   std::vector<Equilibrium> result;
   for (const std::vector<std::size_t>& choice : lowest.choices) {
-    std::vector<PlacedSpan> placed;
+    std::vector<const PlacedSpan*> placed;
     std::vector<const SpanSolution*> chosen;
     for (std::size_t i = 0; i < solutions.size(); ++i) {
-      placed.push_back(solutions[i][choice[i]].placed);
+      placed.push_back(&solutions[i][choice[i]].placed);
       chosen.push_back(&solutions[i][choice[i]].solution);
     }
     result.push_back(assemble(problem, placed, chosen));
@@ -242,6 +243,7 @@ class EnergySolver::State {
       // The search may have left the plane.
       last.placed.span.planar = last.solution.model->span().planar;
       if (!last.placed.span.planar) away_from_poles(last, options);
+      certify_resolved(last.solution);
     }
     return found;
   }

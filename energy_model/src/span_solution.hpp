@@ -19,7 +19,7 @@ struct [[nodiscard]] SpanSolution {
   /// Norm of Newton's step from x, which would be the next one: what x may still be wrong by.
   double next_step = std::numeric_limits<double>::infinity();
   double energy = 0;      ///< in EI/l
-  bool resolved = false;  ///< more terms would not change the shape
+  bool resolved = false;  ///< more terms would not change the shape, or the caller chose them
   /// Eigenvalue of the projected second variation, sideways included; NaN: not looked at.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   std::shared_ptr<SpanEnergy> model;

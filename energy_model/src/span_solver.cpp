@@ -61,6 +61,13 @@ bool has_stable_lowest(const std::vector<SpanSolution>& found) {
   return lowest != nullptr && succeeded(lowest->status);
 }
 
+/// A braced list would copy it.
+std::vector<SpanSolution> list_of(SpanSolution solution) {
+  std::vector<SpanSolution> result;
+  result.push_back(std::move(solution));
+  return result;
+}
+
 class Search {
  public:
   Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
@@ -79,13 +86,13 @@ class Search {
     if (options_.start) {
       SpanSolution solution = refined(from_start());
       certify(solution, load_);
-      return {std::move(solution)};
+      return list_of(std::move(solution));
     }
     std::vector<SpanSolution> found;
     if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
       SpanSolution solution = plain_cantilever();
       certify_sideways(solution);
-      if (solution.status != SolveStatus::saddle) return {std::move(solution)};
+      if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
       add(std::move(solution), found);
     }
     const std::vector<TangentField> fields = ranked_fields();
@@ -266,14 +273,15 @@ class Search {
     const int affordable = std::max(32, most_unknowns / (fields * solution.model->pieces()));
     // With walls the curvature has kinks where contact begins; more terms help only so far.
     const int most_terms = span_.walls.empty() ? std::min(max_terms, affordable) : 32;
-    while (options_.terms == 0 && solution.is_equilibrium()) {
-      solution.resolved = resolved(solution);
+    while (solution.is_equilibrium()) {
+      solution.resolved = options_.terms > 0 || resolved(solution);
       if (solution.resolved) break;
       if (out_of_time()) {
         solution.finish(SolveStatus::time_limit);
         break;
       }
-      // Near the poles polynomials need many terms; the caller turns the axis instead.
+      // Near the poles polynomials need many terms; the caller turns the axis instead, and has to
+      // take what is left like this back (certify_resolved).
       const bool near_pole = fields == 2 && solution.model->elevation() > largest_elevation;
       if (near_pole && !options_.all && !options_.past_poles) break;
       if (solution.terms >= most_terms) {
