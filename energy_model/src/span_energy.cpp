@@ -12,8 +12,10 @@ namespace {
 
 using std::numbers::pi;
 
-/// Up to this size a product of plain sums is faster than Eigen's, which packs its operands first.
-constexpr Eigen::Index few_columns = 12;
+/// Up to these sizes dot products, and products with vectors, are faster than one of matrices,
+/// which packs its operands first.
+constexpr Eigen::Index most_for_dots = 12;
+constexpr Eigen::Index most_for_vectors = 20;
 
 double angle_of(const Eigen::Vector3d& direction) {
   return std::atan2(direction.y(), direction.x());
@@ -26,6 +28,26 @@ double elevation_of(const Eigen::Vector3d& direction) {
 /// The angle that differs from `angle` by whole turns and is nearest to `target`.
 double nearest_turn(double angle, double target) {
   return angle + 2 * pi * std::round((target - angle) / (2 * pi));
+}
+
+/// Adds basis^T diag(by_node) basis to a symmetric matrix.
+void add_weighted_gram(const Eigen::VectorXd& by_node, const Eigen::MatrixXd& basis,
+                       Eigen::MatrixXd& scaled, Eigen::Ref<Eigen::MatrixXd> result) {
+  scaled.noalias() = by_node.asDiagonal() * basis;
+  const Eigen::Index columns = basis.cols();
+  if (columns > most_for_vectors) {
+    result.noalias() += basis.transpose() * scaled;
+    return;
+  }
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    const Eigen::Index rows = columns - j;
+    if (columns > most_for_dots) {
+      result.col(j).tail(rows).noalias() += basis.rightCols(rows).transpose() * scaled.col(j);
+    } else {
+      for (Eigen::Index i = j; i < columns; ++i) result(i, j) += basis.col(i).dot(scaled.col(j));
+    }
+    result.row(j).tail(rows - 1) = result.col(j).tail(rows - 1).transpose();
+  }
 }
 
 }  // namespace
@@ -104,11 +126,17 @@ void SpanEnergy::reset(const Span& span, int terms) {
   for (Eigen::MatrixX3d* m : {&t_, &t_theta_, &t_beta_, &total_, &carried_}) m->setZero(nodes, 3);
   scaled_.resize(nodes, columns_);
   x_.setZero(size());
+  gradient_.setZero(size());
+  evaluated_ = false;
   walls_.reset(span_, pieces_, terms_, s_, weights_);
 }
 
 double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
                          Eigen::Ref<Eigen::VectorXd> gradient) {
+  if (evaluated_ && !has_walls() && x == x_) {
+    gradient = gradient_;
+    return energy_;
+  }
   x_ = x;
   theta_.noalias() = angle_ * x.head(columns_);
   theta_.array() += start_theta_;
@@ -157,6 +185,9 @@ double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
         weights_.array() * t_.col(2).array() * t_beta_.col(2).array() * kappa_.array().square();
     gradient.tail(columns_).noalias() -= angle_.transpose() * turning_;
   }
+  gradient_ = gradient;
+  energy_ = energy;
+  evaluated_ = true;
   return energy;
 }
 
@@ -204,18 +235,18 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
     result(0, 0) = 0;
     if (fields_ == 2) result(columns_, columns_) = 0;
   }
-  // Adds left^T diag(by_node) right to a block of the result.
-  const auto add = [&](const Eigen::VectorXd& by_node, const Eigen::MatrixXd& left,
-                       const Eigen::MatrixXd& right, Eigen::Index row, Eigen::Index column) {
-    scaled_.noalias() = by_node.asDiagonal() * right;
-    if (columns_ <= few_columns) {
-      result.block(row, column, columns_, columns_) += left.transpose().lazyProduct(scaled_);
-    } else {
-      result.block(row, column, columns_, columns_).noalias() += left.transpose() * scaled_;
-    }
+  // Adds basis^T diag(by_node) basis to a block on the diagonal.
+  const auto add = [&](const Eigen::VectorXd& by_node, const Eigen::MatrixXd& basis,
+                       Eigen::Index begin) {
+    add_weighted_gram(by_node, basis, scaled_, result.block(begin, begin, columns_, columns_));
+  };
+  // Adds left^T diag(by_node) angle to the block of azimuths by elevations.
+  const auto add_beside = [&](const Eigen::VectorXd& by_node, const Eigen::MatrixXd& left) {
+    scaled_.noalias() = by_node.asDiagonal() * angle_;
+    result.topRightCorner(columns_, columns_).noalias() += left.transpose() * scaled_;
   };
   if (fields_ == 1) {
-    add(along_, angle_, angle_, 0, 0);
+    add(along_, angle_, 0);
   } else {
     const auto w = weights_.array();
     const auto k = kappa_.array();
@@ -223,21 +254,21 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
     const auto cb = t_beta_.col(2).array();
     // n . (cos theta, sin theta, 0) is what theta's second derivative leaves of n . t.
     turning_ = carried_.leftCols(2).cwiseProduct(t_.leftCols(2)).rowwise().sum();
-    add(turning_, angle_, angle_, 0, 0);
+    add(turning_, angle_, 0);
     turning_ = -w * sb.square();
-    add(turning_, slope_, slope_, 0, 0);
+    add(turning_, slope_, 0);
     // d2 t / d theta d beta = -tan(beta) dt / d theta, written without the division.
     for (Eigen::Index q = 0; q < turning_.size(); ++q) {
       turning_[q] =
           sb[q] * (carried_(q, 1) * std::cos(theta_[q]) - carried_(q, 0) * std::sin(theta_[q]));
     }
-    add(turning_, angle_, angle_, 0, columns_);
+    add_beside(turning_, angle_);
     turning_ = -2 * w * sb * cb * k;
-    add(turning_, slope_, angle_, 0, columns_);
+    add_beside(turning_, slope_);
     result.bottomLeftCorner(columns_, columns_) =
         result.topRightCorner(columns_, columns_).transpose();
     turning_ = along_.array() - w * (cb.square() - sb.square()) * k.square();
-    add(turning_, angle_, angle_, columns_, columns_);
+    add(turning_, angle_, columns_);
   }
   if (has_walls()) {
     walls_.add_hessian(t_theta_, fields_ == 2 ? &t_beta_ : nullptr, angle_, result);
@@ -264,9 +295,8 @@ bool SpanEnergy::resists_sideways() {
   const double bending = pi * pi / (4 * span_.length * span_.length);
   if (((along_.array() + bending * weights_.array()) > 0).all()) return true;
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Identity(columns_, columns_);
-  scaled_.noalias() = along_.asDiagonal() * angle_;
-  hessian.noalias() += angle_.transpose() * scaled_;
-  return is_minimum(hessian, Eigen::MatrixXd(0, columns_));
+  add_weighted_gram(along_, angle_, scaled_, hessian);
+  return is_minimum(hessian);
 }
 
 void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
@@ -274,8 +304,7 @@ void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
   carry_sideways(multipliers);
   hessian.setIdentity(columns_, columns_);
   if (free_start_ == 1) hessian(0, 0) = 0;
-  scaled_.noalias() = along_.asDiagonal() * angle_;
-  hessian.noalias() += angle_.transpose() * scaled_;
+  add_weighted_gram(along_, angle_, scaled_, hessian);
   jacobian.resize(reach_.cols() + (span_.end_direction ? 1 : 0), columns_);
   jacobian.topRows(reach_.cols()).noalias() = reach_.transpose() * angle_;
   if (span_.end_direction) jacobian.bottomRows(1) = end_angle_.transpose();

@@ -29,7 +29,8 @@ class SpanEnergy {
   [[nodiscard]] int terms() const { return terms_; }
   [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
 
-  /// Energy in EI/l and its gradient.
+  /// Energy in EI/l and its gradient; known already where the last value() was, unless walls'
+  /// multipliers may have moved on.
   [[nodiscard]] double value(const Eigen::Ref<const Eigen::VectorXd>& x,
                              Eigen::Ref<Eigen::VectorXd> gradient);
   /// Residuals of the constraints at the point of the last value(), and their Jacobian.
@@ -99,7 +100,9 @@ class SpanEnergy {
   // At the point of the last value(), nodes x 3
   Eigen::VectorXd theta_, beta_, kappa_;
   Eigen::MatrixX3d t_, t_theta_, t_beta_, total_;
-  Eigen::VectorXd x_;
+  Eigen::VectorXd x_, gradient_;
+  double energy_ = 0;
+  bool evaluated_ = false;  // x_ is a point that value() has seen since reset()
 
   // Scratch
   Eigen::MatrixX3d carried_;

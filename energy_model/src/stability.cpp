@@ -29,17 +29,10 @@ double smallest_eigenvalue(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd
       .eigenvalues()[0];
 }
 
-bool is_minimum(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
-  if (jacobian.rows() == 0) {
-    Eigen::MatrixXd shifted = hessian;
-    shifted.diagonal().array() += neutral;
-    return shifted.llt().info() == Eigen::Success;
-  }
-  const Eigen::MatrixXd Z = free_directions(jacobian, hessian.rows());
-  if (Z.cols() == 0) return true;
-  Eigen::MatrixXd projected = Z.transpose() * hessian * Z;
-  projected.diagonal().array() += neutral;
-  return projected.llt().info() == Eigen::Success;
+bool is_minimum(const Eigen::MatrixXd& hessian) {
+  Eigen::MatrixXd shifted = hessian;
+  shifted.diagonal().array() += neutral;
+  return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(shifted).info() == Eigen::Success;
 }
 
 std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,

@@ -20,8 +20,8 @@ inline constexpr double neutral = 1e-7;
 [[nodiscard]] double smallest_eigenvalue(const Eigen::MatrixXd& hessian,
                                          const Eigen::MatrixXd& jacobian);
 
-/// Whether no eigenvalue there is negative.
-[[nodiscard]] bool is_minimum(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
+/// Whether no eigenvalue of a matrix, of which the lower half is read, is negative.
+[[nodiscard]] bool is_minimum(const Eigen::MatrixXd& hessian);
 
 /// The direction in which an unstable equilibrium gives way first; none if it is stable.
 [[nodiscard]] std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,

@@ -66,9 +66,7 @@ struct Case {
 
 class Objective : public testing::TestWithParam<Case> {};
 
-TEST_P(Objective, HasTheDerivativesOfItsValue) {
-  const Span span = GetParam().span();
-  SpanEnergy model(span, 6);
+void expect_derivatives(SpanEnergy& model) {
   const Eigen::Index n = model.size();
   const Eigen::Index m = model.constraints();
   std::mt19937 random(3);
@@ -107,12 +105,39 @@ TEST_P(Objective, HasTheDerivativesOfItsValue) {
   }
 }
 
+// Few unknowns, more and many take different products.
+TEST_P(Objective, HasTheDerivativesOfItsValue) {
+  for (const int terms : {3, 6, 12}) {
+    SpanEnergy model(GetParam().span(), terms);
+    expect_derivatives(model);
+  }
+}
+
+TEST_P(Objective, OfAnotherSpanIsNotTheOneBefore) {
+  const Span span = GetParam().span();
+  Span lighter = span;
+  lighter.weight /= 2;
+  SpanEnergy model(lighter, 6);
+  const Eigen::VectorXd x = Eigen::VectorXd::LinSpaced(model.size(), -0.5, 0.5);
+  Eigen::VectorXd gradient(x.size());
+  Eigen::VectorXd expected(x.size());
+  const double energy_of_lighter = model.value(x, gradient);
+  model.reset(span, 6);
+  const double energy = model.value(x, gradient);
+  EXPECT_NE(energy, energy_of_lighter);
+  EXPECT_EQ(energy, SpanEnergy(span, 6).value(x, expected));
+  EXPECT_EQ(gradient, expected);
+  // Nor where it is known already.
+  EXPECT_EQ(model.value(x, gradient), energy);
+  EXPECT_EQ(gradient, expected);
+}
+
 #ifdef DLO_COUNTS_ALLOCATIONS
 class ObjectiveWithoutWalls : public Objective {};
 
 TEST_P(ObjectiveWithoutWalls, DoesNotAllocate) {
   SpanEnergy model(GetParam().span(), 12);
-  const Eigen::VectorXd x = Eigen::VectorXd::Zero(model.size());
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(model.size());
   Eigen::VectorXd gradient(model.size());
   Eigen::VectorXd residual(model.constraints());
   Eigen::MatrixXd jacobian(model.constraints(), model.size());
@@ -120,6 +145,7 @@ TEST_P(ObjectiveWithoutWalls, DoesNotAllocate) {
   Eigen::MatrixXd hessian(model.size(), model.size());
   const long before = allocations;
   for (int i = 0; i < 3; ++i) {
+    x[0] = i;
     (void)model.value(x, gradient);
     model.constraint(residual, jacobian);
     model.hessian(mu, hessian);

@@ -33,7 +33,7 @@ using dlo::energy_model::Problem;
 using dlo::test::PlainSimulation;
 using dlo::test::SteelRod;
 
-constexpr double margin = 0.65;
+constexpr double margin = 0.8;
 constexpr int attempts = 5;
 constexpr int turns = 25;
 constexpr double turn_seconds = 2e-3;
