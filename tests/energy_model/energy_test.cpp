@@ -162,6 +162,70 @@ TEST(Energy, UprightRodStaysUprightBelowSelfBucklingAndFallsTowardsXAbove) {
   EXPECT_GT(above.sample(tip).points(0, 0), 0.05);
 }
 
+/// Points of an upright heavy rod, by Runge-Kutta steps from its free end.
+struct ShotFromTheTip {
+  double base_angle = 0;    // from the vertical
+  Eigen::Matrix2Xd points;  // at equal arc lengths, across and up
+};
+
+ShotFromTheTip shoot_from_tip(double gamma, double tip_angle) {
+  constexpr Eigen::Index steps = 1000;
+  using Real = long double;
+  const Real h = Real(1) / steps;
+  const auto bend = [&](Real s, Real angle) { return -Real(gamma) * (1 - s) * std::sin(angle); };
+  Real angle = tip_angle;
+  Real kappa = 0;
+  std::vector<Real> angles(steps + 1, angle);
+  for (Eigen::Index i = steps; i > 0; --i) {
+    const Real s = h * static_cast<Real>(i);
+    const Real k1 = kappa;
+    const Real l1 = bend(s, angle);
+    const Real k2 = kappa - h / 2 * l1;
+    const Real l2 = bend(s - h / 2, angle - h / 2 * k1);
+    const Real k3 = kappa - h / 2 * l2;
+    const Real l3 = bend(s - h / 2, angle - h / 2 * k2);
+    const Real k4 = kappa - h * l3;
+    const Real l4 = bend(s - h, angle - h * k3);
+    angle -= h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    kappa -= h / 6 * (l1 + 2 * l2 + 2 * l3 + l4);
+    angles[static_cast<std::size_t>(i) - 1] = angle;
+  }
+  ShotFromTheTip shot;
+  shot.base_angle = static_cast<double>(angle);
+  shot.points.setZero(2, steps + 1);
+  for (Eigen::Index i = 0; i < steps; ++i) {
+    const auto from = static_cast<double>(angles[static_cast<std::size_t>(i)]);
+    const auto to = static_cast<double>(angles[static_cast<std::size_t>(i) + 1]);
+    shot.points.col(i + 1) =
+        shot.points.col(i) +
+        Eigen::Vector2d(std::sin(from) + std::sin(to), std::cos(from) + std::cos(to)) / 2 / steps;
+  }
+  return shot;
+}
+
+// Self-buckling is at Gamma = 7.8373474: up to there 6e-8 are left, and a tilt of 1e-9 shows at the
+// tip a million times. The steps and the trapezoidal rule are right to 2e-9 here.
+TEST(Energy, NextToBucklingTheShapeIsRightOrNotCalledConverged) {
+  for (const auto& [below, tilt] : {std::pair{1e-6, 1e-8}, {1e-7, 1e-8}, {1e-9, 1e-9}}) {
+    const double gamma = 7.837347 * (1 - below);
+    double low = 0;
+    double high = 0.5;
+    for (int i = 0; i < 60; ++i) {
+      const double middle = (low + high) / 2;
+      (shoot_from_tip(gamma, middle).base_angle > tilt ? high : low) = middle;
+    }
+    const Eigen::Matrix2Xd expected = shoot_from_tip(gamma, high).points;
+    ASSERT_GT(expected(0, expected.cols() - 1), 1e5 * tilt);
+    Problem problem = heavy_cantilever(gamma, 90);
+    problem.grips[0].direction = Eigen::Vector3d(std::sin(tilt), std::cos(tilt), 0);
+    const Equilibrium found = solve_energy(problem);
+    const Eigen::Matrix3Xd points = found.sample(equal_arc_lengths(1, expected.cols())).points;
+    const double off = (points.topRows(2) - expected).colwise().norm().maxCoeff();
+    EXPECT_TRUE(off < 1e-6 || !succeeded(found.status))
+        << below << ", " << tilt << ": wrong by " << off << " l, " << found.message;
+  }
+}
+
 TEST(Energy, StoppedEarlyIsAFailureThatSaysSo) {
   const Equilibrium result = solve_energy(heavy_cantilever(10, 0), {.max_evaluations = 2});
   EXPECT_EQ(result.status, SolveStatus::evaluation_limit);
