@@ -130,6 +130,8 @@ TEST(Regression, CasesOfOneSideOnlyFail) {
   EXPECT_EQ(results[2].verdict, RegressionVerdict::not_solved);
   EXPECT_EQ(results[2].message, "stuck");
   EXPECT_EQ(results[3].verdict, RegressionVerdict::not_in_baseline);
+  for (const std::size_t i : {0U, 2U, 3U}) EXPECT_TRUE(failed(results[i].verdict)) << i;
+  EXPECT_FALSE(failed(results[1].verdict));
   EXPECT_THROW((void)judge_regression({}, {{entry("a", 0.1), ""}, {entry("a", 0.1), ""}}),
                InputError);
   EXPECT_THROW((void)judge_regression({}, {}, {.relative = -1}), std::invalid_argument);
