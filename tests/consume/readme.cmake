@@ -1,10 +1,10 @@
-# README.md shows these files as they are, indented by four columns.
-file(READ ${CMAKE_CURRENT_LIST_DIR}/../../README.md readme)
+# force_model/README.md shows these files as they are, indented by four columns.
+file(READ ${CMAKE_CURRENT_LIST_DIR}/../../force_model/README.md readme)
 foreach(shown force_model/loop.cpp force_model/CMakeLists.txt)
   file(READ ${CMAKE_CURRENT_LIST_DIR}/${shown} text)
   string(REGEX REPLACE "\n([^\n])" "\n    \\1" text "\n${text}")
   string(FIND "${readme}" "${text}" position)
   if(position EQUAL -1)
-    message(SEND_ERROR "README.md does not show tests/consume/${shown} as it is")
+    message(SEND_ERROR "force_model/README.md does not show tests/consume/${shown} as it is")
   endif()
 endforeach()
