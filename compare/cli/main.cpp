@@ -14,13 +14,13 @@
 #include <system_error>
 #include <vector>
 
-#include "commands.hpp"
+#include "base/output_file.hpp"
+#include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
-#include "dlo/compare/output_file.hpp"
-#include "help.hpp"
-#include "option_values.hpp"
-#include "output.hpp"
-#include "reference.hpp"
+#include "option/help.hpp"
+#include "option/option_values.hpp"
+#include "option/output.hpp"
+#include "option/reference.hpp"
 
 namespace {
 

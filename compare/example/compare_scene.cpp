@@ -4,6 +4,8 @@
 #include <exception>
 
 #include "dlo/compare/comparison.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/scene_file.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

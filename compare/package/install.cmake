@@ -26,8 +26,8 @@ function(dlo_install name)
   endif()
 
   install(TARGETS dlo_${name} EXPORT dlo_${name}
-    ARCHIVE COMPONENT ${name} LIBRARY COMPONENT ${name} RUNTIME COMPONENT ${name})
-  install(DIRECTORY include/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT ${name})
+    ARCHIVE COMPONENT ${name} LIBRARY COMPONENT ${name} RUNTIME COMPONENT ${name}
+    FILE_SET HEADERS COMPONENT ${name})
 
   install(EXPORT dlo_${name} NAMESPACE dlo:: FILE dlo_${name}-targets.cmake
     DESTINATION ${dlo_cmake_dir} COMPONENT ${name})

@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <string>
 
-#include "dlo/compare/sweep.hpp"
+#include "batch/sweep.hpp"
 
 namespace {
 

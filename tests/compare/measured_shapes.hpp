@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "dlo/compare/alignment.hpp"
+#include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "dlo/compare/solve.hpp"
+#include "dlo/compare/solution.hpp"
 
 namespace dlo::test {
 

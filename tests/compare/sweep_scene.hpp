@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "dlo/compare/sweep.hpp"
+#include "batch/sweep.hpp"
 
 namespace dlo::test {
 

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <random>
 
+#include "dlo/compare/chain.hpp"
+
 namespace dlo::energy_model {
 namespace {
 

@@ -4,12 +4,13 @@
 #include <cstdint>
 #include <stdexcept>
 
-#include "dlo/compare/baseline.hpp"
+#include "batch/baseline.hpp"
+#include "batch/sweep_grid.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
-#include "dlo/compare/scene_template.hpp"
+#include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/shape_file.hpp"
-#include "dlo/compare/sweep_grid.hpp"
+#include "scene/scene_template.hpp"
 
 namespace dlo::fuzz {
 namespace {

@@ -5,6 +5,10 @@
 #include <dlo/compare/scene.hpp>
 #include <dlo/compare/solve.hpp>
 
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solution.hpp"
+
 namespace {
 
 using namespace dlo::compare;

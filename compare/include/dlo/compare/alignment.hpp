@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dlo/compare/deviation.hpp"
+#include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_file.hpp"
 
 namespace dlo::compare {
@@ -40,6 +41,10 @@ enum class ArcLengths {
 [[nodiscard]] PoseFreedom pose_from(const std::string& name);
 /// @throws InputError if there is no such rule
 [[nodiscard]] ArcLengths arc_lengths_from(const std::string& name);
+
+/// Direction of "up" for PoseFreedom::upright.
+/// @throws InputError if the pose is `upright` and the scene has no gravity
+[[nodiscard]] Eigen::Vector3d up_of(const Scene& scene, PoseFreedom pose);
 
 /// A rigid motion from a file's frame to the scene's: p -> rotation p + translation.
 struct RigidMotion {
@@ -77,6 +82,14 @@ struct Alignment {
   double rms_m = 0;        ///< distance with the given weights
   double other_rms_m = 0;  ///< the same the other way round
   double mean_square = 0;  ///< of all distances, unweighted [m^2]
+};
+
+/// A part of the rod between two neighbouring points.
+struct RodPart {
+  double from_m = 0;    ///< arc length
+  double to_m = 0;      ///< arc length
+  double untold_m = 0;  ///< how far a smooth curve through the reference at the points is from the
+                        ///< reference in the middle: what is nearer cannot be told apart there
 };
 
 /// Lays a shape on a reference curve of arc length 0 to `length`: the direction, the motion within

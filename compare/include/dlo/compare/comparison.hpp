@@ -8,8 +8,9 @@
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/effective_modulus.hpp"
 #include "dlo/compare/error_budget.hpp"
+#include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/plan.hpp"
-#include "dlo/compare/solve.hpp"
+#include "dlo/compare/solution.hpp"
 
 namespace dlo::compare {
 
@@ -49,14 +50,5 @@ struct Comparison {
 [[nodiscard]] Comparison compare(const Scene& scene, const SolveOptions& options = {},
                                  const PlanOptions& plan_options = {},
                                  ModulusSearch modulus = ModulusSearch::yes);
-
-/// The straight rod of a scene with a single clamp, at arc lengths s [m], 3 x M. Several grips, or
-/// a pin, leave no straight shape to start from: nothing.
-[[nodiscard]] std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene,
-                                                           const std::vector<double>& s);
-
-/// Deviation of any shape of a scene, with what the scene says about ends and straight rods.
-[[nodiscard]] Deviation shape_deviation(const Scene& scene, const Shape& shape,
-                                        const Reference& reference);
 
 }  // namespace dlo::compare

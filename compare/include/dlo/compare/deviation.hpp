@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/energy_model/problem.hpp"
 
@@ -36,5 +37,14 @@ struct Deviation {
 /// sqrt(1/l int |difference|^2 ds) by the trapezoidal rule [m].
 /// @param difference  at the arc lengths, 3 x M
 [[nodiscard]] double rms(const std::vector<double>& arc_length, const Eigen::Matrix3Xd& difference);
+
+/// The straight rod of a scene with a single clamp, at arc lengths s [m], 3 x M. Several grips, or
+/// a pin, leave no straight shape to start from: nothing.
+[[nodiscard]] std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene,
+                                                           const std::vector<double>& s);
+
+/// Deviation of any shape of a scene, with what the scene says about ends and straight rods.
+[[nodiscard]] Deviation shape_deviation(const Scene& scene, const Shape& shape,
+                                        const Reference& reference);
 
 }  // namespace dlo::compare

@@ -1,26 +1,12 @@
 #pragma once
 
-#include <optional>
-#include <string>
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
-#include "dlo/energy_model/chain.hpp"
-#include "dlo/energy_model/polygon.hpp"
-#include "dlo/energy_model/problem.hpp"
 #include "dlo/force_model/rod.hpp"
-#include "dlo/force_model/stepper.hpp"
 
 namespace dlo::compare {
-
-/// c_b [N] of the paper's law for a material.
-///     formula_21:      EI k^2 / ((1 - cos a) sin(a/2)),  a = L k (Formula 21 with L = l/(N-1))
-///     moment_matched:  the same over a, so that the joint's moment at curvature k is EI k
-/// @param bending_stiffness  EI [N m^2], > 0;  @param curvature  k [1/m], > 0
-/// @param segment_length     L [m], > 0, with L k < pi
-[[nodiscard]] double paper_bending_stiffness(BendingRule rule, double bending_stiffness,
-                                             double curvature, double segment_length);
 
 /// Parameters of the force model as they follow from a scene.
 struct Parameters {
@@ -83,32 +69,5 @@ struct Discretisation {
 /// solver lost, is not taken for a shape. Who gives a c_c of A E or less asks for the stretch: a
 /// half, beyond which a segment is crushed or torn.
 [[nodiscard]] double largest_strain(const Scene& scene, const ForceModelSettings& settings);
-
-/// The same polygon for the rigid chain solver.
-struct ChainScene {
-  energy_model::ChainProblem problem;  ///< in the coordinates of its plane
-  Eigen::Vector3d origin;              ///< of the plane's frame, in space [m]
-  Eigen::Vector3d x;                   ///< its axis, unit
-  Eigen::Vector3d y;                   ///< its axis, unit
-
-  /// Points of the plane [m], 2 x M, in space [m], 3 x M.
-  [[nodiscard]] Eigen::Matrix3Xd to_space(const Eigen::Matrix2Xd& points) const;
-};
-
-/// Nothing unless the scene has one clamp at an end, forces in one plane and no obstacle.
-[[nodiscard]] std::optional<ChainScene> chain_scene(const Scene& scene,
-                                                    const Discretisation& discretisation,
-                                                    const ForceModelSettings& settings);
-
-/// The same polygon for the solver of elastic ones, which takes every scene.
-[[nodiscard]] energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod);
-
-/// The scene as the energy model sees it. @throws InputError naming file, line and key if two
-/// grippers hold one arc length, or are no less apart than the rod between them
-[[nodiscard]] energy_model::Problem energy_problem(const Scene& scene);
-
-/// The stepper a scene asks for. @throws InputError if it lacks a constant that its stepper needs
-[[nodiscard]] force_model::StepOptions step_options(const ForceModelSettings& settings,
-                                                    const Discretisation& discretisation);
 
 }  // namespace dlo::compare

@@ -4,9 +4,10 @@
 #include <limits>
 #include <string>
 
+#include "dlo/compare/deviation.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
-#include "dlo/compare/solve.hpp"
+#include "dlo/compare/solution.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 
 namespace dlo::compare {

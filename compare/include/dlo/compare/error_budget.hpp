@@ -2,7 +2,7 @@
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/scene.hpp"
-#include "dlo/compare/solve.hpp"
+#include "dlo/compare/solution.hpp"
 
 namespace dlo::compare {
 

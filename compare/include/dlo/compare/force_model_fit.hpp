@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/deviation.hpp"
 #include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
-#include "dlo/compare/solve.hpp"
+#include "dlo/compare/solution.hpp"
 
 namespace dlo::compare {
 

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "dlo/compare/alignment.hpp"
+#include "dlo/compare/deviation.hpp"
 #include "dlo/compare/scene.hpp"
-#include "dlo/compare/solve.hpp"
+#include "dlo/compare/solution.hpp"
 
 namespace dlo::compare {
 

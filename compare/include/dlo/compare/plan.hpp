@@ -70,10 +70,7 @@ inline constexpr int most_planned_points = 4000;
 /// - Planar if the scene is; the energy model checks that a planar shape is stable out of its
 /// plane.
 /// - Spans: clamps hold position and direction, so nothing but the shape's own energy passes.
-/// - Obstacles: with the rod's length and grips no point gets further than an ellipsoid between two
-///   neighbouring grips (foci the grips, the rod between them as its long axis), or a ball around
-///   the last. Stretch adds at most 2 l sqrt(P / EA), P the sum of all loads: the stretch energy
-///   EA d^2 / (2 l) is no more than what the loads do over a way of 2 l. The smaller of EA and c_c.
+/// - Obstacles: those that no point of the rod can reach are left out.
 /// - Stretch, shear and the polygon: twice the first-order answer of the rod's own shape
 ///   (PolygonResponse), while that is below 3 % of the length and the answer's matrix far from
 ///   singular: next to buckling or snapping the shape's next terms decide, and of a symmetric rod
@@ -93,17 +90,5 @@ inline constexpr int most_planned_points = 4000;
 /// A scene that cannot be planned in time or at all has a plan without bounds, and why.
 /// @throws std::invalid_argument if an option is out of range
 [[nodiscard]] Plan make_plan(const Scene& scene, const PlanOptions& options = {});
-
-/// Distance [m] that every point of the rod keeps from each obstacle, as above; without stretch.
-[[nodiscard]] std::vector<double> obstacle_clearances(const Scene& scene);
-
-/// A scene without the obstacles that its rod cannot reach.
-struct ReachedScene {
-  Scene scene;                 ///< without them
-  std::vector<bool> in_reach;  ///< of each of the original's obstacles
-};
-
-/// Those within reach stay, the stretch of the rod included.
-[[nodiscard]] ReachedScene without_far_obstacles(const Scene& scene);
 
 }  // namespace dlo::compare

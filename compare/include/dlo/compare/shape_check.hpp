@@ -10,7 +10,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/effective_modulus.hpp"
 #include "dlo/compare/scene.hpp"
-#include "dlo/compare/solve.hpp"
+#include "dlo/compare/solution.hpp"
 
 namespace dlo::compare {
 
@@ -20,14 +20,6 @@ struct ShapeCheckOptions {
   ArcLengths arc_lengths = ArcLengths::automatic;  ///< where its arc lengths come from
   ModulusSearch modulus = ModulusSearch::yes;      ///< whether E*/E is looked for
   SolveOptions solve;                              ///< limits of the solvers
-};
-
-/// A part of the rod between two neighbouring points.
-struct RodPart {
-  double from_m = 0;    ///< arc length
-  double to_m = 0;      ///< arc length
-  double untold_m = 0;  ///< how far a smooth curve through the reference at the points is from the
-                        ///< reference in the middle: what is nearer cannot be told apart there
 };
 
 /// A measured shape against the energy model of its scene, without obstacles out of reach.
@@ -95,9 +87,5 @@ struct ShapeJudgement {
 /// @throws InputError, ConvergenceError
 [[nodiscard]] ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                                      const ShapeCheckOptions& options = {});
-
-/// Direction of "up" for PoseFreedom::upright.
-/// @throws InputError if the pose is `upright` and the scene has no gravity
-[[nodiscard]] Eigen::Vector3d up_of(const Scene& scene, PoseFreedom pose);
 
 }  // namespace dlo::compare

@@ -1,0 +1,58 @@
+#include <memory>
+
+#include "command/commands.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solution.hpp"
+#include "format/benchmark.hpp"
+#include "format/json.hpp"
+#include "option/option_values.hpp"
+#include "option/output.hpp"
+#include "option/scene_options.hpp"
+#include "option/terminal.hpp"
+#include "study/benchmark.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct BenchOptions {
+  std::vector<std::string> scenes;
+  compare::BenchmarkOptions benchmark;
+  OutputOptions output;
+};
+
+void run(const BenchOptions& options) {
+  std::vector<compare::Scene> scenes;
+  for (const std::string& path : options.scenes) scenes.push_back(compare::load_scene(path));
+  if (scenes.empty()) scenes = compare::benchmark_scenes();
+  const compare::BenchmarkReport report = [&] {
+    ProgressBar bar("bench");
+    return compare::run_benchmark(scenes, options.benchmark,
+                                  [&](const std::string& what) { bar.stage(what); });
+  }();
+  write_output(options.output, {.text = [&] { return benchmark_text(report); },
+                                .json = [&] { return json_text(benchmark_json(report)); },
+                                .csv = [&] { return benchmark_csv(report); }});
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("bench", "speed against error of all models");
+  const auto options = std::make_shared<BenchOptions>();
+  command->add_option("SCENE", options->scenes,
+                      "scene files (TOML); none: a steel rod and one a hundred times softer");
+  command->add_option("--seconds", options->benchmark.budget_s, "time for all runs together")
+      ->check(number_between(0.1, 86400))
+      ->capture_default_str();
+  command->add_option("--repeats", options->benchmark.repeats, "runs that a median is taken of")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--speed", options->benchmark.gripper_speed, "of the moving gripper [m/s]")
+      ->check(number_between(1e-9, 1e3))
+      ->capture_default_str();
+  add_output_options(*command, options->output);
+  command->footer("Example:\n  dlo bench data/scenes/spring_steel_175.toml --seconds 2");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,194 @@
+#include <fmt/format.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "command/commands.hpp"
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/error.hpp"
+#include "format/force_model_fit.hpp"
+#include "format/json.hpp"
+#include "format/material_fit.hpp"
+#include "option/output.hpp"
+#include "option/scene_options.hpp"
+#include "option/shape_options.hpp"
+#include "option/share.hpp"
+#include "option/terminal.hpp"
+#include "scene/quantity.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct CalibrateOptions {
+  std::vector<std::string> scenes;
+  std::vector<std::string> shapes;
+  bool density = false;
+  std::string noise;
+  std::vector<std::string> holdouts;
+  std::optional<double> target;
+  ShapeOptions shape_options;
+  SceneOptions overrides;
+  OutputOptions output;
+};
+
+std::optional<double> noise_m(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  try {
+    const double value = compare::parse_quantity(text, compare::Dimension::length);
+    if (value > 0) return value;
+  } catch (const compare::InputError& error) {
+    throw compare::InputError(fmt::format("--noise = {}: {}", text, error.what()));
+  }
+  throw compare::InputError(fmt::format("--noise = {}: out of range (allowed: > 0)", text));
+}
+
+std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
+                                     const SceneOptions& overrides) {
+  std::vector<compare::Scene> scenes;
+  scenes.reserve(paths.size());
+  for (const std::string& path : paths) scenes.push_back(overrides.load(path));
+  return scenes;
+}
+
+/// What a report looks like in each format; toml is written to the file, if one is given, and the
+/// text to standard output.
+struct Report {
+  std::function<std::string()> text, csv, toml;
+  std::function<Json()> json;
+};
+
+void write_report(const Report& report, OutputOptions output, bool format_is_given) {
+  const bool to_toml_file = !format_is_given && output.file.ends_with(".toml");
+  if (!format_is_given) {
+    const std::string format = format_of_file(output.file, format_names());
+    if (!format.empty()) output.format = format;
+  }
+  if (to_toml_file) {
+    write_output(output, report.toml());
+    write_output({}, report.text());
+  } else if (output.format == "json") {
+    write_output(output, json_text(report.json()));
+  } else if (output.format == "csv") {
+    write_output(output, report.csv());
+  } else if (output.format == "toml") {
+    write_output(output, report.toml());
+  } else {
+    write_output(output, report.text());
+  }
+}
+
+void run_material(const CalibrateOptions& options, bool format_is_given) {
+  MaterialReport report;
+  report.scenes = load_all(options.scenes, options.overrides);
+  std::vector<compare::MeasuredShape> shapes;
+  shapes.reserve(options.shapes.size());
+  for (const std::string& path : options.shapes) {
+    shapes.push_back(options.shape_options.load(path));
+  }
+  // Several measurements of one scene
+  if (report.scenes.size() == 1) report.scenes.resize(shapes.size(), report.scenes.front());
+  report.files = options.shapes;
+  report.frame_was_found = options.shape_options.pose() != compare::PoseFreedom::known;
+  const compare::MaterialFitOptions fit_options{.pose = options.shape_options.pose(),
+                                                .arc_lengths = options.shape_options.arc_lengths(),
+                                                .density = options.density,
+                                                .noise = noise_m(options.noise),
+                                                .solve = options.overrides.solve()};
+  report.fit = [&] {
+    const ProgressBar bar("calibrate");
+    return compare::fit_material(report.scenes, shapes, fit_options);
+  }();
+  write_report({.text = [&] { return material_text(report); },
+                .csv = [&] { return material_csv(report); },
+                .toml = [&] { return material_toml(report); },
+                .json = [&] { return material_json(report); }},
+               options.output, format_is_given);
+}
+
+void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
+  const std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
+  const std::vector<compare::Scene> holdouts = load_all(options.holdouts, options.overrides);
+  compare::ForceModelFitOptions fit_options;
+  if (points_are_given) fit_options.points = scenes.front().force_model.points;
+  if (options.target) fit_options.target = *options.target;
+  fit_options.solve = options.overrides.solve();
+  const compare::ForceModelFit fit = [&] {
+    ProgressBar bar("calibrate");
+    fit_options.progress = [&](std::int64_t done, std::int64_t total) { bar.show(done, total); };
+    return compare::fit_force_model(scenes, holdouts, fit_options);
+  }();
+  write_report({.text = [&] { return force_model_text(fit, options.target.has_value()); },
+                .csv = [&] { return force_model_csv(fit); },
+                .toml = [&] { return force_model_toml(fit); },
+                .json = [&] { return force_model_json(fit); }},
+               options.output, format_is_given);
+  // The default is a wish.
+  if (!fit.reached() && options.target) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "calibrate",
+      "parameters of the force model from physics, or Young's modulus from measured shapes");
+  const auto options = std::make_shared<CalibrateOptions>();
+  command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
+  const std::string parameters = "Parameters of the force model";
+  CLI::Option* holdout =
+      command->add_option("--holdout", options->holdouts, "scenes that judge and are not fitted")
+          ->type_name("SCENE ...")
+          ->group(parameters);
+  CLI::Option* target =
+      command
+          ->add_option("--target", options->target,
+                       "RMS deviation wanted, share of the length such as 0.1%; law hooke takes N "
+                       "from it unless --points is given. Exit status 1 if it is missed; without "
+                       "--target 0.1% is wished for, and status is 0")
+          ->transform(share_of_length())
+          ->group(parameters);
+  const std::string measured = "Young's modulus from measured shapes";
+  CLI::Option* shape =
+      command->add_option("--shape", options->shapes, "one per scene, or several of one scene")
+          ->type_name("FILE ...")
+          ->excludes(holdout)
+          ->excludes(target)
+          ->group(measured);
+  command->add_flag("--density", options->density, "fit the density as well")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--noise", options->noise,
+                   "standard deviation of one coordinate such as \"0.5 mm\"; default: estimated")
+      ->needs(shape)
+      ->group(measured);
+  options->shape_options.add_to(*command, ChordLengths::not_exact_enough);
+  options->overrides.add_to(*command);
+  std::vector<std::string> formats = format_names();
+  formats.emplace_back("toml");
+  command->add_option("--format", options->output.format, "text, json, csv or toml")
+      ->check(CLI::IsMember(formats))
+      ->capture_default_str();
+  command
+      ->add_option("-o,--output", options->output.file,
+                   "write to FILE instead of standard output; .json and .csv are formats, a .toml "
+                   "gets what --parameters (with "
+                   "--shape: --materials) reads, and the text still goes to standard output")
+      ->type_name("FILE");
+  command->footer(
+      "Examples:\n  dlo calibrate data/scenes/spring_steel_135.toml --law hooke --bookkeeping "
+      "consistent --target 0.1% --holdout data/scenes/spring_steel_215.toml -o params.toml\n  dlo "
+      "solve data/scenes/spring_steel_135.toml --model exact --samples 12 --format csv -o "
+      "seen.csv\n  dlo calibrate data/scenes/spring_steel_135.toml --shape seen.csv");
+  command->callback([options, command] {
+    const bool format_is_given = command->count("--format") > 0;
+    if (options->shapes.empty()) {
+      run_force_model(*options, command->count("--points") > 0, format_is_given);
+    } else {
+      run_material(*options, format_is_given);
+    }
+  });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,122 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "command/commands.hpp"
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/shape_check.hpp"
+#include "format/json.hpp"
+#include "format/shape_check.hpp"
+#include "option/output.hpp"
+#include "option/scene_options.hpp"
+#include "option/shape_options.hpp"
+#include "option/share.hpp"
+#include "option/terminal.hpp"
+#include "scene/quantity.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct CheckOptions {
+  std::string scene;
+  std::string shape;
+  std::string tolerance;
+  std::string measure = "rms";
+  std::optional<double> min_seen;
+  bool no_modulus = false;
+  ShapeOptions shapes;
+  SceneOptions overrides;
+  OutputOptions output;
+};
+
+/// "1%" or 0.01 of the rod's length, or a length with a unit.
+double tolerance_m(const std::string& text, double length) {
+  const bool percent = text.ends_with('%');
+  const std::string number = percent ? text.substr(0, text.size() - 1) : text;
+  double value = 0;
+  try {
+    value = compare::parse_quantity(number, compare::Dimension::number) / (percent ? 100 : 1);
+    if (value > 0 && value < 1) return value * length;
+  } catch (const compare::InputError&) {
+    try {
+      value = percent ? 0 : compare::parse_quantity(text, compare::Dimension::length);
+    } catch (const compare::InputError&) {
+      throw compare::InputError(fmt::format(
+          "--tolerance = {}: neither a share of the length nor a length (allowed: such as 1%, 0.01 "
+          "or \"2 mm\")",
+          text));
+    }
+    if (value > 0) return value;
+  }
+  throw compare::InputError(fmt::format(
+      "--tolerance = {}: out of range (allowed: above 0, a share of the length below 1, a length "
+      "with its unit)",
+      text));
+}
+
+void run(const CheckOptions& options) {
+  ShapeCheckReport report;
+  report.scene = options.overrides.load(options.scene);
+  const compare::MeasuredShape shape = options.shapes.load(options.shape);
+  std::optional<Verdict>& verdict = report.verdict;
+  if (!options.tolerance.empty()) {
+    verdict.emplace();
+    verdict->tolerance = {.allowed_m = tolerance_m(options.tolerance, report.scene.length),
+                          .largest = options.measure == "max",
+                          .part = options.min_seen.has_value()};
+    if (options.min_seen) verdict->tolerance.least_seen_share = *options.min_seen;
+  }
+  report.pose = options.shapes.pose();
+  report.check = compare::check_shape(
+      report.scene, shape,
+      {.pose = report.pose,
+       .arc_lengths = options.shapes.arc_lengths(),
+       .modulus = options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes,
+       .solve = options.overrides.solve()});
+  if (verdict) verdict->judgement = compare::judge(report.check, verdict->tolerance);
+  report.unit_hint = options.shapes.unit_hint(report.check.polyline_length_m, report.scene.length);
+  report.file = options.output.file;
+  write_output(options.output, {.text = [&] { return shape_check_text(report); },
+                                .json = [&] { return json_text(shape_check_json(report)); },
+                                .csv = [&] { return shape_check_csv(report); }});
+  if (verdict && !verdict->judgement.pass) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "check", "how far a shape of your own simulator or camera is from the energy model");
+  const auto options = std::make_shared<CheckOptions>();
+  command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
+  command->add_option("--shape", options->shape, "CSV, JSON or legacy VTK polyline")
+      ->type_name("FILE")
+      ->required();
+  command->add_option(
+      "--tolerance", options->tolerance,
+      "largest deviation allowed, 1% or 0.01 of the length or \"2 mm\"; exit status 1 "
+      "beyond it");
+  command->add_option("--measure", options->measure, "what is held against it: rms or max")
+      ->check(CLI::IsMember({"rms", "max"}))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--min-seen", options->min_seen,
+          "the file is a part of the rod: what it does not have is not judged, but less "
+          "than this share such as 10% never passes. Without it the file is the whole rod, "
+          "what is missing counts, and less than half never passes")
+      ->transform(share_of_length());
+  command->add_flag("--no-modulus", options->no_modulus, "leave E*/E out");
+  options->shapes.add_to(*command, ChordLengths::offered);
+  options->overrides.add_solvers_to(*command);
+  add_output_options(*command, options->output);
+  command->footer(
+      "Example, with dlo in place of your simulator:\n"
+      "  dlo solve data/scenes/cable.toml --model force --points 32 --format csv -o mine.csv\n"
+      "  dlo check data/scenes/cable.toml --shape mine.csv --tolerance 1%");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,79 @@
+
+#include <memory>
+
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/solution.hpp"
+#include "format/comparison.hpp"
+#include "format/json.hpp"
+#include "format/plan.hpp"
+#include "option/output.hpp"
+#include "option/scene_options.hpp"
+#include "option/terminal.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct CompareOptions {
+  std::vector<std::string> scenes;
+  bool no_modulus = false;
+  SceneOptions overrides;
+  PlanOptions plan;
+  OutputOptions output;
+};
+
+void run(const CompareOptions& options) {
+  std::vector<compare::Comparison> comparisons;
+  std::string plans;
+  std::string unresolved;
+  compare::SolveOptions solve = options.overrides.solve();
+  solve.accept_unresolved = true;
+  const bool explain = options.plan.explain() && options.output.kind() == Format::text;
+  {
+    ProgressBar bar("compare");
+    for (const std::string& path : options.scenes) {
+      const compare::Scene scene = options.overrides.load(path);
+      comparisons.push_back(compare::compare(
+          scene, solve, options.plan.plan(),
+          options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes));
+      const std::string& why = comparisons.back().unresolved;
+      if (!why.empty()) {
+        append(unresolved, "{}{}: the energy model: {}", unresolved.empty() ? "" : "; ", scene.file,
+               why);
+      }
+      if (explain) plans += plan_text(comparisons.back().plan, scene);
+      bar.show(static_cast<std::int64_t>(comparisons.size()),
+               static_cast<std::int64_t>(options.scenes.size()));
+    }
+  }
+  write_output(options.output, {.text =
+                                    [&] {
+                                      std::string text = plans;
+                                      for (const compare::Comparison& comparison : comparisons) {
+                                        text += comparison_text(comparison);
+                                      }
+                                      return text;
+                                    },
+                                .json = [&] { return json_text(comparisons_json(comparisons)); },
+                                .csv = [&] { return comparisons_csv(comparisons); }});
+  if (!unresolved.empty()) throw compare::ConvergenceError(unresolved);
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("compare", "how far the force model is from the energy model, and why");
+  const auto options = std::make_shared<CompareOptions>();
+  command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
+  command->add_flag("--no-modulus", options->no_modulus, "leave E*/E out");
+  options->overrides.add_to(*command);
+  options->plan.add_to(*command);
+  add_output_options(*command, options->output);
+  command->footer(
+      "Example:\n  dlo compare data/scenes/spring_steel_175.toml --law hooke --bookkeeping "
+      "consistent");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

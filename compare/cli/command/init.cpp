@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include "base/quote.hpp"
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "option/output.hpp"
+#include "scene/new_scene.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct InitOptions {
+  std::string target = "scene.toml";
+  bool force = false;
+  std::string materials;
+  compare::SceneChoices choices;
+};
+
+/// "my cable" is a scene of this name in my_cable.toml, a FILE.toml is a scene with the file's
+/// name.
+std::filesystem::path file_of(const std::string& target, std::string& name) {
+  const std::filesystem::path path(target);
+  name = path.extension() == ".toml" ? path.stem().string() : path.filename().string();
+  if (name.empty()) {
+    throw compare::InputError(
+        fmt::format("init: {} is no name (allowed: a name, or FILE.toml)", target));
+  }
+  std::string stem = name;
+  std::replace_if(
+      stem.begin(), stem.end(), [](unsigned char c) { return std::isspace(c) != 0; }, '_');
+  return path.parent_path() / (stem + ".toml");
+}
+
+std::string next_steps(const compare::Scene& scene, const std::string& file) {
+  std::string out;
+  append(out, "{} written: {:g} m long, {:g} mm thick, E = {:g} MPa, density {:g} kg/m^3\n", file,
+         scene.length, scene.diameter * 1e3, scene.material.youngs_modulus * 1e-6,
+         scene.material.density);
+  append(out, "  weight {:.4g} N, EI = {:.4g} N m^2, Gamma = w l^3 / (EI) = {:.4g}\n",
+         scene.mass() * scene.gravity.norm(), scene.bending_stiffness(), scene.gamma());
+  append(out,
+         "Next:\n"
+         "  dlo solve {0}                       its shape, and the gripper's force and torque\n"
+         "  dlo check {0} --shape mine.csv      is your simulator's shape right?\n"
+         "  dlo calibrate {0} -o params.toml    parameters of the force model\n",
+         compare::shell_word(file));
+  return out;
+}
+
+/// The scene's text; what is wrong with a value is said of the option that gave it.
+std::string text_of(const compare::SceneChoices& choices,
+                    const std::vector<compare::Material>& known) {
+  try {
+    return compare::scene_text(choices, known);
+  } catch (const compare::InputError& error) {
+    const std::string message = error.what();
+    constexpr std::pair<const char*, const char*> options[] = {
+        {" rod.length =", "--length ="},
+        {" rod.diameter =", "--diameter ="},
+        {" rod.material =", "--material ="},
+        {" rod.material.youngs_modulus =", "--youngs-modulus ="},
+        {" rod.material.density =", "--density ="},
+        {" gripper.direction =", "--direction ="}};
+    for (const auto& [key, option] : options) {
+      const std::size_t at = message.find(key);
+      if (at == std::string::npos) continue;
+      throw compare::InputError(option + message.substr(at + std::string(key).size()));
+    }
+    throw;
+  }
+}
+
+void run(InitOptions options) {
+  const std::string file = file_of(options.target, options.choices.name).string();
+  std::error_code unknown;  // writing tells what is wrong with a name
+  if (!options.force && std::filesystem::exists(std::filesystem::symlink_status(file, unknown))) {
+    throw compare::InputError(
+        fmt::format("{}: exists (allowed: another name, or --force to replace it)", file));
+  }
+  std::vector<std::string> inputs;
+  if (!options.materials.empty()) inputs.push_back(options.materials);
+  check_output("init:", file, inputs);
+  const std::vector<compare::Material> known =
+      options.materials.empty() ? compare::materials() : compare::load_materials(options.materials);
+  const std::string text = text_of(options.choices, known);
+  const compare::Scene scene = compare::parse_scene(text, file, known);
+  write_output({.file = file}, text);
+  write_output({}, next_steps(scene, file));
+}
+
+}  // namespace
+
+void add_init(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("init", "write a commented scene file to start from");
+  const auto options = std::make_shared<InitOptions>();
+  command->add_option("NAME", options->target,
+                      "name of the scene, or FILE.toml; default scene.toml");
+  compare::SceneChoices& choices = options->choices;
+  command->add_option("--length", choices.length, "of the rod, such as \"2 m\"")
+      ->type_name("LENGTH")
+      ->capture_default_str();
+  command->add_option("--diameter", choices.diameter, "of the rod, such as \"6 mm\"")
+      ->type_name("LENGTH")
+      ->capture_default_str();
+  CLI::Option* material =
+      command->add_option("--material", choices.material, "a name that dlo materials lists")
+          ->type_name("MATERIAL")
+          ->capture_default_str();
+  CLI::Option* modulus = command
+                             ->add_option("--youngs-modulus", choices.youngs_modulus,
+                                          "of a material of your own, such as \"5 MPa\"")
+                             ->type_name("MODULUS")
+                             ->excludes(material);
+  CLI::Option* density =
+      command->add_option("--density", choices.density, "and its density, such as \"1100 kg/m^3\"")
+          ->type_name("DENSITY")
+          ->needs(modulus);
+  modulus->needs(density);
+  command
+      ->add_option("--direction", choices.direction,
+                   "of the rod in its gripper: \"-90 deg\" hangs down, \"90 deg\" stands up; or a "
+                   "vector such as \"[1, 0, 0]\"")
+      ->type_name("ANGLE")
+      ->capture_default_str();
+  command
+      ->add_option("--materials", options->materials, "materials file instead of the built-in one")
+      ->type_name("FILE");
+  command->add_flag("--force", options->force, "replace the file if it exists");
+  command->footer(
+      "Examples:\n"
+      "  dlo init cable.toml --length \"2 m\" --diameter \"6 mm\" --material silicone\n"
+      "  dlo init hose --youngs-modulus \"5 MPa\" --density \"1100 kg/m^3\" --direction \"30 "
+      "deg\"");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,134 @@
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "batch/regression.hpp"
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/solution.hpp"
+#include "format/json.hpp"
+#include "format/regression.hpp"
+#include "option/output.hpp"
+#include "option/scene_options.hpp"
+#include "option/share.hpp"
+#include "option/terminal.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::MeasuredCase;
+using compare::RegressionResult;
+using compare::RegressionVerdict;
+
+struct RegressOptions {
+  std::vector<std::string> scenes;
+  std::string baseline;
+  std::string junit;
+  std::string model = "force";
+  bool update = false;
+  compare::RegressionTolerance tolerance;
+  SceneOptions overrides;
+  OutputOptions output;
+};
+
+MeasuredCase measure(const RegressOptions& options, const std::string& path) {
+  const compare::Scene scene = options.overrides.load(path);
+  const compare::Model model = compare::model_from(options.model);
+  try {
+    return {compare::measure_case(scene, model, options.overrides.solve()), ""};
+  } catch (const compare::ConvergenceError& error) {
+    return {compare::case_of(scene, model), error.what()};
+  }
+}
+
+void run(const RegressOptions& options) {
+  // An unreadable baseline is told before minutes of solving.
+  std::vector<compare::BaselineCase> baseline;
+  std::error_code unknown;  // writing tells what is wrong with a name
+  if (!options.update || std::filesystem::exists(options.baseline, unknown)) {
+    baseline = compare::load_baseline(options.baseline);
+  }
+  std::vector<MeasuredCase> measured;
+  measured.reserve(options.scenes.size());
+  {
+    ProgressBar bar("regress");
+    for (const std::string& path : options.scenes) {
+      measured.push_back(measure(options, path));
+      bar.show(static_cast<std::int64_t>(measured.size()),
+               static_cast<std::int64_t>(options.scenes.size()));
+    }
+  }
+  const std::vector<RegressionResult> results =
+      compare::judge_regression(baseline, measured, options.tolerance);
+  const bool solved = std::none_of(results.begin(), results.end(), [](const auto& result) {
+    return result.verdict == RegressionVerdict::not_solved;
+  });
+  const bool good = options.update
+                        ? solved
+                        : std::none_of(results.begin(), results.end(), [](const auto& result) {
+                            return compare::failed(result.verdict);
+                          });
+  if (!options.junit.empty()) {
+    write_output({.file = options.junit}, compare::junit_xml(results));
+  }
+  if (options.update && solved) {
+    std::vector<compare::BaselineCase> cases;
+    cases.reserve(measured.size());
+    for (const MeasuredCase& entry : measured) cases.push_back(entry.entry);
+    write_output({.file = options.baseline}, compare::baseline_text(cases));
+  }
+  const bool updated = options.update && solved;
+  write_output(options.output, {.text =
+                                    [&] {
+                                      return updated
+                                                 ? baseline_update_text(results)
+                                                 : regression_text(results, options.output.file);
+                                    },
+                                .json = [&] { return json_text(regression_json(results, good)); },
+                                .csv = [&] { return regression_csv(results); }});
+  if (options.update) {
+    say("{} {}", options.baseline, solved ? "written" : "left as it was");
+  }
+  if (!solved) throw CLI::RuntimeError(3);
+  if (!good) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_regress(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("regress", "shape errors against a baseline under version control");
+  const auto options = std::make_shared<RegressOptions>();
+  command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
+  command->add_option("--baseline", options->baseline, "the baseline (TOML)")
+      ->type_name("FILE")
+      ->required();
+  command->add_flag("--update", options->update,
+                    "write the baseline anew, of these scenes and no others");
+  command->add_option("--junit", options->junit, "write the verdicts as JUnit XML too")
+      ->type_name("FILE");
+  command->add_option("--model", options->model, "force or chain")
+      ->check(CLI::IsMember({"force", "chain"}))
+      ->capture_default_str();
+  command
+      ->add_option("--relative", options->tolerance.relative,
+                   "how much an error may change, as a share of it such as 1%")
+      ->transform(share_up_to(1e3))
+      ->capture_default_str();
+  command
+      ->add_option("--absolute", options->tolerance.absolute,
+                   "and how much beside that, as a share of the rod's length")
+      ->transform(share_up_to(1e3))
+      ->capture_default_str();
+  options->overrides.add_to(*command);
+  add_output_options(*command, options->output);
+  command->footer(
+      "Example:\n"
+      "  dlo regress --baseline shapes.toml data/scenes/spring_steel_175.toml --update\n"
+      "  dlo regress --baseline shapes.toml data/scenes/spring_steel_175.toml --junit dlo.xml");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

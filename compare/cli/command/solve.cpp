@@ -1,0 +1,128 @@
+#include "dlo/compare/solve.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "format/json.hpp"
+#include "format/plan.hpp"
+#include "format/solution.hpp"
+#include "option/output.hpp"
+#include "option/scene_options.hpp"
+#include "shape/write_vtk.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct SolveOptions {
+  std::string scene;
+  std::string model = "energy";
+  int samples = 0;
+  bool all = false;
+  SceneOptions overrides;
+  PlanOptions plan;
+  OutputOptions output;
+};
+
+/// What a format cannot say is not left out in silence.
+void require_format_for(const SolveOptions& options) {
+  const std::string& format = options.output.format;
+  if (format != "csv" && format != "vtk") return;
+  if (options.all) {
+    throw compare::InputError(
+        fmt::format("--all: format {} holds one shape (allowed: text or json)", format));
+  }
+  if (options.plan.explain()) {
+    throw compare::InputError(
+        fmt::format("--explain: format {} holds no plan (allowed: text or json)", format));
+  }
+}
+
+void warn_of_force_model_options(const SolveOptions& options) {
+  const std::string names = options.overrides.force_model_options();
+  if (names.empty()) return;
+  say("{}: no effect on the shape of model {} (only on force and chain)", names, options.model);
+}
+
+/// A shape that is not resolved has been shown, which is no success.
+void require_resolved(const compare::Solution& solution, const compare::Scene& scene) {
+  if (solution.status != energy_model::SolveStatus::not_resolved) return;
+  throw compare::ConvergenceError(
+      fmt::format("{}: the energy model: {}", scene.file, solution.message));
+}
+
+void run(const SolveOptions& options) {
+  require_format_for(options);
+  const compare::Scene scene = options.overrides.load(options.scene);
+  const compare::Model model = compare::model_from(options.model);
+  constexpr int text_samples = 11;
+  int samples = options.samples;
+  const bool continuous = model == compare::Model::energy || model == compare::Model::exact;
+  if (continuous) warn_of_force_model_options(options);
+  if (samples == 0 && continuous && options.output.kind() == Format::text) samples = text_samples;
+  const std::vector<double> arc_lengths =
+      samples > 0 ? compare::equal_arc_lengths(scene.length, samples) : std::vector<double>{};
+  if (options.all && model != compare::Model::energy) {
+    throw compare::InputError("--all: only model energy searches for all equilibria");
+  }
+  compare::SolveOptions solve = options.overrides.solve();
+  solve.accept_unresolved = true;
+  const std::vector<compare::Solution> solutions =
+      options.all
+          ? compare::solve_all(scene, solve, arc_lengths)
+          : std::vector<compare::Solution>{compare::solve(scene, model, solve, arc_lengths)};
+  const compare::Solution& solution = solutions.front();
+  if (options.output.format == "vtk") {
+    write_output(options.output, compare::vtk_polyline(solution.shape, solution.curvature,
+                                                       solution.tension, scene.name));
+    return require_resolved(solution, scene);
+  }
+  const auto plan = [&] {
+    compare::PlanOptions plan_options = options.plan.plan();
+    plan_options.time_limit = std::min(plan_options.time_limit, solve.time_limit);
+    return compare::make_plan(scene, plan_options);
+  };
+  write_output(options.output,
+               {.text =
+                    [&] {
+                      return (options.plan.explain() ? plan_text(plan(), scene) : "") +
+                             solution_text(solution, scene) +
+                             (options.all ? equilibria_text(solutions) : "");
+                    },
+                .json =
+                    [&] {
+                      return json_text(options.all ? equilibria_json(solutions, scene, plan())
+                                                   : solution_json(solution, scene, plan()));
+                    },
+                .csv = [&] { return solution_csv(solution); }});
+  require_resolved(solution, scene);
+}
+
+}  // namespace
+
+void add_solve(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("solve", "the shape of one scene with one model");
+  const auto options = std::make_shared<SolveOptions>();
+  command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
+  command->add_option("--model", options->model, "energy, chain, exact or force")
+      ->check(CLI::IsMember(compare::model_names()))
+      ->capture_default_str();
+  command->add_option("--samples", options->samples, "M points at equal arc lengths from 0 to l")
+      ->check(CLI::Range(2, 1000000));
+  command->add_flag("--all", options->all, "every equilibrium that is found, with its stability");
+  options->overrides.add_to(*command);
+  options->plan.add_to(*command);
+  std::vector<std::string> formats = format_names();
+  formats.emplace_back("vtk");
+  add_output_options(*command, options->output, formats);
+  command->footer(
+      "Examples:\n"
+      "  dlo solve data/scenes/spring_steel_175.toml --model exact --samples 5\n"
+      "  dlo solve data/scenes/cable.toml --format vtk -o cable.vtk   # for ParaView");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

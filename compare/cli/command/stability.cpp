@@ -1,0 +1,139 @@
+#include "study/stability.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "format/json.hpp"
+#include "format/stability.hpp"
+#include "option/output.hpp"
+#include "option/scene_options.hpp"
+#include "option/terminal.hpp"
+#include "study/hard_case.hpp"
+#include "study/stability_map.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::Outcome;
+using compare::StabilityResult;
+
+struct StabilityOptions {
+  std::string scene;
+  std::string map;
+  std::vector<std::string> steppers;
+  compare::StabilityOptions cases;
+  compare::StabilityMapOptions grid;
+  int threads = 0;
+  OutputOptions output;
+};
+
+/// The paper's steppers may fail, `auto` may not.
+bool auto_fails(const StabilityResult& result) {
+  return result.stepper == compare::StepperName::automatic && result.outcome != Outcome::pass &&
+         result.outcome != Outcome::refused;
+}
+
+void run_map(StabilityOptions& options) {
+  options.grid.axis = options.map == "cF-cc" ? compare::MapAxis::c_c : compare::MapAxis::c_h;
+  options.grid.threads = options.threads;
+  const compare::Scene scene =
+      options.scene.empty() ? compare::hard_case_scene() : compare::load_scene(options.scene);
+  const compare::StabilityMap map = [&] {
+    ProgressBar bar("map");
+    options.grid.progress = [&](std::int64_t done, std::int64_t total) { bar.show(done, total); };
+    return compare::stability_map(scene, options.grid);
+  }();
+  write_output(options.output, {.text = [&] { return stability_map_text(map); },
+                                .json = [&] { return json_text(stability_map_json(map)); },
+                                .csv = [&] { return stability_map_csv(map); }});
+}
+
+void run_cases(StabilityOptions& options) {
+  if (!options.steppers.empty()) {
+    options.cases.steppers.clear();
+    for (const std::string& name : options.steppers) {
+      options.cases.steppers.push_back(compare::stepper_from(name));
+    }
+  }
+  options.cases.threads = options.threads;
+  const std::vector<StabilityResult> results = [&] {
+    ProgressBar bar("hard cases");
+    options.cases.progress = [&](std::int64_t done, std::int64_t total) { bar.show(done, total); };
+    return compare::stability(options.cases);
+  }();
+  const std::size_t steppers = options.cases.steppers.size();
+  write_output(options.output, {.text = [&] { return hard_cases_text(results, steppers); },
+                                .json = [&] { return json_text(hard_cases_json(results)); },
+                                .csv = [&] { return hard_cases_csv(results); }});
+  if (std::any_of(results.begin(), results.end(), auto_fails)) throw CLI::RuntimeError(1);
+}
+
+}  // namespace
+
+void add_stability(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "stability", "where the force model's steppers break: hard cases, or a map of c_F");
+  const auto options = std::make_shared<StabilityOptions>();
+  command->add_option("SCENE", options->scene,
+                      "scene file (TOML) of a map; without it the hard cases' rod");
+  command
+      ->add_option("--map", options->map,
+                   "cF-cc or cF-ch: where steps stop being stable, predicted and measured")
+      ->check(CLI::IsMember({"cF-cc", "cF-ch"}));
+  command->add_option("--threads", options->threads, "at most; 0: as many as the machine has")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  const std::string table = "Hard cases";
+  command->add_option("--case", options->cases.name_contains, "only cases whose name contains this")
+      ->group(table);
+  command->add_option("--stepper", options->steppers, "only these steppers")
+      ->check(CLI::IsMember(compare::stepper_names()))
+      ->group(table);
+  const auto steps = CLI::Range(1L, 1000000000000L);
+  command->add_option("--max-steps", options->cases.max_steps, "of the paper's steppers")
+      ->check(steps)
+      ->capture_default_str()
+      ->group(table);
+  command->add_option("--max-steps-auto", options->cases.max_steps_auto, "of stepper auto")
+      ->check(steps)
+      ->capture_default_str()
+      ->group(table);
+  command->add_option("--steps-at-rest", options->cases.steps_at_rest, "of the case at rest")
+      ->check(steps)
+      ->capture_default_str()
+      ->group(table);
+  const std::string map = "Map";
+  command->add_option("--columns", options->grid.columns, "values of c_c or c_h")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->group(map);
+  command->add_option("--rows", options->grid.rows, "values of c_F")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str()
+      ->group(map);
+  command->add_option("--map-steps", options->grid.steps, "of each rod")
+      ->check(steps)
+      ->capture_default_str()
+      ->group(map);
+  add_output_options(*command, options->output);
+  command->footer(
+      "Exit status 1: stepper auto does not pass a case.\n"
+      "Examples:\n  dlo stability --case folded\n  dlo stability --map cF-cc --columns 8");
+  command->callback([options] {
+    if (!options->map.empty()) return run_map(*options);
+    if (!options->scene.empty()) {
+      throw compare::InputError(fmt::format(
+          "stability: SCENE = {}: only a map takes a scene (allowed with --map cF-cc or cF-ch)",
+          options->scene));
+    }
+    run_cases(*options);
+  });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,200 @@
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <memory>
+
+#include "base/output_file.hpp"
+#include "batch/sweep_file.hpp"
+#include "batch/sweep_merge.hpp"
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "option/output.hpp"
+#include "option/scene_options.hpp"
+#include "option/terminal.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct SweepOptions {
+  std::vector<std::string> files;
+  std::vector<std::string> vary;
+  std::string model = "energy";
+  std::string format = "csv";
+  std::string shard;
+  std::string output;
+  int threads = 0;
+  bool restart = false;
+  bool merge = false;
+  SceneOptions scene;
+};
+
+std::optional<compare::Shard> chosen_shard(const std::string& text) {
+  if (text == "none") return std::nullopt;
+  if (!text.empty()) return compare::parse_shard(text);
+  std::optional<compare::Shard> shard =
+      compare::shard_from_environment([](const char* name) { return std::getenv(name); });
+  if (shard) say("shard {} (from {})", shard->name(), shard->source);
+  return shard;
+}
+
+/// {shard} in a file's name becomes 2-of-4, or "all" without shards.
+std::string output_path(std::string path, const std::optional<compare::Shard>& shard) {
+  const std::string placeholder = "{shard}";
+  const std::string name =
+      shard ? fmt::format("{}-of-{}", shard->index, shard->count) : std::string("all");
+  for (std::size_t at = path.find(placeholder); at != std::string::npos;
+       at = path.find(placeholder, at + name.size())) {
+    path.replace(at, placeholder.size(), name);
+  }
+  return path;
+}
+
+compare::Sweep sweep_of(const SweepOptions& options) {
+  std::vector<compare::Axis> axes;
+  axes.reserve(options.vary.size());
+  for (const std::string& text : options.vary) axes.push_back(compare::parse_axis(text));
+  return {compare::load_scene_template(options.files.front(), options.scene.materials()),
+          compare::Grid(std::move(axes)), compare::sweep_model_from(options.model),
+          options.scene.solve()};
+}
+
+void warn_of_unresolved(const compare::SweepOutcome& outcome, const std::string& file) {
+  if (outcome.unresolved == 0) return;
+  say("{}: {} of {} scenes have no result, the column status says why", file, outcome.unresolved,
+      outcome.rows);
+}
+
+void print_sweep(const compare::Sweep& sweep, const std::optional<compare::Shard>& shard,
+                 int threads) {
+  if (shard) write_standard_output(compare::sweep_identity(sweep, shard));
+  write_standard_output(sweep.header());
+  const std::int64_t rows = sweep.grid().size();
+  compare::SweepOutcome outcome;
+  const auto print_row = [&](const std::string& line) {
+    write_standard_output(line);
+    ++outcome.rows;
+    if (!line.ends_with(",ok\n")) ++outcome.unresolved;
+  };
+  sweep.run(shard ? compare::rows_of(*shard, rows) : compare::RowRange{0, rows}, threads,
+            print_row);
+  warn_of_unresolved(outcome, "sweep");
+}
+
+void run_merge(const SweepOptions& options) {
+  if (options.output.empty()) throw compare::InputError("--merge: -o FILE is required");
+  if (!options.vary.empty() || !options.shard.empty()) {
+    throw compare::InputError("--merge: takes the shards' files only (allowed: -o)");
+  }
+  warn_of_unresolved(compare::merge_sweep(options.files, options.output), options.output);
+}
+
+/// One --vary may be followed by several fields; what has a "=" is one of them, not a file.
+void sort_words(SweepOptions& options) {
+  const auto fields = std::stable_partition(
+      options.files.begin(), options.files.end(),
+      [](const std::string& word) { return word.find('=') == std::string::npos; });
+  options.vary.insert(options.vary.end(), fields, options.files.end());
+  options.files.erase(fields, options.files.end());
+}
+
+void run(SweepOptions options, const std::vector<std::string>& inputs) {
+  if (options.merge) return run_merge(options);
+  if (!options.vary.empty()) sort_words(options);
+  if (options.files.size() != 1) {
+    throw compare::InputError(
+        fmt::format("sweep: {} scene files given (allowed: 1)", options.files.size()));
+  }
+  if (options.vary.empty()) {
+    throw compare::InputError(
+        "sweep: no --vary FIELD=VALUES given (allowed: such as --vary gamma=1,10)");
+  }
+  const compare::Sweep sweep = sweep_of(options);
+  const std::optional<compare::Shard> shard = chosen_shard(options.shard);
+  if (options.output.empty()) return print_sweep(sweep, shard, options.threads);
+  const std::string path = output_path(options.output, shard);
+  check_output("--output", path, inputs);
+  const compare::OutputTarget target = compare::output_target(path);
+  if (target.kind == compare::OutputTarget::Kind::file) {
+    check_output("--output", target.path + ".part", inputs);
+  }
+  bool was_resumed = false;
+  const compare::SweepOutcome outcome = [&] {
+    ProgressBar bar("sweep");
+    const compare::SweepFileOptions file_options{
+        .threads = options.threads,
+        .restart = options.restart,
+        .progress =
+            [&](std::int64_t done, std::int64_t rows) {
+              const std::int64_t rarely = rows / 1000 + 1;
+              if (done % rarely == 0 || done == rows) bar.show(done, rows);
+            },
+        .resumed =
+            [&](std::int64_t rows) {
+              was_resumed = true;
+              bar.remark(fmt::format("{}: resumed: {} rows kept", path, rows));
+            }};
+    return compare::write_sweep(sweep, shard, path, file_options);
+  }();
+  if (shard && outcome.rows > 0 && outcome.found == outcome.rows && !was_resumed) {
+    say("{}: finished already, {} rows", path, outcome.rows);
+  }
+  warn_of_unresolved(outcome, path);
+}
+
+}  // namespace
+
+void add_sweep(CLI::App& app) {
+  CLI::App* command =
+      app.add_subcommand("sweep", "a grid over any fields of a scene, as a table (CSV)");
+  const auto options = std::make_shared<SweepOptions>();
+  command->add_option("FILE", options->files, "scene file (TOML); with --merge the shards' files")
+      ->required();
+  command
+      ->add_option("--vary", options->vary,
+                   "a field and its values, once for each field: a dotted path such as "
+                   "rod.length or gripper.0.direction, or gamma, which scales gravity; values "
+                   "a,b,c or lin:a:b:n or log:a:b:n, with units as in scene files. The last field "
+                   "changes fastest")
+      ->type_name("FIELD=VALUES")
+      ->allow_extra_args(false);
+  command->add_option("--format", options->format, "csv")
+      ->check(CLI::IsMember({"csv"}))
+      ->capture_default_str();
+  command
+      ->add_option("--model", options->model,
+                   "energy, chain, exact, force, compare (force against energy) or compare-chain "
+                   "(its rest shape, without steps, against energy)")
+      ->check(CLI::IsMember(compare::sweep_model_names()))
+      ->capture_default_str();
+  command
+      ->add_option("-o,--output", options->output,
+                   "write to FILE (FILE.part until it is finished; after a kill the same command "
+                   "goes on there) instead of standard output; {shard} in it becomes 2-of-4")
+      ->type_name("FILE");
+  command->add_flag("--restart", options->restart, "throw away what an earlier run has left");
+  command->add_option("--threads", options->threads, "0: all cores")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  command
+      ->add_option("--shard", options->shard,
+                   "compute part i of n, or none; default: what SLURM_ARRAY_TASK_ID and "
+                   "OMPI_COMM_WORLD_RANK say")
+      ->type_name("i/n");
+  command->add_flag("--merge", options->merge, "put finished shards together");
+  options->scene.add_solvers_to(*command);
+  command->footer(
+      "Exit status is 0 also if rows have no result: a line on standard error counts them, their\n"
+      "column status says why.\n"
+      "Example:\n"
+      "  dlo sweep data/scenes/spring_steel_175.toml --vary gamma=log:0.1:10:5 \\\n"
+      "      --vary gripper.0.direction=\"-90 deg\",\"0 deg\" -o map.csv\n"
+      "In parts, then merged (mpirun and Slurm arrays choose --shard by themselves):\n"
+      "  dlo sweep data/scenes/cable.toml --vary gamma=log:1:10:9 --shard 1/2 -o "
+      "'part.{shard}.csv'\n"
+      "  dlo sweep data/scenes/cable.toml --vary gamma=log:1:10:9 --shard 2/2 -o "
+      "'part.{shard}.csv'\n"
+      "  dlo sweep --merge part.*-of-*.csv -o all.csv");
+  command->callback([options, command] { run(*options, input_files(*command)); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,78 @@
+#include "format/json.hpp"
+
+namespace dlo::cli {
+
+std::string json_text(const Json& document) {
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+Json modulus_json(const compare::EffectiveModulus& modulus) {
+  const bool none = modulus.optimum == compare::Optimum::none;
+  // NaN is null.
+  return {{"effective_modulus_ratio", modulus.ratio},
+          {"rms_at_effective_modulus_m", modulus.rms_m},
+          {"effective_modulus_explains_share", modulus.explained_share},
+          {"optimum", none ? Json() : Json(compare::to_string(modulus.optimum))},
+          {"why_no_effective_modulus", none ? Json(modulus.why_none) : Json()}};
+}
+
+Json deviation_json(const compare::Deviation& deviation) {
+  return {{"rms_m", deviation.rms_m},
+          {"max_m", deviation.max_m},
+          {"max_at_m", deviation.max_at_m},
+          {"tip_m", deviation.tip_m},
+          {"rms_over_length", deviation.rms_over_length},
+          {"rms_over_movement", deviation.rms_over_movement},
+          {"angle_rms_rad", deviation.angle_rms_rad},
+          {"curvature_rms_per_m", deviation.curvature_rms_per_m}};
+}
+
+Json to_json(const compare::ComparedState& state) {
+  Json others = Json::array();
+  for (const compare::OtherState& other : state.others) {
+    others.push_back({{"stable", other.stable},
+                      {"energy_difference_J", other.energy_difference_J},
+                      {"rms_from_compared_m", other.rms_from_compared_m},
+                      {"rms_from_shape_m", other.rms_from_shape_m}});
+  }
+  return {{"energy_J", state.energy_J},
+          {"rank_of_stable", state.rank},
+          {"stable_found", state.stable},
+          {"unstable_found", state.unstable},
+          {"others", std::move(others)}};
+}
+
+Json to_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+Json points_json(const Eigen::Matrix3Xd& points) {
+  Json result = Json::array();
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    result.push_back(to_json(Eigen::Vector3d(points.col(i))));
+  }
+  return result;
+}
+
+Json parameters_json(const compare::Solution& force, const compare::ForceModelSettings& settings) {
+  const compare::Parameters& p = force.parameters;
+  Json result = {{"points", settings.points},
+                 {"law", compare::to_string(settings.law)},
+                 {"bookkeeping", compare::to_string(settings.bookkeeping)},
+                 {"segment_length_m", p.segment_length},
+                 {"c_c", p.c_c},
+                 {"point_weight_N", p.point_weight}};
+  if (settings.law == compare::Law::paper) {
+    result["c_b"] = p.c_b;
+    if (!settings.c_b) {
+      result["bending_rule"] = compare::to_string(settings.bending_rule);
+      result["design_curvature_per_m"] = p.design_curvature;
+    }
+  }
+  if (force.steps > 0) {
+    result["stepper"] = compare::to_string(settings.stepper);
+    result["c_F"] = force.c_F;
+    result["c_h"] = force.c_h;
+  }
+  return result;
+}
+
+}  // namespace dlo::cli

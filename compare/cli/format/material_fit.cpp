@@ -1,0 +1,169 @@
+#include "format/material_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/display.hpp"
+#include "base/quote.hpp"
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/error.hpp"
+#include "format/comparison.hpp"
+#include "option/output.hpp"
+#include "option/shape_options.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::FittedValue;
+
+std::string number(const std::optional<double>& value, const char* none) {
+  return value ? fmt::format("{:.4g}", *value) : std::string(none);
+}
+
+std::string value_text(const FittedValue& value, const char* unit) {
+  const std::string interval =
+      fmt::format("95 %: {} to {} {}", number(value.low, "..."), number(value.high, "..."), unit);
+  if (!value.value) return "not told, " + interval;
+  return fmt::format("{:.5g} {}, {}", *value.value, unit, interval);
+}
+
+/// Of the two sides the larger; none if the interval is open.
+std::optional<double> half_width(const FittedValue& value) {
+  if (!value.value) return std::nullopt;
+  return std::max(*value.high - *value.value, *value.value - *value.low);
+}
+
+/// What makes the interval wider than that of independent errors.
+std::string correlation_text(const MaterialReport& report) {
+  const compare::CorrelatedErrors& errors = *report.fit.correlation;
+  return fmt::format(
+      "            errors along the rod are correlated: {:.2g} % of their variance over about "
+      "{:.2g} "
+      "m\n            ({:.2g} % of the rod); the interval is {:.3g} times as wide for it ({:.3g} "
+      "degrees of freedom)\n",
+      errors.share * 100, errors.length_m, errors.length_m / report.scenes.front().length * 100,
+      errors.widening, errors.degrees_of_freedom);
+}
+
+Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+void add_value(Json& result, const std::string& name, const std::string& unit,
+               const FittedValue& value) {
+  result[name + unit] = json_of(value.value);
+  result[(name == "youngs_modulus" ? "uncertainty" : name + "_uncertainty") + unit] =
+      json_of(half_width(value));
+  result[(name == "youngs_modulus" ? "interval_95" : name + "_interval_95") + unit] = {
+      json_of(value.low), json_of(value.high)};
+}
+
+}  // namespace
+
+std::string material_text(const MaterialReport& report) {
+  const compare::MaterialFit& fit = report.fit;
+  std::string out;
+  append(out, "E           {}   (scene: {:.5g} Pa)\n", value_text(fit.youngs_modulus, "Pa"),
+         report.scenes.front().material.youngs_modulus);
+  if (fit.density) {
+    append(out, "density     {}   (scene: {:.5g} kg/m^3)\n", value_text(*fit.density, "kg/m^3"),
+           report.scenes.front().material.density);
+  }
+  if (!fit.not_told.empty()) append(out, "            {}\n", fit.not_told);
+  if (!fit.warning.empty()) append(out, "            {}\n", fit.warning);
+  append(out, "noise       {:.4g} mm in each coordinate, {} ({} degrees of freedom)\n",
+         fit.noise_m * 1e3, fit.noise_is_estimated ? "estimated from the residuals" : "given",
+         fit.degrees_of_freedom);
+  if (fit.correlation) append(out, "{}", correlation_text(report));
+  append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
+  for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
+    const compare::Alignment& a = fit.shapes[i].alignment;
+    append(out, "shape       {} on {}: {} points, {}, RMS {:.4g} mm\n",
+           compare::display(report.files[i]), compare::display(fit.shapes[i].scene),
+           a.shape.points.cols(), range_text(a, report.scenes[i].length),
+           std::sqrt(a.mean_square) * 1e3);
+    append(out, "            arc lengths: {}\n", compare::to_string(a.arc_lengths));
+    if (report.frame_was_found) append(out, "            frame {}\n", pose_text(a.pose));
+  }
+  return out;
+}
+
+std::string material_csv(const MaterialReport& report) {
+  const auto field = [](const std::optional<double>& value) {
+    return value ? compare::csv_number(*value) : std::string();
+  };
+  const compare::MaterialFit& fit = report.fit;
+  const FittedValue& E = fit.youngs_modulus;
+  const FittedValue density = fit.density.value_or(FittedValue());
+  std::string out =
+      "youngs_modulus_Pa,low_Pa,high_Pa,density_kg_per_m3,density_low,density_high,noise_m,"
+      "degrees_of_freedom,rms_m,not_told,warning,errors_are_correlated,correlation_length_m,"
+      "correlation_share,interval_widened_by,effective_degrees_of_freedom\n";
+  append_csv(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{},{},", field(E.value), field(E.low),
+             field(E.high), field(density.value), field(density.low), field(density.high),
+             fit.noise_m, fit.degrees_of_freedom, fit.rms_m, csv_field(fit.not_told),
+             csv_field(fit.warning));
+  if (fit.correlation) {
+    append_csv(out, "true,{:.10g},{:.10g},{:.10g},{:.10g}\n", fit.correlation->length_m,
+               fit.correlation->share, fit.correlation->widening,
+               fit.correlation->degrees_of_freedom);
+  } else {
+    append_csv(out, "{},,,,\n", fit.correlation_was_tested ? "false" : "");
+  }
+  return out;
+}
+
+Json material_json(const MaterialReport& report) {
+  const compare::MaterialFit& fit = report.fit;
+  Json result = {{"schema", "dlo/calibrate/1"}};
+  add_value(result, "youngs_modulus", "_Pa", fit.youngs_modulus);
+  if (fit.density) add_value(result, "density", "_kg_per_m3", *fit.density);
+  result["not_told"] = fit.not_told.empty() ? Json(nullptr) : Json(fit.not_told);
+  result["warning"] = fit.warning.empty() ? Json(nullptr) : Json(fit.warning);
+  result["noise_m"] = fit.noise_m;
+  result["noise_is_estimated"] = fit.noise_is_estimated;
+  result["degrees_of_freedom"] = fit.degrees_of_freedom;
+  result["errors_are_correlated"] =
+      fit.correlation_was_tested ? Json(fit.correlation.has_value()) : Json(nullptr);
+  if (fit.correlation) {
+    result["correlation"] = {{"length_m", fit.correlation->length_m},
+                             {"share_of_variance", fit.correlation->share},
+                             {"interval_widened_by", fit.correlation->widening},
+                             {"effective_degrees_of_freedom", fit.correlation->degrees_of_freedom}};
+  } else {
+    result["correlation"] = nullptr;
+  }
+  result["rms_m"] = fit.rms_m;
+  Json shapes = Json::array();
+  for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
+    const compare::Alignment& alignment = fit.shapes[i].alignment;
+    Json shape = {{"scene", fit.shapes[i].scene}, {"shape", report.files[i]}};
+    shape.update(to_json(alignment));
+    shape["rms_m"] = std::sqrt(alignment.mean_square);
+    shape["arc_length_m"] = alignment.shape.arc_length;
+    shape["points_m"] = points_json(alignment.shape.points);
+    shapes.push_back(std::move(shape));
+  }
+  result["shapes"] = std::move(shapes);
+  return result;
+}
+
+std::string material_toml(const MaterialReport& report) {
+  const compare::MaterialFit& fit = report.fit;
+  const FittedValue& E = fit.youngs_modulus;
+  if (!E.value || (fit.density && !fit.density->value)) {
+    throw compare::InputError("calibrate: no material to write, " + fit.not_told);
+  }
+  const double density = fit.density ? *fit.density->value : report.scenes.front().material.density;
+  std::string out =
+      "# Written by dlo calibrate. For dlo: --materials with this file and material = "
+      "\"calibrated\" in the scene.\n[[material]]\nname = \"calibrated\"\n";
+  append(out, "youngs_modulus = {:.8e}  # Pa, 95 %: {:.4g} to {:.4g}\n", *E.value, *E.low, *E.high);
+  append(out, "density = {:.8e}  # kg/m^3, {}\n", density,
+         fit.density ? fmt::format("95 %: {:.4g} to {:.4g}", *fit.density->low, *fit.density->high)
+                     : std::string("of the scene"));
+  append(out, "source = \"least squares of {} measured shape{}, noise {:.3g} m{}\"\n",
+         fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s", fit.noise_m,
+         fit.correlation ? ", correlated along the rod" : "");
+  return out;
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,101 @@
+#include "format/plan.hpp"
+
+#include <cmath>
+
+#include "base/display.hpp"
+#include "option/output.hpp"
+
+namespace dlo::cli {
+namespace {
+
+std::string span_text(const compare::PlannedSpan& span) {
+  std::string out;
+  append(out, "{:g} to {:g} m, {} - {}", span.begin, span.end, span.begin_held, span.end_held);
+  if (span.inner_pins > 0) append(out, " with {} inner pin(s)", span.inner_pins);
+  return out;
+}
+
+std::string left_out_text(const compare::LeftOut& item, double length) {
+  std::string out;
+  if (item.bound_m == 0) {
+    out += "nothing";
+  } else if (std::isfinite(item.bound_m)) {
+    append(out, "at most {:.2g} mm = {:.2g} % of l", item.bound_m * 1e3,
+           item.bound_m / length * 100);
+  } else {
+    out += "no bound";
+  }
+  append(out, ": {} (left out by {})", item.why, item.models);
+  return out;
+}
+
+}  // namespace
+
+std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
+  std::string out;
+  append(out, "plan of {}   Gamma = {:.4g}\n", compare::display(scene.name), plan.gamma);
+  append(out, "  geometry        {}\n", plan.planar ? "planar" : "spatial");
+  append(out, "  time            {}\n", plan.moving ? "moving" : "static");
+  for (std::size_t i = 0; i < plan.spans.size(); ++i) {
+    append(out, "  {:<15} {}\n", i == 0 ? "spans" : "", span_text(plan.spans[i]));
+  }
+  for (const compare::PlannedObstacle& obstacle : plan.obstacles) {
+    if (obstacle.in_reach) {
+      append(out, "  obstacle        in reach{}\n", plan.contact ? ", touched" : "");
+    } else {
+      append(out, "  obstacle        out of reach by {:.4g} m or more: not solved for\n",
+             obstacle.clearance);
+    }
+  }
+  append(out, "  stretch         {}\n",
+         plan.stretch ? "needed: use force, or chain with c_c = AE" : "none");
+  append(out, "  N               ");
+  if (plan.points > 0) {
+    append(out, "{} for {:g} % of l with the hooke law; the scene has {}\n", plan.points,
+           plan.target * 100, plan.scene_points);
+  } else {
+    append(out, "unknown for {:g} % of l; the scene has {}\n", plan.target * 100,
+           plan.scene_points);
+  }
+  append(out, "  left out, and what it could change (RMS of the shape)\n");
+  for (const compare::LeftOut& item : plan.left_out) {
+    append(out, "    {:<24}{}\n", item.what, left_out_text(item, scene.length));
+  }
+  return out + "\n";
+}
+
+Json plan_json(const compare::Plan& plan) {
+  Json spans = Json::array();
+  for (const compare::PlannedSpan& span : plan.spans) {
+    spans.push_back({{"begin_m", span.begin},
+                     {"end_m", span.end},
+                     {"begin_held", span.begin_held},
+                     {"end_held", span.end_held},
+                     {"inner_pins", span.inner_pins}});
+  }
+  Json obstacles = Json::array();
+  for (const compare::PlannedObstacle& obstacle : plan.obstacles) {
+    obstacles.push_back({{"in_reach", obstacle.in_reach}, {"clearance_m", obstacle.clearance}});
+  }
+  // No bound, which is infinity, is null in JSON.
+  Json left_out = Json::array();
+  for (const compare::LeftOut& item : plan.left_out) {
+    left_out.push_back({{"what", item.what},
+                        {"by_models", item.models},
+                        {"bound_m", item.bound_m},
+                        {"why", item.why}});
+  }
+  return {{"gamma", plan.gamma},
+          {"target_over_length", plan.target},
+          {"geometry", plan.planar ? "planar" : "spatial"},
+          {"spans", std::move(spans)},
+          {"obstacles", std::move(obstacles)},
+          {"stretch", plan.stretch},
+          {"moving", plan.moving},
+          {"contact", plan.contact},
+          {"points_for_target", plan.points > 0 ? Json(plan.points) : Json()},
+          {"scene_points", plan.scene_points},
+          {"left_out", std::move(left_out)}};
+}
+
+}  // namespace dlo::cli

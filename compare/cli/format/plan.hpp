@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "dlo/compare/plan.hpp"
+#include "dlo/compare/scene.hpp"
+#include "format/json.hpp"
+
+namespace dlo::cli {
+
+/// A plan as a person reads it, with a blank line after it.
+[[nodiscard]] std::string plan_text(const compare::Plan& plan, const compare::Scene& scene);
+
+[[nodiscard]] Json plan_json(const compare::Plan& plan);
+
+}  // namespace dlo::cli

@@ -1,0 +1,109 @@
+#include "format/regression.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "base/display.hpp"
+#include "base/quote.hpp"
+#include "option/output.hpp"
+#include "option/terminal.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::csv_field;
+using compare::RegressionResult;
+using compare::RegressionVerdict;
+
+long count(const std::vector<RegressionResult>& results, RegressionVerdict verdict) {
+  return std::count_if(results.begin(), results.end(),
+                       [verdict](const auto& result) { return result.verdict == verdict; });
+}
+
+Json errors_json(const std::optional<compare::ShapeErrors>& errors) {
+  if (!errors) return nullptr;
+  Json result = {{"rms_over_length", errors->rms}, {"max_over_length", errors->max}};
+  result["tip_over_length"] = errors->tip ? Json(*errors->tip) : Json(nullptr);
+  return result;
+}
+
+}  // namespace
+
+std::string baseline_update_text(const std::vector<RegressionResult>& results) {
+  std::string out;
+  for (const RegressionResult& result : results) {
+    const char* done = "same";
+    if (!result.expected) {
+      done = "added";
+    } else if (!result.measured) {
+      done = "removed";
+    } else if (result.verdict != RegressionVerdict::same) {
+      done = "changed";
+    }
+    append(out, "{:<20} {}\n", done, compare::display(result.name));
+    // Of a case that is new or gone the message says what to do, which has been done.
+    if (result.expected && result.measured)
+      append(out, "{:<20} {}\n", "", compare::display(result.message));
+  }
+  return out;
+}
+
+std::string regression_text(const std::vector<RegressionResult>& results, const std::string& file) {
+  std::string out;
+  for (const RegressionResult& result : results) {
+    const std::string verdict = fmt::format("{:<20}", compare::to_string(result.verdict));
+    append(out, "{} {}\n{:<20} {}\n", verdict_word(verdict, !compare::failed(result.verdict), file),
+           compare::display(result.name), "", compare::display(result.message));
+  }
+  const char* separator = "";
+  for (const RegressionVerdict verdict :
+       {RegressionVerdict::worse, RegressionVerdict::changed, RegressionVerdict::not_in_baseline,
+        RegressionVerdict::not_measured, RegressionVerdict::not_solved, RegressionVerdict::better,
+        RegressionVerdict::same}) {
+    const long number = count(results, verdict);
+    if (number == 0) continue;
+    append(out, "{}{} {}", separator, number, compare::to_string(verdict));
+    separator = ", ";
+  }
+  return out + "\n";
+}
+
+Json regression_json(const std::vector<RegressionResult>& results, bool good) {
+  Json cases = Json::array();
+  for (const RegressionResult& result : results) {
+    cases.push_back({{"case", result.name},
+                     {"verdict", compare::to_string(result.verdict)},
+                     {"baseline", errors_json(result.expected)},
+                     {"measured", errors_json(result.measured)},
+                     {"message", result.message}});
+  }
+  return {{"schema", "dlo/regress/1"},
+          {"verdict", good ? "pass" : "fail"},
+          {"cases", std::move(cases)}};
+}
+
+std::string regression_csv(const std::vector<RegressionResult>& results) {
+  std::string out =
+      "case,verdict,baseline_rms_over_length,baseline_max_over_length,baseline_tip_over_length,"
+      "rms_over_length,max_over_length,tip_over_length\n";
+  const auto add = [&](const std::optional<compare::ShapeErrors>& errors) {
+    if (!errors) {
+      out += ",,,";
+      return;
+    }
+    append_csv(out, ",{},{},{}", compare::csv_number(errors->rms), compare::csv_number(errors->max),
+               errors->tip ? compare::csv_number(*errors->tip) : "");
+  };
+  for (const RegressionResult& result : results) {
+    append_csv(out, "{},{}", csv_field(result.name), compare::to_string(result.verdict));
+    add(result.expected);
+    add(result.measured);
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,167 @@
+#include "format/shape_check.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "base/display.hpp"
+#include "base/quote.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "format/alignment.hpp"
+#include "format/comparison.hpp"
+#include "option/output.hpp"
+#include "option/terminal.hpp"
+
+namespace dlo::cli {
+
+std::string shape_check_text(const ShapeCheckReport& report) {
+  const compare::ShapeCheck& c = report.check;
+  const compare::Scene& scene = report.scene;
+  const std::optional<Verdict>& verdict = report.verdict;
+  std::string out;
+  const compare::Alignment& a = c.alignment;
+  const std::vector<double>& s = c.reference.arc_length;
+  append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
+  append(out, "  shape           {}: {} points, {}\n", compare::display(c.file), s.size(),
+         range_text(a, scene.length));
+  if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
+  constexpr const char* rules[] = {"", "the file's own", "chord lengths of the whole rod",
+                                   "nearest points, so differences along the rod do not show"};
+  append(out, "  arc lengths     {}\n", rules[static_cast<std::size_t>(a.arc_lengths)]);
+  append(out,
+         "  seen            s = {:.4g} to {:.4g} m, {:.4g} % of l; polyline {:.4g} m; largest gap "
+         "{:.4g} m at s = {:.4g} m\n",
+         s.front(), s.back(), c.seen_share * 100, c.polyline_length_m, c.largest_gap_m,
+         c.largest_gap_at_m);
+  const std::string hint = c.hint.empty() ? report.unit_hint : c.hint;
+  if (!hint.empty()) append(out, "                  ({})\n", hint);
+  if (report.pose == compare::PoseFreedom::known) {
+    append(out, "  frame           the scene's\n");
+  } else {
+    append(out, "  frame           found ({}): {}\n", compare::to_string(report.pose),
+           pose_text(a.pose));
+    if (!c.turn_is_clear) {
+      append(out,
+             "                  (the turn about the rod's own line is not told by these points)\n");
+    }
+  }
+  const compare::Deviation& d = c.deviation;
+  append(out, "  deviation       RMS {:.4g} mm = {:.4g} % of l", d.rms_m * 1e3,
+         d.rms_over_length * 100);
+  if (std::isfinite(d.rms_over_movement)) {
+    append(out, " = {:.4g} % of the movement", d.rms_over_movement * 100);
+  }
+  const Eigen::Vector3d at = c.worst_position.array() + 0.0;  // turns -0 into 0
+  append(out,
+         "\n                  largest {:.4g} mm at s = {:.4f} m (point {} of the file, at "
+         "[{:.4g}, {:.4g}, {:.4g}] m)\n",
+         d.max_m * 1e3, d.max_at_m, c.worst_point, at.x(), at.y(), at.z());
+  if (std::isfinite(d.tip_m)) append(out, "                  tip {:.4g} mm\n", d.tip_m * 1e3);
+  if (c.whole_rms_m > d.rms_m * (1 + 1e-6)) {
+    append(out,
+           "                  as the whole rod RMS {:.4g} mm, largest {:.4g} mm: what is missing "
+           "counts with its distance from the outermost point\n",
+           c.whole_rms_m * 1e3, c.whole_max_m * 1e3);
+  }
+  if (std::isfinite(d.angle_rms_rad)) {
+    append(out, "                  tangent RMS {:.4g} deg, curvature RMS {:.4g} 1/m\n",
+           d.angle_rms_rad * 57.29577951308232, d.curvature_rms_per_m);
+  }
+  if (std::isfinite(c.movement_m)) {
+    append(out, "  movement        the rod is {:.4g} mm = {:.4g} % of l away from straight (RMS)\n",
+           c.movement_m * 1e3, c.movement_m / scene.length * 100);
+  }
+  add_modulus(out, c.effective_modulus, NAN, c.modulus);
+  add_state(out, c.state, scene.length, "the shape");
+  if (verdict) {
+    append(out, "  verdict         {}: {}\n",
+           verdict_word(verdict->text(), verdict->judgement.pass, report.file),
+           verdict->judgement.reason);
+  }
+  return out;
+}
+
+Json shape_check_json(const ShapeCheckReport& report) {
+  const compare::ShapeCheck& c = report.check;
+  const std::optional<Verdict>& verdict = report.verdict;
+  const std::vector<double>& s = c.reference.arc_length;
+  Json result = {{"schema", "dlo/check/1"},
+                 {"scene", c.scene},
+                 {"shape", c.file},
+                 {"gamma", c.gamma},
+                 {"points", s.size()}};
+  result.update(to_json(c.alignment));
+  result["direction_is_clear"] = c.direction_is_clear;
+  result["turn_is_clear"] = c.turn_is_clear;
+  result["seen"] = {{"from_m", s.front()},
+                    {"to_m", s.back()},
+                    {"share", c.seen_share},
+                    {"polyline_length_m", c.polyline_length_m},
+                    {"largest_gap_m", c.largest_gap_m},
+                    {"largest_gap_at_m", c.largest_gap_at_m},
+                    {"excess_m", c.excess_m}};
+  result["hint"] = c.hint.empty() ? Json() : Json(c.hint);
+  result["deviation"] = deviation_json(c.deviation);
+  result["deviation"]["whole_rms_m"] = c.whole_rms_m;
+  result["deviation"]["whole_max_m"] = c.whole_max_m;
+  result["deviation"]["worst_point"] = c.worst_point;
+  result["deviation"]["worst_position_m"] = to_json(c.worst_position);
+  result["movement_m"] = c.movement_m;
+  result.update(modulus_json(c.effective_modulus));
+  result["effective_modulus_Pa"] = c.modulus;
+  if (verdict) {
+    result["tolerance"] = {{"measure", verdict->tolerance.largest ? "max" : "rms"},
+                           {"allowed_m", verdict->tolerance.allowed_m},
+                           {"least_seen_share", verdict->tolerance.least_seen_share},
+                           {"part", verdict->tolerance.part}};
+    result["judged_m"] = verdict->judgement.judged_m;
+    result["verdict"] = verdict->text();
+    result["reason"] = verdict->judgement.reason;
+  }
+  result["state"] = to_json(c.state);
+  result["arc_length_m"] = s;
+  result["points_m"] = points_json(c.alignment.shape.points);
+  result["reference_points_m"] = points_json(c.reference.points);
+  return result;
+}
+
+std::string shape_check_csv(const ShapeCheckReport& report) {
+  const compare::ShapeCheck& c = report.check;
+  const std::optional<Verdict>& verdict = report.verdict;
+  const compare::Deviation& d = c.deviation;
+  std::string out =
+      "scene,shape,gamma,points,reversed,arc_lengths,from_m,to_m,rms_m,rms_over_length,"
+      "rms_over_movement,max_m,max_at_m,worst_point,tip_m,movement_m,effective_modulus_ratio,"
+      "rms_at_effective_modulus_m,optimum,tolerance_m,verdict,seen_share,reason,whole_rms_m,"
+      "whole_max_m\n";
+  const std::vector<double>& s = c.reference.arc_length;
+  const bool has_modulus = c.effective_modulus.optimum != compare::Optimum::none;
+  const std::string fields[] = {csv_field(c.scene),
+                                csv_field(c.file),
+                                csv_number(c.gamma),
+                                std::to_string(s.size()),
+                                c.alignment.reversed ? "true" : "false",
+                                compare::to_string(c.alignment.arc_lengths),
+                                csv_number(s.front()),
+                                csv_number(s.back()),
+                                csv_number(d.rms_m),
+                                csv_number(d.rms_over_length),
+                                csv_number(d.rms_over_movement),
+                                csv_number(d.max_m),
+                                csv_number(d.max_at_m),
+                                std::to_string(c.worst_point),
+                                csv_number(d.tip_m),
+                                csv_number(c.movement_m),
+                                csv_number(c.effective_modulus.ratio),
+                                csv_number(c.effective_modulus.rms_m),
+                                has_modulus ? compare::to_string(c.effective_modulus.optimum) : "",
+                                verdict ? csv_number(verdict->tolerance.allowed_m) : "",
+                                verdict ? verdict->text() : "",
+                                csv_number(c.seen_share),
+                                verdict ? csv_field(verdict->judgement.reason) : "",
+                                csv_number(c.whole_rms_m),
+                                csv_number(c.whole_max_m)};
+  append(out, "{}\n", fmt::join(fields, ","));
+  return out;
+}
+
+}  // namespace dlo::cli

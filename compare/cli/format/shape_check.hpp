@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape_check.hpp"
+#include "format/json.hpp"
+
+namespace dlo::cli {
+
+/// What was allowed, and whether the shape keeps to it.
+struct Verdict {
+  compare::ShapeTolerance tolerance;
+  compare::ShapeJudgement judgement;
+
+  [[nodiscard]] const char* text() const { return judgement.pass ? "pass" : "fail"; }
+};
+
+/// A compared shape with what was asked.
+struct ShapeCheckReport {
+  compare::Scene scene;
+  compare::ShapeCheck check;
+  std::optional<Verdict> verdict;  ///< without a tolerance none
+  compare::PoseFreedom pose = compare::PoseFreedom::known;
+  std::string unit_hint;  ///< where the check itself has none
+  std::string file;       ///< of the text; empty: standard output, which may be a terminal
+};
+
+[[nodiscard]] std::string shape_check_text(const ShapeCheckReport& report);
+
+[[nodiscard]] Json shape_check_json(const ShapeCheckReport& report);
+
+[[nodiscard]] std::string shape_check_csv(const ShapeCheckReport& report);
+
+}  // namespace dlo::cli

@@ -1,0 +1,164 @@
+#include "format/solution.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "base/display.hpp"
+#include "format/plan.hpp"
+#include "option/output.hpp"
+
+namespace dlo::cli {
+namespace {
+
+/// Eight decimals; what rounds to zero has no sign.
+std::string coordinate(double value) {
+  return fmt::format("{:.8f}", std::abs(value) < 0.5e-8 ? 0.0 : value);
+}
+
+const char* status_name(energy_model::SolveStatus status) {
+  switch (status) {
+    case energy_model::SolveStatus::converged:
+      return "converged";
+    case energy_model::SolveStatus::roundoff_limited:
+      return "roundoff_limited";
+    case energy_model::SolveStatus::saddle:
+      return "saddle";
+    case energy_model::SolveStatus::near_singular:
+      return "near_singular";
+    case energy_model::SolveStatus::not_resolved:
+      return "not_resolved";
+    default:
+      return "failed";
+  }
+}
+
+}  // namespace
+
+std::string solution_text(const compare::Solution& solution, const compare::Scene& scene) {
+  std::string out;
+  append(out, "scene      {}\n", compare::display(scene.name));
+  append(out, "model      {}, {}\n", compare::to_string(solution.model), solution.message);
+  append(out, "Gamma      {:.6g}   (w l^3 / EI)\n", scene.gamma());
+  if (solution.steps > 0) {
+    append(out, "steps      {}   c_F {:.4g} m/N, c_h {:.6f}\n", solution.steps, solution.c_F,
+           solution.c_h);
+  } else {
+    append(out, "work       {} evaluations", solution.evaluations);
+    if (solution.terms > 0) append(out, ", {} terms", solution.terms);
+    append(out, "\n");
+  }
+  append(out, "wall time  {:.3g} ms\n", solution.seconds * 1e3);
+  compare::SceneEnergies e = solution.energy;
+  // Adding zero turns -0 into 0.
+  for (double* part : {&e.bending, &e.gravity, &e.load, &e.stretch}) *part += 0.0;
+  append(out, "energy     bending {:.9g} J, gravity {:.9g} J, load {:.9g} J, stretch {:.3g} J\n",
+         e.bending, e.gravity, e.load, e.stretch);
+  for (const Eigen::Vector3d& force : solution.obstacles) {
+    append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
+           force.z());
+  }
+  for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
+    compare::GripperLoad load = solution.grippers[i];
+    const compare::Gripper& gripper = scene.grippers[i];
+    load.force.array() += 0.0;
+    load.torque.array() += 0.0;
+    append(out,
+           "gripper {} at s = {:.4g} m ({}): force [{:.6g}, {:.6g}, {:.6g}] N, torque [{:.6g}, "
+           "{:.6g}, {:.6g}] Nm on the "
+           "rod\n",
+           i + 1, gripper.at, gripper.direction ? "clamp" : "pin", load.force.x(), load.force.y(),
+           load.force.z(), load.torque.x(), load.torque.y(), load.torque.z());
+  }
+  append(out, "\n{:>12} {:>13} {:>13} {:>13}\n", "s [m]", "x [m]", "y [m]", "z [m]");
+  for (std::size_t i = 0; i < solution.shape.arc_length.size(); ++i) {
+    const auto point = solution.shape.points.col(static_cast<Eigen::Index>(i));
+    append(out, "{:12.6f} {:>13} {:>13} {:>13}\n", solution.shape.arc_length[i],
+           coordinate(point.x()), coordinate(point.y()), coordinate(point.z()));
+  }
+  return out;
+}
+
+Json solution_json(const compare::Solution& solution, const compare::Scene& scene,
+                   const compare::Plan& plan) {
+  Json grippers = Json::array();
+  for (const compare::GripperLoad& load : solution.grippers) {
+    grippers.push_back({{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}});
+  }
+  const compare::SceneEnergies& energy = solution.energy;
+  Json result = {{"schema", "dlo/solve/1"},
+                 {"scene", scene.name},
+                 {"model", compare::to_string(solution.model)},
+                 {"converged", energy_model::succeeded(solution.status)},
+                 {"status", status_name(solution.status)},
+                 {"arc_length_m", solution.shape.arc_length},
+                 {"points_m", points_json(solution.shape.points)},
+                 {"energy_J",
+                  {{"bending", energy.bending},
+                   {"gravity", energy.gravity},
+                   {"load", energy.load},
+                   {"stretch", energy.stretch},
+                   {"contact", energy.contact},
+                   {"total", energy.total()}}},
+                 {"grippers", std::move(grippers)},
+                 {"solver",
+                  {{"message", solution.message},
+                   {"evaluations", solution.evaluations},
+                   {"steps", solution.steps},
+                   {"terms", solution.terms},
+                   {"wall_s", solution.seconds}}},
+                 {"plan", plan_json(plan)}};
+  if (!solution.obstacles.empty()) {
+    Json obstacles = Json::array();
+    for (const Eigen::Vector3d& force : solution.obstacles) {
+      obstacles.push_back({{"force_N", to_json(force)}});
+    }
+    result["obstacles"] = std::move(obstacles);
+    if (solution.model == compare::Model::energy) result["penetration_m"] = solution.penetration;
+  }
+  if (solution.model == compare::Model::chain || solution.model == compare::Model::force) {
+    result["parameters"] = parameters_json(solution, scene.force_model);
+  }
+  return result;
+}
+
+std::string solution_csv(const compare::Solution& solution) {
+  std::string text = "x,y,z,s\n";
+  for (std::size_t i = 0; i < solution.shape.arc_length.size(); ++i) {
+    const auto point = solution.shape.points.col(static_cast<Eigen::Index>(i));
+    append_csv(text, "{:.17g},{:.17g},{:.17g},{:.17g}\n", point.x(), point.y(), point.z(),
+               solution.shape.arc_length[i]);
+  }
+  return text;
+}
+
+std::string equilibria_text(const std::vector<compare::Solution>& solutions) {
+  std::string out;
+  append(out, "\n{} equilibria found\n{:>16} {:>10} {:>20} {:>13} {:>13} {:>13}\n",
+         solutions.size(), "energy [J]", "", "smallest curvature", "x(l) [m]", "y(l) [m]",
+         "z(l) [m]");
+  for (const compare::Solution& solution : solutions) {
+    const Eigen::Vector3d tip = solution.shape.points.rightCols<1>();
+    append(out, "{:16.9g} {:>10} {:20.6g} {:13.6f} {:13.6f} {:13.6f}\n", solution.energy.total(),
+           solution.smallest_curvature >= -1e-7 ? "stable" : "unstable",
+           solution.smallest_curvature, tip.x(), tip.y(), tip.z());
+  }
+  return out;
+}
+
+Json equilibria_json(const std::vector<compare::Solution>& solutions, const compare::Scene& scene,
+                     const compare::Plan& plan) {
+  Json document = solution_json(solutions.front(), scene, plan);
+  Json equilibria = Json::array();
+  for (const compare::Solution& solution : solutions) {
+    equilibria.push_back({{"stable", solution.smallest_curvature >= -1e-7},
+                          {"smallest_curvature", solution.smallest_curvature},
+                          {"energy_J", solution.energy.total()},
+                          {"points_m", points_json(solution.shape.points)}});
+  }
+  document["equilibria"] = std::move(equilibria);
+  return document;
+}
+
+}  // namespace dlo::cli

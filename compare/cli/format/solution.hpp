@@ -1,0 +1,30 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dlo/compare/plan.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solution.hpp"
+#include "format/json.hpp"
+
+namespace dlo::cli {
+
+/// A shape as a person reads it.
+[[nodiscard]] std::string solution_text(const compare::Solution& solution,
+                                        const compare::Scene& scene);
+
+[[nodiscard]] Json solution_json(const compare::Solution& solution, const compare::Scene& scene,
+                                 const compare::Plan& plan);
+
+/// The points, as `dlo check` reads them.
+[[nodiscard]] std::string solution_csv(const compare::Solution& solution);
+
+/// What tells several equilibria apart.
+[[nodiscard]] std::string equilibria_text(const std::vector<compare::Solution>& solutions);
+
+/// The first of several equilibria in full, then what tells them apart.
+[[nodiscard]] Json equilibria_json(const std::vector<compare::Solution>& solutions,
+                                   const compare::Scene& scene, const compare::Plan& plan);
+
+}  // namespace dlo::cli

@@ -1,0 +1,225 @@
+#include "option/output.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+
+#include "base/display.hpp"
+#include "base/output_file.hpp"
+#include "dlo/compare/error.hpp"
+#include "option/help.hpp"
+
+namespace dlo::cli {
+namespace {
+
+constexpr const char* standard_output = "standard output";
+
+/// While it lives, a pipe that nobody reads does not end the process.
+class WithoutBrokenPipes {
+ public:
+  WithoutBrokenPipes() {
+    ::sigemptyset(&pipe_);
+    ::sigaddset(&pipe_, SIGPIPE);
+    sigset_t pending{};
+    ::sigpending(&pending);
+    was_pending_ = ::sigismember(&pending, SIGPIPE) == 1;
+    ::pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  ~WithoutBrokenPipes() {
+    constexpr timespec now{};
+    while (!was_pending_ && ::sigtimedwait(&pipe_, nullptr, &now) < 0 && errno == EINTR) continue;
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  WithoutBrokenPipes(const WithoutBrokenPipes&) = delete;
+  WithoutBrokenPipes& operator=(const WithoutBrokenPipes&) = delete;
+  WithoutBrokenPipes(WithoutBrokenPipes&&) = delete;
+  WithoutBrokenPipes& operator=(WithoutBrokenPipes&&) = delete;
+
+ private:
+  sigset_t pipe_{};
+  sigset_t before_{};
+  bool was_pending_ = false;
+};
+
+bool has_long_name(const CLI::Option& option, std::initializer_list<std::string> names) {
+  const std::vector<std::string>& own = option.get_lnames();
+  return std::any_of(names.begin(), names.end(), [&own](const std::string& name) {
+    return std::find(own.begin(), own.end(), name) != own.end();
+  });
+}
+
+/// Whether the option names files that are read, as far as its help says so.
+bool is_read(const CLI::Option& option) {
+  if (has_long_name(option, {"output", "junit"})) return false;
+  const OptionText text = option_text(option);
+  const auto names_files = [](const std::string& word) {
+    return word.starts_with("SCENE") || word.starts_with("FILE");
+  };
+  return names_files(text.value) || names_files(text.names.front());
+}
+
+/// Files that are read, without those of one option.
+std::vector<std::string> input_files_but(const CLI::App& command, const CLI::Option* left_out) {
+  std::vector<std::string> files;
+  for (const CLI::Option* option : command.get_options()) {
+    if (option == left_out || !is_read(*option)) continue;
+    for (const std::string& word : option->results()) files.push_back(word);
+  }
+  return files;
+}
+
+bool is_written(const CLI::App& command, const CLI::Option& option) {
+  if (has_long_name(option, {"output", "junit"})) return true;
+  return has_long_name(option, {"baseline"}) && command.count("--update") > 0;
+}
+
+void refuse_two_outputs(const std::string& option, const std::string& file,
+                        const std::vector<std::string>& others) {
+  for (const std::string& other : others) {
+    if (file != other && !compare::same_file(file, other)) continue;
+    throw compare::InputError(
+        fmt::format("{} {}: is written twice (allowed: another file)", option, file));
+  }
+}
+
+}  // namespace
+
+const std::vector<std::string>& format_names() {
+  static const std::vector<std::string> names = {"text", "json", "csv"};
+  return names;
+}
+
+Format OutputOptions::kind() const {
+  const auto& names = format_names();
+  return static_cast<Format>(std::find(names.begin(), names.end(), format) - names.begin());
+}
+
+std::string format_of_file(const std::string& file, const std::vector<std::string>& formats) {
+  const std::string extension = std::filesystem::path(file).extension().string();
+  for (const std::string& format : formats) {
+    if (extension == "." + format) return format;
+  }
+  return {};
+}
+
+void write_output(const OutputOptions& options, const std::string& content) {
+  if (options.file.empty()) return write_standard_output(content);
+  compare::OutputFile file(options.file);
+  file.append(content);
+  file.finish();
+}
+
+void write_output(const OutputOptions& options, const Formats& formats) {
+  switch (options.kind()) {
+    case Format::text:
+      return write_output(options, formats.text());
+    case Format::json:
+      return write_output(options, formats.json());
+    case Format::csv:
+      return write_output(options, formats.csv());
+  }
+}
+
+void write_standard_output(std::string_view text) {
+  compare::write_all(STDOUT_FILENO, text, standard_output);
+}
+
+void close_standard_output() {
+  // One that was closed from the beginning has only been missed if something was written.
+  if (::close(STDOUT_FILENO) == 0 || errno == EBADF || errno == EINTR) return;
+  throw compare::OutputError(
+      fmt::format("{}: cannot be written ({})", standard_output, std::strerror(errno)));
+}
+
+void write_standard_error(std::string_view text) {
+  const WithoutBrokenPipes quietly;
+  try {
+    compare::write_all(STDERR_FILENO, text, "standard error");
+  } catch (const compare::OutputError&) {
+    // There is nowhere left to say so, and what it is about is not worse for it.
+    return;
+  }
+}
+
+void say_line(const std::string& message) {
+  write_standard_error("dlo: " + compare::display(message) + "\n");
+}
+
+void reserve_standard_descriptors() {
+  for (int descriptor = STDIN_FILENO; descriptor <= STDERR_FILENO; ++descriptor) {
+    if (::fcntl(descriptor, F_GETFD) >= 0 || errno != EBADF) continue;
+    // The lowest free descriptor is this one. Standard output can then be read only.
+    const int mode = descriptor == STDOUT_FILENO ? O_RDONLY : O_RDWR;
+    if (::open("/dev/null", mode) != descriptor) return;  // without /dev there is no more to do
+  }
+}
+
+void check_output(const std::string& option, const std::string& file,
+                  const std::vector<std::string>& inputs) {
+  if (file.empty()) {
+    throw compare::InputError(fmt::format("{} \"\": empty (allowed: the name of a file)", option));
+  }
+  for (const std::string& input : inputs) {
+    std::error_code unknown;
+    if (!compare::same_file(file, input)) continue;
+    if (!std::filesystem::is_regular_file(input, unknown)) continue;  // such as /dev/stdin
+    throw compare::InputError(fmt::format("{} {}: is read too{} (allowed: another file)", option,
+                                          file,
+                                          input == file ? "" : fmt::format(", as {}", input)));
+  }
+  try {
+    (void)compare::output_target(file);
+  } catch (const compare::InputError& error) {
+    throw compare::InputError(fmt::format("{} {}", option, error.what()));
+  }
+}
+
+std::vector<std::string> input_files(const CLI::App& command) {
+  return input_files_but(command, nullptr);
+}
+
+void check_outputs(const CLI::App& command) {
+  const std::vector<std::string> inputs = input_files(command);
+  std::vector<std::string> outputs;
+  std::error_code unknown;
+  for (const CLI::Option* option : command.get_options()) {
+    if (!is_written(command, *option)) continue;
+    const std::string name = "--" + option->get_lnames().front();
+    for (const std::string& file : option->results()) {
+      const bool folder = option_text(*option).value == "DIR";
+      if (file.empty() && folder) {
+        throw compare::InputError(
+            fmt::format("{} \"\": empty (allowed: the name of a folder)", name));
+      }
+      if (folder || file.find("{shard}") != std::string::npos) continue;
+      // --update writes the baseline anew that it has read.
+      check_output(name, file, input_files_but(command, option));
+      if (std::filesystem::is_regular_file(file, unknown) ||
+          !std::filesystem::exists(file, unknown)) {
+        refuse_two_outputs(name, file, outputs);
+      }
+      outputs.push_back(file);
+    }
+  }
+  // A shell that appends to an input with ">>" would let the command write behind what it reads.
+  for (const std::string& input : inputs) {
+    struct stat open {};
+    struct stat read {};
+    if (::fstat(STDOUT_FILENO, &open) != 0 || ::stat(input.c_str(), &read) != 0) continue;
+    if (!S_ISREG(open.st_mode) || open.st_dev != read.st_dev || open.st_ino != read.st_ino) {
+      continue;
+    }
+    throw compare::InputError(fmt::format("{}: is {}, which is read too (allowed: another file)",
+                                          standard_output, input));
+  }
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <concepts>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "base/quote.hpp"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): the library's own
+class App;
+}
+
+namespace dlo::cli {
+
+/// Formats onto the end of a text.
+template <typename... Arguments>
+void append(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
+}
+
+/// A number on its way into CSV; "{:.6g}" chooses the digits of compare::csv_number(), nothing else
+/// can be chosen.
+struct CsvNumber {
+  double value = 0;
+
+  explicit CsvNumber(double number) : value(number) {}
+};
+
+/// Numbers become CsvNumber, anything else stays what it is.
+template <typename T>
+using CsvArgument = std::conditional_t<std::floating_point<std::remove_cvref_t<T>>, CsvNumber, T>;
+
+/// append() for lines of CSV: what is not finite leaves its field empty.
+template <typename... Arguments>
+void append_csv(std::string& text, fmt::format_string<CsvArgument<Arguments>...> format,
+                Arguments&&... arguments) {
+  fmt::format_to(std::back_inserter(text), format,
+                 static_cast<CsvArgument<Arguments>>(std::forward<Arguments>(arguments))...);
+}
+
+enum class Format { text, json, csv };
+
+[[nodiscard]] const std::vector<std::string>& format_names();
+
+/// --format and -o, which every command has.
+struct OutputOptions {
+  std::string format = "text";
+  std::string file;
+
+  [[nodiscard]] Format kind() const;
+};
+
+/// A result in each of its formats, made when it is asked for.
+struct Formats {
+  std::function<std::string()> text, json, csv;
+};
+
+/// The format of a file's extension: "csv" of shape.csv; empty unless it is one of `formats`.
+[[nodiscard]] std::string format_of_file(const std::string& file,
+                                         const std::vector<std::string>& formats);
+
+/// Writes to standard output, or to the file as compare::OutputFile does.
+/// @throws compare::OutputError naming what cannot be written
+void write_output(const OutputOptions& options, const std::string& content);
+
+/// The same in the format that was asked for.
+void write_output(const OutputOptions& options, const Formats& formats);
+
+/// @throws compare::OutputError if it cannot be written, compare::BrokenPipe if nobody reads it
+void write_standard_output(std::string_view text);
+/// The last chance to learn that something was not written. @throws compare::OutputError
+void close_standard_output();
+
+/// A line of the program's own on standard error, behind "dlo: ". Where nothing can be written
+/// there, nothing happens.
+void say_line(const std::string& message);
+template <typename... Arguments>
+void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  say_line(fmt::format(format, std::forward<Arguments>(arguments)...));
+}
+/// A text on standard error as it is; where it cannot be written nothing happens, not even SIGPIPE.
+void write_standard_error(std::string_view text);
+
+/// Descriptors 0 to 2 that the caller has closed: nothing that is opened later may take their
+/// place. Writing to a standard output that was closed stays an error.
+void reserve_standard_descriptors();
+
+/// Refuses an output before anything is computed: one that cannot be written, or that is an input.
+/// @param option  that named it, for messages
+/// @param inputs  files that are read
+/// @throws compare::InputError
+void check_output(const std::string& option, const std::string& file,
+                  const std::vector<std::string>& inputs);
+
+/// check_output() for every file that the command's options name, standard output included. What
+/// holds {shard} has no name yet; a folder is its command's own business.
+void check_outputs(const CLI::App& command);
+
+/// Files that the command's arguments and options name for reading.
+[[nodiscard]] std::vector<std::string> input_files(const CLI::App& command);
+
+}  // namespace dlo::cli
+
+template <>
+struct fmt::formatter<dlo::cli::CsvNumber> {
+  /// ".6g"
+  constexpr auto parse(fmt::format_parse_context& context) {
+    const auto* at = context.begin();
+    if (at == context.end() || *at == '}') return at;
+    if (*at++ != '.') throw fmt::format_error("a CSV number is {} or {:.Ng}");
+    digits_ = 0;
+    for (; at != context.end() && *at >= '0' && *at <= '9'; ++at) {
+      digits_ = 10 * digits_ + (*at - '0');
+    }
+    if (at == context.end() || *at++ != 'g') {
+      throw fmt::format_error("a CSV number is {} or {:.Ng}");
+    }
+    return at;
+  }
+  template <typename Context>
+  auto format(const dlo::cli::CsvNumber& number, Context& context) const {
+    const std::string text = dlo::compare::csv_number(number.value, digits_);
+    return std::copy(text.begin(), text.end(), context.out());
+  }
+
+ private:
+  int digits_ = 10;
+};

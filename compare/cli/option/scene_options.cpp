@@ -1,0 +1,179 @@
+#include "option/scene_options.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "option/option_values.hpp"
+#include "option/share.hpp"
+#include "scene/quantity.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::Dimension;
+using compare::InputError;
+
+constexpr const char* force_model_group = "Force model (override the scene)";
+
+/// A quantity of an option: with a unit, or a bare number in SI.
+double option_quantity(const std::string& option, const std::string& text, Dimension dimension,
+                       double below = std::numeric_limits<double>::infinity()) {
+  double value = 0;
+  try {
+    value = compare::parse_quantity(text, Dimension::number);
+  } catch (const InputError&) {
+    try {
+      value = compare::parse_quantity(text, dimension);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{} = {}: {}", option, text, error.what()));
+    }
+  }
+  const bool zero_allowed = below < std::numeric_limits<double>::infinity();
+  if (!(zero_allowed ? value >= 0 : value > 0) || !(value < below)) {
+    throw InputError(fmt::format("{} = {}: out of range (allowed: {})", option, text,
+                                 zero_allowed ? fmt::format("0 <= value < {}", below) : "> 0"));
+  }
+  return value;
+}
+
+}  // namespace
+
+void add_output_options(CLI::App& command, OutputOptions& options,
+                        const std::vector<std::string>& formats) {
+  command.add_option("--format", options.format, fmt::format("{}", fmt::join(formats, ", ")))
+      ->check(CLI::IsMember(formats))
+      ->capture_default_str();
+  command
+      .add_option("-o,--output", options.file,
+                  "write to FILE instead of standard output; its extension is the format unless "
+                  "--format is given")
+      ->type_name("FILE");
+  command.parse_complete_callback([&command, &options, formats] {
+    if (command.count("--format") > 0) return;
+    const std::string format = format_of_file(options.file, formats);
+    if (!format.empty()) options.format = format;
+  });
+}
+
+void PlanOptions::add_to(CLI::App& command) {
+  const std::string group = "Plan";
+  command
+      .add_flag("--explain", explain_,
+                "show what the scene needs, what is left out and what that could change")
+      ->group(group);
+  command
+      .add_option("--target-error", plan_.target,
+                  "error that the plan chooses N for, share of the length such as 0.1%")
+      ->transform(share_of_length())
+      ->capture_default_str()
+      ->group(group);
+}
+
+void SceneOptions::add_to(CLI::App& command) {
+  const std::string group = force_model_group;
+  command_ = &command;
+  command
+      .add_option("--parameters", parameters_,
+                  "[force_model] of a file such as dlo calibrate writes, instead of the scene's")
+      ->type_name("FILE")
+      ->group(group);
+  command.add_option("--points", points_, "N")->check(CLI::Range(4, 1000000))->group(group);
+  command.add_option("--law", law_, "paper or hooke")
+      ->check(CLI::IsMember(compare::law_names()))
+      ->group(group);
+  command.add_option("--bookkeeping", bookkeeping_, "paper or consistent")
+      ->check(CLI::IsMember(compare::bookkeeping_names()))
+      ->group(group);
+  command.add_option("--stepper", stepper_, "basic, limited, relative, dynamic or auto")
+      ->check(CLI::IsMember(compare::stepper_names()))
+      ->group(group);
+  command.add_option("--bending-rule", bending_rule_, "formula_21 or moment_matched, for c_b")
+      ->check(CLI::IsMember(compare::bending_rule_names()))
+      ->group(group);
+  command.add_option("--design-curvature", design_curvature_, "k of Formula 21 [1/m]")
+      ->group(group);
+  command.add_option("--c-b", c_b_, "bending stiffness of the paper's law [N]")->group(group);
+  command.add_option("--c-c", c_c_, "stretch stiffness [N], default A E")->group(group);
+  command.add_option("--c-F", c_F_, "step factor [m/N], not for stepper auto")->group(group);
+  command.add_option("--c-h", c_h_, "share of the last movement [-], stepper dynamic")
+      ->group(group);
+  command.add_option("--l-s", l_s_, "largest movement per step [m]")->group(group);
+  add_solvers_to(command);
+}
+
+void SceneOptions::add_solvers_to(CLI::App& command) {
+  const std::string solvers = "Solvers";
+  command.add_option("--terms", solve_.terms, "curvature terms of the energy model, 0: as needed")
+      ->check(CLI::Range(0, 128))
+      ->group(solvers);
+  command.add_option("--max-evaluations", solve_.max_evaluations, "of the minimisers")
+      ->check(CLI::Range(1, 1000000000))
+      ->capture_default_str()
+      ->group(solvers);
+  command.add_option("--time-limit", solve_.time_limit, "of each solve [s]")
+      ->check(number_between(1e-3, 1e9))
+      ->capture_default_str()
+      ->group(solvers);
+  command.add_option("--max-steps", solve_.max_steps, "of the force model")
+      ->check(CLI::Range(1L, 1000000000000L))
+      ->capture_default_str()
+      ->group(solvers);
+  command
+      .add_option("--rest-tolerance", solve_.rest_tolerance,
+                  "distance from rest at which the force model stops, share of the length")
+      ->check(number_between(1e-12, 1e-1))
+      ->capture_default_str()
+      ->group(solvers);
+  command.add_option("--materials", materials_, "materials file instead of the built-in one")
+      ->type_name("FILE")
+      ->group(solvers);
+}
+
+void SceneOptions::apply(compare::Scene& scene) const {
+  compare::ForceModelSettings& settings = scene.force_model;
+  if (!parameters_.empty()) settings = compare::load_parameters(parameters_);
+  if (points_ > 0) settings.points = points_;
+  if (!law_.empty()) settings.law = compare::law_from(law_);
+  if (!bookkeeping_.empty()) settings.bookkeeping = compare::bookkeeping_from(bookkeeping_);
+  if (!stepper_.empty()) settings.stepper = compare::stepper_from(stepper_);
+  if (!bending_rule_.empty()) settings.bending_rule = compare::bending_rule_from(bending_rule_);
+  if (!design_curvature_.empty()) {
+    settings.design_curvature =
+        option_quantity("--design-curvature", design_curvature_, Dimension::curvature);
+  }
+  if (!c_b_.empty()) settings.c_b = option_quantity("--c-b", c_b_, Dimension::force);
+  if (!c_c_.empty()) settings.c_c = option_quantity("--c-c", c_c_, Dimension::force);
+  if (!c_F_.empty()) settings.c_F = option_quantity("--c-F", c_F_, Dimension::number);
+  if (!c_h_.empty()) settings.c_h = option_quantity("--c-h", c_h_, Dimension::number, 1);
+  if (!l_s_.empty()) settings.l_s = option_quantity("--l-s", l_s_, Dimension::length);
+  compare::check(settings, scene.file + ", with the command line's options");
+}
+
+std::string SceneOptions::force_model_options() const {
+  std::string names;
+  const std::vector<const CLI::Option*> given =
+      command_->get_options([](const CLI::Option* option) {
+        return option->get_group() == force_model_group && option->count() > 0;
+      });
+  for (const CLI::Option* option : given) {
+    names += (names.empty() ? "" : ", ") + option->get_name();
+  }
+  return names;
+}
+
+std::vector<compare::Material> SceneOptions::materials() const {
+  return materials_.empty() ? compare::materials() : compare::load_materials(materials_);
+}
+
+compare::Scene SceneOptions::load(const std::string& path) const {
+  compare::Scene scene = compare::load_scene(path, materials());
+  apply(scene);
+  return scene;
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "dlo/compare/plan.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
+#include "option/output.hpp"
+
+namespace dlo::cli {
+
+/// Options that override a scene's [force_model] and steer the solvers.
+class SceneOptions {
+ public:
+  void add_to(CLI::App& command);
+  /// Only those that steer the solvers, and --materials.
+  void add_solvers_to(CLI::App& command);
+
+  /// Loads a scene and applies the options. @throws compare::InputError
+  [[nodiscard]] compare::Scene load(const std::string& path) const;
+  [[nodiscard]] const compare::SolveOptions& solve() const { return solve_; }
+  [[nodiscard]] std::vector<compare::Material> materials() const;
+  /// Names of the force model's options that were given, such as "--points, --law"; after add_to.
+  [[nodiscard]] std::string force_model_options() const;
+
+ private:
+  void apply(compare::Scene& scene) const;
+
+  const CLI::App* command_ = nullptr;
+  std::string materials_, parameters_;
+  int points_ = 0;
+  std::string law_, bookkeeping_, stepper_, bending_rule_;
+  std::string c_b_, c_c_, c_F_, c_h_, l_s_, design_curvature_;
+  compare::SolveOptions solve_;
+};
+
+/// --explain and --target-error.
+class PlanOptions {
+ public:
+  void add_to(CLI::App& command);
+
+  [[nodiscard]] bool explain() const { return explain_; }
+  [[nodiscard]] const compare::PlanOptions& plan() const { return plan_; }
+
+ private:
+  bool explain_ = false;
+  compare::PlanOptions plan_;
+};
+
+/// @param formats  those that the command writes
+void add_output_options(CLI::App& command, OutputOptions& options,
+                        const std::vector<std::string>& formats = format_names());
+
+}  // namespace dlo::cli

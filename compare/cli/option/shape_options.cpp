@@ -1,0 +1,69 @@
+#include "option/shape_options.hpp"
+
+#include "dlo/compare/shape_file.hpp"
+#include "option/output.hpp"
+#include "scene/quantity.hpp"
+
+namespace dlo::cli {
+namespace {
+
+const std::vector<std::string>& unit_names() {
+  static const std::vector<std::string> names = {"m", "cm", "mm", "um"};
+  return names;
+}
+
+}  // namespace
+
+void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {
+  const std::string group = "Shape files";
+  std::vector<std::string> rules = compare::arc_lengths_names();
+  if (chord == ChordLengths::not_exact_enough) {
+    std::erase(rules, compare::to_string(compare::ArcLengths::chord));
+  }
+  command.add_option("--unit", unit_, "what the numbers are in: m, cm, mm or um")
+      ->check(CLI::IsMember(unit_names()))
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_flag(
+          "--register{rigid}", pose_,
+          "the file's frame is unknown: find it. --register=upright if its vertical is known, "
+          "--register=translation if all directions are")
+      ->check(CLI::IsMember(compare::pose_names()))
+      ->group(group);
+  command
+      .add_option(
+          "--arc-lengths", arc_lengths_,
+          chord == ChordLengths::offered
+              ? "of the points: file (its column s), nearest (points of the reference), chord "
+                "(lengths along the polyline of a whole rod) or auto: file if there is a column s, "
+                "else nearest"
+              : "of the points: file (its column s), nearest (points of the rod) or auto: file if "
+                "there is a column s, else nearest")
+      ->check(CLI::IsMember(rules))
+      ->capture_default_str()
+      ->group(group);
+}
+
+compare::MeasuredShape ShapeOptions::load(const std::string& path) const {
+  return compare::load_shape(path,
+                             compare::parse_quantity("1 " + unit_, compare::Dimension::length));
+}
+
+std::string ShapeOptions::unit_hint(double polyline_m, double length) const {
+  const double ratio = polyline_m / length;
+  const bool short_one = ratio < 1.0 / 50;
+  if (!short_one && !(ratio > 1.1)) return {};
+  std::string hint = short_one ? fmt::format("polyline is 1/{:.0f} of the rod: ", 1 / ratio)
+                               : fmt::format("polyline is {:.4g} times the rod: ", ratio);
+  const double given = compare::parse_quantity("1 " + unit_, compare::Dimension::length);
+  for (const std::string& unit : unit_names()) {
+    const double value = compare::parse_quantity("1 " + unit, compare::Dimension::length);
+    const double share = ratio * value / given;
+    // Whole rod or a good part of it, and noise may lengthen the polyline.
+    if (unit != unit_ && share > 0.2 && share < 2) return hint + fmt::format("--unit {}?", unit);
+  }
+  return hint + (short_one ? "a small piece, or --unit?" : "noise between points, or --unit?");
+}
+
+}  // namespace dlo::cli

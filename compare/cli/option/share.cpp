@@ -1,0 +1,54 @@
+#include "option/share.hpp"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+#include "scene/quantity.hpp"
+
+namespace dlo::cli {
+namespace {
+
+/// @throws compare::InputError if the text is no number
+double share_from(const std::string& text) {
+  const bool percent = text.ends_with('%');
+  const std::string number = percent ? text.substr(0, text.size() - 1) : text;
+  return compare::parse_quantity(number, compare::Dimension::number) / (percent ? 100 : 1);
+}
+
+/// @param of       " of what", or nothing
+/// @param allowed  in words
+CLI::Validator share_that(std::function<bool(double)> holds, std::string of, std::string allowed) {
+  const auto read = [holds = std::move(holds), of = std::move(of),
+                     allowed = std::move(allowed)](std::string& text) {
+    std::string problem;
+    try {
+      const double share = share_from(text);
+      if (holds(share)) {
+        text = fmt::format("{:.17g}", share);
+        return std::string();
+      }
+    } catch (const compare::InputError& error) {
+      problem = fmt::format(", {}", error.what());
+    }
+    return fmt::format("{} is no share{}{} (allowed: {})", text, of, problem, allowed);
+  };
+  return {read, "SHARE"};
+}
+
+}  // namespace
+
+CLI::Validator share_of_length() {
+  return share_that([](double share) { return share > 0 && share < 1; }, " of the length",
+                    "0.1% or 0.001, > 0, < 1");
+}
+
+CLI::Validator share_up_to(double high) {
+  return share_that([high](double share) { return share >= 0 && share <= high; }, "",
+                    fmt::format("1% or 0.01, 0 to {:g}", high));
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solution.hpp"
+
+namespace dlo::compare {
+
+/// The force model at rest. Between several grippers it starts where the chain's lowest shape came
+/// from, and from near that shape where it ends in another state, so that both are in the same one;
+/// where it still does not, the message says so. @throws InputError, ConvergenceError as
+/// solve_chain
+[[nodiscard]] Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
+                                   const SolveOptions& options = {});
+
+}  // namespace dlo::compare

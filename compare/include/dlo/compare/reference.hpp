@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
+
+namespace dlo::compare {
+
+/// The continuous reference of a scene: `energy` or `exact`.
+/// @throws InputError, ConvergenceError; that too where a shape is not resolved, unless
+/// `accept_unresolved` is set
+[[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
+                                                        const SolveOptions& options = {});
+
+/// Every equilibrium that the energy model finds, as it is: stable ones first, by energy; never
+/// empty. @throws InputError, ConvergenceError
+[[nodiscard]] std::vector<energy_model::Equilibrium> reference_states(
+    const Scene& scene, const SolveOptions& options = {});
+
+}  // namespace dlo::compare

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/discretise.hpp"
+#include "dlo/compare/shape.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
+
+namespace dlo::compare {
+
+/// The models that solve a scene.
+enum class Model {
+  energy,  ///< minimiser of the continuous rod's energy
+  chain,   ///< minimiser over the force model's polygon
+  exact,   ///< boundary value problem of the rod, shot with GSL
+  force,   ///< the paper's model, stepped to rest
+};
+
+/// Their names, as options and files spell them.
+[[nodiscard]] const std::vector<std::string>& model_names();
+/// The name of a model.
+[[nodiscard]] const char* to_string(Model model);
+/// @throws InputError if no model has this name
+[[nodiscard]] Model model_from(const std::string& name);
+
+/// Limits of the solvers.
+struct SolveOptions {
+  int terms = 0;                 ///< of the energy model, 0: as many as needed
+  int max_evaluations = 20000;   ///< of the minimisers
+  long max_steps = 20'000'000;   ///< of the force model
+  double time_limit = 20;        ///< of each solve of a model [s], > 0
+  double rest_tolerance = 1e-7;  ///< of the force model, share of the rod's length
+  /// Take a shape of the energy model whose status is `not_resolved`, to show it with that status;
+  /// nothing may be concluded from it.
+  bool accept_unresolved = false;
+  /// Of the energy model: an equilibrium of a similar scene to follow, instead of the lowest.
+  const energy_model::Equilibrium* start = nullptr;
+};
+
+/// Energies [J]; gravity and loads are zero at the first gripper.
+struct SceneEnergies {
+  double bending = 0;  ///< of the joints or the curvature
+  double gravity = 0;  ///< of the rod's weight
+  double load = 0;     ///< of point loads
+  double stretch = 0;  ///< of elastic segments
+  double contact = 0;  ///< of obstacles that yield
+
+  /// Of all [J].
+  [[nodiscard]] double total() const { return bending + gravity + load + stretch + contact; }
+};
+
+/// What a gripper exerts on the rod, torque about its position.
+struct GripperLoad {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
+};
+
+/// A shape and what it cost. Only converged shapes are returned, and those that are not resolved to
+/// whoever accepts them (SolveOptions::accept_unresolved).
+struct Solution {
+  Model model = Model::energy;  ///< that solved it
+  /// `converged`, `roundoff_limited` or `not_resolved`; of solve_all() `saddle` too.
+  energy_model::SolveStatus status = energy_model::SolveStatus::converged;
+  std::string message;     ///< how the solver ended
+  double penetration = 0;  ///< of energy: Equilibrium::penetration [m]
+  Shape shape;             ///< of the rod
+  /// From solve() and solve_all(), at the shape's points: curvature [1/m], a polygon's that of its
+  /// joints.
+  std::vector<double> curvature;
+  /// Of energy and exact: tension [N] there, positive where the rod is pulled; at a gripper or load
+  /// inside the rod that of the side towards l. None where an obstacle is touched.
+  std::vector<double> tension;
+  SceneEnergies energy;                    ///< of that shape
+  std::vector<GripperLoad> grippers;       ///< in the scene's order
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod [N]
+  /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
+  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
+  long evaluations = 0;        ///< of minimisers; shots of exact
+  long steps = 0;              ///< of force
+  int terms = 0;               ///< curvature coefficients of energy
+  double seconds = 0;          ///< wall time of the solver
+  Parameters parameters;       ///< of chain and force
+  double c_F = 0;              ///< of force, at its last step
+  double c_h = 0;              ///< of force, at its last step [-]
+  double remaining_error = 0;  ///< of force: estimated distance to rest [m]
+  Eigen::Matrix3Xd to_rest;    ///< of force: Newton's step to rest from each point [m]
+};
+
+}  // namespace dlo::compare

@@ -1,0 +1,14 @@
+#include "base/fingerprint.hpp"
+
+#include <fmt/format.h>
+
+#define XXH_INLINE_ALL  // headers only, nothing to link
+#include <xxhash.h>
+
+namespace dlo::compare {
+
+std::string fingerprint(const std::string& text) {
+  return fmt::format("{:016x}", XXH3_64bits(text.data(), text.size()));
+}
+
+}  // namespace dlo::compare

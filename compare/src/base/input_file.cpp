@@ -1,0 +1,74 @@
+#include "base/input_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+[[noreturn]] void refuse_file(const std::string& name, int error, const std::string& more) {
+  throw InputError(fmt::format("{}: cannot be read ({}{})", name.empty() ? "\"\"" : name,
+                               std::generic_category().message(error), more));
+}
+
+/// People leave the extension out.
+std::string nearby(const std::string& path, int error) {
+  std::error_code unknown;
+  const bool there = error == ENOENT && std::filesystem::is_regular_file(path + ".toml", unknown);
+  return there ? fmt::format(", but {}.toml is there", path) : "";
+}
+
+}  // namespace
+
+InputFile::InputFile(std::string path) : name_(std::move(path)) {
+  do {
+    descriptor_ = ::open(name_.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
+  } while (descriptor_ < 0 && errno == EINTR);
+  const int error = errno;
+  if (descriptor_ < 0) refuse_file(name_, error, nearby(name_, error));
+}
+
+InputFile::InputFile(int descriptor, std::string name)
+    : name_(std::move(name)), descriptor_(descriptor) {}
+
+InputFile::~InputFile() { ::close(descriptor_); }
+
+bool InputFile::read_some(std::string& text, std::size_t most) {
+  constexpr std::size_t block = 1 << 16;
+  const std::size_t before = text.size();
+  text.resize(before + std::min(block, most));
+  ssize_t count = 0;
+  do {
+    count = ::read(descriptor_, text.data() + before, text.size() - before);
+  } while (count < 0 && errno == EINTR);
+  const int error = errno;
+  text.resize(before + static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+  if (count < 0) {
+    refuse_file(name_, error, bytes_ > 0 ? fmt::format(", after {} bytes", bytes_) : "");
+  }
+  bytes_ += static_cast<std::size_t>(count);
+  return count > 0;
+}
+
+std::string InputFile::read_all(std::size_t largest) {
+  std::string text;
+  while (read_some(text, largest + 1 - text.size())) {
+    if (text.size() <= largest) continue;
+    throw InputError(
+        fmt::format("{}: too large (allowed: files of up to {} bytes)", name_, largest));
+  }
+  return text;
+}
+
+std::string read_file(const std::string& path) { return InputFile(path).read_all(); }
+
+}  // namespace dlo::compare

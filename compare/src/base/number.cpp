@@ -1,0 +1,56 @@
+#include "base/number.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace dlo::compare {
+namespace {
+
+/// Power of ten of a number's first digit that is not zero, of plain digits with at most one point
+/// and an exponent.
+long decimal_exponent(std::string_view number) {
+  const std::size_t mark = std::min(number.find_first_of("eE"), number.size());
+  const std::string_view digits = number.substr(0, mark);
+  const std::size_t point = std::min(digits.find('.'), digits.size());
+  const std::size_t first = std::min(digits.find_first_of("123456789"), digits.size());
+  const long place = static_cast<long>(point) - static_cast<long>(first);
+  std::string_view exponent = number.substr(std::min(mark + 1, number.size()));
+  if (exponent.starts_with('+')) exponent.remove_prefix(1);
+  long value = 0;
+  const auto [end, error] =
+      std::from_chars(exponent.data(), exponent.data() + exponent.size(), value);
+  constexpr long beyond = 1'000'000'000;
+  if (error == std::errc::result_out_of_range) value = exponent.front() == '-' ? -beyond : beyond;
+  return std::clamp(value, -beyond, beyond) + place;
+}
+
+/// A number of a message, which may have thousands of digits.
+std::string shortened(std::string_view number) {
+  constexpr std::size_t longest = 40;
+  return fmt::format("{}{}", number.substr(0, longest), number.size() > longest ? "..." : "");
+}
+
+}  // namespace
+
+bool underflows(std::string_view number) { return decimal_exponent(number) < 0; }
+
+std::string beyond_double(std::string_view number) {
+  return underflows(number)
+             ? fmt::format("{} is too small (allowed: 0, or 2.3e-308 and more)", shortened(number))
+             : fmt::format("{} is too large (allowed: up to 1.7e308)", shortened(number));
+}
+
+std::optional<double> shape_number(std::string_view field) {
+  if (field.starts_with('+')) field.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
+  if (end != field.data() + field.size() || field.empty()) return std::nullopt;
+  if (error == std::errc::result_out_of_range) return underflows(field) ? 0.0 : INFINITY;
+  if (error != std::errc()) return std::nullopt;
+  return value;
+}
+
+}  // namespace dlo::compare

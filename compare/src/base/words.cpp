@@ -1,0 +1,55 @@
+#include "base/words.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+std::size_t levenshtein(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({replaced, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+}  // namespace
+
+std::string nearest_word(std::string_view written, const std::vector<std::string>& words) {
+  std::string nearest;
+  std::size_t least = std::min<std::size_t>(3, (written.size() + 1) / 2);
+  for (const std::string& word : words) {
+    const std::size_t distance = levenshtein(written, word);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = word;
+  }
+  return nearest;
+}
+
+std::string did_you_mean(std::string_view written, const std::vector<std::string>& words) {
+  const std::string nearest = nearest_word(written, words);
+  return nearest.empty() ? "" : ", did you mean " + nearest + "?";
+}
+
+std::size_t choice_index(const std::string& name, const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) {
+    throw InputError(
+        fmt::format("unknown choice \"{}\" (allowed: {})", name, fmt::join(names, ", ")));
+  }
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+}  // namespace dlo::compare

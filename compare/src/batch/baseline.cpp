@@ -1,0 +1,113 @@
+#include "batch/baseline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/input_file.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/solution.hpp"
+#include "scene/strict_table.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr const char* schema = "dlo/baseline/1";
+
+BaselineCase read_case(StrictTable& table) {
+  BaselineCase result;
+  result.scene = table.text("scene");
+  result.model = model_from(table.choice("model", {"chain", "force"}));
+  result.law = law_from(table.choice("law", law_names()));
+  result.bookkeeping = bookkeeping_from(table.choice("bookkeeping", bookkeeping_names()));
+  result.points = table.integer("points", 4, 1'000'000);
+  const auto error = [&](const char* key) {
+    return table.number(key, Dimension::number, Range::not_negative());
+  };
+  result.errors.rms = error("rms_over_length");
+  result.errors.max = error("max_over_length");
+  if (table.has("tip_over_length")) result.errors.tip = error("tip_over_length");
+  if (const auto digits = table.optional_text("fingerprint")) {
+    const bool whole =
+        digits->size() == 16 && digits->find_first_not_of("0123456789abcdef") == std::string::npos;
+    if (!whole) table.fail("fingerprint", "must be 16 hexadecimal digits");
+    result.fingerprint = *digits;
+  }
+  table.finish();
+  return result;
+}
+
+/// A TOML basic string.
+std::string quoted_toml(const std::string& text) {
+  std::string result = "\"";
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      result += '\\';
+      result += c;
+    } else if (code < 0x20 || code == 0x7f) {
+      result += fmt::format("\\u{:04x}", code);
+    } else {
+      result += c;
+    }
+  }
+  return result + "\"";
+}
+
+/// TOML wants a point or an exponent in what is no integer; zero is written as 0.0.
+std::string toml_number(double value) { return fmt::format("{:#.6g}", value); }
+
+}  // namespace
+
+std::string BaselineCase::name() const {
+  return fmt::format("{} ({}, law {}, bookkeeping {}, N = {})", scene, to_string(model),
+                     to_string(law), to_string(bookkeeping), points);
+}
+
+std::vector<BaselineCase> read_baseline(const std::string& text, const std::string& file) {
+  const toml::table root = parse_toml(text, file);
+  StrictTable table(root, "", file);
+  (void)table.choice("schema", {schema});
+  std::vector<BaselineCase> cases;
+  std::set<std::string> names;
+  for (StrictTable& entry : table.tables("case")) {
+    cases.push_back(read_case(entry));
+    if (names.insert(cases.back().name()).second) continue;
+    entry.fail("scene",
+               "a second case with this scene, model, law, bookkeeping and points "
+               "(allowed: one)");
+  }
+  table.finish();
+  return cases;
+}
+
+std::vector<BaselineCase> load_baseline(const std::string& path) {
+  return read_baseline(read_file(path), path);
+}
+
+std::string baseline_text(std::vector<BaselineCase> cases) {
+  std::sort(cases.begin(), cases.end(),
+            [](const BaselineCase& a, const BaselineCase& b) { return a.name() < b.name(); });
+  std::string text = fmt::format(
+      "# Distances of shapes from the energy model's, as shares of the rod's length. Written by\n"
+      "# dlo regress --update; a change of it is a change of a shape.\nschema = \"{}\"\n",
+      schema);
+  for (const BaselineCase& entry : cases) {
+    text += fmt::format(
+        "\n[[case]]\nscene = {}\nmodel = \"{}\"\nlaw = \"{}\"\nbookkeeping = \"{}\"\npoints = {}\n"
+        "rms_over_length = {}\nmax_over_length = {}\n",
+        quoted_toml(entry.scene), to_string(entry.model), to_string(entry.law),
+        to_string(entry.bookkeeping), entry.points, toml_number(entry.errors.rms),
+        toml_number(entry.errors.max));
+    if (entry.errors.tip) {
+      text += fmt::format("tip_over_length = {}\n", toml_number(*entry.errors.tip));
+    }
+    if (!entry.fingerprint.empty()) {
+      text += fmt::format("fingerprint = \"{}\"\n", entry.fingerprint);
+    }
+  }
+  return text;
+}
+
+}  // namespace dlo::compare

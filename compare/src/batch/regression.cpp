@@ -1,0 +1,284 @@
+#include "batch/regression.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "base/fingerprint.hpp"
+#include "base/quote.hpp"
+#include "dlo/compare/comparison.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solve.hpp"
+
+namespace dlo::compare {
+namespace {
+
+RegressionVerdict verdict_of(double expected, double measured,
+                             const RegressionTolerance& tolerance) {
+  const double margin = tolerance.absolute + tolerance.relative * expected;
+  if (measured < expected - margin) return RegressionVerdict::better;
+  // The negation makes a NaN worse.
+  return measured <= expected + margin ? RegressionVerdict::same : RegressionVerdict::worse;
+}
+
+std::string percent(const std::optional<double>& share) {
+  return share ? fmt::format("{:.4g} %", *share * 100) : std::string("none");
+}
+
+void compare_errors(RegressionResult& result, const RegressionTolerance& tolerance) {
+  const ShapeErrors& expected = *result.expected;
+  const ShapeErrors& measured = *result.measured;
+  using Share = std::optional<double>;
+  const std::array<std::tuple<const char*, Share, Share>, 3> errors = {
+      {{"RMS", expected.rms, measured.rms},
+       {"largest", expected.max, measured.max},
+       {"tip", expected.tip, measured.tip}}};
+  result.verdict = RegressionVerdict::same;
+  for (const auto& [what, before, now] : errors) {
+    if (!before && !now) continue;
+    if (!result.message.empty()) result.message += ", ";
+    const RegressionVerdict verdict =
+        before && now ? verdict_of(*before, *now, tolerance) : RegressionVerdict::worse;
+    const char* mark = verdict == RegressionVerdict::same ? "" : to_string(verdict);
+    result.message += fmt::format("{} {} of l (baseline {}){}{}", what, percent(now),
+                                  percent(before), *mark != '\0' ? " " : "", mark);
+    if (verdict == RegressionVerdict::worse) result.verdict = verdict;
+    if (verdict == RegressionVerdict::better && result.verdict == RegressionVerdict::same) {
+      result.verdict = verdict;
+    }
+  }
+}
+
+/// All that a scene's shape depends on and the case's name does not say. Twelve digits, so that
+/// "2 mm" is 0.002.
+std::string content_of(const Scene& scene) {
+  std::string text;
+  const auto add = [&](double value) { text += fmt::format("{:.12g} ", value + 0.0); };
+  const auto add_vector = [&](const Eigen::Vector3d& v) {
+    for (const double component : v) add(component);
+  };
+  const auto add_optional = [&](const std::optional<double>& value) {
+    value ? add(*value) : void(text += "- ");
+  };
+  add_vector(scene.gravity);
+  add(scene.length);
+  add(scene.diameter);
+  add(scene.material.youngs_modulus);
+  add(scene.material.density);
+  for (const Gripper& gripper : scene.grippers) {
+    text += "\ngripper ";
+    add(gripper.at);
+    add_vector(gripper.position);
+    if (gripper.direction) add_vector(*gripper.direction);
+  }
+  for (const PointLoad& load : scene.loads) {
+    text += "\nload ";
+    add(load.at);
+    add_vector(load.force);
+  }
+  for (const Obstacle& obstacle : scene.obstacles) {
+    text += "\nobstacle ";
+    add_vector(obstacle.point);
+    add_vector(obstacle.normal);
+    add(obstacle.stiffness);
+  }
+  const ForceModelSettings& settings = scene.force_model;
+  text += fmt::format("\n{} {} ", to_string(settings.stepper), to_string(settings.bending_rule));
+  for (const auto& value : {settings.design_curvature, settings.point_weight, settings.c_b,
+                            settings.c_c, settings.c_F, settings.c_h, settings.l_s}) {
+    add_optional(value);
+  }
+  return text;
+}
+
+/// Of measured cases, by name, the case of the baseline whose place they take: the only other one
+/// of the same scene and model.
+std::map<std::string, const BaselineCase*> replaced_cases(
+    const std::vector<BaselineCase>& baseline, const std::vector<MeasuredCase>& measured) {
+  std::map<std::string, const BaselineCase*> before;
+  std::map<std::string, const BaselineCase*> now;
+  for (const BaselineCase& entry : baseline) before[entry.name()] = &entry;
+  for (const MeasuredCase& measurement : measured) {
+    now[measurement.entry.name()] = &measurement.entry;
+  }
+  using Cases = std::vector<const BaselineCase*>;
+  std::map<std::pair<std::string, Model>, std::pair<Cases, Cases>> unmatched;
+  for (const auto& [name, entry] : before) {
+    if (!now.contains(name)) unmatched[{entry->scene, entry->model}].first.push_back(entry);
+  }
+  for (const auto& [name, entry] : now) {
+    if (!before.contains(name)) unmatched[{entry->scene, entry->model}].second.push_back(entry);
+  }
+  std::map<std::string, const BaselineCase*> replaced;
+  for (const auto& [scene, cases] : unmatched) {
+    if (cases.first.size() != 1 || cases.second.size() != 1) continue;
+    replaced[cases.second.front()->name()] = cases.first.front();
+  }
+  return replaced;
+}
+
+/// "law hooke, N = 16" where the settings of two cases of one scene differ.
+std::string settings_of(const BaselineCase& entry, const BaselineCase& other) {
+  std::string text;
+  const auto add = [&](bool differs, const std::string& setting) {
+    if (differs) text += (text.empty() ? "" : ", ") + setting;
+  };
+  add(entry.law != other.law, fmt::format("law {}", to_string(entry.law)));
+  add(entry.bookkeeping != other.bookkeeping,
+      fmt::format("bookkeeping {}", to_string(entry.bookkeeping)));
+  add(entry.points != other.points, fmt::format("N = {}", entry.points));
+  return text;
+}
+
+/// What a case is other than the baseline's in; empty if it is the same.
+std::string change_between(const BaselineCase& before, const BaselineCase& now) {
+  if (before.name() != now.name()) {
+    return fmt::format("{} (baseline {})", settings_of(now, before), settings_of(before, now));
+  }
+  const bool known = !before.fingerprint.empty() && !now.fingerprint.empty();
+  return known && before.fingerprint != now.fingerprint ? "the scene is another than the baseline's"
+                                                        : "";
+}
+
+}  // namespace
+
+BaselineCase case_of(const Scene& scene, Model model) {
+  BaselineCase result;
+  result.scene = scene.name;
+  result.model = model;
+  result.law = scene.force_model.law;
+  result.bookkeeping = scene.force_model.bookkeeping;
+  result.points = scene.force_model.points;
+  result.fingerprint = fingerprint(content_of(scene));
+  return result;
+}
+
+BaselineCase measure_case(const Scene& scene, Model model, const SolveOptions& options) {
+  const Solution solution = solve(scene, model, options);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
+  const Deviation d = shape_deviation(scene, solution.shape, energy.sample);
+  BaselineCase result = case_of(scene, model);
+  result.errors = {d.rms_over_length, d.max_m / scene.length, std::nullopt};
+  if (std::isfinite(d.tip_m)) result.errors.tip = d.tip_m / scene.length;
+  return result;
+}
+
+const char* to_string(RegressionVerdict verdict) {
+  switch (verdict) {
+    case RegressionVerdict::same:
+      return "same";
+    case RegressionVerdict::better:
+      return "better";
+    case RegressionVerdict::worse:
+      return "worse";
+    case RegressionVerdict::changed:
+      return "changed";
+    case RegressionVerdict::not_in_baseline:
+      return "not in the baseline";
+    case RegressionVerdict::not_measured:
+      return "not measured";
+    case RegressionVerdict::not_solved:
+      break;
+  }
+  return "not solved";
+}
+
+bool failed(RegressionVerdict verdict) {
+  return verdict != RegressionVerdict::same && verdict != RegressionVerdict::better;
+}
+
+std::vector<RegressionResult> judge_regression(const std::vector<BaselineCase>& baseline,
+                                               const std::vector<MeasuredCase>& measured,
+                                               const RegressionTolerance& tolerance) {
+  const auto allowed = [](double value) { return value >= 0 && std::isfinite(value); };
+  if (!allowed(tolerance.relative) || !allowed(tolerance.absolute)) {
+    throw std::invalid_argument(
+        fmt::format("judge_regression: tolerance relative = {}, absolute = {}, must be >= 0",
+                    tolerance.relative, tolerance.absolute));
+  }
+  const std::map<std::string, const BaselineCase*> replaced = replaced_cases(baseline, measured);
+  std::map<std::string, const BaselineCase*> expected;  // by the name that this run has for it
+  for (const BaselineCase& entry : baseline) expected[entry.name()] = &entry;
+  for (const auto& [name, entry] : replaced) {
+    expected.erase(entry->name());
+    expected[name] = entry;
+  }
+  std::map<std::string, RegressionResult> results;
+  for (const auto& [name, known] : expected) {
+    const BaselineCase& entry = *known;
+    RegressionResult& result = results[name];
+    result.expected = entry.errors;
+    result.verdict = RegressionVerdict::not_measured;
+    result.message = "in the baseline, but no scene given is this case";
+  }
+  std::map<std::string, int> seen;
+  for (const MeasuredCase& measurement : measured) {
+    const std::string name = measurement.entry.name();
+    if (++seen[name] > 1) {
+      throw InputError(fmt::format(
+          "{}: two scenes are this case (allowed: a name of its own for each scene)", name));
+    }
+    RegressionResult& result = results[name];
+    result.message.clear();
+    if (!measurement.problem.empty()) {
+      result.verdict = RegressionVerdict::not_solved;
+      result.message = measurement.problem;
+      continue;
+    }
+    result.measured = measurement.entry.errors;
+    if (result.expected) {
+      compare_errors(result, tolerance);
+      const std::string change = change_between(*expected.at(name), measurement.entry);
+      if (!change.empty()) {
+        result.verdict = RegressionVerdict::changed;
+        result.message = fmt::format("{}: {}", change, result.message);
+      }
+    } else {
+      result.verdict = RegressionVerdict::not_in_baseline;
+      result.message = fmt::format("RMS {} of l, not in the baseline (--update adds it)",
+                                   percent(result.measured->rms));
+    }
+  }
+  std::vector<RegressionResult> sorted;
+  for (auto& [name, result] : results) {
+    result.name = name;
+    sorted.push_back(std::move(result));
+  }
+  return sorted;
+}
+
+std::string junit_xml(const std::vector<RegressionResult>& results) {
+  int failures = 0;
+  int errors = 0;
+  std::string cases;
+  for (const RegressionResult& result : results) {
+    cases += fmt::format("    <testcase classname=\"dlo.regress\" name=\"{}\"",
+                         escape_markup(result.name));
+    if (!failed(result.verdict)) {
+      cases += fmt::format(">\n      <system-out>{}: {}</system-out>\n    </testcase>\n",
+                           to_string(result.verdict), escape_markup(result.message));
+      continue;
+    }
+    const bool error = result.verdict == RegressionVerdict::not_solved;
+    ++(error ? errors : failures);
+    cases += fmt::format(">\n      <{0} type=\"{1}\" message=\"{2}\"/>\n    </testcase>\n",
+                         error ? "error" : "failure", to_string(result.verdict),
+                         escape_markup(result.message));
+  }
+  const std::string counts =
+      fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\"", results.size(), failures, errors);
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {0}>\n"
+      "  <testsuite name=\"dlo regress\" {0}>\n{1}  </testsuite>\n</testsuites>\n",
+      counts, cases);
+}
+
+}  // namespace dlo::compare

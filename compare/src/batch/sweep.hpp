@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "batch/sweep_grid.hpp"
+#include "dlo/compare/solution.hpp"
+#include "scene/scene_template.hpp"
+
+namespace dlo::compare {
+
+/// What is computed for every scene of a sweep.
+enum class SweepModel {
+  energy,
+  chain,
+  exact,
+  force,
+  compare,        ///< the force model, stepped to rest, against the energy model
+  compare_chain,  ///< the chain, which is the force model's rest shape without steps
+};
+
+/// As --model spells them.
+[[nodiscard]] const std::vector<std::string>& sweep_model_names();
+/// @throws InputError if there is no such model
+[[nodiscard]] SweepModel sweep_model_from(const std::string& name);
+
+/// Rows first <= row < last.
+struct RowRange {
+  std::int64_t first = 0;  ///< the first row, from 0
+  std::int64_t last = 0;   ///< one past the last row
+
+  /// The same rows.
+  bool operator==(const RowRange&) const = default;
+};
+
+/// A scene, a grid over its fields, and what to compute. Every row of the table that it describes
+/// depends on its number only, never on other rows, threads or times.
+class Sweep {
+ public:
+  /// @throws InputError if no scene can be read: of every grid of up to 1000 rows all are tried, of
+  /// a larger one 1000 that are spread over it
+  Sweep(SceneTemplate scene, Grid grid, SweepModel model, const SolveOptions& options = {});
+
+  /// Over the scene's fields.
+  [[nodiscard]] const Grid& grid() const { return grid_; }
+
+  /// What the rows depend on, in words and fingerprints: "scene ..., grid ..., model ..., options
+  /// ...". Sweeps with the same identity have the same rows.
+  [[nodiscard]] std::string identity() const;
+
+  /// Columns, as a CSV line: row, one for each varied field, the results, status.
+  ///
+  /// All models: gamma (unless it is varied), tip_x_m, tip_y_m, tip_z_m (the rod's end at s = l),
+  /// energy_J, evaluations (force, compare: steps). energy, exact: terms. compare and
+  /// compare-chain, of the force model or the chain against the energy model: rms_over_length,
+  /// max_over_length, tip_over_length (empty without a free end), effective_modulus_ratio,
+  /// rms_at_effective_modulus_over_length, optimum, energy_evaluations.
+  [[nodiscard]] std::string header() const;
+
+  /// How a row begins: its number and its fields, each with a comma behind it.
+  [[nodiscard]] std::string row_start(std::int64_t row) const;
+
+  /// One row as a CSV line. status is "ok", or why there are no results: a scene that is refused or
+  /// does not converge is a row like any other. Numbers have 10 significant digits.
+  [[nodiscard]] std::string row(std::int64_t row) const;
+
+  /// Computes rows on several threads and hands their lines over in order. No more than a fixed
+  /// number of rows per thread is kept at any time.
+  /// @param threads  0: all cores; more than there are cores only cost memory
+  /// @param take     called by one thread at a time; its exceptions end the run and come out of it
+  void run(RowRange rows, int threads,
+           const std::function<void(const std::string& line)>& take) const;
+
+ private:
+  [[nodiscard]] Scene scene(std::int64_t row) const;
+  [[nodiscard]] std::string results(const Scene& scene) const;
+  [[nodiscard]] std::string compared(const Scene& scene, const Solution& solution) const;
+  [[nodiscard]] std::string without_results(const std::string& status) const;
+  void require_one_scene() const;
+
+  SceneTemplate scene_;
+  Grid grid_;
+  SweepModel model_;
+  SolveOptions options_;
+  bool gamma_varied_ = false;
+};
+
+}  // namespace dlo::compare

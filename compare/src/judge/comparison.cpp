@@ -1,0 +1,82 @@
+#include "dlo/compare/comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dlo/compare/chain.hpp"
+#include "dlo/compare/force.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solution.hpp"
+#include "scene/reach.hpp"
+#include "solve/states.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// The stable state nearest to where the Hookean polygon falls from the force model's shape.
+std::size_t state_of(const Scene& scene, const Shape& force,
+                     const std::vector<energy_model::Equilibrium>& states,
+                     const SolveOptions& options) {
+  if (states.size() == 1) return 0;
+  ForceModelSettings settings = scene.force_model;
+  settings.law = Law::hooke;
+  const Shape fallen = chain_from(scene, settings, force, options);
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (states[i].status == energy_model::SolveStatus::saddle) continue;
+    const double distance =
+        rms(fallen.arc_length, fallen.points - states[i].sample(fallen.arc_length).points);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = i;
+  }
+  return nearest;
+}
+
+}  // namespace
+
+Comparison compare(const Scene& scene, const SolveOptions& options, const PlanOptions& plan_options,
+                   ModulusSearch modulus) {
+  const Scene near = without_far_obstacles(scene).scene;
+  Comparison result;
+  result.scene = scene.name;
+  result.gamma = scene.gamma();
+  result.length = scene.length;
+  result.settings = scene.force_model;
+  result.plan = make_plan(scene, plan_options);
+  result.force = solve_force(near, near.force_model, options);
+  const Shape& force = result.force.shape;
+  // What a user would call, for its cost; the other states are looked for besides.
+  const energy_model::Equilibrium lowest = solve_reference(near, Model::energy, options);
+  result.energy_seconds = lowest.seconds;
+  result.energy_evaluations = lowest.evaluations;
+  const std::vector<energy_model::Equilibrium> states = all_states(near, lowest, options);
+  const std::size_t compared = state_of(near, force, states, options);
+  const energy_model::Equilibrium& energy = states[compared];
+  std::vector<double> from_force;
+  const ShapeDistance distance = distance_from(force);
+  from_force.reserve(states.size());
+  for (const energy_model::Equilibrium& state : states) from_force.push_back(distance(state));
+  result.state = describe_state(near, states, compared, from_force);
+  if (!energy_model::succeeded(energy.status)) result.unresolved = energy.message;
+
+  const std::vector<double>& s = force.arc_length;
+  result.reference = {s, energy.sample(s).points};
+  result.reference_rod = energy.sample;
+  const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
+  result.deviation = shape_deviation(scene, force, energy.sample);
+  result.undeformed_rms_over_length =
+      straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
+  if (modulus == ModulusSearch::yes && result.unresolved.empty()) {
+    result.effective_modulus = fit_effective_modulus(near, distance, energy, options);
+  }
+  result.residual_over_movement =
+      result.deviation.rms_over_movement / result.deviation.rms_m * result.effective_modulus.rms_m;
+  result.budget = error_budget(near, result.force, energy.sample, options);
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,256 @@
+#include "dlo/compare/effective_modulus.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <map>
+#include <utility>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solution.hpp"
+#include "judge/scalar_search.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Steps of the scan along ln(E*/E), and how many without improvement end it: half a decade.
+constexpr int steps_per_decade = 4;
+constexpr int most_worse_steps = 2;
+/// RMS way between two moduli up to which a shape is the same equilibrium, share of the length.
+constexpr double largest_way = 0.1;
+/// Shortest step along ln(E*/E): an equilibrium that is lost there ends there.
+constexpr double least_step = 0.02;
+/// Accuracy of ln(E*/E).
+constexpr double log_tolerance = 1e-6;
+
+/// Beyond the time limit of the whole search.
+struct OutOfTime {};
+
+/// One equilibrium of a scene for any modulus, each solved from the nearest that is known.
+class FollowedState {
+ public:
+  FollowedState(const Scene& scene, const ShapeDistance& distance,
+                const energy_model::Equilibrium& state, const SolveOptions& options)
+      : scene_(scene),
+        distance_(distance),
+        options_(options),
+        s_(equal_arc_lengths(scene.length, 41)),
+        modulus_(scene.material.youngs_modulus) {
+    remember(0, state);
+  }
+
+  /// Mean square distance [m^2]; infinite beyond where the equilibrium ends. @throws OutOfTime
+  double operator()(double log_ratio) {
+    const auto known = known_.find(log_ratio);
+    if (known != known_.end()) return known->second.mean_square;
+    const Known* reached = reach(log_ratio);
+    return reached != nullptr ? reached->mean_square : std::numeric_limits<double>::infinity();
+  }
+
+  [[nodiscard]] int solves() const { return solves_; }
+
+ private:
+  struct Known {
+    energy_model::Equilibrium state;
+    Eigen::Matrix3Xd points;
+    double mean_square = 0;
+  };
+
+  const Known& remember(double log_ratio, energy_model::Equilibrium state) {
+    Known known;
+    known.points = state.sample(s_).points;
+    const double rms = distance_(state);
+    known.mean_square = rms * rms;
+    known.state = std::move(state);
+    return known_.insert_or_assign(log_ratio, std::move(known)).first->second;
+  }
+
+  /// From the nearest known modulus, halving the way while the equilibrium is lost on it.
+  const Known* reach(double log_ratio) {
+    for (double target = log_ratio;;) {
+      const auto [from, start] = nearest(target);
+      const Known* found = step(*start, target);
+      if (found != nullptr && target == log_ratio) return found;
+      if (found != nullptr) {
+        target = log_ratio;
+        continue;
+      }
+      if (std::abs(target - from) < 2 * least_step) return nullptr;
+      target = (from + target) / 2;
+    }
+  }
+
+  [[nodiscard]] std::pair<double, const Known*> nearest(double log_ratio) const {
+    const auto above = known_.lower_bound(log_ratio);
+    if (above == known_.begin()) return {above->first, &above->second};
+    const auto below = std::prev(above);
+    const bool up = above != known_.end() && above->first - log_ratio < log_ratio - below->first;
+    return up ? std::pair{above->first, &above->second} : std::pair{below->first, &below->second};
+  }
+
+  /// Nothing if the equilibrium is not there, or is another one.
+  const Known* step(const Known& start, double log_ratio) {
+    SolveOptions options = options_;
+    options.start = &start.state;
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
+    options.time_limit -= spent.count();
+    if (!(options.time_limit > 0)) throw OutOfTime();
+    scene_.material.youngs_modulus = modulus_ * std::exp(log_ratio);
+    ++solves_;
+    try {
+      energy_model::Equilibrium state = solve_reference(scene_, Model::energy, options);
+      const double way = rms(s_, state.sample(s_).points - start.points);
+      if (!(way <= largest_way * scene_.length)) return nullptr;
+      return &remember(log_ratio, std::move(state));
+    } catch (const ConvergenceError&) {
+      return nullptr;
+    } catch (const InputError&) {
+      return nullptr;  // softer or stiffer than the energy model takes
+    }
+  }
+
+  Scene scene_;
+  const ShapeDistance& distance_;
+  SolveOptions options_;
+  std::vector<double> s_;
+  double modulus_;  // E of the scene [Pa]
+  std::map<double, Known> known_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  int solves_ = 0;
+};
+
+/// From E*/E = 1 both ways, each until the mean square has not got less for half a decade.
+Scan scan_both_ways(FollowedState& mean_square, double resolution) {
+  const double step = std::log(10) / steps_per_decade;
+  const int lowest = static_cast<int>(std::round(std::log(smallest_modulus_ratio) / step));
+  const int highest = static_cast<int>(std::round(std::log(largest_modulus_ratio) / step));
+  std::map<double, double> values;
+  for (const int way : {-1, 1}) {
+    double least = std::numeric_limits<double>::infinity();
+    int worse = 0;
+    for (int i = 0; i >= lowest && i <= highest && worse < most_worse_steps; i += way) {
+      const double value = mean_square(step * i);
+      values[step * i] = value;
+      const bool less = std::sqrt(value) < std::sqrt(least) - resolution;
+      worse = less ? 0 : worse + 1;
+      least = std::min(least, value);
+      if (!std::isfinite(value)) break;
+    }
+  }
+  Scan result;
+  for (const auto& [x, value] : values) {
+    result.x.push_back(x);
+    result.value.push_back(value);
+  }
+  return result;
+}
+
+EffectiveModulus no_modulus(std::string why) {
+  EffectiveModulus result;
+  result.why_none = std::move(why);
+  return result;
+}
+
+EffectiveModulus search(FollowedState& mean_square, double resolution) {
+  const Scan values = scan_both_ways(mean_square, resolution);
+  const std::size_t best = values.best();
+  const auto known = [&](std::size_t at) {
+    return at < values.value.size() && std::isfinite(values.value[at]);
+  };
+  if (!known(best + 1) && !(best > 0 && known(best - 1))) {
+    return no_modulus("the equilibrium is lost at the moduli beside the scene's");
+  }
+  double largest = 0;
+  for (const double value : values.value) {
+    if (std::isfinite(value)) largest = std::max(largest, value);
+  }
+  if (!(std::sqrt(largest) - std::sqrt(values.value[best]) > resolution)) {
+    return no_modulus("the shape does not change with E");
+  }
+  const bool bracketed = values.is_bracketed() && known(best - 1) && known(best + 1);
+  // No exception may cross GSL.
+  std::exception_ptr error;
+  const Function function = [&](double x) {
+    try {
+      if (!error) return mean_square(x);
+    } catch (...) {
+      error = std::current_exception();
+    }
+    return std::numeric_limits<double>::infinity();
+  };
+  const Minimum minimum = bracketed ? minimum_near(function, values, log_tolerance)
+                                    : Minimum{values.x[best], values.value[best]};
+  if (error) std::rethrow_exception(error);
+  EffectiveModulus result;
+  result.why_none.clear();
+  result.ratio = std::exp(minimum.x);
+  result.rms_m = std::sqrt(minimum.value);
+  const double at_own = mean_square(0);
+  if (std::sqrt(at_own) > resolution) {
+    result.explained_share = std::max(0.0, 1 - minimum.value / at_own);
+  }
+  if (!bracketed) {
+    result.optimum = Optimum::one_sided;
+    return result;
+  }
+  const double factor = std::log(2.0);
+  const double around =
+      std::sqrt(std::min(mean_square(minimum.x + factor), mean_square(minimum.x - factor)));
+  if (around < 1.1 * result.rms_m || !(around - result.rms_m > resolution)) {
+    result.optimum = Optimum::flat;
+  } else {
+    result.optimum = result.explained_share < clear_share ? Optimum::partial : Optimum::clear;
+  }
+  return result;
+}
+
+}  // namespace
+
+const char* to_string(Optimum optimum) {
+  switch (optimum) {
+    case Optimum::none:
+      return "none";
+    case Optimum::partial:
+      return "partial";
+    case Optimum::flat:
+      return "flat";
+    case Optimum::one_sided:
+      return "one-sided";
+    case Optimum::clear:
+      break;
+  }
+  return "clear";
+}
+
+ShapeDistance distance_from(const Shape& shape) {
+  return [shape](const energy_model::Equilibrium& reference) {
+    return rms(shape.arc_length, shape.points - reference.sample(shape.arc_length).points);
+  };
+}
+
+EffectiveModulus fit_effective_modulus(const Scene& scene, const Shape& shape,
+                                       const SolveOptions& options) {
+  return fit_effective_modulus(scene, distance_from(shape),
+                               solve_reference(scene, Model::energy, options), options);
+}
+
+EffectiveModulus fit_effective_modulus(const Scene& scene, const ShapeDistance& distance,
+                                       const energy_model::Equilibrium& state,
+                                       const SolveOptions& options) {
+  FollowedState mean_square(scene, distance, state, options);
+  EffectiveModulus result;
+  try {
+    result = search(mean_square, modulus_resolution * scene.length);
+  } catch (const OutOfTime&) {
+    result = no_modulus(fmt::format("time limit of {:g} s reached", options.time_limit));
+  }
+  result.solves = mean_square.solves();
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,376 @@
+#include "dlo/compare/force_model_fit.hpp"
+
+#include <fmt/format.h>
+#include <nlopt.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "base/progress_counter.hpp"
+#include "dlo/compare/chain.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/force_model/step_size.hpp"
+#include "judge/force_model_shortfall.hpp"
+#include "judge/scalar_search.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr int most_points = 4000;
+/// Shares of the target that the polygon and its stretch may take.
+constexpr double polygon_share = 0.9;
+constexpr double stretch_share = 0.1;
+/// The fastest mode may be this much faster on the way than at the start and at rest.
+constexpr double mode_margin = 1.2;
+
+/// A scene with its reference, for many chains.
+struct FittedCase {
+  Scene scene;
+  energy_model::Equilibrium reference;
+
+  [[nodiscard]] double rms_over_length(const Shape& shape) const {
+    const Eigen::Matrix3Xd gaps = shape.points - reference.sample(shape.arc_length).points;
+    return rms(shape.arc_length, gaps) / scene.length;
+  }
+  [[nodiscard]] double chain(const ForceModelSettings& settings,
+                             const SolveOptions& options) const {
+    return rms_over_length(solve_chain(scene, settings, options).shape);
+  }
+  /// Infinite where the chain does not converge.
+  [[nodiscard]] double chain_with(ForceModelSettings settings, double c_b,
+                                  const SolveOptions& options) const {
+    settings.c_b = c_b;
+    try {
+      return chain(settings, options);
+    } catch (const ConvergenceError&) {
+      return std::numeric_limits<double>::infinity();
+    }
+  }
+  /// Upper bound of the tension: all that hangs on the rod, or what its grippers pull with.
+  [[nodiscard]] double pull() const {
+    double sum = scene.weight_per_length().norm() * scene.length;
+    for (const PointLoad& load : scene.loads) sum += load.force.norm();
+    for (const energy_model::Reaction& grip : reference.grips)
+      sum = std::max(sum, grip.force.norm());
+    return sum;
+  }
+};
+
+struct LogObjective {
+  const Function* function;
+};
+
+double value_for_nlopt(unsigned /*n*/, const double* x, double* /*gradient*/, void* data) {
+  return (*static_cast<const LogObjective*>(data)->function)(*x);
+}
+
+/// NLopt's Nelder-Mead from the best point of a scan.
+Minimum nelder_mead(const Function& function, const Scan& values) {
+  const Function finite = [&](double x) { return std::min(function(x), 1e3); };
+  LogObjective objective{&finite};
+  const std::unique_ptr<std::remove_pointer_t<nlopt_opt>, decltype(&nlopt_destroy)> optimiser(
+      nlopt_create(NLOPT_LN_NELDERMEAD, 1), nlopt_destroy);
+  nlopt_set_min_objective(optimiser.get(), value_for_nlopt, &objective);
+  nlopt_set_initial_step1(optimiser.get(), (values.x[1] - values.x[0]) / 2);
+  nlopt_set_xtol_abs1(optimiser.get(), 1e-5);
+  nlopt_set_maxeval(optimiser.get(), 200);
+  Minimum best{values.x[values.best()], values.value[values.best()]};
+  Minimum found = best;
+  nlopt_optimize(optimiser.get(), &found.x, &found.value);
+  return found.value < best.value ? found : best;
+}
+
+class ForceModelFitter {
+ public:
+  ForceModelFitter(const std::vector<Scene>& scenes, const std::vector<Scene>& holdouts,
+                   const ForceModelFitOptions& options)
+      : options_(options),
+        fitted_(scenes.size()),
+        counter_(options.progress, static_cast<std::int64_t>(scenes.size() + holdouts.size()) + 1) {
+    for (const std::vector<Scene>* list : {&scenes, &holdouts}) {
+      for (const Scene& scene : *list) {
+        cases_.push_back({scene, solve_reference(scene, Model::energy, options.solve)});
+        result_.scenes.push_back(scene.name);
+        result_.gammas.push_back(scene.gamma());
+      }
+    }
+    result_.holdouts = holdouts.size();
+    result_.target = options.target;
+    result_.points_were_given = options.points.has_value();
+    settings_ = scenes.front().force_model;
+    settings_.stepper = StepperName::dynamic;
+  }
+
+  [[nodiscard]] ForceModelFit run() {
+    const bool paper = settings_.law == Law::paper;
+    if (options_.points) {
+      settings_.points = *options_.points;
+    } else if (!paper) {
+      choose_points();
+    }
+    if (paper) {
+      apply_paper_rules();
+    } else {
+      RuleDeviations physical{.rule = StiffnessRule::physical};
+      for (const FittedCase& entry : cases_) {
+        physical.rms_over_length.push_back(entry.chain(settings_, options_.solve));
+        counter_.add_one();
+      }
+      result_.rules.push_back(std::move(physical));
+    }
+    choose_stretch();
+    step_to_rest();
+    counter_.add_one();
+    const Scene& first = cases_.front().scene;
+    result_.segment_length = discretise(first, settings_).parameters.segment_length;
+    result_.bending_stiffness = first.bending_stiffness();
+    result_.settings = settings_;
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] double worst_chain(int points) const {
+    ForceModelSettings settings = settings_;
+    settings.points = points;
+    double worst = 0;
+    for (std::size_t i = 0; i < fitted_; ++i) {
+      worst = std::max(worst, cases_[i].chain(settings, options_.solve));
+    }
+    return worst;
+  }
+
+  /// L of the first scene [m].
+  [[nodiscard]] double segment_length(int points) const {
+    ForceModelSettings settings = settings_;
+    settings.points = points;
+    return discretise(cases_.front().scene, settings).parameters.segment_length;
+  }
+
+  void choose_points() {
+    constexpr int coarse = 16;
+    constexpr int fine = 32;
+    const double allowed = polygon_share * options_.target;
+    const double at_coarse = worst_chain(coarse);
+    const double at_fine = worst_chain(fine);
+    result_.order =
+        std::log(at_coarse / at_fine) / std::log(segment_length(coarse) / segment_length(fine));
+    // A rod that hardly bends has no order to speak of.
+    const double order = std::clamp(result_.order, 0.8, 2.2);
+    const double finer = std::pow(at_fine / allowed, 1 / order);
+    const double estimate = std::clamp((fine - 1) * finer, 1.0, most_points - 1.0);
+    int points = std::max(least_points(), 1 + static_cast<int>(std::ceil(estimate)));
+    while (points < most_points && !(worst_chain(points) <= allowed)) {
+      points = std::min(most_points, points + 1 + points / 20);
+    }
+    settings_.points = points;
+  }
+
+  /// Fewest points that every scene's grippers leave room for.
+  [[nodiscard]] int least_points() const {
+    ForceModelSettings settings = settings_;
+    for (int points = 5; points < most_points; ++points) {
+      settings.points = points;
+      try {
+        for (const FittedCase& entry : cases_) (void)discretise(entry.scene, settings);
+        return points;
+      } catch (const InputError&) {
+        continue;
+      }
+    }
+    return most_points;
+  }
+
+  void apply_paper_rules() {
+    std::vector<double> matched;
+    for (const auto& [rule, bending] :
+         {std::pair{StiffnessRule::formula_21, BendingRule::formula_21},
+          std::pair{StiffnessRule::moment_matched, BendingRule::moment_matched}}) {
+      RuleDeviations deviations{.rule = rule};
+      for (const FittedCase& entry : cases_) {
+        ForceModelSettings settings = settings_;
+        settings.c_b.reset();
+        settings.bending_rule = bending;
+        settings.design_curvature = entry.scene.force_model.design_curvature;
+        try {
+          deviations.c_b.push_back(discretise(entry.scene, settings).parameters.c_b);
+          deviations.rms_over_length.push_back(
+              entry.chain_with(settings, deviations.c_b.back(), options_.solve));
+        } catch (const InputError&) {
+          // The design curvature turns a joint by half a turn or more: no c_b by this rule.
+          deviations.c_b.resize(deviations.rms_over_length.size() + 1, NAN);
+          deviations.rms_over_length.push_back(NAN);
+        }
+      }
+      if (rule == StiffnessRule::moment_matched) matched = deviations.c_b;
+      result_.rules.push_back(std::move(deviations));
+    }
+    const double centre = search_centre(matched);
+    result_.c_b_was_given = settings_.c_b.has_value();
+    const double together = settings_.c_b ? *settings_.c_b : fitted_c_b(centre, 0, fitted_);
+    RuleDeviations fitted{.rule = StiffnessRule::fitted};
+    RuleDeviations alone{.rule = StiffnessRule::fitted_alone};
+    for (std::size_t i = 0; i < cases_.size(); ++i) {
+      fitted.c_b.push_back(together);
+      fitted.rms_over_length.push_back(cases_[i].chain_with(settings_, together, options_.solve));
+      alone.c_b.push_back(fitted_c_b(centre, i, i + 1));
+      alone.rms_over_length.push_back(
+          cases_[i].chain_with(settings_, alone.c_b.back(), options_.solve));
+      counter_.add_one();
+    }
+    result_.rules.push_back(std::move(fitted));
+    result_.rules.push_back(std::move(alone));
+    settings_.c_b = together;
+    settings_.design_curvature.reset();
+  }
+
+  /// Middle of the range that is searched: the geometric mean of the moment-matched ones.
+  [[nodiscard]] double search_centre(const std::vector<double>& matched) const {
+    double sum = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < fitted_; ++i) {
+      if (!std::isfinite(matched[i])) continue;
+      sum += std::log(matched[i]);
+      ++count;
+    }
+    if (count > 0) return sum / count;
+    const Scene& first = cases_.front().scene;
+    return std::log(first.bending_stiffness() / std::pow(first.length, 2));
+  }
+
+  /// The c_b that is nearest to the cases [begin, end).
+  [[nodiscard]] double fitted_c_b(double centre, std::size_t begin, std::size_t end) const {
+    const Function misfit = [&](double log_c_b) {
+      double sum = 0;
+      for (std::size_t i = begin; i < end; ++i) {
+        sum += std::pow(cases_[i].chain_with(settings_, std::exp(log_c_b), options_.solve), 2);
+      }
+      return std::sqrt(sum / static_cast<double>(end - begin));
+    };
+    constexpr double decades = 4;
+    constexpr int steps = 32;
+    const double reach = decades * std::log(10.0);
+    return std::exp(nelder_mead(misfit, scan(misfit, centre - reach, centre + reach, steps)).x);
+  }
+
+  void choose_stretch() {
+    result_.c_c_was_given = settings_.c_c.has_value();
+    if (result_.c_c_was_given) return;
+    double stiffness = 0;
+    double axial = std::numeric_limits<double>::infinity();
+    for (const FittedCase& entry : cases_) {
+      stiffness = std::max(stiffness, entry.pull() / (stretch_share * options_.target));
+      axial = std::min(axial, entry.scene.axial_stiffness());
+    }
+    settings_.c_c = stiffness > 0 ? std::min(stiffness, axial) : axial;
+    result_.c_c_is_physical = !(stiffness > 0 && stiffness <= axial);
+  }
+
+  /// Modes of all scenes at their starts and at rest.
+  [[nodiscard]] force_model::ModeBounds modes() const {
+    force_model::ModeBounds result{0, std::numeric_limits<double>::infinity()};
+    for (const FittedCase& entry : cases_) {
+      const Discretisation discretisation = discretise(entry.scene, settings_);
+      std::vector<Eigen::Matrix3Xd> shapes = discretisation.starts;
+      shapes.push_back(solve_chain(entry.scene, settings_, options_.solve).shape.points);
+      for (const Eigen::Matrix3Xd& points : shapes) {
+        const force_model::ModeBounds bounds = force_model::mode_bounds(discretisation.rod, points);
+        result.fastest = std::max(result.fastest, bounds.fastest);
+        result.slowest = std::min(result.slowest, bounds.slowest);
+      }
+    }
+    return result;
+  }
+
+  void step_to_rest() {
+    force_model::ModeBounds bounds = modes();
+    bounds.fastest *= mode_margin;
+    settings_.l_s = segment_length(settings_.points) / 4;
+    constexpr int attempts = 5;
+    for (int attempt = 1;; ++attempt) {
+      const force_model::HeavyBall ball = force_model::heavy_ball(bounds);
+      settings_.c_F = ball.c_F;
+      settings_.c_h = ball.c_h;
+      result_.steps.clear();
+      result_.stepped_rms_over_length.clear();
+      result_.stretch_rms_over_length.clear();
+      try {
+        for (const FittedCase& entry : cases_) {
+          const Solution force = solve_force(entry.scene, settings_, options_.solve);
+          result_.steps.push_back(force.steps);
+          result_.stepped_rms_over_length.push_back(entry.rms_over_length(force.shape));
+          const Shape rigid = solve_chain(entry.scene, settings_, options_.solve).shape;
+          result_.stretch_rms_over_length.push_back(
+              rms(rigid.arc_length, force.shape.points - rigid.points) / entry.scene.length);
+        }
+        return;
+      } catch (const ConvergenceError&) {
+        if (attempt == attempts) throw;
+        bounds.fastest *= 2;
+      }
+    }
+  }
+
+  ForceModelFitOptions options_;
+  std::size_t fitted_;
+  std::vector<FittedCase> cases_;
+  ForceModelSettings settings_;
+  ForceModelFit result_;
+  ProgressCounter counter_;  // of scenes, then the runs to rest
+};
+
+double largest_of(const std::vector<double>& values, std::size_t begin, std::size_t end) {
+  double result = 0;
+  for (std::size_t i = begin; i < end; ++i) result = std::max(result, values[i]);
+  return result;
+}
+
+}  // namespace
+
+const char* to_string(StiffnessRule rule) {
+  constexpr const char* names[] = {"physical", "formula_21", "moment_matched", "fitted",
+                                   "fitted_alone"};
+  return names[static_cast<std::size_t>(rule)];
+}
+
+ForceModelFit fit_force_model(const std::vector<Scene>& scenes, const std::vector<Scene>& holdouts,
+                              const ForceModelFitOptions& options) {
+  if (scenes.empty()) throw InputError("calibrate: no scenes (allowed: one or more)");
+  if (!(options.target > 0 && options.target < 1)) {
+    throw InputError(fmt::format("calibrate: target = {:g} of the length (allowed: > 0 and < 1)",
+                                 options.target));
+  }
+  const ForceModelSettings& first = scenes.front().force_model;
+  for (const std::vector<Scene>* list : {&scenes, &holdouts}) {
+    for (const Scene& scene : *list) {
+      const ForceModelSettings& other = scene.force_model;
+      if (other.law == first.law && other.bookkeeping == first.bookkeeping) continue;
+      throw InputError(fmt::format(
+          "{}: force_model: law {}, bookkeeping {} after {}, {} (allowed: the same in all scenes; "
+          "--law and --bookkeeping set them)",
+          scene.file, to_string(other.law), to_string(other.bookkeeping), to_string(first.law),
+          to_string(first.bookkeeping)));
+    }
+  }
+  return ForceModelFitter(scenes, holdouts, options).run();
+}
+
+bool ForceModelFit::reached() const { return std::max(worst(), worst_holdout()) <= target; }
+
+double ForceModelFit::worst() const {
+  return largest_of(stepped_rms_over_length, 0, stepped_rms_over_length.size() - holdouts);
+}
+
+double ForceModelFit::worst_holdout() const {
+  const std::size_t all = stepped_rms_over_length.size();
+  return largest_of(stepped_rms_over_length, all - holdouts, all);
+}
+
+std::vector<std::string> ForceModelFit::why_missed() const { return shortfall(*this); }
+
+}  // namespace dlo::compare

@@ -1,0 +1,76 @@
+#include "judge/force_model_shortfall.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Of the rigid segments with the parameters that were chosen, worst of all scenes.
+double worst_of_segments(const ForceModelFit& fit) {
+  const bool paper = fit.settings.law == Law::paper;
+  const StiffnessRule chosen = paper ? StiffnessRule::fitted : StiffnessRule::physical;
+  double worst = 0;
+  for (const RuleDeviations& rule : fit.rules) {
+    if (rule.rule != chosen) continue;
+    for (const double rms : rule.rms_over_length) worst = std::max(worst, rms);
+  }
+  return worst;
+}
+
+std::string segments_miss(const ForceModelFit& fit, double segments) {
+  const int N = fit.settings.points;
+  if (fit.settings.law == Law::paper) {
+    return fmt::format(
+        "law paper: with {} c_b rigid segments are {:.3g} % off; --law hooke comes nearer with N",
+        fit.c_b_was_given ? "the given" : "the nearest", segments * 100);
+  }
+  if (fit.points_were_given) {
+    return fmt::format(
+        "N = {} is too few: its rigid segments are {:.3g} % off without any stretch; dlo calibrate "
+        "without --points takes N from the target",
+        N, segments * 100);
+  }
+  return fmt::format("N = {} is too few for {}: its rigid segments are {:.3g} % off", N,
+                     fit.holdouts > 0 ? "all scenes (hold-out scenes do not choose it)"
+                                      : "the target, and the most that is tried",
+                     segments * 100);
+}
+
+std::string stretch_miss(const ForceModelFit& fit, double stretch) {
+  if (fit.c_c_is_physical) {
+    return fmt::format(
+        "c_c is A E: the rod stretches as its material does, which the energy model leaves out. "
+        "That alone makes {:.3g} %, which no N takes away; the smallest target within reach is "
+        "about that (less at some N is errors that cancel)",
+        stretch * 100);
+  }
+  return fmt::format(
+      "the given c_c stretches the rod, which alone makes {:.3g} %: no N reaches "
+      "the target",
+      stretch * 100);
+}
+
+}  // namespace
+
+std::vector<std::string> shortfall(const ForceModelFit& fit) {
+  std::vector<std::string> reasons;
+  if (fit.reached()) return reasons;
+  const double segments = worst_of_segments(fit);
+  const double stretch =
+      *std::max_element(fit.stretch_rms_over_length.begin(), fit.stretch_rms_over_length.end());
+  if (segments > fit.target) reasons.push_back(segments_miss(fit, segments));
+  if (stretch > fit.target) reasons.push_back(stretch_miss(fit, stretch));
+  if (reasons.empty()) {
+    reasons.push_back(fmt::format(
+        "rigid segments ({:.3g} %) and stretch ({:.3g} %) together are too much: more --points",
+        segments * 100, stretch * 100));
+  }
+  return reasons;
+}
+
+}  // namespace dlo::compare

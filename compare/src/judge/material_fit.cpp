@@ -1,0 +1,328 @@
+#include "dlo/compare/material_fit.hpp"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "judge/error_correlation.hpp"
+#include "judge/log_profile.hpp"
+#include "judge/shape_misfit.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// What the energy model's own error may be, so that a perfect shape gets no interval of rounding.
+constexpr double least_noise = 1e-8;
+/// Searches for another state between several grippers, at the optimum of the one followed.
+constexpr int most_other_states = 2;
+
+/// A number that was fitted, for messages.
+struct Name {
+  const char* name;
+  const char* unit;
+  double scene_value;  // in that unit
+};
+
+/// What a profile says of a number.
+struct Finding {
+  LogProfile::Interval interval;  // reaches to every one of `optima`
+  std::vector<Minimum> optima;    // that the shapes do not tell apart
+  Minimum best;
+};
+
+Finding finding(LogProfile& profile, double level, double rival_level) {
+  Finding result{profile.below(level), profile.minima_below(rival_level), profile.minimum()};
+  if (result.optima.empty()) return result;
+  LogProfile::Interval& interval = result.interval;
+  if (interval.low) interval.low = std::min(*interval.low, result.optima.front().x);
+  if (interval.high) interval.high = std::max(*interval.high, result.optima.back().x);
+  return result;
+}
+
+FittedValue fitted(const Finding& found, double unit, double told_within) {
+  const LogProfile::Interval& interval = found.interval;
+  FittedValue result;
+  if (interval.low) result.low = unit * std::exp(*interval.low);
+  if (interval.high) result.high = unit * std::exp(*interval.high);
+  const bool closed = result.low && result.high;
+  if (closed && *result.high <= told_within * *result.low) {
+    result.value = unit * std::exp(found.best.x);
+  }
+  return result;
+}
+
+std::string what_is_not_told(const FittedValue& value, const Finding& found, const Name& name,
+                             double told_within) {
+  if (value.value) return {};
+  if (value.low && value.high) {
+    std::string where;
+    if (found.optima.size() > 1) {
+      where = ", best";
+      for (std::size_t i = 0; i < found.optima.size(); ++i) {
+        where += fmt::format("{} near {:.3g}", i == 0 ? "" : " and",
+                             name.scene_value * std::exp(found.optima[i].x));
+      }
+    }
+    return fmt::format(
+        "these shapes do not tell {0}: {1:.4g} to {2:.4g} {3} fit{4} (told: within a factor of "
+        "{5:g})",
+        name.name, *value.low, *value.high, name.unit, where, told_within);
+  }
+  if (value.low) {
+    return fmt::format("these shapes do not tell {0}: {0} > {1:.4g} {2}, any larger one fits",
+                       name.name, *value.low, name.unit);
+  }
+  if (value.high) {
+    return fmt::format("these shapes do not tell {0}: {0} < {1:.4g} {2}, any smaller one fits",
+                       name.name, *value.high, name.unit);
+  }
+  return fmt::format(
+      "these shapes do not tell {0}: any {0} that was tried fits them within their "
+      "noise",
+      name.name);
+}
+
+std::string warning_of(double least_squares, double points, double nu, double length,
+                       const std::optional<double>& noise) {
+  const double rms = std::sqrt(least_squares / points);
+  if (noise && nu > 0 && least_squares > std::pow(*noise, 2) * gsl_cdf_chisq_Qinv(1e-3, nu)) {
+    return fmt::format(
+        "the rod does not fit these shapes: its residuals are {:.3g} times what the given noise "
+        "explains, so the interval means nothing",
+        std::sqrt(least_squares / nu) / *noise);
+  }
+  if (rms > 0.05 * length) {
+    return fmt::format(
+        "the rod does not fit these shapes: residuals of {:.3g} % of its length (another unit, "
+        "frame or rod?)",
+        rms / length * 100);
+  }
+  return {};
+}
+
+bool has_forces_beside_weight(const std::vector<Scene>& scenes) {
+  return std::any_of(scenes.begin(), scenes.end(), [](const Scene& scene) {
+    const bool loaded = std::any_of(scene.loads.begin(), scene.loads.end(),
+                                    [](const PointLoad& l) { return l.force.norm() > 0; });
+    const bool yields = std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                                    [](const Obstacle& o) { return std::isfinite(o.stiffness); });
+    return loaded || yields;
+  });
+}
+
+void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                   const MaterialFitOptions& options) {
+  if (scenes.empty() || scenes.size() != shapes.size()) {
+    throw InputError(
+        fmt::format("calibrate: {} scenes and {} shapes (allowed: one shape per scene)",
+                    scenes.size(), shapes.size()));
+  }
+  if (options.arc_lengths == ArcLengths::chord) {
+    throw InputError(
+        "calibrate: arc lengths by chord are not exact enough (allowed: auto, file, nearest)");
+  }
+  if (options.noise && !(*options.noise > 0)) {
+    throw InputError(fmt::format("calibrate: noise = {:g} m (allowed: > 0)", *options.noise));
+  }
+}
+
+/// The fit of one or two numbers to shapes.
+class MaterialFitter {
+ public:
+  MaterialFitter(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                 const MaterialFitOptions& options)
+      : scenes_(scenes),
+        options_(options),
+        misfit_(scenes, shapes, options),
+        both_(options.density && has_forces_beside_weight(scenes)),
+        low_(std::log(options.smallest_ratio)),
+        high_(std::log(options.largest_ratio)) {
+    const int unknowns = both_ ? 2 : 1;
+    result_.degrees_of_freedom = misfit_.numbers() - unknowns;
+    result_.noise_is_estimated = !options.noise;
+    const int fewest = options.noise ? 0 : 1;
+    if (result_.degrees_of_freedom < fewest) {
+      throw InputError(fmt::format(
+          "calibrate: {} numbers measured beside the frames, {} to be found (allowed: {} or more, "
+          "so more points{})",
+          misfit_.numbers(), unknowns, unknowns + fewest,
+          options.noise ? "" : ", or a given noise"));
+    }
+  }
+
+  [[nodiscard]] MaterialFit run() {
+    std::unique_ptr<LogProfile> over_modulus = modulus_profile();
+    for (int i = 0; i < most_other_states && misfit_.search_at(best_with(*over_modulus)); ++i) {
+      over_modulus = modulus_profile();
+    }
+    const MaterialPoint best = best_with(*over_modulus);
+    const double least = over_modulus->minimum().value;
+    if (!std::isfinite(least)) {
+      throw ConvergenceError(fmt::format(
+          "{}: the energy model has a shape at no modulus that was tried", scenes_.front().file));
+    }
+    measure_noise(least, best);
+    const Material& material = scenes_.front().material;
+    const Finding found = finding(*over_modulus, level(least, 0), rival_level(least, 0));
+    result_.youngs_modulus = fitted(found, material.youngs_modulus, options_.told_within);
+    result_.not_told = what_is_not_told(result_.youngs_modulus, found,
+                                        {"E", "Pa", material.youngs_modulus}, options_.told_within);
+    if (both_) fit_density(least);
+    if (options_.density && !both_ && result_.not_told.empty()) {
+      result_.not_told =
+          "these shapes do not tell the density: nothing but gravity bends the rod, so only "
+          "density / E shows; E is for the density of the scene (a known load would tell both)";
+    }
+    refuse_unresolved(std::max(level(least, 0), both_ ? level(least, 1) : 0));
+    const auto points = static_cast<double>(misfit_.points());
+    result_.rms_m = std::sqrt(least / points);
+    result_.equilibria = misfit_.solves();
+    result_.evaluations = misfit_.evaluations();
+    result_.warning = warning_of(least, points, freedom(), scenes_.front().length, options_.noise);
+    const std::vector<Alignment> alignments = misfit_.alignments(best);
+    for (std::size_t i = 0; i < alignments.size(); ++i) {
+      result_.shapes.push_back({scenes_[i].name, alignments[i]});
+    }
+    return std::move(result_);
+  }
+
+ private:
+  [[nodiscard]] double freedom() const { return result_.degrees_of_freedom; }
+
+  // With both unknown each is profiled with the other at its own best.
+  [[nodiscard]] Minimum over_density(double log_modulus) {
+    const LogProfile inner(
+        [&](double y) {
+          return misfit_({log_modulus, y});
+        },
+        low_ / 2, high_ / 2);
+    return inner.minimum();
+  }
+
+  [[nodiscard]] std::unique_ptr<LogProfile> modulus_profile() {
+    return std::make_unique<LogProfile>(
+        [this](double x) {
+          return both_ ? over_density(x).value : misfit_({x, 0});
+        },
+        low_, high_);
+  }
+
+  [[nodiscard]] MaterialPoint best_with(const LogProfile& over_modulus) {
+    const double x = over_modulus.minimum().x;
+    return {x, both_ ? over_density(x).x : 0};
+  }
+
+  /// Variance of one coordinate [m^2] if errors were independent.
+  [[nodiscard]] double variance(double least) const {
+    const double floor = std::pow(least_noise * scenes_.front().length, 2);
+    return options_.noise ? std::pow(*options_.noise, 2) : std::max(least / freedom(), floor);
+  }
+
+  /// The noise and its correlation, from the residuals of the best fit.
+  void measure_noise(double least, const MaterialPoint& best) {
+    result_.noise_m = std::sqrt(variance(least));
+    effects_.assign(both_ ? 2 : 1, {.degrees_of_freedom = freedom()});
+    if (!(least / std::max(1.0, freedom()) > std::pow(least_noise * scenes_.front().length, 2))) {
+      return;
+    }
+    const std::vector<ResidualSeries> series = misfit_.residuals(best, both_);
+    if (series.empty()) return;
+    const CorrelationEstimate estimate = correlation_of(series);
+    result_.correlation_was_tested = estimate.tested;
+    if (!estimate.significant) return;
+    const Eigen::Index frames = series.front().design.cols() - (both_ ? 2 : 1);
+    for (std::size_t k = 0; k < effects_.size(); ++k) {
+      effects_[k] =
+          correlation_effect(series, frames + static_cast<Eigen::Index>(k), estimate.covariance);
+    }
+    if (!options_.noise) result_.noise_m /= std::sqrt(effects_[0].residual_factor);
+    result_.correlation =
+        CorrelatedErrors{.length_m = estimate.covariance.length,
+                         .share = estimate.covariance.share,
+                         .widening = std::sqrt(excess(0)) * quantile(0) / independent_quantile(),
+                         .degrees_of_freedom = effects_[0].degrees_of_freedom};
+  }
+
+  /// Variance of a fitted number over that which independent errors would have, as they are taken
+  /// to be from the sum of squares (or given).
+  [[nodiscard]] double excess(std::size_t number) const {
+    const CorrelationEffect& effect = effects_[number];
+    return std::max(1.0, effect.variance_factor / (options_.noise ? 1 : effect.residual_factor));
+  }
+
+  [[nodiscard]] double independent_quantile() const {
+    return options_.noise ? gsl_cdf_ugaussian_Pinv(0.975) : gsl_cdf_tdist_Pinv(0.975, freedom());
+  }
+  [[nodiscard]] double quantile(std::size_t number) const {
+    return options_.noise ? independent_quantile()
+                          : gsl_cdf_tdist_Pinv(0.975, effects_[number].degrees_of_freedom);
+  }
+
+  /// Of the sum of squares, at the ends of a number's interval [m^2].
+  [[nodiscard]] double level(double least, std::size_t number) const {
+    return least + std::pow(quantile(number), 2) * excess(number) * variance(least);
+  }
+
+  /// Up to which another local minimum is as good an explanation. Its frames are others as well, so
+  /// it is outside the joint region of all fitted numbers only where its sum of squares is so much
+  /// larger with a chance of 1e-3 (F distribution; a given noise: chi-squared).
+  [[nodiscard]] double rival_level(double least, std::size_t number) const {
+    const double nu = std::max(1.0, effects_[number].degrees_of_freedom);
+    const double fitted = misfit_.frame_numbers() + static_cast<double>(effects_.size());
+    const double excess_of_all = options_.noise ? gsl_cdf_chisq_Qinv(1e-3, fitted)
+                                                : fitted * gsl_cdf_fdist_Qinv(1e-3, fitted, nu);
+    return std::max(level(least, number), least + variance(least) * excess(number) * excess_of_all);
+  }
+
+  void fit_density(double least) {
+    LogProfile profile(
+        [this](double y) {
+          const LogProfile inner([&](double x) { return misfit_({x, y}); }, low_, high_);
+          return inner.minimum().value;
+        },
+        low_ / 2, high_ / 2);
+    const double unit = scenes_.front().material.density;
+    const Finding found = finding(profile, level(least, 1), rival_level(least, 1));
+    result_.density = fitted(found, unit, options_.told_within);
+    if (result_.not_told.empty()) {
+      result_.not_told = what_is_not_told(*result_.density, found, {"the density", "kg/m^3", unit},
+                                          options_.told_within);
+    }
+  }
+
+  void refuse_unresolved(double highest_level) const {
+    const ShapeMisfit::Unresolved* unresolved = misfit_.unresolved_below(highest_level);
+    if (unresolved == nullptr) return;
+    const Scene& scene = scenes_[unresolved->scene];
+    throw ConvergenceError(fmt::format(
+        "{}: at E = {:.4g} Pa, which may fit, the rod is not resolved on its obstacles: it sinks "
+        "in "
+        "by {:.3g} m ({}), so the shapes cannot tell E",
+        scene.file, scene.material.youngs_modulus * std::exp(unresolved->material.log_modulus),
+        unresolved->penetration, unresolved->message));
+  }
+
+  const std::vector<Scene>& scenes_;
+  const MaterialFitOptions& options_;
+  ShapeMisfit misfit_;
+  bool both_;
+  double low_, high_;
+  std::vector<CorrelationEffect> effects_;  // on E, then on the density
+  MaterialFit result_;
+};
+
+}  // namespace
+
+MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                         const MaterialFitOptions& options) {
+  require_pairs(scenes, shapes, options);
+  return MaterialFitter(scenes, shapes, options).run();
+}
+
+}  // namespace dlo::compare

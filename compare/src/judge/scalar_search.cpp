@@ -1,0 +1,99 @@
+#include "judge/scalar_search.hpp"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_min.h>
+#include <gsl/gsl_roots.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace dlo::compare {
+namespace {
+
+struct Shifted {
+  const Function* function;
+  double level;
+};
+
+double call_for_gsl(double x, void* data) {
+  const Shifted& shifted = *static_cast<const Shifted*>(data);
+  return (*shifted.function)(x)-shifted.level;
+}
+
+/// GSL aborts the program on errors unless told otherwise; every call looks at its result instead.
+/// Told once, so that threads do not tell it at the same time.
+void keep_gsl_from_aborting() {
+  static const bool silent = gsl_set_error_handler_off() != nullptr;
+  (void)silent;
+}
+
+}  // namespace
+
+std::size_t Scan::best() const {
+  return static_cast<std::size_t>(std::min_element(value.begin(), value.end()) - value.begin());
+}
+
+bool Scan::is_bracketed() const { return best() > 0 && best() + 1 < x.size(); }
+
+Scan scan(const Function& function, double low, double high, int steps) {
+  Scan result;
+  for (int i = 0; i <= steps; ++i) {
+    result.x.push_back(low + (high - low) / steps * i);
+    result.value.push_back(function(result.x.back()));
+  }
+  return result;
+}
+
+Minimum minimum_near(const Function& function, const Scan& scan, double tolerance) {
+  const std::size_t best = scan.best();
+  Minimum result{scan.x[best], scan.value[best]};
+  keep_gsl_from_aborting();
+  Shifted shifted{&function, 0};
+  gsl_function gsl{call_for_gsl, &shifted};
+  const std::unique_ptr<gsl_min_fminimizer, decltype(&gsl_min_fminimizer_free)> minimiser(
+      gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);
+  // A value that is not finite makes GSL stop; the scan's best then stands.
+  if (gsl_min_fminimizer_set_with_values(minimiser.get(), &gsl, result.x, result.value,
+                                         scan.x[best - 1], scan.value[best - 1], scan.x[best + 1],
+                                         scan.value[best + 1]) != GSL_SUCCESS) {
+    return result;
+  }
+  for (int i = 0; i < 100; ++i) {
+    if (gsl_min_fminimizer_iterate(minimiser.get()) != GSL_SUCCESS) break;
+    if (gsl_min_test_interval(gsl_min_fminimizer_x_lower(minimiser.get()),
+                              gsl_min_fminimizer_x_upper(minimiser.get()), tolerance,
+                              0) == GSL_SUCCESS) {
+      break;
+    }
+  }
+  return {gsl_min_fminimizer_x_minimum(minimiser.get()),
+          gsl_min_fminimizer_f_minimum(minimiser.get())};
+}
+
+double crossing(const Function& function, double inside, double outside, double level) {
+  keep_gsl_from_aborting();
+  // Brent's method interpolates, so what is infinite is made merely large.
+  const Function finite = [&](double x) {
+    const double value = function(x);
+    return std::isfinite(value) ? value : 1e3 * level + 1e3;
+  };
+  Shifted shifted{&finite, level};
+  gsl_function gsl{call_for_gsl, &shifted};
+  const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
+      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+  if (gsl_root_fsolver_set(solver.get(), &gsl, std::min(inside, outside),
+                           std::max(inside, outside)) != GSL_SUCCESS) {
+    return outside;
+  }
+  for (int i = 0; i < 60; ++i) {
+    if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) break;
+    if (gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()),
+                               gsl_root_fsolver_x_upper(solver.get()), 1e-5, 0) == GSL_SUCCESS) {
+      break;
+    }
+  }
+  return gsl_root_fsolver_root(solver.get());
+}
+
+}  // namespace dlo::compare

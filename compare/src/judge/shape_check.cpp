@@ -1,0 +1,275 @@
+#include "dlo/compare/shape_check.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "dlo/compare/comparison.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/plan.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solution.hpp"
+#include "scene/reach.hpp"
+#include "shape/aligner.hpp"
+#include "shape/shape_measure.hpp"
+#include "solve/states.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Points with which E*/E is fitted; of more, every so many-th.
+constexpr Eigen::Index most_modulus_points = 500;
+
+MeasuredShape thinned(const MeasuredShape& shape) {
+  const Eigen::Index count = shape.points.cols();
+  const Eigen::Index every = (count + most_modulus_points - 1) / most_modulus_points;
+  if (every == 1) return shape;
+  MeasuredShape result;
+  result.file = shape.file;
+  const Eigen::Index kept = (count - 1) / every + 1;
+  result.points.resize(3, kept);
+  for (Eigen::Index i = 0; i < kept; ++i) {
+    // The last point stays, for the polyline keeps its length.
+    const Eigen::Index from = i + 1 == kept ? count - 1 : i * every;
+    result.points.col(i) = shape.points.col(from);
+    if (!shape.arc_length.empty()) {
+      result.arc_length.push_back(shape.arc_length[static_cast<std::size_t>(from)]);
+    }
+  }
+  return result;
+}
+
+/// RMS distance of points from the line that comes nearest to them.
+double distance_from_line(const Eigen::Matrix3Xd& points) {
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  const Eigen::Matrix3d moments =
+      centred * centred.transpose() / static_cast<double>(points.cols());
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(moments);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()[0] + eigen.eigenvalues()[1]));
+}
+
+std::optional<Eigen::Index> free_tip(const Scene& scene, const std::vector<double>& s) {
+  const auto is_free = [&](double at) {
+    return std::none_of(scene.grippers.begin(), scene.grippers.end(),
+                        [at](const Gripper& gripper) { return gripper.at == at; });
+  };
+  const double near = 1e-9 * scene.length;
+  if (is_free(scene.length) && s.back() >= scene.length - near) {
+    return static_cast<Eigen::Index>(s.size()) - 1;
+  }
+  if (is_free(0) && s.front() <= near) return 0;
+  return std::nullopt;
+}
+
+Deviation measured_deviation(const Scene& scene, const Alignment& alignment,
+                             const Reference& reference, const Measured& measured,
+                             double movement) {
+  const std::optional<Eigen::Index> tip = free_tip(scene, measured.arc_length);
+  Deviation result;
+  if (alignment.arc_lengths != ArcLengths::nearest) {
+    result = deviation(alignment.shape, reference, std::nullopt, tip);
+  } else {
+    const Eigen::Matrix3Xd gaps = alignment.shape.points - measured.reference;
+    result.tip_m = tip ? gaps.col(*tip).norm() : NAN;
+    result.angle_rms_rad = NAN;
+    result.curvature_rms_per_m = NAN;
+  }
+  result.max_m = measured.max_m;
+  result.max_at_m = measured.arc_length[static_cast<std::size_t>(measured.worst)];
+  result.rms_m = measured.rms_m;
+  result.rms_over_length = result.rms_m / scene.length;
+  result.rms_over_movement = movement > 1e-9 * scene.length ? result.rms_m / movement : NAN;
+  return result;
+}
+
+/// What the rod's missing ends add: their distance from the outermost points.
+void add_missing_ends(ShapeCheck& check, const Reference& reference) {
+  const std::vector<double>& s = check.reference.arc_length;
+  const Eigen::Matrix3Xd& points = check.alignment.shape.points;
+  const double length = check.length_m;
+  double covered = s.back() - s.front();
+  double sum = check.deviation.rms_m * check.deviation.rms_m * covered;
+  check.whole_max_m = check.deviation.max_m;
+  const auto add = [&](double from, double to, const Eigen::Vector3d& outermost) {
+    if (!(to > from)) return;
+    constexpr int samples = 65;
+    std::vector<double> missing = equal_arc_lengths(to - from, samples);
+    for (double& at : missing) at = std::min(at + from, to);
+    const Eigen::Matrix3Xd gaps = reference(missing).points.colwise() - outermost;
+    const double part = rms(missing, gaps);
+    sum += part * part * (to - from);
+    covered += to - from;
+    check.whole_max_m =
+        std::max(check.whole_max_m, std::sqrt(gaps.colwise().squaredNorm().maxCoeff()));
+  };
+  add(0, s.front(), points.leftCols<1>());
+  add(s.back(), length, points.rightCols<1>());
+  check.whole_rms_m = std::min(check.whole_max_m, std::sqrt(sum / covered));
+}
+
+std::string arc_range(double from, double to) {
+  return fmt::format("s = {:.4g} to {:.4g} m", from, to);
+}
+
+/// What looks wrong with a polyline that is not as long as the rod under it.
+std::string hint_of(const ShapeCheck& check, const Measured& measured) {
+  constexpr double least = 1e-3;  // of the length: what a person would see
+  const Alignment& alignment = check.alignment;
+  const Eigen::Matrix3Xd& points = alignment.shape.points;
+  const std::vector<double>& s = alignment.shape.arc_length;
+  // Another unit, rather.
+  if (check.polyline_length_m > 2 * check.length_m) return {};
+  if (check.polyline_length_m < check.length_m / 50) return {};
+  if (alignment.arc_lengths != ArcLengths::nearest) {
+    const double stretch = check.polyline_length_m / (s.back() - s.front()) - 1;
+    if (!(stretch > 0.01)) return {};
+    return fmt::format("the polyline is {:.4g} % longer than its arc lengths: stretched, or noise",
+                       stretch * 100);
+  }
+  if (check.excess_m > least * check.length_m) {
+    const bool at_end = measured.excess_at_end_m >= measured.excess_at_start_m;
+    const Eigen::Index outermost = at_end ? points.cols() - 1 : 0;
+    const Eigen::Vector3d end = measured.reference.col(outermost);
+    const Eigen::Index inner = at_end ? outermost - 1 : 1;
+    const Eigen::Vector3d along = (end - measured.reference.col(inner)).normalized();
+    const Eigen::Vector3d past = points.col(outermost) - end;
+    const double share = past.dot(along) / past.norm();
+    // Within 30 degrees of the rod's own direction it goes straight on.
+    const bool straight_on = share > 0.866;
+    return fmt::format("longer than the rod by {:.4g} mm past {}: {}", check.excess_m * 1e3,
+                       at_end ? "arc length l" : "arc length 0",
+                       straight_on ? fmt::format("stretched by {:.2g} %, or another rod",
+                                                 check.excess_m / check.length_m * 100)
+                                   : "the points there turn away from it");
+  }
+  const double missing = check.length_m - (s.back() - s.front());
+  if (missing > least * check.length_m) {
+    return fmt::format(
+        "shorter than the rod by {:.4g} mm: compressed, cut off, or only a part seen",
+        missing * 1e3);
+  }
+  return {};
+}
+
+/// What of the rod a file does not have, in words; empty if nothing.
+std::string missing_parts(const ShapeCheck& check, double least) {
+  const std::vector<double>& s = check.reference.arc_length;
+  std::vector<std::string> parts;
+  if (s.front() > least) parts.push_back(arc_range(0, s.front()));
+  if (s.back() < check.length_m - least) parts.push_back(arc_range(s.back(), check.length_m));
+  return fmt::format("{}", fmt::join(parts, " and "));
+}
+
+}  // namespace
+
+ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
+  ShapeJudgement result;
+  const double rms = tolerance.part ? check.deviation.rms_m : check.whole_rms_m;
+  const double largest = tolerance.part ? check.deviation.max_m : check.whole_max_m;
+  result.judged_m = tolerance.largest ? largest : rms;
+  const bool near = result.judged_m <= tolerance.allowed_m;
+  double seen = check.seen_share;
+  std::vector<std::string> untold;
+  for (const RodPart& part : check.between) {
+    if (part.untold_m <= tolerance.allowed_m) continue;
+    seen -= (part.to_m - part.from_m) / check.length_m;
+    untold.push_back(arc_range(part.from_m, part.to_m));
+  }
+  const bool enough = seen >= tolerance.least_seen_share;
+  result.pass = near && enough && (tolerance.part || untold.empty());
+
+  std::vector<std::string> reasons;
+  if (!enough) {
+    reasons.push_back(fmt::format("only {:.4g} % of the rod is seen, needed {:.4g} %",
+                                  std::max(0.0, seen) * 100, tolerance.least_seen_share * 100));
+  }
+  if (!untold.empty()) {
+    reasons.push_back(fmt::format("the points do not tell the rod at {}", fmt::join(untold, ", ")));
+  }
+  constexpr double rounding = 1e-6;
+  const std::string missing = missing_parts(check, rounding * check.length_m);
+  std::string deviation = fmt::format(
+      "{} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of l", tolerance.largest ? "largest" : "RMS",
+      result.judged_m * 1e3, tolerance.allowed_m * 1e3, tolerance.allowed_m / check.length_m * 100);
+  if (!missing.empty()) {
+    deviation += tolerance.part ? "; not judged: " : ", with ";
+    deviation += missing + ", which the file does not have";
+  }
+  reasons.push_back(std::move(deviation));
+  result.reason = fmt::format("{}", fmt::join(reasons, "; "));
+  return result;
+}
+
+ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
+                       const ShapeCheckOptions& options) {
+  const Scene near = without_far_obstacles(scene).scene;
+  const AlignOptions align_options{
+      .pose = options.pose, .arc_lengths = options.arc_lengths, .up = up_of(scene, options.pose)};
+  const Aligner aligner(shape, scene.length, align_options);
+  const energy_model::Equilibrium lowest = solve_reference(near, Model::energy, options.solve);
+  const std::vector<energy_model::Equilibrium> states = all_states(near, lowest, options.solve);
+  std::vector<Alignment> alignments;
+  std::vector<double> from_shape;
+  std::size_t nearest = 0;
+  for (const energy_model::Equilibrium& state : states) {
+    alignments.push_back(aligner.align(Curve(state.sample, scene.length)));
+    from_shape.push_back(alignments.back().rms_m);
+    // The lowest of all is stable and comes first.
+    const bool nearer = from_shape.back() < from_shape[nearest];
+    if (energy_model::succeeded(state.status) && nearer) nearest = alignments.size() - 1;
+  }
+  const energy_model::Equilibrium& energy = states[nearest];
+  ShapeCheck result;
+  result.scene = scene.name;
+  result.file = shape.file;
+  result.gamma = scene.gamma();
+  result.length_m = scene.length;
+  result.alignment = std::move(alignments[nearest]);
+  result.state = describe_state(scene, states, nearest, from_shape);
+  const Alignment& alignment = result.alignment;
+  const Measured measured = measure(alignment, energy.sample, scene.length);
+  const std::vector<double>& s = measured.arc_length;
+  result.reference = {s, measured.reference};
+  const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
+  result.movement_m = straight ? rms(s, *straight - result.reference.points) : NAN;
+  result.deviation =
+      measured_deviation(scene, alignment, energy.sample, measured, result.movement_m);
+  result.excess_m = measured.excess_at_start_m + measured.excess_at_end_m;
+  result.between = parts_between(s, energy.sample, scene.length);
+  add_missing_ends(result, energy.sample);
+
+  const Eigen::Index worst = measured.worst;
+  result.worst_position = alignment.shape.points.col(worst);
+  const bool file_falls = alignment.arc_lengths == ArcLengths::file &&
+                          shape.arc_length.front() > shape.arc_length.back();
+  const bool backwards = alignment.reversed != file_falls;
+  result.worst_point = 1 + (backwards ? shape.points.cols() - 1 - worst : worst);
+  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
+    if (!(s[i + 1] - s[i] > result.largest_gap_m)) continue;
+    result.largest_gap_m = s[i + 1] - s[i];
+    result.largest_gap_at_m = s[i];
+  }
+  const Eigen::Index segments = shape.points.cols() - 1;
+  result.polyline_length_m =
+      (shape.points.rightCols(segments) - shape.points.leftCols(segments)).colwise().norm().sum();
+  result.seen_share = (s.back() - s.front()) / scene.length;
+  result.hint = hint_of(result, measured);
+  result.direction_is_clear = alignment.other_rms_m > 1.05 * alignment.rms_m;
+  const double offset = distance_from_line(alignment.shape.points);
+  result.turn_is_clear = options.pose != PoseFreedom::rigid ||
+                         offset > std::max(3 * alignment.rms_m, 1e-6 * scene.length);
+
+  if (options.modulus == ModulusSearch::no) return result;
+  const Aligner thin(thinned(shape), scene.length, align_options);
+  const ShapeDistance distance = [&](const energy_model::Equilibrium& reference) {
+    const Alignment laid = thin.align(Curve(reference.sample, scene.length));
+    return measure(laid, reference.sample, scene.length).rms_m;
+  };
+  result.effective_modulus = fit_effective_modulus(near, distance, energy, options.solve);
+  result.modulus = result.effective_modulus.ratio * scene.material.youngs_modulus;
+  return result;
+}
+
+}  // namespace dlo::compare

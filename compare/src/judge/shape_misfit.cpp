@@ -1,0 +1,353 @@
+#include "judge/shape_misfit.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/plan.hpp"
+#include "dlo/compare/shape_check.hpp"
+#include "polygon/energy_problems.hpp"
+#include "scene/reach.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Searches per scene between several grippers; each may take as long as all that is followed.
+constexpr int most_searches = 4;
+/// Equilibria kept to start from; a scan over the modulus has some thirty.
+constexpr std::size_t most_kept = 64;
+/// Step in the logarithm of a material for derivatives; shapes are right to 1e-10 l.
+constexpr double derivative_step = 1e-3;
+
+/// Principal directions of points, that of their least extent first.
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> extents(const Eigen::Matrix3Xd& points) {
+  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(centred * centred.transpose());
+}
+
+/// Points that lie in a plane to rounding: their third coordinate was not measured.
+bool lies_in_a_plane(const Eigen::Matrix3Xd& points) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen = extents(points);
+  return eigen.eigenvalues()[0] < 1e-15 * eigen.eigenvalues()[2];
+}
+
+/// Numbers that are measured of a shape.
+int measured_numbers(const Aligner& aligner, bool flat) {
+  const int per_point = (aligner.arc_lengths() == ArcLengths::nearest ? 2 : 3) - (flat ? 1 : 0);
+  return per_point * static_cast<int>(aligner.points());
+}
+
+/// Numbers of a shape's frame.
+int numbers_of_frame(bool flat, PoseFreedom pose) {
+  constexpr int frame[] = {0, 3, 4, 6};
+  constexpr int flat_frame[] = {0, 2, 2, 3};
+  return (flat ? flat_frame : frame)[static_cast<std::size_t>(pose)];
+}
+
+/// How deep a shape sinks into the scene's rigid obstacles [m].
+double depth_in_obstacles(const Scene& scene, const energy_model::Equilibrium& equilibrium) {
+  constexpr int samples = 401;
+  const Eigen::Matrix3Xd points =
+      equilibrium.sample(equal_arc_lengths(scene.length, samples)).points;
+  double depth = 0;
+  for (const Obstacle& obstacle : scene.obstacles) {
+    if (std::isfinite(obstacle.stiffness)) continue;
+    const double lowest =
+        (obstacle.normal.transpose() * (points.colwise() - obstacle.point)).minCoeff();
+    depth = std::max(depth, -lowest);
+  }
+  return depth;
+}
+
+/// The directions in which a point's residual is seen, as columns.
+std::vector<Eigen::Matrix3Xd> seen_directions(const Alignment& alignment, const Curve& curve,
+                                              bool flat) {
+  const std::vector<double>& s = alignment.shape.arc_length;
+  const bool across = alignment.arc_lengths == ArcLengths::nearest;
+  const Eigen::Matrix3d principal = extents(alignment.shape.points).eigenvectors();
+  const Eigen::Vector3d out_of_plane = principal.col(0);
+  std::vector<Eigen::Matrix3Xd> result;
+  Eigen::Vector3d normal = out_of_plane;
+  for (const double at : s) {
+    if (!across) {
+      result.emplace_back(flat ? Eigen::Matrix3Xd(principal.rightCols<2>())
+                               : Eigen::Matrix3Xd(Eigen::Matrix3d::Identity()));
+      continue;
+    }
+    const Eigen::Vector3d tangent = curve.tangent(at).normalized();
+    if (flat) {
+      result.emplace_back(out_of_plane.cross(tangent).normalized());
+      continue;
+    }
+    // Carried along the rod without a turn about it, so that neighbours look the same way.
+    normal -= normal.dot(tangent) * tangent;
+    if (!(normal.norm() > 1e-3)) normal = tangent.unitOrthogonal();
+    normal.normalize();
+    Eigen::Matrix3Xd both(3, 2);
+    both << normal, tangent.cross(normal);
+    result.push_back(std::move(both));
+  }
+  return result;
+}
+
+/// Derivatives of a point by the free coordinates of its motion.
+Eigen::Matrix3Xd frame_derivatives(PoseFreedom pose, const Eigen::Vector3d& arm,
+                                   const Eigen::Vector3d& up) {
+  const Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
+  if (pose == PoseFreedom::known) return shift.leftCols(0);
+  if (pose == PoseFreedom::translation) return shift;
+  const Eigen::Index turns = pose == PoseFreedom::upright ? 1 : 3;
+  Eigen::Matrix3Xd result(3, 3 + turns);
+  result.leftCols<3>() = shift;
+  for (Eigen::Index k = 0; k < turns; ++k) {
+    const Eigen::Vector3d axis =
+        pose == PoseFreedom::upright ? up : Eigen::Vector3d(Eigen::Vector3d::Unit(k));
+    result.col(3 + k) = axis.cross(arm);
+  }
+  return result;
+}
+
+}  // namespace
+
+ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                         const MaterialFitOptions& options)
+    : options_(options), searches_(scenes.size(), 0) {
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    AlignOptions align{.pose = options.pose,
+                       .arc_lengths = options.arc_lengths,
+                       .weights = PointWeights::equal,
+                       .up = up_of(scenes[i], options.pose)};
+    if (align.arc_lengths == ArcLengths::automatic) {
+      align.arc_lengths = shapes[i].arc_length.empty() ? ArcLengths::nearest : ArcLengths::file;
+    }
+    scenes_.push_back(without_far_obstacles(scenes[i]).scene);
+    aligners_.emplace_back(shapes[i], scenes[i].length, align);
+    flat_.push_back(lies_in_a_plane(shapes[i].points));
+    const int of_frame = numbers_of_frame(flat_.back(), options.pose);
+    frame_numbers_ += of_frame;
+    numbers_ += measured_numbers(aligners_.back(), flat_.back()) - of_frame;
+  }
+}
+
+Eigen::Index ShapeMisfit::points() const {
+  Eigen::Index sum = 0;
+  for (const Aligner& aligner : aligners_) sum += aligner.points();
+  return sum;
+}
+
+double ShapeMisfit::seconds_left() const {
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
+  return options_.solve.time_limit * static_cast<double>(scenes_.size()) - spent.count();
+}
+
+std::shared_ptr<ShapeMisfit::Solved> ShapeMisfit::solve(std::size_t i,
+                                                        const MaterialPoint& material,
+                                                        const energy_model::Equilibrium* start) {
+  const double left = seconds_left();
+  if (!(left > 0)) {
+    throw ConvergenceError(
+        fmt::format("calibrate: not done within {:g} s{}, after {} equilibria (--time-limit)",
+                    options_.solve.time_limit, scenes_.size() > 1 ? " per scene" : "", solves_));
+  }
+  Scene scene = scenes_[i];
+  scene.material.youngs_modulus *= std::exp(material.log_modulus);
+  scene.material.density *= std::exp(material.log_density);
+  ++solves_;
+  auto result = std::make_shared<Solved>();
+  result->material = material;
+  result->scene = i;
+  try {
+    result->equilibrium = energy_model::solve_energy(
+        energy_problem(scene), {.terms = options_.solve.terms,
+                                .max_evaluations = options_.solve.max_evaluations,
+                                .time_limit = std::min(options_.solve.time_limit, left),
+                                .start = start});
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
+  }
+  evaluations_ += result->equilibrium.evaluations;
+  if (result->equilibrium.status == energy_model::SolveStatus::not_resolved) {
+    result->penetration = depth_in_obstacles(scene, result->equilibrium);
+  }
+  return result;
+}
+
+const ShapeMisfit::Solved* ShapeMisfit::nearest(std::size_t i,
+                                                const MaterialPoint& material) const {
+  const Solved* best = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const std::shared_ptr<const Solved>& entry : kept_) {
+    const double distance = std::abs(entry->material.log_modulus - material.log_modulus) +
+                            std::abs(entry->material.log_density - material.log_density);
+    if (entry->scene != i || !(distance < least)) continue;
+    least = distance;
+    best = entry.get();
+  }
+  return best;
+}
+
+std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
+                                                               const MaterialPoint& material) {
+  const bool follows = scenes_[i].grippers.size() > 1;
+  const Solved* start = follows ? nearest(i, material) : nullptr;
+  if (start != nullptr && start->material == material) {
+    for (const std::shared_ptr<const Solved>& entry : kept_) {
+      if (entry.get() == start) return entry;
+    }
+  }
+  const auto has_shape = [](const Solved& shape) {
+    return energy_model::succeeded(shape.equilibrium.status) ||
+           (shape.equilibrium.status == energy_model::SolveStatus::not_resolved &&
+            shape.penetration > 0);
+  };
+  std::shared_ptr<Solved> result;
+  if (start != nullptr) result = solve(i, material, &start->equilibrium);
+  if (!result || !has_shape(*result)) {
+    if (follows && searches_[i]++ >= most_searches) return nullptr;
+    result = solve(i, material, nullptr);
+  }
+  if (!has_shape(*result)) return nullptr;
+  if (follows) {
+    kept_.push_back(result);
+    if (kept_.size() > most_kept * scenes_.size()) kept_.pop_front();
+  }
+  return result;
+}
+
+Alignment ShapeMisfit::aligned(std::size_t i, const Solved& shape) const {
+  return aligners_[i].align(Curve(shape.equilibrium.sample, scenes_[i].length));
+}
+
+double ShapeMisfit::squares(std::size_t i, const Alignment& alignment) const {
+  return alignment.mean_square * static_cast<double>(aligners_[i].points());
+}
+
+double ShapeMisfit::operator()(const MaterialPoint& material) {
+  if (const auto known = values_.find(material); known != values_.end()) return known->second;
+  double sum = 0;
+  const std::size_t unresolved_before = unresolved_.size();
+  for (std::size_t i = 0; i < scenes_.size() && std::isfinite(sum); ++i) {
+    const std::shared_ptr<const Solved> shape = solved(i, material);
+    if (!shape) {
+      sum = std::numeric_limits<double>::infinity();
+      break;
+    }
+    sum += squares(i, aligned(i, *shape));
+    if (shape->penetration > 0) {
+      unresolved_.emplace_back(
+          Unresolved{material, i, shape->penetration, shape->equilibrium.message}, 0);
+    }
+  }
+  for (std::size_t k = unresolved_before; k < unresolved_.size(); ++k) unresolved_[k].second = sum;
+  values_[material] = sum;
+  return sum;
+}
+
+bool ShapeMisfit::search_at(const MaterialPoint& material) {
+  bool better = false;
+  std::vector<std::shared_ptr<const Solved>> next;
+  for (std::size_t i = 0; i < scenes_.size(); ++i) {
+    if (scenes_[i].grippers.size() < 2) continue;
+    const std::shared_ptr<const Solved> now = solved(i, material);
+    if (now) next.push_back(now);
+    if (searches_[i]++ >= most_searches) continue;
+    const std::shared_ptr<Solved> other = solve(i, material, nullptr);
+    if (!energy_model::succeeded(other->equilibrium.status)) continue;
+    const double before =
+        now ? squares(i, aligned(i, *now)) : std::numeric_limits<double>::infinity();
+    const double least = std::pow(1e-6 * scenes_[i].length, 2);
+    if (!(squares(i, aligned(i, *other)) < 0.99 * before - least)) continue;
+    if (now) next.pop_back();
+    next.push_back(other);
+    better = true;
+  }
+  if (!better) return false;
+  kept_.assign(next.begin(), next.end());
+  values_.clear();
+  unresolved_.clear();
+  return true;
+}
+
+std::vector<Alignment> ShapeMisfit::alignments(const MaterialPoint& material) {
+  std::vector<Alignment> result;
+  for (std::size_t i = 0; i < scenes_.size(); ++i) {
+    const std::shared_ptr<const Solved> shape = solved(i, material);
+    if (!shape) break;
+    result.push_back(aligned(i, *shape));
+  }
+  return result;
+}
+
+std::vector<ResidualSeries> ShapeMisfit::residuals(const MaterialPoint& material, bool both) {
+  std::vector<MaterialPoint> beside = {
+      {material.log_modulus + derivative_step, material.log_density}};
+  if (both) beside.push_back({material.log_modulus, material.log_density + derivative_step});
+  const auto unknowns = static_cast<Eigen::Index>(beside.size());
+  Eigen::Index frames = 0;
+  for (const Aligner& aligner : aligners_) frames += aligner.free_coordinates();
+  Eigen::Index frame = 0;
+  std::vector<ResidualSeries> result;
+  for (std::size_t i = 0; i < scenes_.size(); ++i) {
+    const std::shared_ptr<const Solved> shape = solved(i, material);
+    if (!shape) return {};
+    const Curve curve(shape->equilibrium.sample, scenes_[i].length);
+    std::vector<Curve> moved;
+    for (const MaterialPoint& other : beside) {
+      const std::shared_ptr<const Solved> there = solved(i, other);
+      if (!there) return {};
+      moved.emplace_back(there->equilibrium.sample, scenes_[i].length);
+    }
+    const Alignment alignment = aligners_[i].align(curve);
+    const std::vector<double>& s = alignment.shape.arc_length;
+    const Eigen::Matrix3Xd& points = alignment.shape.points;
+    const Eigen::Vector3d centre = points.rowwise().mean();
+    const std::vector<Eigen::Matrix3Xd> directions = seen_directions(alignment, curve, flat_[i]);
+    const Eigen::Index series = directions.front().cols();
+    const std::size_t first = result.size();
+    for (Eigen::Index k = 0; k < series; ++k) {
+      result.push_back({s, Eigen::VectorXd::Zero(points.cols()),
+                        Eigen::MatrixXd::Zero(points.cols(), frames + unknowns)});
+    }
+    const Eigen::Vector3d up = up_of(scenes_[i], options_.pose);
+    for (Eigen::Index row = 0; row < points.cols(); ++row) {
+      const double at = s[static_cast<std::size_t>(row)];
+      const Eigen::Vector3d here = curve.point(at);
+      const Eigen::Vector3d gap = points.col(row) - here;
+      Eigen::Matrix3Xd derivatives(3, frames + unknowns);
+      derivatives.setZero();
+      derivatives.middleCols(frame, aligners_[i].free_coordinates()) =
+          frame_derivatives(options_.pose, (points.col(row) - centre) / scenes_[i].length, up);
+      for (Eigen::Index k = 0; k < unknowns; ++k) {
+        derivatives.col(frames + k) =
+            (moved[static_cast<std::size_t>(k)].point(at) - here) / derivative_step;
+      }
+      const Eigen::Matrix3Xd& seen = directions[static_cast<std::size_t>(row)];
+      const Eigen::VectorXd values = seen.transpose() * gap;
+      const Eigen::MatrixXd slopes = seen.transpose() * derivatives;
+      for (Eigen::Index k = 0; k < series; ++k) {
+        ResidualSeries& one = result[first + static_cast<std::size_t>(k)];
+        one.residual[row] = values[k];
+        one.design.row(row) = slopes.row(k);
+      }
+    }
+    frame += aligners_[i].free_coordinates();
+  }
+  return result;
+}
+
+const ShapeMisfit::Unresolved* ShapeMisfit::unresolved_below(double level) const {
+  for (const auto& [unresolved, sum] : unresolved_) {
+    // Moving every point of the shape by the depth moves the root of the sum by no more than this.
+    const double off = std::sqrt(static_cast<double>(points())) * unresolved.penetration;
+    if (std::sqrt(sum) - off <= std::sqrt(level)) return &unresolved;
+  }
+  return nullptr;
+}
+
+}  // namespace dlo::compare

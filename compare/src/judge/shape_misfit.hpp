@@ -1,0 +1,114 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/material_fit.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "judge/error_correlation.hpp"
+#include "shape/aligner.hpp"
+#include "shape/curve.hpp"
+
+namespace dlo::compare {
+
+/// Factors on the scenes' modulus and density, as logarithms.
+struct MaterialPoint {
+  double log_modulus = 0;
+  double log_density = 0;
+  bool operator==(const MaterialPoint& other) const {
+    return log_modulus == other.log_modulus && log_density == other.log_density;
+  }
+  bool operator<(const MaterialPoint& other) const {
+    return std::pair(log_modulus, log_density) < std::pair(other.log_modulus, other.log_density);
+  }
+};
+
+/// Measured shapes against the energy model's, for any modulus and density.
+///
+/// A rod held once is solved anew at each material. Between several grippers each equilibrium is
+/// followed from that of the nearest material solved so far (EnergyOptions::start), for a search
+/// costs a hundred times as much; a search is made at the first material, where following fails,
+/// and where search_at() asks for it, at most `most_searches` times per scene.
+class ShapeMisfit {
+ public:
+  /// @throws InputError as align()
+  ShapeMisfit(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+              const MaterialFitOptions& options);
+
+  /// Numbers measured, less those that place the shapes.
+  [[nodiscard]] int numbers() const { return numbers_; }
+  /// Numbers that place the shapes.
+  [[nodiscard]] int frame_numbers() const { return frame_numbers_; }
+  [[nodiscard]] Eigen::Index points() const;
+
+  /// Sum of squared distances [m^2], computed once for each material; infinite where the energy
+  /// model finds no shape.
+  /// @throws ConvergenceError if the time limit is over
+  double operator()(const MaterialPoint& material);
+
+  /// Searches for equilibria at a material instead of following. True if a shape is another one
+  /// and lies nearer to its points; all that was known of other materials is then forgotten.
+  bool search_at(const MaterialPoint& material);
+
+  /// How the shapes lie at a material where there is a shape.
+  [[nodiscard]] std::vector<Alignment> alignments(const MaterialPoint& material);
+
+  /// Residuals at a material where there is a shape, with their derivatives by each shape's free
+  /// coordinates, then by log modulus (by log density too, if `both`). With given arc lengths a
+  /// series for each coordinate, else for each of the directions across the rod; none out of the
+  /// plane of a shape that lies in one. No series if a shape is missing beside this material.
+  [[nodiscard]] std::vector<ResidualSeries> residuals(const MaterialPoint& material, bool both);
+
+  /// A material whose shapes may, for all that is known, come as near as `level` [m^2], though its
+  /// equilibrium on rigid obstacles was not resolved.
+  struct Unresolved {
+    MaterialPoint material;
+    std::size_t scene = 0;
+    double penetration = 0;  // [m]
+    std::string message;     // of the solver
+  };
+  [[nodiscard]] const Unresolved* unresolved_below(double level) const;
+
+  /// Equilibria solved so far.
+  [[nodiscard]] long solves() const { return solves_; }
+  /// Of the energy model's objective, for these.
+  [[nodiscard]] long evaluations() const { return evaluations_; }
+
+ private:
+  struct Solved {
+    MaterialPoint material;
+    std::size_t scene;
+    energy_model::Equilibrium equilibrium;
+    double penetration = 0;  // [m], of a shape that is not resolved
+  };
+
+  [[nodiscard]] std::shared_ptr<const Solved> solved(std::size_t i, const MaterialPoint& material);
+  [[nodiscard]] std::shared_ptr<Solved> solve(std::size_t i, const MaterialPoint& material,
+                                              const energy_model::Equilibrium* start);
+  [[nodiscard]] const Solved* nearest(std::size_t i, const MaterialPoint& material) const;
+  [[nodiscard]] Alignment aligned(std::size_t i, const Solved& shape) const;
+  [[nodiscard]] double squares(std::size_t i, const Alignment& alignment) const;
+  [[nodiscard]] double seconds_left() const;
+
+  std::vector<Scene> scenes_;
+  MaterialFitOptions options_;
+  std::vector<Aligner> aligners_;
+  std::vector<bool> flat_;
+  int numbers_ = 0;
+  int frame_numbers_ = 0;
+  long solves_ = 0;
+  long evaluations_ = 0;
+  std::vector<int> searches_;
+  std::map<MaterialPoint, double> values_;
+  std::deque<std::shared_ptr<const Solved>> kept_;
+  std::vector<std::pair<Unresolved, double>> unresolved_;  // and their sums of squares [m^2]
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace dlo::compare

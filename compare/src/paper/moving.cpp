@@ -1,0 +1,195 @@
+#include "paper/moving.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dlo/force_model/simulation.hpp"
+#include "scene/builtin_data.hpp"
+#include "scene/strict_table.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr int frames = 28000;  // 1 kHz, Section II.B
+constexpr double steps_per_frame = static_cast<double>(nominal_moving_steps) / frames;
+constexpr double movement_begins = 5;  // [s]
+constexpr double movement_takes = 8;   // [s]
+constexpr Eigen::Index gripped = 2;    // index of the third point
+
+/// Table 1 in SI units.
+struct Table1 {
+  double length = 0;
+  Eigen::Index points = 0;
+  double c_c = 0;
+  double c_b = 0;
+  double point_weight = 0;
+  double c_F = 0;  // per newton, in the unit of length that is left open
+  double l_s = 0;
+
+  [[nodiscard]] double segment() const { return length / static_cast<double>(points - 1); }
+};
+
+Table1 read_table_1() {
+  const toml::table root = parse_toml(std::string(builtin::tables_toml), "data/paper/tables.toml");
+  const toml::table& table = *root["table_1"].as_table();
+  const auto value = [&](const char* key) { return table[key].value<double>().value(); };
+  return {.length = value("length_cm") / 100,
+          .points = table["points"].value<Eigen::Index>().value(),
+          .c_c = value("c_c"),
+          .c_b = value("c_b"),
+          .point_weight = -value("c_e_gravity_N"),
+          .c_F = value("c_F"),
+          .l_s = value("l_s")};
+}
+
+const Table1& table_1() {
+  static const Table1 table = read_table_1();
+  return table;
+}
+
+/// Where the gripper is, and along which direction it holds the rod.
+struct Pose {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  Eigen::Vector3d direction = -Eigen::Vector3d::UnitY();
+
+  [[nodiscard]] Eigen::Matrix3Xd targets() const {
+    return force_model::grip_targets(position, direction, table_1().segment(), 0);
+  }
+};
+
+/// @param share  of the movement that is done, 0 to 1
+Pose pose(const MovingExperiment& experiment, const MovingChoices& choices, double share) {
+  Pose result;
+  if (experiment.horizontal) result.direction = Eigen::Vector3d::UnitX();
+  switch (experiment.movement) {
+    case Movement::rotation: {
+      const double angle =
+          share * choices.angle + std::atan2(result.direction.y(), result.direction.x());
+      result.direction = {std::cos(angle), std::sin(angle), 0};
+      break;
+    }
+    case Movement::uniform:
+      result.position.x() = share * choices.distance;
+      break;
+    case Movement::accelerated:
+      result.position.x() = share * share * choices.distance;
+      break;
+  }
+  return result;
+}
+
+force_model::Rod moving_rod(const Pose& start, const MovingChoices& choices) {
+  const Table1& table = table_1();
+  force_model::Rod rod;
+  rod.rest_lengths = Eigen::VectorXd::Constant(table.points - 1, table.segment());
+  rod.c_c = table.c_c;
+  rod.bending = {force_model::BendingLaw::paper, table.c_b};
+  rod.loads.setZero(3, table.points);
+  rod.loads.row(1).setConstant(-table.point_weight);
+  force_model::Grip grip;
+  grip.first_point = gripped;
+  grip.hold = force_model::GripHold::spring;
+  grip.stiffness = choices.grip_force / (0.05 * table.segment());
+  grip.targets = start.targets();
+  grip.reference = start.position;
+  rod.grips = {grip};
+  return rod;
+}
+
+Eigen::Matrix3Xd start_points(const Pose& start, const MovingChoices& choices) {
+  const Table1& table = table_1();
+  Eigen::Matrix3Xd points(3, table.points);
+  for (Eigen::Index i = 0; i < table.points; ++i) {
+    const double segments = static_cast<double>(i - gripped) - choices.start_offset;
+    points.col(i) = start.position + segments * table.segment() * start.direction;
+  }
+  return points;
+}
+
+/// Adds the gripper's force on the rod to the run's averages.
+void add_force(const force_model::Simulation& simulation, MovingRun& run) {
+  const force_model::Grip& grip = simulation.rod().grips.front();
+  Eigen::Vector3d net = Eigen::Vector3d::Zero();
+  run.final_force = 0;
+  for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+    const Eigen::Vector3d force = force_model::spring_force(
+        grip.stiffness, grip.targets.col(k), simulation.points().col(grip.first_point + k));
+    net += force;
+    run.final_force += force.norm();
+  }
+  run.final_net_force = net.norm();
+  run.average_force += run.final_force;
+  run.average_net_force += run.final_net_force;
+}
+
+}  // namespace
+
+const char* to_string(Movement movement) {
+  switch (movement) {
+    case Movement::rotation:
+      return "rotation";
+    case Movement::uniform:
+      return "uniform";
+    case Movement::accelerated:
+      break;
+  }
+  return "accelerated";
+}
+
+const char* to_string(MovingVariant variant) {
+  switch (variant) {
+    case MovingVariant::basic:
+      return "basic";
+    case MovingVariant::relative:
+      return "relative";
+    case MovingVariant::dynamic:
+      return "dynamic";
+    case MovingVariant::dynamic_absolute:
+      break;
+  }
+  return "dynamic no rel. limit";
+}
+
+force_model::StepOptions moving_step_options(MovingVariant variant, const MovingChoices& choices) {
+  using force_model::Stepper;
+  force_model::StepOptions options;
+  options.policy = policy(variant == MovingVariant::basic      ? Stepper::basic
+                          : variant == MovingVariant::relative ? Stepper::relative
+                                                               : Stepper::dynamic);
+  if (variant == MovingVariant::dynamic_absolute) {
+    options.policy.limit = force_model::StepLimit::absolute;
+  }
+  options.c_F = table_1().c_F * choices.length_unit;
+  options.l_s = table_1().l_s * choices.length_unit;
+  options.c_h = choices.c_h;
+  options.c_s_change = choices.c_s_change;
+  return options;
+}
+
+MovingRun run_moving_experiment(const MovingExperiment& experiment, const MovingChoices& choices) {
+  constexpr long most_steps = nominal_moving_steps * 5 / 4;  // the paper prints up to 128770
+  const Pose start = pose(experiment, choices, 0);
+  force_model::Simulation simulation(moving_rod(start, choices), start_points(start, choices),
+                                     moving_step_options(experiment.variant, choices));
+  MovingRun run;
+  run.status = MovingStatus::finished;
+  int done = 0;
+  for (; done < frames && run.status == MovingStatus::finished; ++done) {
+    const double share = std::clamp((done / 1000.0 - movement_begins) / movement_takes, 0.0, 1.0);
+    const Pose now = pose(experiment, choices, share);
+    simulation.move_grip(0, now.targets(), now.position);
+    const force_model::StepResult last =
+        simulation.advance(steps_per_frame, most_steps - simulation.steps());
+    if (last.status == force_model::StepStatus::diverged) run.status = MovingStatus::diverged;
+    if (simulation.steps() >= most_steps) run.status = MovingStatus::too_many_steps;
+    add_force(simulation, run);
+  }
+  run.average_force /= done;
+  run.average_net_force /= done;
+  run.steps = simulation.steps();
+  run.damped_steps = simulation.damped_steps();
+  run.limited_steps = simulation.limited_steps();
+  return run;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,287 @@
+#include "dlo/compare/discretise.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/paper_joint.hpp"
+#include "polygon/point_layout.hpp"
+#include "polygon/start_shape.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// The moment of a straight rod's load at a point, of the side on which it is larger [N m].
+struct RootMoment {
+  double along = 0;  ///< as the rod points
+  double most = 0;   ///< were every force across the rod
+};
+
+RootMoment root_moment(const Scene& scene, const Gripper& grip, double side) {
+  const double rod = side > 0 ? scene.length - grip.at : grip.at;
+  const Eigen::Vector3d direction = side * *grip.direction;
+  Eigen::Vector3d moment = direction.cross(scene.weight_per_length()) * rod * rod / 2;
+  double most = scene.weight_per_length().norm() * rod * rod / 2;
+  for (const PointLoad& load : scene.loads) {
+    const double arm = side * (load.at - grip.at);
+    if (!(arm > 0)) continue;
+    moment += direction.cross(load.force) * arm;
+    most += load.force.norm() * arm;
+  }
+  return {moment.norm(), most};
+}
+
+/// What a moment-matched c_b should be right at when nobody says otherwise. One clamp: the
+/// curvature that a straight rod's load would bend into the clamp; no less than a tenth of what the
+/// load could do across the rod, since a rod along its load bends into other shapes than the
+/// straight one. Other grips: that of the start shape (RMS), to which the load adds no more than it
+/// would bend into a straight rod between two clamps.
+double design_curvature(const Scene& scene, const Layout& layout, const Eigen::Matrix3Xd& start) {
+  const Gripper& grip = scene.grippers.front();
+  if (scene.grippers.size() == 1 && grip.direction) {
+    double curvature = 0;
+    for (const double side : {-1.0, 1.0}) {
+      const RootMoment moment = root_moment(scene, grip, side);
+      curvature = std::max(curvature, std::max(moment.along, moment.most / 10));
+    }
+    return curvature / scene.bending_stiffness();
+  }
+  double turned = 0;
+  for (Eigen::Index i = 1; i + 1 < start.cols(); ++i) {
+    const Eigen::Vector3d u = (start.col(i) - start.col(i - 1)).normalized();
+    const Eigen::Vector3d v = (start.col(i + 1) - start.col(i)).normalized();
+    const double share = (layout.rest_lengths[i - 1] + layout.rest_lengths[i]) / 2;
+    turned += std::pow(2 * std::asin(std::min(1.0, (v - u).norm() / 2)), 2) / share;
+  }
+  double longest = 0;
+  double begin = 0;
+  for (const std::size_t index : layout.along) {
+    longest = std::max(longest, scene.grippers[index].at - begin);
+    begin = scene.grippers[index].at;
+  }
+  longest = std::max(longest, scene.length - begin);
+  double moment = scene.weight_per_length().norm() * longest * longest / 12;
+  for (const PointLoad& load : scene.loads) moment += load.force.norm() * longest / 8;
+  return std::sqrt(turned / scene.length) + moment / scene.bending_stiffness();
+}
+
+void derive_bending(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
+                    Discretisation& result) {
+  if (settings.law == Law::hooke) {
+    result.rod.bending = {force_model::BendingLaw::hooke, scene.bending_stiffness()};
+    return;
+  }
+  Parameters& parameters = result.parameters;
+  if (settings.c_b) {
+    parameters.c_b = *settings.c_b;
+  } else {
+    parameters.design_curvature = settings.design_curvature
+                                      ? *settings.design_curvature
+                                      : design_curvature(scene, layout, result.starts.front());
+    const double alpha = parameters.design_curvature * parameters.segment_length;
+    if (!(alpha > 0 && alpha < std::numbers::pi)) {
+      throw InputError(
+          fmt::format("{}: force_model.design_curvature = {:g} 1/m: with {} points a joint would "
+                      "turn by {:g} rad "
+                      "(allowed: > 0 and < pi; give design_curvature, c_b or other points)",
+                      scene.file, parameters.design_curvature, settings.points, alpha));
+    }
+    parameters.c_b =
+        paper_bending_stiffness(settings.bending_rule, scene.bending_stiffness(),
+                                parameters.design_curvature, parameters.segment_length);
+  }
+  result.rod.bending = {force_model::BendingLaw::paper, parameters.c_b};
+}
+
+/// The part of a segment that weighs on its first or second point [m].
+double weighing_half(const Scene& scene, const Layout& layout, Eigen::Index segment, bool second) {
+  const std::size_t at_point = static_cast<std::size_t>(segment) + (second ? 1 : 0);
+  const double s = layout.arc_length[at_point];
+  const bool beyond_rod = s < 0 || s > scene.length;
+  return beyond_rod ? 0 : layout.rest_lengths[segment] / 2;
+}
+
+void add_weights(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
+                 Discretisation& result) {
+  const Eigen::Index N = settings.points;
+  result.weights.setZero(3, N);
+  for (Eigen::Index i = 0; i < N; ++i) {
+    double share = 0;
+    if (settings.bookkeeping == Bookkeeping::paper) {
+      share = scene.length / static_cast<double>(N);
+    } else {
+      if (i > 0) share += weighing_half(scene, layout, i - 1, true);
+      if (i < N - 1) share += weighing_half(scene, layout, i, false);
+    }
+    result.weights.col(i) = share * scene.weight_per_length();
+    if (settings.bookkeeping == Bookkeeping::paper && settings.point_weight) {
+      result.weights.col(i) = *settings.point_weight * scene.gravity.normalized();
+    }
+  }
+  result.parameters.point_weight = result.weights.col(N / 2).norm();
+}
+
+void add_loads(const Scene& scene, const Layout& layout, Discretisation& result) {
+  const std::vector<double>& s = layout.arc_length;
+  result.rod.loads = result.weights;
+  for (const PointLoad& load : scene.loads) {
+    const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, load.at);
+    const Eigen::Index right = above - s.begin();
+    const double share =
+        std::clamp((load.at - *(above - 1)) / layout.rest_lengths[right - 1], 0.0, 1.0);
+    result.rod.loads.col(right - 1) += (1 - share) * load.force;
+    result.rod.loads.col(right) += share * load.force;
+  }
+}
+
+force_model::Grip grip_of(const Gripper& gripper, const Layout& layout, Eigen::Index first) {
+  force_model::Grip hold;
+  hold.first_point = first;
+  hold.reference = gripper.position;
+  if (gripper.direction) {
+    hold.targets =
+        force_model::grip_targets(gripper.position, *gripper.direction, layout.segment_length,
+                                  gripper.at - layout.arc_length[static_cast<std::size_t>(first)]);
+  } else {
+    hold.targets = gripper.position;
+  }
+  return hold;
+}
+
+/// What two neighbouring grips leave between the points that they hold.
+struct Between {
+  double apart = 0;  // the two points [m]
+  double rod = 0;    // the segments' rest lengths [m]
+  Eigen::Index segments = 0;
+
+  /// One segment alone is as long as the grips are apart; more of them may bend.
+  [[nodiscard]] bool fits(double strain) const {
+    if (apart > rod * (1 + 1e-9)) return false;
+    return segments > 1 || apart >= rod * (1 - strain);
+  }
+};
+
+std::vector<Between> between_grips(const Layout& layout,
+                                   const std::vector<force_model::Grip>& grips) {
+  std::vector<Between> result;
+  for (std::size_t k = 0; k + 1 < layout.along.size(); ++k) {
+    const force_model::Grip& a = grips[layout.along[k]];
+    const force_model::Grip& b = grips[layout.along[k + 1]];
+    const Eigen::Index last = a.first_point + a.targets.cols() - 1;
+    const Eigen::Index segments = b.first_point - last;
+    result.push_back({(b.targets.col(0) - a.targets.rightCols<1>()).norm(),
+                      layout.rest_lengths.segment(last, segments).sum(), segments});
+  }
+  return result;
+}
+
+std::vector<force_model::Grip> grips_of(const Scene& scene, const Layout& layout) {
+  std::vector<force_model::Grip> grips;
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    grips.push_back(grip_of(scene.grippers[i], layout, layout.first_held[i]));
+  }
+  return grips;
+}
+
+bool grips_fit(const Layout& layout, const std::vector<force_model::Grip>& grips, double strain) {
+  const std::vector<Between> all = between_grips(layout, grips);
+  return std::all_of(all.begin(), all.end(),
+                     [strain](const Between& between) { return between.fits(strain); });
+}
+
+/// The fewest points, above those of the settings, whose held segments leave rod enough; 0: none
+/// among the next thousands.
+int points_that_fit(const Scene& scene, ForceModelSettings settings, double strain) {
+  constexpr int most_more = 3000;
+  const int last = settings.points + most_more;
+  for (++settings.points; settings.points <= last; ++settings.points) {
+    const Layout layout = lay_out(scene, settings);
+    if (grips_fit(layout, grips_of(scene, layout), strain)) return settings.points;
+  }
+  return 0;
+}
+
+/// Few points have long held segments, which may leave too little rod between two grips, or a
+/// single segment that would have to be shorter than it is.
+void require_fit(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
+                 const std::vector<force_model::Grip>& grips) {
+  const double strain = largest_strain(scene, settings);
+  if (grips_fit(layout, grips, strain)) return;
+  const int needed = points_that_fit(scene, settings, strain);
+  const std::string allowed =
+      needed > 0 ? fmt::format("{} or more", needed) : std::string("more points");
+  for (const Between& between : between_grips(layout, grips)) {
+    if (between.fits(strain)) continue;
+    throw InputError(
+        fmt::format("{}: force_model.points = {}: held segments of {:g} m leave {:g} m of rod in "
+                    "{} segment{} between points that two grippers hold {:g} m apart (allowed: {})",
+                    scene.file, settings.points, layout.segment_length, between.rod,
+                    between.segments, between.segments == 1 ? "" : "s", between.apart, allowed));
+  }
+}
+
+}  // namespace
+
+double largest_strain(const Scene& scene, const ForceModelSettings& settings) {
+  const bool asked = settings.c_c && *settings.c_c <= scene.axial_stiffness();
+  return asked ? 0.5 : 0.01;
+}
+
+Discretisation discretise(const Scene& scene, const ForceModelSettings& settings) {
+  const Layout layout = lay_out(scene, settings);
+  const double L = layout.segment_length;
+  Discretisation result;
+  result.length = scene.length;
+  result.arc_length = layout.arc_length;
+  result.parameters.segment_length = L;
+  result.parameters.c_c = settings.c_c.value_or(scene.axial_stiffness());
+  result.rod.rest_lengths = layout.rest_lengths;
+  result.rod.c_c = result.parameters.c_c;
+  result.rod.grips = grips_of(scene, layout);
+  require_fit(scene, settings, layout, result.rod.grips);
+  const std::vector<Side> sides = scene.grippers.size() == 1
+                                      ? std::vector<Side>{Side::along_load}
+                                      : std::vector<Side>{Side::along_load, Side::against_load};
+  for (const Side side : sides) {
+    Eigen::Matrix3Xd start = start_shape(scene, layout.along, layout.arc_length, side);
+    for (const force_model::Grip& grip : result.rod.grips) {
+      start.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
+    }
+    keep_free_ends_clear(scene, result.rod.grips, start);
+    result.starts.push_back(std::move(start));
+  }
+  derive_bending(scene, settings, layout, result);
+  add_weights(scene, settings, layout, result);
+  add_loads(scene, layout, result);
+  for (const Obstacle& obstacle : scene.obstacles) {
+    const double stiffness =
+        std::isfinite(obstacle.stiffness) ? obstacle.stiffness * L : result.parameters.c_c / L;
+    result.rod.walls.push_back({obstacle.point, obstacle.normal, stiffness});
+  }
+  return result;
+}
+
+Shape Discretisation::shape(const Eigen::Matrix3Xd& points) const {
+  Shape result;
+  result.arc_length = arc_length;
+  result.points = points;
+  for (const force_model::Grip& grip : rod.grips) {
+    if (arc_length.front() < 0 && grip.first_point == 0) {
+      result.arc_length.front() = 0;
+      result.points.leftCols<1>() = grip.reference;
+      result.half_at_start = true;
+    }
+    if (arc_length.back() > length && grip.first_point == points.cols() - 2) {
+      result.arc_length.back() = length;
+      result.points.rightCols<1>() = grip.reference;
+      result.half_at_end = true;
+    }
+  }
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,83 @@
+#include "polygon/energy_problems.hpp"
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "dlo/energy_model/planar.hpp"
+#include "polygon/point_layout.hpp"
+
+namespace dlo::compare {
+
+std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& discretisation,
+                                      const ForceModelSettings& settings) {
+  const Gripper& grip = scene.grippers.front();
+  const bool end_clamp =
+      scene.grippers.size() == 1 && grip.direction && (grip.at == 0 || grip.at == scene.length);
+  if (!end_clamp || !scene.obstacles.empty()) return std::nullopt;
+  const bool reversed = grip.at != 0;
+  const Eigen::Index N = settings.points;
+  std::vector<Eigen::Vector3d> forces = {scene.weight_per_length() * scene.length};
+  for (const PointLoad& load : scene.loads) forces.push_back(load.force);
+  const std::optional<energy_model::Plane> plane = energy_model::find_plane(
+      grip.position, reversed ? Eigen::Vector3d(-*grip.direction) : *grip.direction, forces);
+  if (!plane) return std::nullopt;
+  ChainScene result;
+  result.origin = plane->origin;
+  result.x = plane->x;
+  result.y = plane->y;
+  energy_model::ChainProblem& problem = result.problem;
+  problem.segment_lengths = discretisation.rod.rest_lengths;
+  problem.law =
+      settings.law == Law::paper ? energy_model::JointLaw::paper : energy_model::JointLaw::hooke;
+  problem.stiffness = discretisation.rod.bending.stiffness;
+  problem.node_forces.resize(2, N);
+  for (Eigen::Index i = 0; i < N; ++i) {
+    // The chain starts in the gripper, at whichever end of the rod that is.
+    const Eigen::Index from = reversed ? N - 1 - i : i;
+    problem.node_forces.col(i) = plane->coordinates(discretisation.rod.loads.col(from));
+  }
+  const Eigen::Vector3d first = discretisation.starts.front().col(reversed ? N - 1 : 0);
+  problem.start = plane->coordinates(first - plane->origin);
+  return result;
+}
+
+Eigen::Matrix3Xd ChainScene::to_space(const Eigen::Matrix2Xd& points) const {
+  return (x * points.row(0) + y * points.row(1)).colwise() + origin;
+}
+
+energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod) {
+  energy_model::PolygonProblem problem;
+  problem.rest_lengths = rod.rest_lengths;
+  problem.stretch_stiffness = rod.c_c;
+  problem.node_forces = rod.loads;
+  problem.law = rod.bending.law == force_model::BendingLaw::paper ? energy_model::JointLaw::paper
+                                                                  : energy_model::JointLaw::hooke;
+  problem.stiffness = rod.bending.stiffness;
+  for (const force_model::Grip& grip : rod.grips) {
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+      problem.held.push_back({grip.first_point + k, grip.targets.col(k)});
+    }
+  }
+  for (const force_model::Wall& wall : rod.walls) {
+    problem.walls.push_back({wall.point, wall.normal, wall.stiffness});
+  }
+  return problem;
+}
+
+energy_model::Problem energy_problem(const Scene& scene) {
+  require_slack(scene);
+  energy_model::Problem problem;
+  problem.length = scene.length;
+  problem.bending_stiffness = scene.bending_stiffness();
+  problem.weight_per_length = scene.weight_per_length();
+  for (const Gripper& grip : scene.grippers) {
+    problem.grips.push_back({grip.at, grip.position, grip.direction});
+  }
+  for (const PointLoad& load : scene.loads) problem.loads.push_back({load.at, load.force});
+  for (const Obstacle& obstacle : scene.obstacles) {
+    problem.walls.push_back({obstacle.point, obstacle.normal, obstacle.stiffness});
+  }
+  return problem;
+}
+
+}  // namespace dlo::compare

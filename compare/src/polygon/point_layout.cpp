@@ -1,0 +1,197 @@
+#include "polygon/point_layout.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// How far the segment that a gripper holds reaches from its arc length, in segments.
+struct Reach {
+  double before = 0;
+  double after = 0;
+};
+
+Reach reach(const Scene& scene, const Gripper& gripper, Bookkeeping bookkeeping) {
+  if (!gripper.direction) return {};
+  if (bookkeeping == Bookkeeping::consistent) return {.before = 0.5, .after = 0.5};
+  return gripper.at == scene.length ? Reach{.before = 1} : Reach{.after = 1};
+}
+
+/// A part of the rod between two grips, or between a grip and a free end.
+struct Gap {
+  double begin = 0;  // arc lengths of the grips or ends [m]
+  double end = 0;
+  double reach_begin = 0;  // of the held segments into the gap, in segments
+  double reach_end = 0;
+  Eigen::Index segments = 1;
+
+  [[nodiscard]] double free_length(double L) const {
+    return end - begin - (reach_begin + reach_end) * L;
+  }
+};
+
+/// Two grippers that are nearer than this share of the rod's length hold one point of it.
+constexpr double same_place = 1e-9;
+
+std::string where(const Scene& scene, const Gripper& gripper) {
+  return gripper.where.empty() ? scene.file : gripper.where;
+}
+
+std::vector<Gap> gaps_between(const Scene& scene, const std::vector<std::size_t>& along,
+                              Bookkeeping bookkeeping) {
+  std::vector<Gap> gaps;
+  Gap gap;
+  for (const std::size_t index : along) {
+    const Gripper& gripper = scene.grippers[index];
+    const Reach held = reach(scene, gripper, bookkeeping);
+    gap.end = gripper.at;
+    gap.reach_end = held.before;
+    if (gripper.at > 0) gaps.push_back(gap);
+    gap = {.begin = gripper.at, .reach_begin = held.after};
+  }
+  gap.end = scene.length;
+  if (gap.begin < scene.length) gaps.push_back(gap);
+  return gaps;
+}
+
+/// Segments of the rod's polygon that lie inside end grippers, beyond the rod.
+double segments_beyond(const Scene& scene, Bookkeeping bookkeeping) {
+  double beyond = 0;
+  for (const Gripper& gripper : scene.grippers) {
+    const Reach held = reach(scene, gripper, bookkeeping);
+    if (gripper.at == 0) beyond += held.before;
+    if (gripper.at == scene.length) beyond += held.after;
+  }
+  return beyond;
+}
+
+void require_enough_points(const Scene& scene, const ForceModelSettings& settings,
+                           const std::vector<Gap>& gaps, double beyond, Eigen::Index clamps) {
+  constexpr double shortest = 0.5;  // free part of a gap, in segments
+  double segments = static_cast<double>(clamps) + static_cast<double>(gaps.size());
+  double closest = scene.length;
+  for (const Gap& gap : gaps) {
+    const double asked = gap.reach_begin + gap.reach_end + shortest;
+    segments = std::max(segments, beyond + scene.length * asked / (gap.end - gap.begin));
+    closest = std::min(closest, gap.end - gap.begin);
+  }
+  // A ratio that is whole but for rounding asks for no further point.
+  const double needed = 1 + std::ceil(segments - 1e-9);
+  if (settings.points >= needed) return;
+  throw InputError(fmt::format(
+      "{}: force_model.points = {}: needs at least {:.0f} points for {} gripper{}, with as little "
+      "as {:g} m of rod beside one (allowed: {:.0f} or more)",
+      scene.file, settings.points, needed, scene.grippers.size(),
+      scene.grippers.size() == 1 ? "" : "s", closest, needed));
+}
+
+/// Gives every gap its share of `segments`: one more to where segments are longest, again and
+/// again.
+void share_segments(std::vector<Gap>& gaps, Eigen::Index segments, double L) {
+  const auto longer = [L](const Gap& a, const Gap& b) {
+    // Lengths that are equal but for rounding go to the first.
+    return a.free_length(L) / static_cast<double>(a.segments) * (1 + 1e-9) <
+           b.free_length(L) / static_cast<double>(b.segments);
+  };
+  for (auto left = segments - static_cast<Eigen::Index>(gaps.size()); left > 0; --left) {
+    ++std::max_element(gaps.begin(), gaps.end(), longer)->segments;
+  }
+}
+
+}  // namespace
+
+std::vector<std::size_t> order_along(const Scene& scene) {
+  std::vector<std::size_t> along(scene.grippers.size());
+  for (std::size_t i = 0; i < along.size(); ++i) along[i] = i;
+  std::stable_sort(along.begin(), along.end(), [&](std::size_t a, std::size_t b) {
+    return scene.grippers[a].at < scene.grippers[b].at;
+  });
+  for (std::size_t i = 0; i + 1 < along.size(); ++i) {
+    const Gripper& a = scene.grippers[along[i]];
+    const Gripper& b = scene.grippers[along[i + 1]];
+    const double rod = b.at - a.at;
+    const double apart = (b.position - a.position).norm();
+    if (!(rod > same_place * scene.length)) {
+      throw InputError(fmt::format(
+          "{}: gripper.at = {} m: two grippers hold this arc length (allowed: one at each)",
+          where(scene, b), b.at));
+    }
+    if (apart > rod * (1 + 1e-12)) {
+      throw InputError(fmt::format(
+          "{}: gripper.position: {} m from the gripper at = {} m (allowed: no more than the {} m "
+          "of rod between them)",
+          where(scene, b), apart, a.at, rod));
+    }
+  }
+  return along;
+}
+
+void require_slack(const Scene& scene) {
+  const std::vector<std::size_t> along = order_along(scene);
+  for (std::size_t i = 0; i + 1 < along.size(); ++i) {
+    const Gripper& a = scene.grippers[along[i]];
+    const Gripper& b = scene.grippers[along[i + 1]];
+    const double apart = (b.position - a.position).norm();
+    if (apart < b.at - a.at) continue;
+    throw InputError(fmt::format(
+        "{}: gripper.position: {} m from the gripper at = {} m (allowed: less than the {} m of rod "
+        "between them; models chain and force take a taut rod)",
+        where(scene, b), apart, a.at, b.at - a.at));
+  }
+}
+
+Layout lay_out(const Scene& scene, const ForceModelSettings& settings) {
+  Layout layout;
+  layout.along = order_along(scene);
+  std::vector<Gap> gaps = gaps_between(scene, layout.along, settings.bookkeeping);
+  const double beyond = segments_beyond(scene, settings.bookkeeping);
+  Eigen::Index clamps = 0;
+  for (const Gripper& gripper : scene.grippers) clamps += gripper.direction ? 1 : 0;
+  require_enough_points(scene, settings, gaps, beyond, clamps);
+  const double L = scene.length / (settings.points - 1 - beyond);
+  layout.segment_length = L;
+  share_segments(gaps, settings.points - 1 - clamps, L);
+
+  layout.rest_lengths.resize(settings.points - 1);
+  layout.first_held.resize(scene.grippers.size());
+  Eigen::Index point = 0;
+  const auto add_gap = [&](const Gap& gap) {
+    // A single gap has segments of length L, to the last digit.
+    const double length =
+        gaps.size() == 1 ? L : gap.free_length(L) / static_cast<double>(gap.segments);
+    const double first = gap.begin + gap.reach_begin * L;
+    for (Eigen::Index i = 0; i < gap.segments; ++i) {
+      layout.arc_length.push_back(first + length * static_cast<double>(i));
+      layout.rest_lengths[point++] = length;
+    }
+  };
+  std::size_t next_gap = 0;
+  for (const std::size_t index : layout.along) {
+    const Gripper& gripper = scene.grippers[index];
+    if (gripper.at > 0) add_gap(gaps[next_gap++]);
+    layout.first_held[index] = point;
+    if (!gripper.direction) continue;
+    const Reach held = reach(scene, gripper, settings.bookkeeping);
+    layout.arc_length.push_back(gripper.at - held.before * L);
+    layout.rest_lengths[point++] = L;
+  }
+  if (next_gap < gaps.size()) add_gap(gaps[next_gap]);
+  const Gripper& last = scene.grippers[layout.along.back()];
+  layout.arc_length.push_back(
+      last.at < scene.length ? scene.length
+                             : scene.length + reach(scene, last, settings.bookkeeping).after * L);
+  if (gaps.size() == 1) {
+    // Equal segments: counted from one end, so that no arc length depends on where the grips are.
+    for (std::size_t i = 1; i + 1 < layout.arc_length.size(); ++i) {
+      layout.arc_length[i] = layout.arc_length.front() + L * static_cast<double>(i);
+    }
+  }
+  return layout;
+}
+
+}  // namespace dlo::compare

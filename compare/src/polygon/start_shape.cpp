@@ -1,0 +1,210 @@
+#include "polygon/start_shape.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace dlo::compare {
+namespace {
+
+constexpr int curve_points = 400;
+/// How far an arch leaves its plane, in rod lengths.
+constexpr double lean = 1e-6;
+
+/// A grip as the curve sees it.
+struct Knot {
+  double at;
+  Eigen::Vector3d position;
+  Eigen::Vector3d direction;
+};
+
+/// `vector` without its part along the unit vector `axis`; zero if rounding is all that is left.
+Eigen::Vector3d across(const Eigen::Vector3d& vector, const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d result = vector - vector.dot(axis) * axis;
+  return result.norm() > 1e-9 * vector.norm() ? result : Eigen::Vector3d::Zero();
+}
+
+/// +x, or +y for an axis along x: as everywhere in the project.
+Eigen::Vector3d any_across(const Eigen::Vector3d& axis) {
+  const Eigen::Vector3d towards =
+      std::abs(axis.x()) < 0.9 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY();
+  return across(towards, axis).normalized();
+}
+
+Eigen::Vector3d load_between(const Scene& scene, double begin, double end) {
+  Eigen::Vector3d load = scene.weight_per_length() * (end - begin);
+  for (const PointLoad& point_load : scene.loads) {
+    if (point_load.at > begin && point_load.at < end) load += point_load.force;
+  }
+  return load;
+}
+
+std::vector<Knot> knots_of(const Scene& scene, const std::vector<std::size_t>& along) {
+  std::vector<Knot> knots;
+  for (std::size_t k = 0; k < along.size(); ++k) {
+    const Gripper& gripper = scene.grippers[along[k]];
+    Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+    if (gripper.direction) {
+      direction = *gripper.direction;
+    } else {
+      const Gripper& before = scene.grippers[along[k > 0 ? k - 1 : 0]];
+      const Gripper& after = scene.grippers[along[std::min(k + 1, along.size() - 1)]];
+      direction = after.position - before.position;
+      // A single pin: the rod hangs from it.
+      if (!(direction.norm() > 0)) direction = load_between(scene, gripper.at, scene.length);
+      direction = direction.norm() > 0 ? direction.normalized() : Eigen::Vector3d::UnitX();
+    }
+    knots.push_back({gripper.at, gripper.position, direction});
+  }
+  return knots;
+}
+
+/// The curve between two knots.
+class Arch {
+ public:
+  Arch(const Scene& scene, const Knot& begin, const Knot& end, Side side)
+      : begin_(begin), end_(end), slope_(end.at - begin.at) {
+    const double rod = end.at - begin.at;
+    const Eigen::Vector3d chord = end.position - begin.position;
+    if (chord.norm() > 1e-6 * rod) {
+      axis_ = chord.normalized();
+    } else {
+      axis_ = begin.direction;
+    }
+    up_ = across(load_between(scene, begin.at, end.at), axis_);
+    if (up_.norm() == 0) up_ = across(begin.direction - end.direction, axis_);
+    up_ = up_.norm() > 0 ? up_.normalized() : any_across(axis_);
+    if (side == Side::against_load) up_ = -up_;
+    lean_ = lean * rod * axis_.cross(up_);
+    if (length() > rod) {
+      solve(slope_, 0, slope_, rod);
+    } else {
+      solve(height_, 0, 2 * rod, rod);
+    }
+  }
+
+  /// Points at these shares of the curve's length.
+  [[nodiscard]] Eigen::Matrix3Xd at(const std::vector<double>& shares) const {
+    std::vector<double> lengths(curve_points + 1, 0);
+    double total = 0;
+    for (std::size_t i = 0; i < curve_points; ++i) {
+      total += (point(static_cast<double>(i + 1)) - point(static_cast<double>(i))).norm();
+      lengths[i + 1] = total;
+    }
+    Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(shares.size()));
+    for (std::size_t k = 0; k < shares.size(); ++k) {
+      const double wanted = shares[k] * total;
+      const auto above = std::upper_bound(lengths.begin() + 1, lengths.end() - 1, wanted);
+      const double part = (wanted - *(above - 1)) / (*above - *(above - 1));
+      const double i = static_cast<double>(above - 1 - lengths.begin());
+      result.col(static_cast<Eigen::Index>(k)) = point(i + part);
+    }
+    return result;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d point(double i) const {
+    const double u = i / curve_points;
+    const double w = 1 - u;
+    const double bump = 16 * u * u * w * w;
+    // A high arch is also wide, so that its two sides stay apart.
+    const double width = 1.7 * height_ * height_ / (end_.at - begin_.at);
+    return begin_.position * (w * w * (1 + 2 * u)) + end_.position * (u * u * (1 + 2 * w)) +
+           slope_ * (u * w * w * begin_.direction - u * u * w * end_.direction) +
+           bump * (height_ * up_ + lean_) - width * bump * (w - u) * axis_;
+  }
+
+  [[nodiscard]] double length() const {
+    double sum = 0;
+    for (int i = 0; i < curve_points; ++i) sum += (point(i + 1) - point(i)).norm();
+    return sum;
+  }
+
+  /// Bisection of one of the curve's own numbers so that the curve is as long as the rod.
+  void solve(double& number, double low, double high, double rod) {
+    constexpr int halvings = 60;
+    for (int i = 0; i < halvings; ++i) {
+      number = (low + high) / 2;
+      (length() < rod ? low : high) = number;
+    }
+  }
+
+  Knot begin_, end_;
+  Eigen::Vector3d axis_, up_, lean_;
+  double slope_;  // of the cubic's directions [m]
+  double height_ = 0;
+};
+
+}  // namespace
+
+Eigen::Matrix3Xd start_shape(const Scene& scene, const std::vector<std::size_t>& along,
+                             const std::vector<double>& arc_length, Side side) {
+  const std::vector<Knot> knots = knots_of(scene, along);
+  Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(arc_length.size()));
+  const auto straight = [&](const Knot& knot, std::size_t i) {
+    points.col(static_cast<Eigen::Index>(i)) =
+        knot.position + (arc_length[i] - knot.at) * knot.direction;
+  };
+  std::size_t i = 0;
+  for (; i < arc_length.size() && arc_length[i] < knots.front().at; ++i) straight(knots.front(), i);
+  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+    const double rod = knots[k + 1].at - knots[k].at;
+    std::vector<double> shares;
+    const auto first = static_cast<Eigen::Index>(i);
+    for (; i < arc_length.size() && arc_length[i] < knots[k + 1].at; ++i) {
+      shares.push_back((arc_length[i] - knots[k].at) / rod);
+    }
+    points.middleCols(first, static_cast<Eigen::Index>(shares.size())) =
+        Arch(scene, knots[k], knots[k + 1], side).at(shares);
+  }
+  for (; i < arc_length.size(); ++i) straight(knots.back(), i);
+  return points;
+}
+
+namespace {
+
+/// The direction of a segment of length L from `from`, turned into the face of a wall that it would
+/// enter; `last` is where it goes if it points straight into the wall.
+Eigen::Vector3d turned_along(const Obstacle& wall, const Eigen::Vector3d& from,
+                             const Eigen::Vector3d& direction, double L,
+                             const Eigen::Vector3d& last) {
+  const Eigen::Vector3d normal = wall.normal.normalized();
+  const double height = std::max(0.0, (from - wall.point).dot(normal));
+  if (height + L * direction.dot(normal) >= 0) return direction;
+  Eigen::Vector3d face = across(direction, normal);
+  if (face.norm() < 1e-3) face = across(last, normal);
+  face = face.norm() < 1e-3 ? any_across(normal) : Eigen::Vector3d(face.normalized());
+  const double down = std::min(1.0, height / L);
+  return std::sqrt(1 - down * down) * face - down * normal;
+}
+
+}  // namespace
+
+void keep_free_ends_clear(const Scene& scene, const std::vector<force_model::Grip>& grips,
+                          Eigen::Ref<Eigen::Matrix3Xd> points) {
+  if (scene.obstacles.empty()) return;
+  Eigen::Index first = points.cols();
+  Eigen::Index last = 0;
+  for (const force_model::Grip& grip : grips) {
+    first = std::min(first, grip.first_point);
+    last = std::max(last, grip.first_point + grip.targets.cols() - 1);
+  }
+  const Eigen::Matrix3Xd start = points;
+  const auto walk = [&](Eigen::Index begin, Eigen::Index end, Eigen::Index way) {
+    Eigen::Vector3d before = Eigen::Vector3d::Zero();
+    for (Eigen::Index i = begin; i != end; i += way) {
+      const Eigen::Vector3d step = start.col(i + way) - start.col(i);
+      const double L = step.norm();
+      Eigen::Vector3d direction = step / L;
+      for (const Obstacle& wall : scene.obstacles) {
+        direction = turned_along(wall, points.col(i), direction, L, before);
+      }
+      before = direction;
+      points.col(i + way) = points.col(i) + L * direction;
+    }
+  };
+  walk(last, points.cols() - 1, 1);
+  walk(first, 0, -1);
+}
+
+}  // namespace dlo::compare

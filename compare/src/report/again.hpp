@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include "dlo/compare/force_model_settings.hpp"
+#include "report/report.hpp"
+
+namespace dlo::compare {
+
+/// "law paper, bookkeeping paper, N = 16".
+[[nodiscard]] std::string setting_name(const ForceModelSettings& settings);
+
+/// Commands that give a part's numbers again, run in the report's folder. compare_command is empty
+/// where the scene names a number that dlo compare refuses with the other law or bookkeeping.
+[[nodiscard]] std::string compare_command(const SceneFile& file, const Comparison& comparison);
+
+[[nodiscard]] std::string benchmark_command(const Report& report);
+
+[[nodiscard]] std::string map_command(const Report& report);
+
+[[nodiscard]] std::string history_command(const Report& report);
+
+[[nodiscard]] std::string report_command(const Report& report, const std::string& scenes);
+
+}  // namespace dlo::compare

@@ -1,0 +1,52 @@
+#include "report/html.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace dlo::compare {
+
+std::string page_number(double value) {
+  if (std::isnan(value)) return "–";
+  if (std::isinf(value)) return value > 0 ? "∞" : "−∞";
+  return fmt::format("{:.4g}", value + 0.0);
+}
+
+std::string page_percent(double share) {
+  return std::isfinite(share) ? page_number(share * 100) + "\u00a0%" : page_number(share);
+}
+
+std::string to_html(const HtmlTable& table) {
+  const std::string caption = escape_markup(table.caption);
+  std::string out = fmt::format(
+      "<div class=\"table\" role=\"region\" aria-label=\"{0}\" tabindex=\"0\">\n"
+      "<table>\n<caption><span>{0}</span></caption>\n<thead><tr>",
+      caption);
+  const auto class_of = [&](std::size_t column) {
+    switch (table.columns.at(column).cell) {
+      case HtmlCell::number:
+        return " class=\"n\"";
+      case HtmlCell::word:
+        return " class=\"w\"";
+      case HtmlCell::text:
+        break;
+    }
+    return "";
+  };
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    out += fmt::format("<th scope=\"col\"{}>{}</th>", class_of(i),
+                       escape_markup(table.columns[i].head));
+  }
+  out += "</tr></thead>\n<tbody>\n";
+  for (const std::vector<std::string>& row : table.rows) {
+    out += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      out += i == 0 ? fmt::format("<th scope=\"row\"{}>{}</th>", class_of(i), escape_markup(row[i]))
+                    : fmt::format("<td{}>{}</td>", class_of(i), escape_markup(row[i]));
+    }
+    out += "</tr>\n";
+  }
+  return out + "</tbody>\n</table>\n</div>\n";
+}
+
+}  // namespace dlo::compare

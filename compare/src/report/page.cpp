@@ -1,0 +1,322 @@
+#include "report/page.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "base/quote.hpp"
+#include "report/again.hpp"
+#include "report/figures.hpp"
+#include "report/html.hpp"
+#include "report/provenance.hpp"
+#include "report/style.hpp"
+#include "report/tables.hpp"
+#include "report/verdict.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// A page while it is written.
+class Page {
+ public:
+  explicit Page(const std::vector<PageFigure>& figures) : figures_(figures) {}
+
+  /// A section with a heading; what is added next is in it.
+  void section(const std::string& id, const std::string& heading) {
+    if (open_) out_ += "</section>\n";
+    open_ = true;
+    out_ += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", id, escape_markup(heading));
+    sections_.emplace_back(id, heading);
+  }
+  void heading(const std::string& text) { out_ += "<h3>" + escape_markup(text) + "</h3>\n"; }
+  void paragraph(const std::string& text) { out_ += "<p>" + escape_markup(text) + "</p>\n"; }
+  void command(const std::string& what, const std::string& line) {
+    out_ += fmt::format("<p class=\"faint\">{} <code>{}</code></p>\n", escape_markup(what),
+                        escape_markup(line));
+  }
+  void commands(const std::string& summary, const std::vector<std::string>& lines) {
+    if (lines.empty()) return;
+    out_ += "<details open><summary>" + escape_markup(summary) + "</summary>\n<ul>\n";
+    for (const std::string& line : lines) {
+      out_ += "<li><code>" + escape_markup(line) + "</code></li>\n";
+    }
+    out_ += "</ul>\n</details>\n";
+  }
+  /// @param bold  how many of the first ones
+  void list(const std::vector<std::string>& items, std::size_t bold = 0) {
+    out_ += "<ul>\n";
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const std::string text = escape_markup(items[i]);
+      out_ += "<li>" + (i < bold ? "<strong>" + text + "</strong>" : text) + "</li>\n";
+    }
+    out_ += "</ul>\n";
+  }
+  void open_box() { out_ += "<div class=\"verdict\">\n"; }
+  void close_box() { out_ += "</div>\n"; }
+  void folded_list(const std::string& summary, const std::vector<std::string>& items) {
+    out_ += "<details open><summary>" + escape_markup(summary) + "</summary>\n";
+    list(items);
+    out_ += "</details>\n";
+  }
+  /// A table, or a sentence if nothing is in it.
+  void table(const HtmlTable& table) {
+    if (!table.rows.empty()) {
+      out_ += to_html(table);
+    } else {
+      paragraph(table.caption + ": none. What failed is named at the top of the page.");
+    }
+  }
+  void facts(const std::vector<std::pair<std::string, std::string>>& facts) {
+    out_ += "<dl>\n";
+    for (const auto& [name, value] : facts) {
+      out_ += fmt::format("<dt>{}</dt><dd>{}</dd>\n", escape_markup(name), escape_markup(value));
+    }
+    out_ += "</dl>\n";
+  }
+  /// Figures of a section whose names begin with a text.
+  void figures(const std::string& section) {
+    if (std::none_of(figures_.begin(), figures_.end(),
+                     [&](const PageFigure& entry) { return entry.figure.section == section; })) {
+      return;
+    }
+    out_ += "<div class=\"figures\">\n";
+    for (const PageFigure& entry : figures_) {
+      if (entry.figure.section == section) add_figure(entry);
+    }
+    out_ += "</div>\n";
+  }
+
+  [[nodiscard]] std::string finished(const std::string& title) const {
+    std::string page = fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<meta name=\"generator\" content=\"dlo report\">\n<link rel=\"icon\" href=\"data:,\">\n"
+        "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n",
+        escape_markup(title), report_style);
+    page += "<nav aria-label=\"Sections\"><ul>\n";
+    for (const auto& [id, heading] : sections_) {
+      page += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, escape_markup(heading));
+    }
+    return page + "</ul></nav>\n</header>\n<main>\n" + out_ + (open_ ? "</section>\n" : "") +
+           "</main>\n</body>\n</html>\n";
+  }
+
+ private:
+  void add_figure(const PageFigure& entry) {
+    const Figure& figure = entry.figure;
+    out_ += fmt::format("<figure id=\"figure-{}\">\n", figure.name);
+    out_ += entry.failure.empty()
+                ? entry.svg
+                : fmt::format(
+                      "<p class=\"missing\">This figure is missing: {}. Its numbers are in "
+                      "the tables and in {}.</p>\n",
+                      escape_markup(entry.failure), figure.csv_file);
+    out_ += fmt::format(
+        "<figcaption><strong>{0}</strong><br>{1}<br>Numbers: <a href=\"{2}\">{2}</a>{3} again by "
+        "<code>{4}</code>; picture: <code>gnuplot {5}.gp</code></figcaption>\n</figure>\n",
+        escape_markup(figure.title), escape_markup(figure.description), figure.csv_file,
+        figure.given.empty() ? "," : "; " + escape_markup(figure.given),
+        escape_markup(figure.command), figure.name);
+  }
+
+  const std::vector<PageFigure>& figures_;
+  std::string out_;
+  std::vector<std::pair<std::string, std::string>> sections_;
+  bool open_ = false;
+};
+
+void add_verdict(const Report& report, Page& page) {
+  page.section("verdict", "Verdict");
+  if (report.options.quick) {
+    page.paragraph(
+        "A quick report (--quick): a short benchmark, a coarse map, no hard cases. Without it the "
+        "times and limits are surer.");
+  }
+  page.open_box();
+  page.list(report_verdict(report), report.failures.size());
+  page.close_box();
+  page.paragraph(fmt::format(
+      "Every number names its law (how a joint's moment grows with its angle: paper, cubic; hooke, "
+      "linear) and its bookkeeping (where the grip and the weights are: paper, first order; "
+      "consistent, second order). N is the number of points, l the rod's length. Distances are at "
+      "equal arc length, RMS over the rod. That {} of the length count as right is this report's "
+      "choice (--tolerance).",
+      page_percent(report.options.tolerance)));
+  if (report.paper) {
+    page.paragraph(
+        "The scenes are the paper's three (Figs. 12 and 13) and two that tell more, since the "
+        "paper's rod hardly bends (Gamma = 0.18): the same rod 1.9 m long, and one metre of it "
+        "pulled sideways, which no plane holds.");
+  }
+  page.table(scene_table(report));
+}
+
+/// Comparisons that no options of dlo compare give, one after the other.
+std::string rows_without_command(const Report& report) {
+  std::string names;
+  for (const SceneReport& scene : report.scenes) {
+    for (const Comparison& comparison : scene.comparisons) {
+      if (!compare_command(scene.file, comparison).empty()) continue;
+      if (!names.empty()) names += "; ";
+      names += comparison.scene + ", " + setting_name(comparison.settings);
+    }
+  }
+  return names;
+}
+
+void add_shapes(const Report& report, Page& page) {
+  page.section("shapes", "Shapes and curvature");
+  page.paragraph(
+      "Both models at rest, drawn with one scale for both axes. Besides the force model as the "
+      "scene "
+      "says it, unless it says just this: the same with law hooke and bookkeeping consistent.");
+  page.figures("shapes");
+  page.section("deviation", "How far apart");
+  page.table(deviation_table(report));
+  std::vector<std::string> commands;
+  for (const SceneReport& scene : report.scenes) {
+    for (const Comparison& comparison : scene.comparisons) {
+      std::string command = compare_command(scene.file, comparison);
+      if (!command.empty()) commands.push_back(std::move(command));
+    }
+  }
+  page.commands("Each row again", commands);
+  const std::string no_command = rows_without_command(report);
+  if (!no_command.empty()) {
+    page.paragraph(
+        "Rows without a command, since their scenes name numbers that only their own "
+        "law or bookkeeping has: " +
+        no_command + ".");
+  }
+  page.table(state_table(report));
+  page.section("budget", "Why: the error budget");
+  page.paragraph(
+      "Each part is found by switching one thing. Parts are vectors along the rod: their "
+      "millimetres do not add up, their shares of the total (projections, with sign) do, to 100 %. "
+      "Interaction is what law and bookkeeping do together beyond the sum of both.");
+  page.table(budget_table(report));
+}
+
+void add_modulus(const Report& report, Page& page) {
+  page.section("modulus", "E*/E, and the paper's 1/3");
+  page.paragraph(
+      "E* is the modulus at which the energy model comes nearest to the force model's shape (RMS). "
+      "A law that is not Hookean leaves a residual even there.");
+  page.table(modulus_table(report));
+  if (!report.options.history) return page.paragraph("E*/E against time was left out.");
+  page.paragraph(
+      "On the way from straight to rest E*/E changes. Stepper basic, no dynamics, c_F = 0.86 L/(2 "
+      "c_c), as in Table 1's proportion, and c_c = AE/1000, as the paper used, unless the scene "
+      "names them; 4000 steps are a simulated second (Table 2). Rods with one clamp only.");
+  page.figures("modulus");
+  page.table(history_table(report));
+  page.command(report.paper ? "The paper's poses again:" : "Again:", history_command(report));
+  if (report.paper) {
+    page.command("The others:",
+                 report_command(report, "scenes/long_rod.toml scenes/side_load.toml"));
+  }
+}
+
+void add_speed(const Report& report, Page& page) {
+  page.section("speed", "Speed against error");
+  if (!report.benchmark) return page.paragraph("The benchmark was left out, or not computed.");
+  const BenchmarkReport& benchmark = *report.benchmark;
+  page.paragraph(fmt::format(
+      "From straight to the shape, on one thread while nothing else of this report ran, medians of "
+      "{} runs. "
+      "Tracking: a frame of 1 ms behind a gripper that moves at {} m/s and turns by v/l.",
+      benchmark.options.repeats, page_number(benchmark.options.gripper_speed)));
+  page.figures("speed");
+  page.table(answer_table(report));
+  for (const SceneBenchmark& scene : benchmark.scenes) page.table(front_table(scene));
+  if (!benchmark.skipped.empty()) {
+    page.folded_list(fmt::format("{} runs were skipped", benchmark.skipped.size()),
+                     benchmark.skipped);
+  }
+  page.command("Again, as long as nothing else runs:", benchmark_command(report));
+}
+
+void add_stability(const Report& report, Page& page) {
+  page.section("stability", "Where the steps stop being stable");
+  if (report.map) {
+    page.paragraph(
+        "Steps without limit or damping, from rest, disturbed by 1e-6 of the length. The predicted "
+        "limit 2 (1 + c_h) / (bound of the stiffest mode) answers the paper's Formula 15.");
+    page.figures("stability");
+    page.table(map_table(*report.map));
+    page.command("Again:", map_command(report));
+  } else {
+    page.paragraph("The map was left out, or not computed.");
+  }
+  page.section("hard-cases", "Hard cases");
+  if (report.hard_cases.empty()) return page.paragraph("They were left out, or not computed.");
+  const StabilityOptions options = report.options.hard_cases.value_or(StabilityOptions{});
+  page.paragraph(fmt::format(
+      "The paper's four steppers (c_F = 0.86 L/(2 c_c), l_s = 0.6 L, c_h = 0.9; {} steps) and auto "
+      "(at most {}). ✓: within {} of the length of an equilibrium that no step has a part in. "
+      "Creeping: still on the way, though it may look at rest. At rest: {} steps.",
+      options.max_steps, options.max_steps_auto, page_percent(options.tolerance),
+      options.steps_at_rest));
+  page.table(hard_case_table(report.hard_cases));
+  for (const std::string& name : options.left_out) {
+    page.paragraph("Left out, for the time it takes: " + name + ".");
+  }
+  std::vector<std::string> notes;
+  for (const StabilityResult& result : report.hard_cases) {
+    const bool own_note = result.outcome != Outcome::wrong && result.outcome != Outcome::refused;
+    if (result.note.empty() || !own_note) continue;
+    notes.push_back(fmt::format("{}, {}: {}", result.name, to_string(result.stepper), result.note));
+  }
+  if (!notes.empty()) {
+    page.heading("Notes");
+    page.list(notes);
+  }
+  page.command("Again, with what was left out:",
+               fmt::format("dlo stability --steps-at-rest {}", options.steps_at_rest));
+}
+
+void add_provenance(const Report& report, const std::vector<PageFigure>& figures,
+                    const ReportMaker& maker, const std::string& drawn_by, Page& page) {
+  page.section("provenance", "Provenance");
+  std::vector<std::pair<std::string, std::string>> facts = {{"dlo", maker.version},
+                                                            {"command", maker.command}};
+  for (const auto& fact : provenance()) facts.push_back(fact);
+  facts.emplace_back("figures", drawn_by.empty() ? "none: no gnuplot was found" : drawn_by);
+  facts.emplace_back("time to compute", page_number(report.seconds) + " s");
+  page.facts(facts);
+  page.table(parameter_table(report));
+  if (report.paper) {
+    page.paragraph(
+        "The paper gives neither the gravity constant nor the gripper's position nor the start: "
+        "9.81 m/s², the origin and straight along the gripper are filled in. Its formula 4 is "
+        "taken "
+        "with the signs that balance. dlo paper lists all that had to be assumed.");
+  }
+  const auto missing = std::count_if(figures.begin(), figures.end(), [](const PageFigure& figure) {
+    return !figure.failure.empty();
+  });
+  page.paragraph(fmt::format(
+      "{} of {} figures are on this page. In its folder are the scenes, and for each figure the "
+      "numbers (CSV) and the script: gnuplot FIGURE.gp draws it anew. All commands are for a shell "
+      "in that folder.",
+      figures.size() - static_cast<std::size_t>(missing), figures.size()));
+}
+
+}  // namespace
+
+std::string report_page(const Report& report, const std::vector<PageFigure>& figures,
+                        const ReportMaker& maker, const std::string& drawn_by) {
+  Page page(figures);
+  add_verdict(report, page);
+  add_shapes(report, page);
+  add_modulus(report, page);
+  add_speed(report, page);
+  add_stability(report, page);
+  add_provenance(report, figures, maker, drawn_by, page);
+  return page.finished(report.paper ? "The paper's rod: how far a fast model is from physics"
+                                    : "How far a fast rod model is from physics");
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,149 @@
+#include "scene/new_scene.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "scene/quantity.hpp"
+
+namespace dlo::compare {
+namespace {
+
+std::string toml_string(const std::string& value) {
+  std::string text = "\"";
+  for (const char c : value) {
+    if (static_cast<unsigned char>(c) < ' ') continue;
+    if (c == '"' || c == '\\') text += '\\';
+    text += c;
+  }
+  return text + "\"";
+}
+
+/// Numbers and vectors as they are, all else as a TOML string.
+std::string toml_value(const std::string& value) {
+  if (value.starts_with('[')) return value;
+  try {
+    // TOML knows neither ".5" nor "5.".
+    return fmt::format("{}", parse_quantity(value, Dimension::number));
+  } catch (const InputError&) {
+    return toml_string(value);
+  }
+}
+
+std::string material_lines(const SceneChoices& choices, const std::vector<Material>& known) {
+  std::string names;
+  for (const Material& material : known) {
+    names += (names.empty() ? "" : (names.size() - names.rfind('\n')) > 75 ? ",\n#   " : ", ");
+    names += material.name;
+  }
+  const std::string head = fmt::format(
+      "# A name, or your own as {{ youngs_modulus = \"5 MPa\", density = \"1100 kg/m^3\" }}.\n"
+      "# Moduli in Pa, kPa, MPa, GPa; densities in kg/m^3, g/cm^3. dlo materials lists the "
+      "values:\n"
+      "#   {}\n",
+      names);
+  if (choices.youngs_modulus.empty()) {
+    return head + fmt::format("material = {}\n", toml_string(choices.material));
+  }
+  return head + fmt::format("material = {{ youngs_modulus = {}, density = {} }}\n",
+                            toml_value(choices.youngs_modulus), toml_value(choices.density));
+}
+
+std::string required_part(const SceneChoices& choices, const std::vector<Material>& known) {
+  return fmt::format(
+      R"(# A scene of dlo: a rod, what holds it and what pulls at it. It solves as it is:
+#   dlo solve FILE
+# Numbers are in SI units; a string may carry another unit: 0.006 or "6 mm".
+# Lines that begin with # and no blank are optional: take the # away to use them.
+
+name = {name}
+gravity = [0, -9.81, 0]  # m/s^2; y points up
+
+[rod]
+length = {length}  # m, cm, mm, um
+diameter = {diameter}  # round, solid; bending stiffness EI = E pi d^4 / 64
+{material}
+# What holds the rod; one [[gripper]] for each.
+[[gripper]]
+at = 0  # arc length that is held, from 0 to the rod's length
+position = [0, 0, 0]  # of the rod's axis there [x, y, z]
+# "clamp" holds position and direction, "pin" the position only
+hold = "clamp"
+# Of the rod there, along growing arc length: an angle in the x-y plane from +x ("-90 deg" hangs
+# down; without unit: rad), or a vector such as [1, 0, 0]. A pin has none.
+direction = {direction}
+)",
+      fmt::arg("name", toml_string(choices.name)), fmt::arg("length", toml_value(choices.length)),
+      fmt::arg("diameter", toml_value(choices.diameter)),
+      fmt::arg("material", material_lines(choices, known)),
+      fmt::arg("direction", toml_value(choices.direction)));
+}
+
+/// Examples that fit the rod: a pin at its end, a small force, a floor in its reach.
+std::string optional_part(const Scene& scene) {
+  const double l = scene.length;
+  const Eigen::Vector3d pin = 0.7 * l * scene.grippers.front().direction.value();
+  const double weight = scene.mass() * scene.gravity.norm();
+  const double force = weight > 0 ? weight : scene.bending_stiffness() / (l * l);
+  return fmt::format(
+      R"(
+# A second gripper, here a pin at the other end.
+#[[gripper]]
+#at = {length:.4g}
+#position = [{x:.4g}, {y:.4g}, {z:.4g}]
+#hold = "pin"
+
+# A force at a point of the rod, such as a weight that hangs there; one [[load]] for each.
+#[[load]]
+#at = {middle:.4g}  # arc length
+#force = [0, {force:.3g}, 0]  # N, mN, kN
+
+# A plane that the rod cannot pass, such as a floor; one [[obstacle]] for each. Grippers are on its
+# free side.
+#[[obstacle]]
+#point = [0, {floor:.4g}, 0]  # any point of the plane
+#normal = [0, 1, 0]  # to the free side
+# Force per depth and per length of rod if it yields (N/m^2, N/mm^2); without it the plane is rigid.
+#stiffness = {stiffness:.3g}
+
+# The force model, which dlo compare, calibrate and solve --model force use; these are the defaults.
+# dlo calibrate FILE -o params.toml finds the parameters.
+#[force_model]
+#points = 16  # N, 4 or more
+#law = "hooke"  # of the joints: "hooke" (as a rod bends) or "paper" (cubic in the angle)
+#bookkeeping = "consistent"  # "consistent" (second order in the segment length) or "paper"
+#stepper = "auto"  # "basic", "limited", "relative", "dynamic", "auto"
+#c_c = {c_c:.4g}  # N, stretch stiffness, here A E
+# Further keys, where law, bookkeeping or stepper allow them:
+#   c_b              [N]    bending stiffness, law paper; else it follows from
+#   bending_rule     "formula_21" or "moment_matched", law paper
+#   design_curvature [1/m]  k of the bending rule
+#   point_weight     [N]    weight of every point, bookkeeping paper
+#   c_F              [m/N]  step factor, not with stepper auto
+#   c_h              [-]    share of the last movement, 0 <= c_h < 1, stepper dynamic
+#   l_s              [m]    largest movement per step, not with stepper basic
+)",
+      fmt::arg("length", l), fmt::arg("x", pin.x()), fmt::arg("y", pin.y()), fmt::arg("z", pin.z()),
+      fmt::arg("middle", l / 2), fmt::arg("force", -0.1 * force),
+      fmt::arg("floor", std::min(pin.y(), 0.0) - 0.1 * l),
+      fmt::arg("stiffness", 1e3 * force / (l * l)), fmt::arg("c_c", scene.axial_stiffness()));
+}
+
+}  // namespace
+
+std::string scene_text(const SceneChoices& choices, const std::vector<Material>& known_materials) {
+  const std::string text = required_part(choices, known_materials);
+  const Scene scene = parse_scene(text, "the new scene", known_materials);
+  if (scene.diameter > scene.length) {
+    throw InputError(
+        fmt::format("the new scene: rod.diameter = {}: thicker than long (allowed: at most the "
+                    "length, {:g} m)",
+                    choices.diameter, scene.length));
+  }
+  return text + optional_part(scene);
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,105 @@
+#include "scene/quantity.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "base/number.hpp"
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+struct Unit {
+  std::string_view name;
+  double factor;
+};
+
+constexpr Unit lengths[] = {{"m", 1}, {"cm", 1e-2}, {"mm", 1e-3}, {"um", 1e-6}};
+constexpr Unit angles[] = {{"rad", 1}, {"deg", std::numbers::pi / 180}};
+constexpr Unit pressures[] = {{"Pa", 1}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}, {"N/mm^2", 1e6}};
+constexpr Unit densities[] = {{"kg/m^3", 1}, {"kg/dm^3", 1e3}, {"g/cm^3", 1e3}};
+constexpr Unit forces[] = {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}};
+constexpr Unit accelerations[] = {{"m/s^2", 1}};
+constexpr Unit curvatures[] = {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}};
+constexpr Unit foundations[] = {{"N/m^2", 1}, {"N/mm^2", 1e6}};
+
+std::span<const Unit> units(Dimension dimension) {
+  switch (dimension) {
+    case Dimension::length:
+      return lengths;
+    case Dimension::angle:
+      return angles;
+    case Dimension::pressure:
+      return pressures;
+    case Dimension::density:
+      return densities;
+    case Dimension::force:
+      return forces;
+    case Dimension::acceleration:
+      return accelerations;
+    case Dimension::curvature:
+      return curvatures;
+    case Dimension::foundation:
+      return foundations;
+    case Dimension::number:
+      break;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string known_units(Dimension dimension) {
+  std::string list;
+  for (const Unit& unit : units(dimension)) {
+    if (!list.empty()) list += ", ";
+    list += unit.name;
+  }
+  return list;
+}
+
+double parse_quantity(std::string_view text, Dimension dimension) {
+  const auto not_a_number = [&] {
+    const std::string list = known_units(dimension);
+    return InputError(
+        list.empty() ? fmt::format("\"{}\" is not a number", text)
+                     : fmt::format("\"{}\" is not a number with a unit (allowed: {})", text, list));
+  };
+  const std::size_t start = text.find_first_not_of(" \t");
+  if (start == std::string_view::npos) throw not_a_number();
+  std::string_view rest = text.substr(start);
+  if (rest.front() == '+') rest.remove_prefix(1);
+  double value = 0;
+  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  if (error == std::errc::result_out_of_range) {
+    const auto length = static_cast<std::size_t>(end - rest.data());
+    throw InputError(beyond_double(rest.substr(0, length)));
+  }
+  if (error != std::errc()) throw not_a_number();
+  rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+  if (rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9') {
+    throw InputError(fmt::format("\"{}\" has a comma (allowed: a decimal point)", text));
+  }
+  const std::size_t unit_start = rest.find_first_not_of(" \t");
+  std::string_view name =
+      unit_start == std::string_view::npos ? std::string_view() : rest.substr(unit_start);
+  while (!name.empty() && (name.back() == ' ' || name.back() == '\t')) name.remove_suffix(1);
+  if (!std::isfinite(value)) throw InputError(fmt::format("\"{}\" is not finite", text));
+  if (name.empty()) {
+    if (dimension == Dimension::number) return value;
+    throw InputError(
+        fmt::format("\"{}\" lacks a unit (allowed: {}; a bare number without quotes is SI)", text,
+                    known_units(dimension)));
+  }
+  for (const Unit& unit : units(dimension)) {
+    if (unit.name == name) return value * unit.factor;
+  }
+  throw InputError(fmt::format("unknown unit \"{}\" in \"{}\" (allowed: {})", name, text,
+                               units(dimension).empty() ? "none" : known_units(dimension)));
+}
+
+}  // namespace dlo::compare

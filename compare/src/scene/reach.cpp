@@ -1,0 +1,63 @@
+#include "scene/reach.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dlo::compare {
+namespace {
+
+double total_load(const Scene& scene) {
+  double load = scene.weight_per_length().norm() * scene.length;
+  for (const PointLoad& point_load : scene.loads) load += point_load.force.norm();
+  return load;
+}
+
+}  // namespace
+
+std::vector<const Gripper*> grippers_along(const Scene& scene) {
+  std::vector<const Gripper*> along;
+  for (const Gripper& gripper : scene.grippers) along.push_back(&gripper);
+  std::stable_sort(along.begin(), along.end(),
+                   [](const Gripper* a, const Gripper* b) { return a->at < b->at; });
+  return along;
+}
+
+std::vector<double> obstacle_clearances(const Scene& scene) {
+  const std::vector<const Gripper*> along = grippers_along(scene);
+  std::vector<double> clearances;
+  for (const Obstacle& obstacle : scene.obstacles) {
+    const auto height = [&](const Eigen::Vector3d& point) {
+      return obstacle.normal.dot(point - obstacle.point);
+    };
+    double least = std::min(height(along.front()->position) - along.front()->at,
+                            height(along.back()->position) - (scene.length - along.back()->at));
+    for (std::size_t k = 0; k + 1 < along.size(); ++k) {
+      const Eigen::Vector3d apart = along[k + 1]->position - along[k]->position;
+      const double rod = along[k + 1]->at - along[k]->at;
+      // Half axes of the ellipsoid: rod/2 along `apart`, sqrt(rod^2 - apart^2)/2 across.
+      const double along_normal = obstacle.normal.dot(apart);
+      const double support =
+          std::sqrt(std::max(0.0, rod * rod - apart.squaredNorm() + along_normal * along_normal)) /
+          2;
+      least = std::min(least, height((along[k]->position + along[k + 1]->position) / 2) - support);
+    }
+    clearances.push_back(least);
+  }
+  return clearances;
+}
+
+ReachedScene without_far_obstacles(const Scene& scene) {
+  const double stiffness =
+      std::min(scene.axial_stiffness(), scene.force_model.c_c.value_or(scene.axial_stiffness()));
+  const double stretched = 2 * scene.length * std::sqrt(total_load(scene) / stiffness);
+  const std::vector<double> clearances = obstacle_clearances(scene);
+  ReachedScene result{scene, {}};
+  result.scene.obstacles.clear();
+  for (std::size_t i = 0; i < clearances.size(); ++i) {
+    result.in_reach.push_back(clearances[i] <= stretched);
+    if (result.in_reach.back()) result.scene.obstacles.push_back(scene.obstacles[i]);
+  }
+  return result;
+}
+
+}  // namespace dlo::compare

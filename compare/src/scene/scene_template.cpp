@@ -1,0 +1,203 @@
+#include "scene/scene_template.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "base/fingerprint.hpp"
+#include "base/input_file.hpp"
+#include "base/text_limits.hpp"
+#include "dlo/compare/error.hpp"
+#include "scene/read_scene.hpp"
+#include "scene/strict_table.hpp"
+
+namespace dlo::compare {
+namespace {
+
+template <typename Number>
+std::optional<Number> whole_text_as(const std::string& text) {
+  Number number = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc() || stop != end) return std::nullopt;
+  return number;
+}
+
+/// Puts a value where `place(node)` wants it, with the type that a file would give it.
+template <typename Place>
+void place_value(const FieldValue& field, const std::string& file, const Place& place) {
+  if (const auto integer = whole_text_as<std::int64_t>(field.value)) return place(*integer);
+  if (const auto number = whole_text_as<double>(field.value)) return place(*number);
+  if (field.value.empty() || field.value.front() != '[') return place(field.value);
+  const toml::table parsed =
+      parse_toml("value = " + field.value, fmt::format("{}, {}", file, field.field));
+  const toml::array* array = parsed["value"].as_array();
+  if (array == nullptr || parsed.size() != 1) {
+    throw InputError(fmt::format("{}: {} = {}: no vector", file, field.field, field.value));
+  }
+  place(*array);
+}
+
+/// What people write for a field, and its path.
+constexpr std::pair<std::string_view, std::string_view> short_field_names[] = {
+    {"E", "rod.material.youngs_modulus"},
+    {"youngs_modulus", "rod.material.youngs_modulus"},
+    {"rod.youngs_modulus", "rod.material.youngs_modulus"},
+    {"density", "rod.material.density"},
+    {"rod.density", "rod.material.density"},
+    {"length", "rod.length"},
+    {"diameter", "rod.diameter"},
+    {"material", "rod.material"},
+    {"points", "force_model.points"},
+    {"law", "force_model.law"}};
+
+class Overrider {
+ public:
+  Overrider(toml::table& root, const std::string& file, const std::vector<Material>& materials)
+      : root_(root), file_(file), materials_(materials) {}
+
+  void set(const FieldValue& field) const {
+    for (const auto& [written, meant] : short_field_names) {
+      if (field.field == written) refuse(field.field, fmt::format("did you mean {}?", meant));
+    }
+    if (std::count(field.field.begin(), field.field.end(), '.') >= deepest_nesting) {
+      refuse(field.field.substr(0, 40) + "...",
+             fmt::format("too many dotted parts (allowed: {})", deepest_nesting));
+    }
+    toml::node* parent = &root_;
+    std::string_view rest = field.field;
+    for (std::size_t dot = rest.find('.'); dot != std::string_view::npos; dot = rest.find('.')) {
+      parent = &enter(*parent, rest.substr(0, dot), field.field);
+      rest.remove_prefix(dot + 1);
+    }
+    if (rest.empty()) refuse(field.field, "a part of the path is empty");
+    if (toml::table* table = parent->as_table()) {
+      place_value(field, file_, [&](const auto& value) { table->insert_or_assign(rest, value); });
+      return;
+    }
+    toml::array& array = *parent->as_array();
+    const std::size_t index = element(array, rest, field.field);
+    place_value(field, file_, [&](const auto& value) {
+      array.insert(array.erase(array.cbegin() + static_cast<std::ptrdiff_t>(index)), value);
+    });
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& path, const std::string& problem) const {
+    throw InputError(fmt::format("{}: {}: {}", file_, path, problem));
+  }
+
+  [[nodiscard]] std::size_t element(const toml::array& array, std::string_view step,
+                                    const std::string& path) const {
+    const auto index = whole_text_as<std::size_t>(std::string(step));
+    if (!index || *index >= array.size()) {
+      refuse(path, array.empty() ? fmt::format("there is no \"{}\", the array is empty", step)
+                                 : fmt::format("there is no \"{}\" (allowed: 0 to {})", step,
+                                               array.size() - 1));
+    }
+    return *index;
+  }
+
+  /// The table or array below `parent`; a table that the file leaves out is as good as empty.
+  toml::node& enter(toml::node& parent, std::string_view step, const std::string& path) const {
+    toml::node* child = nullptr;
+    if (toml::table* table = parent.as_table()) {
+      if (step.empty()) refuse(path, "a part of the path is empty");
+      if (!table->contains(step)) table->insert(step, toml::table());
+      if (&parent == root_.get("rod") && step == "material") spell_out_material(*table);
+      child = table->get(step);
+    } else {
+      toml::array& array = *parent.as_array();
+      child = array.get(element(array, step, path));
+    }
+    if (!child->is_table() && !child->is_array()) {
+      refuse(path, fmt::format("\"{}\" is a single value and has no parts", step));
+    }
+    return *child;
+  }
+
+  void spell_out_material(toml::table& rod) const {
+    const auto name = rod["material"].value_exact<std::string>();
+    if (!name) return;
+    for (const Material& material : materials_) {
+      if (material.name != *name) continue;
+      rod.insert_or_assign("material", toml::table{{"youngs_modulus", material.youngs_modulus},
+                                                   {"density", material.density}});
+      return;
+    }
+    refuse("rod.material", fmt::format("unknown material \"{}\"", *name));
+  }
+
+  toml::table& root_;
+  const std::string& file_;
+  const std::vector<Material>& materials_;
+};
+
+/// Gravity that gives the scene this Gamma.
+toml::array scaled_gravity(const Scene& scene, const std::string& gamma) {
+  const auto value = whole_text_as<double>(gamma);
+  if (!value || !(*value >= 0) || !std::isfinite(*value)) {
+    throw InputError(
+        fmt::format("{}: gamma = {}: must be a number (allowed: >= 0)", scene.file, gamma));
+  }
+  if (!(scene.gamma() > 0)) {
+    throw InputError(fmt::format(
+        "{}: gamma = {}: gravity or density is zero and cannot be scaled (allowed: > 0)",
+        scene.file, gamma));
+  }
+  const Eigen::Vector3d gravity = *value / scene.gamma() * scene.gravity;
+  return toml::array(gravity.x(), gravity.y(), gravity.z());
+}
+
+}  // namespace
+
+struct SceneTemplate::Parsed {
+  toml::table root;
+  std::string name;
+  std::vector<Material> materials;
+  std::string fingerprint;
+};
+
+SceneTemplate::SceneTemplate(const std::string& text, std::string name,
+                             std::vector<Material> known_materials) {
+  std::string all = name + '\n' + text;
+  for (const Material& material : known_materials) {
+    all += fmt::format("\n{} {} {}", material.name, material.youngs_modulus, material.density);
+  }
+  parsed_ =
+      std::make_shared<const Parsed>(Parsed{parse_toml(text, name), std::move(name),
+                                            std::move(known_materials), compare::fingerprint(all)});
+}
+
+const std::string& SceneTemplate::fingerprint() const { return parsed_->fingerprint; }
+
+Scene SceneTemplate::with(const std::vector<FieldValue>& values) const {
+  toml::table root = parsed_->root;
+  const Overrider overrider(root, parsed_->name, parsed_->materials);
+  const FieldValue* gamma = nullptr;
+  for (const FieldValue& value : values) {
+    if (value.field == "gamma") {
+      gamma = &value;
+    } else {
+      overrider.set(value);
+    }
+  }
+  Scene scene = read_scene(root, parsed_->name, parsed_->materials);
+  if (gamma == nullptr) return scene;
+  root.insert_or_assign("gravity", scaled_gravity(scene, gamma->value));
+  return read_scene(root, parsed_->name, parsed_->materials);
+}
+
+SceneTemplate load_scene_template(const std::string& path,
+                                  const std::vector<Material>& known_materials) {
+  return {read_file(path), std::filesystem::path(path).filename(), known_materials};
+}
+
+}  // namespace dlo::compare

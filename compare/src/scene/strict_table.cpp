@@ -1,0 +1,254 @@
+#include "scene/strict_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "base/text_limits.hpp"
+#include "base/words.hpp"
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+std::string joined(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string shown(const toml::node& node) {
+  // fmt writes the shortest digits that read back the same, as the user wrote them.
+  if (const auto number = node.value_exact<double>()) return fmt::format("{}", *number);
+  std::ostringstream text;
+  node.visit([&](const auto& value) { text << value; });
+  std::string line = text.str();
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  constexpr std::size_t longest = 60;
+  if (line.size() > longest) {
+    line.resize(longest);
+    line += "...";
+  }
+  return line;
+}
+
+}  // namespace
+
+Range Range::any() { return {-infinity, infinity, false, "any number"}; }
+Range Range::positive() { return {0, infinity, true, "> 0"}; }
+Range Range::not_negative() { return {0, infinity, false, ">= 0"}; }
+Range Range::between(double low, double high, const std::string& unit) {
+  return {low, high, false, fmt::format("{} to {}{}", low, high, unit)};
+}
+bool Range::holds(double value) const {
+  return (low_open ? value > low : value >= low) && value <= high;
+}
+
+StrictTable::StrictTable(const toml::table& table, std::string path, std::string file)
+    : table_(table), path_(std::move(path)), file_(std::move(file)) {}
+
+std::string StrictTable::name(std::string_view key) const {
+  return path_.empty() ? std::string(key) : fmt::format("{}.{}", path_, key);
+}
+
+std::string StrictTable::where(const toml::node* node) const {
+  const toml::source_position position =
+      node != nullptr ? node->source().begin : table_.source().begin;
+  return position.line > 0 ? fmt::format("{}:{}", file_, position.line) : file_;
+}
+
+void StrictTable::fail(std::string_view key, const std::string& problem) const {
+  const toml::node* node = table_.get(key);
+  if (node == nullptr) {
+    throw InputError(fmt::format("{}: {}: {}", where(nullptr), name(key), problem));
+  }
+  if (node->is_table() || node->is_array_of_tables()) {
+    throw InputError(fmt::format("{}: {}: {}", where(node), name(key), problem));
+  }
+  throw InputError(fmt::format("{}: {} = {}: {}", where(node), name(key), shown(*node), problem));
+}
+
+const toml::node* StrictTable::find(std::string_view key) {
+  known_.emplace(key);
+  return table_.get(key);
+}
+
+const toml::node& StrictTable::need(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) {
+    // A slip of the pen is both a missing and an unknown key.
+    const std::string slip = nearest_word(key, keys());
+    if (!slip.empty() && !known_.contains(slip)) {
+      fail(slip, fmt::format("unknown key, did you mean {}?", key));
+    }
+    fail(key, "missing, it is required");
+  }
+  return *node;
+}
+
+double StrictTable::read_number(std::string_view key, const toml::node& node,
+                                Dimension dimension) const {
+  double value = NAN;
+  if (const auto number = node.value_exact<double>()) {
+    value = *number;
+  } else if (const auto integer = node.value_exact<std::int64_t>()) {
+    value = static_cast<double>(*integer);
+  } else if (const auto text = node.value_exact<std::string>()) {
+    try {
+      value = parse_quantity(*text, dimension);
+    } catch (const InputError& error) {
+      fail(key, error.what());
+    }
+  } else {
+    const std::string units = known_units(dimension);
+    fail(key, units.empty() ? "must be a number"
+                            : fmt::format("must be a number in SI units or a string with a unit "
+                                          "(allowed: {})",
+                                          units));
+  }
+  if (!std::isfinite(value)) fail(key, "must be finite");
+  return value;
+}
+
+double StrictTable::number(std::string_view key, Dimension dimension, const Range& range) {
+  const double value = read_number(key, need(key), dimension);
+  if (!range.holds(value)) fail(key, fmt::format("out of range (allowed: {})", range.text));
+  return value;
+}
+
+std::optional<double> StrictTable::optional_number(std::string_view key, Dimension dimension,
+                                                   const Range& range) {
+  if (find(key) == nullptr) return std::nullopt;
+  return number(key, dimension, range);
+}
+
+std::optional<int> StrictTable::optional_integer(std::string_view key, int low, int high) {
+  if (find(key) == nullptr) return std::nullopt;
+  return integer(key, low, high);
+}
+
+int StrictTable::integer(std::string_view key, int low, int high) {
+  const auto value = need(key).value_exact<std::int64_t>();
+  if (!value || *value < low || *value > high) {
+    fail(key, fmt::format("must be a whole number (allowed: {} to {})", low, high));
+  }
+  return static_cast<int>(*value);
+}
+
+std::string StrictTable::text(std::string_view key) {
+  const auto value = need(key).value_exact<std::string>();
+  if (!value) fail(key, "must be a string");
+  return *value;
+}
+
+std::optional<std::string> StrictTable::optional_text(std::string_view key) {
+  if (find(key) == nullptr) return std::nullopt;
+  return text(key);
+}
+
+std::optional<std::string> StrictTable::optional_choice(std::string_view key,
+                                                        const std::vector<std::string>& allowed) {
+  if (find(key) == nullptr) return std::nullopt;
+  return choice(key, allowed);
+}
+
+std::string StrictTable::choice(std::string_view key, const std::vector<std::string>& allowed) {
+  std::string value = text(key);
+  if (std::find(allowed.begin(), allowed.end(), value) == allowed.end()) {
+    fail(key,
+         fmt::format("unknown{} (allowed: {})", did_you_mean(value, allowed), joined(allowed)));
+  }
+  return value;
+}
+
+Eigen::Vector3d StrictTable::vector(std::string_view key, Dimension dimension) {
+  const toml::array* array = need(key).as_array();
+  if (array == nullptr || array->size() != 3) {
+    fail(key, "must be a vector of three numbers [x, y, z]");
+  }
+  Eigen::Vector3d value;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    value[i] = read_number(key, *array->get(static_cast<std::size_t>(i)), dimension);
+  }
+  return value;
+}
+
+std::optional<Eigen::Vector3d> StrictTable::optional_vector(std::string_view key,
+                                                            Dimension dimension) {
+  if (find(key) == nullptr) return std::nullopt;
+  return vector(key, dimension);
+}
+
+bool StrictTable::is_table(std::string_view key) const {
+  const toml::node* node = table_.get(key);
+  return node != nullptr && node->is_table();
+}
+
+bool StrictTable::is_array(std::string_view key) const {
+  const toml::node* node = table_.get(key);
+  return node != nullptr && node->is_array();
+}
+
+StrictTable StrictTable::table(std::string_view key) {
+  const toml::table* inner = need(key).as_table();
+  if (inner == nullptr) fail(key, "must be a table");
+  return {*inner, name(key), file_};
+}
+
+std::optional<StrictTable> StrictTable::optional_table(std::string_view key) {
+  if (find(key) == nullptr) return std::nullopt;
+  return table(key);
+}
+
+std::vector<StrictTable> StrictTable::tables(std::string_view key) {
+  std::vector<StrictTable> result;
+  const toml::node* node = find(key);
+  if (node == nullptr) return result;
+  const toml::array* array = node->as_array();
+  if (array == nullptr) fail(key, fmt::format("must be written as [[{}]]", key));
+  for (const toml::node& element : *array) {
+    const toml::table* inner = element.as_table();
+    if (inner == nullptr) fail(key, fmt::format("must be written as [[{}]]", key));
+    result.emplace_back(*inner, name(key), file_);
+  }
+  return result;
+}
+
+std::vector<std::string> StrictTable::keys() const {
+  std::vector<std::string> result;
+  for (const auto& [key, node] : table_) result.emplace_back(key.str());
+  return result;
+}
+
+void StrictTable::finish() const {
+  for (const auto& [key, node] : table_) {
+    if (known_.contains(key.str())) continue;
+    const std::vector<std::string> known(known_.begin(), known_.end());
+    fail(key.str(),
+         fmt::format("unknown key{} (allowed: {})", did_you_mean(key.str(), known), joined(known)));
+  }
+}
+
+toml::table parse_toml(const std::string& text, const std::string& file) {
+  if (text.size() > largest_toml) {
+    throw InputError(
+        fmt::format("{}: {} bytes (allowed: up to {} of TOML)", file, text.size(), largest_toml));
+  }
+  require_toml_limits(text, file);
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    std::string description(error.description());
+    std::replace(description.begin(), description.end(), '\n', ' ');
+    const bool comma = description.ends_with("saw ','");
+    throw InputError(fmt::format("{}:{}: not valid TOML: {} ({})", file, error.source().begin.line,
+                                 description,
+                                 comma ? "a number has a decimal point: 2.5"
+                                       : "text, and a number with a unit, is in quotes: \"2 mm\""));
+  }
+}
+
+}  // namespace dlo::compare

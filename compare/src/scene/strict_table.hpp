@@ -1,0 +1,92 @@
+#pragma once
+
+#include <toml++/toml.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/quantity.hpp"
+
+namespace dlo::compare {
+
+/// What a number may be, with the words for a message.
+struct Range {
+  double low;
+  double high;
+  bool low_open;
+  std::string text;
+
+  [[nodiscard]] static Range any();
+  [[nodiscard]] static Range positive();
+  [[nodiscard]] static Range not_negative();
+  [[nodiscard]] static Range between(double low, double high, const std::string& unit);
+  [[nodiscard]] bool holds(double value) const;
+};
+
+/// A TOML table that is read strictly: every key has to be asked for before finish(), every value
+/// has to be of its kind and in its range. All errors are InputErrors of the form
+/// "file:line: key = value: what is wrong (allowed: ...)".
+class StrictTable {
+ public:
+  StrictTable(const toml::table& table, std::string path, std::string file);
+
+  [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
+
+  /// A number in SI units, or a string with a unit. @throws InputError if missing or wrong
+  double number(std::string_view key, Dimension dimension, const Range& range);
+  std::optional<double> optional_number(std::string_view key, Dimension dimension,
+                                        const Range& range);
+  std::optional<int> optional_integer(std::string_view key, int low, int high);
+  std::string text(std::string_view key);
+  std::optional<std::string> optional_text(std::string_view key);
+  int integer(std::string_view key, int low, int high);
+  /// One of `allowed`.
+  std::string choice(std::string_view key, const std::vector<std::string>& allowed);
+  std::optional<std::string> optional_choice(std::string_view key,
+                                             const std::vector<std::string>& allowed);
+  Eigen::Vector3d vector(std::string_view key, Dimension dimension);
+  std::optional<Eigen::Vector3d> optional_vector(std::string_view key, Dimension dimension);
+  std::optional<StrictTable> optional_table(std::string_view key);
+  StrictTable table(std::string_view key);
+  /// The tables of [[key]], in order.
+  std::vector<StrictTable> tables(std::string_view key);
+  [[nodiscard]] bool is_table(std::string_view key) const;
+  [[nodiscard]] bool is_array(std::string_view key) const;
+  [[nodiscard]] std::vector<std::string> keys() const;
+
+  /// @throws InputError naming the first key that nobody asked for and the keys that exist
+  void finish() const;
+
+  /// "file:line" of this table
+  [[nodiscard]] std::string where() const { return where(nullptr); }
+
+  /// "file:line: key = value: problem"
+  [[noreturn]] void fail(std::string_view key, const std::string& problem) const;
+
+ private:
+  const toml::node* find(std::string_view key);
+  const toml::node& need(std::string_view key);
+  [[nodiscard]] std::string where(const toml::node* node) const;
+  [[nodiscard]] std::string name(std::string_view key) const;
+  [[nodiscard]] double read_number(std::string_view key, const toml::node& node,
+                                   Dimension dimension) const;
+
+  const toml::table& table_;
+  std::string path_;
+  std::string file_;
+  std::set<std::string, std::less<>> known_;
+};
+
+/// A scene of ten thousand loads has a tenth of it; parsed it takes some fifty times its size.
+inline constexpr std::size_t largest_toml = std::size_t{1} << 22;
+
+/// Parses a file's text. @throws InputError with file, line and what the parser says, or if the
+/// text is larger than largest_toml or nested deeper than deepest_nesting
+[[nodiscard]] toml::table parse_toml(const std::string& text, const std::string& file);
+
+}  // namespace dlo::compare

@@ -1,0 +1,322 @@
+#include "shape/aligner.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+#include "shape/shape_measure.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Points with which starts are looked for.
+constexpr Eigen::Index most_coarse_points = 200;
+/// Places along the rod at which a part of it may lie.
+constexpr int coarse_places_along = 5;
+
+double turning_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// Lengths along a curve through the points: each chord d with the mean curvature k at its ends is
+/// an arc of d (1 + (k d)^2 / 24).
+std::vector<double> lengths_along(const Eigen::Matrix3Xd& points) {
+  const Eigen::Index count = points.cols();
+  const Eigen::Matrix3Xd chords = points.rightCols(count - 1) - points.leftCols(count - 1);
+  const Eigen::VectorXd d = chords.colwise().norm().transpose();
+  Eigen::VectorXd curvature = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index i = 1; i + 1 < count; ++i) {
+    curvature[i] = 2 * turning_angle(chords.col(i - 1), chords.col(i)) / (d[i - 1] + d[i]);
+  }
+  if (count > 2) {
+    curvature[0] = curvature[1];
+    curvature[count - 1] = curvature[count - 2];
+  }
+  std::vector<double> result(static_cast<std::size_t>(count), 0.0);
+  for (Eigen::Index i = 0; i + 1 < count; ++i) {
+    const double turn = d[i] * (curvature[i] + curvature[i + 1]) / 2;
+    result[static_cast<std::size_t>(i) + 1] =
+        result[static_cast<std::size_t>(i)] + d[i] * (1 + turn * turn / 24);
+  }
+  return result;
+}
+
+/// l - s, so that it grows again.
+std::vector<double> mirrored(const std::vector<double>& s, double length) {
+  std::vector<double> result(s.rbegin(), s.rend());
+  for (double& value : result) value = length - value;
+  return result;
+}
+
+std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length) {
+  if (shape.arc_length.empty()) {
+    throw InputError(fmt::format(
+        "{}: no arc lengths in it (allowed: a column s, or arc lengths by chord or nearest)",
+        shape.file));
+  }
+  std::vector<double> s = shape.arc_length;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    if (s[i] < -1e-6 * length || s[i] > (1 + 1e-6) * length) {
+      throw InputError(
+          fmt::format("{}: point {}: s = {:g} m (allowed: 0 to {:g} m, the rod; "
+                      "--unit if the file is not in metres)",
+                      shape.file, i + 1, s[i], length));
+    }
+    s[i] = std::clamp(s[i], 0.0, length);
+  }
+  return s;
+}
+
+double weighted_mean_square(const Eigen::Matrix3Xd& gaps, const Eigen::VectorXd& weight) {
+  return gaps.colwise().squaredNorm().transpose().dot(weight);
+}
+
+}  // namespace
+
+Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& options)
+    : length_(length), options_(options) {
+  if (options.pose != PoseFreedom::known && shape.points.cols() < 3) {
+    throw InputError(fmt::format("{}: {} points (allowed with a frame to be found: 3 or more)",
+                                 shape.file, shape.points.cols()));
+  }
+  choose_rule(shape);
+  Way& along = ways_[0];
+  along.points = shape.points;
+  if (rule_ == ArcLengths::file) {
+    along.arc_length = file_arc_lengths(shape, length);
+    if (along.arc_length.front() > along.arc_length.back()) {
+      std::reverse(along.arc_length.begin(), along.arc_length.end());
+      along.points = along.points.rowwise().reverse().eval();
+    }
+  } else {
+    along.arc_length = lengths_along(along.points);
+    const double total = along.arc_length.back();
+    const bool scaled = rule_ == ArcLengths::chord || total > length;
+    for (double& s : along.arc_length) s *= scaled ? length / total : 1;
+  }
+  ways_[1].points = along.points.rowwise().reverse();
+  const double end = rule_ == ArcLengths::nearest ? along.arc_length.back() : length;
+  ways_[1].arc_length = mirrored(along.arc_length, end);
+}
+
+void Aligner::choose_rule(const MeasuredShape& shape) {
+  rule_ = options_.arc_lengths;
+  if (rule_ != ArcLengths::automatic) return;
+  rule_ = shape.arc_length.empty() ? ArcLengths::nearest : ArcLengths::file;
+}
+
+Eigen::Index Aligner::free_coordinates() const {
+  constexpr Eigen::Index counts[] = {0, 3, 4, 6};
+  return counts[static_cast<std::size_t>(options_.pose)];
+}
+
+Eigen::VectorXd Aligner::weights(const std::vector<double>& s,
+                                 const Eigen::Matrix3Xd& points) const {
+  if (options_.weights == PointWeights::by_length) return point_weights(s, points);
+  const auto count = static_cast<Eigen::Index>(s.size());
+  return Eigen::VectorXd::Constant(count, 1 / static_cast<double>(count));
+}
+
+RigidMotion Aligner::closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                                  const Eigen::VectorXd& weight) const {
+  RigidMotion pose;
+  if (options_.pose == PoseFreedom::known) return pose;
+  const Eigen::Vector3d from_centre = from * weight;
+  const Eigen::Vector3d to_centre = to * weight;
+  const Eigen::Matrix3d moments =
+      (from.colwise() - from_centre) * weight.asDiagonal() * (to.colwise() - to_centre).transpose();
+  if (options_.pose == PoseFreedom::upright) {
+    // Of all turns by an angle a about up: the one with the largest cos a C + sin a S.
+    const Eigen::Vector3d& up = options_.up;
+    const double cosine = moments.trace() - up.dot(moments * up);
+    const Eigen::Vector3d twist(moments(1, 2) - moments(2, 1), moments(2, 0) - moments(0, 2),
+                                moments(0, 1) - moments(1, 0));
+    pose.rotation = Eigen::AngleAxisd(std::atan2(up.dot(twist), cosine), up).toRotationMatrix();
+  } else if (options_.pose == PoseFreedom::rigid) {
+    // Kabsch: the nearest rotation, which is never a reflection.
+    const Eigen::JacobiSVD<Eigen::Matrix3d> svd(moments, Eigen::ComputeFullU | Eigen::ComputeFullV);
+    Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+    signs[2] = (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1 : 1;
+    pose.rotation = svd.matrixV() * signs.asDiagonal() * svd.matrixU().transpose();
+  }
+  pose.translation = to_centre - pose.rotation * from_centre;
+  return pose;
+}
+
+Aligner::Placed Aligner::place_given(const Way& way, const Curve& curve) const {
+  const Eigen::Matrix3Xd reference = curve.points(way.arc_length);
+  Placed placed;
+  placed.arc_length = way.arc_length;
+  const Eigen::VectorXd weight = weights(way.arc_length, way.points);
+  placed.pose = closest_pose(way.points, reference, weight);
+  placed.mean_square = weighted_mean_square(placed.pose.applied(way.points) - reference, weight);
+  return placed;
+}
+
+std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve& curve) const {
+  const Eigen::Index every = (way.points.cols() + most_coarse_points - 1) / most_coarse_points;
+  const Eigen::Index count = (way.points.cols() - 1) / every + 1;
+  Eigen::Matrix3Xd points(3, count);
+  std::vector<double> guess(static_cast<std::size_t>(count));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    points.col(i) = way.points.col(i * every);
+    guess[static_cast<std::size_t>(i)] = way.arc_length[static_cast<std::size_t>(i * every)];
+  }
+  const double slack = length_ - way.arc_length.back();
+  const int places = slack > 0.03 * length_ ? coarse_places_along : 1;
+  std::vector<Placed> result;
+  for (int place = 0; place < places; ++place) {
+    Placed placed;
+    placed.arc_length = guess;
+    const double offset = places > 1 ? slack * place / (places - 1) : slack / 2;
+    for (double& s : placed.arc_length) s = std::clamp(s + offset, 0.0, length_);
+    for (int round = 0; round < 3; ++round) {
+      placed.pose =
+          closest_pose(points, curve.points(placed.arc_length), weights(placed.arc_length, points));
+      placed.arc_length = curve.nearest_in_order(placed.pose.applied(points));
+    }
+    placed.mean_square =
+        weighted_mean_square(placed.pose.applied(points) - curve.points(placed.arc_length),
+                             weights(placed.arc_length, points));
+    result.push_back(std::move(placed));
+  }
+  std::stable_sort(result.begin(), result.end(),
+                   [](const Placed& a, const Placed& b) { return a.mean_square < b.mean_square; });
+  return result;
+}
+
+Aligner::Placed Aligner::polish(const Way& way, const Curve& curve,
+                                const RigidMotion& start) const {
+  Placed placed;
+  placed.pose = start;
+  constexpr int most_rounds = 6;
+  double before = INFINITY;
+  for (int round = 0; round < most_rounds; ++round) {
+    placed.arc_length = curve.nearest_in_order(placed.pose.applied(way.points));
+    gauss_newton(way.points, curve, placed);
+    if (free_coordinates() == 0) break;
+    if (!(placed.mean_square < (1 - 1e-6) * before)) break;
+    before = placed.mean_square;
+  }
+  return placed;
+}
+
+void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
+                           Placed& placed) const {
+  const Eigen::VectorXd weight = weights(placed.arc_length, points);
+  const auto cost = [&](const Eigen::Matrix3Xd& moved, const std::vector<double>& s) {
+    return (moved - curve.points(s)).colwise().squaredNorm().transpose().dot(weight);
+  };
+  Eigen::Matrix3Xd moved = placed.pose.applied(points);
+  placed.mean_square = cost(moved, placed.arc_length);
+  const Eigen::Index free = free_coordinates();
+  if (free == 0) return;
+  const Eigen::Index turns = free - 3;
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  if (options_.pose == PoseFreedom::upright) axes.col(0) = options_.up;
+  constexpr int most_steps = 40;
+  double damping = 1e-9;
+  for (int step = 0; step < most_steps && damping < 1e3; ++step) {
+    const Eigen::Vector3d centre = moved * weight;
+    Eigen::MatrixXd A = Eigen::MatrixXd::Zero(free, free);
+    Eigen::VectorXd b = Eigen::VectorXd::Zero(free);
+    Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 6> J(3, free);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const double s = placed.arc_length[static_cast<std::size_t>(i)];
+      const Eigen::Vector3d gap = moved.col(i) - curve.point(s);
+      const Eigen::Vector3d t = curve.tangent(s).normalized();
+      const Eigen::Vector3d arm = (moved.col(i) - centre) / length_;
+      for (Eigen::Index k = 0; k < turns; ++k) J.col(k) = axes.col(k).cross(arm);
+      J.rightCols<3>().setIdentity();
+      // The arc length follows the point along the curve, but not past an end.
+      const bool past_end = (s <= 0 && gap.dot(t) < 0) || (s >= length_ && gap.dot(t) > 0);
+      if (!past_end) J -= t * (t.transpose() * J).eval();
+      A += weight[i] * J.transpose() * J;
+      b -= weight[i] * J.transpose() * gap;
+    }
+    A.diagonal().array() += damping;
+    const Eigen::VectorXd move = A.ldlt().solve(b);
+    if (!move.allFinite()) return;
+    Eigen::Vector3d turn = Eigen::Vector3d::Zero();
+    for (Eigen::Index k = 0; k < turns; ++k) turn += move[k] / length_ * axes.col(k);
+    const Eigen::Matrix3d rotation =
+        turn.norm() > 0 ? Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix()
+                        : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+    const RigidMotion next{rotation * placed.pose.rotation,
+                           rotation * (placed.pose.translation - centre) + centre + move.tail<3>()};
+    const Eigen::Matrix3Xd next_moved = next.applied(points);
+    std::vector<double> next_s(placed.arc_length);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      double& s = next_s[static_cast<std::size_t>(i)];
+      s = curve.nearest(next_moved.col(i), s);
+    }
+    const double next_cost = cost(next_moved, next_s);
+    if (!(next_cost < placed.mean_square)) {
+      damping *= 30;
+      continue;
+    }
+    const bool settled = next_cost > (1 - 1e-9) * placed.mean_square;
+    placed = {next, std::move(next_s), next_cost};
+    moved = next_moved;
+    damping = std::max(damping / 10, 1e-12);
+    if (settled) return;
+  }
+}
+
+Aligner::Placed Aligner::best_place(const Way& way, const Curve& curve) const {
+  if (!has_free_arc_lengths()) return place_given(way, curve);
+  if (options_.pose == PoseFreedom::known) return polish(way, curve, RigidMotion());
+  const std::vector<Placed> coarse = coarse_places(way, curve);
+  Placed best = polish(way, curve, coarse.front().pose);
+  if (coarse.size() > 1) {
+    Placed second = polish(way, curve, coarse[1].pose);
+    if (second.mean_square < best.mean_square) best = std::move(second);
+  }
+  return best;
+}
+
+Alignment Aligner::finished(const Placed& placed, bool reversed, const Curve& curve) const {
+  Alignment result;
+  result.pose = placed.pose;
+  result.reversed = reversed;
+  result.arc_lengths = rule_;
+  result.shape.arc_length = placed.arc_length;
+  // Within a piece of the curve, noise may have swapped neighbours.
+  std::vector<double>& s = result.shape.arc_length;
+  std::partial_sum(s.begin(), s.end(), s.begin(),
+                   [](double before, double next) { return std::max(before, next); });
+  result.shape.points = placed.pose.applied(ways_[reversed ? 1 : 0].points);
+  const Eigen::Matrix3Xd gaps = result.shape.points - curve.points(s);
+  result.rms_m = std::sqrt(weighted_mean_square(gaps, weights(s, result.shape.points)));
+  result.mean_square =
+      (result.shape.points - curve.points(placed.arc_length)).colwise().squaredNorm().mean();
+  return result;
+}
+
+Alignment Aligner::align(const Curve& curve) const {
+  const Placed along = best_place(ways_[0], curve);
+  const Placed against = best_place(ways_[1], curve);
+  // Of two ways that are as good, along.
+  const bool reversed = against.mean_square < (1 - 1e-9) * along.mean_square;
+  Alignment result = finished(reversed ? against : along, reversed, curve);
+  result.other_rms_m = std::sqrt(reversed ? along.mean_square : against.mean_square);
+  return result;
+}
+
+Alignment Aligner::align_near(const Curve& curve, const Alignment& previous) const {
+  const Way& way = ways_[previous.reversed ? 1 : 0];
+  const Placed placed =
+      has_free_arc_lengths() ? polish(way, curve, previous.pose) : place_given(way, curve);
+  Alignment result = finished(placed, previous.reversed, curve);
+  result.other_rms_m = previous.other_rms_m;
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "dlo/compare/alignment.hpp"
+#include "shape/curve.hpp"
+
+namespace dlo::compare {
+
+/// Lays one measured shape on many curves, see align().
+class Aligner {
+ public:
+  /// @throws InputError as align()
+  Aligner(const MeasuredShape& shape, double length, const AlignOptions& options);
+
+  [[nodiscard]] Alignment align(const Curve& curve) const;
+  /// From an alignment with a similar curve: its direction, and its motion to start from.
+  [[nodiscard]] Alignment align_near(const Curve& curve, const Alignment& previous) const;
+
+  [[nodiscard]] Eigen::Index points() const { return ways_[0].points.cols(); }
+  [[nodiscard]] ArcLengths arc_lengths() const { return rule_; }
+  /// Coordinates of the motion that are free: 0, 3, 4 or 6.
+  [[nodiscard]] Eigen::Index free_coordinates() const;
+
+ private:
+  /// The file's points by growing arc length, if the file runs along the rod or against it.
+  struct Way {
+    Eigen::Matrix3Xd points;
+    std::vector<double> arc_length;  // given, or a guess along the polyline
+  };
+  struct Placed {
+    RigidMotion pose;
+    std::vector<double> arc_length;
+    double mean_square = 0;  // weighted
+  };
+
+  void choose_rule(const MeasuredShape& shape);
+  [[nodiscard]] bool has_free_arc_lengths() const { return rule_ == ArcLengths::nearest; }
+  [[nodiscard]] Eigen::VectorXd weights(const std::vector<double>& s,
+                                        const Eigen::Matrix3Xd& points) const;
+  [[nodiscard]] RigidMotion closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
+                                         const Eigen::VectorXd& weight) const;
+  [[nodiscard]] Placed place_given(const Way& way, const Curve& curve) const;
+  [[nodiscard]] std::vector<Placed> coarse_places(const Way& way, const Curve& curve) const;
+  [[nodiscard]] Placed polish(const Way& way, const Curve& curve, const RigidMotion& start) const;
+  void gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve, Placed& placed) const;
+  [[nodiscard]] Placed best_place(const Way& way, const Curve& curve) const;
+  [[nodiscard]] Alignment finished(const Placed& placed, bool reversed, const Curve& curve) const;
+
+  double length_;
+  AlignOptions options_;
+  ArcLengths rule_ = ArcLengths::nearest;
+  std::array<Way, 2> ways_;  // along, against
+};
+
+}  // namespace dlo::compare

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace dlo::compare {
+
+/// A shape file's numbers, read but not judged.
+struct RawShape {
+  std::vector<std::array<double, 3>> points;
+  std::vector<double> arc_length;  ///< one per point, or none
+  std::vector<long> lines;         ///< of the points in the file; none where a format has no lines
+  bool in_metres = false;          ///< the file itself says so
+};
+
+/// @throws InputError if `count` is above most_shape_points. @param where  "file" or "file:line"
+void require_point_count(std::size_t count, const std::string& where);
+
+}  // namespace dlo::compare

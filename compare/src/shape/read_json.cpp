@@ -1,0 +1,100 @@
+#include "shape/read_json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "base/text_limits.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/shape_file.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* json_allowed =
+    "(allowed: [[x, y, z], ...], or an object with points_m as dlo solve writes it, or with "
+    "points)";
+
+json parsed(std::string_view text, const std::string& file) {
+  // A shape as dlo solve writes it has five values a point, one of several equilibria more.
+  require_json_limits(text, file, 30 * most_shape_points);
+  try {
+    return json::parse(text);
+  } catch (const json::parse_error& error) {
+    const std::size_t at = std::min(error.byte, text.size());
+    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<long>(at), '\n');
+    throw InputError(fmt::format("{}:{}: not valid JSON at byte {}", file, line, error.byte));
+  } catch (const json::exception&) {
+    throw InputError(fmt::format("{}: not valid JSON: a number is out of range", file));
+  }
+}
+
+double json_number(const json& value, const std::string& where) {
+  if (!value.is_number()) throw InputError(fmt::format("{}: must be a number", where));
+  return value.get<double>();
+}
+
+void read_json_points(const json& list, const std::string& where, RawShape& raw) {
+  if (!list.is_array()) throw InputError(fmt::format("{}: must be an array of points", where));
+  require_point_count(list.size(), where);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const json& point = list[i];
+    const std::string at = fmt::format("{}[{}]", where, i);
+    if (!point.is_array() || point.size() < 2 || point.size() > 3) {
+      throw InputError(fmt::format("{}: must be a point (allowed: [x, y] or [x, y, z])", at));
+    }
+    if (point.size() != list[0].size()) {
+      throw InputError(fmt::format("{}: {} coordinates where the first point has {}", at,
+                                   point.size(), list[0].size()));
+    }
+    std::array<double, 3> coordinates{};
+    for (std::size_t k = 0; k < point.size(); ++k) {
+      coordinates[k] = json_number(point[k], fmt::format("{}[{}]", at, k));
+    }
+    raw.points.push_back(coordinates);
+  }
+}
+
+void read_json_arc_lengths(const json& list, const std::string& where, RawShape& raw) {
+  if (!list.is_array() || list.size() != raw.points.size()) {
+    throw InputError(
+        fmt::format("{}: must be an array of {} numbers, one per point", where, raw.points.size()));
+  }
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    raw.arc_length.push_back(json_number(list[i], fmt::format("{}[{}]", where, i)));
+  }
+}
+
+}  // namespace
+
+RawShape read_json_shape(std::string_view text, const std::string& file, double unit) {
+  const json document = parsed(text, file);
+  RawShape raw;
+  if (document.is_array()) {
+    read_json_points(document, file + ": points", raw);
+    return raw;
+  }
+  raw.in_metres = document.contains("points_m");
+  if (raw.in_metres && document.contains("points")) {
+    throw InputError(fmt::format("{}: points_m and points (allowed: one of them)", file));
+  }
+  if (raw.in_metres && unit != 1) {
+    throw InputError(fmt::format(
+        "{}: points_m is in metres (allowed: unit m, or the name points in another unit)", file));
+  }
+  const char* points = raw.in_metres ? "points_m" : "points";
+  const char* arc_length = raw.in_metres ? "arc_length_m" : "arc_length";
+  if (!document.contains(points)) {
+    throw InputError(fmt::format("{}: neither points_m nor points {}", file, json_allowed));
+  }
+  read_json_points(document[points], fmt::format("{}: {}", file, points), raw);
+  if (document.contains(arc_length)) {
+    read_json_arc_lengths(document[arc_length], fmt::format("{}: {}", file, arc_length), raw);
+  }
+  return raw;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,228 @@
+#include "shape/read_vtk.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "base/number.hpp"
+#include "base/quote.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/shape_file.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Reads a legacy VTK file word by word and knows in which line it is.
+class VtkReader {
+ public:
+  VtkReader(std::string_view text, std::string file) : rest_(text), file_(std::move(file)) {}
+
+  [[nodiscard]] RawShape read() {
+    read_preamble();
+    RawShape points;
+    std::vector<std::size_t> order;
+    for (std::string_view word = next(); !word.empty(); word = next()) {
+      if (word == "POINTS") {
+        if (!points.points.empty()) fail("a second POINTS (allowed: one)");
+        points = read_points();
+      } else if (word == "LINES") {
+        if (!order.empty()) fail("a second LINES (allowed: one)");
+        order = read_lines(points.points.size());
+      } else if (word == "VERTICES" || word == "POLYGONS" || word == "TRIANGLE_STRIPS") {
+        fail(fmt::format("{} (allowed: POINTS and LINES)", word));
+      } else if (word == "METADATA") {
+        skip_metadata();
+      } else if (word == "POINT_DATA" || word == "CELL_DATA") {
+        if (word == "POINT_DATA") read_arc_lengths(points);
+        break;
+      } else if (shape_number(word)) {
+        fail(fmt::format("{} where a keyword such as LINES should be", quoted_piece(word)));
+      }
+    }
+    if (points.points.empty()) fail("no POINTS");
+    return order.empty() ? points : ordered(points, order);
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw InputError(fmt::format("{}:{}: {}", file_, line_, problem));
+  }
+
+  std::string_view next_line() {
+    const std::size_t end = rest_.find('\n');
+    std::string_view line = rest_.substr(0, end);
+    rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+    ++next_line_;
+    line_ = next_line_ - 1;
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    return line;
+  }
+
+  /// The next word; empty at the end of the file.
+  std::string_view next() {
+    const std::size_t start = std::min(rest_.find_first_not_of(" \t\r\n"), rest_.size());
+    next_line_ += std::count(rest_.begin(), rest_.begin() + static_cast<long>(start), '\n');
+    line_ = next_line_;
+    rest_.remove_prefix(start);
+    const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t\r\n"));
+    rest_.remove_prefix(word.size());
+    return word;
+  }
+
+  /// A block that ends with an empty line.
+  void skip_metadata() {
+    next_line();
+    while (!rest_.empty() && !next_line().empty()) continue;
+  }
+
+  void read_preamble() {
+    next_line();
+    next_line();
+    std::string_view format = next();
+    if (format != "ASCII") {
+      fail(fmt::format("{} (allowed: ASCII, the legacy format's text form)",
+                       format == "BINARY" ? "BINARY" : quoted_piece(format)));
+    }
+    if (const std::string_view word = next(); word != "DATASET") {
+      fail(fmt::format("{} where DATASET should be", quoted_piece(word)));
+    }
+    if (const std::string_view kind = next(); kind != "POLYDATA") {
+      fail(fmt::format("DATASET {} (allowed: POLYDATA)", quoted_piece(kind)));
+    }
+  }
+
+  std::size_t read_count(const char* what, std::size_t largest) {
+    const std::string_view word = next();
+    std::size_t value = 0;
+    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+    const bool whole = error == std::errc() && end == word.data() + word.size() && !word.empty();
+    if (!whole || value > largest) {
+      fail(fmt::format("{} {} (allowed: 0 to {})", what, quoted_piece(word), largest));
+    }
+    return value;
+  }
+
+  RawShape read_points() {
+    RawShape raw;
+    const std::size_t count =
+        read_count("number of points", static_cast<std::size_t>(most_shape_points));
+    next();  // float or double
+    for (std::size_t i = 0; i < count; ++i) {
+      std::array<double, 3> point{};
+      for (double& coordinate : point) {
+        const std::string_view word = next();
+        const std::optional<double> value = shape_number(word);
+        if (!value) {
+          fail(word.empty()
+                   ? fmt::format("the file ends in point {} of {}", i + 1, count)
+                   : fmt::format("point {}: {} is not a number", i + 1, quoted_piece(word)));
+        }
+        coordinate = *value;
+      }
+      raw.points.push_back(point);
+      raw.lines.push_back(line_);
+    }
+    return raw;
+  }
+
+  /// The array arc_length_m of a FIELD, which `dlo solve` writes; a file with it is in metres.
+  void read_arc_lengths(RawShape& raw) {
+    std::string_view word = next();
+    while (!word.empty() && word != "arc_length_m" && word != "CELL_DATA") word = next();
+    if (word != "arc_length_m") return;
+    if (next() != "1") fail("arc_length_m: must have one component");
+    if (read_count("arc_length_m: number of values", raw.points.size()) != raw.points.size()) {
+      fail(fmt::format("arc_length_m: must have {} values, one a point", raw.points.size()));
+    }
+    next();  // float or double
+    for (std::size_t i = 0; i < raw.points.size(); ++i) {
+      const std::string_view number = next();
+      const std::optional<double> value = shape_number(number);
+      if (!value) fail(fmt::format("arc_length_m: {} is not a number", quoted_piece(number)));
+      raw.arc_length.push_back(*value);
+    }
+    raw.in_metres = true;
+  }
+
+  /// Indices of the points along the polyline.
+  std::vector<std::size_t> read_lines(std::size_t points) {
+    if (points == 0) fail("LINES before POINTS");
+    constexpr auto most = static_cast<std::size_t>(3 * most_shape_points);
+    const std::size_t cells = read_count("LINES: number of lines", most);
+    const std::size_t size = read_count("LINES: size", most);
+    const std::string_view saved = rest_;
+    const long saved_line = next_line_;
+    if (next() == "OFFSETS") return read_offsets(points, cells, size);
+    rest_ = saved;
+    next_line_ = saved_line;
+    std::vector<std::size_t> order;
+    for (std::size_t c = 0; c < cells; ++c) {
+      const std::size_t count = read_count("LINES: points of a line", most);
+      std::vector<std::size_t> cell;
+      for (std::size_t i = 0; i < count; ++i)
+        cell.push_back(read_count("LINES: index", points - 1));
+      append(cell, order);
+    }
+    return order;
+  }
+
+  /// LINES as files of version 5.1 have them.
+  std::vector<std::size_t> read_offsets(std::size_t points, std::size_t offsets, std::size_t size) {
+    next();  // type
+    std::vector<std::size_t> begin;
+    for (std::size_t i = 0; i < offsets; ++i) {
+      begin.push_back(read_count("OFFSETS: offset", size));
+      if (i > 0 && begin[i] < begin[i - 1]) fail("OFFSETS: must not fall");
+    }
+    if (const std::string_view word = next(); word != "CONNECTIVITY") {
+      fail(fmt::format("{} where CONNECTIVITY should be", quoted_piece(word)));
+    }
+    next();  // type
+    std::vector<std::size_t> indices;
+    for (std::size_t i = 0; i < size; ++i) {
+      indices.push_back(read_count("CONNECTIVITY: index", points - 1));
+    }
+    std::vector<std::size_t> order;
+    for (std::size_t c = 0; c + 1 < offsets; ++c) {
+      append({indices.begin() + static_cast<long>(begin[c]),
+              indices.begin() + static_cast<long>(begin[c + 1])},
+             order);
+    }
+    return order;
+  }
+
+  void append(const std::vector<std::size_t>& cell, std::vector<std::size_t>& order) const {
+    if (cell.size() < 2) fail("a line of fewer than two points");
+    if (!order.empty() && cell.front() != order.back()) {
+      fail("several separate lines (allowed: one polyline, or lines that follow on)");
+    }
+    order.insert(order.end(), cell.begin() + (order.empty() ? 0 : 1), cell.end());
+    require_point_count(order.size(), fmt::format("{}:{}", file_, line_));
+  }
+
+  static RawShape ordered(const RawShape& points, const std::vector<std::size_t>& order) {
+    RawShape result;
+    result.in_metres = points.in_metres;
+    for (const std::size_t i : order) {
+      result.points.push_back(points.points[i]);
+      result.lines.push_back(points.lines[i]);
+      if (!points.arc_length.empty()) result.arc_length.push_back(points.arc_length[i]);
+    }
+    return result;
+  }
+
+  std::string_view rest_;
+  std::string file_;
+  long next_line_ = 1;  // line in which rest_ begins
+  long line_ = 1;       // line of the last word or line
+};
+
+}  // namespace
+
+RawShape read_vtk_shape(std::string_view text, const std::string& file) {
+  const std::size_t start = text.find("# vtk");
+  return VtkReader(text.substr(start), file).read();
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "shape/raw_shape.hpp"
+
+namespace dlo::compare {
+
+/// Reads a legacy ASCII VTK polyline. @throws InputError naming file and line
+[[nodiscard]] RawShape read_vtk_shape(std::string_view text, const std::string& file);
+
+}  // namespace dlo::compare

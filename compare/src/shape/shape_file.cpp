@@ -1,0 +1,135 @@
+#include "dlo/compare/shape_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/input_file.hpp"
+#include "dlo/compare/error.hpp"
+#include "shape/raw_shape.hpp"
+#include "shape/read_csv.hpp"
+#include "shape/read_json.hpp"
+#include "shape/read_vtk.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr double largest_coordinate = 1e6;
+
+std::string where_point(const RawShape& raw, const std::string& file, std::size_t i) {
+  return raw.lines.empty() ? fmt::format("{}: point {}", file, i + 1)
+                           : fmt::format("{}:{}: point {}", file, raw.lines[i], i + 1);
+}
+
+void require_number(const RawShape& raw, const std::string& file, std::size_t i, const char* name,
+                    double value, double unit) {
+  if (std::isfinite(value) && std::abs(value * unit) <= largest_coordinate) return;
+  throw InputError(fmt::format("{}: {} = {:g} (allowed: numbers up to {:g} m)",
+                               where_point(raw, file, i), name, value, largest_coordinate));
+}
+
+void require_points(const RawShape& raw, const std::string& file, double unit) {
+  if (raw.points.size() < 2) {
+    throw InputError(fmt::format("{}: {} point{} (allowed: 2 to {})", file, raw.points.size(),
+                                 raw.points.size() == 1 ? "" : "s", most_shape_points));
+  }
+  constexpr const char* names[] = {"x", "y", "z"};
+  for (std::size_t i = 0; i < raw.points.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      require_number(raw, file, i, names[k], raw.points[i][k], unit);
+    }
+    if (i > 0 && raw.points[i] == raw.points[i - 1]) {
+      throw InputError(
+          fmt::format("{}: the same as the point before (allowed: distinct neighbours)",
+                      where_point(raw, file, i)));
+    }
+  }
+}
+
+void require_arc_lengths(const RawShape& raw, const std::string& file, double unit) {
+  const std::vector<double>& s = raw.arc_length;
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    require_number(raw, file, i, "s", s[i], unit);
+    if (i == 0) continue;
+    const bool growing = s[1] > s[0];
+    if (growing ? s[i] > s[i - 1] : s[i] < s[i - 1]) continue;
+    throw InputError(
+        fmt::format("{}: s = {} after {} (allowed: s grows from point to point, or falls)",
+                    where_point(raw, file, i), s[i], s[i - 1]));
+  }
+}
+
+/// Length of the polyline through 64 of the points at most: few enough that noise between
+/// neighbours hardly lengthens it.
+double coarse_polyline(const RawShape& raw) {
+  constexpr std::size_t most_chords = 63;
+  const std::size_t last = raw.points.size() - 1;
+  const std::size_t chords = std::min(most_chords, last);
+  double sum = 0;
+  for (std::size_t i = 0; i < chords; ++i) {
+    const auto& [x, y, z] = raw.points[last * i / chords];
+    const auto& [next_x, next_y, next_z] = raw.points[last * (i + 1) / chords];
+    sum += std::hypot(next_x - x, next_y - y, next_z - z);
+  }
+  return sum;
+}
+
+/// What one of the column s is [m]: the unit of the points, unless the polyline were more than
+/// twice as long as the arc lengths then, and not if they are metres.
+double arc_length_unit(const RawShape& raw, const std::string& file, double unit) {
+  if (raw.arc_length.empty()) return unit;
+  constexpr double longest = 5;
+  const double polyline = coarse_polyline(raw) * unit;
+  const double span = std::abs(raw.arc_length.back() - raw.arc_length.front());
+  if (polyline <= longest * span * unit) return unit;
+  if (polyline <= longest * span) return 1;
+  throw InputError(
+      fmt::format("{}: s: spans {:.4g} m where the points' polyline is {:.4g} m long (allowed: s "
+                  "in the unit of "
+                  "the points, see --unit, or in metres)",
+                  file, span * unit, polyline));
+}
+
+RawShape read_any_shape(std::string_view text, const std::string& file, double unit) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  const std::size_t start = text.find_first_not_of(" \t\r\n");
+  if (start == std::string_view::npos) {
+    throw InputError(
+        fmt::format("{}: empty (allowed: a shape as CSV, JSON or legacy VTK polyline)", file));
+  }
+  const std::string_view content = text.substr(start);
+  if (content.starts_with("# vtk")) return read_vtk_shape(text, file);
+  if (content.starts_with("<")) {
+    throw InputError(fmt::format(
+        "{}: XML (allowed: CSV, JSON or a VTK polyline in the legacy ASCII format)", file));
+  }
+  if (content.front() == '[' || content.front() == '{') return read_json_shape(text, file, unit);
+  return read_csv_shape(text, file);
+}
+
+}  // namespace
+
+MeasuredShape parse_shape(const std::string& text, const std::string& file, double unit) {
+  const RawShape raw = read_any_shape(text, file, unit);
+  const double metres = raw.in_metres ? 1 : unit;
+  require_points(raw, file, metres);
+  require_arc_lengths(raw, file, metres);
+  MeasuredShape shape;
+  shape.file = file;
+  shape.points.resize(3, static_cast<Eigen::Index>(raw.points.size()));
+  for (std::size_t i = 0; i < raw.points.size(); ++i) {
+    const auto& [x, y, z] = raw.points[i];
+    shape.points.col(static_cast<Eigen::Index>(i)) = metres * Eigen::Vector3d(x, y, z);
+  }
+  const double arc_metres = arc_length_unit(raw, file, metres);
+  for (const double s : raw.arc_length) shape.arc_length.push_back(arc_metres * s);
+  return shape;
+}
+
+MeasuredShape load_shape(const std::string& path, double unit) {
+  return parse_shape(read_file(path), path, unit);
+}
+
+}  // namespace dlo::compare

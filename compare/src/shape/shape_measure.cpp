@@ -1,0 +1,146 @@
+#include "shape/shape_measure.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dlo/compare/deviation.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Stretch up to which a segment counts by the rod's arc length alone [-].
+constexpr double counted_stretch = 0.01;
+/// Arc lengths that are nearer to an end than this share of the length are at it: the accuracy with
+/// which nearest points are found.
+constexpr double end_rounding = 1e-9;
+
+double polyline_length(const Eigen::Matrix3Xd& points) {
+  return (points.rightCols(points.cols() - 1) - points.leftCols(points.cols() - 1))
+      .colwise()
+      .norm()
+      .sum();
+}
+
+/// Past how much of the rod's end the points go on: the running largest distance from the end of
+/// all from the first that lies at it on, for each point; zero before.
+std::vector<double> distances_past(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
+                                   double end, double rounding, const Eigen::Vector3d& rod_end,
+                                   bool backwards) {
+  std::vector<double> past(s.size(), 0.0);
+  double largest = 0;
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const std::size_t i = backwards ? k : s.size() - 1 - k;
+    if (std::abs(s[i] - end) > rounding) break;
+    past[i] = (points.col(static_cast<Eigen::Index>(i)) - rod_end).norm();
+  }
+  // From the inside to the outside.
+  for (std::size_t k = s.size(); k-- > 0;) {
+    const std::size_t i = backwards ? k : s.size() - 1 - k;
+    if (past[i] == 0) continue;
+    largest = std::max(largest, past[i]);
+    past[i] = largest;
+  }
+  return past;
+}
+
+/// Value at `x` of the polynomial through the reference at some of its arc lengths.
+Eigen::Vector3d interpolated_point(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
+                                   const std::vector<std::size_t>& nodes, double x) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const std::size_t i : nodes) {
+    double factor = 1;
+    for (const std::size_t j : nodes) {
+      if (j != i) factor *= (x - s[j]) / (s[i] - s[j]);
+    }
+    sum += factor * points.col(static_cast<Eigen::Index>(i));
+  }
+  return sum;
+}
+
+}  // namespace
+
+Eigen::VectorXd point_weights(const std::vector<double>& s, const Eigen::Matrix3Xd& points) {
+  const auto count = static_cast<Eigen::Index>(s.size());
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(count);
+  for (Eigen::Index i = 0; i + 1 < count; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    const double own = (points.col(i + 1) - points.col(i)).norm() / (1 + counted_stretch);
+    const double share = std::max(s[at + 1] - s[at], own) / 2;
+    result[i] += share;
+    result[i + 1] += share;
+  }
+  const double total = result.sum();
+  if (!(total > 0)) return Eigen::VectorXd::Constant(count, 1 / static_cast<double>(count));
+  return result / total;
+}
+
+Measured measure(const Alignment& alignment, const Reference& reference, double length) {
+  const Shape& shape = alignment.shape;
+  Measured result;
+  result.arc_length = shape.arc_length;
+  std::vector<double>& s = result.arc_length;
+  if (alignment.arc_lengths == ArcLengths::nearest) {
+    const double rounding = end_rounding * length;
+    const Eigen::Matrix3Xd ends = reference(std::vector<double>{0, length}).points;
+    std::vector<double> before = distances_past(s, shape.points, 0, rounding, ends.col(0), true);
+    std::vector<double> after =
+        distances_past(s, shape.points, length, rounding, ends.col(1), false);
+    const double covered = s.back() - s.front();
+    const double longer = std::max(0.0, polyline_length(shape.points) - covered);
+    const double past = before.front() + after.back();
+    // Of another shape of the right length points lie past the end as well.
+    const double share = past > longer ? longer / past : 1;
+    result.excess_at_start_m = share * before.front();
+    result.excess_at_end_m = share * after.back();
+    const double begin = s.front();
+    const double whole = covered + share * past;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const double along = s[i] - begin + share * (before.front() - before[i] + after[i]);
+      s[i] = whole > 0 ? std::clamp(begin + along * (covered / whole), 0.0, length) : begin;
+    }
+  }
+  result.reference = reference(s).points;
+  const Eigen::VectorXd squares =
+      (shape.points - result.reference).colwise().squaredNorm().transpose();
+  result.max_m = std::sqrt(squares.maxCoeff(&result.worst));
+  // A mean is not above the largest; only its rounding is.
+  result.rms_m = std::min(result.max_m, std::sqrt(squares.dot(point_weights(s, shape.points))));
+  return result;
+}
+
+std::vector<RodPart> parts_between(const std::vector<double>& s, const Reference& reference,
+                                   double length) {
+  constexpr double least_part = 1e-3;
+  constexpr double least_distance = 0.1;
+  std::vector<RodPart> result;
+  std::vector<double> middle;
+  const Eigen::Matrix3Xd points = reference(s).points;
+  std::vector<std::vector<std::size_t>> nodes;
+  for (std::size_t i = 0; i + 1 < s.size(); ++i) {
+    const double gap = s[i + 1] - s[i];
+    if (!(gap > least_part * length)) continue;
+    std::vector<std::size_t> around = {i, i + 1};
+    for (std::size_t j = i; j-- > 0;) {
+      if (s[i] - s[j] < least_distance * gap) continue;
+      around.push_back(j);
+      break;
+    }
+    for (std::size_t j = i + 2; j < s.size(); ++j) {
+      if (s[j] - s[i + 1] < least_distance * gap) continue;
+      around.push_back(j);
+      break;
+    }
+    middle.push_back((s[i] + s[i + 1]) / 2);
+    nodes.push_back(std::move(around));
+    result.push_back({.from_m = s[i], .to_m = s[i + 1]});
+  }
+  if (middle.empty()) return result;
+  const Eigen::Matrix3Xd expected = reference(middle).points;
+  for (std::size_t k = 0; k < middle.size(); ++k) {
+    const Eigen::Vector3d told = interpolated_point(s, points, nodes[k], middle[k]);
+    result[k].untold_m = (told - expected.col(static_cast<Eigen::Index>(k))).norm();
+  }
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,106 @@
+#include "dlo/compare/chain.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <optional>
+
+#include "dlo/compare/discretise.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/energy_model/chain.hpp"
+#include "polygon/energy_problems.hpp"
+#include "solve/polygon_solution.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// What the gripper of a polygon without stretch exerts: its tension is a constraint, so it follows
+/// from the balance of the whole polygon.
+GripperLoad balancing_load(const Discretisation& discretisation, const Eigen::Matrix3Xd& points) {
+  const Eigen::Vector3d reference = discretisation.rod.grips.front().reference;
+  GripperLoad result;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector3d load = discretisation.rod.loads.col(i);
+    const Eigen::Vector3d arm = points.col(i) - reference;
+    result.force -= load;
+    result.torque -= arm.cross(load);
+  }
+  return result;
+}
+
+Solution solve_rigid_chain(const Scene& scene, const Discretisation& discretisation,
+                           const ChainScene& chain, const SolveOptions& options) {
+  energy_model::ChainOptions chain_options;
+  chain_options.max_evaluations = options.max_evaluations;
+  chain_options.time_limit = options.time_limit;
+  const energy_model::ChainResult result = energy_model::solve_chain(chain.problem, chain_options);
+  if (!energy_model::succeeded(result.status)) {
+    throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
+                                       scene.file, result.message, result.evaluations));
+  }
+  Eigen::Matrix3Xd points = chain.to_space(result.points);
+  if (discretisation.rod.grips.front().first_point != 0) {
+    points = points.rowwise().reverse().eval();
+  }
+  Solution solution = polygon_solution(discretisation, points);
+  solution.status = result.status;
+  solution.message = result.message;
+  solution.grippers = {balancing_load(discretisation, points)};
+  solution.evaluations = result.evaluations;
+  solution.seconds = result.seconds;
+  return solution;
+}
+
+Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& settings,
+                             const Discretisation& discretisation, const SolveOptions& options) {
+  const LowestPolygon lowest = lowest_polygon(scene, settings, discretisation, options);
+  const Eigen::Matrix3Xd& points = lowest.result.points;
+  Solution solution = polygon_solution(discretisation, points);
+  solution.status = lowest.result.status;
+  solution.message = lowest.result.message;
+  Eigen::Index next = 0;  // grip_forces are in the order of the grips' points
+  for (const force_model::Grip& grip : discretisation.rod.grips) {
+    GripperLoad load;
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+      const Eigen::Vector3d force = lowest.result.grip_forces.col(next++);
+      const Eigen::Vector3d arm = points.col(grip.first_point + k) - grip.reference;
+      load.force += force;
+      load.torque += arm.cross(force);
+    }
+    solution.grippers.push_back(load);
+  }
+  solution.evaluations = lowest.evaluations;
+  solution.seconds = lowest.seconds;
+  return solution;
+}
+
+}  // namespace
+
+Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
+                     const SolveOptions& options) {
+  const Discretisation discretisation = discretise(scene, settings);
+  const std::optional<ChainScene> chain = chain_scene(scene, discretisation, settings);
+  Solution solution = chain ? solve_rigid_chain(scene, discretisation, *chain, options)
+                            : solve_elastic_chain(scene, settings, discretisation, options);
+  solution.model = Model::chain;
+  return solution;
+}
+
+Shape chain_from(const Scene& scene, const ForceModelSettings& settings, const Shape& start,
+                 const SolveOptions& options) {
+  const Discretisation discretisation = discretise(scene, settings);
+  energy_model::PolygonOptions polygon_options;
+  polygon_options.max_evaluations = options.max_evaluations;
+  polygon_options.time_limit = options.time_limit;
+  const energy_model::PolygonResult result = energy_model::solve_polygon(
+      polygon_problem(discretisation.rod), resample(start, discretisation.arc_length).points,
+      polygon_options);
+  if (!energy_model::succeeded(result.status)) {
+    throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
+                                       scene.file, result.message, result.evaluations));
+  }
+  require_unstrained(scene, settings, discretisation, result.points, "chain");
+  return discretisation.shape(result.points);
+}
+
+}  // namespace dlo::compare

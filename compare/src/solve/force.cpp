@@ -1,0 +1,113 @@
+#include "dlo/compare/force.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/discretise.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/force_model/simulation.hpp"
+#include "dlo/force_model/tangent_stiffness.hpp"
+#include "polygon/step_constants.hpp"
+#include "solve/polygon_solution.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Where a simulation starts, and where it should come to rest.
+struct SimulationStart {
+  Eigen::Matrix3Xd points;
+  std::optional<Eigen::Matrix3Xd> rest;  // of the chain, where there are several states
+};
+
+/// Of several starts it is the one from which the chain comes lowest, since the two are to be
+/// compared in the same state; and it is moved by a thousandth of the way to the chain's shape, for
+/// starts are as symmetric as their scene and may lead to a saddle, on which a simulation would
+/// balance.
+SimulationStart simulation_start(const Scene& scene, const ForceModelSettings& settings,
+                                 const Discretisation& discretisation,
+                                 const SolveOptions& options) {
+  if (discretisation.starts.size() == 1) return {discretisation.starts.front(), std::nullopt};
+  constexpr double nudge = 1e-3;
+  LowestPolygon lowest = lowest_polygon(scene, settings, discretisation, options);
+  const Eigen::Matrix3Xd& start = discretisation.starts[lowest.start];
+  return {start + nudge * (lowest.result.points - start), std::move(lowest.result.points)};
+}
+
+/// Whether a simulation has come to rest elsewhere than the chain, by more than the laws differ.
+bool in_another_state(const Scene& scene, const Discretisation& discretisation,
+                      const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& rest) {
+  constexpr double apart = 0.01;
+  return rms(discretisation.arc_length, points - rest) > apart * scene.length;
+}
+
+}  // namespace
+
+Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
+                     const SolveOptions& options) {
+  const Discretisation discretisation = discretise(scene, settings);
+  const SimulationStart start = simulation_start(scene, settings, discretisation, options);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto simulation_from = [&](const Eigen::Matrix3Xd& points) {
+    try {
+      return force_model::Simulation(discretisation.rod, points,
+                                     step_options(settings, discretisation));
+    } catch (const std::invalid_argument& error) {
+      throw InputError(fmt::format("{}: the force model: {}", scene.file, error.what()));
+    }
+  };
+  const force_model::RelaxOptions limits{.tolerance = options.rest_tolerance,
+                                         .max_steps = options.max_steps,
+                                         .time_limit = options.time_limit};
+  force_model::Simulation simulation = simulation_from(start.points);
+  force_model::RelaxResult result = simulation.relax(limits);
+  const auto strayed = [&] {
+    return result.status == force_model::RelaxStatus::at_rest && start.rest &&
+           in_another_state(scene, discretisation, simulation.points(), *start.rest);
+  };
+  if (strayed()) {
+    // It has swung past the chain's state; from a tenth of the way before it it cannot.
+    constexpr double near = 0.9;
+    const long steps = result.steps;
+    simulation = simulation_from(start.points + near * (*start.rest - start.points));
+    result = simulation.relax(limits);
+    result.steps += steps;
+  }
+  if (result.status != force_model::RelaxStatus::at_rest) {
+    throw ConvergenceError(fmt::format(
+        "{}: the force model did not come to rest: {} after {} steps, about {:.2g} m from it "
+        "(stepper {}, c_F = {:.4g} m/N, c_c = {:.4g} N{})",
+        scene.file, result.message, result.steps, result.remaining_error,
+        to_string(settings.stepper), simulation.options().c_F, discretisation.parameters.c_c,
+        settings.stepper == StepperName::automatic
+            ? ""
+            : "; stepper auto chooses its constants, a lower c_c lets the others take larger "
+              "steps"));
+  }
+  require_unstrained(scene, settings, discretisation, simulation.points(), "force");
+  Solution solution = polygon_solution(discretisation, simulation.points());
+  solution.model = Model::force;
+  solution.message = result.message;
+  if (strayed()) solution.message += ", in another state than the chain";
+  // What an obstacle does to a held point inside a gripper is not felt outside.
+  force_model::Rod without_walls = simulation.rod();
+  without_walls.walls.clear();
+  for (const force_model::GripReaction& reaction :
+       force_model::grip_reactions(without_walls, simulation.points())) {
+    solution.grippers.push_back({reaction.force, reaction.torque});
+  }
+  solution.steps = result.steps;
+  solution.c_F = simulation.options().c_F;
+  solution.c_h = simulation.options().c_h;
+  solution.remaining_error = result.remaining_error;
+  solution.to_rest = force_model::check_equilibrium(simulation.rod(), simulation.points()).step;
+  solution.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return solution;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,234 @@
+#include "dlo/compare/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <exception>
+#include <optional>
+#include <stdexcept>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/force_model/heuristics.hpp"
+#include "scene/reach.hpp"
+#include "solve/polygon_response.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+/// Second-order terms may double the first-order answer, up to this share of the length.
+constexpr double bound_factor = 2;
+constexpr double largest_response = 0.03;
+/// Points of the polygon that stands for the rod itself.
+constexpr int rod_points = 97;
+constexpr double largest_joint_angle = 0.5;  // [rad]
+
+/// The time that a plan may take.
+class PlanClock {
+ public:
+  explicit PlanClock(double limit) : limit_(limit) {}
+
+  /// [s]
+  [[nodiscard]] double left() const {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
+    return limit_ - spent.count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double limit_;
+};
+
+std::vector<PlannedSpan> spans_of(const Scene& scene) {
+  std::vector<PlannedSpan> spans;
+  PlannedSpan span{.begin_held = "free"};
+  for (const Gripper* gripper : grippers_along(scene)) {
+    const std::string held = gripper->direction ? "clamp" : "pin";
+    if (gripper->at == 0) {
+      span.begin_held = held;
+    } else if (gripper->at == scene.length) {
+      span.end_held = held;
+    } else if (!gripper->direction) {
+      ++span.inner_pins;
+    } else {
+      span.end = gripper->at;
+      span.end_held = held;
+      spans.push_back(span);
+      span = {.begin = gripper->at, .begin_held = held};
+    }
+  }
+  span.end = scene.length;
+  if (span.end_held.empty()) span.end_held = "free";
+  spans.push_back(span);
+  return spans;
+}
+
+/// The rod's own shape; nothing, and why, if the energy model finds none, as for a taut rod.
+std::optional<energy_model::Equilibrium> rod_shape(const Scene& scene, double time_limit,
+                                                   std::string& why) {
+  try {
+    SolveOptions options;
+    options.time_limit = time_limit;
+    return solve_reference(scene, Model::energy, options);
+  } catch (const ConvergenceError&) {
+    why = "the energy model did not converge";
+  } catch (const InputError&) {
+    why = "the energy model needs slack between grips";
+  }
+  return std::nullopt;
+}
+
+bool touches(const energy_model::Equilibrium& rod) {
+  return std::any_of(rod.walls.begin(), rod.walls.end(),
+                     [](const Eigen::Vector3d& force) { return force.norm() > 0; });
+}
+
+/// The hooke polygon of N points with the scene's bookkeeping and a physical c_c; nothing if the
+/// grips ask for more points.
+std::optional<Discretisation> hooke_polygon(const Scene& scene, int points) {
+  ForceModelSettings settings;
+  settings.points = points;
+  settings.bookkeeping = scene.force_model.bookkeeping;
+  settings.point_weight = scene.force_model.point_weight;
+  try {
+    return discretise(scene, settings);
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
+double bounded(double response, double length) {
+  return response <= largest_response * length ? bound_factor * response : unbounded;
+}
+
+double polygon_bound(const Scene& scene, const energy_model::Equilibrium& rod, int points) {
+  const std::optional<Discretisation> polygon = hooke_polygon(scene, points);
+  if (!polygon) return unbounded;
+  return bounded(PolygonResponse(scene, *polygon, rod).discretisation(), scene.length);
+}
+
+/// From the error at one N to the next, by the order of convergence, until it is met or time is up.
+int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, double target,
+                      const PlanClock& clock) {
+  const std::vector<double> s = equal_arc_lengths(scene.length, rod_points);
+  const double curvature = std::sqrt(rod.sample(s).curvature.colwise().squaredNorm().maxCoeff());
+  int points = 5;
+  if (curvature * scene.length > largest_joint_angle) {
+    points = force_model::points_for_radius(scene.length, 1 / curvature, largest_joint_angle);
+  }
+  const double order = scene.force_model.bookkeeping == Bookkeeping::consistent ? 2 : 1;
+  while (points <= most_planned_points && clock.left() > 0) {
+    const double bound = polygon_bound(scene, rod, points);
+    if (bound <= target * scene.length) return points;
+    const double growth =
+        std::isfinite(bound) ? std::pow(bound / (target * scene.length), 1 / order) : 1.5;
+    // Careful steps: the order shows only once segments are short.
+    points += std::max(1, static_cast<int>(0.7 * points * (std::min(growth, 8.0) - 1)));
+  }
+  return 0;
+}
+
+LeftOut inertia(const Scene& scene, double speed) {
+  LeftOut result{.what = "inertia", .models = "all but a simulation in time"};
+  if (speed == 0) {
+    result.why = "nothing moves";
+    return result;
+  }
+  const bool swings = scene.grippers.size() == 1 && !scene.grippers.front().direction;
+  const double mass_per_length = scene.mass() / scene.length;
+  result.bound_m = swings ? unbounded
+                          : speed * scene.length * scene.length *
+                                std::sqrt(mass_per_length / (3 * scene.bending_stiffness()));
+  result.why =
+      swings ? "a rod on one pin swings" : "kinetic energy of a start or stop at the gripper speed";
+  return result;
+}
+
+}  // namespace
+
+double Plan::bound(const std::string& what) const {
+  for (const LeftOut& item : left_out) {
+    if (item.what == what) return item.bound_m;
+  }
+  throw std::invalid_argument(fmt::format("Plan::bound: nothing called \"{}\" is left out", what));
+}
+
+Plan make_plan(const Scene& scene, const PlanOptions& options) {
+  if (!(options.target > 0) || !(options.gripper_speed >= 0) || !(options.time_limit > 0)) {
+    throw std::invalid_argument(fmt::format(
+        "make_plan: target = {}, gripper_speed = {}, time_limit = {}, must be > 0, >= 0 and > 0",
+        options.target, options.gripper_speed, options.time_limit));
+  }
+  const PlanClock clock(options.time_limit);
+  const ReachedScene reached = without_far_obstacles(scene);
+  const Scene& near = reached.scene;
+  const std::vector<double> clearances = obstacle_clearances(scene);
+  Plan plan;
+  plan.gamma = scene.gamma();
+  plan.target = options.target;
+  plan.planar = near.planar();
+  plan.spans = spans_of(scene);
+  plan.scene_points = scene.force_model.points;
+  for (std::size_t i = 0; i < clearances.size(); ++i) {
+    plan.obstacles.push_back({clearances[i], reached.in_reach[i]});
+  }
+
+  LeftOut stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
+  LeftOut shear{.what = "shear", .models = "all"};
+  LeftOut polygon{.what = "polygon", .models = "chain, force"};
+  const auto no_bound = [&](const std::string& why) {
+    for (LeftOut* item : {&stretch, &shear, &polygon}) {
+      item->bound_m = unbounded;
+      item->why = why;
+    }
+  };
+  plan.contact = true;
+  try {
+    std::string why;
+    const std::optional<energy_model::Equilibrium> rod = rod_shape(near, options.time_limit, why);
+    plan.contact = !rod || touches(*rod);
+    const std::optional<Discretisation> fine = hooke_polygon(near, rod_points);
+    if (!rod) {
+      no_bound(why);
+    } else if (plan.contact) {
+      no_bound("the rod touches an obstacle");
+    } else if (!fine) {
+      no_bound("the grips lie closer than any polygon looked at");
+    } else {
+      const PolygonResponse response(near, *fine, *rod);
+      const double EA = scene.axial_stiffness();
+      stretch.bound_m = bounded(response.stretch(EA), scene.length);
+      stretch.why = "tension over EA, as the shape answers it";
+      shear.bound_m = bounded(response.shear(0.3 * EA), scene.length);
+      shear.why = "force across over kGA, kG >= 0.3 E";
+      polygon.bound_m = polygon_bound(near, *rod, scene.force_model.points);
+      polygon.why = fmt::format("segments instead of curves, hooke law, bookkeeping {}, N = {}",
+                                to_string(scene.force_model.bookkeeping), plan.scene_points);
+      plan.points = points_for_target(near, *rod, options.target, clock);
+    }
+  } catch (const std::exception& error) {
+    // A plan is no reason for a solve to fail.
+    no_bound(fmt::format("not found out: {}", error.what()));
+  }
+  plan.stretch = stretch.bound_m > options.target * scene.length / 10;
+  plan.left_out = {stretch,
+                   shear,
+                   polygon,
+                   inertia(scene, options.gripper_speed),
+                   {"twist", "all", 0, "none in a round, naturally straight rod free to twist"}};
+  plan.moving = plan.bound("inertia") > options.target * scene.length;
+  if (near.obstacles.size() < scene.obstacles.size()) {
+    plan.left_out.push_back(
+        {"obstacles out of reach", "all", 0,
+         fmt::format("{} of {}: no point of the rod gets there",
+                     scene.obstacles.size() - near.obstacles.size(), scene.obstacles.size())});
+  }
+  return plan;
+}
+
+}  // namespace dlo::compare

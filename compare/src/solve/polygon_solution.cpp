@@ -1,0 +1,130 @@
+#include "solve/polygon_solution.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "polygon/energy_problems.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// The segment that differs most from its rest length.
+struct Strain {
+  Eigen::Index segment = 0;
+  double share = 0;  // of its rest length, positive where longer
+};
+
+Strain largest_of(const force_model::Rod& rod, const Eigen::Matrix3Xd& points) {
+  const Eigen::Index n = rod.rest_lengths.size();
+  const Eigen::ArrayXd lengths = (points.rightCols(n) - points.leftCols(n)).colwise().norm();
+  const Eigen::ArrayXd strain = lengths / rod.rest_lengths.array() - 1;
+  Strain result;
+  strain.abs().maxCoeff(&result.segment);
+  result.share = strain[result.segment];
+  return result;
+}
+
+/// What is left of a limit of time [s].
+class TimeLeft {
+ public:
+  explicit TimeLeft(double seconds) : seconds_(seconds) {}
+
+  [[nodiscard]] double now() const {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
+    return seconds_ - spent.count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double seconds_;
+};
+
+}  // namespace
+
+Solution polygon_solution(const Discretisation& discretisation, const Eigen::Matrix3Xd& points) {
+  const force_model::Rod& rod = discretisation.rod;
+  const force_model::RodEnergy inner = force_model::energy(rod, points);
+  const Eigen::Matrix3Xd offset = points.colwise() - rod.grips.front().reference;
+  Solution solution;
+  solution.shape = discretisation.shape(points);
+  solution.parameters = discretisation.parameters;
+  SceneEnergies& energy = solution.energy;
+  energy.bending = inner.bending;
+  energy.stretch = inner.stretch;
+  energy.gravity = -discretisation.weights.cwiseProduct(offset).sum();
+  energy.load = -(rod.loads - discretisation.weights).cwiseProduct(offset).sum();
+  std::vector<bool> held(static_cast<std::size_t>(points.cols()), false);
+  for (const force_model::Grip& grip : rod.grips) {
+    std::fill_n(held.begin() + grip.first_point, grip.targets.cols(), true);
+  }
+  for (const force_model::Wall& wall : rod.walls) {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      if (held[static_cast<std::size_t>(i)]) continue;
+      force += force_model::wall_force(wall, points.col(i));
+      energy.contact += force_model::wall_energy(wall, points.col(i));
+    }
+    solution.obstacles.push_back(force);
+  }
+  return solution;
+}
+
+void require_unstrained(const Scene& scene, const ForceModelSettings& settings,
+                        const Discretisation& discretisation, const Eigen::Matrix3Xd& points,
+                        const char* model) {
+  const Strain strain = largest_of(discretisation.rod, points);
+  const double allowed = largest_strain(scene, settings);
+  if (std::abs(strain.share) <= allowed) return;
+  const double c_c = discretisation.rod.c_c;
+  throw ConvergenceError(fmt::format(
+      "{}: the {} model did not converge to a shape: segment {} of {} is {:.3g} % {} than at rest, "
+      "a tension of {:.3g} N with c_c = {:.4g} N (allowed: {:g} %; more points than {} may do{})",
+      scene.file, model, strain.segment + 1, discretisation.rod.rest_lengths.size(),
+      std::abs(strain.share) * 100, strain.share > 0 ? "longer" : "shorter", strain.share * c_c,
+      c_c, allowed * 100, settings.points,
+      settings.c_c ? "" : ", and a rod that is this soft needs its c_c given"));
+}
+
+LowestPolygon lowest_polygon(const Scene& scene, const ForceModelSettings& settings,
+                             const Discretisation& discretisation, const SolveOptions& options) {
+  const energy_model::PolygonProblem problem = polygon_problem(discretisation.rod);
+  const double allowed = largest_strain(scene, settings);
+  const TimeLeft left(options.time_limit);
+  energy_model::PolygonOptions polygon_options;
+  polygon_options.max_evaluations = options.max_evaluations;
+  LowestPolygon lowest;
+  bool lowest_is_shape = false;
+  for (std::size_t i = 0; i < discretisation.starts.size(); ++i) {
+    polygon_options.time_limit = left.now();
+    if (i > 0 && polygon_options.time_limit <= 0) break;
+    energy_model::PolygonResult result =
+        energy_model::solve_polygon(problem, discretisation.starts[i], polygon_options);
+    lowest.evaluations += result.evaluations;
+    lowest.seconds += result.seconds;
+    // Mirror images have the same energy but for rounding; the first start keeps them.
+    const double size = std::abs(result.energy) + std::abs(lowest.result.energy);
+    const bool lower = result.energy < lowest.result.energy - 1e-9 * size;
+    const bool is_shape = energy_model::succeeded(result.status) &&
+                          std::abs(largest_of(discretisation.rod, result.points).share) <= allowed;
+    const bool solved =
+        energy_model::succeeded(result.status) && !energy_model::succeeded(lowest.result.status);
+    const bool better = is_shape ? !lowest_is_shape || lower : !lowest_is_shape && solved;
+    if (i > 0 && !better) continue;
+    lowest.start = i;
+    lowest.result = std::move(result);
+    lowest_is_shape = is_shape;
+  }
+  if (!energy_model::succeeded(lowest.result.status)) {
+    throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
+                                       scene.file, lowest.result.message, lowest.evaluations));
+  }
+  require_unstrained(scene, settings, discretisation, lowest.result.points, "chain");
+  return lowest;
+}
+
+}  // namespace dlo::compare

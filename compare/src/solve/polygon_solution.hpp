@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "dlo/compare/discretise.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/energy_model/polygon.hpp"
+
+namespace dlo::compare {
+
+/// Shape and energies of a polygon, and what obstacles do to it. Points that a gripper holds do not
+/// touch them: a clamp near an obstacle may hold its inner point behind it.
+[[nodiscard]] Solution polygon_solution(const Discretisation& discretisation,
+                                        const Eigen::Matrix3Xd& points);
+
+/// A polygon that had to stretch or to shrink is no shape of the rod, however well it balances.
+/// @throws ConvergenceError then, with the number of points that may do
+void require_unstrained(const Scene& scene, const ForceModelSettings& settings,
+                        const Discretisation& discretisation, const Eigen::Matrix3Xd& points,
+                        const char* model);
+
+/// The lowest of the shapes that a polygon's starts lead to.
+struct LowestPolygon {
+  std::size_t start = 0;  ///< of Discretisation::starts
+  energy_model::PolygonResult result;
+  int evaluations = 0;  ///< of all starts
+  double seconds = 0;
+};
+
+/// @throws ConvergenceError, of a strained polygon too
+[[nodiscard]] LowestPolygon lowest_polygon(const Scene& scene, const ForceModelSettings& settings,
+                                           const Discretisation& discretisation,
+                                           const SolveOptions& options);
+
+}  // namespace dlo::compare

@@ -1,0 +1,128 @@
+#include "dlo/compare/reference.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "polygon/energy_problems.hpp"
+#include "solve/chain_start.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// The exact model's scenes, said in the scene's own words.
+void require_exact_scene(const Scene& scene) {
+  if (scene.obstacles.empty()) return;
+  throw InputError(fmt::format(
+      "{}: obstacle: {} given (allowed for model exact: none; --model energy, chain or force takes "
+      "them)",
+      scene.file, scene.obstacles.size()));
+}
+
+/// What a solver does not take, said of the scene's rod instead of the solver's function.
+[[noreturn]] void refuse_rod(const Scene& scene, Model model, const std::invalid_argument& error) {
+  const std::string_view message = error.what();
+  const std::size_t function = message.find(": ");
+  throw InputError(
+      fmt::format("{}: rod: model {}: {}", scene.file, to_string(model),
+                  message.substr(function == std::string_view::npos ? 0 : function + 2)));
+}
+
+/// What came of the searches for equilibria, for a message.
+std::string looked_from(const std::vector<energy_model::Equilibrium>& searches) {
+  if (searches.empty()) return "no start to look from";
+  return fmt::format("{} search{}, the first: {} after {} evaluations", searches.size(),
+                     searches.size() == 1 ? "" : "es", searches.front().message,
+                     searches.front().evaluations);
+}
+
+/// Whether a shape may be handed on: proven, or unproven and asked for.
+bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
+  return energy_model::succeeded(status) ||
+         (options.accept_unresolved && status == energy_model::SolveStatus::not_resolved);
+}
+
+/// A search among obstacles once more, from the chain's shape. Of two failures the one with a shape
+/// that can be shown stays.
+void try_from_chain(const Scene& scene, const SolveOptions& options,
+                    energy_model::Equilibrium& result) {
+  energy_model::Equilibrium other;
+  try {
+    other = solve_from_chain(scene, options);
+  } catch (const ConvergenceError&) {
+    return;
+  } catch (const InputError&) {
+    return;
+  }
+  const int spent = result.evaluations + other.evaluations;
+  const double seconds = result.seconds + other.seconds;
+  const bool shows = other.status == energy_model::SolveStatus::not_resolved &&
+                     result.status != energy_model::SolveStatus::not_resolved;
+  if (energy_model::succeeded(other.status) || shows) result = std::move(other);
+  result.evaluations = spent;
+  result.seconds = seconds;
+}
+
+}  // namespace
+
+energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
+                                          const SolveOptions& options) {
+  if (model == Model::exact) require_exact_scene(scene);
+  const energy_model::Problem problem = energy_problem(scene);
+  energy_model::Equilibrium result;
+  try {
+    result = model == Model::exact
+                 ? energy_model::solve_exact(problem, {.time_limit = options.time_limit})
+                 : energy_model::solve_energy(problem, {.terms = options.terms,
+                                                        .max_evaluations = options.max_evaluations,
+                                                        .time_limit = options.time_limit,
+                                                        .start = options.start});
+    const bool searched = model == Model::energy && options.start == nullptr;
+    SolveOptions rest = options;
+    rest.time_limit = std::max(options.time_limit - result.seconds, options.time_limit / 4);
+    if (!energy_model::succeeded(result.status) && searched && !scene.obstacles.empty()) {
+      try_from_chain(scene, rest, result);
+    }
+  } catch (const std::invalid_argument& error) {
+    refuse_rod(scene, model, error);
+  }
+  if (!acceptable(result.status, options)) {
+    throw ConvergenceError(fmt::format(
+        "{}: the {} model did not converge: {} ({} evaluations{}{})", scene.file, to_string(model),
+        result.message, result.evaluations,
+        result.status == energy_model::SolveStatus::time_limit
+            ? fmt::format("; --time-limit {:g} allows no more", options.time_limit)
+            : "",
+        scene.obstacles.empty() ? "" : "; --model chain or an obstacle with a stiffness may do"));
+  }
+  return result;
+}
+
+std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
+                                                        const SolveOptions& options) {
+  std::vector<energy_model::Equilibrium> states;
+  try {
+    states =
+        energy_model::all_energy(energy_problem(scene), {.terms = options.terms,
+                                                         .max_evaluations = options.max_evaluations,
+                                                         .time_limit = options.time_limit});
+  } catch (const std::invalid_argument& error) {
+    refuse_rod(scene, Model::energy, error);
+  }
+  const std::string looked = looked_from(states);
+  std::erase_if(states, [&](const energy_model::Equilibrium& state) {
+    return !acceptable(state.status, options) && state.status != energy_model::SolveStatus::saddle;
+  });
+  if (states.empty()) {
+    throw ConvergenceError(
+        fmt::format("{}: the energy model found no equilibrium ({})", scene.file, looked));
+  }
+  return states;
+}
+
+}  // namespace dlo::compare

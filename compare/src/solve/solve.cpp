@@ -1,0 +1,116 @@
+#include "dlo/compare/solve.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "dlo/compare/chain.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force.hpp"
+#include "dlo/compare/plan.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "scene/reach.hpp"
+#include "solve/chain_start.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Zero for each obstacle that was left out.
+void spread_obstacle_forces(Solution& solution, const std::vector<bool>& in_reach) {
+  std::vector<Eigen::Vector3d> forces;
+  std::size_t next = 0;
+  for (const bool solved : in_reach) {
+    const bool known = solved && next < solution.obstacles.size();
+    forces.emplace_back(known ? solution.obstacles[next++] : Eigen::Vector3d::Zero());
+  }
+  solution.obstacles = std::move(forces);
+}
+
+/// What the part of the rod beyond `at` pulls the part before it with: the opposite of all that
+/// acts on the part before.
+Eigen::Vector3d section_force(const Scene& scene, const std::vector<GripperLoad>& grippers,
+                              double at) {
+  const auto before = [&](double s) { return s < at || (s == at && at < scene.length); };
+  Eigen::Vector3d sum = at * scene.weight_per_length();
+  for (std::size_t i = 0; i < grippers.size(); ++i) {
+    if (before(scene.grippers[i].at)) sum += grippers[i].force;
+  }
+  for (const PointLoad& load : scene.loads) {
+    if (before(load.at)) sum += load.force;
+  }
+  return -sum;
+}
+
+Solution sampled(const Scene& scene, Model model, const energy_model::Equilibrium& equilibrium,
+                 const std::vector<double>& arc_lengths) {
+  constexpr int default_samples = 101;
+  const std::vector<double> samples =
+      arc_lengths.empty() ? equal_arc_lengths(scene.length, default_samples) : arc_lengths;
+  Solution solution;
+  solution.model = model;
+  solution.status = equilibrium.status;
+  solution.message = equilibrium.message;
+  solution.penetration = equilibrium.penetration;
+  const energy_model::Samples shape = equilibrium.sample(samples);
+  solution.shape = {samples, shape.points};
+  solution.energy = {.bending = equilibrium.energy.bending,
+                     .gravity = equilibrium.energy.gravity,
+                     .load = equilibrium.energy.load};
+  for (const energy_model::Reaction& reaction : equilibrium.grips) {
+    solution.grippers.push_back({reaction.force, reaction.torque});
+  }
+  solution.obstacles = equilibrium.walls;
+  const bool touches = std::any_of(equilibrium.walls.begin(), equilibrium.walls.end(),
+                                   [](const Eigen::Vector3d& force) { return force.norm() > 0; });
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    solution.curvature.push_back(shape.curvature.col(column).norm());
+    if (touches) continue;
+    const Eigen::Vector3d force = section_force(scene, solution.grippers, samples[i]);
+    // Adding zero turns -0 into 0.
+    solution.tension.push_back(force.dot(shape.tangents.col(column)) + 0.0);
+  }
+  solution.smallest_curvature = equilibrium.smallest_curvature;
+  solution.evaluations = equilibrium.evaluations;
+  solution.terms = equilibrium.terms;
+  solution.seconds = equilibrium.seconds;
+  return solution;
+}
+
+}  // namespace
+
+Solution solve(const Scene& scene, Model model, const SolveOptions& options,
+               const std::vector<double>& arc_lengths) {
+  const ReachedScene reached = without_far_obstacles(scene);
+  const Scene& near = reached.scene;
+  Solution solution;
+  if (model == Model::chain || model == Model::force) {
+    solution = model == Model::chain ? solve_chain(near, near.force_model, options)
+                                     : solve_force(near, near.force_model, options);
+    solution.curvature = joint_curvatures(solution.shape);
+    if (!arc_lengths.empty()) {
+      solution.curvature = interpolated(solution.curvature, solution.shape.arc_length, arc_lengths);
+      solution.shape = resample(solution.shape, arc_lengths);
+    }
+  } else {
+    solution = sampled(near, model, solve_reference(near, model, options), arc_lengths);
+  }
+  spread_obstacle_forces(solution, reached.in_reach);
+  return solution;
+}
+
+std::vector<Solution> solve_all(const Scene& scene, const SolveOptions& options,
+                                const std::vector<double>& arc_lengths) {
+  const ReachedScene reached = without_far_obstacles(scene);
+  std::vector<Solution> solutions;
+  for (const energy_model::Equilibrium& state : reference_states(reached.scene, options)) {
+    solutions.push_back(sampled(scene, Model::energy, state, arc_lengths));
+    spread_obstacle_forces(solutions.back(), reached.in_reach);
+  }
+  return solutions;
+}
+
+}  // namespace dlo::compare

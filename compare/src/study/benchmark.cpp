@@ -1,0 +1,105 @@
+#include "study/benchmark.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/solution.hpp"
+#include "study/benchmark_runs.hpp"
+#include "study/benchmark_tracking.hpp"
+
+namespace dlo::compare {
+
+std::vector<Scene> benchmark_scenes() {
+  Scene steel;
+  steel.name = "spring steel, horizontal";
+  steel.file = "built-in";
+  steel.length = 0.5;
+  steel.diameter = 0.002;
+  steel.material = {.name = "spring_steel",
+                    .youngs_modulus = 210e9,
+                    .density = 7900,
+                    .source = "Table 5 of the paper"};
+  steel.grippers = {{.direction = Eigen::Vector3d::UnitX()}};
+  Scene soft = steel;
+  soft.name = "a hundred times softer";
+  soft.material.youngs_modulus /= 100;
+  return {steel, soft};
+}
+
+void mark_front(std::vector<BenchmarkRun>& runs) {
+  for (BenchmarkRun& run : runs) {
+    run.front = std::none_of(runs.begin(), runs.end(), [&](const BenchmarkRun& other) {
+      const bool no_worse =
+          other.time.median_s <= run.time.median_s && other.rms_over_length <= run.rms_over_length;
+      const bool better =
+          other.time.median_s < run.time.median_s || other.rms_over_length < run.rms_over_length;
+      return no_worse && better;
+    });
+  }
+}
+
+std::optional<std::size_t> fastest_within(const std::vector<BenchmarkRun>& runs, double error,
+                                          std::optional<Model> model) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!(runs[i].rms_over_length <= error) || (model && runs[i].model != *model)) continue;
+    if (!best || runs[i].time.median_s < runs[*best].time.median_s) best = i;
+  }
+  return best;
+}
+
+bool has_run(const std::vector<BenchmarkRun>& runs, std::optional<Model> model) {
+  return std::any_of(runs.begin(), runs.end(),
+                     [&](const BenchmarkRun& run) { return !model || run.model == *model; });
+}
+
+BenchmarkReport run_benchmark(const std::vector<Scene>& scenes, const BenchmarkOptions& options,
+                              const Stages& progress) {
+  if (!(options.budget_s > 0) || options.repeats < 1 || !(options.gripper_speed > 0) ||
+      options.frames < 1) {
+    throw std::invalid_argument(
+        fmt::format("run_benchmark: budget_s = {}, repeats = {}, gripper_speed = {}, frames = {}, "
+                    "must be > 0, >= 1, > 0 and >= 1",
+                    options.budget_s, options.repeats, options.gripper_speed, options.frames));
+  }
+  BenchmarkReport report;
+  report.options = options;
+  Stopwatch watch(options, report.skipped);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    if (progress) progress(scenes[i].name);
+    // What one scene leaves over, the others may use.
+    watch.allow((options.budget_s - watch.seconds()) / static_cast<double>(scenes.size() - i));
+    SceneBenchmark scene;
+    scene.scene = scenes[i].name;
+    scene.gamma = scenes[i].gamma();
+    ReferenceShape reference = benchmark_reference(scenes[i]);
+    scene.reference = reference.model;
+    StaticRuns static_runs(scenes[i], reference, watch);
+    // The cheapest of every model first, whatever the tracking runs leave over for the others.
+    (void)static_runs.next_round();
+    // The time of a median tells more than that of the first solution.
+    for (const BenchmarkRun& run : static_runs.runs()) {
+      if (run.model == Model::exact) reference.rod.seconds = run.time.median_s;
+    }
+    scene.tracking = tracking_runs(scenes[i], reference, options, watch);
+    while (static_runs.next_round()) continue;
+    scene.runs = static_runs.runs();
+    mark_front(scene.runs);
+    mark_front(scene.tracking);
+    for (const double error : {0.1, 0.01, 1e-3, 1e-6}) {
+      scene.answers.push_back({error, fastest_within(scene.runs, error)});
+      scene.tracking_answers.push_back({error, fastest_within(scene.tracking, error)});
+    }
+    scene.energy_at_1e6 = fastest_within(scene.runs, 1e-6, Model::energy);
+    scene.force_at_1e3 = fastest_within(scene.runs, 1e-3, Model::force);
+    report.scenes.push_back(std::move(scene));
+  }
+  report.seconds = watch.seconds();
+  return report;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,223 @@
+#include "study/benchmark_runs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dlo/compare/chain.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solution.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr int reference_samples = 101;
+
+double error_of(const Scene& scene, const Shape& shape, const energy_model::Equilibrium& rod) {
+  return rms(shape.arc_length, shape.points - rod.sample(shape.arc_length).points) / scene.length;
+}
+
+double error_of(const Scene& scene, const energy_model::Equilibrium& a,
+                const energy_model::Equilibrium& b) {
+  const std::vector<double> s = equal_arc_lengths(scene.length, reference_samples);
+  return error_of(scene, {s, a.sample(s).points}, b);
+}
+
+}  // namespace
+
+double Stopwatch::seconds() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count();
+}
+
+bool Stopwatch::fits(const std::string& name, double predicted_s) {
+  constexpr double largest_share = 0.25;
+  const double now_left = left();
+  if (now_left > 0 && predicted_s <= largest_share * now_left) return true;
+  skipped_.push_back(now_left > 0 ? fmt::format("{} (predicted {:.2g} s, {:.2g} s left)", name,
+                                                predicted_s, now_left)
+                                  : fmt::format("{} (no time left)", name));
+  return false;
+}
+
+bool Stopwatch::done(const std::string& name, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const std::exception& error) {
+    skipped_.push_back(fmt::format("{} ({})", name, error.what()));
+    return false;
+  }
+  return true;
+}
+
+bool Stopwatch::run_once(const std::string& name, double predicted_s,
+                         const std::function<void()>& work) {
+  return fits(name, predicted_s) && done(name, work);
+}
+
+std::optional<Timing> Stopwatch::time(const std::string& name, double predicted_s,
+                                      const std::function<void()>& work) {
+  constexpr double quick = 0.02;  // what is quicker in total is repeated more often
+  if (!fits(name, predicted_s)) return std::nullopt;
+  std::vector<double> times;
+  double total = 0;
+  const auto open = [&] {
+    const int count = static_cast<int>(times.size());
+    if (count < options_.repeats) return count == 0 || total + total / count < left() / 4;
+    return total < quick && count < 20 * options_.repeats;
+  };
+  while (open()) {
+    const double before = seconds();
+    if (!done(name, work)) return std::nullopt;
+    times.push_back(seconds() - before);
+    total += times.back();
+  }
+  return timing_of(std::move(times));
+}
+
+Timing timing_of(std::vector<double> seconds) {
+  std::sort(seconds.begin(), seconds.end());
+  const auto at = [&](double share) {
+    const double index = share * static_cast<double>(seconds.size() - 1);
+    return seconds[static_cast<std::size_t>(std::lround(index))];
+  };
+  return {at(0.5), at(0.25), at(0.75), static_cast<int>(seconds.size())};
+}
+
+ReferenceShape benchmark_reference(const Scene& scene) {
+  ReferenceShape result;
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  try {
+    result.rod = solve_reference(scene, Model::exact);
+    result.agreement = error_of(scene, energy, result.rod);
+  } catch (const InputError&) {
+    result = {Model::energy, energy, std::nan("")};
+  } catch (const ConvergenceError&) {
+    result = {Model::energy, energy, std::nan("")};
+  }
+  return result;
+}
+
+StaticRuns::StaticRuns(const Scene& scene, const ReferenceShape& reference, Stopwatch& watch)
+    : scene_(scene), reference_(reference), watch_(watch) {
+  const ForceVariant hooke;
+  ForceVariant soft;
+  soft.stretch_share = 1e-3;
+  ForceVariant paper_law = soft;
+  paper_law.law = Law::paper;
+  paper_law.bookkeeping = Bookkeeping::paper;
+  ForceVariant paper_chain = paper_law;
+  paper_chain.stretch_share = 1;
+  ForceVariant dynamic = soft;
+  dynamic.stepper = StepperName::dynamic;
+  const auto add = [&](Model model, const ForceVariant& variant, const std::vector<int>& sizes) {
+    series_.push_back({.model = model, .variant = variant, .sizes = sizes});
+  };
+  const std::vector<int> points = {8, 16, 32, 64, 128, 256};
+  if (reference.model == Model::exact) add(Model::exact, {}, {0});
+  add(Model::energy, {}, {2, 3, 4, 6, 8, 12, 16, 24, 0});
+  for (const ForceVariant& variant : {hooke, paper_chain}) add(Model::chain, variant, points);
+  for (const ForceVariant& variant : {soft, hooke, dynamic, paper_law}) {
+    add(Model::force, variant, points);
+  }
+}
+
+bool StaticRuns::next_round() {
+  bool ran = false;
+  for (StaticSeries& series : series_) {
+    if (series.sizes.empty()) continue;
+    ran = true;
+    const int size = series.sizes.front();
+    series.sizes.erase(series.sizes.begin());
+    if (series.model == Model::exact || series.model == Model::energy) {
+      run_continuous(series, size);
+    } else {
+      run_polygon(series, size);
+    }
+  }
+  return ran;
+}
+
+std::vector<BenchmarkRun> StaticRuns::runs() const {
+  std::vector<BenchmarkRun> all;
+  for (const StaticSeries& series : series_) {
+    all.insert(all.end(), series.runs.begin(), series.runs.end());
+  }
+  return all;
+}
+
+void StaticRuns::run_continuous(StaticSeries& series, int terms) {
+  const Model model = series.model;
+  energy_model::Equilibrium result;
+  const std::optional<Timing> time = watch_.time(
+      fmt::format("{}: {}{}", scene_.name, to_string(model),
+                  terms > 0 ? fmt::format(", K = {}", terms) : ""),
+      series.last_s, [&] { result = solve_reference(scene_, model, {.terms = terms}); });
+  if (!time) return;
+  series.last_s = time->median_s;
+  BenchmarkRun run{.scene = scene_.name,
+                   .model = model,
+                   .size = terms,
+                   .time = *time,
+                   .work = result.evaluations,
+                   .rms_over_length = model == Model::exact
+                                          ? reference_.agreement
+                                          : error_of(scene_, result, reference_.rod)};
+  if (model == Model::energy && terms == 0) run.setting = "K as needed";
+  series.runs.push_back(std::move(run));
+}
+
+/// Each is predicted from the one before; what does not fit in, larger ones do not either.
+void StaticRuns::run_polygon(StaticSeries& series, int points) {
+  const Model model = series.model;
+  const std::string setting = series.variant.text(model);
+  const ForceModelSettings settings = series.variant.settings(scene_, points);
+  // Longer than most series: what takes more steps is said to be skipped.
+  SolveOptions options{.max_steps = 60'000'000 / points};
+  // A tenth of the hooke polygon's error at this N, about 0.1 / N^2.
+  options.rest_tolerance = std::clamp(0.01 / (points * points), 1e-7, 1e-4);
+  const double growth = series.last_points > 0 ? std::pow(1.0 * points / series.last_points, 3) : 1;
+  Solution solution;
+  const std::optional<Timing> time =
+      watch_.time(fmt::format("{}: {}, N = {}, {}", scene_.name, to_string(model), points, setting),
+                  series.last_s * growth, [&] {
+                    solution = model == Model::chain ? solve_chain(scene_, settings, options)
+                                                     : solve_force(scene_, settings, options);
+                  });
+  if (!time) {
+    series.sizes.clear();
+    return;
+  }
+  series.last_s = time->median_s;
+  series.last_points = points;
+  series.runs.push_back({.scene = scene_.name,
+                         .model = model,
+                         .size = points,
+                         .setting = setting,
+                         .time = *time,
+                         .work = model == Model::chain ? solution.evaluations : solution.steps,
+                         .rms_over_length = error_of(scene_, solution.shape, reference_.rod)});
+}
+
+ForceModelSettings ForceVariant::settings(const Scene& scene, int points) const {
+  ForceModelSettings result;
+  result.points = points;
+  result.law = law;
+  result.bookkeeping = bookkeeping;
+  result.stepper = stepper;
+  result.c_c = stretch_share * scene.axial_stiffness();
+  return result;
+}
+
+std::string ForceVariant::text(Model model) const {
+  std::string result = fmt::format("{}, {}", to_string(law), to_string(bookkeeping));
+  if (model == Model::chain) return result;  // no steps, and rigid or nearly so
+  return fmt::format("{}, {}, c_c = {}", result, to_string(stepper),
+                     stretch_share == 1 ? "AE" : fmt::format("AE/{:g}", 1 / stretch_share));
+}
+
+}  // namespace dlo::compare

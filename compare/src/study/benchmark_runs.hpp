@@ -1,0 +1,98 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
+#include "study/benchmark.hpp"
+
+namespace dlo::compare {
+
+/// Times runs within what is left of the budget.
+class Stopwatch {
+ public:
+  Stopwatch(const BenchmarkOptions& options, std::vector<std::string>& skipped)
+      : options_(options), skipped_(skipped) {}
+
+  [[nodiscard]] double seconds() const;  ///< since construction
+  void allow(double seconds) { until_ = this->seconds() + seconds; }
+  [[nodiscard]] double left() const { return until_ - seconds(); }
+
+  /// Runs `work` repeatedly. Nothing if it is predicted to take more than a quarter of what is
+  /// left, or does not converge.
+  [[nodiscard]] std::optional<Timing> time(const std::string& name, double predicted_s,
+                                           const std::function<void()>& work);
+
+  /// The same for a run that times its own parts; false if it was skipped.
+  [[nodiscard]] bool run_once(const std::string& name, double predicted_s,
+                              const std::function<void()>& work);
+
+ private:
+  [[nodiscard]] bool fits(const std::string& name, double predicted_s);
+  [[nodiscard]] bool done(const std::string& name, const std::function<void()>& work);
+
+  const BenchmarkOptions& options_;
+  std::vector<std::string>& skipped_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  double until_ = 0;
+};
+
+[[nodiscard]] Timing timing_of(std::vector<double> seconds);
+
+struct ReferenceShape {
+  Model model = Model::exact;
+  energy_model::Equilibrium rod;
+  /// Of `exact` and `energy` from each other, RMS over the length; NaN without exact.
+  double agreement = 0;
+};
+
+[[nodiscard]] ReferenceShape benchmark_reference(const Scene& scene);
+
+/// A force model of the benchmark.
+struct ForceVariant {
+  Law law = Law::hooke;
+  Bookkeeping bookkeeping = Bookkeeping::consistent;
+  StepperName stepper = StepperName::automatic;
+  double stretch_share = 1;  ///< c_c over AE
+
+  [[nodiscard]] ForceModelSettings settings(const Scene& scene, int points) const;
+  [[nodiscard]] std::string text(Model model) const;
+};
+
+/// One model of the static runs over its sizes, the cheapest first.
+struct StaticSeries {
+  Model model = Model::exact;
+  ForceVariant variant;    ///< of chain and force
+  std::vector<int> sizes;  ///< K or N, not yet run
+  std::vector<BenchmarkRun> runs;
+  double last_s = 0;    ///< time of the run before
+  int last_points = 0;  ///< its N
+};
+
+/// The static runs, in rounds: the first size of every model, then the second and so on, so that a
+/// small budget leaves some runs of each.
+class StaticRuns {
+ public:
+  /// All are kept by reference.
+  StaticRuns(const Scene& scene, const ReferenceShape& reference, Stopwatch& watch);
+
+  /// One round; false if nothing is left to run.
+  bool next_round();
+  /// All so far, by model and size.
+  [[nodiscard]] std::vector<BenchmarkRun> runs() const;
+
+ private:
+  void run_continuous(StaticSeries& series, int terms);
+  void run_polygon(StaticSeries& series, int points);
+
+  const Scene& scene_;
+  const ReferenceShape& reference_;
+  Stopwatch& watch_;
+  std::vector<StaticSeries> series_;
+};
+
+}  // namespace dlo::compare

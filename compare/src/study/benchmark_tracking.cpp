@@ -1,0 +1,199 @@
+#include "study/benchmark_tracking.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/force_model/simulation.hpp"
+#include "polygon/energy_problems.hpp"
+#include "polygon/step_constants.hpp"
+#include "study/benchmark_runs.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr double frame_s = 1e-3;
+
+/// The frames of one run.
+struct Frames {
+  std::vector<double> seconds;
+  long work = 0;
+  double squares = 0;  // of the errors over the length
+  int errors = 0;
+
+  void add_error(double square) {
+    squares += square;
+    ++errors;
+  }
+
+  void add(BenchmarkRun& run) const {
+    const auto count = static_cast<double>(seconds.size());
+    run.time = timing_of(seconds);
+    run.work = std::lround(static_cast<double>(work) / count);
+    run.rms_over_length = std::sqrt(squares / errors);
+  }
+};
+
+/// The scene with its grips moved along +x and turned about z, as one body, until the end of a
+/// frame: what turns changes the shape, what moves does not.
+Scene moved(const Scene& scene, const BenchmarkOptions& options, int frame) {
+  const double way = (frame + 1) * frame_s * options.gripper_speed;
+  const Eigen::AngleAxisd turn(way / scene.length, Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d origin = scene.grippers.front().position;
+  Scene result = scene;
+  for (Gripper& gripper : result.grippers) {
+    gripper.position = origin + way * Eigen::Vector3d::UnitX() + turn * (gripper.position - origin);
+    if (gripper.direction) gripper.direction = (turn * *gripper.direction).normalized();
+  }
+  return result;
+}
+
+/// The quasi-static shapes at the frames at which errors are looked at.
+struct Track {
+  static constexpr int stride = 10;
+  std::vector<energy_model::Equilibrium> rods;
+
+  [[nodiscard]] static bool looks_at(int frame) { return frame % stride == 0; }
+  [[nodiscard]] double square_error(const Scene& scene, const Shape& shape, int frame) const {
+    const energy_model::Equilibrium& rod = rods[static_cast<std::size_t>(frame / stride)];
+    const double distance =
+        rms(shape.arc_length, shape.points - rod.sample(shape.arc_length).points) / scene.length;
+    return distance * distance;
+  }
+};
+
+Track track_of(const Scene& scene, Model model, const BenchmarkOptions& options) {
+  Track track;
+  for (int frame = 0; frame < options.frames; frame += Track::stride) {
+    track.rods.push_back(solve_reference(moved(scene, options, frame), model));
+  }
+  return track;
+}
+
+BenchmarkRun track_energy(const Scene& scene, int terms, const Track& track,
+                          const BenchmarkOptions& options) {
+  energy_model::EnergySolver solver({.terms = terms});
+  energy_model::Problem problem = energy_problem(scene);
+  (void)solver.solve(problem);
+  const std::vector<double> s = equal_arc_lengths(scene.length, 21);
+  Frames frames;
+  for (int frame = 0; frame < options.frames; ++frame) {
+    problem = energy_problem(moved(scene, options, frame));
+    const auto begin = std::chrono::steady_clock::now();
+    const energy_model::Equilibrium rod = solver.follow(problem);
+    const Eigen::Matrix3Xd points = rod.sample(s).points;
+    frames.seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    frames.work += rod.evaluations;
+    if (Track::looks_at(frame)) frames.add_error(track.square_error(scene, {s, points}, frame));
+  }
+  BenchmarkRun run{.scene = scene.name, .model = Model::energy, .size = terms};
+  if (terms == 0) run.setting = "K as needed";
+  frames.add(run);
+  return run;
+}
+
+/// Steps that fit into a frame, from a copy that is thrown away; a median, since a busy machine may
+/// hold up any trial.
+long steps_per_frame(force_model::Simulation simulation) {
+  constexpr int trials = 15;
+  constexpr int steps = 200;
+  std::vector<double> seconds;
+  for (int trial = 0; trial < trials; ++trial) {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < steps; ++i) (void)simulation.step();
+    seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+  }
+  const double step_s = timing_of(seconds).median_s / steps;
+  return std::max(1L, std::lround(std::floor(frame_s / step_s)));
+}
+
+BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int points,
+                         const Track& track, const BenchmarkOptions& options) {
+  const ForceModelSettings settings = variant.settings(scene, points);
+  const Discretisation discretisation = discretise(scene, settings);
+  force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(),
+                                     step_options(settings, discretisation));
+  (void)simulation.relax({.tolerance = 1e-5});
+  const long steps = steps_per_frame(simulation);
+  Frames frames;
+  for (int frame = 0; frame < options.frames; ++frame) {
+    const Discretisation now = discretise(moved(scene, options, frame), settings);
+    const auto begin = std::chrono::steady_clock::now();
+    for (std::size_t i = 0; i < now.rod.grips.size(); ++i) {
+      simulation.move_grip(i, now.rod.grips[i].targets, now.rod.grips[i].reference);
+    }
+    for (long i = 0; i < steps; ++i) (void)simulation.step();
+    frames.seconds.push_back(
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+    frames.work += steps;
+    if (Track::looks_at(frame)) {
+      frames.add_error(track.square_error(scene, now.shape(simulation.points()), frame));
+    }
+  }
+  BenchmarkRun run{.scene = scene.name,
+                   .model = Model::force,
+                   .size = points,
+                   .setting = variant.text(Model::force)};
+  frames.add(run);
+  return run;
+}
+
+}  // namespace
+
+std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape& reference,
+                                        const BenchmarkOptions& options, Stopwatch& watch) {
+  std::vector<BenchmarkRun> runs;
+  Track track;
+  const double predicted_track =
+      reference.rod.seconds * options.frames / static_cast<double>(Track::stride);
+  const auto find = [&] { track = track_of(scene, reference.model, options); };
+  if (!watch.run_once(scene.name + ": tracking, reference", predicted_track, find)) return runs;
+  const auto add = [&](const std::string& name, double predicted, std::vector<BenchmarkRun>& to,
+                       const std::function<BenchmarkRun()>& work) {
+    BenchmarkRun run;
+    if (watch.run_once(fmt::format("{}: tracking, {}", scene.name, name), predicted,
+                       [&] { run = work(); })) {
+      to.push_back(std::move(run));
+    }
+  };
+  const auto add_energy = [&](int terms) {
+    // Each is about as fast as the one before; the first is short.
+    const double predicted = runs.empty() ? 0 : runs.back().time.median_s * options.frames;
+    add(terms > 0 ? fmt::format("energy, K = {}", terms) : "energy, K as needed", predicted, runs,
+        [&] { return track_energy(scene, terms, track, options); });
+  };
+  // Of c_c = AE/1000 and AE.
+  constexpr std::array<double, 2> shares = {1e-3, 1.0};
+  std::array<std::vector<BenchmarkRun>, shares.size()> force_runs;
+  const auto add_force = [&](int points) {
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      ForceVariant variant;
+      variant.stretch_share = shares[i];
+      add(fmt::format("force, N = {}, {}", points, variant.text(Model::force)),
+          options.frames * frame_s, force_runs[i],
+          [&] { return track_force(scene, variant, points, track, options); });
+    }
+  };
+  // The cheapest of both models first.
+  add_energy(3);
+  add_force(8);
+  for (const int terms : {6, 12, 0}) add_energy(terms);
+  for (const int points : {16, 32}) add_force(points);
+  for (const std::vector<BenchmarkRun>& of_share : force_runs) {
+    runs.insert(runs.end(), of_share.begin(), of_share.end());
+  }
+  return runs;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,194 @@
+#include "study/stability.hpp"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "base/progress_counter.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/energy_model/polygon.hpp"
+#include "dlo/force_model/simulation.hpp"
+#include "parallel/threads.hpp"
+#include "polygon/energy_problems.hpp"
+#include "polygon/step_constants.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr int looks = 64;              // at a run, and consecutive steps at its end
+constexpr double rest_drift = 1e-6;    // what a rod at rest may move, in lengths
+constexpr double rest_energy = 1e-12;  // what its energy may grow, of its size: rounding only
+
+force_model::StepOptions options_for(const HardCase& hard, StepperName stepper) {
+  ForceModelSettings settings;
+  settings.stepper = stepper;
+  return step_options(settings, hard.discretisation);
+}
+
+/// Drives the gripper through its motion.
+bool move_gripper(const HardCase& hard, force_model::Simulation& simulation) {
+  for (long step = 1; step <= hard.motion.steps; ++step) {
+    const double share = static_cast<double>(step) / static_cast<double>(hard.motion.steps);
+    const force_model::Rod now = hard.rod(share);
+    simulation.move_grip(0, now.grips.front().targets, now.grips.front().reference);
+    if (simulation.step().status == force_model::StepStatus::diverged) return false;
+  }
+  return true;
+}
+
+/// Leaves the rod to itself until it rests or the steps are used up.
+Trajectory come_to_rest(force_model::Simulation& simulation, long max_steps) {
+  Trajectory trajectory{.finite = true};
+  const force_model::RelaxOptions part{.tolerance = 1e-6,
+                                       .max_steps = std::max(1L, (max_steps - looks) / looks)};
+  for (int look = 0; look < looks && trajectory.finite && !trajectory.at_rest; ++look) {
+    const force_model::RelaxResult result = simulation.relax(part);
+    trajectory.finite = result.status != force_model::RelaxStatus::diverged;
+    trajectory.at_rest = result.status == force_model::RelaxStatus::at_rest;
+    if (look >= looks / 2 || trajectory.at_rest) trajectory.late.push_back(simulation.points());
+  }
+  for (int step = 0; step < looks && trajectory.finite && !trajectory.at_rest; ++step) {
+    trajectory.finite = simulation.step().status != force_model::StepStatus::diverged;
+    trajectory.last.push_back(simulation.points());
+  }
+  if (!trajectory.at_rest) trajectory.late.push_back(simulation.points());
+  return trajectory;
+}
+
+/// Steps on from rest; every look counts.
+Trajectory stay_at_rest(force_model::Simulation& simulation, long steps) {
+  Trajectory trajectory{.finite = true};
+  for (long step = 1; step <= steps && trajectory.finite; ++step) {
+    trajectory.finite = simulation.step().status != force_model::StepStatus::diverged;
+    if (step % std::max(1L, steps / looks) == 0) trajectory.late.push_back(simulation.points());
+  }
+  trajectory.late.push_back(simulation.points());
+  return trajectory;
+}
+
+energy_model::PolygonResult reference_of(const HardCase& hard) {
+  const energy_model::PolygonProblem problem = polygon_problem(hard.rod(1));
+  energy_model::PolygonResult result =
+      energy_model::solve_polygon(problem, hard.moved(hard.discretisation.starts.front(), 1));
+  if (!energy_model::succeeded(result.status)) {
+    throw ConvergenceError(fmt::format("hard case '{}': the chain model has no rest shape: {}",
+                                       hard.name, result.message));
+  }
+  return result;
+}
+
+/// A stable equilibrium that is not the reference is as good: says so if this is one.
+void try_other_equilibrium(const force_model::Rod& rod, const Trajectory& trajectory,
+                           double reference_energy, double tolerance, StabilityResult& result) {
+  const Eigen::Matrix3Xd& end = trajectory.late.back();
+  const double shortest = (end.rightCols(end.cols() - 1) - end.leftCols(end.cols() - 1))
+                              .colwise()
+                              .squaredNorm()
+                              .minCoeff();
+  if (!(shortest > 0)) return;  // no start for solve_polygon
+  const energy_model::PolygonResult other = energy_model::solve_polygon(polygon_problem(rod), end);
+  if (!energy_model::succeeded(other.status)) return;
+  if (classify(trajectory, other.points, rod.length(), tolerance) != Outcome::pass) return;
+  result.outcome = Outcome::pass;
+  result.note = fmt::format(
+      "another stable equilibrium, {:.3g} l from the reference; energy {:.9g} J, there {:.9g} J",
+      result.error_over_length, other.energy, reference_energy);
+  result.error_over_length = largest_distance(end, other.points) / rod.length();
+}
+
+StabilityResult refused(const HardCase& hard, StepperName stepper) {
+  StabilityResult result{.name = hard.name, .what = hard.what, .stepper = stepper};
+  result.outcome = Outcome::refused;
+  result.error_over_length = std::numeric_limits<double>::quiet_NaN();
+  result.note = hard.refusal;
+  return result;
+}
+
+StabilityResult run_against(const energy_model::PolygonResult& reference, const HardCase& hard,
+                            StepperName stepper, const StabilityOptions& options) {
+  StabilityResult result{.name = hard.name, .what = hard.what, .stepper = stepper};
+  const force_model::Rod rod = hard.rod(1);
+  force_model::Simulation simulation(hard.rod(0), hard.start, options_for(hard, stepper));
+  const long budget =
+      stepper == StepperName::automatic ? options.max_steps_auto : options.max_steps;
+  const bool rests = hard.steps_at_rest > 0;
+  Trajectory trajectory;
+  if (move_gripper(hard, simulation)) {
+    trajectory =
+        rests ? stay_at_rest(simulation, hard.steps_at_rest) : come_to_rest(simulation, budget);
+  } else {
+    trajectory.late.push_back(simulation.points());
+  }
+  const double tolerance = rests ? rest_drift : options.tolerance;
+  result.outcome = classify(trajectory, reference.points, rod.length(), tolerance);
+  result.steps = simulation.steps();
+  result.at_rest = trajectory.at_rest;
+  const Eigen::Matrix3Xd& end = trajectory.late.back();
+  result.error_over_length = trajectory.finite
+                                 ? largest_distance(end, reference.points) / rod.length()
+                                 : std::numeric_limits<double>::infinity();
+  if (rests) {
+    const double before = force_model::energy(rod, hard.start).total();
+    const double growth = force_model::energy(rod, end).total() - before;
+    const double share = growth / std::abs(before);
+    result.note = fmt::format("energy changed by {:.2g} of its size", share);
+    if (result.outcome == Outcome::pass && !(share <= rest_energy)) result.outcome = Outcome::wrong;
+  } else if (result.outcome == Outcome::wrong) {
+    result.note = trajectory.at_rest ? "at rest elsewhere" : "still creeping";
+    try_other_equilibrium(rod, trajectory, reference.energy, tolerance, result);
+  }
+  return result;
+}
+
+}  // namespace
+
+StabilityResult run_hard_case(const HardCase& hard, StepperName stepper,
+                              const StabilityOptions& options) {
+  if (!hard.refusal.empty()) return refused(hard, stepper);
+  return run_against(reference_of(hard), hard, stepper, options);
+}
+
+std::vector<StabilityResult> stability(const StabilityOptions& options) {
+  std::vector<HardCase> cases = hard_cases(options.steps_at_rest);
+  std::string names;
+  for (const HardCase& hard : cases) names += (names.empty() ? "" : ", ") + hard.name;
+  std::erase_if(cases, [&](const HardCase& hard) {
+    return hard.name.find(options.name_contains) == std::string::npos ||
+           std::find(options.left_out.begin(), options.left_out.end(), hard.name) !=
+               options.left_out.end();
+  });
+  if (cases.empty()) {
+    throw InputError(fmt::format("no hard case's name contains '{}' (allowed: part of {})",
+                                 options.name_contains, names));
+  }
+  const std::size_t steppers = options.steppers.size();
+  std::vector<energy_model::PolygonResult> references(cases.size());
+  std::vector<StabilityResult> results(cases.size() * steppers);
+  ProgressCounter counter(options.progress,
+                          static_cast<std::int64_t>(references.size() + results.size()));
+  const auto find_reference = [&](std::size_t i) {
+    if (cases[i].refusal.empty()) references[i] = reference_of(cases[i]);
+    counter.add_one();
+  };
+  const auto run = [&](std::size_t i) {
+    const HardCase& hard = cases[i / steppers];
+    const StepperName stepper = options.steppers[i % steppers];
+    results[i] = hard.refusal.empty()
+                     ? run_against(references[i / steppers], hard, stepper, options)
+                     : refused(hard, stepper);
+    counter.add_one();
+  };
+  tbb::task_arena arena(arena_threads(options.threads));
+  execute(arena, [&] {
+    tbb::parallel_for(std::size_t{0}, cases.size(), find_reference);
+    tbb::parallel_for(std::size_t{0}, results.size(), run);
+  });
+  return results;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,293 @@
+// What stops reading a file is told, whatever it is; what a file may hold is bounded.
+
+#include "base/input_file.hpp"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "batch/baseline.hpp"
+#include "batch/sweep_file.hpp"
+#include "batch/sweep_merge.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/material.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/shape_file.hpp"
+#include "scene/scene_template.hpp"
+
+namespace {
+
+using dlo::compare::InputError;
+using dlo::compare::InputFile;
+
+std::string input_error_of(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+class Reading : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("dlo_reading_test_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name), std::ios::binary) << text;
+  }
+
+ private:
+  std::filesystem::path folder_;
+};
+
+/// Of every reader of a file the message for this one.
+std::vector<std::string> messages_of_all_readers(const std::string& file, const std::string& out) {
+  using namespace dlo::compare;
+  return {input_error_of([&] { (void)load_scene(file); }),
+          input_error_of([&] { (void)load_scene_template(file); }),
+          input_error_of([&] { (void)load_parameters(file); }),
+          input_error_of([&] { (void)load_materials(file); }),
+          input_error_of([&] { (void)load_baseline(file); }),
+          input_error_of([&] { (void)load_shape(file, 1); }),
+          input_error_of([&] { (void)merge_sweep({file}, out); })};
+}
+
+// A terminal hands out what was written to it; when its other end is closed, reading fails.
+TEST_F(Reading, AnErrorAfterThePartThatCouldBeReadIsAnError) {
+  const int terminal = ::posix_openpt(O_RDWR | O_NOCTTY);
+  ASSERT_GE(terminal, 0) << std::strerror(errno);
+  ASSERT_EQ(::grantpt(terminal), 0);
+  ASSERT_EQ(::unlockpt(terminal), 0);
+  const int other = ::open(::ptsname(terminal), O_RDWR | O_NOCTTY);
+  ASSERT_GE(other, 0);
+  termios mode{};
+  ASSERT_EQ(::tcgetattr(other, &mode), 0);
+  ::cfmakeraw(&mode);
+  ASSERT_EQ(::tcsetattr(other, TCSANOW, &mode), 0);
+  ASSERT_EQ(::write(other, "first half", 10), 10);
+  ::close(other);
+  InputFile file(terminal, "a.toml");
+  std::string text;
+  const std::string message = input_error_of([&] {
+    while (file.read_some(text, 100)) continue;
+  });
+  EXPECT_EQ(text, "first half");
+  EXPECT_EQ(message, "a.toml: cannot be read (Input/output error, after 10 bytes)");
+}
+
+TEST_F(Reading, EveryReaderTellsAReadErrorAndADirectory) {
+  for (const std::string& message : messages_of_all_readers("/proc/self/mem", path("o"))) {
+    EXPECT_EQ(message, "/proc/self/mem: cannot be read (Input/output error)");
+  }
+  for (const std::string& message : messages_of_all_readers(path(""), path("o"))) {
+    EXPECT_EQ(message, path("") + ": cannot be read (Is a directory)");
+  }
+}
+
+TEST_F(Reading, EveryReaderTellsWhyAFileCannotBeOpened) {
+  std::filesystem::create_symlink(path("loop"), path("loop"));
+  for (const std::string& message : messages_of_all_readers(path("loop"), path("o"))) {
+    EXPECT_NE(message.find("Too many levels of symbolic links"), std::string::npos) << message;
+  }
+  write("here.toml", "x");
+  for (const std::string& message : messages_of_all_readers(path("here"), path("o"))) {
+    EXPECT_NE(message.find("(No such file or directory, but " + path("here.toml") + " is there)"),
+              std::string::npos)
+        << message;
+  }
+}
+
+TEST_F(Reading, TellsThatNoMoreFilesCanBeOpened) {
+  write("a.toml", "x");
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  const int next = ::open("/dev/null", O_RDONLY);
+  ASSERT_EQ(::close(next), 0);
+  rlimit few = before;
+  few.rlim_cur = static_cast<rlim_t>(next);
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &few), 0);
+  const std::vector<std::string> messages = messages_of_all_readers(path("a.toml"), path("o"));
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  for (const std::string& message : messages) {
+    EXPECT_EQ(message, path("a.toml") + ": cannot be read (Too many open files)");
+  }
+}
+
+TEST_F(Reading, TellsThatAFileIsForOthers) {
+  write("a.toml", "x");
+  std::filesystem::permissions(path("a.toml"), std::filesystem::perms::none);
+  // The superuser may read everything.
+  constexpr uid_t nobody = 65534;
+  const bool root = ::geteuid() == 0;
+  if (root && ::seteuid(nobody) != 0) GTEST_SKIP() << "cannot become another user";
+  const std::string message =
+      input_error_of([&] { (void)dlo::compare::load_scene(path("a.toml")); });
+  if (root) {
+    ASSERT_EQ(::seteuid(0), 0);
+  }
+  EXPECT_EQ(message, path("a.toml") + ": cannot be read (Permission denied)");
+}
+
+TEST_F(Reading, EndsWhereAFileIsTooLarge) {
+  write("a", std::string(1000, 'x'));
+  EXPECT_EQ(InputFile(path("a")).read_all(1000).size(), 1000U);
+  const std::string message = input_error_of([&] { (void)InputFile(path("a")).read_all(999); });
+  EXPECT_EQ(message, path("a") + ": too large (allowed: files of up to 999 bytes)");
+  const std::string endless =
+      input_error_of([] { (void)InputFile("/dev/zero").read_all(std::size_t{1} << 20); });
+  EXPECT_NE(endless.find("too large"), std::string::npos) << endless;
+}
+
+std::string repeated(const std::string& text, int times) {
+  std::string result;
+  for (int i = 0; i < times; ++i) result += text;
+  return result;
+}
+
+TEST(TextLimits, NothingIsNestedSoDeepThatAParserOverflows) {
+  const auto scene = [](const std::string& text) {
+    return input_error_of([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
+  };
+  constexpr int many = 100'000;
+  const std::string dots = "s.toml:2: a key of too many dotted parts (allowed: 32 levels)";
+  EXPECT_EQ(scene("\na" + repeated(".a", many) + " = 1"), dots);
+  EXPECT_EQ(scene("\n[a" + repeated(".a", many) + "]"), dots);
+  EXPECT_EQ(scene("\n\"a\"" + repeated(" . \"a\"", many) + " = 1"), dots);
+  const std::string brackets = "s.toml:2: brackets within brackets (allowed: 32 levels)";
+  EXPECT_EQ(scene("\na = " + repeated("[", many) + repeated("]", many)), brackets);
+  EXPECT_EQ(scene("\na = " + repeated("{a = ", many) + "1" + repeated("}", many)), brackets);
+  // As deep as allowed goes through the parser.
+  EXPECT_NE(scene("a" + repeated(".a", 31) + " = 1").find("rod: missing"), std::string::npos);
+  EXPECT_NE(scene("a = " + repeated("[", 32) + repeated("]", 32)).find("rod: missing"),
+            std::string::npos);
+}
+
+TEST(TextLimits, StringsAndCommentsNestNothing) {
+  const auto reads = [](const std::string& line) {
+    const std::string text = line + R"(
+[rod]
+length = 1
+diameter = 0.01
+material = "copper"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)";
+    return input_error_of([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
+  };
+  const std::string deep = repeated("[.{", 50);
+  EXPECT_EQ(reads("# " + deep), "no error");
+  EXPECT_EQ(reads("name = \"" + deep + "\\\" " + deep + "\""), "no error");
+  EXPECT_EQ(reads("name = '" + deep + "\\'"), "no error");
+  EXPECT_EQ(reads("name = \"\"\"" + deep + "\"\n" + deep + "\"\"\"\"\""), "no error");
+  EXPECT_EQ(reads("name = '''" + deep + "''\n" + deep + "'''''"), "no error");
+  EXPECT_EQ(reads("name = \"1e-400\""), "no error");
+}
+
+TEST(TextLimits, NumbersBeyondADoubleAreSaidToBe) {
+  const auto scene = [](const std::string& number) {
+    return input_error_of(
+        [&] { (void)dlo::compare::parse_scene("[rod]\nlength = " + number + "\n", "s.toml"); });
+  };
+  const auto expect = [&](const std::string& number, const std::string& words) {
+    const std::string message = scene(number);
+    EXPECT_EQ(message.find("s.toml:2: "), 0U) << message;
+    EXPECT_NE(message.find(words), std::string::npos) << message;
+  };
+  expect("1e-400", "1e-400 is too small");
+  expect("+1e-40_0", "1e-400 is too small");
+  expect("1e400", "1e400 is too large");
+  expect("-1e400", "-1e400 is too large");
+  expect("\"1e-400 m\"", "rod.length = '1e-400 m': 1e-400 is too small");
+  expect("\"1e400 m\"", "rod.length = '1e400 m': 1e400 is too large");
+  expect("\"1e-99999999999999999999 m\"", "too small");
+  expect("\"0." + std::string(400, '0') + "1 m\"", "too small");
+  expect("\"1" + std::string(400, '0') + " m\"", "too large");
+  expect("2,5", "a number has a decimal point");
+  expect("\"2,5 m\"", "\"2,5 m\" has a comma (allowed: a decimal point)");
+}
+
+TEST(TextLimits, OfShapesAndSweeps) {
+  const auto shape = [](const std::string& text) {
+    return input_error_of([&] { (void)dlo::compare::parse_shape(text, "s.json", 1); });
+  };
+  EXPECT_EQ(shape(repeated("[", 300'000)),
+            "s.json:1: brackets within brackets (allowed: 32 levels)");
+  EXPECT_EQ(shape("[" + repeated("0,", 3'000'000) + "0]"),
+            "s.json: too many values (allowed: 3000000)");
+  EXPECT_EQ(
+      shape(R"({"a": "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[\"", "points": [[0, 0], [1, 0]]})"),
+      "no error");
+  const std::string large(std::size_t{5} << 20, ' ');
+  EXPECT_EQ(input_error_of([&] { (void)dlo::compare::parse_scene(large, "s.toml"); }),
+            "s.toml: 5242880 bytes (allowed: up to 4194304 of TOML)");
+}
+
+TEST(TextLimits, OfThePartsOfAScene) {
+  const std::string rod = "[rod]\nlength = 1\ndiameter = 0.01\nmaterial = \"copper\"\n";
+  const std::string gripper = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";
+  const std::string load = "[[load]]\nat = 1\nforce = [0, 1, 0]\n";
+  const std::string plane = "[[obstacle]]\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\n";
+  const auto scene = [&](int grippers, int loads, int planes) {
+    const std::string text =
+        rod + repeated(gripper, grippers) + repeated(load, loads) + repeated(plane, planes);
+    return input_error_of([&] { (void)dlo::compare::parse_scene(text, "s.toml"); });
+  };
+  EXPECT_EQ(scene(500, 10'000, 1'000), "no error");
+  EXPECT_EQ(scene(501, 0, 0), "s.toml:5: gripper: 501 given (allowed: up to 500)");
+  EXPECT_EQ(scene(1, 10'001, 0), "s.toml:9: load: 10001 given (allowed: up to 10000)");
+  EXPECT_EQ(scene(1, 0, 1'001), "s.toml:9: obstacle: 1001 given (allowed: up to 1000)");
+}
+
+TEST(TextLimits, OfVariedFields) {
+  const dlo::compare::SceneTemplate scene("[rod]\nlength = 1\n", "s.toml");
+  const auto vary = [&](const std::string& field, const std::string& value) {
+    return input_error_of([&] { (void)scene.with({{field, value}}); });
+  };
+  EXPECT_NE(vary("a" + repeated(".a", 60'000), "1").find("too many dotted parts"),
+            std::string::npos);
+  EXPECT_NE(vary("gravity", repeated("[", 60'000)).find("brackets within brackets"),
+            std::string::npos);
+}
+
+TEST_F(Reading, AForgedShardIsRefused) {
+  const std::string fingerprint = "0123456789abcdef";
+  const auto merge = [&](const std::string& model, const std::string& rows) {
+    write("shard", "# dlo sweep 1: scene " + fingerprint + ", grid " + fingerprint + ", model " +
+                       model + ", options " + fingerprint + "; shard 1/1; " + rows + "\nrow\n");
+    return input_error_of([&] { (void)dlo::compare::merge_sweep({path("shard")}, path("o")); });
+  };
+  EXPECT_NE(merge(std::string(300'000, 'a'), "1 rows from 0 of 1").find("not finished"),
+            std::string::npos);
+  EXPECT_NE(merge(std::string(1'200'000, 'a'), "1 rows from 0 of 1").find("the line is too long"),
+            std::string::npos);
+  for (const std::string rows :
+       {"2 rows from 0 of 1", "1 rows from 2 of 2", "99999999999999999 rows from 0 of 1",
+        "-1 rows from 0 of 1", "1 rows from 0 of 1 ", "1 rows from 0 of"}) {
+    EXPECT_NE(merge("energy", rows).find("is no shard of a sweep"), std::string::npos) << rows;
+  }
+}
+
+}  // namespace

@@ -1,0 +1,259 @@
+// Baselines, verdicts, JUnit.
+
+#include "batch/regression.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dlo/compare/comparison.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/solution.hpp"
+#include "scenes.hpp"
+
+namespace {
+
+using dlo::compare::baseline_text;
+using dlo::compare::BaselineCase;
+using dlo::compare::InputError;
+using dlo::compare::judge_regression;
+using dlo::compare::read_baseline;
+using dlo::compare::RegressionResult;
+using dlo::compare::RegressionVerdict;
+
+BaselineCase entry(const std::string& scene, double error, int points = 16) {
+  BaselineCase result;
+  result.scene = scene;
+  result.points = points;
+  result.errors = {error, 2 * error, 3 * error};
+  return result;
+}
+
+RegressionVerdict verdict(const BaselineCase& before, const BaselineCase& now) {
+  return judge_regression({before}, {{now, ""}}, {.relative = 0.1, .absolute = 1e-3})
+      .front()
+      .verdict;
+}
+
+TEST(Baseline, ReadsBackWhatItWritesInAnyOrder) {
+  BaselineCase strange = entry("a \"quoted\\\" name,\n\ttabbed \x7f, caf\xc3\xa9", 1.0 / 3);
+  strange.errors.tip.reset();
+  strange.law = dlo::compare::Law::paper;
+  strange.model = dlo::compare::Model::chain;
+  strange.bookkeeping = dlo::compare::Bookkeeping::paper;
+  const BaselineCase zero = entry("zero", 0);
+  const std::string text = baseline_text({zero, strange, entry("m", 1.5e-9)});
+  EXPECT_EQ(baseline_text({strange, entry("m", 1.5e-9), zero}), text);
+  const std::vector<BaselineCase> back = read_baseline(text, "b.toml");
+  ASSERT_EQ(back.size(), 3U);
+  EXPECT_EQ(back[0].name(), strange.name());
+  EXPECT_EQ(back[0].errors.rms, 0.333333);
+  EXPECT_FALSE(back[0].errors.tip.has_value());
+  EXPECT_EQ(back[1].errors.rms, 1.5e-9);
+  EXPECT_EQ(back[2].errors.max, 0);
+  EXPECT_EQ(baseline_text(back), text);
+}
+
+TEST(Baseline, MalformedOnesNameFileLineKeyAndWhatIsAllowed) {
+  const std::string good = baseline_text({entry("a", 0.1)});
+  const auto message = [](const std::string& text) -> std::string {
+    try {
+      (void)read_baseline(text, "b.toml");
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    return message(text);
+  };
+  const auto expect = [](const std::string& text, const std::vector<std::string>& words) {
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+    for (const std::string& word : words) {
+      EXPECT_NE(text.find(word), std::string::npos) << "no " << word << " in " << text;
+    }
+  };
+  expect(message(""), {"b.toml", "schema", "missing"});
+  expect(message(std::string(40, '\0')), {"b.toml", "not valid TOML"});
+  expect(message("case"), {"b.toml:1", "not valid TOML"});
+  expect(changed("baseline/1", "baseline/2"), {"b.toml:3", "schema", "dlo/baseline/1"});
+  expect(changed("[[case]]", "[case]"), {"case", "[[case]]"});
+  expect(changed("[[case]]", "[[cases]]"), {"cases", "unknown key"});
+  expect(changed("scene = \"a\"", "scene = 3"), {"case.scene", "must be a string"});
+  expect(changed("scene = \"a\"\n", ""), {"case.scene", "missing"});
+  expect(changed("\"force\"", "\"energy\""), {"case.model", "energy", "chain, force"});
+  expect(changed("\"hooke\"", "\"hook\""), {"case.law", "hook", "paper, hooke"});
+  expect(changed("\"consistent\"", "\"\""), {"case.bookkeeping", "paper, consistent"});
+  expect(changed("points = 16", "points = 16.5"), {"case.points", "16.5", "whole number"});
+  expect(changed("points = 16", "points = 3"), {"case.points", "4 to"});
+  expect(changed("rms_over_length = 0.1", "rms_over_length = -0.1"), {"rms_over_length", ">= 0"});
+  expect(changed("rms_over_length = 0.1", "rms_over_length = nan #"), {"finite"});
+  expect(changed("max_over_length = 0.2", "max_over_length = inf #"), {"finite"});
+  expect(changed("max_over_length = 0.2", "max_over_length = \"2 mm\" #"), {"max_over_length"});
+  expect(changed("tip_over_length", "top_over_length"), {"top_over_length", "unknown key"});
+  expect(message(good + good.substr(good.find("[[case]]"))), {"b.toml:15", "second case"});
+}
+
+TEST(Regression, ToleratesAShareOfTheErrorAndAShareOfTheRod) {
+  const BaselineCase before = entry("a", 0.05);
+  EXPECT_EQ(verdict(before, before), RegressionVerdict::same);
+  // RMS 0.05: margin 0.001 + 0.005; tip 0.15: margin 0.016
+  EXPECT_EQ(verdict(before, entry("a", 0.0552)), RegressionVerdict::same);
+  EXPECT_EQ(verdict(before, entry("a", 0.0448)), RegressionVerdict::same);
+  EXPECT_EQ(verdict(before, entry("a", 0.0562)), RegressionVerdict::worse);
+  EXPECT_EQ(verdict(before, entry("a", 0.0438)), RegressionVerdict::better);
+  EXPECT_EQ(verdict(entry("a", 0), entry("a", 3e-4)), RegressionVerdict::same);
+  EXPECT_EQ(verdict(before, entry("a", NAN)), RegressionVerdict::worse);
+}
+
+TEST(Regression, OneWorseErrorOutweighsBetterOnes) {
+  const BaselineCase before = entry("a", 0.05);
+  BaselineCase now = entry("a", 0.01);
+  EXPECT_EQ(verdict(before, now), RegressionVerdict::better);
+  now.errors.tip = 0.2;
+  EXPECT_EQ(verdict(before, now), RegressionVerdict::worse);
+  now.errors.tip.reset();
+  EXPECT_EQ(verdict(before, now), RegressionVerdict::worse);
+}
+
+TEST(Regression, CasesOfOneSideOnlyFail) {
+  const std::vector<RegressionResult> results =
+      judge_regression({entry("a", 0.1), entry("b", 0.1), entry("c", 0.1)},
+                       {{entry("b", 0.1), ""}, {entry("d", 0.1), ""}, {entry("c", 0), "stuck"}});
+  ASSERT_EQ(results.size(), 4U);
+  EXPECT_EQ(results[0].verdict, RegressionVerdict::not_measured);
+  EXPECT_EQ(results[1].verdict, RegressionVerdict::same);
+  EXPECT_EQ(results[2].verdict, RegressionVerdict::not_solved);
+  EXPECT_EQ(results[2].message, "stuck");
+  EXPECT_EQ(results[3].verdict, RegressionVerdict::not_in_baseline);
+  for (const std::size_t i : {0U, 2U, 3U}) EXPECT_TRUE(failed(results[i].verdict)) << i;
+  EXPECT_FALSE(failed(results[1].verdict));
+  EXPECT_THROW((void)judge_regression({}, {{entry("a", 0.1), ""}, {entry("a", 0.1), ""}}),
+               InputError);
+  EXPECT_THROW((void)judge_regression({}, {}, {.relative = -1}), std::invalid_argument);
+}
+
+TEST(Regression, ACaseWithOtherSettingsIsChangedWithBothErrors) {
+  const std::vector<RegressionResult> points = judge_regression(
+      {entry("a", 0.1), entry("b", 0.1)}, {{entry("a", 0.1, 17), ""}, {entry("b", 0.1), ""}});
+  ASSERT_EQ(points.size(), 2U);
+  EXPECT_EQ(points[0].verdict, RegressionVerdict::changed);
+  EXPECT_TRUE(failed(points[0].verdict));
+  EXPECT_EQ(points[0].name, entry("a", 0.1, 17).name());
+  EXPECT_EQ(points[0].expected->rms, 0.1);
+  EXPECT_EQ(points[0].measured->rms, 0.1);
+  EXPECT_EQ(points[0].message.find("N = 17 (baseline N = 16): RMS 10 % of l (baseline 10 %)"), 0U)
+      << points[0].message;
+  EXPECT_EQ(points[1].verdict, RegressionVerdict::same);
+  BaselineCase law = entry("a", 0.2);
+  law.law = dlo::compare::Law::paper;
+  const RegressionResult other = judge_regression({entry("a", 0.1)}, {{law, ""}}).front();
+  EXPECT_EQ(other.verdict, RegressionVerdict::changed);
+  EXPECT_EQ(other.message.find("law paper (baseline law hooke): RMS 20 %"), 0U) << other.message;
+  // Of several nobody knows which was which.
+  const std::vector<RegressionResult> several =
+      judge_regression({entry("a", 0.1)}, {{entry("a", 0.1, 17), ""}, {entry("a", 0.1, 18), ""}});
+  ASSERT_EQ(several.size(), 3U);
+  EXPECT_EQ(several[0].verdict, RegressionVerdict::not_measured);
+  EXPECT_EQ(several[1].verdict, RegressionVerdict::not_in_baseline);
+  // What is not solved is not one more that is missing.
+  const std::vector<RegressionResult> unsolved =
+      judge_regression({entry("a", 0.1)}, {{entry("a", 0, 17), "stuck"}});
+  ASSERT_EQ(unsolved.size(), 1U);
+  EXPECT_EQ(unsolved[0].verdict, RegressionVerdict::not_solved);
+}
+
+TEST(Regression, TheSameNameForAnotherSceneIsAChange) {
+  const auto of_scene = [](double error, const std::string& fingerprint) {
+    BaselineCase result = entry("a", error);
+    result.fingerprint = fingerprint;
+    return result;
+  };
+  const std::string here = "0123456789abcdef";
+  const std::string there = "fedcba9876543210";
+  EXPECT_EQ(verdict(of_scene(0.1, here), of_scene(0.1, here)), RegressionVerdict::same);
+  EXPECT_EQ(verdict(of_scene(0.1, here), of_scene(0.1, there)), RegressionVerdict::changed);
+  EXPECT_EQ(verdict(of_scene(0.1, here), of_scene(0.01, there)), RegressionVerdict::changed);
+  // A baseline from before there were fingerprints.
+  EXPECT_EQ(verdict(of_scene(0.1, ""), of_scene(0.1, there)), RegressionVerdict::same);
+  const std::string text = baseline_text({of_scene(0.1, here)});
+  EXPECT_EQ(read_baseline(text, "b.toml").front().fingerprint, here);
+}
+
+TEST(Regression, AFingerprintStandsForAllThatTheShapeDependsOn) {
+  using dlo::compare::Model;
+  const dlo::compare::Scene scene = dlo::test::heavy_scene(5, -30);
+  const auto digits = [](const dlo::compare::Scene& of) {
+    return dlo::compare::case_of(of, Model::chain).fingerprint;
+  };
+  dlo::compare::Scene renamed = scene;
+  renamed.name = "other";
+  renamed.file = "other.toml";
+  renamed.material.name = "other";
+  renamed.grippers.front().where = "other.toml:3";
+  EXPECT_EQ(digits(renamed), digits(scene));
+  const auto differs = [&](const auto& change) {
+    dlo::compare::Scene changed = scene;
+    change(changed);
+    EXPECT_NE(digits(changed), digits(scene));
+  };
+  differs([](auto& s) { s.gravity.z() += 1e-6; });
+  differs([](auto& s) { s.length *= 1.0001; });
+  differs([](auto& s) { s.diameter *= 1.0001; });
+  differs([](auto& s) { s.material.youngs_modulus *= 1.0001; });
+  differs([](auto& s) { s.material.density *= 1.0001; });
+  differs([](auto& s) { s.grippers.front().at += 1e-4; });
+  differs([](auto& s) { s.grippers.front().position.x() += 1e-4; });
+  differs([](auto& s) { s.grippers.front().direction.reset(); });
+  differs([](auto& s) { s.loads.push_back({.at = 0}); });
+  differs([](auto& s) { s.obstacles.push_back({}); });
+  differs([](auto& s) { s.force_model.c_c = 660; });
+  differs([](auto& s) { s.force_model.l_s = 660; });
+  differs([](auto& s) { s.force_model.stepper = dlo::compare::StepperName::basic; });
+}
+
+TEST(Regression, ToleratesOnePercentAndAMillionthUnlessToldOtherwise) {
+  const auto with_defaults = [](double before, double now) {
+    return judge_regression({entry("a", before)}, {{entry("a", now), ""}}).front().verdict;
+  };
+  EXPECT_EQ(with_defaults(0.1, 0.10099), RegressionVerdict::same);
+  EXPECT_EQ(with_defaults(0.1, 0.10102), RegressionVerdict::worse);
+  EXPECT_EQ(with_defaults(0.1, 0.09901), RegressionVerdict::same);
+  EXPECT_EQ(with_defaults(0.1, 0.09898), RegressionVerdict::better);
+  // Largest and tip are two and three times the RMS: the tip decides.
+  EXPECT_EQ(with_defaults(0, 0.33e-6), RegressionVerdict::same);
+  EXPECT_EQ(with_defaults(0, 0.34e-6), RegressionVerdict::worse);
+}
+
+TEST(Regression, MeasuresWhatCompareMeasures) {
+  dlo::compare::Scene scene = dlo::test::heavy_scene(5, -30);
+  scene.length = 2;
+  scene.force_model.law = dlo::compare::Law::paper;
+  const dlo::compare::Comparison expected = dlo::compare::compare(scene);
+  const BaselineCase measured = dlo::compare::measure_case(scene, dlo::compare::Model::force);
+  EXPECT_DOUBLE_EQ(measured.errors.rms, expected.deviation.rms_m / 2);
+  EXPECT_DOUBLE_EQ(measured.errors.max, expected.deviation.max_m / 2);
+  ASSERT_TRUE(measured.errors.tip.has_value());
+  EXPECT_DOUBLE_EQ(*measured.errors.tip, expected.deviation.tip_m / 2);
+  EXPECT_EQ(measured.name(), "heavy (force, law paper, bookkeeping consistent, N = 16)");
+}
+
+TEST(Regression, JunitCountsAndEscapes) {
+  const std::string xml = dlo::compare::junit_xml(
+      judge_regression({entry("a<b> & \"c\"\x01", 0.1), entry("e", 0.1)},
+                       {{entry("e", 0.2), ""}, {entry("f", 0), "no <rest>\nhere"}}));
+  EXPECT_NE(xml.find("tests=\"3\" failures=\"2\" errors=\"1\""), std::string::npos) << xml;
+  EXPECT_NE(xml.find("a&lt;b&gt; &amp; &quot;c&quot;  (force"), std::string::npos) << xml;
+  EXPECT_NE(xml.find("<error type=\"not solved\" message=\"no &lt;rest&gt; here\"/>"),
+            std::string::npos)
+      << xml;
+}
+
+}  // namespace

@@ -1,0 +1,289 @@
+// Grids, scenes with other values, rows.
+
+#include "batch/sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "batch/shard.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "sweep_scene.hpp"
+
+namespace {
+
+using dlo::compare::Axis;
+using dlo::compare::Grid;
+using dlo::compare::InputError;
+using dlo::compare::parse_axis;
+using dlo::compare::RowRange;
+using dlo::compare::Scene;
+using dlo::compare::SceneTemplate;
+using dlo::compare::Sweep;
+using dlo::compare::SweepModel;
+using dlo::test::sweep;
+using dlo::test::sweep_scene;
+
+std::vector<std::string> values(const std::string& text) {
+  const Axis axis = parse_axis(text);
+  std::vector<std::string> result;
+  for (std::int64_t i = 0; i < axis.count; ++i) result.push_back(axis.value(i));
+  return result;
+}
+
+std::string message_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(SweepGrid, ReadsListsRangesAndUnits) {
+  using Values = std::vector<std::string>;
+  EXPECT_EQ(values("a=1,2.50,copper"), (Values{"1", "2.50", "copper"}));
+  EXPECT_EQ(values("a=[0, 1, 0],[1,0,0]"), (Values{"[0, 1, 0]", "[1,0,0]"}));
+  EXPECT_EQ(values("a=lin:0:1:11")[3], "0.3");
+  EXPECT_EQ(values("a=lin:64:4:3"), (Values{"64", "34", "4"}));
+  EXPECT_EQ(values("a=log:8:128:5"), (Values{"8", "16", "32", "64", "128"}));
+  EXPECT_EQ(values("a=log:1 GPa:100GPa:3"), (Values{"1 GPa", "10 GPa", "100 GPa"}));
+  EXPECT_EQ(values("a=lin:-1:1:3")[1], "0");
+  EXPECT_EQ(values("a=0.1234567890123456,1")[0], "0.1234567890123456");
+  EXPECT_EQ(parse_axis("a=1 cm,2cm").column(), "a [cm]");
+  EXPECT_EQ(parse_axis("a=1 cm,2 mm").column(), "a");
+}
+
+TEST(SweepGrid, RefusesWhatIsNoAxisAndSaysWhy) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"rod.length", "\"=\""},
+      {"=1", "no field"},
+      {"a=", "empty"},
+      {"a=1,,2", "empty"},
+      {"a=lin:1:2", "three parts"},
+      {"a=lin:1:2:3:4", "three parts"},
+      {"a=lin:1:2:1", "from 2"},
+      {"a=lin:1:2:x", "from 2"},
+      {"a=lin:1:2:2.5", "from 2"},
+      {"a=lin:x:2:3", "\"x\""},
+      {"a=lin:1:nan:3", "\"nan\""},
+      {"a=lin:1:inf:3", "\"inf\""},
+      {"a=lin:1 m:2 cm:3", "units"},
+      {"a=lin:2:2:3", "same"},
+      {"a=log:-1:1:3", "positive"},
+      {"a=log:0:1:3", "positive"},
+      {"a=1\n2", "control character"},
+      {"a=lin:1:2:99999999999999999999", "from 2"}};
+  for (const auto& [text, words] : cases) {
+    const std::string message = message_of([&, axis = text] { (void)parse_axis(axis); });
+    EXPECT_NE(message.find(words), std::string::npos) << text << ": " << message;
+    EXPECT_NE(message.find("allowed"), std::string::npos) << message;
+  }
+}
+
+TEST(SweepGrid, LastFieldChangesFastestAndNothingIsStored) {
+  const Grid grid({parse_axis("a=1,2"), parse_axis("b=lin:0:1:3")});
+  EXPECT_EQ(grid.size(), 6);
+  EXPECT_EQ(grid.indices(4), (std::vector<std::int64_t>{1, 1}));
+  const Grid large({parse_axis("a=lin:0:1:1000000"), parse_axis("b=lin:0:1:1000000000")});
+  EXPECT_EQ(large.size(), 1'000'000'000'000'000);
+  EXPECT_EQ(large.indices(large.size() - 1), (std::vector<std::int64_t>{999'999, 999'999'999}));
+  EXPECT_THROW(Grid({parse_axis("a=lin:0:1:1000001"), parse_axis("b=lin:0:1:1000000000")}),
+               InputError);
+}
+
+TEST(SweepGrid, RefusesFieldsInsideEachOther) {
+  EXPECT_THROW(Grid({parse_axis("a=1"), parse_axis("a=2")}), InputError);
+  EXPECT_THROW(Grid({parse_axis("rod.material.density=1"), parse_axis("rod.material=copper")}),
+               InputError);
+  EXPECT_EQ(Grid({parse_axis("rod.length=1"), parse_axis("rod.length_unit=2")}).size(), 1);
+}
+
+TEST(SceneTemplate, GivesTheSceneThatAnEditedFileWouldGive) {
+  std::string edited = sweep_scene;
+  edited.replace(edited.find("50 cm"), 5, "70 cm");
+  edited.replace(edited.find("0 deg"), 5, "30 deg");
+  edited += "[force_model]\npoints = 24\nlaw = \"paper\"\n";
+  const Scene expected = dlo::compare::parse_scene(edited, "swept.toml");
+  const Scene scene = SceneTemplate(sweep_scene, "swept.toml")
+                          .with({{"rod.length", "70 cm"},
+                                 {"gripper.0.direction", "30 deg"},
+                                 {"force_model.points", "24"},
+                                 {"force_model.law", "paper"}});
+  EXPECT_EQ(scene.length, expected.length);
+  EXPECT_EQ(*scene.grippers[0].direction, *expected.grippers[0].direction);
+  EXPECT_EQ(scene.force_model.points, 24);
+  EXPECT_EQ(scene.force_model.law, dlo::compare::Law::paper);
+  EXPECT_EQ(scene.gamma(), expected.gamma());
+}
+
+TEST(SceneTemplate, SetsVectorsTheirElementsAndPartsOfAMaterial) {
+  const SceneTemplate base(sweep_scene, "swept.toml");
+  EXPECT_EQ(base.with({{"gripper.0.position", "[0, \"2 cm\", 1]"}}).grippers[0].position,
+            Eigen::Vector3d(0, 0.02, 1));
+  EXPECT_EQ(base.with({{"gripper.0.position.1", "5 mm"}}).grippers[0].position.y(), 0.005);
+  EXPECT_EQ(base.with({{"rod.material", "copper"}}).material.name, "copper");
+  const Scene scene = base.with({{"rod.material.youngs_modulus", "7 GPa"}});
+  EXPECT_EQ(scene.material.youngs_modulus, 7e9);
+  EXPECT_EQ(scene.material.density, 7900);
+}
+
+TEST(SceneTemplate, GammaScalesGravityWhateverElseIsVaried) {
+  const SceneTemplate base(sweep_scene, "swept.toml");
+  const Scene scene = base.with({{"gamma", "12.5"}, {"rod.length", "2"}, {"gravity", "[0, 3, 4]"}});
+  EXPECT_NEAR(scene.gamma(), 12.5, 1e-12);
+  EXPECT_NEAR(scene.gravity.normalized().z(), 0.8, 1e-15);
+  EXPECT_EQ(base.with({{"gamma", "0"}}).gamma(), 0);
+  for (const std::string bad : {"-1", "nan", "inf", "x", "1 m", ""}) {
+    EXPECT_THROW((void)base.with({{"gamma", bad}}), InputError) << bad;
+  }
+  EXPECT_THROW((void)base.with({{"gamma", "1"}, {"gravity", "[0, 0, 0]"}}), InputError);
+}
+
+TEST(SceneTemplate, ErrorsNameFileFieldAndValue) {
+  const SceneTemplate base(sweep_scene, "swept.toml");
+  const std::pair<dlo::compare::FieldValue, const char*> cases[] = {
+      {{"rod.lenght", "1"}, "unknown key"},
+      {{"rod.length", "-1"}, "1e-06 to"},
+      {{"gripper.1.at", "0"}, "0 to 0"},
+      {{"gripper.x.at", "0"}, "0 to 0"},
+      {{"rod.length.x", "1"}, "has no parts"},
+      {{"rod..length", "1"}, "empty"},
+      {{"rod.", "1"}, "empty"},
+      {{"gravity", "[0, 1"}, "not valid TOML"},
+      {{"gravity", "[0,0,0]\nx = 1"}, "no vector"},
+      {{"rod", "3"}, "must be a table"},
+      {{"gripper", "3"}, "[[gripper]]"},
+      {{"force_model.points", "16.5"}, "whole"}};
+  for (const auto& [field, words] : cases) {
+    const std::string message = message_of([&, value = field] { (void)base.with({value}); });
+    EXPECT_NE(message.find(words), std::string::npos) << field.field << ": " << message;
+    EXPECT_NE(message.find("swept.toml"), std::string::npos) << message;
+  }
+}
+
+std::string rows(const Sweep& sweep, int threads) {
+  std::string text;
+  sweep.run({0, sweep.grid().size()}, threads, [&](const std::string& line) { text += line; });
+  return text;
+}
+
+TEST(Sweep, WritesTheSameBytesForAnyNumberOfThreads) {
+  const Sweep many = sweep({"gamma=log:0.1:50:25", "gripper.0.direction=lin:-90 deg:80 deg:8"});
+  std::string expected;
+  for (std::int64_t row = 0; row < many.grid().size(); ++row) expected += many.row(row);
+  for (const int threads : {1, 2, 7}) EXPECT_EQ(rows(many, threads), expected) << threads;
+}
+
+TEST(Sweep, EveryModelFillsItsColumns) {
+  for (const std::string& name : dlo::compare::sweep_model_names()) {
+    const Sweep one = sweep({"gamma=2"}, dlo::compare::sweep_model_from(name));
+    const std::string header = one.header();
+    const std::string row = one.row(0);
+    EXPECT_EQ(std::count(row.begin(), row.end(), ','),
+              std::count(header.begin(), header.end(), ','))
+        << name;
+    EXPECT_EQ(row.find(",,"), std::string::npos) << row;
+    EXPECT_EQ(row.substr(row.size() - 4), ",ok\n") << row;
+  }
+}
+
+TEST(Sweep, ARefusedOrUnsolvedSceneIsARow) {
+  const Sweep mixed = sweep({"rod.length=1,-1,\"x\""});
+  EXPECT_EQ(mixed.row(0).substr(0, 4), "0,1,");
+  const std::string bad = mixed.row(1);
+  EXPECT_NE(bad.find("2,"), 0U);
+  EXPECT_EQ(bad.substr(0, 12), "1,-1,,,,,,,,") << bad;
+  EXPECT_NE(bad.find("rod.length = -1"), std::string::npos) << bad;
+  const Sweep unsolved(SceneTemplate(sweep_scene, "swept.toml"), Grid({parse_axis("gamma=5")}),
+                       SweepModel::energy, {.max_evaluations = 1});
+  EXPECT_NE(unsolved.row(0).find("did not converge"), std::string::npos);
+}
+
+TEST(Sweep, RefusesAGridOfWhichNoSceneCanBeRead) {
+  const std::string message = message_of([] { (void)sweep({"rod.lenght=lin:1:2:100000"}); });
+  EXPECT_NE(message.find("unknown key"), std::string::npos) << message;
+  // One good scene of 997 is found.
+  EXPECT_EQ(sweep({"rod.length=lin:-995:1:997"}).grid().size(), 997);
+}
+
+TEST(Sweep, AnyPartOfAnEnormousGridIsAtHand) {
+  const Sweep large = sweep({"gamma=lin:1:2:1000000", "rod.length=lin:1:2:1000000000"});
+  std::string text;
+  large.run({999'999'999'999'990, 1'000'000'000'000'000}, 2,
+            [&](const std::string& line) { text += line; });
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 10);
+  EXPECT_NE(text.find("999999999999999,2,2,"), std::string::npos) << text;
+}
+
+TEST(Shard, BlocksTileTheRows) {
+  for (const std::int64_t rows : {0, 1, 7, 100, 101}) {
+    std::int64_t next = 0;
+    for (std::int64_t i = 1; i <= 8; ++i) {
+      const RowRange part = dlo::compare::rows_of({i, 8, ""}, rows);
+      EXPECT_EQ(part.first, next);
+      EXPECT_LE(part.last - part.first, rows / 8 + 1);
+      next = part.last;
+    }
+    EXPECT_EQ(next, rows);
+  }
+}
+
+std::string shard_of(const std::map<std::string, std::string>& environment) {
+  const auto shard = dlo::compare::shard_from_environment([&](const char* name) {
+    const auto found = environment.find(name);
+    return found == environment.end() ? nullptr : found->second.c_str();
+  });
+  return shard ? shard->name() : "none";
+}
+
+TEST(Shard, IsTakenFromSlurmAndOpenMpi) {
+  EXPECT_EQ(shard_of({}), "none");
+  EXPECT_EQ(shard_of({{"SLURM_ARRAY_TASK_ID", "7"},
+                      {"SLURM_ARRAY_TASK_MIN", "5"},
+                      {"SLURM_ARRAY_TASK_COUNT", "4"}}),
+            "3/4");
+  EXPECT_EQ(shard_of({{"SLURM_ARRAY_TASK_ID", "9"},
+                      {"SLURM_ARRAY_TASK_MIN", "1"},
+                      {"SLURM_ARRAY_TASK_MAX", "13"},
+                      {"SLURM_ARRAY_TASK_STEP", "4"},
+                      {"SLURM_ARRAY_TASK_COUNT", "4"}}),
+            "3/4");
+  EXPECT_EQ(shard_of({{"OMPI_COMM_WORLD_RANK", "0"}, {"OMPI_COMM_WORLD_SIZE", "3"}}), "1/3");
+  EXPECT_EQ(shard_of({{"SLURM_ARRAY_TASK_ID", "1"},
+                      {"SLURM_ARRAY_TASK_MIN", "0"},
+                      {"SLURM_ARRAY_TASK_COUNT", "2"},
+                      {"OMPI_COMM_WORLD_RANK", "2"},
+                      {"OMPI_COMM_WORLD_SIZE", "3"}}),
+            "6/6");
+}
+
+TEST(Shard, RefusesAnEnvironmentThatDoesNotSayWhich) {
+  using Environment = std::map<std::string, std::string>;
+  const Environment cases[] = {{{"SLURM_ARRAY_TASK_ID", "7"}},
+                               {{"OMPI_COMM_WORLD_RANK", "1"}},
+                               {{"OMPI_COMM_WORLD_RANK", "x"}, {"OMPI_COMM_WORLD_SIZE", "3"}},
+                               {{"OMPI_COMM_WORLD_RANK", "3"}, {"OMPI_COMM_WORLD_SIZE", "3"}},
+                               {{"OMPI_COMM_WORLD_RANK", "-1"}, {"OMPI_COMM_WORLD_SIZE", "3"}},
+                               // --array=1,3,7
+                               {{"SLURM_ARRAY_TASK_ID", "3"},
+                                {"SLURM_ARRAY_TASK_MIN", "1"},
+                                {"SLURM_ARRAY_TASK_MAX", "7"},
+                                {"SLURM_ARRAY_TASK_COUNT", "3"}}};
+  for (const Environment& environment : cases) {
+    EXPECT_THROW((void)shard_of(environment), InputError) << environment.begin()->first;
+  }
+  for (const char* text :
+       {"", "1", "0/3", "4/3", "1/0", "-1/3", "1/3x", "a/b", "1//3", "/", "1/"}) {
+    EXPECT_THROW((void)dlo::compare::parse_shard(text), InputError) << text;
+  }
+}
+
+}  // namespace

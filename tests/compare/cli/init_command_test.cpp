@@ -1,0 +1,203 @@
+// dlo without arguments, dlo init, dlo materials: what a newcomer meets first.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <sstream>
+
+#include "command_fixture.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
+#include "scene/new_scene.hpp"
+
+namespace {
+
+using dlo::compare::InputError;
+using dlo::compare::parse_scene;
+using dlo::compare::Scene;
+using dlo::compare::scene_text;
+using dlo::compare::SceneChoices;
+using dlo::test::Command;
+using dlo::test::Outcome;
+
+/// The optional paragraphs of a scene file, without the # of their lines.
+std::vector<std::string> optional_paragraphs(const std::string& text) {
+  std::vector<std::string> paragraphs;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    const bool optional = line.size() > 1 && line[0] == '#' && line[1] != ' ';
+    if (optional && line[1] == '[') paragraphs.emplace_back();
+    if (optional) paragraphs.back() += line.substr(1) + "\n";
+  }
+  return paragraphs;
+}
+
+TEST_F(Command, WithoutArgumentsTellsWhatThereIsToDo) {
+  const Outcome result = run("");
+  EXPECT_EQ(result.status, 0);
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(result.out, run("--help").out);
+  // Headings in the order in which a user needs them, each with its commands.
+  const std::regex order(
+      "\nBegin\n  init [^]*\nSee a shape\n  solve [^]*\nIs my simulator's shape right\\?\n  check "
+      "[^]*\nGet parameters\n  calibrate [^]*\nKeep it from getting worse\n  regress ");
+  EXPECT_TRUE(std::regex_search(result.out, order)) << result.out;
+  std::istringstream lines(result.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 80U) << line;
+}
+
+TEST_F(Command, SuggestsTheNearestWord) {
+  expect_error("slove", 2, {"slove", "did you mean solve?", "regress"});
+  expect_error("solve " + steel() + " --modle chain", 2, {"--modle", "did you mean --model?"});
+  expect_error("solve " + steel() + " --model=chain two.toml", 2, {"two.toml", "too many"});
+  expect_error("init --material silicon", 2, {"silicon", "did you mean silicone?", "nitinol"});
+  expect_error("dance", 2, {"unknown command dance (allowed: init"});
+}
+
+TEST_F(Command, InitWritesASceneThatSolves) {
+  const std::string file = path("cable.toml");
+  const Outcome result = run("init " + file + " --length 2m --diameter '6 mm' --material silicone");
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_NE(result.out.find("dlo solve " + file), std::string::npos);
+  const Scene scene = dlo::compare::load_scene(file);
+  EXPECT_EQ(scene.name, "cable");
+  EXPECT_EQ(scene.length, 2);
+  EXPECT_EQ(scene.diameter, 0.006);
+  EXPECT_EQ(scene.material.name, "silicone");
+  for (const std::string model : {"energy", "chain", "exact", "force"}) {
+    EXPECT_EQ(run(words({"solve", file, "--model", model})).status, 0) << model;
+  }
+}
+
+TEST_F(Command, InitTakesANameAndAMaterialOfOnesOwn) {
+  const std::string arguments = "--youngs-modulus '5 MPa' --density 1100 --direction '[0, 0, 1]'";
+  const Outcome result = run("init '" + path("my hose") + "' " + arguments);
+  ASSERT_EQ(result.status, 0) << result.err;
+  const Scene scene = dlo::compare::load_scene(path("my_hose.toml"));
+  EXPECT_EQ(scene.name, "my hose");
+  EXPECT_EQ(scene.material.youngs_modulus, 5e6);
+  EXPECT_EQ(scene.material.density, 1100);
+  EXPECT_EQ(*scene.grippers.front().direction, Eigen::Vector3d::UnitZ());
+  expect_error("init " + path("a") + " --youngs-modulus '5 MPa'", 2, {"--density"});
+  expect_error("init " + path("a") + " --density 1000", 2, {"--youngs-modulus"});
+  expect_error("init " + path("a") + " --material copper " + arguments, 2, {"--material"});
+}
+
+TEST_F(Command, InitNeverOverwritesUnasked) {
+  const std::string file = scene("mine");
+  expect_error("init " + file, 2, {file, "exists", "--force"});
+  EXPECT_EQ(read(file), "mine");
+  // A wrong value leaves no file, nor half of one, and the old one as it was.
+  expect_error("init --force " + file + " --length '2 feet'", 2,
+               {"--length", "feet", "m, cm, mm, um"});
+  EXPECT_EQ(read(file), "mine");
+  expect_error("init " + path("new.toml") + " --diameter -1", 2, {"--diameter", "-1"});
+  EXPECT_FALSE(std::filesystem::exists(path("new.toml")));
+  EXPECT_EQ(run("init --force " + file).status, 0);
+  EXPECT_NO_THROW((void)dlo::compare::load_scene(file));
+}
+
+TEST_F(Command, InitTakesAnyNameAndNamesTheOptionThatIsWrong) {
+  // Names that look like numbers, need quotes in a shell, or are too long for a file.
+  for (const std::string name : {"2025", "nan", "it's", "a \"b\""}) {
+    const std::string quoted = name == "it's" ? "it\\'s" : "'" + name + "'";
+    const Outcome result = run("init " + path("") + quoted);
+    ASSERT_EQ(result.status, 0) << result.err;
+    // The command that the text gives is one that a shell takes.
+    const std::size_t at = result.out.find("dlo solve ") + 4;
+    EXPECT_EQ(run(result.out.substr(at, result.out.find("      ", at) - at)).status, 0)
+        << result.out;
+  }
+  EXPECT_EQ(dlo::compare::load_scene(path("2025.toml")).name, "2025");
+  expect_error("init " + path(std::string(300, 'a')), 2, {"too long"});
+  expect_error("regress " + steel() + " --update --baseline " + path(std::string(300, 'a')), 2,
+               {"too long"});
+  expect_error("sweep " + steel() + " --vary gamma=1 -o " + path(std::string(300, 'a')), 2,
+               {"too long"});
+  const std::string init = "init " + path("b") + " ";
+  expect_error(init + "--length 1e-320", 2, {"--length = 1e-320", "1e-06"});
+  expect_error(init + "--length '6 mm' --diameter '2 m'", 2, {"--diameter = 2 m", "thicker"});
+  expect_error(init + "--direction '[0, 0]'", 2, {"--direction", "three numbers"});
+  expect_error(init + "--youngs-modulus -3 --density 3", 2, {"--youngs-modulus", "> 0"});
+  expect_error(init + "--youngs-modulus 3 --density x", 2, {"--density", "kg/m^3"});
+  expect_error(init + "--material 7", 2, {"--material", "unknown material"});
+}
+
+// Rods that are stiff and soft, thin and thick, in directions of the plane and of space.
+TEST(SceneText, IsValidWithAnyAndAllOptionalPartsAndSolves) {
+  for (const SceneChoices& choices :
+       {SceneChoices{.material = "pvc_cable"},
+        SceneChoices{
+            .length = "0.5", .diameter = "0.5 mm", .material = "nitinol", .direction = "30 deg"},
+        SceneChoices{.diameter = "20 mm",
+        .youngs_modulus = "1 GPa",
+        .density = "1500 kg/m^3",
+        .direction = "[1, 1, 1]"},
+        SceneChoices{.youngs_modulus = "1 GPa", .density = "0", .direction = "-90 deg"}}) {
+    const std::string text = scene_text(choices);
+    const std::vector<std::string> paragraphs = optional_paragraphs(text);
+    ASSERT_EQ(paragraphs.size(), 4U);
+    std::string all = text;
+    for (const std::string& paragraph : paragraphs) {
+      const Scene scene = parse_scene(text + paragraph, "scene.toml");
+      EXPECT_NO_THROW((void)solve(scene, dlo::compare::Model::energy)) << text << paragraph;
+      all += paragraph;
+    }
+    const Scene scene = parse_scene(all, "scene.toml");
+    EXPECT_EQ(scene.grippers.size(), 2U);
+    EXPECT_EQ(scene.loads.size(), 1U);
+    EXPECT_EQ(scene.obstacles.size(), 1U);
+    EXPECT_NO_THROW((void)solve(scene, dlo::compare::Model::energy)) << all;
+  }
+}
+
+TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
+  const std::string text = scene_text({});
+  std::string all = text;
+  for (const std::string& paragraph : optional_paragraphs(text)) all += paragraph;
+  // An unknown key's message lists those that its table knows.
+  int tables = 0;
+  for (const std::string table :
+       {"name", "[rod]", "[[gripper]]", "[[load]]", "[[obstacle]]", "[force_model]"}) {
+    std::string wrong = all;
+    const std::size_t start = wrong.find("\n" + table) + 1;
+    wrong.insert(table == "name" ? start : wrong.find('\n', start) + 1, "bogus = 1\n");
+    try {
+      (void)parse_scene(wrong, "scene.toml");
+      ADD_FAILURE() << table;
+    } catch (const InputError& error) {
+      const std::string message = error.what();
+      std::smatch list;
+      ASSERT_TRUE(std::regex_search(message, list, std::regex("unknown key \\(allowed: (.*)\\)")))
+          << message;
+      const std::string known = list[1];
+      const std::regex word("[A-Za-z_]+");
+      for (std::sregex_iterator key(known.begin(), known.end(), word), end; key != end; ++key) {
+        EXPECT_TRUE(std::regex_search(text, std::regex("\\b" + key->str() + "\\b"))) << key->str();
+      }
+      ++tables;
+    }
+  }
+  EXPECT_EQ(tables, 6);
+}
+
+TEST_F(Command, MaterialsListsEveryMaterialWithValues) {
+  const Outcome text = run("materials");
+  EXPECT_EQ(text.status, 0);
+  const nlohmann::json document = nlohmann::json::parse(run("materials --format json").out);
+  EXPECT_EQ(document.at("schema"), "dlo/materials/1");
+  const auto& known = dlo::compare::materials();
+  ASSERT_EQ(document.at("materials").size(), known.size());
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    EXPECT_EQ(document["materials"][i]["youngs_modulus_Pa"], known[i].youngs_modulus);
+    EXPECT_EQ(document["materials"][i]["density_kg_per_m3"], known[i].density);
+    EXPECT_NE(("\n" + text.out).find("\n" + known[i].name + " "), std::string::npos);
+  }
+}
+
+}  // namespace

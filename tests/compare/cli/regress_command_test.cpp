@@ -1,0 +1,180 @@
+// dlo regress as a user and a CI run it.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command_fixture.hpp"
+#include "dlo/compare/deviation.hpp"
+
+namespace {
+
+class RegressCommand : public dlo::test::Command {
+ protected:
+  void SetUp() override {
+    Command::SetUp();
+    arguments_ = "regress --model chain --baseline " + path("b.toml") + " ";
+    ASSERT_EQ(run(arguments_ + steel() + " --update").status, 0);
+  }
+
+  /// Replaces the number behind a key of the baseline.
+  void set(const std::string& key, const std::string& number) const {
+    std::string text = read(path("b.toml"));
+    const std::size_t begin = text.find(key + " = ") + key.size() + 3;
+    text.replace(begin, text.find('\n', begin) - begin, number);
+    std::ofstream(path("b.toml")) << text;
+  }
+
+  /// The value of an XPath expression on the JUnit file, by libxml2's reader.
+  [[nodiscard]] std::string junit(const std::string& expression) const {
+    const std::string line =
+        "xmllint --xpath '" + expression + "' " + path("j.xml") + " >" + path("value") + " 2>&1";
+    EXPECT_EQ(std::system(line.c_str()), 0) << read(path("value"));
+    return read(path("value"));
+  }
+
+  std::string arguments_;
+};
+
+TEST_F(RegressCommand, UpdateIsStableAndTheSameShapesPass) {
+  const std::string before = read(path("b.toml"));
+  EXPECT_EQ(run(arguments_ + steel() + " --update").status, 0);
+  EXPECT_EQ(read(path("b.toml")), before);
+  const dlo::test::Outcome result = run(arguments_ + steel());
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out.substr(0, 5), "same ");
+  EXPECT_EQ(read(path("b.toml")), before);
+}
+
+TEST_F(RegressCommand, UpdateSaysWhatItDid) {
+  const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
+  EXPECT_EQ(run(arguments_ + steel() + " --update").out.substr(0, 5), "same ");
+  const std::string both = run(arguments_ + steel() + " " + other + " --update").out;
+  EXPECT_EQ(both.find("--update adds it"), std::string::npos) << both;
+  EXPECT_NE(both.find("added "), std::string::npos) << both;
+  const std::string removed = run(arguments_ + steel() + " --update").out;
+  EXPECT_NE(removed.find("removed "), std::string::npos) << removed;
+  set("rms_over_length", "0.3");
+  EXPECT_EQ(run(arguments_ + steel() + " --update").out.substr(0, 8), "changed ");
+}
+
+TEST_F(RegressCommand, AWorseErrorFailsAndABetterOneIsReported) {
+  set("rms_over_length", "0.2");
+  dlo::test::Outcome result = run(arguments_ + steel());
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.out.find("(baseline 20 %) worse"), std::string::npos) << result.out;
+  EXPECT_EQ(run(arguments_ + steel() + " --relative 0.1").status, 0);
+  EXPECT_EQ(run(arguments_ + steel() + " --absolute 0.02").status, 0);
+  set("rms_over_length", "0.3");
+  result = run(arguments_ + steel());
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.out.find("1 better"), std::string::npos) << result.out;
+}
+
+TEST_F(RegressCommand, AMissingBaselineOrCaseOnEitherSideFails) {
+  expect_error("regress --baseline " + path("none.toml") + " " + steel(), 2,
+               {"none.toml", "cannot be read"});
+  const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
+  const dlo::test::Outcome added = run(arguments_ + steel() + " " + other);
+  EXPECT_EQ(added.status, 1);
+  EXPECT_NE(added.out.find("1 not in the baseline"), std::string::npos) << added.out;
+  const dlo::test::Outcome changed = run(arguments_ + steel() + " --points 20");
+  EXPECT_EQ(changed.status, 1);
+  EXPECT_NE(changed.out.find("N = 20 (baseline N = 16): RMS"), std::string::npos) << changed.out;
+  EXPECT_NE(changed.out.find("\n1 changed\n"), std::string::npos) << changed.out;
+}
+
+TEST_F(RegressCommand, AnotherSceneOfTheSameNameIsChanged) {
+  std::string text = read(steel());
+  ASSERT_NE(text.find("\n[rod]"), std::string::npos);
+  text.replace(text.find("\n[rod]"), 6, "\n[[load]]\nat = 0.5\nforce = [0, 1e-9, 0]\n[rod]");
+  const dlo::test::Outcome result = run(arguments_ + scene(text));
+  EXPECT_EQ(result.status, 1) << result.err;
+  EXPECT_EQ(result.out.substr(0, 8), "changed ") << result.out;
+  EXPECT_NE(result.out.find("another than the baseline's: RMS"), std::string::npos) << result.out;
+  // Written in another way it is the same scene.
+  std::string same = read(steel());
+  ASSERT_NE(same.find("\"50 cm\""), std::string::npos);
+  same.replace(same.find("\"50 cm\""), 7, "0.5");
+  EXPECT_EQ(run(arguments_ + scene(same)).status, 0);
+}
+
+TEST_F(RegressCommand, TakesPercentAndSharesAlikeAndOnePercentByDefault) {
+  const double rms = nlohmann::json::parse(run(arguments_ + steel() + " --format json").out)
+                         .at("cases")[0]
+                         .at("measured")
+                         .at("rms_over_length");
+  const auto status = [&](double before, const std::string& options) {
+    set("rms_over_length", std::to_string(before));
+    return run(arguments_ + steel() + options).status;
+  };
+  // std::to_string has six decimals, 1e-5 of an error of a tenth.
+  EXPECT_EQ(status(rms / 1.0099, ""), 0);
+  EXPECT_EQ(status(rms / 1.0102, ""), 1);
+  for (const std::string five : {" --relative 5%", " --relative 0.05"}) {
+    EXPECT_EQ(status(rms / 1.049, five), 0) << five;
+    EXPECT_EQ(status(rms / 1.051, five), 1) << five;
+  }
+  EXPECT_EQ(status(rms - 0.01, " --relative 0 --absolute 2%"), 0);
+  expect_error(arguments_ + steel() + " --relative nan", 2, {"--relative", "nan", "1% or 0.01"});
+  expect_error(arguments_ + steel() + " --absolute x", 2, {"--absolute", "x", "1% or 0.01"});
+}
+
+TEST_F(RegressCommand, WhatIsNotSolvedIsStatusThreeAndUpdatesNothing) {
+  const std::string before = read(path("b.toml"));
+  for (const std::string update : {"", " --update"}) {
+    const dlo::test::Outcome result = run(arguments_ + steel() + " --max-evaluations 1" + update);
+    EXPECT_EQ(result.status, 3);
+    EXPECT_NE(result.out.find("did not converge"), std::string::npos) << result.out;
+    EXPECT_EQ(read(path("b.toml")), before);
+  }
+}
+
+TEST_F(RegressCommand, BadInputIsOneLineAndStatusTwo) {
+  expect_error(arguments_ + path("none.toml"), 2, {"none.toml"});
+  expect_error(arguments_ + steel() + " " + steel(), 2, {"two scenes are this case"});
+  expect_error(arguments_ + steel() + " --relative -1", 2, {"--relative"});
+  expect_error("regress " + steel(), 2, {"--baseline"});
+  set("rms_over_length", "-1");
+  expect_error(arguments_ + steel(), 2, {"b.toml:11", "rms_over_length = -1", ">= 0"});
+  expect_error(arguments_ + steel() + " --update", 2, {"b.toml:11"});
+  std::ofstream(path("b.toml")) << "rubbish";
+  expect_error(arguments_ + steel(), 2, {"b.toml:1", "not valid TOML"});
+}
+
+TEST_F(RegressCommand, WritesJunitThatAnXmlReaderTakes) {
+  set("tip_over_length", "0.1");
+  const std::string strange = scene(R"(name = "<&>'\" \u0001 caf\u00e9"
+[rod]
+length = "50 cm"
+diameter = "2 mm"
+material = "spring_steel"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)");
+  EXPECT_EQ(run(arguments_ + steel() + " " + strange + " --junit " + path("j.xml")).status, 1);
+  EXPECT_EQ(junit("string(/testsuites/testsuite/@tests)"), "2\n");
+  EXPECT_EQ(junit("string(/testsuites/testsuite/@failures)"), "2\n");
+  EXPECT_EQ(junit("count(//testcase/failure)"), "2\n");
+  EXPECT_EQ(junit("string(//testcase[failure/@type=\"not in the baseline\"]/@name)"),
+            "<&>'\"   caf\xc3\xa9 (chain, law hooke, bookkeeping consistent, N = 16)\n");
+  EXPECT_NE(junit("string(//failure[@type=\"worse\"]/@message)").find("tip"), std::string::npos);
+}
+
+TEST_F(RegressCommand, PrintsJsonAndCsv) {
+  const auto document = nlohmann::json::parse(run(arguments_ + steel() + " --format json").out);
+  EXPECT_EQ(document.at("schema"), "dlo/regress/1");
+  EXPECT_EQ(document.at("verdict"), "pass");
+  EXPECT_EQ(document.at("cases")[0].at("verdict"), "same");
+  EXPECT_GT(document.at("cases")[0].at("measured").at("rms_over_length").get<double>(), 0.1);
+  EXPECT_EQ(run(arguments_ + steel() + " --format csv").out.substr(0, 13), "case,verdict,");
+  EXPECT_NE(run("regress --help").out.find("Example:"), std::string::npos);
+}
+
+}  // namespace

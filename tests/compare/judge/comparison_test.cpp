@@ -1,0 +1,484 @@
+#include "dlo/compare/comparison.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
+
+#include "dlo/compare/chain.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using test::heavy_scene;
+
+class ChainAndForceModel : public testing::TestWithParam<Law> {};
+
+TEST_P(ChainAndForceModel, RestInTheSamePolygonWithThePhysicalStretchStiffness) {
+  for (Scene scene : paper_scenes()) {
+    scene.force_model.law = GetParam();
+    for (const Bookkeeping bookkeeping : {Bookkeeping::paper, Bookkeeping::consistent}) {
+      scene.force_model.bookkeeping = bookkeeping;
+      const Solution chain = solve_chain(scene, scene.force_model);
+      const Solution force = solve_force(scene, scene.force_model, {.rest_tolerance = 1e-8});
+      EXPECT_LT((chain.shape.points - force.shape.points).colwise().norm().maxCoeff(),
+                1e-6 * scene.length)
+          << scene.name << ", " << to_string(bookkeeping);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, ChainAndForceModel, testing::Values(Law::paper, Law::hooke),
+                         [](const auto& instance) {
+                           return std::string(to_string(instance.param));
+                         });
+
+TEST(HookeChain, ConvergesToTheElasticaAtSecondOrder) {
+  Scene scene = heavy_scene(2, 0);
+  const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);
+  double previous = 0;
+  double previous_segment = 0;
+  for (const int points : {8, 16, 32, 64}) {
+    scene.force_model.points = points;
+    const Solution solution = solve_chain(scene, scene.force_model);
+    const Shape& shape = solution.shape;
+    const double segment = solution.parameters.segment_length;
+    const double error =
+        rms(shape.arc_length, shape.points - exact.sample(shape.arc_length).points);
+    RecordProperty("rms_" + std::to_string(points), std::to_string(error));
+    if (points == 16) {
+      EXPECT_LT(error, 6e-4);
+    }
+    if (previous > 0) {
+      // L = l / (N - 3/2) does not halve when N doubles.
+      const double order = std::log(previous / error) / std::log(previous_segment / segment);
+      EXPECT_GT(order, 1.9) << points;
+      EXPECT_LT(order, 2.1) << points;
+    }
+    previous = error;
+    previous_segment = segment;
+  }
+}
+
+TEST(HookeChain, ConvergesAtFirstOrderWithThePapersBookkeeping) {
+  Scene scene = heavy_scene(2, 0);
+  scene.force_model.bookkeeping = Bookkeeping::paper;
+  const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);
+  const auto error = [&](int points) {
+    scene.force_model.points = points;
+    const Shape shape = solve_chain(scene, scene.force_model).shape;
+    return rms(shape.arc_length, shape.points - exact.sample(shape.arc_length).points);
+  };
+  EXPECT_NEAR(std::log2(error(64) / error(128)), 1, 0.1);
+}
+
+TEST(Deviation, OfAShiftedShapeIsTheShift) {
+  const Scene scene = heavy_scene(1, 0);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  Shape shape;
+  shape.arc_length = equal_arc_lengths(1, 21);
+  shape.points = energy.sample(shape.arc_length).points;
+  shape.points.row(2).array() += 0.01;
+  const Deviation d = deviation(shape, energy.sample, straight_rod(scene, shape.arc_length), 20);
+  EXPECT_NEAR(d.rms_m, 0.01, 1e-15);
+  EXPECT_NEAR(d.max_m, 0.01, 1e-15);
+  EXPECT_NEAR(d.tip_m, 0.01, 1e-15);
+  EXPECT_NEAR(d.rms_over_length, 0.01, 1e-15);
+  EXPECT_LT(d.angle_rms_rad, 1e-4);  // chords against tangents
+  EXPECT_LT(d.curvature_rms_per_m, 1e-2);
+}
+
+TEST(Deviation, CurvatureOfAFlatShapeIsTheReferencesOwn) {
+  // Gamma << 1: kappa = Gamma (1-s)^2 / 2, whose RMS over the rod is Gamma / sqrt 20
+  const Scene scene = heavy_scene(0.01, 0);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  Shape straight;
+  straight.arc_length = equal_arc_lengths(1, 401);
+  straight.points = straight_rod(scene, straight.arc_length).value();
+  const Deviation d = deviation(straight, energy.sample, straight.points, 400);
+  EXPECT_NEAR(d.curvature_rms_per_m, 0.01 / std::sqrt(20.0), 2e-5);
+  EXPECT_NEAR(d.rms_over_movement, 1, 1e-12);
+}
+
+// The joint next to the gripper turns over a whole segment, of which the rod's own part is a half:
+// taken for a half its curvature would be 4/3 of the rod's at any N.
+TEST(Deviation, CurvatureOfAHookeanChainIsOfSecondOrder) {
+  Scene scene = heavy_scene(2, 0);
+  scene.force_model.law = Law::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  const auto curvature_rms = [&](int points) {
+    scene.force_model.points = points;
+    const Shape chain = solve_chain(scene, scene.force_model).shape;
+    return shape_deviation(scene, chain, energy.sample).curvature_rms_per_m;
+  };
+  const double coarse = curvature_rms(16);
+  const double order = std::log(coarse / curvature_rms(64)) / std::log((64 - 1.5) / (16 - 1.5));
+  EXPECT_NEAR(order, 2, 0.1);
+  EXPECT_LT(coarse, 0.01);
+}
+
+TEST(EffectiveModulus, RecoversTheModulusOfAnEnergyShape) {
+  const Scene scene = heavy_scene(2, 15);
+  for (const double ratio : {0.03, 0.5, 1.0, 7.0}) {
+    Scene other = scene;
+    other.material.youngs_modulus *= ratio;
+    Shape shape;
+    shape.arc_length = equal_arc_lengths(1, 12);
+    shape.points = solve_reference(other, Model::exact).sample(shape.arc_length).points;
+    const EffectiveModulus fit = fit_effective_modulus(scene, shape);
+    EXPECT_NEAR(fit.ratio / ratio, 1, 1e-5);
+    EXPECT_LT(fit.rms_m, 1e-6);
+    EXPECT_EQ(fit.optimum, Optimum::clear);
+  }
+}
+
+TEST(EffectiveModulus, OfAnUnbentShapeIsOneSided) {
+  const Scene scene = heavy_scene(2, 15);
+  Shape shape;
+  shape.arc_length = equal_arc_lengths(1, 12);
+  shape.points = straight_rod(scene, shape.arc_length).value();
+  EXPECT_EQ(fit_effective_modulus(scene, shape).optimum, Optimum::one_sided);
+}
+
+TEST(EffectiveModulus, ARodThatHangsStraightHasNone) {
+  const Scene scene = heavy_scene(2, -90);
+  Shape shape;
+  shape.arc_length = equal_arc_lengths(1, 12);
+  shape.points = straight_rod(scene, shape.arc_length).value();
+  for (const double aside : {0.0, 1e-3}) {
+    shape.points.row(0).setConstant(aside);
+    const EffectiveModulus fit = fit_effective_modulus(scene, shape);
+    EXPECT_EQ(fit.optimum, Optimum::none);
+    EXPECT_TRUE(std::isnan(fit.ratio));
+    EXPECT_EQ(fit.why_none, "the shape does not change with E");
+  }
+}
+
+// What no modulus takes away lies across the plane: of the mean square that E could explain, a
+// share of 1 - 0.72^2 = 0.48 lets the RMS fall by 28 %.
+TEST(EffectiveModulus, IsClearOnlyIfItExplainsTheDeviation) {
+  const Scene scene = heavy_scene(2, 15);
+  Scene soft = scene;
+  soft.material.youngs_modulus *= 0.5;
+  Shape shape;
+  shape.arc_length = equal_arc_lengths(1, 12);
+  shape.points = solve_reference(soft, Model::exact).sample(shape.arc_length).points;
+  const double in_plane = distance_from(shape)(solve_reference(scene, Model::energy));
+  for (const auto& [share, optimum] :
+       {std::pair{0.48, Optimum::partial}, std::pair{0.74, Optimum::partial},
+        std::pair{0.76, Optimum::clear}, std::pair{0.99, Optimum::clear}}) {
+    Shape aside = shape;
+    aside.points.row(2).setConstant(in_plane * std::sqrt(1 / share - 1));
+    const EffectiveModulus fit = fit_effective_modulus(scene, aside);
+    EXPECT_NEAR(fit.ratio, 0.5, 1e-5);
+    EXPECT_NEAR(fit.explained_share, share, 1e-6);
+    EXPECT_EQ(fit.optimum, optimum) << share;
+  }
+}
+
+/// The ratio at which the exact model's shape comes nearest, by golden section from cold solves.
+double golden_section_ratio(const Scene& scene, const Shape& shape, double low, double high) {
+  const auto square = [&](double log_ratio) {
+    Scene at = scene;
+    at.material.youngs_modulus *= std::exp(log_ratio);
+    const double distance = distance_from(shape)(solve_reference(at, Model::exact));
+    return distance * distance;
+  };
+  const double golden = (std::sqrt(5.0) - 1) / 2;
+  double a = std::log(low);
+  double b = std::log(high);
+  double c = b - golden * (b - a);
+  double d = a + golden * (b - a);
+  double at_c = square(c);
+  double at_d = square(d);
+  while (b - a > 2e-6) {
+    if (at_c < at_d) {
+      b = d;
+      d = c;
+      at_d = at_c;
+      c = b - golden * (b - a);
+      at_c = square(c);
+    } else {
+      a = c;
+      c = d;
+      at_c = at_d;
+      d = a + golden * (b - a);
+      at_d = square(d);
+    }
+  }
+  return std::exp((a + b) / 2);
+}
+
+TEST(EffectiveModulus, IsRightToEachPrintedDigit) {
+  Scene scene = heavy_scene(2, 15);
+  scene.force_model.law = Law::paper;
+  const Shape shape = solve_chain(scene, scene.force_model).shape;
+  const EffectiveModulus fit = fit_effective_modulus(scene, shape);
+  ASSERT_TRUE(is_told(fit.optimum));
+  const double ratio = golden_section_ratio(scene, shape, fit.ratio / 2, fit.ratio * 2);
+  EXPECT_NEAR(fit.ratio, ratio, 1e-5 * ratio);
+  EXPECT_LT(fit.ratio, 0.5);
+}
+
+TEST(EffectiveModulus, IsFoundBetweenClampsInFewSolves) {
+  Scene scene = heavy_scene(100, 0);
+  scene.grippers.push_back(
+      {.at = 1, .position = {0.7, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
+  Scene soft = scene;
+  soft.material.youngs_modulus *= 0.6;
+  Shape shape;
+  shape.arc_length = equal_arc_lengths(1, 21);
+  shape.points = solve_reference(soft, Model::energy).sample(shape.arc_length).points;
+  const EffectiveModulus fit =
+      fit_effective_modulus(scene, distance_from(shape), solve_reference(scene, Model::energy));
+  EXPECT_NEAR(fit.ratio, 0.6, 1e-5);
+  EXPECT_EQ(fit.optimum, Optimum::clear);
+  // A scan of half a decade to both sides, and Brent's method.
+  EXPECT_LE(fit.solves, 30);
+}
+
+TEST(EffectiveModulus, TheTimeLimitIsForTheWholeSearch) {
+  const Scene scene = heavy_scene(2, 15);
+  Shape shape;
+  shape.arc_length = equal_arc_lengths(1, 12);
+  shape.points = straight_rod(scene, shape.arc_length).value();
+  const energy_model::Equilibrium state = solve_reference(scene, Model::energy);
+  const EffectiveModulus fit =
+      fit_effective_modulus(scene, distance_from(shape), state, {.time_limit = 1e-9});
+  EXPECT_EQ(fit.optimum, Optimum::none);
+  EXPECT_TRUE(std::isnan(fit.ratio));
+  EXPECT_EQ(fit.why_none, "time limit of 1e-09 s reached");
+  EXPECT_EQ(fit.solves, 0);
+}
+
+TEST(Comparison, PaperRodIsFarFromItsModulusAndHookeIsNot) {
+  Scene scene = paper_scenes().front();
+  const Comparison paper = compare(scene);
+  EXPECT_NEAR(paper.effective_modulus.ratio, 0.0285, 0.0005);
+  EXPECT_GT(paper.budget.law.rms_m, 10 * paper.budget.bookkeeping.rms_m);
+  EXPECT_LT(paper.budget.stretch.rms_m, 1e-6 * scene.length);
+  // Formula 21 with the consistent segments gives another c_b, which is their interaction.
+  EXPECT_NEAR(paper.budget.law.share + paper.budget.interaction.share, 1, 0.01);
+  EXPECT_LT(paper.budget.interaction.rms_m, 0.15 * paper.budget.total_m);
+  scene.force_model.law = Law::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  const Comparison hooke = compare(scene);
+  EXPECT_NEAR(hooke.effective_modulus.ratio, 1, 0.01);
+  EXPECT_LT(hooke.deviation.rms_over_length, 1e-4);
+  EXPECT_EQ(hooke.budget.law.rms_m, 0);
+  EXPECT_EQ(hooke.budget.bookkeeping.rms_m, 0);
+  EXPECT_NEAR(hooke.budget.discretisation.rms_m, hooke.deviation.rms_m,
+              0.02 * hooke.deviation.rms_m);
+}
+
+class BudgetOf : public testing::TestWithParam<std::tuple<double, Law, Bookkeeping>> {};
+
+TEST_P(BudgetOf, AddsUpToTheTotal) {
+  const auto [gamma, law, bookkeeping] = GetParam();
+  for (const int points : {8, 16, 40}) {
+    Scene scene = heavy_scene(gamma, 20);
+    scene.force_model.law = law;
+    scene.force_model.bookkeeping = bookkeeping;
+    scene.force_model.points = points;
+    // A hundredth of AE: rest comes ten times sooner.
+    scene.force_model.c_c = scene.axial_stiffness() / 100;
+    const Comparison c = compare(scene);
+    const Budget& b = c.budget;
+    const double parts = b.law.share + b.bookkeeping.share + b.discretisation.share +
+                         b.stretch.share + b.not_at_rest.share;
+    EXPECT_NEAR(parts + b.interaction.share, 1, 1e-9) << points;
+    // The total of the budget is the deviation, on other arc lengths.
+    EXPECT_NEAR(b.total_m, c.deviation.rms_m, 0.05 * c.deviation.rms_m) << points;
+    // Only where two things are switched is there anything to interact.
+    if (law == Law::hooke || bookkeeping == Bookkeeping::consistent) {
+      EXPECT_NEAR(parts, 1, 0.01) << points;
+      EXPECT_LT(b.interaction.rms_m, 0.02 * b.total_m + 1e-7) << points;
+    }
+    if (law == Law::hooke) {
+      EXPECT_EQ(b.law.rms_m, 0);
+    }
+    if (bookkeeping == Bookkeeping::consistent) {
+      EXPECT_EQ(b.bookkeeping.rms_m, 0);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, BudgetOf,
+    testing::Combine(testing::Values(0.2, 2.0, 20.0), testing::Values(Law::paper, Law::hooke),
+                     testing::Values(Bookkeeping::paper, Bookkeeping::consistent)));
+
+TEST(Budget, SaysHowFarFromRestTheShapeIs) {
+  Scene scene = heavy_scene(2, 0);
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  const Solution rest = solve_force(scene, scene.force_model, {.rest_tolerance = 1e-9});
+  const Solution early = solve_force(scene, scene.force_model, {.rest_tolerance = 1e-3});
+  const double distance = rms(rest.shape.arc_length, rest.shape.points - early.shape.points);
+  const Comparison c = compare(scene, {.rest_tolerance = 1e-3});
+  EXPECT_GT(distance, 1e-6);
+  EXPECT_NEAR(c.budget.not_at_rest.rms_m, distance, 0.1 * distance);
+}
+
+TEST(Comparison, ComparesWithTheStateThatTheForceModelIsIn) {
+  // Between clamps that lean up a heavy rod hangs out of its plane, to either side: two mirror
+  // images, of which force and energy model may well take different ones.
+  Scene scene = heavy_scene(100, 30);
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  scene.grippers.push_back(
+      {.at = 1, .position = {0.6, 0, 0}, .direction = Eigen::Vector3d(1, -1, 0).normalized()});
+  const Comparison c = compare(scene);
+  EXPECT_EQ(c.state.stable, 2);
+  EXPECT_EQ(c.state.others.front().stable, true);
+  EXPECT_NEAR(c.state.others.front().energy_difference_J, 0, 1e-9 * std::abs(c.state.energy_J));
+  EXPECT_GT(c.state.others.front().rms_from_compared_m, 0.1);
+  EXPECT_LT(c.deviation.rms_over_length, 0.01);
+  EXPECT_NEAR(c.budget.discretisation.share, 1, 0.01);
+  for (const OtherState& other : c.state.others) {
+    EXPECT_GT(other.rms_from_shape_m, 5 * c.deviation.rms_m);
+  }
+}
+
+TEST(Comparison, SaysWhichOfSeveralStatesItCompared) {
+  Scene scene = heavy_scene(100, 0);
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  const Comparison c = compare(scene);
+  // Above Gamma = 41.4 a horizontal clamp has other shapes, thrown back over the clamp.
+  EXPECT_GE(c.state.others.size(), 1U);
+  EXPECT_EQ(c.state.rank, 1);
+  EXPECT_EQ(static_cast<int>(c.state.others.size()), c.state.stable + c.state.unstable - 1);
+  for (const OtherState& other : c.state.others) {
+    EXPECT_GT(other.energy_difference_J, 0);
+    EXPECT_GT(other.rms_from_compared_m, 0.1);
+    EXPECT_GT(other.rms_from_shape_m, 10 * c.deviation.rms_m);
+  }
+  EXPECT_EQ(compare(heavy_scene(0.2, 0)).state.others.size(), 0U);
+}
+
+TEST(Comparison, TheBudgetBetweenTwoClampsAddsUp) {
+  Scene scene = heavy_scene(20, 0);
+  scene.grippers.push_back(
+      {.at = 1, .position = {0.7, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
+  scene.force_model.law = Law::paper;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  const Comparison c = compare(scene, {}, {}, ModulusSearch::no);
+  EXPECT_EQ(c.effective_modulus.optimum, Optimum::none);
+  EXPECT_EQ(c.effective_modulus.why_none, "skipped");
+  const Budget& b = c.budget;
+  const double parts = b.law.share + b.bookkeeping.share + b.discretisation.share +
+                       b.stretch.share + b.not_at_rest.share;
+  EXPECT_NEAR(parts + b.interaction.share, 1, 1e-9);
+  EXPECT_NEAR(b.total_m, c.deviation.rms_m, 0.05 * c.deviation.rms_m);
+  EXPECT_NEAR(parts, 1, 0.02);
+  EXPECT_EQ(b.bookkeeping.rms_m, 0);
+  EXPECT_GT(b.law.rms_m, 3 * b.stretch.rms_m);
+  EXPECT_TRUE(std::isnan(c.deviation.tip_m));
+  EXPECT_TRUE(std::isnan(c.deviation.rms_over_movement));
+}
+
+TEST(Solve, AllModelsAgreeOnForcesAndEnergies) {
+  Scene scene = heavy_scene(1, -20);
+  scene.force_model.points = 64;
+  // A hundredth of AE: the strain w l / (c_c) stays below 3e-5 and rest comes ten times sooner.
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  const Solution exact = solve(scene, Model::exact);
+  for (const Model model : {Model::energy, Model::chain, Model::force}) {
+    const Solution solution = solve(scene, model);
+    const double size = exact.energy.total();
+    const double tolerance = model == Model::energy ? 1e-9 : 2e-3;
+    EXPECT_NEAR(solution.energy.total(), size, tolerance * std::abs(size)) << to_string(model);
+    EXPECT_NEAR(solution.energy.bending, exact.energy.bending, 10 * tolerance * std::abs(size));
+    // The force model stops 1e-7 l from rest, where its stiff segments still pull at the grip.
+    const double force_tolerance = model == Model::force ? 1e-4 : 1e-12;
+    EXPECT_LT((solution.grippers[0].force - exact.grippers[0].force).norm(),
+              force_tolerance * exact.grippers[0].force.norm());
+    EXPECT_LT((solution.grippers[0].torque - exact.grippers[0].torque).norm(),
+              tolerance * exact.grippers[0].torque.norm())
+        << to_string(model);
+  }
+}
+
+TEST(Solve, TorquesAreAboutTheGripperWhereverItIs) {
+  const Eigen::Vector3d away(3, -2, 1.5);  // six lengths: a lever from the origin is far off
+  Scene one = heavy_scene(1, -20);
+  one.force_model.points = 16;
+  one.force_model.c_c = one.axial_stiffness() / 1000;
+  Scene two = one;  // solved by the chain with stretch
+  two.grippers.push_back({.at = 0.71 * one.length,
+                          .position = Eigen::Vector3d(0.5, 0.1, 0.05) * one.length,
+                          .where = "test"});
+  const auto torques = [](const Scene& scene, Model model) {
+    std::vector<Eigen::Vector3d> result;
+    for (const GripperLoad& load : solve(scene, model).grippers) result.push_back(load.torque);
+    return result;
+  };
+  for (const Scene& scene : {one, two}) {
+    Scene far = scene;
+    for (Gripper& gripper : far.grippers) gripper.position += away;
+    for (const Model model : {Model::exact, Model::energy, Model::chain, Model::force}) {
+      const std::vector<Eigen::Vector3d> here = torques(scene, model);
+      const std::vector<Eigen::Vector3d> there = torques(far, model);
+      ASSERT_EQ(here.size(), scene.grippers.size());
+      ASSERT_EQ(there.size(), here.size());
+      ASSERT_GT(here[0].norm(), 0) << to_string(model);
+      for (std::size_t i = 0; i < here.size(); ++i) {
+        EXPECT_LT((there[i] - here[i]).norm(), 1e-3 * here[0].norm()) << to_string(model);
+      }
+    }
+  }
+}
+
+// A search ends on a saddle here; the chain's shape leads to the table.
+TEST(Solve, ACableBetweenClampsLiesOnATable) {
+  const Scene scene = parse_scene(R"(
+[rod]
+length = 2
+diameter = "6 mm"
+material = "silicone"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+[[gripper]]
+at = 2
+position = [1.6, 0, 0]
+direction = "0 deg"
+[[obstacle]]
+point = [0, -0.5, 0]
+normal = [0, 1, 0]
+[force_model]
+points = 160
+law = "hooke"
+bookkeeping = "consistent"
+)",
+                                  "table.toml");
+  const Solution energy = solve(scene, Model::energy);
+  EXPECT_GT(energy.shape.points.row(1).minCoeff(), -0.5 - 2e-3);
+  // The table and the grippers bear the rod's weight.
+  const double weight = scene.weight_per_length().norm() * scene.length;
+  const double table = energy.obstacles[0].y();
+  EXPECT_GT(table, 0.1 * weight);
+  EXPECT_NEAR(table + energy.grippers[0].force.y() + energy.grippers[1].force.y(), weight,
+              1e-3 * weight);
+  EXPECT_NEAR(solve(scene, Model::chain).obstacles[0].y(), table, 0.02 * weight);
+}
+
+TEST(Solve, WhatDoesNotConvergeIsAnError) {
+  const Scene scene = heavy_scene(10, 0);
+  EXPECT_THROW((void)solve(scene, Model::energy, {.max_evaluations = 2}), ConvergenceError);
+  EXPECT_THROW((void)solve(scene, Model::chain, {.max_evaluations = 2}), ConvergenceError);
+  EXPECT_THROW((void)solve(scene, Model::force, {.max_steps = 10}), ConvergenceError);
+}
+
+}  // namespace
+}  // namespace dlo::compare

@@ -1,0 +1,159 @@
+#include "dlo/compare/force_model_fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "dlo/compare/chain.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solution.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using test::heavy_scene;
+
+std::vector<Scene> scenes_of(const std::vector<double>& gammas, double degrees, Law law) {
+  std::vector<Scene> scenes;
+  for (const double gamma : gammas) {
+    scenes.push_back(heavy_scene(gamma, degrees));
+    scenes.back().force_model.law = law;
+  }
+  return scenes;
+}
+
+const RuleDeviations& rule_of(const ForceModelFit& fit, StiffnessRule rule) {
+  return *std::find_if(fit.rules.begin(), fit.rules.end(),
+                       [rule](const RuleDeviations& entry) { return entry.rule == rule; });
+}
+
+// At N = 16 the physical stiffness is right to 0.1 % up to Gamma = 3.5; beyond, the error of second
+// order is larger (0.38 % at Gamma = 20) and only more points help.
+TEST(ForceModelFit, HookeAtSixteenPointsIsBelowATenthOfAPercentForModerateBending) {
+  const ForceModelFit fit = fit_force_model(
+      scenes_of({0.2, 1}, 0, Law::hooke), scenes_of({0.1, 2, 3.5}, 0, Law::hooke), {.points = 16});
+  EXPECT_EQ(fit.settings.points, 16);
+  EXPECT_FALSE(fit.settings.c_b);
+  EXPECT_LT(fit.worst(), 1e-3);
+  EXPECT_LT(fit.worst_holdout(), 1e-3);
+  EXPECT_EQ(fit.holdouts, 3U);
+  EXPECT_EQ(fit.stepped_rms_over_length.size(), 5U);
+}
+
+TEST(ForceModelFit, HookeChoosesPointsForTheTargetAndKeepsItOnHoldOutScenes) {
+  const std::vector<Scene> scenes = scenes_of({0.2, 1, 5, 20}, 0, Law::hooke);
+  const std::vector<Scene> holdouts = scenes_of({0.1, 2, 10, 20}, -30, Law::hooke);
+  const ForceModelFit fit = fit_force_model(scenes, holdouts);
+  EXPECT_NEAR(fit.order, 2, 0.1);
+  EXPECT_LE(fit.worst(), 1e-3);
+  EXPECT_LE(fit.worst_holdout(), 1e-3);
+  // A quarter of the error takes twice the segments.
+  const ForceModelFit finer = fit_force_model(scenes, {}, {.target = 1e-3 / 4});
+  EXPECT_NEAR((finer.settings.points - 1.5) / (fit.settings.points - 1.5), 2, 0.15);
+  EXPECT_LE(finer.worst(), 1e-3 / 4);
+  // And one point fewer misses the polygon's share of the target.
+  ForceModelFitOptions fewer{.points = fit.settings.points * 9 / 10};
+  EXPECT_GT(fit_force_model(scenes, {}, fewer).worst(), 0.9e-3);
+}
+
+TEST(ForceModelFit, StretchTakesATenthOfTheTargetAtMost) {
+  const std::vector<Scene> scenes = scenes_of({1, 8}, -60, Law::hooke);
+  const ForceModelFit fit = fit_force_model(scenes, {}, {.points = 16, .target = 1e-2});
+  const RuleDeviations& chain = rule_of(fit, StiffnessRule::physical);
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    EXPECT_NEAR(fit.stepped_rms_over_length[i], chain.rms_over_length[i], 1e-3);
+  }
+  EXPECT_LT(*fit.settings.c_c, scenes[0].axial_stiffness());
+  EXPECT_DOUBLE_EQ(*fit.settings.c_c, scenes[1].weight_per_length().norm() / 1e-3);
+}
+
+TEST(ForceModelFit, FittedStiffnessOfThePaperLawIsTheBest) {
+  const std::vector<Scene> scenes = scenes_of({0.5, 2, 8}, 0, Law::paper);
+  const ForceModelFit fit = fit_force_model(scenes, scenes_of({4}, 20, Law::paper));
+  ASSERT_EQ(fit.rules.size(), 4U);
+  const RuleDeviations& fitted = rule_of(fit, StiffnessRule::fitted);
+  const RuleDeviations& alone = rule_of(fit, StiffnessRule::fitted_alone);
+  EXPECT_EQ(fit.settings.c_b, fitted.c_b[0]);
+  for (const RuleDeviations& rule : fit.rules) {
+    double sum = 0;
+    double fitted_sum = 0;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      EXPECT_LE(alone.rms_over_length[i], rule.rms_over_length[i] * (1 + 1e-9))
+          << to_string(rule.rule) << ", " << i;
+      sum += std::pow(rule.rms_over_length[i], 2);
+      fitted_sum += std::pow(fitted.rms_over_length[i], 2);
+    }
+    if (rule.rule != StiffnessRule::fitted_alone) {
+      EXPECT_LE(fitted_sum, sum) << to_string(rule.rule);
+    }
+  }
+  // No c_b close by is better for a scene than the one fitted to it alone.
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const energy_model::Equilibrium energy = solve_reference(scenes[i], Model::energy);
+    for (const double factor : {0.97, 1.03}) {
+      ForceModelSettings settings = fit.settings;
+      settings.c_b = alone.c_b[i] * factor;
+      const Shape shape = solve_chain(scenes[i], settings).shape;
+      EXPECT_GT(rms(shape.arc_length, shape.points - energy.sample(shape.arc_length).points),
+                alone.rms_over_length[i]);
+    }
+  }
+  // A cubic law has no linear law's shape: percents of the length remain where it bends.
+  EXPECT_GT(alone.rms_over_length[2], 0.005);
+}
+
+TEST(ForceModelFit, SteppedModelRestsWhereTheChainDoes) {
+  for (const Law law : {Law::paper, Law::hooke}) {
+    const ForceModelFit fit =
+        fit_force_model(scenes_of({0.5, 5}, 0, law), scenes_of({2}, -45, law), {.points = 12});
+    const RuleDeviations& chain =
+        rule_of(fit, law == Law::paper ? StiffnessRule::fitted : StiffnessRule::physical);
+    for (std::size_t i = 0; i < fit.scenes.size(); ++i) {
+      EXPECT_NEAR(fit.stepped_rms_over_length[i], chain.rms_over_length[i], 1e-4);
+      EXPECT_GT(fit.steps[i], 0);
+    }
+    EXPECT_EQ(fit.settings.stepper, StepperName::dynamic);
+    EXPECT_GT(*fit.settings.c_F, 0);
+    EXPECT_LT(*fit.settings.c_h, 1);
+  }
+}
+
+TEST(ForceModelFit, SeveralGrippersAreFittedToo) {
+  Scene scene = heavy_scene(5, 0);
+  scene.grippers.push_back(
+      {.at = 1, .position = Eigen::Vector3d(0.8, 0, 0), .direction = Eigen::Vector3d::UnitX()});
+  const ForceModelFit fit = fit_force_model({scene}, {});
+  EXPECT_LE(fit.worst(), 1e-3);
+}
+
+TEST(ForceModelFit, RefusesWhatCannotBeFitted) {
+  const std::vector<Scene> hooke = scenes_of({1}, 0, Law::hooke);
+  const std::vector<Scene> paper = scenes_of({1}, 0, Law::paper);
+  EXPECT_THROW((void)fit_force_model({}, {}), InputError);
+  EXPECT_THROW((void)fit_force_model(hooke, paper), InputError);
+  EXPECT_THROW((void)fit_force_model(hooke, {}, {.target = 0}), InputError);
+  EXPECT_THROW((void)fit_force_model(hooke, {}, {.target = NAN}), InputError);
+}
+
+TEST(Parameters, AreReadStrictly) {
+  const ForceModelSettings settings = parse_parameters(
+      "[force_model]\npoints = 9\nlaw = \"paper\"\nc_b = 3.5\nstepper = \"dynamic\"\nc_F = 1e-4\n"
+      "c_h = 0.9\nl_s = 0.01\nc_c = 100\n[derived]\nanything = 1\n",
+      "p.toml");
+  EXPECT_EQ(settings.points, 9);
+  EXPECT_EQ(settings.law, Law::paper);
+  EXPECT_EQ(settings.c_b, 3.5);
+  EXPECT_EQ(settings.c_F, 1e-4);
+  EXPECT_THROW((void)parse_parameters("points = 9\n", "p.toml"), InputError);
+  EXPECT_THROW((void)parse_parameters("[force_model]\npoint = 9\n", "p.toml"), InputError);
+  EXPECT_THROW((void)parse_parameters("[force_model]\n[other]\n", "p.toml"), InputError);
+  EXPECT_THROW((void)parse_parameters("[force_model]\nc_F = 1\n", "p.toml"), InputError);
+}
+
+}  // namespace
+}  // namespace dlo::compare

@@ -1,0 +1,143 @@
+#include "dlo/compare/shape_check.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/comparison.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solution.hpp"
+#include "measured_shapes.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using test::exact_shape;
+using test::heavy_scene;
+
+// What `compare` says of the force model's shape, `check` says of the file that `solve` writes.
+TEST(ShapeCheck, AgreesWithCompareOnTheSameShape) {
+  Scene scene = heavy_scene(3, 10);
+  scene.force_model.law = Law::paper;
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  const Comparison comparison = compare(scene);
+  const Shape& shape = comparison.force.shape;
+  const ShapeCheck check = check_shape(scene, {"f", shape.points, shape.arc_length});
+  const Deviation& a = check.deviation;
+  const Deviation& b = comparison.deviation;
+  EXPECT_NEAR(a.rms_m, b.rms_m, 1e-9);
+  EXPECT_NEAR(a.max_m, b.max_m, 1e-9);
+  EXPECT_NEAR(a.max_at_m, b.max_at_m, 1e-12);
+  EXPECT_NEAR(a.tip_m, b.tip_m, 1e-9);
+  EXPECT_NEAR(a.angle_rms_rad, b.angle_rms_rad, 1e-9);
+  EXPECT_NEAR(check.effective_modulus.ratio / comparison.effective_modulus.ratio, 1, 1e-5);
+  EXPECT_NEAR(check.effective_modulus.rms_m, comparison.effective_modulus.rms_m, 1e-8);
+  EXPECT_NEAR(check.modulus, check.effective_modulus.ratio * 210e9, 1);
+}
+
+TEST(ShapeCheck, FindsTheModulusInAnyFrameFromEitherEnd) {
+  const Scene scene = heavy_scene(4, 0);
+  Scene soft = scene;
+  soft.material.youngs_modulus *= 0.4;
+  std::mt19937 random(11);
+  for (const bool backwards : {false, true}) {
+    const MeasuredShape truth = exact_shape(soft, test::uneven_arc_lengths(random, 12, 1));
+    MeasuredShape moved{"m", test::random_pose(random).applied(truth.points), {}};
+    if (backwards) moved = test::reversed(moved);
+    const ShapeCheck check = check_shape(scene, moved, {.pose = PoseFreedom::rigid});
+    EXPECT_NEAR(check.effective_modulus.ratio, 0.4, 1e-3);
+    EXPECT_LT(check.effective_modulus.rms_m, 1e-6);
+    EXPECT_GT(check.deviation.rms_m, 1e-3);
+    EXPECT_TRUE(check.turn_is_clear);
+  }
+}
+
+// Between clamps that lean up a heavy rod hangs out of its plane, to either side. Neither side is
+// wrong, and the modulus is the one of the shape's own side.
+TEST(ShapeCheck, ComparesWithTheStateThatTheShapeIsIn) {
+  Scene scene = heavy_scene(100, 30);
+  scene.grippers.push_back(
+      {.at = 1, .position = {0.6, 0, 0}, .direction = Eigen::Vector3d(1, -1, 0).normalized()});
+  Scene soft = scene;
+  soft.material.youngs_modulus *= 0.8;
+  const std::vector<double> s = equal_arc_lengths(1, 31);
+  MeasuredShape shape{"s", solve_reference(soft, Model::energy).sample(s).points, s};
+  for (const double side : {1, -1}) {
+    shape.points.row(2) *= side;
+    const ShapeCheck check = check_shape(scene, shape);
+    EXPECT_EQ(check.state.stable, 2);
+    EXPECT_GT(check.state.others.front().rms_from_shape_m, 3 * check.deviation.rms_m);
+    EXPECT_NEAR(check.effective_modulus.ratio, 0.8, 1e-5);
+    EXPECT_LT(check.effective_modulus.rms_m, 1e-6);
+  }
+}
+
+TEST(ShapeCheck, SaysWhereItIsWorst) {
+  const Scene scene = heavy_scene(2, -10);
+  MeasuredShape shape = exact_shape(scene, equal_arc_lengths(1, 11));
+  shape.points(2, 7) += 0.02;
+  for (const ArcLengths rule : {ArcLengths::chord, ArcLengths::nearest}) {
+    const ShapeCheck along = check_shape(scene, shape, {.arc_lengths = rule});
+    EXPECT_NEAR(along.deviation.max_m, 0.02, 1e-3);
+    EXPECT_NEAR(along.deviation.max_at_m, 0.7, 1e-3);
+    EXPECT_EQ(along.worst_point, 8);
+    const ShapeCheck back = check_shape(scene, test::reversed(shape), {.arc_lengths = rule});
+    EXPECT_NEAR(back.deviation.max_at_m, 0.7, 1e-3);
+    EXPECT_EQ(back.worst_point, 4);
+    EXPECT_TRUE(back.alignment.reversed);
+    EXPECT_TRUE(back.direction_is_clear);
+  }
+}
+
+TEST(ShapeCheck, MeasuresWhatIsSeenAndWhatIsMissing) {
+  const Scene scene = heavy_scene(5, 0);
+  const MeasuredShape shape = exact_shape(scene, {0.1, 0.2, 0.3, 0.65, 0.7, 0.8});
+  const ShapeCheck check = check_shape(scene, shape);
+  EXPECT_EQ(check.alignment.arc_lengths, ArcLengths::nearest);
+  EXPECT_NEAR(check.alignment.shape.arc_length.front(), 0.1, 1e-6);
+  EXPECT_NEAR(check.alignment.shape.arc_length.back(), 0.8, 1e-6);
+  EXPECT_NEAR(check.largest_gap_m, 0.35, 1e-6);
+  EXPECT_NEAR(check.largest_gap_at_m, 0.3, 1e-6);
+  EXPECT_LT(check.deviation.rms_m, 1e-8);
+  EXPECT_TRUE(std::isnan(check.deviation.tip_m));
+  EXPECT_TRUE(std::isnan(check.deviation.angle_rms_rad));
+}
+
+// Gamma << 1: y = Gamma (6 s^2 - 4 s^3 + s^4) / 24.
+TEST(ShapeCheck, MovementIsTheRmsWayFromStraight) {
+  const double gamma = 0.01;
+  const Scene scene = heavy_scene(gamma, 0);
+  const ShapeCheck check = check_shape(scene, exact_shape(scene, equal_arc_lengths(1, 401)));
+  double mean_square = 0;
+  constexpr int n = 20000;
+  for (int i = 0; i < n; ++i) {
+    const double s = (i + 0.5) / n;
+    mean_square += std::pow(gamma * s * s * (6 - 4 * s + s * s) / 24, 2) / n;
+  }
+  EXPECT_NEAR(check.movement_m, std::sqrt(mean_square), 1e-4 * gamma);
+}
+
+TEST(ShapeCheck, AStraightShapeDoesNotTellItsTurn) {
+  const Scene scene = heavy_scene(1e-4, 0);
+  const ShapeCheck check = check_shape(scene, exact_shape(scene, equal_arc_lengths(1, 11)),
+                                       {.pose = PoseFreedom::rigid});
+  EXPECT_LT(check.deviation.rms_m, 1e-4);
+  MeasuredShape line{"line", Eigen::Matrix3Xd::Zero(3, 5), {}};
+  line.points.row(2) = Eigen::RowVectorXd::LinSpaced(5, 0, 1);
+  EXPECT_FALSE(check_shape(scene, line, {.pose = PoseFreedom::rigid}).turn_is_clear);
+}
+
+TEST(ShapeCheck, UprightNeedsGravity) {
+  Scene scene = heavy_scene(1, 0);
+  const MeasuredShape shape = exact_shape(scene, equal_arc_lengths(1, 11));
+  scene.gravity.setZero();
+  EXPECT_THROW((void)check_shape(scene, shape, {.pose = PoseFreedom::upright}), InputError);
+}
+
+}  // namespace
+}  // namespace dlo::compare

@@ -1,0 +1,85 @@
+// The matchers for users of GoogleTest: what they accept and what they say.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest-spi.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include "dlo/compare/gtest.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
+#include "scenes.hpp"
+
+namespace {
+
+using dlo::compare::IsShapeOf;
+using dlo::compare::judge_shape;
+using dlo::compare::Scene;
+using dlo::compare::Shape;
+using testing::HasSubstr;
+using testing::Not;
+
+Scene bent() { return dlo::test::heavy_scene(10, 0); }
+
+/// The exact shape at uneven arc lengths.
+Shape exact_shape() {
+  return dlo::compare::solve(bent(), dlo::compare::Model::exact, {}, {0, 0.1, 0.35, 0.8, 1}).shape;
+}
+
+TEST(ShapeMatcher, AcceptsTheShapeAndOneWithinTheTolerance) {
+  Shape shape = exact_shape();
+  EXPECT_SHAPE_NEAR(shape, bent(), 1e-7);
+  ASSERT_SHAPE_NEAR(shape, bent(), 1e-7);
+  EXPECT_THAT(shape, IsShapeOf(bent(), 1e-7));
+  shape.points.col(3).z() += 0.0099;
+  EXPECT_SHAPE_NEAR(shape, bent(), 0.01);
+  shape.points.col(3).z() += 0.0002;
+  EXPECT_THAT(shape, Not(IsShapeOf(bent(), 0.01)));
+}
+
+TEST(ShapeMatcher, SaysWhereAndHowFar) {
+  Shape shape = exact_shape();
+  shape.points.col(3).z() = 0.025;
+  EXPECT_NONFATAL_FAILURE(EXPECT_SHAPE_NEAR(shape, bent(), 0.01),
+                          "shape is not the shape of bent() (heavy) within 0.01:\n"
+                          "  largest distance 0.025 m = 2.5 % of l at s = 0.8 m (point 3): (");
+  EXPECT_NONFATAL_FAILURE(EXPECT_SHAPE_NEAR(shape, bent(), 0.01), ", 0.025) m instead of (");
+  EXPECT_NONFATAL_FAILURE(EXPECT_SHAPE_NEAR(shape, bent(), 0.01), "allowed 1 % of l");
+  EXPECT_NONFATAL_FAILURE(EXPECT_THAT(shape, IsShapeOf(bent(), 0.01)),
+                          "is the shape of heavy within 1 % of l");
+  EXPECT_NONFATAL_FAILURE(EXPECT_THAT(shape, IsShapeOf(bent(), 0.01)), "a shape of 5 points");
+}
+
+TEST(ShapeMatcher, SaysWhatIsNoShape) {
+  const auto explanation = [](const Shape& shape) {
+    const auto verdict = judge_shape(shape, bent(), 0.5);
+    EXPECT_FALSE(verdict.near);
+    return verdict.explanation;
+  };
+  Shape shape = exact_shape();
+  shape.points(1, 2) = NAN;
+  EXPECT_THAT(explanation(shape), HasSubstr("not finite at point 2, s = 0.35 m"));
+  shape = exact_shape();
+  shape.arc_length.pop_back();
+  EXPECT_THAT(explanation(shape), HasSubstr("5 points and 4 arc lengths"));
+  shape = exact_shape();
+  shape.arc_length[2] = 0.9;
+  EXPECT_THAT(explanation(shape), HasSubstr("do not grow at point 3"));
+  shape.arc_length = {0, 1, 2, 3, 4};
+  EXPECT_THAT(explanation(shape), HasSubstr("leaves the rod at point 2, s = 2 m"));
+  shape.arc_length[0] = NAN;
+  EXPECT_THAT(explanation(shape), HasSubstr("leaves the rod at point 0"));
+  EXPECT_THAT(explanation({}), HasSubstr("0 points"));
+}
+
+TEST(ShapeMatcher, RefusesAToleranceThatIsNone) {
+  for (const double tolerance : {0.0, -1.0, static_cast<double>(NAN)}) {
+    EXPECT_THROW((void)judge_shape(exact_shape(), bent(), tolerance), std::invalid_argument);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,133 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "paper/moving.hpp"
+#include "paper/moving_tables.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr double weight_of_a_point = 0.00892;  // Table 1
+
+MovingRun run(Movement movement, bool horizontal, MovingVariant variant,
+              const MovingChoices& choices = {}) {
+  return run_moving_experiment({movement, horizontal, variant}, choices);
+}
+
+TEST(MovingExperiment, AtRestTheGripperCarriesTheWeight) {
+  const MovingChoices still{.angle = 0};
+  for (const bool horizontal : {false, true}) {
+    const MovingRun held = run(Movement::rotation, horizontal, MovingVariant::dynamic, still);
+    ASSERT_EQ(held.status, MovingStatus::finished);
+    EXPECT_NEAR(held.final_net_force, 10 * weight_of_a_point, 1e-9);
+  }
+}
+
+TEST(MovingExperiment, SpringsOfAHangingRodPullTheSameWay) {
+  const MovingRun held = run(Movement::rotation, false, MovingVariant::dynamic, {.angle = 0});
+  // Nearly: the two points above the gripper stand on it, and as the cubic law has no stiffness
+  // when straight they lean until c_b angle^2 is of the order of the weight, which makes the
+  // springs' forces turn by angles of that order.
+  const double angle_squared = 4 * weight_of_a_point / 3776.21457;
+  EXPECT_NEAR(held.final_force / held.final_net_force, 1, 2 * angle_squared);
+}
+
+// Levers: P_i at i L, f_2 + f_3 = 10 w, 2 f_2 + 3 f_3 = 45 w, so f_2 = -15 w and f_3 = 25 w.
+TEST(MovingExperiment, SpringsOfAHorizontalRodPullAgainstEachOther) {
+  const MovingRun held = run(Movement::rotation, true, MovingVariant::dynamic, {.angle = 0});
+  // The sagging rod's levers are shorter: by 1 - cos of a few degrees, below 2 %.
+  EXPECT_LT(held.final_force, 40 * weight_of_a_point);
+  EXPECT_GT(held.final_force, 0.98 * 40 * weight_of_a_point);
+}
+
+TEST(MovingExperiment, NeedsTheNominalStepsIfNothingMoves) {
+  for (const MovingVariant variant : {MovingVariant::basic, MovingVariant::relative}) {
+    const MovingRun still = run(Movement::rotation, false, variant, {.angle = 0});
+    EXPECT_EQ(still.status, MovingStatus::finished);
+    EXPECT_EQ(still.steps, nominal_moving_steps);
+    EXPECT_EQ(still.damped_steps, 0);
+    EXPECT_EQ(still.limited_steps, 0);
+  }
+}
+
+TEST(MovingExperiment, IsDeterministic) {
+  const MovingRun a = run(Movement::rotation, false, MovingVariant::dynamic);
+  const MovingRun b = run(Movement::rotation, false, MovingVariant::dynamic);
+  EXPECT_EQ(a.steps, b.steps);
+  EXPECT_EQ(a.damped_steps, b.damped_steps);
+  EXPECT_EQ(a.limited_steps, b.limited_steps);
+  EXPECT_EQ(a.average_force, b.average_force);
+}
+
+TEST(MovingExperiment, NeedsMoreStepsExactlyIfSomeWereScaledDown) {
+  for (const double start_offset : {0.0, 1.0}) {
+    for (const MovingVariant variant : {MovingVariant::basic, MovingVariant::relative,
+                                        MovingVariant::dynamic, MovingVariant::dynamic_absolute}) {
+      const MovingRun moved =
+          run(Movement::uniform, false, variant, {.start_offset = start_offset});
+      ASSERT_EQ(moved.status, MovingStatus::finished);
+      const long scaled_down = moved.damped_steps + moved.limited_steps;
+      EXPECT_GE(moved.steps, nominal_moving_steps);
+      EXPECT_LE(moved.steps - nominal_moving_steps, scaled_down);
+      EXPECT_EQ(moved.steps == nominal_moving_steps, scaled_down == 0);
+      EXPECT_TRUE(variant != MovingVariant::basic || scaled_down == 0);
+    }
+  }
+}
+
+TEST(MovingExperiment, CountsTheSameStartForEveryMovement) {
+  // Pulled into the gripper at the start, without dynamics: nothing later reaches the limit.
+  const MovingChoices behind{.start_offset = 1};
+  const MovingRun turned = run(Movement::rotation, false, MovingVariant::relative, behind);
+  const MovingRun moved = run(Movement::uniform, false, MovingVariant::relative, behind);
+  EXPECT_GT(turned.limited_steps, 0);
+  EXPECT_EQ(turned.limited_steps, moved.limited_steps);
+  EXPECT_EQ(turned.steps, moved.steps);
+}
+
+TEST(MovingExperiment, WithoutDynamicsDragGrowsWithSpeedAndWithDynamicsLess) {
+  // A moved point asks for the force v / c_F without and (1 - c_h) v / c_F with dynamics.
+  const MovingChoices slow{.distance = 0.02};
+  const MovingChoices fast{.distance = 0.04};
+  const auto drag = [](MovingVariant variant, const MovingChoices& choices) {
+    return run(Movement::uniform, false, variant, choices).average_net_force;
+  };
+  EXPECT_GT(drag(MovingVariant::relative, fast), drag(MovingVariant::relative, slow));
+  EXPECT_GT(drag(MovingVariant::relative, fast), drag(MovingVariant::dynamic, fast));
+}
+
+TEST(MovingExperiment, IsUnstableWithTable1InMetres) {
+  // c_e c_F = 4.9 > 2: the gripper's spring alone.
+  const MovingRun metres = run(Movement::rotation, false, MovingVariant::basic, {.length_unit = 1});
+  EXPECT_EQ(metres.status, MovingStatus::diverged);
+}
+
+TEST(MovingReport, PutsPrintedNumbersBesideItsOwn) {
+  std::vector<MovingRow> rows = moving_rows();
+  const auto printed =
+      std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.printed; });
+  EXPECT_EQ(printed, 11);
+  EXPECT_EQ(rows.size(), 16U);
+  EXPECT_EQ(rows[0].printed->steps, 116121);
+  EXPECT_EQ(rows[2].experiment.variant, MovingVariant::dynamic_absolute);
+  // What is printed is at no distance from itself.
+  for (MovingRow& row : rows) {
+    if (!row.printed) continue;
+    row.run = {.status = MovingStatus::finished,
+               .steps = row.printed->steps,
+               .damped_steps = row.printed->damped_steps,
+               .limited_steps = row.printed->limited_steps,
+               .average_force = row.printed->average_force};
+  }
+  const MovingDistance same = moving_distance(rows);
+  EXPECT_DOUBLE_EQ(same.force_factor, 1);
+  EXPECT_EQ(same.counters_near, 33);
+  EXPECT_EQ(same.counters, 33);
+  rows[0].run.status = MovingStatus::too_many_steps;
+  EXPECT_TRUE(std::isinf(moving_distance(rows).force_factor));
+}
+
+}  // namespace
+}  // namespace dlo::compare

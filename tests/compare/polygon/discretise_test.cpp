@@ -1,0 +1,212 @@
+#include "dlo/compare/discretise.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dlo/compare/chain.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/paper_joint.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solution.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using test::heavy_scene;
+
+Scene paper_scene() { return paper_scenes().front(); }
+
+TEST(PaperBendingStiffness, IsTable5) {
+  const Scene scene = paper_scene();
+  const double formula =
+      paper_bending_stiffness(BendingRule::formula_21, scene.bending_stiffness(), 5, 0.5 / 15);
+  EXPECT_NEAR(formula, 3574.96, 0.005);
+  const Discretisation discretisation = discretise(scene, scene.force_model);
+  EXPECT_DOUBLE_EQ(discretisation.parameters.c_b, formula);
+  EXPECT_NEAR(discretisation.parameters.c_c, 659734, 0.5);
+}
+
+TEST(PaperBendingStiffness, MomentMatchedCarriesThePhysicalMoment) {
+  const double EI = 0.165;
+  const double k = 5;
+  const double L = 0.03;
+  const double c_b = paper_bending_stiffness(BendingRule::moment_matched, EI, k, L);
+  const force_model::Bending bending{force_model::BendingLaw::paper, c_b};
+  EXPECT_NEAR(force_model::joint_moment(bending, L, k * L), EI * k, 1e-14);
+  EXPECT_NEAR(c_b * k * L, paper_bending_stiffness(BendingRule::formula_21, EI, k, L), 1e-9);
+  EXPECT_THROW((void)paper_bending_stiffness(BendingRule::formula_21, EI, 200, L),
+               std::invalid_argument);
+}
+
+TEST(Discretise, PaperBookkeepingStartsAtTheRodsEndWithEqualMasses) {
+  Scene scene = heavy_scene(2, 0);
+  scene.force_model.bookkeeping = Bookkeeping::paper;
+  const Discretisation d = discretise(scene, scene.force_model);
+  EXPECT_DOUBLE_EQ(d.arc_length.front(), 0);
+  EXPECT_NEAR(d.arc_length.back(), 1, 1e-15);
+  EXPECT_NEAR(d.rod.loads.row(1).sum(), scene.weight_per_length().y(), 1e-15);
+  EXPECT_DOUBLE_EQ(d.rod.loads(1, 0), d.rod.loads(1, 15));
+  EXPECT_EQ(d.rod.grips.front().first_point, 0);
+}
+
+TEST(Discretise, ConsistentBookkeepingHoldsTheMiddleOfASegment) {
+  Scene scene = heavy_scene(2, 0);
+  const Discretisation d = discretise(scene, scene.force_model);
+  const double L = 1 / 14.5;
+  EXPECT_NEAR(d.parameters.segment_length, L, 1e-16);
+  EXPECT_NEAR(d.arc_length.front(), -L / 2, 1e-16);
+  EXPECT_NEAR(d.arc_length.back(), 1, 1e-15);
+  EXPECT_NEAR(d.rod.loads.row(1).sum(), scene.weight_per_length().y(), 1e-15);
+  EXPECT_EQ(d.rod.loads.col(0).norm(), 0);
+  EXPECT_NEAR(d.rod.loads(1, 15) / d.rod.loads(1, 14), 0.5, 1e-14);
+  const Shape shape = d.shape(d.starts.front());
+  EXPECT_EQ(shape.arc_length.front(), 0);
+  EXPECT_LT(shape.points.col(0).norm(), 1e-16);
+}
+
+TEST(Discretise, LoadsKeepTheirForceAndMoment) {
+  Scene scene = heavy_scene(0, 0);
+  scene.gravity.setZero();
+  scene.loads = {{0.37, {0, 2, 0}}, {1.0, {0, 0, 3}}};
+  for (const Bookkeeping bookkeeping : {Bookkeeping::paper, Bookkeeping::consistent}) {
+    scene.force_model.bookkeeping = bookkeeping;
+    const Discretisation d = discretise(scene, scene.force_model);
+    EXPECT_LT((d.rod.loads.rowwise().sum() - Eigen::Vector3d(0, 2, 3)).norm(), 1e-14);
+    const Eigen::VectorXd s = Eigen::Map<const Eigen::VectorXd>(d.arc_length.data(), 16);
+    EXPECT_NEAR(d.rod.loads.row(1) * s, 0.37 * 2, 1e-14);
+    EXPECT_NEAR(d.rod.loads.row(2) * s, 3, 1e-14);
+  }
+}
+
+TEST(Discretise, ClampAtTheEndIsTheMirrorOfAClampAtTheStart) {
+  for (const Bookkeeping bookkeeping : {Bookkeeping::paper, Bookkeeping::consistent}) {
+    Scene start = heavy_scene(3, 20);
+    start.force_model.bookkeeping = bookkeeping;
+    Scene end = start;
+    end.grippers[0].at = 1;
+    end.grippers[0].direction = -*start.grippers[0].direction;
+    const Solution a = solve_chain(start, start.force_model);
+    const Solution b = solve_chain(end, end.force_model);
+    EXPECT_LT((a.shape.points - b.shape.points.rowwise().reverse()).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_NEAR(b.shape.arc_length.front(), 0, 1e-15);
+    EXPECT_NEAR(b.shape.arc_length.back(), 1, 1e-15);
+    const Solution force = solve_force(end, end.force_model);
+    EXPECT_LT((force.shape.points - b.shape.points).colwise().norm().maxCoeff(), 1e-6);
+  }
+}
+
+TEST(Discretise, FitsEqualSegmentsBetweenTheGrips) {
+  Scene scene = heavy_scene(1, 0);
+  scene.grippers = {
+      {.at = 0.83, .position = {0.5, 0, 0}},
+      {.at = 0.21, .position = {0, 0, 0}, .direction = Eigen::Vector3d::UnitX()},
+  };
+  scene.force_model.points = 21;
+  for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
+    scene.force_model.bookkeeping = bookkeeping;
+    const Discretisation d = discretise(scene, scene.force_model);
+    const double L = d.parameters.segment_length;
+    EXPECT_DOUBLE_EQ(L, 1.0 / 20);  // no clamp at an end
+    ASSERT_EQ(d.arc_length.size(), 21);
+    EXPECT_EQ(d.arc_length.front(), 0);
+    EXPECT_EQ(d.arc_length.back(), 1);
+    for (Eigen::Index i = 0; i < 20; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      EXPECT_NEAR(d.arc_length[k + 1] - d.arc_length[k], d.rod.rest_lengths[i], 1e-15);
+      EXPECT_NEAR(d.rod.rest_lengths[i] / L, 1, 0.2);
+    }
+    // Grips in the order of the scene
+    const force_model::Grip& pin = d.rod.grips[0];
+    EXPECT_EQ(pin.targets.cols(), 1);
+    EXPECT_DOUBLE_EQ(d.arc_length[static_cast<std::size_t>(pin.first_point)], 0.83);
+    const force_model::Grip& clamp = d.rod.grips[1];
+    EXPECT_EQ(clamp.targets.cols(), 2);
+    const double behind = bookkeeping == Bookkeeping::consistent ? L / 2 : 0;
+    EXPECT_DOUBLE_EQ(d.arc_length[static_cast<std::size_t>(clamp.first_point)], 0.21 - behind);
+    EXPECT_DOUBLE_EQ(d.rod.rest_lengths[clamp.first_point], L);
+    EXPECT_NEAR(clamp.targets(0, 0), -behind, 1e-15);
+    // Starts go through the grips and have about the rod's length.
+    ASSERT_EQ(d.starts.size(), 2);
+    for (const Eigen::Matrix3Xd& start : d.starts) {
+      EXPECT_EQ(start.col(clamp.first_point + 1), clamp.targets.col(1));
+      EXPECT_EQ(start.col(pin.first_point), pin.targets.col(0));
+      for (Eigen::Index i = 0; i < 20; ++i) {
+        const double length = (start.col(i + 1) - start.col(i)).norm();
+        // Most off beside a held segment, which is straight where the curve is not.
+        EXPECT_NEAR(length / d.rod.rest_lengths[i], 1, 0.25) << i;
+      }
+    }
+  }
+}
+
+TEST(Discretise, HoldsBothEndsInTheMiddleOfASegment) {
+  Scene scene = heavy_scene(1, 0);
+  scene.grippers.push_back(
+      {.at = 1, .position = {0.8, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
+  const Discretisation d = discretise(scene, scene.force_model);
+  const double L = 1.0 / 14;
+  EXPECT_DOUBLE_EQ(d.parameters.segment_length, L);
+  EXPECT_LT((d.rod.rest_lengths.array() - L).abs().maxCoeff(), 1e-15);
+  EXPECT_NEAR(d.arc_length.front(), -L / 2, 1e-16);
+  EXPECT_NEAR(d.arc_length.back(), 1 + L / 2, 1e-15);
+  EXPECT_EQ(d.weights.col(0).norm() + d.weights.col(15).norm(), 0);
+  const Shape shape = d.shape(d.starts.front());
+  EXPECT_EQ(shape.arc_length.front(), 0);
+  EXPECT_EQ(shape.arc_length.back(), 1);
+  EXPECT_EQ(shape.points.col(15), Eigen::Vector3d(0.8, 0, 0));
+}
+
+/// The message with which a scene is refused.
+std::string refusal(const Scene& scene) {
+  try {
+    (void)discretise(scene, scene.force_model);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "taken";
+}
+
+TEST(Discretise, SaysHowManyPointsTheGripsNeed) {
+  Scene scene = heavy_scene(1, 0);
+  scene.grippers.push_back({.at = 0.1, .position = {0.05, 0, 0}});
+  for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
+    scene.force_model.bookkeeping = bookkeeping;
+    // Half a segment is held, half a segment has to be free: L <= 0.1 l, or twice that for `paper`.
+    const int needed = bookkeeping == Bookkeeping::consistent ? 12 : 16;
+    scene.force_model.points = needed - 1;
+    EXPECT_NE(refusal(scene).find("needs at least " + std::to_string(needed) + " points"),
+              std::string::npos)
+        << refusal(scene);
+    // With the fewest a single segment is left free, which would be crushed; the next refusal says
+    // with how many it is long enough.
+    scene.force_model.points = needed;
+    const std::string crushed = refusal(scene);
+    ASSERT_NE(crushed.find("in 1 segment"), std::string::npos) << crushed;
+    const std::size_t at = crushed.find("(allowed: ") + 10;
+    scene.force_model.points = std::stoi(crushed.substr(at)) - 1;
+    EXPECT_NE(refusal(scene), "taken");
+    ++scene.force_model.points;
+    EXPECT_EQ(refusal(scene), "taken");
+  }
+}
+
+TEST(Discretise, RefusesGripsThatNoRodReaches) {
+  Scene scene = heavy_scene(1, 0);
+  scene.grippers.push_back({.at = 0.5, .position = {0.6, 0, 0}});
+  EXPECT_NE(refusal(scene).find("0.6 m from the gripper"), std::string::npos) << refusal(scene);
+  scene.grippers[1] = {.at = 0, .position = {0.6, 0, 0}};
+  EXPECT_NE(refusal(scene).find("two grippers"), std::string::npos) << refusal(scene);
+  // The rod leaves its clamps outwards: half a held segment at each end makes the way longer.
+  scene = heavy_scene(1, 180);
+  scene.grippers.push_back(
+      {.at = 1, .position = {0.9, 0, 0}, .direction = -Eigen::Vector3d::UnitX()});
+  scene.force_model.points = 8;
+  EXPECT_NE(refusal(scene).find("22 or more"), std::string::npos) << refusal(scene);
+  scene.force_model.points = 22;
+  EXPECT_EQ(refusal(scene), "taken");
+}
+
+}  // namespace
+}  // namespace dlo::compare

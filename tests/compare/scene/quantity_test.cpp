@@ -1,0 +1,108 @@
+#include "scene/quantity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+std::string message(const std::string& text, Dimension dimension) {
+  try {
+    (void)parse_quantity(text, dimension);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// A unit and what it is of the SI unit, worked out from its prefixes by hand.
+struct UnitCase {
+  Dimension dimension;
+  const char* unit;
+  double in_one_si;  ///< how many of it one SI unit is, or
+  double si_in_one;  ///< how many SI units one of it is; the other is none
+};
+
+constexpr double none = 0;
+constexpr UnitCase unit_cases[] = {
+    {Dimension::length, "m", 1, none},
+    {Dimension::length, "cm", 100, none},
+    {Dimension::length, "mm", 1000, none},
+    {Dimension::length, "um", 1e6, none},
+    {Dimension::angle, "rad", 1, none},
+    {Dimension::angle, "deg", 180 / 3.141592653589793, none},
+    {Dimension::pressure, "Pa", 1, none},
+    {Dimension::pressure, "kPa", none, 1000},
+    {Dimension::pressure, "MPa", none, 1000.0 * 1000},
+    {Dimension::pressure, "GPa", none, 1000.0 * 1000 * 1000},
+    {Dimension::pressure, "N/mm^2", none, 1000.0 * 1000},  // a square metre has 1000^2 mm^2
+    {Dimension::density, "kg/m^3", 1, none},
+    {Dimension::density, "kg/dm^3", none, 10.0 * 10 * 10},           // dm^3 in a m^3
+    {Dimension::density, "g/cm^3", none, 100.0 * 100 * 100 / 1000},  // cm^3 in a m^3, g in a kg
+    {Dimension::force, "N", 1, none},
+    {Dimension::force, "mN", 1000, none},
+    {Dimension::force, "kN", none, 1000},
+    {Dimension::acceleration, "m/s^2", 1, none},
+    {Dimension::curvature, "1/m", 1, none},
+    {Dimension::curvature, "1/cm", none, 100},
+    {Dimension::curvature, "1/mm", none, 1000},
+    {Dimension::foundation, "N/m^2", 1, none},
+    {Dimension::foundation, "N/mm^2", none, 1000.0 * 1000}};
+
+TEST(Quantity, EveryUnitHasItsFactor) {
+  std::map<Dimension, std::string> tested;
+  for (const UnitCase& unit : unit_cases) {
+    const double expected = unit.si_in_one > 0 ? 3 * unit.si_in_one : 3 / unit.in_one_si;
+    EXPECT_NEAR(parse_quantity(std::string("3 ") + unit.unit, unit.dimension), expected,
+                1e-15 * expected)
+        << unit.unit;
+    std::string& list = tested[unit.dimension];
+    list += (list.empty() ? "" : ", ") + std::string(unit.unit);
+  }
+  // A unit that is added is added here too.
+  for (const Dimension dimension :
+       {Dimension::number, Dimension::length, Dimension::angle, Dimension::pressure,
+        Dimension::density, Dimension::force, Dimension::acceleration, Dimension::curvature,
+        Dimension::foundation}) {
+    EXPECT_EQ(tested[dimension], known_units(dimension));
+  }
+}
+
+TEST(Quantity, NoUnitIsReadAsAnothersPrefix) {
+  EXPECT_EQ(message("3 Mm", Dimension::length).find("unknown unit"), 0U);
+  EXPECT_EQ(message("3 mPa", Dimension::pressure).find("unknown unit"), 0U);
+  EXPECT_EQ(message("3 mm", Dimension::pressure).find("unknown unit"), 0U);
+  EXPECT_EQ(message("3 kg/m^2", Dimension::density).find("unknown unit"), 0U);
+  EXPECT_EQ(message("3 %", Dimension::number).find("unknown unit"), 0U);
+}
+
+TEST(Quantity, ConvertsToSi) {
+  EXPECT_DOUBLE_EQ(parse_quantity("210 GPa", Dimension::pressure), 210e9);
+  EXPECT_DOUBLE_EQ(parse_quantity("210000 N/mm^2", Dimension::pressure), 210e9);
+  EXPECT_DOUBLE_EQ(parse_quantity("2mm", Dimension::length), 2e-3);
+  EXPECT_DOUBLE_EQ(parse_quantity("  5e1 cm ", Dimension::length), 0.5);
+  EXPECT_DOUBLE_EQ(parse_quantity("-180 deg", Dimension::angle), -std::numbers::pi);
+  EXPECT_DOUBLE_EQ(parse_quantity("+7.9 kg/dm^3", Dimension::density), 7900);
+  EXPECT_DOUBLE_EQ(parse_quantity("0.005 1/mm", Dimension::curvature), 5);
+  EXPECT_DOUBLE_EQ(parse_quantity("3", Dimension::number), 3);
+}
+
+TEST(Quantity, SaysWhichUnitsAreAllowed) {
+  EXPECT_EQ(message("210 GPA", Dimension::pressure),
+            "unknown unit \"GPA\" in \"210 GPA\" (allowed: Pa, kPa, MPa, GPa, N/mm^2)");
+  EXPECT_NE(message("2", Dimension::length).find("lacks a unit"), std::string::npos);
+  EXPECT_NE(message("mm", Dimension::length).find("not a number"), std::string::npos);
+  EXPECT_NE(message("", Dimension::length).find("not a number"), std::string::npos);
+  EXPECT_NE(message("nan m", Dimension::length).find("not finite"), std::string::npos);
+  EXPECT_NE(message("1e999 m", Dimension::length), "no error");
+  EXPECT_NE(message("1 2 m", Dimension::length), "no error");
+  EXPECT_NE(message("1 m", Dimension::number), "no error");
+}
+
+}  // namespace
+}  // namespace dlo::compare

@@ -1,0 +1,178 @@
+#include "dlo/compare/scene.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+
+namespace dlo::compare {
+namespace {
+
+const std::string good_rod = R"([rod]
+length = "50 cm"
+diameter = "2 mm"
+material = "spring_steel"
+)";
+const std::string good_gripper = R"([[gripper]]
+at = 0
+position = [0, "10 mm", 0]
+direction = "-175 deg"
+)";
+
+std::string message(const std::string& text) {
+  try {
+    (void)parse_scene(text, "my.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(Scene, ReadsTheDesignsExample) {
+  const Scene scene = parse_scene(R"(name = "example"
+gravity = [0, 0, -9.81]
+[rod]
+length = "50 cm"
+diameter = "2 mm"
+material = { youngs_modulus = "210 GPa", density = 7900 }
+[[gripper]]
+at = "10 cm"
+position = [0, 0, "1 cm"]
+direction = [0, 2, 0]
+[[gripper]]
+at = 0.5
+position = [1, 0, 0]
+hold = "pin"
+[[load]]
+at = "50 cm"
+force = [0, "-100 mN", 0]
+[[obstacle]]
+point = [0, -0.2, 0]
+normal = [0, 3, 0]
+[force_model]
+points = 20
+law = "paper"
+bookkeeping = "paper"
+stepper = "dynamic"
+c_h = 0.5
+)",
+                                  "my.toml");
+  EXPECT_EQ(scene.name, "example");
+  EXPECT_EQ(scene.gravity, Eigen::Vector3d(0, 0, -9.81));
+  EXPECT_DOUBLE_EQ(scene.material.youngs_modulus, 210e9);
+  EXPECT_DOUBLE_EQ(scene.grippers.at(0).at, 0.1);
+  EXPECT_EQ(*scene.grippers.at(0).direction, Eigen::Vector3d(0, 1, 0));
+  EXPECT_DOUBLE_EQ(scene.grippers.at(0).position.z(), 0.01);
+  EXPECT_FALSE(scene.grippers.at(1).direction);
+  EXPECT_DOUBLE_EQ(scene.loads.at(0).force.y(), -0.1);
+  EXPECT_EQ(scene.obstacles.at(0).normal, Eigen::Vector3d(0, 1, 0));
+  EXPECT_TRUE(std::isinf(scene.obstacles.at(0).stiffness));
+  EXPECT_EQ(scene.force_model.points, 20);
+  EXPECT_EQ(scene.force_model.law, Law::paper);
+  EXPECT_EQ(scene.force_model.stepper, StepperName::dynamic);
+  EXPECT_DOUBLE_EQ(*scene.force_model.c_h, 0.5);
+}
+
+TEST(Scene, DerivesTheNumbersOfTable5) {
+  const Scene scene = parse_scene(good_rod + good_gripper, "my.toml");
+  EXPECT_NEAR(scene.axial_stiffness(), 659734, 0.5);
+  EXPECT_NEAR(scene.bending_stiffness(), 0.16493361431346418, 1e-15);
+  EXPECT_NEAR(scene.gamma(), 0.18452142857142853, 1e-14);
+  EXPECT_NEAR(scene.mass(), 0.0124093, 1e-7);
+}
+
+struct BadScene {
+  std::string text;
+  std::vector<std::string> named;  // what the message has to name
+};
+
+TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
+  const std::vector<BadScene> cases = {
+      {"colour = 1\n" + good_rod + good_gripper, {"my.toml:1", "colour", "unknown key", "gravity"}},
+      {"[rod]\nlength = -1\ndiameter = 1\nmaterial = \"copper\"\n" + good_gripper,
+       {"my.toml:2", "rod.length", "-1", "1e-06 to"}},
+      {"[rod]\nlength = nan\ndiameter = 1\nmaterial = \"copper\"\n" + good_gripper,
+       {"my.toml:2", "rod.length", "nan", "finite"}},
+      {"[rod]\nlength = \"50 cn\"\ndiameter = 1\nmaterial = \"copper\"\n" + good_gripper,
+       {"my.toml:2", "rod.length", "50 cn", "m, cm, mm"}},
+      {"[rod]\nlength = 1\ndiameter = 1\nmaterial = \"cooper\"\n" + good_gripper,
+       {"my.toml:4", "rod.material", "cooper", "copper"}},
+      {"[rod]\nlength = 1\ndiameter = 1\nmaterial = { youngs_modulus = \"210 GPA\", density = 1 "
+       "}\n" +
+           good_gripper,
+       {"my.toml:4", "rod.material.youngs_modulus", "210 GPA", "GPa"}},
+      {"[rod]\nlength = 1\nmaterial = \"copper\"\n" + good_gripper,
+       {"my.toml:1", "rod.diameter", "required"}},
+      {good_rod, {"my.toml", "gripper", "[[gripper]]"}},
+      {good_rod + "[[gripper]]\nat = 0.6\nposition = [0,0,0]\ndirection = 0\n",
+       {"my.toml:6", "gripper.at", "0.6", "0 to 0.5"}},
+      {good_rod + "[[gripper]]\nat = 0\nposition = [0,0]\ndirection = 0\n",
+       {"my.toml:7", "gripper.position", "three numbers"}},
+      {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\ndirection = [0,0,0]\n",
+       {"my.toml:8", "gripper.direction", "zero vector"}},
+      {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\nhold = \"pin\"\ndirection = 1\n",
+       {"my.toml:9", "gripper.direction", "pin"}},
+      {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\nhold = \"glue\"\n",
+       {"my.toml:8", "gripper.hold", "glue", "clamp, pin"}},
+      {good_rod + good_gripper + "[force_model]\npoints = 2\n",
+       {"my.toml:10", "force_model.points", "2", "4 to"}},
+      {good_rod + good_gripper + "[force_model]\npoints = 16.5\n",
+       {"my.toml:10", "force_model.points", "16.5", "whole number"}},
+      {good_rod + good_gripper + "[force_model]\nlaw = \"hook\"\n",
+       {"my.toml:10", "force_model.law", "hook", "paper, hooke"}},
+      {good_rod + good_gripper + "[force_model]\nc_h = 1\n",
+       {"my.toml:10", "force_model.c_h", "c_h < 1"}},
+      {good_rod + good_gripper + "[[load]]\nat = 0\nforce = [0, \"1 kg\", 0]\n",
+       {"my.toml:11", "load.force", "1 kg", "N, mN, kN"}},
+      {"gravity = \"down\"\n" + good_rod + good_gripper, {"my.toml:1", "gravity", "three numbers"}},
+      {"[rod]\nlenght = 1\ndiameter = 0.1\nmaterial = \"copper\"\n" + good_gripper,
+       {"my.toml:2", "rod.lenght", "unknown key", "did you mean length"}},
+      {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\ndirection = -175\n",
+       {"my.toml:8", "gripper.direction", "-175", "deg"}},
+      {good_rod + good_gripper + "[[obstacle]]\npoint = [0, 1, 0]\nnormal = [0, 1, 0]\n",
+       {"my.toml:7", "gripper.position", "behind an obstacle"}},
+      {good_rod + good_gripper + "[force_model]\nc_F = 1e-5\n",
+       {"my.toml:9", "c_F", "no effect", "auto"}},
+      {good_rod + good_gripper + "[force_model]\nc_b = 100\nlaw = \"hooke\"\n",
+       {"my.toml:9", "c_b", "no effect", "law paper"}},
+      {"[rod]\nlength = 1e5\ndiameter = 1e-9\nmaterial = \"natural_rubber\"\n" + good_gripper,
+       {"my.toml", "w l^3 / (EI)"}},
+      {"name = [\n", {"my.toml:", "not valid TOML"}},
+      {"gripper = 3\n" + good_rod, {"my.toml:1", "gripper", "[[gripper]]"}},
+  };
+  for (const BadScene& bad : cases) {
+    const std::string text = message(bad.text);
+    for (const std::string& name : bad.named) {
+      EXPECT_NE(text.find(name), std::string::npos) << "no \"" << name << "\" in: " << text;
+    }
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+  }
+}
+
+TEST(Scene, MissingFileIsNamed) {
+  try {
+    (void)load_scene("no/such/scene.toml");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("no/such/scene.toml"), std::string::npos);
+  }
+}
+
+TEST(Materials, AreTheOnesOfTheDataFile) {
+  std::vector<std::string> names;
+  for (const Material& material : materials()) {
+    names.push_back(material.name);
+    EXPECT_GT(material.youngs_modulus, 1e5) << material.name;
+    EXPECT_GT(material.density, 500) << material.name;
+    EXPECT_FALSE(material.source.empty()) << material.name;
+  }
+  for (const std::string wanted : {"spring_steel", "copper", "aluminium", "nylon", "natural_rubber",
+                                   "pvc_cable", "hemp_rope", "nitinol"}) {
+    EXPECT_NE(std::find(names.begin(), names.end(), wanted), names.end()) << wanted;
+  }
+}
+
+}  // namespace
+}  // namespace dlo::compare

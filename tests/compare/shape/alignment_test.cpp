@@ -1,0 +1,226 @@
+#include "dlo/compare/alignment.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <span>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/solution.hpp"
+#include "measured_shapes.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using test::exact_shape;
+using test::heavy_scene;
+using test::random_pose;
+using test::uneven_arc_lengths;
+using test::with_noise;
+
+const AlignOptions any_motion{.pose = PoseFreedom::rigid, .weights = PointWeights::equal};
+
+double largest_distance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  return (a - b).colwise().norm().maxCoeff();
+}
+
+TEST(Alignment, RecoversARandomRigidMotionOfSevenUnevenPointsFromEitherEnd) {
+  std::mt19937 random(1);
+  for (const double gamma : {0.5, 5.0, 100.0}) {
+    const Scene scene = heavy_scene(gamma, 20);
+    const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+    for (int round = 0; round < 10; ++round) {
+      const MeasuredShape truth = exact_shape(scene, uneven_arc_lengths(random, 7, 1));
+      const RigidMotion pose = random_pose(random);
+      MeasuredShape moved{"moved", pose.applied(truth.points), {}};
+      const bool backwards = round % 2 == 1;
+      if (backwards) moved = test::reversed(moved);
+      const Alignment found = align(moved, energy.sample, 1, any_motion);
+      EXPECT_EQ(found.reversed, backwards) << gamma << ", " << round;
+      EXPECT_LT(found.rms_m, 1e-7) << gamma << ", " << round;
+      // How far the recovered motion takes the rod's points from where they were. A part of a
+      // stiff rod may slide along itself by much more than the distances across it.
+      EXPECT_LT(largest_distance(found.pose.applied(pose.applied(truth.points)), truth.points),
+                2e-3)
+          << gamma << ", " << round;
+    }
+  }
+}
+
+TEST(Alignment, RecoversTheMotionOfAWholeRodToTheNoise) {
+  std::mt19937 random(2);
+  for (const double gamma : {0.5, 5.0, 100.0}) {
+    const Scene scene = heavy_scene(gamma, -30);
+    const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+    std::vector<double> s = uneven_arc_lengths(random, 7, 1);
+    s.front() = 0;
+    s.back() = 1;
+    const MeasuredShape truth = exact_shape(scene, s);
+    for (int round = 0; round < 20; ++round) {
+      const RigidMotion pose = random_pose(random);
+      const MeasuredShape moved =
+          test::reversed({"moved", with_noise(pose.applied(truth.points), 1e-3, random), {}});
+      const Alignment found = align(moved, energy.sample, 1, any_motion);
+      EXPECT_TRUE(found.reversed);
+      // sqrt(3) sigma, and three standard deviations of the mean of 7 squares
+      EXPECT_LT(found.rms_m, 1e-3 * std::sqrt(3 * (1 + 3 * std::sqrt(2.0 / 21))));
+      // Six coordinates from 21 numbers: errors of the size of the noise, three sigma a coordinate.
+      EXPECT_LT(largest_distance(found.pose.applied(pose.applied(truth.points)), truth.points),
+                6e-3)
+          << gamma << ", " << round;
+    }
+  }
+}
+
+TEST(Alignment, GivenArcLengthsAreUsedEitherWayRound) {
+  const Scene scene = heavy_scene(8, 10);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  std::mt19937 random(3);
+  const std::vector<double> s = uneven_arc_lengths(random, 9, 1);
+  const RigidMotion pose = random_pose(random);
+  MeasuredShape shape{"s", pose.applied(energy.sample(s).points), s};
+  for (const bool from_the_other_end : {false, true}) {
+    for (const bool backwards : {false, true}) {
+      MeasuredShape given = shape;
+      for (double& at : given.arc_length) at = from_the_other_end ? 1 - at : at;
+      if (backwards) given = test::reversed(given);
+      const Alignment found = align(given, energy.sample, 1, any_motion);
+      EXPECT_EQ(found.arc_lengths, ArcLengths::file);
+      EXPECT_EQ(found.reversed, from_the_other_end);
+      EXPECT_LT(found.rms_m, 1e-9);
+      EXPECT_LT(largest_distance(found.pose.rotation * pose.rotation,
+                                 Eigen::Matrix3d(Eigen::Matrix3d::Identity())),
+                1e-7);
+    }
+  }
+}
+
+TEST(Alignment, MissingStretchesAreNotFilled) {
+  // A camera sees 0.1 to 0.25 and 0.6 to 0.8 of the rod.
+  const Scene scene = heavy_scene(10, 0);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  std::vector<double> s;
+  for (int i = 0; i <= 15; ++i) s.push_back(0.1 + 0.01 * i);
+  for (int i = 0; i <= 20; ++i) s.push_back(0.6 + 0.01 * i);
+  std::mt19937 random(4);
+  double sum = 0;
+  constexpr int draws = 100;
+  for (int draw = 0; draw < draws; ++draw) {
+    const MeasuredShape seen{"seen", with_noise(energy.sample(s).points, 1e-4, random), {}};
+    const Alignment found = align(seen, energy.sample, 1, {.weights = PointWeights::equal});
+    EXPECT_EQ(found.arc_lengths, ArcLengths::nearest);
+    ASSERT_EQ(found.shape.arc_length.size(), s.size());
+    for (std::size_t i = 0; i < s.size(); ++i) EXPECT_NEAR(found.shape.arc_length[i], s[i], 5e-4);
+    sum += found.rms_m * found.rms_m;
+  }
+  // Two of three components of the noise are across the rod.
+  EXPECT_NEAR(std::sqrt(sum / draws), 1e-4 * std::sqrt(2.0), 0.05e-4);
+}
+
+TEST(Alignment, ADenseNoisyPolylineStaysInOrder) {
+  // Points 1 mm apart with 2 mm of noise: the polyline is several times as long as the rod.
+  const Scene scene = heavy_scene(10, 0);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  const std::vector<double> s = equal_arc_lengths(1, 1001);
+  std::mt19937 random(5);
+  const RigidMotion pose = random_pose(random);
+  const MeasuredShape seen{
+      "seen", with_noise(pose.applied(energy.sample(s).points), 2e-3, random), {}};
+  const Alignment found = align(test::reversed(seen), energy.sample, 1, any_motion);
+  EXPECT_TRUE(found.reversed);
+  EXPECT_TRUE(std::is_sorted(found.shape.arc_length.begin(), found.shape.arc_length.end()));
+  EXPECT_LT(found.rms_m, 2e-3 * std::sqrt(3.0));
+  EXPECT_LT(largest_distance(found.pose.applied(pose.applied(energy.sample(s).points)),
+                             energy.sample(s).points),
+            2e-3);
+}
+
+TEST(Alignment, FreedomsOfTheFrame) {
+  const Scene scene = heavy_scene(6, 35);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  const std::vector<double> s = equal_arc_lengths(1, 12);
+  const RigidMotion turned{Eigen::AngleAxisd(2.5, Eigen::Vector3d::UnitY()).toRotationMatrix(),
+                           Eigen::Vector3d(1, 2, 3)};
+  const RigidMotion tilted{Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitZ()).toRotationMatrix(),
+                           Eigen::Vector3d(1, 2, 3)};
+  const RigidMotion shifted{Eigen::Matrix3d::Identity(), Eigen::Vector3d(1, 2, 3)};
+  for (const ArcLengths rule : {ArcLengths::chord, ArcLengths::nearest}) {
+    const auto rms_with = [&](PoseFreedom freedom, const RigidMotion& pose) {
+      const MeasuredShape shape{"f", pose.applied(energy.sample(s).points), {}};
+      return align(shape, energy.sample, 1, {.pose = freedom, .arc_lengths = rule}).rms_m;
+    };
+    // Chord lengths of twelve points know the arc lengths to 1e-4.
+    const double zero = rule == ArcLengths::chord ? 1e-4 : 1e-8;
+    EXPECT_LT(rms_with(PoseFreedom::translation, shifted), zero);
+    EXPECT_GT(rms_with(PoseFreedom::translation, turned), 0.1);
+    EXPECT_LT(rms_with(PoseFreedom::upright, turned), zero);
+    EXPECT_GT(rms_with(PoseFreedom::upright, tilted), 0.01);
+    EXPECT_LT(rms_with(PoseFreedom::rigid, tilted), zero);
+    EXPECT_GT(rms_with(PoseFreedom::known, shifted), 1);
+  }
+}
+
+TEST(Alignment, RulesForArcLengthsAreChosenByWhatTheFileHas) {
+  const Scene scene = heavy_scene(1, 0);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  const auto rule = [&](const std::vector<double>& s, bool column) {
+    const MeasuredShape shape{"f", energy.sample(s).points, column ? s : std::vector<double>()};
+    return align(shape, energy.sample, 1).arc_lengths;
+  };
+  EXPECT_EQ(rule({0, 0.3, 0.6, 1}, true), ArcLengths::file);
+  EXPECT_EQ(rule({0, 0.3, 0.6, 1}, false), ArcLengths::nearest);
+}
+
+// A helix turns one way; only a reflection, which is no motion, makes it turn the other.
+TEST(Alignment, AMirrorImageIsNotTheSameShape) {
+  constexpr double radius = 0.1;
+  constexpr double pitch = 0.05;
+  const double turn = 1 / std::hypot(radius, pitch);
+  const Reference helix = [&](std::span<const double> s) {
+    const auto count = static_cast<Eigen::Index>(s.size());
+    energy_model::Samples samples;
+    samples.points.resize(3, count);
+    samples.tangents.resize(3, count);
+    samples.curvature = Eigen::Matrix3Xd::Zero(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double angle = turn * s[static_cast<std::size_t>(i)];
+      samples.points.col(i) << radius * std::cos(angle), radius * std::sin(angle), pitch * angle;
+      samples.tangents.col(i) << -radius * std::sin(angle), radius * std::cos(angle), pitch;
+      samples.tangents.col(i) *= turn;
+    }
+    return samples;
+  };
+  std::mt19937 random(8);
+  const std::vector<double> s = equal_arc_lengths(1, 41);
+  const Eigen::Matrix3Xd points = helix(s).points;
+  for (const bool column_s : {false, true}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Eigen::Matrix3Xd mirrored = points;
+      mirrored.row(axis) *= -1;
+      const RigidMotion pose = random_pose(random);
+      const std::vector<double> column = column_s ? s : std::vector<double>();
+      EXPECT_LT(align({"own", pose.applied(points), column}, helix, 1, any_motion).rms_m, 1e-6);
+      const Alignment other =
+          align({"mirrored", pose.applied(mirrored), column}, helix, 1, any_motion);
+      EXPECT_GT(other.rms_m, 0.2 * radius) << column_s << ", " << axis;
+      EXPECT_NEAR(other.pose.rotation.determinant(), 1, 1e-12);
+    }
+  }
+}
+
+TEST(Alignment, RefusesWhatCannotBeAnswered) {
+  const Scene scene = heavy_scene(1, 0);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  const MeasuredShape two{"two", energy.sample(std::vector<double>{0, 1}).points, {}};
+  EXPECT_NO_THROW((void)align(two, energy.sample, 1));
+  EXPECT_THROW((void)align(two, energy.sample, 1, any_motion), InputError);
+  EXPECT_THROW((void)align(two, energy.sample, 1, {.arc_lengths = ArcLengths::file}), InputError);
+  const MeasuredShape beyond{"beyond", two.points, {0, 1.01}};
+  EXPECT_THROW((void)align(beyond, energy.sample, 1), InputError);
+}
+
+}  // namespace
+}  // namespace dlo::compare

@@ -1,0 +1,489 @@
+// Scenes with several grips, or one inside the rod, in the models that work on a polygon.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "dlo/compare/chain.hpp"
+#include "dlo/compare/comparison.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
+#include "polygon/energy_problems.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Vector3d;
+using test::heavy_scene;
+
+Scene two_clamps(double gamma, const Vector3d& end) {
+  Scene scene = heavy_scene(gamma, 0);
+  scene.grippers.push_back({.at = 1, .position = end, .direction = Vector3d::UnitX()});
+  return scene;
+}
+
+Scene spatial_clamps() {
+  Scene scene = two_clamps(5, {0.6, 0.1, 0.2});
+  scene.grippers[1].direction = Vector3d(0.5, 0.3, -0.6).normalized();
+  return scene;
+}
+
+Scene clamp_inside() {
+  Scene scene = heavy_scene(8, 20);
+  scene.grippers[0].at = 0.37;
+  return scene;
+}
+
+Scene clamp_and_pin() {
+  Scene scene = heavy_scene(6, 10);
+  scene.grippers.push_back({.at = 0.613, .position = {0.5, 0.05, 0}});
+  return scene;
+}
+
+Scene two_pins() {
+  Scene scene = heavy_scene(6, 0);
+  scene.grippers = {{.at = 0.21, .position = {0, 0, 0}}, {.at = 0.83, .position = {0.5, 0.1, 0}}};
+  return scene;
+}
+
+Scene loaded_clamps() {
+  Scene scene = two_clamps(3, {0.8, 0, 0});
+  scene.loads = {{0.413, {0.5, -4, 0}}};
+  return scene;
+}
+
+Scene three_clamps() {
+  Scene scene = two_clamps(10, {0.8, 0, 0});
+  scene.grippers.push_back(
+      {.at = 0.44, .position = {0.35, 0.02, 0}, .direction = Vector3d(1, 0.2, 0).normalized()});
+  return scene;
+}
+
+/// Sags onto a floor between the clamps.
+Scene yielding_floor() {
+  Scene scene = two_clamps(30, {0.9, 0.2, 0});
+  scene.obstacles = {{.stiffness = 20000 * scene.bending_stiffness()}};
+  return scene;
+}
+
+/// The free end lies on a floor.
+Scene tip_on_floor() {
+  Scene scene = heavy_scene(20, 0);
+  scene.grippers[0].position = {0, 0.15, 0};
+  scene.obstacles = {{.stiffness = 5000 * scene.bending_stiffness()}};
+  return scene;
+}
+
+/// The chain's errors against the energy model, forces and torques over the largest of each.
+struct Errors {
+  double segment = 0;
+  double shape = 0;
+  double force = 0;
+  double torque = 0;
+};
+
+Errors chain_errors(Scene scene, const energy_model::Equilibrium& reference, int points) {
+  scene.force_model.points = points;
+  // The energy model does not stretch; a hundred times AE stretches by less than 1e-7.
+  scene.force_model.c_c = 100 * scene.axial_stiffness();
+  const Solution chain = solve_chain(scene, scene.force_model);
+  Errors errors;
+  errors.segment = chain.parameters.segment_length;
+  const std::vector<double>& s = chain.shape.arc_length;
+  errors.shape = rms(s, chain.shape.points - reference.sample(s).points);
+  double largest_force = 0;
+  double largest_torque = 0;
+  for (std::size_t i = 0; i < chain.grippers.size(); ++i) {
+    const energy_model::Reaction& expected = reference.grips[i];
+    errors.force = std::max(errors.force, (chain.grippers[i].force - expected.force).norm());
+    errors.torque = std::max(errors.torque, (chain.grippers[i].torque - expected.torque).norm());
+    largest_force = std::max(largest_force, expected.force.norm());
+    largest_torque = std::max(largest_torque, expected.torque.norm());
+  }
+  errors.force /= largest_force;
+  if (largest_torque > 0) errors.torque /= largest_torque;
+  return errors;
+}
+
+struct NamedScene {
+  const char* name;
+  Scene scene;
+};
+
+class SceneOfGrips : public testing::TestWithParam<NamedScene> {};
+
+TEST_P(SceneOfGrips, ChainConvergesToTheEnergyModelAtSecondOrder) {
+  const Scene& scene = GetParam().scene;
+  const energy_model::Equilibrium reference = solve_reference(scene, Model::energy);
+  // Far apart, since grips and loads fall differently among the points of each N.
+  const Errors coarse = chain_errors(scene, reference, 24);
+  const Errors fine = chain_errors(scene, reference, 96);
+  const double refinement = std::log(coarse.segment / fine.segment);
+  const double order = std::log(coarse.shape / fine.shape) / refinement;
+  RecordProperty("order", std::to_string(order));
+  EXPECT_NEAR(order, 2, 0.2);
+  EXPECT_LT(fine.shape, 2e-4);
+  EXPECT_LT(chain_errors(scene, reference, 64).shape, 5e-4);
+  // A single gripper's force is what hangs on it, whatever the shape.
+  if (scene.grippers.size() > 1) {
+    const double force_order = std::log(coarse.force / fine.force) / refinement;
+    RecordProperty("force_order", std::to_string(force_order));
+    EXPECT_GT(force_order, 1.7);
+  }
+  EXPECT_LT(fine.force, 2e-3);
+  if (coarse.torque > 0) {
+    const double torque_order = std::log(coarse.torque / fine.torque) / refinement;
+    RecordProperty("torque_order", std::to_string(torque_order));
+    EXPECT_GT(torque_order, 1.7);
+  }
+  EXPECT_LT(fine.torque, 5e-3);
+}
+
+TEST_P(SceneOfGrips, ForceModelRestsInTheChainsPolygon) {
+  for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
+    Scene scene = GetParam().scene;
+    scene.force_model.bookkeeping = bookkeeping;
+    const Solution chain = solve_chain(scene, scene.force_model);
+    const Solution force = solve_force(scene, scene.force_model);
+    EXPECT_LT((chain.shape.points - force.shape.points).colwise().norm().maxCoeff(), 1e-6);
+    EXPECT_NEAR(force.energy.total(), chain.energy.total(), 1e-9 * std::abs(chain.energy.bending));
+    // 1e-7 l from rest, stiff segments still pull.
+    for (std::size_t i = 0; i < chain.grippers.size(); ++i) {
+      const double size = chain.grippers[i].force.norm();
+      EXPECT_LT((chain.grippers[i].force - force.grippers[i].force).norm(), 1e-3 * size);
+    }
+  }
+}
+
+TEST_P(SceneOfGrips, GrippersAndObstaclesCarryAllThatHangsOnTheRod) {
+  for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
+    Scene scene = GetParam().scene;
+    scene.force_model.bookkeeping = bookkeeping;
+    const Discretisation d = discretise(scene, scene.force_model);
+    const energy_model::PolygonResult rest =
+        energy_model::solve_polygon(polygon_problem(d.rod), d.starts.front());
+    ASSERT_TRUE(energy_model::succeeded(rest.status)) << rest.message;
+    Vector3d force = d.rod.loads.rowwise().sum();
+    Vector3d torque = Vector3d::Zero();
+    for (Eigen::Index i = 0; i < rest.points.cols(); ++i) {
+      torque += rest.points.col(i).cross(Vector3d(d.rod.loads.col(i)));
+    }
+    std::vector<Eigen::Index> held;
+    for (const force_model::Grip& grip : d.rod.grips) {
+      for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) held.push_back(grip.first_point + k);
+    }
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      const Vector3d hold = rest.grip_forces.col(static_cast<Eigen::Index>(k));
+      force += hold;
+      torque += rest.points.col(held[k]).cross(hold);
+    }
+    for (const force_model::Wall& wall : d.rod.walls) {
+      for (Eigen::Index i = 0; i < rest.points.cols(); ++i) {
+        if (std::count(held.begin(), held.end(), i) > 0) continue;
+        const Vector3d push = force_model::wall_force(wall, rest.points.col(i));
+        force += push;
+        torque += rest.points.col(i).cross(push);
+      }
+    }
+    const double size = d.rod.loads.colwise().norm().sum();
+    EXPECT_LT(force.norm(), 1e-6 * size);
+    EXPECT_LT(torque.norm(), 1e-6 * size);
+    EXPECT_NEAR((d.weights.rowwise().sum() - scene.weight_per_length()).norm(), 0, 1e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, SceneOfGrips,
+                         testing::Values(NamedScene{"two_clamps", two_clamps(10, {0.8, 0, 0})},
+                                         NamedScene{"spatial_clamps", spatial_clamps()},
+                                         NamedScene{"clamp_inside", clamp_inside()},
+                                         NamedScene{"clamp_and_pin", clamp_and_pin()},
+                                         NamedScene{"two_pins", two_pins()},
+                                         NamedScene{"loaded_clamps", loaded_clamps()},
+                                         NamedScene{"three_clamps", three_clamps()},
+                                         NamedScene{"yielding_floor", yielding_floor()}),
+                         [](const auto& instance) { return instance.param.name; });
+
+TEST(Walls, UnderAFreeEndAreFirstOrder) {
+  // The last point has half a segment's weight but, as all of the force model's, a whole one's
+  // stiffness of the floor.
+  const Scene scene = tip_on_floor();
+  const energy_model::Equilibrium reference = solve_reference(scene, Model::energy);
+  const Errors coarse = chain_errors(scene, reference, 24);
+  const Errors fine = chain_errors(scene, reference, 96);
+  EXPECT_NEAR(std::log(coarse.shape / fine.shape) / std::log(coarse.segment / fine.segment), 1,
+              0.2);
+  EXPECT_LT(fine.shape, 3e-4);
+}
+
+TEST(Walls, RigidOnesAreEnteredByLessThanTheStretchOfTheRod) {
+  Scene scene = yielding_floor();
+  scene.obstacles[0].stiffness = std::numeric_limits<double>::infinity();
+  scene.force_model.points = 48;
+  const Solution chain = solve_chain(scene, scene.force_model);
+  const double weight = scene.weight_per_length().norm() * scene.length;
+  EXPECT_LT(-chain.shape.points.row(1).minCoeff(), weight / scene.axial_stiffness() * scene.length);
+  ASSERT_EQ(chain.obstacles.size(), 1);
+  EXPECT_GT(chain.obstacles[0].y(), 0.1 * weight);
+  const Solution force = solve_force(scene, scene.force_model);
+  EXPECT_LT((chain.shape.points - force.shape.points).colwise().norm().maxCoeff(), 1e-6);
+  EXPECT_NEAR(chain.obstacles[0].y(), force.obstacles[0].y(), 1e-3 * weight);
+}
+
+TEST(Walls, AShapeThatIsNotResolvedIsShownOnlyToWhoAcceptsIt) {
+  // Its tip leans against the wall, where nodes of the quadrature end before it.
+  Scene scene = parse_scene(R"(
+gravity = [0, -9.81, 0]
+[rod]
+length = "30 cm"
+diameter = "0.5 mm"
+material = "copper"
+[[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+[[obstacle]]
+point = ["25 cm", 0, 0]
+normal = [-1, 0, 0]
+[force_model]
+law = "hooke"
+bookkeeping = "consistent"
+)",
+                            "copper.toml");
+  try {
+    (void)solve_reference(scene, Model::energy);
+    FAIL() << "no error";
+  } catch (const ConvergenceError& error) {
+    EXPECT_NE(std::string(error.what()).find("behind a rigid wall"), std::string::npos)
+        << error.what();
+  }
+  EXPECT_THROW((void)solve(scene, Model::energy), ConvergenceError);
+  EXPECT_THROW((void)compare(scene), ConvergenceError);
+  SolveOptions options;
+  options.accept_unresolved = true;
+  const Solution shown = solve(scene, Model::energy, options);
+  EXPECT_EQ(shown.status, energy_model::SolveStatus::not_resolved);
+  EXPECT_GT(shown.penetration, 1e-4 * scene.length);
+  EXPECT_NEAR(shown.penetration, shown.shape.points.row(0).maxCoeff() - 0.25, 1e-5);
+  const Comparison comparison = compare(scene, options);
+  EXPECT_NE(comparison.unresolved.find("behind a rigid wall"), std::string::npos);
+  EXPECT_TRUE(std::isnan(comparison.effective_modulus.ratio));
+  EXPECT_LT(comparison.deviation.rms_over_length, 5e-3);
+}
+
+TEST(PaperLaw, HasATorqueOfItsOwnWhereSegmentsDiffer) {
+  // Two clamps leave one part of the rod, of equal segments: chain and force model are one model
+  // but for the stretch of the segments, which makes them a little unequal.
+  Scene equal = two_clamps(10, {0.8, 0, 0});
+  equal.force_model.law = Law::paper;
+  const auto distance = [](const Scene& scene) {
+    const Solution chain = solve_chain(scene, scene.force_model);
+    const Solution force = solve_force(scene, scene.force_model);
+    return (chain.shape.points - force.shape.points).colwise().norm().maxCoeff();
+  };
+  EXPECT_LT(distance(equal), 1e-6);
+  Scene unequal = two_pins();
+  unequal.force_model.law = Law::paper;
+  const double apart = distance(unequal);
+  EXPECT_GT(apart, 1e-6);
+  EXPECT_LT(apart, 1e-3);
+}
+
+/// A pin just above a rigid floor: a start that hangs straight down would be crushed on it.
+Scene pin_above_floor() {
+  Scene scene = heavy_scene(100, 0);
+  scene.grippers = {{.at = 0, .position = {0, 0.02, 0}}};
+  scene.obstacles = {Obstacle{}};
+  return scene;
+}
+
+TEST(Chain, LiesOnAFloorBelowItsPin) {
+  double last = 0;
+  for (const int points : {16, 64, 240}) {
+    Scene scene = pin_above_floor();
+    scene.force_model.points = points;
+    scene.force_model.law = Law::hooke;
+    scene.force_model.bookkeeping = Bookkeeping::consistent;
+    const Solution chain = solve_chain(scene, scene.force_model);
+    const double weight = 100 * scene.bending_stiffness();
+    EXPECT_NEAR(chain.grippers[0].force.y() + chain.obstacles[0].y(), weight, 1e-6 * weight);
+    const Eigen::Matrix3Xd& p = chain.shape.points;
+    const Eigen::Index n = p.cols() - 1;
+    const double length = (p.rightCols(n) - p.leftCols(n)).colwise().norm().sum();
+    EXPECT_NEAR(length, 1, 1e-4);
+    EXPECT_GT(p.row(1).minCoeff(), -1e-5);
+    if (points > 16) {
+      EXPECT_NEAR(chain.grippers[0].force.y(), last, 0.02 * last);
+    }
+    last = chain.grippers[0].force.y();
+  }
+}
+
+/// A clamp and a pin so near on the rod that few points leave one segment between them, longer than
+/// they are apart.
+Scene grips_near_each_other() {
+  Scene scene = heavy_scene(5, 0);
+  scene.grippers.push_back({.at = 0.186, .position = {0.12, 0.05, 0}});
+  scene.force_model.law = Law::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  return scene;
+}
+
+TEST(Chain, AndForceRefuseASegmentThatCannotFitAndSayHowManyPointsDo) {
+  Scene scene = grips_near_each_other();
+  for (const int points : {9, 10}) {
+    scene.force_model.points = points;
+    for (const auto solver : {&solve_chain, &solve_force}) {
+      try {
+        (void)solver(scene, scene.force_model, {});
+        FAIL() << "no error";
+      } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("in 1 segment between points"), std::string::npos)
+            << error.what();
+        EXPECT_NE(std::string(error.what()).find("allowed: 11 or more"), std::string::npos)
+            << error.what();
+      }
+    }
+  }
+  scene.force_model.points = 11;
+  const Solution chain = solve_chain(scene, scene.force_model);
+  EXPECT_LT(chain.energy.stretch, 1e-3 * chain.energy.bending);
+}
+
+TEST(Chain, StretchAboveAHundredthIsNoResultUnlessAskedFor) {
+  // Hangs from a clamp inside, w l / (E A) = Gamma d^2 / (16 l^2) = 1.9 %
+  Scene scene = heavy_scene(30, -90);
+  scene.grippers[0].at = 0.2;
+  scene.material.youngs_modulus /= std::pow(0.1 / scene.diameter, 4);
+  scene.material.density /= std::pow(0.1 / scene.diameter, 2);
+  scene.diameter = 0.1;
+  ASSERT_NEAR(scene.gamma(), 30, 1e-9);
+  for (const auto solver : {&solve_chain, &solve_force}) {
+    try {
+      (void)solver(scene, scene.force_model, {});
+      FAIL() << "no error";
+    } catch (const ConvergenceError& error) {
+      EXPECT_NE(std::string(error.what()).find("longer than at rest"), std::string::npos)
+          << error.what();
+    }
+  }
+  scene.force_model.c_c = scene.axial_stiffness();
+  EXPECT_GT(solve_chain(scene, scene.force_model).energy.stretch, 0);
+}
+
+TEST(Force, RestsInTheStateOfTheChain) {
+  // From the chain's own start it swings into an arch with half as much energy again.
+  Scene scene;
+  scene.file = scene.name = "clamps in space";
+  scene.length = 1;
+  scene.diameter = 0.004;
+  scene.material = {.name = "own", .youngs_modulus = 79577471545.94765, .density = 2788.27335};
+  scene.gravity = {0, -9.81, 0};
+  scene.grippers = {
+      {.at = 0.127,
+       .position = {0.2986607170328106, 0.611656186051831, -0.2478694131670547},
+       .direction = Vector3d(-0.21736416854540283, -0.3883106916406705, -0.8955264513067773)},
+      {.at = 0.567,
+       .position = {0.3675062348836809, 0.4192120289768312, -0.2173591936662226},
+       .direction = Vector3d(-0.37780616912170295, -0.8845221558642805, -0.2736476829041102)}};
+  scene.force_model.law = Law::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  for (const int points : {9, 17}) {
+    scene.force_model.points = points;
+    const Solution chain = solve_chain(scene, scene.force_model);
+    const Solution force = solve_force(scene, scene.force_model);
+    EXPECT_EQ(force.message, "at rest");
+    EXPECT_NEAR(force.energy.bending, chain.energy.bending, 1e-4 * chain.energy.bending);
+  }
+}
+
+TEST(Torque, IsAboutTheGrippersOwnPositionInEveryModelThatBalancesIt) {
+  const Vector3d away(3, -2, 1);
+  for (Scene scene : {heavy_scene(8, 20), loaded_clamps(), clamp_inside(), spatial_clamps()}) {
+    scene.force_model.points = 24;
+    for (const Model model : {Model::energy, Model::chain}) {
+      const Solution there = solve(scene, model);
+      Scene moved = scene;
+      for (Gripper& gripper : moved.grippers) gripper.position += away;
+      const Solution here = solve(moved, model);
+      for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+        const GripperLoad& a = there.grippers[i];
+        const GripperLoad& b = here.grippers[i];
+        const double size = 1e-3 * scene.bending_stiffness() + a.torque.norm();
+        EXPECT_LT((a.torque - b.torque).norm(), 1e-4 * size) << to_string(model) << " " << i;
+        EXPECT_LT((a.force - b.force).norm(), 1e-4 * (a.force.norm() + size)) << to_string(model);
+      }
+      // The balance about the origin: the lever is the gripper's position.
+      Vector3d torque = Vector3d::Zero();
+      for (std::size_t i = 0; i < moved.grippers.size(); ++i) {
+        torque +=
+            here.grippers[i].torque + moved.grippers[i].position.cross(here.grippers[i].force);
+      }
+      const Discretisation d = discretise(moved, moved.force_model);
+      double carried = 0;
+      if (model == Model::energy) {
+        // Weight per length on a fine grid of the shape, and point loads.
+        const energy_model::Equilibrium rod = solve_reference(moved, Model::energy);
+        constexpr int cells = 2000;
+        std::vector<double> middles;
+        middles.reserve(cells);
+        for (int k = 0; k < cells; ++k) middles.push_back((k + 0.5) / cells);
+        const Eigen::Matrix3Xd p = rod.sample(middles).points;
+        const Vector3d w = moved.weight_per_length() / cells;
+        for (Eigen::Index k = 0; k < p.cols(); ++k) torque += p.col(k).cross(w);
+        for (const PointLoad& load : moved.loads) {
+          torque += rod.sample(std::vector<double>{load.at}).points.col(0).cross(load.force);
+        }
+      } else {
+        const Solution chain = solve_chain(moved, moved.force_model);
+        // Of the polygon's own points; those inside a gripper weigh nothing.
+        for (Eigen::Index k = 0; k < chain.shape.points.cols(); ++k) {
+          torque += Vector3d(chain.shape.points.col(k)).cross(Vector3d(d.rod.loads.col(k)));
+        }
+      }
+      carried = moved.weight_per_length().norm();
+      for (const PointLoad& load : moved.loads) carried += load.force.norm();
+      EXPECT_LT(torque.norm(), 1e-4 * carried) << to_string(model);
+    }
+  }
+}
+
+TEST(Chain, FindsTheLowestOfTwoArches) {
+  // Clamps that point up hold an arch against the weight only while it is light.
+  for (const double gamma : {0.5, 20.0, 200.0}) {
+    Scene scene = heavy_scene(gamma, 90);
+    scene.grippers.push_back({.at = 1, .position = {0.3, 0, 0}, .direction = -Vector3d::UnitY()});
+    scene.force_model.points = 64;
+    const double energy = solve(scene, Model::energy).energy.total();
+    const Solution chain = solve_chain(scene, scene.force_model);
+    EXPECT_NEAR(chain.energy.total(), energy, 2e-3 * chain.energy.bending) << gamma;
+  }
+}
+
+TEST(Comparison, OfTwoClampsHasNoTipAndNoStraightRod) {
+  Scene scene = two_clamps(2, {0.8, 0, 0});
+  // A hundredth of AE gives way to the thrust of the arch, 40 EI/l^2, by a thousandth.
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  const Comparison comparison = compare(scene);
+  EXPECT_TRUE(std::isnan(comparison.deviation.tip_m));
+  EXPECT_TRUE(std::isnan(comparison.deviation.rms_over_movement));
+  EXPECT_TRUE(std::isnan(comparison.undeformed_rms_over_length));
+  EXPECT_LT(comparison.deviation.rms_over_length, 5e-3);
+  // Stretch is the force model's alone; the chain keeps to the rod's own.
+  EXPECT_GT(comparison.budget.stretch.rms_m, 1e-4);
+  EXPECT_NEAR(comparison.budget.discretisation.share + comparison.budget.stretch.share, 1, 0.05);
+  // Between two clamps the sag hardly knows the stiffness.
+  EXPECT_NE(comparison.effective_modulus.optimum, Optimum::clear);
+}
+
+}  // namespace
+}  // namespace dlo::compare
