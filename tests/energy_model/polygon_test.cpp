@@ -7,8 +7,6 @@
 #include <numbers>
 #include <random>
 
-#include "dlo/compare/chain.hpp"
-
 namespace dlo::energy_model {
 namespace {
 

@@ -2,12 +2,8 @@
 
 #include <dlo/compare/comparison.hpp>
 #include <dlo/compare/gtest.hpp>
-#include <dlo/compare/scene.hpp>
+#include <dlo/compare/scene_file.hpp>
 #include <dlo/compare/solve.hpp>
-
-#include "dlo/compare/deviation.hpp"
-#include "dlo/compare/scene_file.hpp"
-#include "dlo/compare/solution.hpp"
 
 namespace {
 

@@ -5,6 +5,7 @@
 #include <ostream>
 #include <utility>
 
+#include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/shape_verdict.hpp"
 
 /// GoogleTest for shapes; headers only, the library itself does not need GoogleTest.
