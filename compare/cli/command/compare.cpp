@@ -1,5 +1,6 @@
 
 #include <memory>
+#include <optional>
 
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
@@ -29,19 +30,21 @@ void run(const CompareOptions& options) {
   compare::SolveOptions solve = options.overrides.solve();
   solve.accept_unresolved = true;
   const bool explain = options.plan.explain() && options.output.kind() == Format::text;
+  const bool shows_plan = explain || options.output.kind() == Format::json;
+  const auto plan = shows_plan ? std::optional(options.plan.plan()) : std::nullopt;
   {
     ProgressBar bar("compare");
     for (const std::string& path : options.scenes) {
       const compare::Scene scene = options.overrides.load(path);
       comparisons.push_back(compare::compare(
-          scene, solve, options.plan.plan(),
+          scene, solve, plan,
           options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes));
       const std::string& why = comparisons.back().unresolved;
       if (!why.empty()) {
         append(unresolved, "{}{}: the energy model: {}", unresolved.empty() ? "" : "; ", scene.file,
                why);
       }
-      if (explain) plans += plan_text(comparisons.back().plan, scene);
+      if (explain) plans += plan_text(*comparisons.back().plan, scene);
       bar.show(static_cast<std::int64_t>(comparisons.size()),
                static_cast<std::int64_t>(options.scenes.size()));
     }

@@ -141,7 +141,7 @@ Json comparison_json(const compare::Comparison& comparison) {
                     {"force_steps", comparison.force.steps},
                     {"energy_s", comparison.energy_seconds},
                     {"energy_evaluations", comparison.energy_evaluations}};
-  result["plan"] = plan_json(comparison.plan);
+  if (comparison.plan) result["plan"] = plan_json(*comparison.plan);
   result["arc_length_m"] = comparison.force.shape.arc_length;
   result["force_points_m"] = points_json(comparison.force.shape.points);
   result["energy_points_m"] = points_json(comparison.reference.points);

@@ -38,15 +38,15 @@ std::size_t state_of(const Scene& scene, const Shape& force,
 
 }  // namespace
 
-Comparison compare(const Scene& scene, const SolveOptions& options, const PlanOptions& plan_options,
-                   ModulusSearch modulus) {
+Comparison compare(const Scene& scene, const SolveOptions& options,
+                   const std::optional<PlanOptions>& plan, ModulusSearch modulus) {
   const Scene near = without_far_obstacles(scene).scene;
   Comparison result;
   result.scene = scene.name;
   result.gamma = scene.gamma();
   result.length = scene.length;
   result.settings = scene.force_model;
-  result.plan = make_plan(scene, plan_options);
+  if (plan) result.plan = make_plan(scene, *plan);
   result.force = solve_force(near, near.force_model, options);
   const Shape& force = result.force.shape;
   // What a user would call, for its cost; the other states are looked for besides.

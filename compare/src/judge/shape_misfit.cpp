@@ -113,6 +113,27 @@ Eigen::Matrix3Xd frame_derivatives(PoseFreedom pose, const Eigen::Vector3d& arm,
   return result;
 }
 
+/// Whether two scenes have the same equilibria, whatever their names.
+bool same_equilibria(const Scene& a, const Scene& b) {
+  const auto same_grip = [](const Gripper& p, const Gripper& q) {
+    return p.at == q.at && p.position == q.position && p.direction == q.direction;
+  };
+  const auto same_load = [](const PointLoad& p, const PointLoad& q) {
+    return p.at == q.at && p.force == q.force;
+  };
+  const auto same_obstacle = [](const Obstacle& p, const Obstacle& q) {
+    return p.point == q.point && p.normal == q.normal && p.stiffness == q.stiffness;
+  };
+  return a.gravity == b.gravity && a.length == b.length && a.diameter == b.diameter &&
+         a.material.youngs_modulus == b.material.youngs_modulus &&
+         a.material.density == b.material.density &&
+         std::equal(a.grippers.begin(), a.grippers.end(), b.grippers.begin(), b.grippers.end(),
+                    same_grip) &&
+         std::equal(a.loads.begin(), a.loads.end(), b.loads.begin(), b.loads.end(), same_load) &&
+         std::equal(a.obstacles.begin(), a.obstacles.end(), b.obstacles.begin(), b.obstacles.end(),
+                    same_obstacle);
+}
+
 }  // namespace
 
 ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
@@ -123,10 +144,11 @@ ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, const std::vector<Mea
                        .arc_lengths = options.arc_lengths,
                        .weights = PointWeights::equal,
                        .up = up_of(scenes[i], options.pose)};
-    if (align.arc_lengths == ArcLengths::automatic) {
-      align.arc_lengths = shapes[i].arc_length.empty() ? ArcLengths::nearest : ArcLengths::file;
-    }
     scenes_.push_back(without_far_obstacles(scenes[i]).scene);
+    first_like_.push_back(static_cast<std::size_t>(
+        std::find_if(scenes_.begin(), scenes_.end(),
+                     [&](const Scene& scene) { return same_equilibria(scene, scenes_[i]); }) -
+        scenes_.begin()));
     aligners_.emplace_back(shapes[i], scenes[i].length, align);
     flat_.push_back(lies_in_a_plane(shapes[i].points));
     const int of_frame = numbers_of_frame(flat_.back(), options.pose);
@@ -195,6 +217,13 @@ const ShapeMisfit::Solved* ShapeMisfit::nearest(std::size_t i,
 std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
                                                                const MaterialPoint& material) {
   const bool follows = scenes_[i].grippers.size() > 1;
+  if (!follows) {
+    // What is asked for of one shape is asked for of the next of the same scene.
+    const auto shared = std::find_if(shared_.begin(), shared_.end(), [&](const auto& entry) {
+      return entry->scene == first_like_[i] && entry->material == material;
+    });
+    if (shared != shared_.end()) return *shared;
+  }
   const Solved* start = follows ? nearest(i, material) : nullptr;
   if (start != nullptr && start->material == material) {
     for (const std::shared_ptr<const Solved>& entry : kept_) {
@@ -216,6 +245,10 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
   if (follows) {
     kept_.push_back(result);
     if (kept_.size() > most_kept * scenes_.size()) kept_.pop_front();
+  } else {
+    result->scene = first_like_[i];
+    shared_.push_back(result);
+    if (shared_.size() > most_kept * scenes_.size()) shared_.pop_front();
   }
   return result;
 }

@@ -79,7 +79,7 @@ PaperReport paper_report(const Stages& progress) {
       say(fmt::format("{}: to rest, and {} s of simulated time", scene.name, last_history_time));
       PaperCase entry;
       entry.printed_weight = printed_weight;
-      entry.rest = compare(scene);
+      entry.rest = compare(scene, {}, PlanOptions{});
       const ModulusHistory history = modulus_history(scene, entry.rest.force.shape);
       entry.creep = history.times;
       report.c_F = history.c_F;

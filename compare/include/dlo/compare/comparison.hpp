@@ -20,7 +20,7 @@ struct Comparison {
   double gamma = 0;             ///< w l^3 / (EI) [-]
   double length = 0;            ///< l [m]
   ForceModelSettings settings;  ///< of the force model, as used
-  Plan plan;                    ///< what the scene needs
+  std::optional<Plan> plan;     ///< what the scene needs, if that was asked
   Solution force;               ///< the force model at rest
   Shape reference;              ///< the energy model at the force model's arc lengths
   Reference reference_rod;      ///< and anywhere from 0 to l
@@ -46,9 +46,10 @@ struct Comparison {
 
 /// Solves a scene with the force model at rest and with the energy model, both without obstacles
 /// out of reach, and compares the shapes.
+/// @param plan  makes a plan as well, which costs as much as some ten solves
 /// @throws InputError, ConvergenceError
 [[nodiscard]] Comparison compare(const Scene& scene, const SolveOptions& options = {},
-                                 const PlanOptions& plan_options = {},
+                                 const std::optional<PlanOptions>& plan = std::nullopt,
                                  ModulusSearch modulus = ModulusSearch::yes);
 
 }  // namespace dlo::compare
