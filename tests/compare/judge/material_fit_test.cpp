@@ -392,6 +392,28 @@ TEST(MaterialFit, SeveralShapesNarrowTheInterval) {
   EXPECT_EQ(both.degrees_of_freedom, 2 * (2 * 9 - 6) - 1);
 }
 
+// Three fits move to slightly different moduli, which is the rest of the difference.
+TEST(MaterialFit, ShapesOfOneSceneShareItsEquilibria) {
+  const Scene scene = heavy_scene(2, 0);
+  std::mt19937 random(11);
+  std::vector<MeasuredShape> shapes;
+  for (int k = 0; k < 3; ++k) {
+    shapes.push_back(exact_shape(scene, uneven_arc_lengths(random, 9, 1)));
+    shapes.back().points = with_noise(shapes.back().points, 1e-3, random);
+  }
+  const long one = fit_material({scene}, {shapes[0]}).equilibria;
+  const long three = fit_material({scene, scene, scene}, shapes).equilibria;
+  const long two = fit_material({scene, scene}, {shapes[0], shapes[1]}).equilibria;
+  EXPECT_LT(two, 1.3 * static_cast<double>(one));
+  EXPECT_LT(three, 1.3 * static_cast<double>(one));
+  // Another rod shares nothing.
+  Scene other = scene;
+  other.length *= 1 + 1e-15;
+  ASSERT_NE(other.length, scene.length);
+  const long apart = fit_material({scene, other}, {shapes[0], shapes[1]}).equilibria;
+  EXPECT_GT(apart, 1.5 * static_cast<double>(two));
+}
+
 TEST(MaterialFit, AShapeThatDoesNotTellEGivesABoundInsteadOfANumber) {
   // A rod that hardly bends: anything stiffer fits as well.
   const Scene stiff = heavy_scene(1e-3, 0);
