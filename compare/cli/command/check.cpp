@@ -13,7 +13,6 @@
 #include "option/scene_options.hpp"
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
-#include "option/terminal.hpp"
 #include "scene/quantity.hpp"
 
 namespace dlo::cli {

@@ -3,7 +3,6 @@
 #include <memory>
 
 #include "command/commands.hpp"
-#include "dlo/compare/force_model_settings.hpp"
 #include "format/json.hpp"
 #include "format/moving.hpp"
 #include "format/paper.hpp"

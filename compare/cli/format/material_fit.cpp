@@ -7,9 +7,9 @@
 #include "base/quote.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
+#include "format/alignment.hpp"
 #include "format/comparison.hpp"
 #include "option/output.hpp"
-#include "option/shape_options.hpp"
 
 namespace dlo::cli {
 namespace {

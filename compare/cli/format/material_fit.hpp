@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "dlo/compare/material_fit.hpp"
-#include "format/alignment.hpp"
 #include "format/json.hpp"
 
 namespace dlo::cli {

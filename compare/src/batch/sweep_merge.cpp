@@ -1,10 +1,11 @@
+#include "batch/sweep_merge.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
 #include "base/output_file.hpp"
-#include "batch/sweep_file.hpp"
 #include "batch/sweep_lines.hpp"
 #include "dlo/compare/error.hpp"
 

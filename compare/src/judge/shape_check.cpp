@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "dlo/compare/comparison.hpp"
-#include "dlo/compare/error.hpp"
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"

@@ -13,7 +13,6 @@
 #include <stdexcept>
 
 #include "base/quote.hpp"
-#include "report/html.hpp"
 
 namespace dlo::compare {
 namespace {

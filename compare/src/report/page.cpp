@@ -8,7 +8,6 @@
 
 #include "base/quote.hpp"
 #include "report/again.hpp"
-#include "report/figures.hpp"
 #include "report/html.hpp"
 #include "report/provenance.hpp"
 #include "report/style.hpp"

@@ -10,9 +10,7 @@
 
 #include "base/quote.hpp"
 #include "dlo/compare/deviation.hpp"
-#include "dlo/compare/error.hpp"
 #include "report/again.hpp"
-#include "report/figures.hpp"
 
 namespace dlo::compare {
 namespace {

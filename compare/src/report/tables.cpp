@@ -8,7 +8,6 @@
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/solution.hpp"
-#include "report/figures.hpp"
 
 namespace dlo::compare {
 namespace {

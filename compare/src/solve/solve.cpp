@@ -6,14 +6,12 @@
 #include <algorithm>
 
 #include "dlo/compare/chain.hpp"
-#include "dlo/compare/error.hpp"
 #include "dlo/compare/force.hpp"
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "scene/reach.hpp"
-#include "solve/chain_start.hpp"
 
 namespace dlo::compare {
 namespace {

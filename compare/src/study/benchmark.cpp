@@ -6,7 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
 #include "study/benchmark_runs.hpp"
 #include "study/benchmark_tracking.hpp"
