@@ -48,6 +48,8 @@ Scan scan(const Function& function, double low, double high, int steps) {
 Minimum minimum_near(const Function& function, const Scan& scan, double tolerance) {
   const std::size_t best = scan.best();
   Minimum result{scan.x[best], scan.value[best]};
+  // Of equal values the first is the best, which may be an end.
+  if (!scan.is_bracketed()) return result;
   keep_gsl_from_aborting();
   Shifted shifted{&function, 0};
   gsl_function gsl{call_for_gsl, &shifted};

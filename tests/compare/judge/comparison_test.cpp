@@ -462,7 +462,7 @@ law = "hooke"
 bookkeeping = "consistent"
 )",
                                   "table.toml");
-  const Solution energy = solve(scene, Model::energy);
+  const Solution energy = solve(scene, Model::energy, {.time_limit = 300});
   EXPECT_GT(energy.shape.points.row(1).minCoeff(), -0.5 - 2e-3);
   // The table and the grippers bear the rod's weight.
   const double weight = scene.weight_per_length().norm() * scene.length;

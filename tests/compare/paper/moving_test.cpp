@@ -1,9 +1,10 @@
+#include "paper/moving.hpp"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "paper/moving.hpp"
 #include "paper/moving_tables.hpp"
 
 namespace dlo::compare {

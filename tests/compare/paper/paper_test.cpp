@@ -1,10 +1,11 @@
+#include "paper/paper.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
 #include "dlo/compare/force_model_settings.hpp"
-#include "paper/paper.hpp"
 #include "paper/tables.hpp"
 
 namespace dlo::compare {
