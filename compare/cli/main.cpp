@@ -15,8 +15,10 @@
 #include <vector>
 
 #include "base/output_file.hpp"
+#include "base/temporary_path.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "option/exit_status.hpp"
 #include "option/help.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
@@ -24,14 +26,7 @@
 
 namespace {
 
-// 1, outside a tolerance, is a CLI::RuntimeError of a command that has printed its result.
-enum ExitStatus : int {
-  good = 0,
-  bad_input = 2,
-  not_converged = 3,
-  no_resources = 4,  // and our own mistakes
-  not_written = 5
-};
+using dlo::cli::ExitStatus;
 
 /// Nobody reads the output: as other programs, gone without a word.
 [[noreturn]] void end_with_broken_pipe() {
@@ -51,71 +46,50 @@ ExitStatus report_exception() {
     end_with_broken_pipe();
   } catch (const dlo::compare::OutputError& error) {
     say("{}", error.what());
-    return not_written;
+    return ExitStatus::not_written;
   } catch (const dlo::compare::ConvergenceError& error) {
     say("{}", error.what());
-    return not_converged;
+    return ExitStatus::not_converged;
   } catch (const dlo::compare::InputError& error) {
     say("{}", error.what());
-    return bad_input;
+    return ExitStatus::bad_input;
   } catch (const std::invalid_argument& error) {
     // The models name what is out of range.
     say("{}", error.what());
-    return bad_input;
+    return ExitStatus::bad_input;
   } catch (const std::filesystem::filesystem_error& error) {
     say("{}", error.what());
-    return bad_input;
+    return ExitStatus::bad_input;
   } catch (const std::bad_alloc&) {
     dlo::cli::write_standard_error("dlo: out of memory\n");
-    return no_resources;
+    return ExitStatus::no_resources;
   } catch (const std::length_error&) {
     // A container that is asked for more than it can ever hold.
     dlo::cli::write_standard_error("dlo: out of memory\n");
-    return no_resources;
+    return ExitStatus::no_resources;
   } catch (const std::system_error& error) {
     say("out of threads or memory ({})", error.what());
-    return no_resources;
+    return ExitStatus::no_resources;
   } catch (const std::exception& error) {
     say("internal error, a mistake of dlo: {}", error.what());
-    return no_resources;
+    return ExitStatus::no_resources;
   } catch (...) {
     dlo::cli::write_standard_error("dlo: internal error, a mistake of dlo\n");
-    return no_resources;
+    return ExitStatus::no_resources;
   }
 }
 
 /// What no caller could catch, such as memory that a thread of the scheduler does not get, ends
 /// like anything else: with a line and a status.
 [[noreturn]] void end_uncaught() {
-  int status = no_resources;
+  ExitStatus status = ExitStatus::no_resources;
   if (std::current_exception()) {
     status = report_exception();
   } else {
     dlo::cli::write_standard_error("dlo: internal error, a mistake of dlo\n");
   }
   dlo::compare::remove_temporaries();
-  ::_exit(status);
-}
-
-/// Commands by what a user wants to do.
-struct Task {
-  const char* what;
-  std::vector<void (*)(CLI::App&)> commands;
-};
-
-const std::vector<Task>& tasks() {
-  using namespace dlo::cli;
-  static const std::vector<Task> list = {
-      {"Begin", {add_init, add_materials}},
-      {"See a shape", {add_solve}},
-      {"Is my simulator's shape right?", {add_check}},
-      {"Get parameters", {add_calibrate}},
-      {"How far is the force model from physics, and why?", {add_compare, add_report, add_paper}},
-      {"What does accuracy cost?", {add_bench, add_stability}},
-      {"Many scenes", {add_sweep}},
-      {"Keep it from getting worse", {add_regress}},
-  };
-  return list;
+  ::_exit(static_cast<int>(status));
 }
 
 void build(CLI::App& app) {
@@ -135,7 +109,7 @@ void build(CLI::App& app) {
          "--bash-completion", [=] { print(dlo::cli::bash_completion); },
          "print completion for bash: source <(dlo --bash-completion)")
       ->group(setup);
-  for (const Task& task : tasks()) {
+  for (const dlo::cli::Task& task : dlo::cli::tasks()) {
     for (const auto add : task.commands) {
       add(app);
       app.get_subcommands({}).back()->group(task.what);
@@ -162,7 +136,7 @@ int run(int argc, char** argv) {
   dlo::cli::refuse_empty_values(app);
   if (argc == 1) {
     dlo::cli::write_standard_output(app.help());
-    return good;
+    return static_cast<int>(ExitStatus::good);
   }
   std::vector<std::string> words(argv + 1, argv + argc);
   if (words.front() == "help") {
@@ -186,11 +160,11 @@ int run(int argc, char** argv) {
       std::ostringstream out;
       (void)app.exit(error, out, out);
       dlo::cli::write_standard_output(out.str());
-      return good;
+      return static_cast<int>(ExitStatus::good);
     }
     throw dlo::compare::InputError(dlo::cli::parse_message(app, error));
   }
-  return good;
+  return static_cast<int>(ExitStatus::good);
 }
 
 }  // namespace
@@ -206,6 +180,6 @@ int main(int argc, char** argv) {
     dlo::cli::close_standard_output();
     return status;
   } catch (...) {
-    return report_exception();
+    return static_cast<int>(report_exception());
   }
 }

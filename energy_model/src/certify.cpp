@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "stability.hpp"
 
@@ -75,8 +74,7 @@ void certify_sideways(SpanSolution& solution) {
 void certify_resolved(SpanSolution& solution) {
   if (!solution.is_equilibrium() || solution.resolved) return;
   solution.status = SolveStatus::not_resolved;
-  solution.message =
-      "the curvature is not resolved by " + std::to_string(solution.terms) + " terms";
+  solution.message = solution.too_few_terms();
 }
 
 }  // namespace dlo::energy_model

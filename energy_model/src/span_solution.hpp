@@ -34,6 +34,10 @@ struct [[nodiscard]] SpanSolution {
     status = SolveStatus::failed;
     message = std::move(why);
   }
+  /// Why a shape that is not `resolved` is no result.
+  [[nodiscard]] std::string too_few_terms() const {
+    return "the curvature is not resolved by " + std::to_string(terms) + " terms";
+  }
   [[nodiscard]] bool is_equilibrium() const {
     return succeeded(status) || status == SolveStatus::saddle;
   }

@@ -287,8 +287,7 @@ class Search {
       if (solution.terms >= most_terms) {
         solution.resolved = !span_.walls.empty();
         if (solution.resolved) break;
-        solution.fail("the curvature is not resolved by " + std::to_string(solution.terms) +
-                      " terms");
+        solution.fail(solution.too_few_terms());
         break;
       }
       int more =

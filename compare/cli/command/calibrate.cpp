@@ -10,6 +10,7 @@
 #include "format/force_model_fit.hpp"
 #include "format/json.hpp"
 #include "format/material_fit.hpp"
+#include "option/exit_status.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "option/shape_options.hpp"
@@ -61,7 +62,7 @@ struct Report {
 void write_report(const Report& report, OutputOptions output, bool format_is_given) {
   const bool to_toml_file = !format_is_given && output.file.ends_with(".toml");
   if (!format_is_given) {
-    const std::string format = format_of_file(output.file, format_names());
+    const std::string format = format_of_file(output.file, compare::names<Format>());
     if (!format.empty()) output.format = format;
   }
   if (to_toml_file) {
@@ -124,7 +125,7 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
                 .json = [&] { return force_model_json(fit); }},
                options.output, format_is_given);
   // The default is a wish.
-  if (!fit.reached() && options.target) throw CLI::RuntimeError(1);
+  if (!fit.reached() && options.target) end_with(ExitStatus::outside_tolerance);
 }
 
 }  // namespace
@@ -165,7 +166,7 @@ void add_calibrate(CLI::App& app) {
       ->group(measured);
   options->shape_options.add_to(*command, ChordLengths::not_exact_enough);
   options->overrides.add_to(*command);
-  std::vector<std::string> formats = format_names();
+  std::vector<std::string> formats = compare::names<Format>();
   formats.emplace_back("toml");
   command->add_option("--format", options->output.format, "text, json, csv or toml")
       ->check(CLI::IsMember(formats))

@@ -7,8 +7,10 @@
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_check.hpp"
+#include "dlo/compare/shape_verdict.hpp"
 #include "format/json.hpp"
 #include "format/shape_check.hpp"
+#include "option/exit_status.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "option/shape_options.hpp"
@@ -80,7 +82,7 @@ void run(const CheckOptions& options) {
   write_output(options.output, {.text = [&] { return shape_check_text(report); },
                                 .json = [&] { return json_text(shape_check_json(report)); },
                                 .csv = [&] { return shape_check_csv(report); }});
-  if (verdict && !verdict->judgement.pass) throw CLI::RuntimeError(1);
+  if (verdict && !verdict->judgement.pass) end_with(ExitStatus::outside_tolerance);
 }
 
 }  // namespace

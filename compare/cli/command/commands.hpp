@@ -1,12 +1,13 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <vector>
 
 namespace dlo::cli {
 
 // Each adds its command to the application and runs it when it is chosen. Errors are exceptions;
 // main() turns them into messages and exit statuses. A result outside a tolerance is printed, then
-// CLI::RuntimeError(1) thrown.
+// end_with(ExitStatus::outside_tolerance) called.
 void add_init(CLI::App& app);
 void add_materials(CLI::App& app);
 void add_solve(CLI::App& app);
@@ -19,5 +20,14 @@ void add_stability(CLI::App& app);
 void add_regress(CLI::App& app);
 void add_report(CLI::App& app);
 void add_sweep(CLI::App& app);
+
+/// Commands by what a user wants to do.
+struct Task {
+  const char* what;
+  std::vector<void (*)(CLI::App&)> commands;
+};
+
+/// All commands, in the order of the help.
+[[nodiscard]] const std::vector<Task>& tasks();
 
 }  // namespace dlo::cli

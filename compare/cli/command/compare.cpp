@@ -29,8 +29,8 @@ void run(const CompareOptions& options) {
   std::string unresolved;
   compare::SolveOptions solve = options.overrides.solve();
   solve.accept_unresolved = true;
-  const bool explain = options.plan.explain() && options.output.kind() == Format::text;
-  const bool shows_plan = explain || options.output.kind() == Format::json;
+  const bool explain = options.plan.explain() && options.output.is(Format::text);
+  const bool shows_plan = explain || options.output.is(Format::json);
   const auto plan = shows_plan ? std::optional(options.plan.plan()) : std::nullopt;
   {
     ProgressBar bar("compare");

@@ -61,18 +61,15 @@ std::string text_of(const compare::SceneChoices& choices,
   try {
     return compare::scene_text(choices, known);
   } catch (const compare::InputError& error) {
-    const std::string message = error.what();
     constexpr std::pair<const char*, const char*> options[] = {
-        {" rod.length =", "--length ="},
-        {" rod.diameter =", "--diameter ="},
-        {" rod.material =", "--material ="},
-        {" rod.material.youngs_modulus =", "--youngs-modulus ="},
-        {" rod.material.density =", "--density ="},
-        {" gripper.direction =", "--direction ="}};
+        {"rod.length", "--length"},
+        {"rod.diameter", "--diameter"},
+        {"rod.material", "--material"},
+        {"rod.material.youngs_modulus", "--youngs-modulus"},
+        {"rod.material.density", "--density"},
+        {"gripper.direction", "--direction"}};
     for (const auto& [key, option] : options) {
-      const std::size_t at = message.find(key);
-      if (at == std::string::npos) continue;
-      throw compare::InputError(option + message.substr(at + std::string(key).size()));
+      if (error.key() == key) throw compare::InputError(option + error.problem());
     }
     throw;
   }

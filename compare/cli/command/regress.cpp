@@ -10,6 +10,7 @@
 #include "dlo/compare/solution.hpp"
 #include "format/json.hpp"
 #include "format/regression.hpp"
+#include "option/exit_status.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "option/share.hpp"
@@ -35,7 +36,7 @@ struct RegressOptions {
 
 MeasuredCase measure(const RegressOptions& options, const std::string& path) {
   const compare::Scene scene = options.overrides.load(path);
-  const compare::Model model = compare::model_from(options.model);
+  const compare::Model model = compare::from_name<compare::Model>(options.model);
   try {
     return {compare::measure_case(scene, model, options.overrides.solve()), ""};
   } catch (const compare::ConvergenceError& error) {
@@ -91,8 +92,8 @@ void run(const RegressOptions& options) {
   if (options.update) {
     say("{} {}", options.baseline, solved ? "written" : "left as it was");
   }
-  if (!solved) throw CLI::RuntimeError(3);
-  if (!good) throw CLI::RuntimeError(1);
+  if (!solved) end_with(ExitStatus::not_converged);
+  if (!good) end_with(ExitStatus::outside_tolerance);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "base/quote.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "option/exit_status.hpp"
 #include "option/output.hpp"
 #include "option/share.hpp"
 #include "option/terminal.hpp"
@@ -88,8 +89,7 @@ void run(const ReportOptions& options) {
     say("{} figures are missing: {}; install gnuplot-nox", written.figures_missing,
         written.why_missing);
   }
-  constexpr int not_converged = 3;
-  if (!report.failures.empty()) throw CLI::RuntimeError(not_converged);
+  if (!report.failures.empty()) end_with(ExitStatus::not_converged);
 }
 
 }  // namespace

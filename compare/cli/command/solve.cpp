@@ -57,12 +57,12 @@ void require_resolved(const compare::Solution& solution, const compare::Scene& s
 void run(const SolveOptions& options) {
   require_format_for(options);
   const compare::Scene scene = options.overrides.load(options.scene);
-  const compare::Model model = compare::model_from(options.model);
+  const compare::Model model = compare::from_name<compare::Model>(options.model);
   constexpr int text_samples = 11;
   int samples = options.samples;
   const bool continuous = model == compare::Model::energy || model == compare::Model::exact;
   if (continuous) warn_of_force_model_options(options);
-  if (samples == 0 && continuous && options.output.kind() == Format::text) samples = text_samples;
+  if (samples == 0 && continuous && options.output.is(Format::text)) samples = text_samples;
   const std::vector<double> arc_lengths =
       samples > 0 ? compare::equal_arc_lengths(scene.length, samples) : std::vector<double>{};
   if (options.all && model != compare::Model::energy) {
@@ -107,15 +107,15 @@ void add_solve(CLI::App& app) {
   CLI::App* command = app.add_subcommand("solve", "the shape of one scene with one model");
   const auto options = std::make_shared<SolveOptions>();
   command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
-  command->add_option("--model", options->model, "energy, chain, exact or force")
-      ->check(CLI::IsMember(compare::model_names()))
+  command->add_option("--model", options->model, compare::meanings<compare::Model>())
+      ->check(CLI::IsMember(compare::names<compare::Model>()))
       ->capture_default_str();
   command->add_option("--samples", options->samples, "M points at equal arc lengths from 0 to l")
       ->check(CLI::Range(2, 1000000));
   command->add_flag("--all", options->all, "every equilibrium that is found, with its stability");
   options->overrides.add_to(*command);
   options->plan.add_to(*command);
-  std::vector<std::string> formats = format_names();
+  std::vector<std::string> formats = compare::names<Format>();
   formats.emplace_back("vtk");
   add_output_options(*command, options->output, formats);
   command->footer(

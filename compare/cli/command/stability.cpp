@@ -11,6 +11,7 @@
 #include "dlo/compare/scene_file.hpp"
 #include "format/json.hpp"
 #include "format/stability.hpp"
+#include "option/exit_status.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
@@ -35,7 +36,7 @@ struct StabilityOptions {
 
 /// The paper's steppers may fail, `auto` may not.
 bool auto_fails(const StabilityResult& result) {
-  return result.stepper == compare::StepperName::automatic && result.outcome != Outcome::pass &&
+  return result.stepper == compare::Stepper::automatic && result.outcome != Outcome::pass &&
          result.outcome != Outcome::refused;
 }
 
@@ -58,7 +59,7 @@ void run_cases(StabilityOptions& options) {
   if (!options.steppers.empty()) {
     options.cases.steppers.clear();
     for (const std::string& name : options.steppers) {
-      options.cases.steppers.push_back(compare::stepper_from(name));
+      options.cases.steppers.push_back(compare::from_name<compare::Stepper>(name));
     }
   }
   options.cases.threads = options.threads;
@@ -71,7 +72,8 @@ void run_cases(StabilityOptions& options) {
   write_output(options.output, {.text = [&] { return hard_cases_text(results, steppers); },
                                 .json = [&] { return json_text(hard_cases_json(results)); },
                                 .csv = [&] { return hard_cases_csv(results); }});
-  if (std::any_of(results.begin(), results.end(), auto_fails)) throw CLI::RuntimeError(1);
+  if (std::any_of(results.begin(), results.end(), auto_fails))
+    end_with(ExitStatus::outside_tolerance);
 }
 
 }  // namespace
@@ -93,7 +95,7 @@ void add_stability(CLI::App& app) {
   command->add_option("--case", options->cases.name_contains, "only cases whose name contains this")
       ->group(table);
   command->add_option("--stepper", options->steppers, "only these steppers")
-      ->check(CLI::IsMember(compare::stepper_names()))
+      ->check(CLI::IsMember(compare::names<compare::Stepper>()))
       ->group(table);
   const auto steps = CLI::Range(1L, 1000000000000L);
   command->add_option("--max-steps", options->cases.max_steps, "of the paper's steppers")

@@ -54,7 +54,7 @@ compare::Sweep sweep_of(const SweepOptions& options) {
   axes.reserve(options.vary.size());
   for (const std::string& text : options.vary) axes.push_back(compare::parse_axis(text));
   return {compare::load_scene_template(options.files.front(), options.scene.materials()),
-          compare::Grid(std::move(axes)), compare::sweep_model_from(options.model),
+          compare::Grid(std::move(axes)), compare::from_name<compare::SweepModel>(options.model),
           options.scene.solve()};
 }
 
@@ -164,7 +164,7 @@ void add_sweep(CLI::App& app) {
       ->add_option("--model", options->model,
                    "energy, chain, exact, force, compare (force against energy) or compare-chain "
                    "(its rest shape, without steps, against energy)")
-      ->check(CLI::IsMember(compare::sweep_model_names()))
+      ->check(CLI::IsMember(compare::names<compare::SweepModel>()))
       ->capture_default_str();
   command
       ->add_option("-o,--output", options->output,

@@ -20,16 +20,6 @@ using compare::SceneBenchmark;
 constexpr const char* not_run = "not run";
 constexpr const char* none_within = "no run is within the error";
 
-std::string name_of(const BenchmarkRun& run) {
-  std::string name = compare::to_string(run.model);
-  if (run.model == compare::Model::energy && run.size > 0) append(name, " K = {}", run.size);
-  if (run.model == compare::Model::chain || run.model == compare::Model::force) {
-    append(name, " N = {}", run.size);
-  }
-  if (!run.setting.empty()) append(name, ", {}", run.setting);
-  return name;
-}
-
 void add_runs(std::string& out, const std::vector<BenchmarkRun>& runs) {
   if (runs.empty()) {
     append(out, "  {}: all were skipped, see below\n", not_run);
@@ -79,19 +69,32 @@ void add_claim(std::string& out, const SceneBenchmark& scene) {
          ratio >= 1 ? "faster than" : "slower than", name_of(force), force.time.median_s * 1e3);
 }
 
-Json run_json(const BenchmarkRun& run, bool tracking) {
-  return {{"scene", run.scene},
-          {"kind", tracking ? "tracking" : "static"},
-          {"model", compare::to_string(run.model)},
-          {"law", run.setting},
-          {"size", run.size},
-          {"time_s", run.time.median_s},
-          {"lower_quartile_s", run.time.lower_quartile_s},
-          {"upper_quartile_s", run.time.upper_quartile_s},
-          {"repeats", run.time.repeats},
-          {"work", run.work},
-          {"rms_over_length", run.rms_over_length},
-          {"front", run.front}};
+Json run_json(const BenchmarkRun& run, const char* kind) {
+  Json result = {{"scene", run.scene},
+                 {"kind", kind},
+                 {"model", compare::to_string(run.model)},
+                 {"setting", setting_of(run)},
+                 {"law", nullptr},
+                 {"bookkeeping", nullptr},
+                 {"stepper", nullptr},
+                 {"c_c_over_AE", nullptr},
+                 {"size", run.size},
+                 {"time_s", run.time.median_s},
+                 {"lower_quartile_s", run.time.lower_quartile_s},
+                 {"upper_quartile_s", run.time.upper_quartile_s},
+                 {"repeats", run.time.repeats},
+                 {"work", run.work},
+                 {"rms_over_length", run.rms_over_length},
+                 {"front", run.front}};
+  if (run.variant) {
+    result["law"] = compare::to_string(run.variant->law);
+    result["bookkeeping"] = compare::to_string(run.variant->bookkeeping);
+  }
+  if (run.model == compare::Model::force) {
+    result["stepper"] = compare::to_string(run.variant->stepper);
+    result["c_c_over_AE"] = run.variant->stretch_share;
+  }
+  return result;
 }
 
 Json answers_json(const std::vector<BenchmarkAnswer>& answers,
@@ -144,8 +147,8 @@ Json benchmark_json(const compare::BenchmarkReport& report) {
   Json runs = Json::array();
   Json answers = Json::array();
   for (const SceneBenchmark& scene : report.scenes) {
-    for (const BenchmarkRun& run : scene.runs) runs.push_back(run_json(run, false));
-    for (const BenchmarkRun& run : scene.tracking) runs.push_back(run_json(run, true));
+    for (const BenchmarkRun& run : scene.runs) runs.push_back(run_json(run, "static"));
+    for (const BenchmarkRun& run : scene.tracking) runs.push_back(run_json(run, "tracking"));
     Json entry = {{"scene", scene.scene},
                   {"gamma", scene.gamma},
                   {"reference", compare::to_string(scene.reference)},
@@ -176,7 +179,7 @@ std::string benchmark_csv(const compare::BenchmarkReport& report) {
       "rms_over_length,front\n";
   const auto add = [&](const BenchmarkRun& run, const char* kind) {
     append_csv(out, "{},{},{},{},{},{:.4g},{:.4g},{:.4g},{},{},{:.6g},{}\n", csv_field(run.scene),
-               kind, compare::to_string(run.model), run.size, csv_field(run.setting),
+               kind, compare::to_string(run.model), run.size, csv_field(setting_of(run)),
                run.time.median_s, run.time.lower_quartile_s, run.time.upper_quartile_s,
                run.time.repeats, run.work, run.rms_over_length, run.front);
   };

@@ -67,7 +67,7 @@ std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
     append(out, " {:>15} {:9}\n", percent(fit.stepped_rms_over_length[i]), fit.steps[i]);
   }
   append(out, "  ({}: rigid segments, no stretch; stepped: the force model itself, with stretch)\n",
-         s.law == compare::Law::hooke ? "physical" : "rules for c_b");
+         s.law == compare::BendingLaw::hooke ? "physical" : "rules for c_b");
   if (fit.holdouts > 0) append(out, "  (* held out: judged, not fitted)\n");
   append(out, "\nworst {}", percent(fit.worst()));
   if (fit.holdouts > 0) append(out, ", of the hold-out scenes {}", percent(fit.worst_holdout()));
@@ -141,7 +141,7 @@ Json force_model_json(const ForceModelFit& fit) {
 
 std::string force_model_toml(const ForceModelFit& fit) {
   const compare::ForceModelSettings& s = fit.settings;
-  const bool hooke = s.law == compare::Law::hooke;
+  const bool hooke = s.law == compare::BendingLaw::hooke;
   std::string out =
       "# Parameters of the force model, written by dlo calibrate from these scenes:\n";
   for (std::size_t i = 0; i < fit.scenes.size(); ++i) {

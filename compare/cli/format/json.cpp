@@ -60,7 +60,7 @@ Json parameters_json(const compare::Solution& force, const compare::ForceModelSe
                  {"segment_length_m", p.segment_length},
                  {"c_c", p.c_c},
                  {"point_weight_N", p.point_weight}};
-  if (settings.law == compare::Law::paper) {
+  if (settings.law == compare::BendingLaw::paper) {
     result["c_b"] = p.c_b;
     if (!settings.c_b) {
       result["bending_rule"] = compare::to_string(settings.bending_rule);

@@ -7,11 +7,13 @@
 #include <utility>
 #include <vector>
 
+#include "base/number.hpp"
 #include "base/quote.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "format/comparison.hpp"
 #include "option/output.hpp"
+#include "paper/printed.hpp"
 #include "paper/tables.hpp"
 
 namespace dlo::cli {
@@ -19,6 +21,7 @@ namespace {
 
 using compare::csv_field;
 using compare::PaperReport;
+using compare::PaperWeight;
 
 void add_tables(std::string& out, const PaperReport& report) {
   append(out, "Tables 1 and 5 recomputed\n\n  {:<7}{:<12}{:>14}{:>16}  \n", "table", "quantity",
@@ -35,7 +38,7 @@ void add_shapes(std::string& out, const PaperReport& report) {
          "model at E\n",
          report.c_c);
   for (const compare::PaperCase& entry : report.cases) {
-    if (entry.printed_weight) continue;
+    if (entry.weight == PaperWeight::printed) continue;
     const compare::Comparison& c = entry.rest;
     append(out, "\n  {}\n  {:>9} {:>12} {:>12} | {:>12} {:>12} | {:>9}\n", c.scene, "s", "x", "y",
            "x", "y", "apart");
@@ -49,21 +52,22 @@ void add_shapes(std::string& out, const PaperReport& report) {
   }
   out += "\n";
   for (const compare::PaperCase& entry : report.cases) {
-    if (!entry.printed_weight) out += comparison_text(entry.rest);
+    if (entry.weight == PaperWeight::of_the_rod) out += comparison_text(entry.rest);
   }
 }
 
 /// E*/E against time for one choice of the points' weight.
-void add_creep(std::string& out, const PaperReport& report, bool printed_weight) {
+void add_creep(std::string& out, const PaperReport& report, PaperWeight weight) {
   std::vector<const compare::PaperCase*> cases;
   for (const compare::PaperCase& entry : report.cases) {
-    if (entry.printed_weight == printed_weight) cases.push_back(&entry);
+    if (entry.weight == weight) cases.push_back(&entry);
   }
   append(out,
          "E*/E on the way to rest, {:.5f} N a point{}: stepper basic, {:g} steps/s, c_F = {:.4g} "
          "m/N. The paper says 1/3.\n  {:>7} {:>9}",
-         cases.front()->rest.force.parameters.point_weight, printed_weight ? " as printed" : "",
-         report.steps_per_second, report.c_F, "t [s]", "steps");
+         cases.front()->rest.force.parameters.point_weight,
+         weight == PaperWeight::printed ? " as printed" : "", report.steps_per_second, report.c_F,
+         "t [s]", "steps");
   for (const compare::PaperCase* entry : cases) append(out, "  {:>34}", entry->rest.scene);
   append(out, "\n  {:>7} {:>9}", "", "");
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -100,15 +104,16 @@ void add_variants(std::string& out, const PaperReport& report) {
          "E*/E", "residual", "RMS at E");
   for (const compare::ModulusVariant& v : report.variants) {
     const double length = report.cases.front().rest.force.shape.arc_length.back();
-    append(
-        out, "  {:<28} {:>9.4g} {:>4} {:<6} {:<11} {:<15} {:>9.4f} {:>9.4f} % {:>10.4f} % {}\n",
-        v.what, v.gamma, v.settings.points, compare::to_string(v.settings.law),
-        compare::to_string(v.settings.bookkeeping),
-        v.settings.law == compare::Law::hooke ? "-" : compare::to_string(v.settings.bending_rule),
-        v.modulus.ratio, v.modulus.rms_m / length * 100, v.rms_over_length * 100,
-        v.modulus.optimum == compare::Optimum::clear
-            ? ""
-            : fmt::format("({})", compare::to_string(v.modulus.optimum)));
+    append(out, "  {:<28} {:>9.4g} {:>4} {:<6} {:<11} {:<15} {:>9.4f} {:>9.4f} % {:>10.4f} % {}\n",
+           v.what, v.gamma, v.settings.points, compare::to_string(v.settings.law),
+           compare::to_string(v.settings.bookkeeping),
+           v.settings.law == compare::BendingLaw::hooke
+               ? "-"
+               : compare::to_string(v.settings.bending_rule),
+           v.modulus.ratio, v.modulus.rms_m / length * 100, v.rms_over_length * 100,
+           v.modulus.optimum == compare::Optimum::clear
+               ? ""
+               : fmt::format("({})", compare::to_string(v.modulus.optimum)));
   }
 }
 
@@ -134,9 +139,9 @@ void add_summary(std::string& out, const PaperReport& report) {
       out,
       "\nAt rest E*/E is 1/{:.0f} to 1/{:.0f}. It is 1/3 on the way there, after {:.1f} to {:.1f} "
       "s "
-      "of simulated\ntime; the paper's simulations took 28 s. The weight 0.00892 N is what Table 5 "
+      "of simulated\ntime; the paper's simulations took 28 s. The weight {} N is what Table 5 "
       "prints; the energy\nmodel keeps rho A g, {:.5f} N a point.\n\n",
-      1 / stiffest, 1 / softest, first, last,
+      1 / stiffest, 1 / softest, first, last, compare::printed_point_weight(),
       report.cases.front().rest.force.parameters.point_weight);
 }
 
@@ -147,8 +152,8 @@ std::string paper_text(const PaperReport& report) {
   add_summary(out, report);
   add_tables(out, report);
   add_shapes(out, report);
-  add_creep(out, report, false);
-  add_creep(out, report, true);
+  add_creep(out, report, PaperWeight::of_the_rod);
+  add_creep(out, report, PaperWeight::printed);
   add_variants(out, report);
   out += "\nFilled in or assumed\n";
   for (const std::string& assumption : report.assumptions) out += "  - " + assumption + "\n";
@@ -177,7 +182,7 @@ Json paper_json(const PaperReport& report) {
       creep.push_back(std::move(row));
     }
     Json rest = comparison_json(entry.rest);
-    rest["point_weight"] = entry.printed_weight ? "printed" : "rho A l g / N";
+    rest["point_weight"] = entry.weight == PaperWeight::printed ? "printed" : "rho A l g / N";
     rest["time_at_one_third_s"] = entry.time_at_one_third();
     rest["modulus_against_time"] = std::move(creep);
     cases.push_back(std::move(rest));
@@ -214,12 +219,13 @@ std::string paper_csv(const PaperReport& report) {
                value);
   };
   for (const compare::TableRow& row : report.tables) {
-    add("table", "", "table " + row.table + " " + row.quantity, "printed", std::stod(row.printed));
+    add("table", "", "table " + row.table + " " + row.quantity, "printed",
+        *compare::as_number<double>(row.printed));
     add("table", "", "table " + row.table + " " + row.quantity, "computed", row.computed);
   }
   for (const compare::PaperCase& entry : report.cases) {
     const compare::Comparison& c = entry.rest;
-    const std::string weight = entry.printed_weight ? " printed weight" : "";
+    const std::string weight = entry.weight == PaperWeight::printed ? " printed weight" : "";
     for (Eigen::Index i = 0; i < c.force.shape.points.cols(); ++i) {
       const std::string item =
           fmt::format("s={:.9g}", c.force.shape.arc_length[static_cast<std::size_t>(i)]);

@@ -6,6 +6,7 @@
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_check.hpp"
+#include "dlo/compare/shape_verdict.hpp"
 #include "format/json.hpp"
 
 namespace dlo::cli {

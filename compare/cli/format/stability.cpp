@@ -8,6 +8,7 @@
 #include "base/quote.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "option/output.hpp"
+#include "polygon/step_constants.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -129,8 +130,8 @@ std::string stability_map_text(const compare::StabilityMap& map) {
   }
   append(out,
          "\nmeasured / predicted: {:.4f} to {:.4f}; the prediction is safe where this is >= 1.\n"
-         "Table 1 is the paper's proportion c_F = 0.86 L/(2 c_c); above 1 it blows up.\n",
-         least, most);
+         "Table 1 is the paper's proportion {}; above 1 it blows up.\n",
+         least, most, compare::table_1_step_formula);
   return out;
 }
 

@@ -92,16 +92,6 @@ void refuse_two_outputs(const std::string& option, const std::string& file,
 
 }  // namespace
 
-const std::vector<std::string>& format_names() {
-  static const std::vector<std::string> names = {"text", "json", "csv"};
-  return names;
-}
-
-Format OutputOptions::kind() const {
-  const auto& names = format_names();
-  return static_cast<Format>(std::find(names.begin(), names.end(), format) - names.begin());
-}
-
 std::string format_of_file(const std::string& file, const std::vector<std::string>& formats) {
   const std::string extension = std::filesystem::path(file).extension().string();
   for (const std::string& format : formats) {
@@ -118,7 +108,7 @@ void write_output(const OutputOptions& options, const std::string& content) {
 }
 
 void write_output(const OutputOptions& options, const Formats& formats) {
-  switch (options.kind()) {
+  switch (compare::from_name<Format>(options.format)) {
     case Format::text:
       return write_output(options, formats.text());
     case Format::json:

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/quote.hpp"
+#include "dlo/compare/choice.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own
 class App;
@@ -48,14 +49,24 @@ void append_csv(std::string& text, fmt::format_string<CsvArgument<Arguments>...>
 
 enum class Format { text, json, csv };
 
-[[nodiscard]] const std::vector<std::string>& format_names();
+}  // namespace dlo::cli
+
+template <>
+struct dlo::compare::Choices<dlo::cli::Format> {
+  static constexpr Choice<cli::Format> all[] = {{cli::Format::text, "text", "for people"},
+                                                {cli::Format::json, "json", "for programs"},
+                                                {cli::Format::csv, "csv", "for tables"}};
+};
+
+namespace dlo::cli {
 
 /// --format and -o, which every command has.
 struct OutputOptions {
   std::string format = "text";
   std::string file;
 
-  [[nodiscard]] Format kind() const;
+  /// Whether it is one that every command has; `vtk` and `toml` are none of them.
+  [[nodiscard]] bool is(Format wanted) const { return format == compare::to_string(wanted); }
 };
 
 /// A result in each of its formats, made when it is asked for.

@@ -83,17 +83,19 @@ void SceneOptions::add_to(CLI::App& command) {
       ->type_name("FILE")
       ->group(group);
   command.add_option("--points", points_, "N")->check(CLI::Range(4, 1000000))->group(group);
-  command.add_option("--law", law_, "paper or hooke")
-      ->check(CLI::IsMember(compare::law_names()))
+  command.add_option("--law", law_, compare::meanings<compare::BendingLaw>())
+      ->check(CLI::IsMember(compare::names<compare::BendingLaw>()))
       ->group(group);
-  command.add_option("--bookkeeping", bookkeeping_, "paper or consistent")
-      ->check(CLI::IsMember(compare::bookkeeping_names()))
+  command.add_option("--bookkeeping", bookkeeping_, compare::meanings<compare::Bookkeeping>())
+      ->check(CLI::IsMember(compare::names<compare::Bookkeeping>()))
       ->group(group);
-  command.add_option("--stepper", stepper_, "basic, limited, relative, dynamic or auto")
-      ->check(CLI::IsMember(compare::stepper_names()))
+  command.add_option("--stepper", stepper_, compare::meanings<compare::Stepper>())
+      ->check(CLI::IsMember(compare::names<compare::Stepper>()))
       ->group(group);
-  command.add_option("--bending-rule", bending_rule_, "formula_21 or moment_matched, for c_b")
-      ->check(CLI::IsMember(compare::bending_rule_names()))
+  command
+      .add_option("--bending-rule", bending_rule_,
+                  "for c_b: " + compare::meanings<compare::BendingRule>())
+      ->check(CLI::IsMember(compare::names<compare::BendingRule>()))
       ->group(group);
   command.add_option("--design-curvature", design_curvature_, "k of Formula 21 [1/m]")
       ->group(group);
@@ -138,10 +140,12 @@ void SceneOptions::apply(compare::Scene& scene) const {
   compare::ForceModelSettings& settings = scene.force_model;
   if (!parameters_.empty()) settings = compare::load_parameters(parameters_);
   if (points_ > 0) settings.points = points_;
-  if (!law_.empty()) settings.law = compare::law_from(law_);
-  if (!bookkeeping_.empty()) settings.bookkeeping = compare::bookkeeping_from(bookkeeping_);
-  if (!stepper_.empty()) settings.stepper = compare::stepper_from(stepper_);
-  if (!bending_rule_.empty()) settings.bending_rule = compare::bending_rule_from(bending_rule_);
+  if (!law_.empty()) settings.law = compare::from_name<compare::BendingLaw>(law_);
+  if (!bookkeeping_.empty())
+    settings.bookkeeping = compare::from_name<compare::Bookkeeping>(bookkeeping_);
+  if (!stepper_.empty()) settings.stepper = compare::from_name<compare::Stepper>(stepper_);
+  if (!bending_rule_.empty())
+    settings.bending_rule = compare::from_name<compare::BendingRule>(bending_rule_);
   if (!design_curvature_.empty()) {
     settings.design_curvature =
         option_quantity("--design-curvature", design_curvature_, Dimension::curvature);

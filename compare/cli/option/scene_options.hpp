@@ -51,6 +51,6 @@ class PlanOptions {
 
 /// @param formats  those that the command writes
 void add_output_options(CLI::App& command, OutputOptions& options,
-                        const std::vector<std::string>& formats = format_names());
+                        const std::vector<std::string>& formats = compare::names<Format>());
 
 }  // namespace dlo::cli

@@ -16,7 +16,7 @@ const std::vector<std::string>& unit_names() {
 
 void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {
   const std::string group = "Shape files";
-  std::vector<std::string> rules = compare::arc_lengths_names();
+  std::vector<std::string> rules = compare::names<compare::ArcLengths>();
   if (chord == ChordLengths::not_exact_enough) {
     std::erase(rules, compare::to_string(compare::ArcLengths::chord));
   }
@@ -29,7 +29,7 @@ void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {
           "--register{rigid}", pose_,
           "the file's frame is unknown: find it. --register=upright if its vertical is known, "
           "--register=translation if all directions are")
-      ->check(CLI::IsMember(compare::pose_names()))
+      ->check(CLI::IsMember(compare::names<compare::PoseFreedom>()))
       ->group(group);
   command
       .add_option(

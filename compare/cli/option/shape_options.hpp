@@ -20,9 +20,11 @@ class ShapeOptions {
   [[nodiscard]] compare::MeasuredShape load(const std::string& path) const;
   /// "polyline is 1/998 of the rod: --unit m?", or nothing if the unit may be right.
   [[nodiscard]] std::string unit_hint(double polyline_m, double length) const;
-  [[nodiscard]] compare::PoseFreedom pose() const { return compare::pose_from(pose_); }
+  [[nodiscard]] compare::PoseFreedom pose() const {
+    return compare::from_name<compare::PoseFreedom>(pose_);
+  }
   [[nodiscard]] compare::ArcLengths arc_lengths() const {
-    return compare::arc_lengths_from(arc_lengths_);
+    return compare::from_name<compare::ArcLengths>(arc_lengths_);
   }
 
  private:

@@ -38,7 +38,10 @@ bool is_control(std::string_view sequence) {
   return sequence.size() == 2 && byte(0) == 0xc2 && byte(1) < 0xa0;
 }
 
-std::string repaired(std::string_view text, bool without_controls) {
+/// Control characters as they are, or each as a "?".
+enum class Controls { kept, shown };
+
+std::string repaired(std::string_view text, Controls controls) {
   std::string result;
   result.reserve(text.size());
   while (!text.empty()) {
@@ -49,7 +52,7 @@ std::string repaired(std::string_view text, bool without_controls) {
       continue;
     }
     const std::string_view sequence = text.substr(0, length);
-    if (without_controls && is_control(sequence)) {
+    if (controls == Controls::shown && is_control(sequence)) {
       result += '?';
     } else {
       result += sequence;
@@ -61,8 +64,8 @@ std::string repaired(std::string_view text, bool without_controls) {
 
 }  // namespace
 
-std::string valid_utf8(std::string_view text) { return repaired(text, false); }
+std::string valid_utf8(std::string_view text) { return repaired(text, Controls::kept); }
 
-std::string display(std::string_view text) { return repaired(text, true); }
+std::string display(std::string_view text) { return repaired(text, Controls::shown); }
 
 }  // namespace dlo::compare

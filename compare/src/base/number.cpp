@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
 namespace dlo::compare {
@@ -19,10 +18,8 @@ long decimal_exponent(std::string_view number) {
   const long place = static_cast<long>(point) - static_cast<long>(first);
   std::string_view exponent = number.substr(std::min(mark + 1, number.size()));
   if (exponent.starts_with('+')) exponent.remove_prefix(1);
-  long value = 0;
-  const auto [end, error] =
-      std::from_chars(exponent.data(), exponent.data() + exponent.size(), value);
   constexpr long beyond = 1'000'000'000;
+  auto [value, length, error] = leading_number<long>(exponent);
   if (error == std::errc::result_out_of_range) value = exponent.front() == '-' ? -beyond : beyond;
   return std::clamp(value, -beyond, beyond) + place;
 }
@@ -45,9 +42,8 @@ std::string beyond_double(std::string_view number) {
 
 std::optional<double> shape_number(std::string_view field) {
   if (field.starts_with('+')) field.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (end != field.data() + field.size() || field.empty()) return std::nullopt;
+  const auto [value, length, error] = leading_number<double>(field);
+  if (length != field.size() || field.empty()) return std::nullopt;
   if (error == std::errc::result_out_of_range) return underflows(field) ? 0.0 : INFINITY;
   if (error != std::errc()) return std::nullopt;
   return value;

@@ -15,6 +15,7 @@
 #include <optional>
 #include <system_error>
 
+#include "base/number.hpp"
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 
@@ -44,10 +45,8 @@ bool same(const struct stat& a, const struct stat& b) {
 /// N if a folder without links is this process's list of descriptors and the name in it is N.
 std::optional<int> descriptor_named(const fs::path& folder, const std::string& name) {
   if (folder != fmt::format("/proc/{}/fd", ::getpid())) return std::nullopt;
-  const bool number =
-      !name.empty() && name.size() < 10 &&
-      std::all_of(name.begin(), name.end(), [](char c) { return c >= '0' && c <= '9'; });
-  return number ? std::optional(std::stoi(name)) : std::nullopt;
+  const std::optional<int> number = as_number<int>(name);
+  return number && *number >= 0 ? number : std::nullopt;
 }
 
 fs::path folder_of(const fs::path& path, const std::string& file) {

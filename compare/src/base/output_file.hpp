@@ -69,11 +69,4 @@ class OutputFile {
 /// @throws OutputError naming the output, BrokenPipe if it is a pipe that nobody reads
 void write_all(int descriptor, std::string_view text, const std::string& name);
 
-/// Removes what OutputFile and write_report() have not finished; may be called by a signal handler.
-void remove_temporaries();
-
-/// Lets SIGHUP, SIGINT, SIGPIPE and SIGTERM remove_temporaries() before they end the process,
-/// unless they are ignored or handled already. For programs: a library leaves signals alone.
-void remove_temporaries_at_signals();
-
 }  // namespace dlo::compare

@@ -16,6 +16,9 @@ namespace dlo::compare {
 /// @param digits  significant ones, 1 to 17
 [[nodiscard]] std::string csv_number(double value, int digits = 10);
 
+/// A text as a TOML basic string, in quotes; control characters are escaped.
+[[nodiscard]] std::string toml_string(const std::string& text);
+
 /// A word as a shell takes it, in quotes where it needs them.
 [[nodiscard]] std::string shell_word(const std::string& word);
 

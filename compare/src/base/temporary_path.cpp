@@ -12,8 +12,6 @@
 #include <cstdint>
 #include <cstring>
 
-#include "base/output_file.hpp"
-
 namespace dlo::compare {
 namespace {
 

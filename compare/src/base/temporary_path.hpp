@@ -23,4 +23,11 @@ class TemporaryPath {
   int slot_ = -1;
 };
 
+/// Removes what OutputFile and write_report() have not finished; may be called by a signal handler.
+void remove_temporaries();
+
+/// Lets SIGHUP, SIGINT, SIGPIPE and SIGTERM remove_temporaries() before they end the process,
+/// unless they are ignored or handled already. For programs: a library leaves signals alone.
+void remove_temporaries_at_signals();
+
 }  // namespace dlo::compare

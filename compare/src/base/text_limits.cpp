@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "base/number.hpp"
 #include "dlo/compare/error.hpp"
@@ -72,11 +71,9 @@ void require_double(std::string_view rest, const NestingCounter& counter) {
   if (std::string_view("0123456789+-.").find(rest.front()) == std::string_view::npos) return;
   std::string number(rest.substr(0, rest.find_first_of(" \t\r\n,]}#=")));
   number.erase(std::remove(number.begin(), number.end(), '_'), number.end());
-  const std::size_t sign = number.front() == '+' ? 1 : 0;
-  double value = 0;
-  const char* last = number.data() + number.size();
-  const auto [end, error] = std::from_chars(number.data() + sign, last, value);
-  if (end == last && error == std::errc::result_out_of_range) {
+  const std::string_view digits = std::string_view(number).substr(number.front() == '+' ? 1 : 0);
+  const auto [value, length, error] = leading_number<double>(digits);
+  if (length == digits.size() && error == std::errc::result_out_of_range) {
     counter.fail(beyond_double(number));
   }
 }

@@ -1,10 +1,7 @@
 #include "base/words.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-
-#include "dlo/compare/error.hpp"
+#include <cstddef>
 
 namespace dlo::compare {
 namespace {
@@ -41,15 +38,6 @@ std::string nearest_word(std::string_view written, const std::vector<std::string
 std::string did_you_mean(std::string_view written, const std::vector<std::string>& words) {
   const std::string nearest = nearest_word(written, words);
   return nearest.empty() ? "" : ", did you mean " + nearest + "?";
-}
-
-std::size_t choice_index(const std::string& name, const std::vector<std::string>& names) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw InputError(
-        fmt::format("unknown choice \"{}\" (allowed: {})", name, fmt::join(names, ", ")));
-  }
-  return static_cast<std::size_t>(found - names.begin());
 }
 
 }  // namespace dlo::compare

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/input_file.hpp"
+#include "base/quote.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/solution.hpp"
 #include "scene/strict_table.hpp"
@@ -18,9 +19,9 @@ constexpr const char* schema = "dlo/baseline/1";
 BaselineCase read_case(StrictTable& table) {
   BaselineCase result;
   result.scene = table.text("scene");
-  result.model = model_from(table.choice("model", {"chain", "force"}));
-  result.law = law_from(table.choice("law", law_names()));
-  result.bookkeeping = bookkeeping_from(table.choice("bookkeeping", bookkeeping_names()));
+  result.model = from_name<Model>(table.choice("model", {"chain", "force"}));
+  result.law = table.choice<BendingLaw>("law");
+  result.bookkeeping = table.choice<Bookkeeping>("bookkeeping");
   result.points = table.integer("points", 4, 1'000'000);
   const auto error = [&](const char* key) {
     return table.number(key, Dimension::number, Range::not_negative());
@@ -36,23 +37,6 @@ BaselineCase read_case(StrictTable& table) {
   }
   table.finish();
   return result;
-}
-
-/// A TOML basic string.
-std::string quoted_toml(const std::string& text) {
-  std::string result = "\"";
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (code < 0x20 || code == 0x7f) {
-      result += fmt::format("\\u{:04x}", code);
-    } else {
-      result += c;
-    }
-  }
-  return result + "\"";
 }
 
 /// TOML wants a point or an exponent in what is no integer; zero is written as 0.0.
@@ -97,7 +81,7 @@ std::string baseline_text(std::vector<BaselineCase> cases) {
     text += fmt::format(
         "\n[[case]]\nscene = {}\nmodel = \"{}\"\nlaw = \"{}\"\nbookkeeping = \"{}\"\npoints = {}\n"
         "rms_over_length = {}\nmax_over_length = {}\n",
-        quoted_toml(entry.scene), to_string(entry.model), to_string(entry.law),
+        toml_string(entry.scene), to_string(entry.model), to_string(entry.law),
         to_string(entry.bookkeeping), entry.points, toml_number(entry.errors.rms),
         toml_number(entry.errors.max));
     if (entry.errors.tip) {

@@ -21,7 +21,7 @@ struct ShapeErrors {
 struct BaselineCase {
   std::string scene;                                  ///< its name
   Model model = Model::force;                         ///< force or chain
-  Law law = Law::hooke;                               ///< of bending
+  BendingLaw law = BendingLaw::hooke;                 ///< of bending
   Bookkeeping bookkeeping = Bookkeeping::consistent;  ///< of the polygon
   int points = 0;                                     ///< N
   ShapeErrors errors;                                 ///< those of this case

@@ -171,26 +171,6 @@ BaselineCase measure_case(const Scene& scene, Model model, const SolveOptions& o
   return result;
 }
 
-const char* to_string(RegressionVerdict verdict) {
-  switch (verdict) {
-    case RegressionVerdict::same:
-      return "same";
-    case RegressionVerdict::better:
-      return "better";
-    case RegressionVerdict::worse:
-      return "worse";
-    case RegressionVerdict::changed:
-      return "changed";
-    case RegressionVerdict::not_in_baseline:
-      return "not in the baseline";
-    case RegressionVerdict::not_measured:
-      return "not measured";
-    case RegressionVerdict::not_solved:
-      break;
-  }
-  return "not solved";
-}
-
 bool failed(RegressionVerdict verdict) {
   return verdict != RegressionVerdict::same && verdict != RegressionVerdict::better;
 }

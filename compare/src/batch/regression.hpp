@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "batch/baseline.hpp"
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/solution.hpp"
 
 namespace dlo::compare {
@@ -29,7 +30,19 @@ enum class RegressionVerdict {
 };
 
 /// In words, for tables.
-[[nodiscard]] const char* to_string(RegressionVerdict verdict);
+template <>
+struct Choices<RegressionVerdict> {
+  /// In the enumeration's order.
+  static constexpr Choice<RegressionVerdict> all[] = {
+      {RegressionVerdict::same, "same", ""},
+      {RegressionVerdict::better, "better", ""},
+      {RegressionVerdict::worse, "worse", ""},
+      {RegressionVerdict::changed, "changed", ""},
+      {RegressionVerdict::not_in_baseline, "not in the baseline", ""},
+      {RegressionVerdict::not_measured, "not measured", ""},
+      {RegressionVerdict::not_solved, "not solved", ""}};
+};
+
 /// Everything but same and better.
 [[nodiscard]] bool failed(RegressionVerdict verdict);
 

@@ -3,22 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 
+#include "base/number.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
 namespace {
 
 constexpr std::int64_t most_shards = 1'000'000'000;
-
-std::optional<std::int64_t> whole_number(std::string_view text) {
-  std::int64_t value = 0;
-  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
-  return value;
-}
 
 /// One counter of a scheduler: this process is `index` of `count`, from 0.
 struct Place {
@@ -31,7 +24,7 @@ using Variable = std::function<const char*(const char*)>;
 std::optional<std::int64_t> integer_variable(const Variable& variable, const char* name) {
   const char* text = variable(name);
   if (text == nullptr) return std::nullopt;
-  const auto value = whole_number(text);
+  const auto value = as_number<std::int64_t>(text);
   if (!value) {
     throw InputError(fmt::format("environment: {} = {}: must be a whole number", name, text));
   }
@@ -89,8 +82,9 @@ std::string Shard::name() const { return fmt::format("{}/{}", index, count); }
 
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = std::min(text.find('/'), text.size());
-  const auto index = whole_number(std::string_view(text).substr(0, slash));
-  const auto count = whole_number(std::string_view(text).substr(std::min(slash + 1, text.size())));
+  const auto index = as_number<std::int64_t>(std::string_view(text).substr(0, slash));
+  const auto count =
+      as_number<std::int64_t>(std::string_view(text).substr(std::min(slash + 1, text.size())));
   if (!index || !count || *index < 1 || *index > *count || *count > most_shards) {
     throw InputError(
         fmt::format("--shard {}: must be i/n (allowed: 1 <= i <= n <= {})", text, most_shards));

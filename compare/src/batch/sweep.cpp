@@ -75,22 +75,6 @@ Model solver_of(SweepModel model) {
 
 }  // namespace
 
-const std::vector<std::string>& sweep_model_names() {
-  static const std::vector<std::string> names = {"energy", "chain",   "exact",
-                                                 "force",  "compare", "compare-chain"};
-  return names;
-}
-
-SweepModel sweep_model_from(const std::string& name) {
-  const auto& names = sweep_model_names();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw InputError(
-        fmt::format("unknown model \"{}\" (allowed: {})", name, fmt::join(names, ", ")));
-  }
-  return static_cast<SweepModel>(found - names.begin());
-}
-
 Sweep::Sweep(SceneTemplate scene, Grid grid, SweepModel model, const SolveOptions& options)
     : scene_(std::move(scene)), grid_(std::move(grid)), model_(model), options_(options) {
   for (const Axis& axis : grid_.axes()) gamma_varied_ = gamma_varied_ || axis.field == "gamma";
@@ -136,8 +120,7 @@ std::string Sweep::identity() const {
   const std::string options = fmt::format("{} {} {} {}", options_.terms, options_.max_evaluations,
                                           options_.max_steps, options_.rest_tolerance);
   return fmt::format("scene {}, grid {}, model {}, options {}", scene_.fingerprint(),
-                     fingerprint(grid), sweep_model_names()[static_cast<std::size_t>(model_)],
-                     fingerprint(options));
+                     fingerprint(grid), to_string(model_), fingerprint(options));
 }
 
 std::string Sweep::header() const {
@@ -172,7 +155,8 @@ std::string Sweep::results(const Scene& scene) const {
 std::string Sweep::compared(const Scene& scene, const Solution& solution) const {
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options_);
   const Deviation d = shape_deviation(scene, solution.shape, energy.sample);
-  const EffectiveModulus modulus = fit_effective_modulus(scene, solution.shape);
+  const EffectiveModulus modulus =
+      fit_effective_modulus(scene, distance_from(solution.shape), energy, options_);
   return fmt::format("{},{},{},{},{},{},{},", csv_number(d.rms_over_length),
                      csv_number(d.max_m / scene.length), csv_number(d.tip_m / scene.length),
                      csv_number(modulus.ratio), csv_number(modulus.rms_m / scene.length),

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "batch/sweep_grid.hpp"
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/solution.hpp"
 #include "scene/scene_template.hpp"
 
@@ -22,9 +23,18 @@ enum class SweepModel {
 };
 
 /// As --model spells them.
-[[nodiscard]] const std::vector<std::string>& sweep_model_names();
-/// @throws InputError if there is no such model
-[[nodiscard]] SweepModel sweep_model_from(const std::string& name);
+template <>
+struct Choices<SweepModel> {
+  /// In the enumeration's order.
+  static constexpr Choice<SweepModel> all[] = {
+      {SweepModel::energy, "energy", ""},
+      {SweepModel::chain, "chain", ""},
+      {SweepModel::exact, "exact", ""},
+      {SweepModel::force, "force", ""},
+      {SweepModel::compare, "compare", "force against energy"},
+      {SweepModel::compare_chain, "compare-chain",
+       "its rest shape, without steps, against energy"}};
+};
 
 /// Rows first <= row < last.
 struct RowRange {

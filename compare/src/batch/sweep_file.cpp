@@ -7,8 +7,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/locked_file.hpp"
 #include "base/output_file.hpp"
+#include "batch/locked_file.hpp"
 #include "batch/sweep_lines.hpp"
 #include "dlo/compare/error.hpp"
 

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
+#include "base/number.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
@@ -30,10 +30,10 @@ std::string_view without_spaces(std::string_view text) {
 /// Nothing if the text does not begin with a finite number. What follows it counts as its unit;
 /// whether a field knows it is for the scene's reader to say.
 std::optional<NumberWithUnit> split_number(std::string_view text) {
+  const auto [number, length, error] = leading_number<double>(text);
+  if (error != std::errc() || !std::isfinite(number)) return std::nullopt;
   NumberWithUnit result;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), result.number);
-  if (error != std::errc() || !std::isfinite(result.number)) return std::nullopt;
-  const auto length = static_cast<std::size_t>(end - text.data());
+  result.number = number;
   result.digits = text.substr(0, length);
   result.unit = without_spaces(text.substr(length));
   return result;
@@ -60,13 +60,11 @@ std::vector<std::string> split_values(std::string_view text, char separator) {
 }
 
 std::int64_t read_count(const std::string& text, const std::string& digits) {
-  std::int64_t count = 0;
-  const char* end = digits.data() + digits.size();
-  const auto [stop, error] = std::from_chars(digits.data(), end, count);
-  if (error != std::errc() || stop != end || count < 2 || count > most_rows) {
+  const std::optional<std::int64_t> count = as_number<std::int64_t>(digits);
+  if (!count || *count < 2 || *count > most_rows) {
     refuse_axis(text, fmt::format("\"{}\" is no number of values from 2 to 1e15", digits));
   }
-  return count;
+  return *count;
 }
 
 void read_range(const std::string& text, const std::vector<std::string>& parts, Axis& axis) {

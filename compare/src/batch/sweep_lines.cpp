@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
+#include "base/number.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
@@ -48,7 +48,7 @@ class HeadReader {
   bool number(std::int64_t& value) {
     const std::size_t digits = std::min(rest_.find_first_not_of("0123456789"), rest_.size());
     if (digits == 0 || digits > 16) return false;
-    (void)std::from_chars(rest_.data(), rest_.data() + digits, value);
+    value = leading_number<std::int64_t>(rest_.substr(0, digits)).value;
     rest_.remove_prefix(digits);
     return true;
   }

@@ -9,7 +9,6 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
-#include "scene/reach.hpp"
 #include "solve/states.hpp"
 
 namespace dlo::compare {
@@ -21,16 +20,15 @@ std::size_t state_of(const Scene& scene, const Shape& force,
                      const SolveOptions& options) {
   if (states.size() == 1) return 0;
   ForceModelSettings settings = scene.force_model;
-  settings.law = Law::hooke;
+  settings.law = BendingLaw::hooke;
   const Shape fallen = chain_from(scene, settings, force, options);
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (states[i].status == energy_model::SolveStatus::saddle) continue;
-    const double distance =
-        rms(fallen.arc_length, fallen.points - states[i].sample(fallen.arc_length).points);
-    if (distance >= least) continue;
-    least = distance;
+    const double apart = distance(fallen, states[i].sample);
+    if (apart >= least) continue;
+    least = apart;
     nearest = i;
   }
   return nearest;
@@ -40,27 +38,26 @@ std::size_t state_of(const Scene& scene, const Shape& force,
 
 Comparison compare(const Scene& scene, const SolveOptions& options,
                    const std::optional<PlanOptions>& plan, ModulusSearch modulus) {
-  const Scene near = without_far_obstacles(scene).scene;
   Comparison result;
   result.scene = scene.name;
   result.gamma = scene.gamma();
   result.length = scene.length;
   result.settings = scene.force_model;
   if (plan) result.plan = make_plan(scene, *plan);
-  result.force = solve_force(near, near.force_model, options);
+  result.force = solve_force(scene, scene.force_model, options);
   const Shape& force = result.force.shape;
   // What a user would call, for its cost; the other states are looked for besides.
-  const energy_model::Equilibrium lowest = solve_reference(near, Model::energy, options);
+  const energy_model::Equilibrium lowest = solve_reference(scene, Model::energy, options);
   result.energy_seconds = lowest.seconds;
   result.energy_evaluations = lowest.evaluations;
-  const std::vector<energy_model::Equilibrium> states = all_states(near, lowest, options);
-  const std::size_t compared = state_of(near, force, states, options);
+  const std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options);
+  const std::size_t compared = state_of(scene, force, states, options);
   const energy_model::Equilibrium& energy = states[compared];
   std::vector<double> from_force;
   const ShapeDistance distance = distance_from(force);
   from_force.reserve(states.size());
   for (const energy_model::Equilibrium& state : states) from_force.push_back(distance(state));
-  result.state = describe_state(near, states, compared, from_force);
+  result.state = describe_state(scene, states, compared, from_force);
   if (!energy_model::succeeded(energy.status)) result.unresolved = energy.message;
 
   const std::vector<double>& s = force.arc_length;
@@ -71,11 +68,11 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   result.undeformed_rms_over_length =
       straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
   if (modulus == ModulusSearch::yes && result.unresolved.empty()) {
-    result.effective_modulus = fit_effective_modulus(near, distance, energy, options);
+    result.effective_modulus = fit_effective_modulus(scene, distance, energy, options);
   }
   result.residual_over_movement =
       result.deviation.rms_over_movement / result.deviation.rms_m * result.effective_modulus.rms_m;
-  result.budget = error_budget(near, result.force, energy.sample, options);
+  result.budget = error_budget(scene, result.force, energy.sample, options);
   return result;
 }
 

@@ -211,25 +211,9 @@ EffectiveModulus search(FollowedState& mean_square, double resolution) {
 
 }  // namespace
 
-const char* to_string(Optimum optimum) {
-  switch (optimum) {
-    case Optimum::none:
-      return "none";
-    case Optimum::partial:
-      return "partial";
-    case Optimum::flat:
-      return "flat";
-    case Optimum::one_sided:
-      return "one-sided";
-    case Optimum::clear:
-      break;
-  }
-  return "clear";
-}
-
 ShapeDistance distance_from(const Shape& shape) {
   return [shape](const energy_model::Equilibrium& reference) {
-    return rms(shape.arc_length, shape.points - reference.sample(shape.arc_length).points);
+    return distance(shape, reference.sample);
   };
 }
 

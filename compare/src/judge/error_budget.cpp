@@ -41,18 +41,19 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   const Fields fields(reference, scene.length);
   const ForceModelSettings& own = scene.force_model;
   const double rigid = 100 * scene.axial_stiffness();
-  const auto chain = [&](Law law, Bookkeeping bookkeeping, double c_c) {
+  const auto chain = [&](BendingLaw law, Bookkeeping bookkeeping, double c_c) {
     ForceModelSettings settings = own;
     settings.law = law;
     settings.bookkeeping = bookkeeping;
     settings.c_c = c_c;
     return fields.of(chain_from(scene, settings, force.shape, options));
   };
-  const Eigen::Matrix3Xd base = chain(Law::hooke, Bookkeeping::consistent, rigid);
-  const Eigen::Matrix3Xd other_bookkeeping =
-      own.bookkeeping == Bookkeeping::consistent ? base : chain(Law::hooke, own.bookkeeping, rigid);
+  const Eigen::Matrix3Xd base = chain(BendingLaw::hooke, Bookkeeping::consistent, rigid);
+  const Eigen::Matrix3Xd other_bookkeeping = own.bookkeeping == Bookkeeping::consistent
+                                                 ? base
+                                                 : chain(BendingLaw::hooke, own.bookkeeping, rigid);
   const Eigen::Matrix3Xd other_law =
-      own.law == Law::hooke ? base : chain(own.law, Bookkeeping::consistent, rigid);
+      own.law == BendingLaw::hooke ? base : chain(own.law, Bookkeeping::consistent, rigid);
   const Eigen::Matrix3Xd stiff = chain(own.law, own.bookkeeping, rigid);
   const Eigen::Matrix3Xd elastic =
       chain(own.law, own.bookkeeping, own.c_c.value_or(scene.axial_stiffness()));

@@ -1,12 +1,10 @@
 #include "dlo/compare/force_model_fit.hpp"
 
 #include <fmt/format.h>
-#include <nlopt.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "base/progress_counter.hpp"
 #include "dlo/compare/chain.hpp"
@@ -62,30 +60,6 @@ struct FittedCase {
   }
 };
 
-struct LogObjective {
-  const Function* function;
-};
-
-double value_for_nlopt(unsigned /*n*/, const double* x, double* /*gradient*/, void* data) {
-  return (*static_cast<const LogObjective*>(data)->function)(*x);
-}
-
-/// NLopt's Nelder-Mead from the best point of a scan.
-Minimum nelder_mead(const Function& function, const Scan& values) {
-  const Function finite = [&](double x) { return std::min(function(x), 1e3); };
-  LogObjective objective{&finite};
-  const std::unique_ptr<std::remove_pointer_t<nlopt_opt>, decltype(&nlopt_destroy)> optimiser(
-      nlopt_create(NLOPT_LN_NELDERMEAD, 1), nlopt_destroy);
-  nlopt_set_min_objective(optimiser.get(), value_for_nlopt, &objective);
-  nlopt_set_initial_step1(optimiser.get(), (values.x[1] - values.x[0]) / 2);
-  nlopt_set_xtol_abs1(optimiser.get(), 1e-5);
-  nlopt_set_maxeval(optimiser.get(), 200);
-  Minimum best{values.x[values.best()], values.value[values.best()]};
-  Minimum found = best;
-  nlopt_optimize(optimiser.get(), &found.x, &found.value);
-  return found.value < best.value ? found : best;
-}
-
 class ForceModelFitter {
  public:
   ForceModelFitter(const std::vector<Scene>& scenes, const std::vector<Scene>& holdouts,
@@ -104,11 +78,11 @@ class ForceModelFitter {
     result_.target = options.target;
     result_.points_were_given = options.points.has_value();
     settings_ = scenes.front().force_model;
-    settings_.stepper = StepperName::dynamic;
+    settings_.stepper = Stepper::dynamic;
   }
 
   [[nodiscard]] ForceModelFit run() {
-    const bool paper = settings_.law == Law::paper;
+    const bool paper = settings_.law == BendingLaw::paper;
     if (options_.points) {
       settings_.points = *options_.points;
     } else if (!paper) {
@@ -250,12 +224,14 @@ class ForceModelFitter {
       for (std::size_t i = begin; i < end; ++i) {
         sum += std::pow(cases_[i].chain_with(settings_, std::exp(log_c_b), options_.solve), 2);
       }
-      return std::sqrt(sum / static_cast<double>(end - begin));
+      // Brent's method interpolates, so what has no value is made merely large.
+      return std::min(sum / static_cast<double>(end - begin), 1e3);
     };
     constexpr double decades = 4;
     constexpr int steps = 32;
     const double reach = decades * std::log(10.0);
-    return std::exp(nelder_mead(misfit, scan(misfit, centre - reach, centre + reach, steps)).x);
+    const Scan values = scan(misfit, centre - reach, centre + reach, steps);
+    return std::exp(minimum_near(misfit, values, 1e-6).x);
   }
 
   void choose_stretch() {
@@ -331,12 +307,6 @@ double largest_of(const std::vector<double>& values, std::size_t begin, std::siz
 }
 
 }  // namespace
-
-const char* to_string(StiffnessRule rule) {
-  constexpr const char* names[] = {"physical", "formula_21", "moment_matched", "fitted",
-                                   "fitted_alone"};
-  return names[static_cast<std::size_t>(rule)];
-}
 
 ForceModelFit fit_force_model(const std::vector<Scene>& scenes, const std::vector<Scene>& holdouts,
                               const ForceModelFitOptions& options) {

@@ -12,7 +12,7 @@ namespace {
 
 /// Of the rigid segments with the parameters that were chosen, worst of all scenes.
 double worst_of_segments(const ForceModelFit& fit) {
-  const bool paper = fit.settings.law == Law::paper;
+  const bool paper = fit.settings.law == BendingLaw::paper;
   const StiffnessRule chosen = paper ? StiffnessRule::fitted : StiffnessRule::physical;
   double worst = 0;
   for (const RuleDeviations& rule : fit.rules) {
@@ -24,7 +24,7 @@ double worst_of_segments(const ForceModelFit& fit) {
 
 std::string segments_miss(const ForceModelFit& fit, double segments) {
   const int N = fit.settings.points;
-  if (fit.settings.law == Law::paper) {
+  if (fit.settings.law == BendingLaw::paper) {
     return fmt::format(
         "law paper: with {} c_b rigid segments are {:.3g} % off; --law hooke comes nearer with N",
         fit.c_b_was_given ? "the given" : "the nearest", segments * 100);

@@ -13,6 +13,7 @@
 #include "judge/error_correlation.hpp"
 #include "judge/log_profile.hpp"
 #include "judge/shape_misfit.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -110,8 +111,10 @@ bool has_forces_beside_weight(const std::vector<Scene>& scenes) {
   return std::any_of(scenes.begin(), scenes.end(), [](const Scene& scene) {
     const bool loaded = std::any_of(scene.loads.begin(), scene.loads.end(),
                                     [](const PointLoad& l) { return l.force.norm() > 0; });
-    const bool yields = std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
-                                    [](const Obstacle& o) { return std::isfinite(o.stiffness); });
+    const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
+    const bool yields = std::any_of(in_reach.begin(), in_reach.end(), [&](std::size_t i) {
+      return std::isfinite(scene.obstacles[i].stiffness);
+    });
     return loaded || yields;
   });
 }

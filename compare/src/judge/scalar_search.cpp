@@ -51,7 +51,12 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
   // Of equal values the first is the best, which may be an end.
   if (!scan.is_bracketed()) return result;
   keep_gsl_from_aborting();
-  Shifted shifted{&function, 0};
+  double looked_at = result.x;
+  const Function watched = [&](double x) {
+    looked_at = x;
+    return function(x);
+  };
+  Shifted shifted{&watched, 0};
   gsl_function gsl{call_for_gsl, &shifted};
   const std::unique_ptr<gsl_min_fminimizer, decltype(&gsl_min_fminimizer_free)> minimiser(
       gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);
@@ -61,8 +66,16 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
                                          scan.value[best + 1]) != GSL_SUCCESS) {
     return result;
   }
+  // One end of the interval often stays where it was. Once steps are short they are parabolic, and
+  // the next one says how far the minimum still is.
+  constexpr double short_step = 0.03;
+  bool was_short = false;
   for (int i = 0; i < 100; ++i) {
+    const double before = gsl_min_fminimizer_x_minimum(minimiser.get());
     if (gsl_min_fminimizer_iterate(minimiser.get()) != GSL_SUCCESS) break;
+    const double step = std::abs(looked_at - before);
+    if (was_short && step < tolerance) break;
+    was_short = step < short_step;
     if (gsl_min_test_interval(gsl_min_fminimizer_x_lower(minimiser.get()),
                               gsl_min_fminimizer_x_upper(minimiser.get()), tolerance,
                               0) == GSL_SUCCESS) {

@@ -10,7 +10,6 @@
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
-#include "scene/reach.hpp"
 #include "shape/aligner.hpp"
 #include "shape/shape_measure.hpp"
 #include "solve/states.hpp"
@@ -108,10 +107,6 @@ void add_missing_ends(ShapeCheck& check, const Reference& reference) {
   check.whole_rms_m = std::min(check.whole_max_m, std::sqrt(sum / covered));
 }
 
-std::string arc_range(double from, double to) {
-  return fmt::format("s = {:.4g} to {:.4g} m", from, to);
-}
-
 /// What looks wrong with a polyline that is not as long as the rod under it.
 std::string hint_of(const ShapeCheck& check, const Measured& measured) {
   constexpr double least = 1e-3;  // of the length: what a person would see
@@ -152,63 +147,15 @@ std::string hint_of(const ShapeCheck& check, const Measured& measured) {
   return {};
 }
 
-/// What of the rod a file does not have, in words; empty if nothing.
-std::string missing_parts(const ShapeCheck& check, double least) {
-  const std::vector<double>& s = check.reference.arc_length;
-  std::vector<std::string> parts;
-  if (s.front() > least) parts.push_back(arc_range(0, s.front()));
-  if (s.back() < check.length_m - least) parts.push_back(arc_range(s.back(), check.length_m));
-  return fmt::format("{}", fmt::join(parts, " and "));
-}
-
 }  // namespace
-
-ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
-  ShapeJudgement result;
-  const double rms = tolerance.part ? check.deviation.rms_m : check.whole_rms_m;
-  const double largest = tolerance.part ? check.deviation.max_m : check.whole_max_m;
-  result.judged_m = tolerance.largest ? largest : rms;
-  const bool near = result.judged_m <= tolerance.allowed_m;
-  double seen = check.seen_share;
-  std::vector<std::string> untold;
-  for (const RodPart& part : check.between) {
-    if (part.untold_m <= tolerance.allowed_m) continue;
-    seen -= (part.to_m - part.from_m) / check.length_m;
-    untold.push_back(arc_range(part.from_m, part.to_m));
-  }
-  const bool enough = seen >= tolerance.least_seen_share;
-  result.pass = near && enough && (tolerance.part || untold.empty());
-
-  std::vector<std::string> reasons;
-  if (!enough) {
-    reasons.push_back(fmt::format("only {:.4g} % of the rod is seen, needed {:.4g} %",
-                                  std::max(0.0, seen) * 100, tolerance.least_seen_share * 100));
-  }
-  if (!untold.empty()) {
-    reasons.push_back(fmt::format("the points do not tell the rod at {}", fmt::join(untold, ", ")));
-  }
-  constexpr double rounding = 1e-6;
-  const std::string missing = missing_parts(check, rounding * check.length_m);
-  std::string deviation = fmt::format(
-      "{} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of l", tolerance.largest ? "largest" : "RMS",
-      result.judged_m * 1e3, tolerance.allowed_m * 1e3, tolerance.allowed_m / check.length_m * 100);
-  if (!missing.empty()) {
-    deviation += tolerance.part ? "; not judged: " : ", with ";
-    deviation += missing + ", which the file does not have";
-  }
-  reasons.push_back(std::move(deviation));
-  result.reason = fmt::format("{}", fmt::join(reasons, "; "));
-  return result;
-}
 
 ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
                        const ShapeCheckOptions& options) {
-  const Scene near = without_far_obstacles(scene).scene;
   const AlignOptions align_options{
       .pose = options.pose, .arc_lengths = options.arc_lengths, .up = up_of(scene, options.pose)};
   const Aligner aligner(shape, scene.length, align_options);
-  const energy_model::Equilibrium lowest = solve_reference(near, Model::energy, options.solve);
-  const std::vector<energy_model::Equilibrium> states = all_states(near, lowest, options.solve);
+  const energy_model::Equilibrium lowest = solve_reference(scene, Model::energy, options.solve);
+  const std::vector<energy_model::Equilibrium> states = all_states(scene, lowest, options.solve);
   std::vector<Alignment> alignments;
   std::vector<double> from_shape;
   std::size_t nearest = 0;
@@ -266,7 +213,7 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
     const Alignment laid = thin.align(Curve(reference.sample, scene.length));
     return measure(laid, reference.sample, scene.length).rms_m;
   };
-  result.effective_modulus = fit_effective_modulus(near, distance, energy, options.solve);
+  result.effective_modulus = fit_effective_modulus(scene, distance, energy, options.solve);
   result.modulus = result.effective_modulus.ratio * scene.material.youngs_modulus;
   return result;
 }

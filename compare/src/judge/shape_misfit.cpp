@@ -13,7 +13,6 @@
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "polygon/energy_problems.hpp"
-#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -113,27 +112,6 @@ Eigen::Matrix3Xd frame_derivatives(PoseFreedom pose, const Eigen::Vector3d& arm,
   return result;
 }
 
-/// Whether two scenes have the same equilibria, whatever their names.
-bool same_equilibria(const Scene& a, const Scene& b) {
-  const auto same_grip = [](const Gripper& p, const Gripper& q) {
-    return p.at == q.at && p.position == q.position && p.direction == q.direction;
-  };
-  const auto same_load = [](const PointLoad& p, const PointLoad& q) {
-    return p.at == q.at && p.force == q.force;
-  };
-  const auto same_obstacle = [](const Obstacle& p, const Obstacle& q) {
-    return p.point == q.point && p.normal == q.normal && p.stiffness == q.stiffness;
-  };
-  return a.gravity == b.gravity && a.length == b.length && a.diameter == b.diameter &&
-         a.material.youngs_modulus == b.material.youngs_modulus &&
-         a.material.density == b.material.density &&
-         std::equal(a.grippers.begin(), a.grippers.end(), b.grippers.begin(), b.grippers.end(),
-                    same_grip) &&
-         std::equal(a.loads.begin(), a.loads.end(), b.loads.begin(), b.loads.end(), same_load) &&
-         std::equal(a.obstacles.begin(), a.obstacles.end(), b.obstacles.begin(), b.obstacles.end(),
-                    same_obstacle);
-}
-
 }  // namespace
 
 ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
@@ -144,11 +122,9 @@ ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, const std::vector<Mea
                        .arc_lengths = options.arc_lengths,
                        .weights = PointWeights::equal,
                        .up = up_of(scenes[i], options.pose)};
-    scenes_.push_back(without_far_obstacles(scenes[i]).scene);
-    first_like_.push_back(static_cast<std::size_t>(
-        std::find_if(scenes_.begin(), scenes_.end(),
-                     [&](const Scene& scene) { return same_equilibria(scene, scenes_[i]); }) -
-        scenes_.begin()));
+    scenes_.push_back(scenes[i]);
+    const auto first = std::find(scenes_.begin(), scenes_.end(), scenes_.back());
+    first_like_.push_back(static_cast<std::size_t>(first - scenes_.begin()));
     aligners_.emplace_back(shapes[i], scenes[i].length, align);
     flat_.push_back(lies_in_a_plane(shapes[i].points));
     const int of_frame = numbers_of_frame(flat_.back(), options.pose);

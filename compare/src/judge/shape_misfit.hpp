@@ -107,8 +107,8 @@ class ShapeMisfit {
   std::vector<int> searches_;
   std::map<MaterialPoint, double> values_;
   std::deque<std::shared_ptr<const Solved>> kept_;
-  std::vector<std::size_t> first_like_;  // of each scene: the first with the same equilibria
-  std::deque<std::shared_ptr<const Solved>> shared_;       // of scenes that are not followed
+  std::vector<std::size_t> first_like_;               // of each scene: the first that equals it
+  std::deque<std::shared_ptr<const Solved>> shared_;  // of scenes that are not followed
   std::vector<std::pair<Unresolved, double>> unresolved_;  // and their sums of squares [m^2]
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/reference.hpp"
@@ -11,6 +14,19 @@
 
 namespace dlo::compare {
 namespace {
+
+std::string arc_range(double from, double to) {
+  return fmt::format("s = {:.4g} to {:.4g} m", from, to);
+}
+
+/// What of the rod a file does not have, in words; empty if nothing.
+std::string missing_parts(const ShapeCheck& check, double least) {
+  const std::vector<double>& s = check.reference.arc_length;
+  std::vector<std::string> parts;
+  if (s.front() > least) parts.push_back(arc_range(0, s.front()));
+  if (s.back() < check.length_m - least) parts.push_back(arc_range(s.back(), check.length_m));
+  return fmt::format("{}", fmt::join(parts, " and "));
+}
 
 std::string problem_of(const Shape& shape, double length) {
   const std::vector<double>& s = shape.arc_length;
@@ -40,10 +56,48 @@ std::string point_text(const Eigen::Vector3d& point) {
 
 }  // namespace
 
-ShapeVerdict judge_shape(const Shape& shape, const Scene& scene, double tolerance) {
+ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
+  ShapeJudgement result;
+  const double rms = tolerance.part ? check.deviation.rms_m : check.whole_rms_m;
+  const double largest = tolerance.part ? check.deviation.max_m : check.whole_max_m;
+  result.judged_m = tolerance.largest ? largest : rms;
+  const bool near = result.judged_m <= tolerance.allowed_m;
+  double seen = check.seen_share;
+  std::vector<std::string> untold;
+  for (const RodPart& part : check.between) {
+    if (part.untold_m <= tolerance.allowed_m) continue;
+    seen -= (part.to_m - part.from_m) / check.length_m;
+    untold.push_back(arc_range(part.from_m, part.to_m));
+  }
+  const bool enough = seen >= tolerance.least_seen_share;
+  result.pass = near && enough && (tolerance.part || untold.empty());
+
+  std::vector<std::string> reasons;
+  if (!enough) {
+    reasons.push_back(fmt::format("only {:.4g} % of the rod is seen, needed {:.4g} %",
+                                  std::max(0.0, seen) * 100, tolerance.least_seen_share * 100));
+  }
+  if (!untold.empty()) {
+    reasons.push_back(fmt::format("the points do not tell the rod at {}", fmt::join(untold, ", ")));
+  }
+  constexpr double rounding = 1e-6;
+  const std::string missing = missing_parts(check, rounding * check.length_m);
+  std::string deviation = fmt::format(
+      "{} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of l", tolerance.largest ? "largest" : "RMS",
+      result.judged_m * 1e3, tolerance.allowed_m * 1e3, tolerance.allowed_m / check.length_m * 100);
+  if (!missing.empty()) {
+    deviation += tolerance.part ? "; not judged: " : ", with ";
+    deviation += missing + ", which the file does not have";
+  }
+  reasons.push_back(std::move(deviation));
+  result.reason = fmt::format("{}", fmt::join(reasons, "; "));
+  return result;
+}
+
+ShapeNear shape_near(const Shape& shape, const Scene& scene, double tolerance) {
   if (!(tolerance > 0)) {
     throw std::invalid_argument(
-        fmt::format("judge_shape: tolerance = {}, must be > 0, a share of the length", tolerance));
+        fmt::format("shape_near: tolerance = {}, must be > 0, a share of the length", tolerance));
   }
   const double length = scene.length;
   if (const std::string problem = problem_of(shape, length); !problem.empty()) {

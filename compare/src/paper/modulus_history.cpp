@@ -20,7 +20,7 @@ constexpr double history_times[] = {1, 2, 5, 10, 20, 28, 30, 32, 40, 60, 100, la
 
 ModulusHistory modulus_history(const Scene& scene, const Shape& rest) {
   ForceModelSettings settings = scene.force_model;
-  settings.stepper = StepperName::basic;
+  settings.stepper = Stepper::basic;
   const Discretisation discretisation = discretise(scene, settings);
   const force_model::StepOptions options = step_options(settings, discretisation);
   force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(), options);
@@ -40,9 +40,8 @@ ModulusHistory modulus_history(const Scene& scene, const Shape& rest) {
     ModulusAtTime at;
     at.time_s = time;
     at.steps = simulation.steps();
-    at.modulus = fit_effective_modulus(scene, shape);
-    at.rms_over_length =
-        rms(shape.arc_length, shape.points - energy.sample(shape.arc_length).points) / scene.length;
+    at.modulus = fit_effective_modulus(scene, distance_from(shape), energy);
+    at.rms_over_length = distance(shape, energy.sample) / scene.length;
     at.rest_distance_over_length = rms(shape.arc_length, shape.points - rest.points) / scene.length;
     history.times.push_back(at);
   }

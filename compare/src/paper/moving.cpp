@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "dlo/force_model/simulation.hpp"
-#include "scene/builtin_data.hpp"
-#include "scene/strict_table.hpp"
+#include "paper/printed.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -15,37 +14,6 @@ constexpr double steps_per_frame = static_cast<double>(nominal_moving_steps) / f
 constexpr double movement_begins = 5;  // [s]
 constexpr double movement_takes = 8;   // [s]
 constexpr Eigen::Index gripped = 2;    // index of the third point
-
-/// Table 1 in SI units.
-struct Table1 {
-  double length = 0;
-  Eigen::Index points = 0;
-  double c_c = 0;
-  double c_b = 0;
-  double point_weight = 0;
-  double c_F = 0;  // per newton, in the unit of length that is left open
-  double l_s = 0;
-
-  [[nodiscard]] double segment() const { return length / static_cast<double>(points - 1); }
-};
-
-Table1 read_table_1() {
-  const toml::table root = parse_toml(std::string(builtin::tables_toml), "data/paper/tables.toml");
-  const toml::table& table = *root["table_1"].as_table();
-  const auto value = [&](const char* key) { return table[key].value<double>().value(); };
-  return {.length = value("length_cm") / 100,
-          .points = table["points"].value<Eigen::Index>().value(),
-          .c_c = value("c_c"),
-          .c_b = value("c_b"),
-          .point_weight = -value("c_e_gravity_N"),
-          .c_F = value("c_F"),
-          .l_s = value("l_s")};
-}
-
-const Table1& table_1() {
-  static const Table1 table = read_table_1();
-  return table;
-}
 
 /// Where the gripper is, and along which direction it holds the rod.
 struct Pose {
@@ -123,32 +91,6 @@ void add_force(const force_model::Simulation& simulation, MovingRun& run) {
 }
 
 }  // namespace
-
-const char* to_string(Movement movement) {
-  switch (movement) {
-    case Movement::rotation:
-      return "rotation";
-    case Movement::uniform:
-      return "uniform";
-    case Movement::accelerated:
-      break;
-  }
-  return "accelerated";
-}
-
-const char* to_string(MovingVariant variant) {
-  switch (variant) {
-    case MovingVariant::basic:
-      return "basic";
-    case MovingVariant::relative:
-      return "relative";
-    case MovingVariant::dynamic:
-      return "dynamic";
-    case MovingVariant::dynamic_absolute:
-      break;
-  }
-  return "dynamic no rel. limit";
-}
 
 force_model::StepOptions moving_step_options(MovingVariant variant, const MovingChoices& choices) {
   using force_model::Stepper;

@@ -2,7 +2,9 @@
 
 #include <numbers>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/force_model/stepper.hpp"
+#include "paper/printed.hpp"
 
 namespace dlo::compare {
 
@@ -22,9 +24,24 @@ enum class MovingVariant {
 };
 
 /// In words, for tables.
-[[nodiscard]] const char* to_string(Movement movement);
+template <>
+struct Choices<Movement> {
+  /// In the enumeration's order.
+  static constexpr Choice<Movement> all[] = {{Movement::rotation, "rotation", ""},
+                                             {Movement::uniform, "uniform", ""},
+                                             {Movement::accelerated, "accelerated", ""}};
+};
+
 /// In words, for tables.
-[[nodiscard]] const char* to_string(MovingVariant variant);
+template <>
+struct Choices<MovingVariant> {
+  /// In the enumeration's order.
+  static constexpr Choice<MovingVariant> all[] = {
+      {MovingVariant::basic, "basic", ""},
+      {MovingVariant::relative, "relative", ""},
+      {MovingVariant::dynamic, "dynamic", ""},
+      {MovingVariant::dynamic_absolute, "dynamic no rel. limit", ""}};
+};
 
 /// One row of Tables 2 to 4.
 struct MovingExperiment {
@@ -43,7 +60,7 @@ struct MovingChoices {
   /// stiffness times a ratio, so nothing else in the table would tell.
   double length_unit = 0.01;
   /// Force that moves a gripped point by 5 % of a segment, l/(N-1) [N]: c_e as printed.
-  double grip_force = 0.981;
+  double grip_force = table_1().grip_force;
   double angle = 110 * std::numbers::pi / 180;  ///< of the rotation [rad]
   double distance = 0.1;                        ///< of the sideways movements [m]
   double c_h = 0.95;        ///< share of the last movement that is kept, the variants `dynamic` [-]

@@ -7,8 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "scene/builtin_data.hpp"
-#include "scene/strict_table.hpp"
+#include "paper/printed.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -26,10 +25,9 @@ MovingExperiment experiment_of(const std::string& table, const std::string& labe
 }
 
 std::vector<MovingRow> read_printed_rows() {
-  const toml::table root = parse_toml(std::string(builtin::tables_toml), "data/paper/tables.toml");
   std::vector<MovingRow> rows;
   for (const std::string table : {"2", "4", "3"}) {
-    for (const toml::node& node : *root["table_" + table].as_array()) {
+    for (const toml::node& node : *printed_tables()["table_" + table].as_array()) {
       const toml::table& entry = *node.as_table();
       const auto count = [&](const char* key) { return entry[key].value<long>().value(); };
       const std::string label = entry[table == "2" ? "model" : "mode"].value<std::string>().value();
@@ -136,10 +134,9 @@ std::vector<MovingScanEntry> scan(const std::vector<MovingRow>& rows,
 std::vector<std::string> findings(const MovingReport& report) {
   const force_model::StepOptions metres =
       moving_step_options(MovingVariant::basic, {.length_unit = 1});
-  // Table 1: 0.981 N at 5 % of a segment of 15 cm / 9; weight of a point.
-  constexpr double segment = 0.15 / 9;
-  constexpr double grip_stiffness = 0.981 / (0.05 * segment);
-  constexpr double weight = 0.00892;
+  const double segment = table_1().segment();
+  const double grip_stiffness = table_1().grip_force / (0.05 * segment);
+  const double weight = table_1().point_weight;
   return {
       fmt::format("Read in metres, c_F = {:g} m/N is unstable: the gripper's spring alone, {:.0f} "
                   "N/m, makes c_e c_F = {:.1f} where an explicit step has to stay below 2, and l_s "

@@ -7,12 +7,11 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
+#include "paper/printed.hpp"
+#include "polygon/step_constants.hpp"
 
 namespace dlo::compare {
 namespace {
-
-constexpr double paper_contraction = 659.734;   // the c_c of Fig. 12 [N]
-constexpr double paper_point_weight = 0.00892;  // Table 5, though Table 1's rod had it [N]
 
 /// E*/E of the chain's rest shape: no steps, so no creep and no stretch.
 ModulusVariant variant(const Scene& original, const std::string& what,
@@ -28,9 +27,8 @@ ModulusVariant variant(const Scene& original, const std::string& what,
   result.gamma = scene.gamma();
   const Shape shape = solve_chain(scene, scene.force_model).shape;
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
-  result.modulus = fit_effective_modulus(scene, shape);
-  result.rms_over_length =
-      rms(shape.arc_length, shape.points - energy.sample(shape.arc_length).points) / scene.length;
+  result.modulus = fit_effective_modulus(scene, distance_from(shape), energy);
+  result.rms_over_length = distance(shape, energy.sample) / scene.length;
   return result;
 }
 
@@ -50,13 +48,13 @@ std::vector<ModulusVariant> variants(const Scene& scene) {
     s.bending_rule = BendingRule::moment_matched;
     s.design_curvature.reset();
   }));
-  result.push_back(variant(scene, "weight of a point 0.00892 N",
-                           [](ForceModelSettings& s) { s.point_weight = paper_point_weight; }));
+  result.push_back(variant(scene, fmt::format("weight of a point {} N", printed_point_weight()),
+                           [](ForceModelSettings& s) { s.point_weight = printed_point_weight(); }));
   result.push_back(variant(scene, "bookkeeping",
                            [](ForceModelSettings& s) { s.bookkeeping = Bookkeeping::consistent; }));
-  result.push_back(variant(scene, "law", [](ForceModelSettings& s) { s.law = Law::hooke; }));
+  result.push_back(variant(scene, "law", [](ForceModelSettings& s) { s.law = BendingLaw::hooke; }));
   result.push_back(variant(scene, "law and bookkeeping", [](ForceModelSettings& s) {
-    s.law = Law::hooke;
+    s.law = BendingLaw::hooke;
     s.bookkeeping = Bookkeeping::consistent;
   }));
   return result;
@@ -69,16 +67,16 @@ PaperReport paper_report(const Stages& progress) {
     if (progress) progress(what);
   };
   PaperReport report;
-  report.c_c = paper_contraction;
+  report.c_c = printed_contraction_stiffness();
   report.steps_per_second = paper_steps_per_second;
   report.tables = recompute_tables();
-  for (const bool printed_weight : {false, true}) {
+  for (const PaperWeight weight : {PaperWeight::of_the_rod, PaperWeight::printed}) {
     for (Scene scene : paper_scenes()) {
-      scene.force_model.c_c = paper_contraction;
-      if (printed_weight) scene.force_model.point_weight = paper_point_weight;
+      scene.force_model.c_c = printed_contraction_stiffness();
+      if (weight == PaperWeight::printed) scene.force_model.point_weight = printed_point_weight();
       say(fmt::format("{}: to rest, and {} s of simulated time", scene.name, last_history_time));
       PaperCase entry;
-      entry.printed_weight = printed_weight;
+      entry.weight = weight;
       entry.rest = compare(scene, {}, PlanOptions{});
       const ModulusHistory history = modulus_history(scene, entry.rest.force.shape);
       entry.creep = history.times;
@@ -92,15 +90,18 @@ PaperReport paper_report(const Stages& progress) {
       "Figs. 12 and 13 print no numbers: their shapes are computed here, not read off.",
       "The simulation starts straight along the gripper; the paper does not say from where.",
       "4000 steps per simulated second: Table 2's 112000 steps in 28 s.",
-      "No dynamics on the way to rest, c_F = 0.86 L/(2 c_c) as in Table 1's proportion; the paper "
-      "gives neither for this experiment.",
-      "c_c = 659.734 N, which the text says Fig. 12 was calculated with.",
+      fmt::format("No dynamics on the way to rest, {} as in Table 1's proportion; the paper gives "
+                  "neither for this experiment.",
+                  table_1_step_formula),
+      fmt::format("c_c = {} N, which the text says Fig. 12 was calculated with.",
+                  printed_contraction_stiffness()),
       "Formula 4 with the signs that balance (as printed, a joint drives itself).",
-      "Masses m/N on every point, the two points next to the gripper held, both models clamped at "
-      "the rod's end; g = 9.81 m/s^2. Table 5 prints Table 1's weight of a point, 0.00892 N, which "
-      "is 17 % too much for this rod; both are followed, the energy model keeping rho A g, so that "
-      "with "
-      "the printed weight E*/E also carries this ratio of weights.",
+      fmt::format(
+          "Masses m/N on every point, the two points next to the gripper held, both models clamped "
+          "at the rod's end; g = 9.81 m/s^2. Table 5 prints Table 1's weight of a point, {} N, "
+          "which is 17 % too much for this rod; both are followed, the energy model keeping rho A "
+          "g, so that with the printed weight E*/E also carries this ratio of weights.",
+          printed_point_weight()),
       "The energy model is exact here; the paper's own [8] used a few basis functions.",
   };
   return report;

@@ -7,15 +7,16 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/progress.hpp"
 #include "paper/modulus_history.hpp"
+#include "paper/printed.hpp"
 #include "paper/tables.hpp"
 
 namespace dlo::compare {
 
 /// One orientation of Figs. 12 and 13, with one choice of the points' weight.
 struct PaperCase {
-  Comparison rest;                   ///< at rest, c_c as the paper used it
-  std::vector<ModulusAtTime> creep;  ///< on the way to rest, by time
-  bool printed_weight = false;       ///< Table 5's 0.00892 N a point instead of rho A l g / N
+  Comparison rest;                               ///< at rest, c_c as the paper used it
+  std::vector<ModulusAtTime> creep;              ///< on the way to rest, by time
+  PaperWeight weight = PaperWeight::of_the_rod;  ///< of every point
 
   /// Simulated time at which E*/E passes the paper's 1/3, see time_at_ratio [s].
   [[nodiscard]] double time_at_one_third() const { return time_at_ratio(creep, 1. / 3); }

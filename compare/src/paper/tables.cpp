@@ -4,31 +4,27 @@
 
 #include <cmath>
 #include <numbers>
+#include <string_view>
+#include <utility>
 
+#include "dlo/compare/bending_rule.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/force_model_settings.hpp"
-#include "dlo/compare/paper_joint.hpp"
 #include "dlo/force_model/heuristics.hpp"
-#include "paper/paper.hpp"
-#include "scene/builtin_data.hpp"
-#include "scene/strict_table.hpp"
+#include "paper/printed.hpp"
+#include "polygon/step_constants.hpp"
 
 namespace dlo::compare {
 namespace {
 
-/// Printed numbers by key, as text of the data file so that digits are not lost.
+/// The rows of one table.
 class PrintedTable {
  public:
-  explicit PrintedTable(const std::string& name)
-      : name_(name),
-        root_(parse_toml(std::string(builtin::tables_toml), "data/paper/tables.toml")),
-        table_(*root_[name].as_table()) {}
+  explicit PrintedTable(std::string name) : name_(std::move(name)) {}
 
-  [[nodiscard]] double value(const std::string& key) const {
-    return table_[key].value<double>().value();
-  }
+  [[nodiscard]] double value(std::string_view key) const { return printed(name_, key); }
 
-  [[nodiscard]] TableRow row(const std::string& key, const std::string& quantity,
+  [[nodiscard]] TableRow row(std::string_view key, const std::string& quantity,
                              const std::string& unit, int decimals, double computed,
                              const std::string& explanation) const {
     TableRow row{name_ == "table_1" ? "1" : "5",
@@ -43,8 +39,6 @@ class PrintedTable {
 
  private:
   std::string name_;
-  toml::table root_;
-  const toml::table& table_;
 };
 
 constexpr double gravity = 9.81;  // [m/s^2]; the paper names no value
@@ -52,9 +46,9 @@ constexpr double gravity = 9.81;  // [m/s^2]; the paper names no value
 void add_table_1(std::vector<TableRow>& rows) {
   using force_model::Formula13;
   const PrintedTable table("table_1");
-  const double mass = table.value("mass_kg");
-  const double points = table.value("points");
-  const double length = table.value("length_cm") / 100;
+  const double mass = table_1().mass;
+  const double points = static_cast<double>(table_1().points);
+  const double length = table_1().length;
   const double force = 0.8 * mass * gravity;
   const double angle = 2.5 * std::numbers::pi / 180;
   rows.push_back(table.row("c_c", "c_c", "N", 5, force_model::contraction_stiffness(force, 5),
@@ -69,12 +63,12 @@ void add_table_1(std::vector<TableRow>& rows) {
   rows.push_back(table.row(
       "c_e_gravity_N", "c_e (grav)", "N", 5, -mass * gravity / (points + 1),
       fmt::format("m g / 11, although N = 10; m g / N would be {:.5f}", -mass * gravity / points)));
+  rows.push_back(table.row(
+      "c_F", "c_F", "m/N", 5, table_1_step_share * (length / points) / (2 * table_1().c_c),
+      "no formula in the paper; 0.86 of the largest stable step L/(2 c_c) with L = l/N, "
+      "and 0.78 of it with L = l/(N-1); Tables 2 and 4 ask for cm/N instead"));
   rows.push_back(
-      table.row("c_F", "c_F", "m/N", 5, 0.86 * (length / points) / (2 * 1.5696),
-                "no formula in the paper; 0.86 of the largest stable step L/(2 c_c) with L = l/N, "
-                "and 0.78 of it with L = l/(N-1); Tables 2 and 4 ask for cm/N instead"));
-  rows.push_back(
-      table.row("l_s", "l_s", "m", 5, 0.6 * length / points,
+      table.row("l_s", "l_s", "m", 5, table_1_limit_share * length / points,
                 "no formula in the paper; 0.6 of l/N; Tables 2 and 4 ask for cm instead"));
 }
 

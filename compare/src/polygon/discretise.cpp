@@ -7,10 +7,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "dlo/compare/bending_rule.hpp"
 #include "dlo/compare/error.hpp"
-#include "dlo/compare/paper_joint.hpp"
 #include "polygon/point_layout.hpp"
 #include "polygon/start_shape.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -71,7 +72,7 @@ double design_curvature(const Scene& scene, const Layout& layout, const Eigen::M
 
 void derive_bending(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
                     Discretisation& result) {
-  if (settings.law == Law::hooke) {
+  if (settings.law == BendingLaw::hooke) {
     result.rod.bending = {force_model::BendingLaw::hooke, scene.bending_stiffness()};
     return;
   }
@@ -97,9 +98,12 @@ void derive_bending(const Scene& scene, const ForceModelSettings& settings, cons
   result.rod.bending = {force_model::BendingLaw::paper, parameters.c_b};
 }
 
+/// Of a segment.
+enum class End { first, second };
+
 /// The part of a segment that weighs on its first or second point [m].
-double weighing_half(const Scene& scene, const Layout& layout, Eigen::Index segment, bool second) {
-  const std::size_t at_point = static_cast<std::size_t>(segment) + (second ? 1 : 0);
+double weighing_half(const Scene& scene, const Layout& layout, Eigen::Index segment, End end) {
+  const std::size_t at_point = static_cast<std::size_t>(segment) + (end == End::second ? 1 : 0);
   const double s = layout.arc_length[at_point];
   const bool beyond_rod = s < 0 || s > scene.length;
   return beyond_rod ? 0 : layout.rest_lengths[segment] / 2;
@@ -114,8 +118,8 @@ void add_weights(const Scene& scene, const ForceModelSettings& settings, const L
     if (settings.bookkeeping == Bookkeeping::paper) {
       share = scene.length / static_cast<double>(N);
     } else {
-      if (i > 0) share += weighing_half(scene, layout, i - 1, true);
-      if (i < N - 1) share += weighing_half(scene, layout, i, false);
+      if (i > 0) share += weighing_half(scene, layout, i - 1, End::second);
+      if (i < N - 1) share += weighing_half(scene, layout, i, End::first);
     }
     result.weights.col(i) = share * scene.weight_per_length();
     if (settings.bookkeeping == Bookkeeping::paper && settings.point_weight) {
@@ -243,6 +247,12 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
   result.rod.c_c = result.parameters.c_c;
   result.rod.grips = grips_of(scene, layout);
   require_fit(scene, settings, layout, result.rod.grips);
+  for (const std::size_t i : obstacles_in_reach(scene, settings)) {
+    const Obstacle& obstacle = scene.obstacles[i];
+    const double stiffness =
+        std::isfinite(obstacle.stiffness) ? obstacle.stiffness * L : result.parameters.c_c / L;
+    result.rod.walls.push_back({obstacle.point, obstacle.normal, stiffness});
+  }
   const std::vector<Side> sides = scene.grippers.size() == 1
                                       ? std::vector<Side>{Side::along_load}
                                       : std::vector<Side>{Side::along_load, Side::against_load};
@@ -251,17 +261,12 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
     for (const force_model::Grip& grip : result.rod.grips) {
       start.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
     }
-    keep_free_ends_clear(scene, result.rod.grips, start);
+    keep_free_ends_clear(result.rod, start);
     result.starts.push_back(std::move(start));
   }
   derive_bending(scene, settings, layout, result);
   add_weights(scene, settings, layout, result);
   add_loads(scene, layout, result);
-  for (const Obstacle& obstacle : scene.obstacles) {
-    const double stiffness =
-        std::isfinite(obstacle.stiffness) ? obstacle.stiffness * L : result.parameters.c_c / L;
-    result.rod.walls.push_back({obstacle.point, obstacle.normal, stiffness});
-  }
   return result;
 }
 

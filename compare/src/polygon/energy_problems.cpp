@@ -5,6 +5,7 @@
 
 #include "dlo/energy_model/planar.hpp"
 #include "polygon/point_layout.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::compare {
 
@@ -13,7 +14,7 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
   const Gripper& grip = scene.grippers.front();
   const bool end_clamp =
       scene.grippers.size() == 1 && grip.direction && (grip.at == 0 || grip.at == scene.length);
-  if (!end_clamp || !scene.obstacles.empty()) return std::nullopt;
+  if (!end_clamp || !discretisation.rod.walls.empty()) return std::nullopt;
   const bool reversed = grip.at != 0;
   const Eigen::Index N = settings.points;
   std::vector<Eigen::Vector3d> forces = {scene.weight_per_length() * scene.length};
@@ -27,8 +28,8 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
   result.y = plane->y;
   energy_model::ChainProblem& problem = result.problem;
   problem.segment_lengths = discretisation.rod.rest_lengths;
-  problem.law =
-      settings.law == Law::paper ? energy_model::JointLaw::paper : energy_model::JointLaw::hooke;
+  problem.law = settings.law == BendingLaw::paper ? energy_model::JointLaw::paper
+                                                  : energy_model::JointLaw::hooke;
   problem.stiffness = discretisation.rod.bending.stiffness;
   problem.node_forces.resize(2, N);
   for (Eigen::Index i = 0; i < N; ++i) {
@@ -74,7 +75,8 @@ energy_model::Problem energy_problem(const Scene& scene) {
     problem.grips.push_back({grip.at, grip.position, grip.direction});
   }
   for (const PointLoad& load : scene.loads) problem.loads.push_back({load.at, load.force});
-  for (const Obstacle& obstacle : scene.obstacles) {
+  for (const std::size_t i : obstacles_in_reach(scene)) {
+    const Obstacle& obstacle = scene.obstacles[i];
     problem.walls.push_back({obstacle.point, obstacle.normal, obstacle.stiffness});
   }
   return problem;

@@ -43,18 +43,4 @@ double equivalent_bending_stiffness(double c_b, double length, double angle) {
   return angle > 0 ? moment * length / angle : 0;  // (2)
 }
 
-double paper_bending_stiffness(BendingRule rule, double bending_stiffness, double curvature,
-                               double segment_length) {
-  const double alpha = curvature * segment_length;
-  if (!(bending_stiffness > 0) || !(alpha > 0 && alpha < std::numbers::pi)) {
-    throw std::invalid_argument(
-        fmt::format("paper_bending_stiffness: EI = {}, L k = {}, must be > 0 and in (0, pi)",
-                    bending_stiffness, alpha));
-  }
-  const double half = std::sin(alpha / 2);
-  const double formula_21 =
-      bending_stiffness * curvature * curvature / (2 * half * half * half);  // (21)
-  return rule == BendingRule::formula_21 ? formula_21 : formula_21 / alpha;
-}
-
 }  // namespace dlo::compare

@@ -165,7 +165,7 @@ namespace {
 
 /// The direction of a segment of length L from `from`, turned into the face of a wall that it would
 /// enter; `last` is where it goes if it points straight into the wall.
-Eigen::Vector3d turned_along(const Obstacle& wall, const Eigen::Vector3d& from,
+Eigen::Vector3d turned_along(const force_model::Wall& wall, const Eigen::Vector3d& from,
                              const Eigen::Vector3d& direction, double L,
                              const Eigen::Vector3d& last) {
   const Eigen::Vector3d normal = wall.normal.normalized();
@@ -180,12 +180,11 @@ Eigen::Vector3d turned_along(const Obstacle& wall, const Eigen::Vector3d& from,
 
 }  // namespace
 
-void keep_free_ends_clear(const Scene& scene, const std::vector<force_model::Grip>& grips,
-                          Eigen::Ref<Eigen::Matrix3Xd> points) {
-  if (scene.obstacles.empty()) return;
+void keep_free_ends_clear(const force_model::Rod& rod, Eigen::Ref<Eigen::Matrix3Xd> points) {
+  if (rod.walls.empty()) return;
   Eigen::Index first = points.cols();
   Eigen::Index last = 0;
-  for (const force_model::Grip& grip : grips) {
+  for (const force_model::Grip& grip : rod.grips) {
     first = std::min(first, grip.first_point);
     last = std::max(last, grip.first_point + grip.targets.cols() - 1);
   }
@@ -196,7 +195,7 @@ void keep_free_ends_clear(const Scene& scene, const std::vector<force_model::Gri
       const Eigen::Vector3d step = start.col(i + way) - start.col(i);
       const double L = step.norm();
       Eigen::Vector3d direction = step / L;
-      for (const Obstacle& wall : scene.obstacles) {
+      for (const force_model::Wall& wall : rod.walls) {
         direction = turned_along(wall, points.col(i), direction, L, before);
       }
       before = direction;

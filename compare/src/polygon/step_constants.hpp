@@ -6,7 +6,18 @@
 
 namespace dlo::compare {
 
-/// The stepper a scene asks for. @throws InputError if it lacks a constant that its stepper needs
+/// Table 1's c_F as a share of the largest stable step, L/(2 c_c); no formula in the paper gives
+/// it.
+inline constexpr double table_1_step_share = 0.86;
+/// The same in words.
+inline constexpr const char* table_1_step_formula = "c_F = 0.86 L/(2 c_c)";
+/// Table 1's l_s as a share of L.
+inline constexpr double table_1_limit_share = 0.6;
+/// c_h of the stepper `dynamic`, which the paper leaves open.
+inline constexpr double dynamic_share = 0.9;
+
+/// The stepper a scene asks for; what it does not give is in Table 1's proportions. @throws
+/// InputError if it lacks a constant that its stepper needs
 [[nodiscard]] force_model::StepOptions step_options(const ForceModelSettings& settings,
                                                     const Discretisation& discretisation);
 

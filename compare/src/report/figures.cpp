@@ -8,6 +8,8 @@
 
 #include "base/quote.hpp"
 #include "dlo/compare/solution.hpp"
+#include "paper/printed.hpp"
+#include "polygon/step_constants.hpp"
 #include "report/again.hpp"
 #include "report/scene_figures.hpp"
 
@@ -87,11 +89,10 @@ struct FrontCurve {
   bool (*holds)(const BenchmarkRun&);
 };
 
-bool of_law(const BenchmarkRun& run, Model model, const char* law) {
-  return run.model == model && run.setting.starts_with(law);
+bool is_best_polygon(const BenchmarkRun& run) {
+  return run.variant && run.variant->law == BendingLaw::hooke &&
+         run.variant->bookkeeping == Bookkeeping::consistent;
 }
-
-constexpr const char* hooke_setting = "hooke, consistent";
 
 Figure front_figure(const Report& report, std::size_t index) {
   const SceneBenchmark& scene = report.benchmark->scenes[index];
@@ -108,16 +109,13 @@ Figure front_figure(const Report& report, std::size_t index) {
       {"exact", [](const BenchmarkRun& run) { return run.model == Model::exact; }},
       {"energy, K terms", [](const BenchmarkRun& run) { return run.model == Model::energy; }},
       {"chain, N points, hooke, consistent",
-       [](const BenchmarkRun& run) { return of_law(run, Model::chain, hooke_setting); }},
+       [](const BenchmarkRun& run) { return run.model == Model::chain && is_best_polygon(run); }},
       {"chain, N points, other law or bookkeeping",
-       [](const BenchmarkRun& run) {
-         return run.model == Model::chain && !of_law(run, Model::chain, hooke_setting);
-       }},
+       [](const BenchmarkRun& run) { return run.model == Model::chain && !is_best_polygon(run); }},
       {"force, N points, hooke, consistent",
-       [](const BenchmarkRun& run) { return of_law(run, Model::force, hooke_setting); }},
-      {"force, N points, other law or bookkeeping", [](const BenchmarkRun& run) {
-         return run.model == Model::force && !of_law(run, Model::force, hooke_setting);
-       }}};
+       [](const BenchmarkRun& run) { return run.model == Model::force && is_best_polygon(run); }},
+      {"force, N points, other law or bookkeeping",
+       [](const BenchmarkRun& run) { return run.model == Model::force && !is_best_polygon(run); }}};
   figure.csv = "curve,model,size,setting,time_s,rms_over_length,front\n";
   std::string plots;
   int rows = 1;
@@ -129,7 +127,7 @@ Figure front_figure(const Report& report, std::size_t index) {
       ++points;
       if (run.front) front.push_back(&run);
       figure.csv += fmt::format("{},{},{},{},{},{},{}\n", k + 1, to_string(run.model), run.size,
-                                csv_field(run.setting), csv_number(run.time.median_s),
+                                csv_field(setting_of(run)), csv_number(run.time.median_s),
                                 csv_number(run.rms_over_length), run.front ? 1 : 0);
     }
     if (points == 0) continue;
@@ -143,7 +141,7 @@ Figure front_figure(const Report& report, std::size_t index) {
   });
   for (const BenchmarkRun* run : front) {
     figure.csv += fmt::format("front,{},{},{},{},{},1\n", to_string(run->model), run->size,
-                              csv_field(run->setting), csv_number(run->time.median_s),
+                              csv_field(setting_of(*run)), csv_number(run->time.median_s),
                               csv_number(run->rms_over_length));
   }
   figure.script = head_of(figure, rows, "time [ms]", "error, RMS over the length");
@@ -188,7 +186,7 @@ Figure map_figure(const Report& report) {
   }
   struct Curve {
     const char* kind;
-    const char* title;
+    std::string title;
     const char* style;
   };
   const Curve curves[] = {
@@ -199,7 +197,7 @@ Figure map_figure(const Report& report) {
       {"predicted", "predicted limit", "with lines linecolor rgb 'black' dashtype 1 linewidth 2"},
       {"measured", "measured limit",
        "with linespoints linecolor rgb '#00704F' dashtype 2 pointtype 4 pointsize 0.7"},
-      {"table_1", "Table 1: c_F = 0.86 L/(2 c_c)",
+      {"table_1", fmt::format("Table 1: {}", table_1_step_formula),
        "with lines linecolor rgb '#606060' dashtype 3 linewidth 2"}};
   figure.script = head_of(figure, static_cast<int>(std::size(curves)), "c_c [N]", "c_F [m/N]");
   figure.script +=
@@ -235,9 +233,10 @@ std::vector<Figure> report_figures(const Report& report) {
   histories.clear();
   for (const SceneHistory& history : report.printed_weight) histories.push_back(&history);
   if (!histories.empty()) {
-    figures.push_back(history_figure("modulus_printed_weight", histories,
-                                     "Table 5's weight, 0.00892 N a point",
-                                     history_command(report)));
+    figures.push_back(
+        history_figure("modulus_printed_weight", histories,
+                       fmt::format("Table 5's weight, {} N a point", printed_point_weight()),
+                       history_command(report)));
   }
   if (report.benchmark) {
     for (std::size_t i = 0; i < report.benchmark->scenes.size(); ++i) {

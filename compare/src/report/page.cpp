@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/quote.hpp"
+#include "polygon/step_constants.hpp"
 #include "report/again.hpp"
 #include "report/html.hpp"
 #include "report/provenance.hpp"
@@ -205,10 +206,11 @@ void add_modulus(const Report& report, Page& page) {
       "A law that is not Hookean leaves a residual even there.");
   page.table(modulus_table(report));
   if (!report.options.history) return page.paragraph("E*/E against time was left out.");
-  page.paragraph(
-      "On the way from straight to rest E*/E changes. Stepper basic, no dynamics, c_F = 0.86 L/(2 "
-      "c_c), as in Table 1's proportion, and c_c = AE/1000, as the paper used, unless the scene "
-      "names them; 4000 steps are a simulated second (Table 2). Rods with one clamp only.");
+  page.paragraph(fmt::format(
+      "On the way from straight to rest E*/E changes. Stepper basic, no dynamics, {}, as in Table "
+      "1's proportion, and c_c = AE/1000, as the paper used, unless the scene names them; 4000 "
+      "steps are a simulated second (Table 2). Rods with one clamp only.",
+      table_1_step_formula));
   page.figures("modulus");
   page.table(history_table(report));
   page.command(report.paper ? "The paper's poses again:" : "Again:", history_command(report));
@@ -253,11 +255,11 @@ void add_stability(const Report& report, Page& page) {
   if (report.hard_cases.empty()) return page.paragraph("They were left out, or not computed.");
   const StabilityOptions options = report.options.hard_cases.value_or(StabilityOptions{});
   page.paragraph(fmt::format(
-      "The paper's four steppers (c_F = 0.86 L/(2 c_c), l_s = 0.6 L, c_h = 0.9; {} steps) and auto "
-      "(at most {}). ✓: within {} of the length of an equilibrium that no step has a part in. "
+      "The paper's four steppers ({}, l_s = {} L, c_h = {}; {} steps) and auto (at most {}). ✓: "
+      "within {} of the length of an equilibrium that no step has a part in. "
       "Creeping: still on the way, though it may look at rest. At rest: {} steps.",
-      options.max_steps, options.max_steps_auto, page_percent(options.tolerance),
-      options.steps_at_rest));
+      table_1_step_formula, table_1_limit_share, dynamic_share, options.max_steps,
+      options.max_steps_auto, page_percent(options.tolerance), options.steps_at_rest));
   page.table(hard_case_table(report.hard_cases));
   for (const std::string& name : options.left_out) {
     page.paragraph("Left out, for the time it takes: " + name + ".");

@@ -18,15 +18,13 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
+#include "paper/printed.hpp"
 #include "parallel/threads.hpp"
 #include "scene/builtin_data.hpp"
-#include "scene/reach.hpp"
 #include "study/hard_case.hpp"
 
 namespace dlo::compare {
 namespace {
-
-constexpr double printed_point_weight = 0.00892;  // Table 5 [N]
 
 /// A file's name as every shell and every page can hold it, and that no other scene has.
 std::string plain_name(const std::string& path, const std::vector<SceneFile>& others) {
@@ -62,7 +60,7 @@ std::vector<std::string> scenes_in(const std::string& folder) {
 
 ForceModelSettings hooke_consistent(const ForceModelSettings& settings) {
   ForceModelSettings result = settings;
-  result.law = Law::hooke;
+  result.law = BendingLaw::hooke;
   result.bookkeeping = Bookkeeping::consistent;
   result.c_b.reset();
   result.design_curvature.reset();
@@ -91,39 +89,43 @@ void try_to(const std::string& what, std::vector<std::string>& failures, const F
   }
 }
 
-SceneHistory history_of(Scene scene, const std::string& file, bool printed_weight) {
+SceneHistory history_of(Scene scene, const std::string& file, PaperWeight weight) {
   ForceModelSettings& settings = scene.force_model;
   if (!settings.c_c) settings.c_c = scene.axial_stiffness() / 1000;
-  if (printed_weight) settings.point_weight = printed_point_weight;
+  if (weight == PaperWeight::printed) settings.point_weight = printed_point_weight();
   const Solution rest = solve_force(scene, settings);
   SceneHistory result;
   result.scene = scene.name;
   result.file = file;
   result.point_weight = rest.parameters.point_weight;
-  result.printed_weight = printed_weight;
+  result.weight = weight;
   result.rest = fit_effective_modulus(scene, rest.shape);
   result.history = modulus_history(scene, rest.shape);
   return result;
 }
 
-void run_task(SceneTask& task, const ReportOptions& options, bool with_printed_weight) {
+/// Whose scene it is.
+enum class Origin { paper, user };
+
+void run_task(SceneTask& task, const ReportOptions& options, Origin origin) {
   const Scene& scene = task.report.file.scene;
   std::vector<Comparison>& comparisons = task.report.comparisons;
   try_to(scene.name, task.failures, [&] { comparisons.push_back(compare(scene)); });
   const ForceModelSettings& own = scene.force_model;
-  if (own.law != Law::hooke || own.bookkeeping != Bookkeeping::consistent) {
+  if (own.law != BendingLaw::hooke || own.bookkeeping != Bookkeeping::consistent) {
     Scene better = scene;
     better.force_model = hooke_consistent(own);
     try_to(scene.name + ", law hooke, bookkeeping consistent", task.failures,
            [&] { comparisons.push_back(compare(better)); });
   }
-  const Scene near = without_far_obstacles(scene).scene;
-  if (!options.history || !straight_rod(near, {0})) return;
-  try_to(scene.name + ", E*/E against time", task.failures,
-         [&] { task.report.history = history_of(near, task.report.file.name, false); });
-  if (!with_printed_weight) return;
-  try_to(scene.name + ", E*/E against time, printed weight", task.failures,
-         [&] { task.printed_weight = history_of(near, task.report.file.name, true); });
+  if (!options.history || !straight_rod(scene, {0})) return;
+  try_to(scene.name + ", E*/E against time", task.failures, [&] {
+    task.report.history = history_of(scene, task.report.file.name, PaperWeight::of_the_rod);
+  });
+  if (origin != Origin::paper) return;
+  try_to(scene.name + ", E*/E against time, printed weight", task.failures, [&] {
+    task.printed_weight = history_of(scene, task.report.file.name, PaperWeight::printed);
+  });
 }
 
 void add_scenes(const std::vector<SceneFile>& files, std::size_t of_the_paper, Report& report) {
@@ -131,8 +133,9 @@ void add_scenes(const std::vector<SceneFile>& files, std::size_t of_the_paper, R
   for (std::size_t i = 0; i < files.size(); ++i) tasks[i].report.file = files[i];
   tbb::task_arena arena(arena_threads(report.options.threads));
   execute(arena, [&] {
-    tbb::parallel_for(std::size_t{0}, tasks.size(),
-                      [&](std::size_t i) { run_task(tasks[i], report.options, i < of_the_paper); });
+    tbb::parallel_for(std::size_t{0}, tasks.size(), [&](std::size_t i) {
+      run_task(tasks[i], report.options, i < of_the_paper ? Origin::paper : Origin::user);
+    });
   });
   for (SceneTask& task : tasks) {
     report.scenes.push_back(std::move(task.report));

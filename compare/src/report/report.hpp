@@ -7,6 +7,7 @@
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/progress.hpp"
 #include "paper/modulus_history.hpp"
+#include "paper/printed.hpp"
 #include "study/benchmark.hpp"
 #include "study/stability.hpp"
 #include "study/stability_map.hpp"
@@ -50,12 +51,12 @@ struct ReportOptions {
 
 /// E*/E of one scene on its way to rest.
 struct SceneHistory {
-  std::string scene;            ///< its name
-  std::string file;             ///< name of its SceneFile
-  double point_weight = 0;      ///< of an inner point [N]
-  bool printed_weight = false;  ///< Table 5's, not rho A l g / N
-  EffectiveModulus rest;        ///< at rest
-  ModulusHistory history;       ///< before
+  std::string scene;                             ///< its name
+  std::string file;                              ///< name of its SceneFile
+  double point_weight = 0;                       ///< of an inner point [N]
+  PaperWeight weight = PaperWeight::of_the_rod;  ///< of the points
+  EffectiveModulus rest;                         ///< at rest
+  ModulusHistory history;                        ///< before
 };
 
 /// What a report says of a scene.

@@ -180,16 +180,18 @@ std::array<double, 2> widened(const std::array<double, 2>& range, double to) {
   return {middle - half, middle + half};
 }
 
+enum class Titles { shown, left_out };
+
 std::string plot_lines(const std::vector<Series>& all, const std::string& csv_file,
-                       const std::string& x, const std::string& y, bool titles, bool curvature) {
+                       const std::string& x, const std::string& y, Titles titles) {
   std::string out = "plot";
   std::string separator = " ";
   for (const Series& series : all) {
-    if (curvature && series.curvature.empty()) continue;
-    fmt::format_to(std::back_inserter(out), "{}'{}' using (strcol(1) eq '{}' ? {} : NaN):{} {} {}",
-                   separator, csv_file, series.id, x, y,
-                   titles ? "title " + gnuplot_string(series.title) : std::string("notitle"),
-                   series.style);
+    fmt::format_to(
+        std::back_inserter(out), "{}'{}' using (strcol(1) eq '{}' ? {} : NaN):{} {} {}", separator,
+        csv_file, series.id, x, y,
+        titles == Titles::shown ? "title " + gnuplot_string(series.title) : std::string("notitle"),
+        series.style);
     separator = ", \\\n  ";
   }
   return out + "\n";
@@ -242,7 +244,7 @@ std::string shapes_script(const std::string& name, const std::string& csv_file,
     out += axis_labels(fmt::format("{} [m]", axis_names[views[i].right]),
                        fmt::format("{} [m]", axis_names[views[i].up]), height, top);
     out += plot_lines(all, csv_file, fmt::format("${}", views[i].right + 3),
-                      fmt::format("{}", views[i].up + 3), last, false);
+                      fmt::format("{}", views[i].up + 3), last ? Titles::shown : Titles::left_out);
     top += heights[i] + between;
   }
   if (views.size() > 1) out += "unset multiplot\n";
@@ -251,15 +253,16 @@ std::string shapes_script(const std::string& name, const std::string& csv_file,
 
 std::string curvature_script(const std::string& name, const std::string& csv_file,
                              const std::vector<Series>& all, bool planar) {
-  const auto shown = std::count_if(all.begin(), all.end(),
-                                   [](const Series& series) { return !series.curvature.empty(); });
-  const int rows = static_cast<int>(shown);
+  std::vector<Series> shown;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(shown),
+               [](const Series& series) { return !series.curvature.empty(); });
+  const int rows = static_cast<int>(shown.size());
   const int height = height_besides_plot(rows) + curvature_plot;
   std::string out = figure_head(name, csv_file, height, rows);
   out += axis_labels("arc length s [m]",
                      planar ? "curvature [1/m], > 0: to the left" : "curvature [1/m]", height,
                      top_margin);
-  return out + plot_lines(all, csv_file, "$2", "6", true, true);
+  return out + plot_lines(shown, csv_file, "$2", "6", Titles::shown);
 }
 
 std::string shapes_description(const SceneReport& report, const std::vector<View>& views) {

@@ -46,7 +46,7 @@ std::string hold_of(const Scene& scene) {
 std::string answer_text(const std::vector<BenchmarkRun>& runs, std::optional<std::size_t> best,
                         std::optional<Model> model) {
   if (!best) return has_run(runs, model) ? "none" : "not run";
-  return fmt::format("{}: {} ms", run_name(runs[*best]),
+  return fmt::format("{}: {} ms", name_of(runs[*best]),
                      page_number(runs[*best].time.median_s * 1e3));
 }
 
@@ -71,15 +71,6 @@ std::string outcome_cell(const StabilityResult& result) {
 }
 
 }  // namespace
-
-std::string run_name(const BenchmarkRun& run) {
-  std::string name = to_string(run.model);
-  if (run.model == Model::energy && run.size > 0) name += fmt::format(" K = {}", run.size);
-  if (run.model == Model::chain || run.model == Model::force) {
-    name += fmt::format(" N = {}", run.size);
-  }
-  return run.setting.empty() ? name : name + ", " + run.setting;
-}
 
 HtmlTable scene_table(const Report& report) {
   HtmlTable table{.caption = "Scenes",
@@ -201,9 +192,10 @@ HtmlTable history_table(const Report& report) {
                               {"at rest"},
                               {"passes 1/3 at [s] (–: not in 200 s)"}}};
   const auto add = [&](const SceneHistory& entry) {
-    std::vector<std::string> row = {
-        entry.scene, page_number(entry.point_weight) + (entry.printed_weight ? ", Table 5's" : ""),
-        page_number(entry.history.c_c), page_number(entry.history.c_F)};
+    std::vector<std::string> row = {entry.scene,
+                                    page_number(entry.point_weight) +
+                                        (entry.weight == PaperWeight::printed ? ", Table 5's" : ""),
+                                    page_number(entry.history.c_c), page_number(entry.history.c_F)};
     for (const double time : {1., 10., 28., last_history_time}) {
       for (const ModulusAtTime& at : entry.history.times) {
         if (at.time_s == time) row.push_back(page_number(at.modulus.ratio));
@@ -245,7 +237,7 @@ HtmlTable front_table(const SceneBenchmark& scene) {
                   {"RMS / l"}}};
   for (const BenchmarkRun& run : scene.runs) {
     if (!run.front) continue;
-    table.rows.push_back({run_name(run), page_number(run.time.median_s * 1e3),
+    table.rows.push_back({name_of(run), page_number(run.time.median_s * 1e3),
                           fmt::format("{} to {}", page_number(run.time.lower_quartile_s * 1e3),
                                       page_number(run.time.upper_quartile_s * 1e3)),
                           std::to_string(run.work), page_number(run.rms_over_length)});
@@ -314,7 +306,7 @@ HtmlTable parameter_table(const Report& report) {
                               {"energy [ms]"}}};
   for_each_comparison(report, [&](const Comparison& c) {
     const Parameters& p = c.force.parameters;
-    const bool paper = c.settings.law == Law::paper;
+    const bool paper = c.settings.law == BendingLaw::paper;
     table.rows.push_back(
         {c.scene, setting_of(c), millimetres(p.segment_length), paper ? page_number(p.c_b) : "–",
          !paper           ? "–"

@@ -21,7 +21,4 @@ namespace dlo::compare {
 [[nodiscard]] HtmlTable hard_case_table(const std::vector<StabilityResult>& results);
 [[nodiscard]] HtmlTable parameter_table(const Report& report);
 
-/// "force N = 16, hooke, consistent, auto, c_c = AE", as `dlo bench` says it.
-[[nodiscard]] std::string run_name(const BenchmarkRun& run);
-
 }  // namespace dlo::compare

@@ -39,7 +39,7 @@ class Extent {
   int count_ = 0;
 };
 
-using LawAndBookkeeping = std::pair<Law, Bookkeeping>;
+using LawAndBookkeeping = std::pair<BendingLaw, Bookkeeping>;
 
 LawAndBookkeeping group_of(const Comparison& c) { return {c.settings.law, c.settings.bookkeeping}; }
 
@@ -140,9 +140,9 @@ void say_speed(const Report& report, std::vector<std::string>& verdict) {
     verdict.push_back(fmt::format(
         "Speed, {} (Γ = {}): the energy model at 1e-6 of the length ({}, {} ms) is {} times {} the "
         "best force model at 1e-3 ({}, {} ms).",
-        scene.scene, page_number(scene.gamma), run_name(energy),
+        scene.scene, page_number(scene.gamma), name_of(energy),
         page_number(energy.time.median_s * 1e3), page_number(ratio >= 1 ? ratio : 1 / ratio),
-        ratio >= 1 ? "faster than" : "slower than", run_name(force),
+        ratio >= 1 ? "faster than" : "slower than", name_of(force),
         page_number(force.time.median_s * 1e3)));
   }
 }
@@ -158,14 +158,14 @@ void say_stability(const Report& report, std::vector<std::string>& verdict) {
         "The measured limit of c_F is {} times the predicted one: the prediction is {}.",
         ratio.text(), ratio.least() >= 1 ? "safe" : "NOT safe"));
   }
-  std::vector<StepperName> steppers;
+  std::vector<Stepper> steppers;
   for (const StabilityResult& result : report.hard_cases) {
     if (std::find(steppers.begin(), steppers.end(), result.stepper) == steppers.end()) {
       steppers.push_back(result.stepper);
     }
   }
   std::string passes;
-  for (const StepperName stepper : steppers) {
+  for (const Stepper stepper : steppers) {
     int passed = 0;
     int answerable = 0;
     for (const StabilityResult& result : report.hard_cases) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
@@ -11,16 +12,6 @@
 
 namespace dlo::compare {
 namespace {
-
-std::string toml_string(const std::string& value) {
-  std::string text = "\"";
-  for (const char c : value) {
-    if (static_cast<unsigned char>(c) < ' ') continue;
-    if (c == '"' || c == '\\') text += '\\';
-    text += c;
-  }
-  return text + "\"";
-}
 
 /// Numbers and vectors as they are, all else as a TOML string.
 std::string toml_value(const std::string& value) {
@@ -87,6 +78,7 @@ std::string optional_part(const Scene& scene) {
   const double l = scene.length;
   const Eigen::Vector3d pin = 0.7 * l * scene.grippers.front().direction.value();
   const double weight = scene.mass() * scene.gravity.norm();
+  const ForceModelSettings defaults;
   const double force = weight > 0 ? weight : scene.bending_stiffness() / (l * l);
   return fmt::format(
       R"(
@@ -112,14 +104,14 @@ std::string optional_part(const Scene& scene) {
 # The force model, which dlo compare, calibrate and solve --model force use; these are the defaults.
 # dlo calibrate FILE -o params.toml finds the parameters.
 #[force_model]
-#points = 16  # N, 4 or more
-#law = "hooke"  # of the joints: "hooke" (as a rod bends) or "paper" (cubic in the angle)
-#bookkeeping = "consistent"  # "consistent" (second order in the segment length) or "paper"
-#stepper = "auto"  # "basic", "limited", "relative", "dynamic", "auto"
+#points = {points}  # N, 4 or more
+#law = "{law}"  # of the joints: {laws}
+#bookkeeping = "{bookkeeping}"  # {bookkeepings}
+#stepper = "{stepper}"  # {steppers}
 #c_c = {c_c:.4g}  # N, stretch stiffness, here A E
 # Further keys, where law, bookkeeping or stepper allow them:
 #   c_b              [N]    bending stiffness, law paper; else it follows from
-#   bending_rule     "formula_21" or "moment_matched", law paper
+#   bending_rule     {bending_rules}, law paper
 #   design_curvature [1/m]  k of the bending rule
 #   point_weight     [N]    weight of every point, bookkeeping paper
 #   c_F              [m/N]  step factor, not with stepper auto
@@ -129,7 +121,13 @@ std::string optional_part(const Scene& scene) {
       fmt::arg("length", l), fmt::arg("x", pin.x()), fmt::arg("y", pin.y()), fmt::arg("z", pin.z()),
       fmt::arg("middle", l / 2), fmt::arg("force", -0.1 * force),
       fmt::arg("floor", std::min(pin.y(), 0.0) - 0.1 * l),
-      fmt::arg("stiffness", 1e3 * force / (l * l)), fmt::arg("c_c", scene.axial_stiffness()));
+      fmt::arg("stiffness", 1e3 * force / (l * l)), fmt::arg("c_c", scene.axial_stiffness()),
+      fmt::arg("points", defaults.points), fmt::arg("law", to_string(defaults.law)),
+      fmt::arg("laws", meanings<BendingLaw>()),
+      fmt::arg("bookkeeping", to_string(defaults.bookkeeping)),
+      fmt::arg("bookkeepings", meanings<Bookkeeping>()),
+      fmt::arg("stepper", to_string(defaults.stepper)), fmt::arg("steppers", one_of<Stepper>()),
+      fmt::arg("bending_rules", one_of<BendingRule>()));
 }
 
 }  // namespace
@@ -138,10 +136,9 @@ std::string scene_text(const SceneChoices& choices, const std::vector<Material>&
   const std::string text = required_part(choices, known_materials);
   const Scene scene = parse_scene(text, "the new scene", known_materials);
   if (scene.diameter > scene.length) {
-    throw InputError(
-        fmt::format("the new scene: rod.diameter = {}: thicker than long (allowed: at most the "
-                    "length, {:g} m)",
-                    choices.diameter, scene.length));
+    throw InputError("the new scene", "rod.diameter",
+                     fmt::format(" = {}: thicker than long (allowed: at most the length, {:g} m)",
+                                 choices.diameter, scene.length));
   }
   return text + optional_part(scene);
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -73,14 +72,12 @@ double parse_quantity(std::string_view text, Dimension dimension) {
   if (start == std::string_view::npos) throw not_a_number();
   std::string_view rest = text.substr(start);
   if (rest.front() == '+') rest.remove_prefix(1);
-  double value = 0;
-  const auto [end, error] = std::from_chars(rest.data(), rest.data() + rest.size(), value);
+  const auto [value, length, error] = leading_number<double>(rest);
   if (error == std::errc::result_out_of_range) {
-    const auto length = static_cast<std::size_t>(end - rest.data());
     throw InputError(beyond_double(rest.substr(0, length)));
   }
   if (error != std::errc()) throw not_a_number();
-  rest.remove_prefix(static_cast<std::size_t>(end - rest.data()));
+  rest.remove_prefix(length);
   if (rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9') {
     throw InputError(fmt::format("\"{}\" has a comma (allowed: a decimal point)", text));
   }

@@ -46,16 +46,29 @@ std::vector<double> obstacle_clearances(const Scene& scene) {
   return clearances;
 }
 
-ReachedScene without_far_obstacles(const Scene& scene) {
+std::vector<std::size_t> obstacles_in_reach(const Scene& scene,
+                                            const ForceModelSettings& settings) {
   const double stiffness =
-      std::min(scene.axial_stiffness(), scene.force_model.c_c.value_or(scene.axial_stiffness()));
+      std::min(scene.axial_stiffness(), settings.c_c.value_or(scene.axial_stiffness()));
   const double stretched = 2 * scene.length * std::sqrt(total_load(scene) / stiffness);
   const std::vector<double> clearances = obstacle_clearances(scene);
-  ReachedScene result{scene, {}};
-  result.scene.obstacles.clear();
+  std::vector<std::size_t> result;
   for (std::size_t i = 0; i < clearances.size(); ++i) {
-    result.in_reach.push_back(clearances[i] <= stretched);
-    if (result.in_reach.back()) result.scene.obstacles.push_back(scene.obstacles[i]);
+    if (clearances[i] <= stretched) result.push_back(i);
+  }
+  return result;
+}
+
+std::vector<std::size_t> obstacles_in_reach(const Scene& scene) {
+  return obstacles_in_reach(scene, scene.force_model);
+}
+
+std::vector<Eigen::Vector3d> forces_of_all(const Scene& scene,
+                                           const std::vector<std::size_t>& in_reach,
+                                           const std::vector<Eigen::Vector3d>& forces) {
+  std::vector<Eigen::Vector3d> result(scene.obstacles.size(), Eigen::Vector3d::Zero());
+  for (std::size_t k = 0; k < std::min(in_reach.size(), forces.size()); ++k) {
+    result[in_reach[k]] = forces[k];
   }
   return result;
 }

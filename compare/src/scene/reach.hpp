@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
@@ -14,15 +15,20 @@ namespace dlo::compare {
 /// the rod between them as its long axis), or a ball around the last. Without stretch.
 [[nodiscard]] std::vector<double> obstacle_clearances(const Scene& scene);
 
-/// A scene without the obstacles that its rod cannot reach.
-struct ReachedScene {
-  Scene scene;                 ///< without them
-  std::vector<bool> in_reach;  ///< of each of the original's obstacles
-};
+/// The indices of the obstacles that the rod can touch, the only ones that a solver is given. Its
+/// stretch is included: at most 2 l sqrt(P / EA), P the sum of all loads, since the stretch energy
+/// EA d^2 / (2 l) is no more than what the loads do over a way of 2 l. The smaller of EA and the
+/// settings' c_c.
+[[nodiscard]] std::vector<std::size_t> obstacles_in_reach(const Scene& scene,
+                                                          const ForceModelSettings& settings);
 
-/// Those within reach stay, the stretch of the rod included: at most 2 l sqrt(P / EA), P the sum of
-/// all loads, since the stretch energy EA d^2 / (2 l) is no more than what the loads do over a way
-/// of 2 l. The smaller of EA and c_c.
-[[nodiscard]] ReachedScene without_far_obstacles(const Scene& scene);
+/// With the scene's own settings.
+[[nodiscard]] std::vector<std::size_t> obstacles_in_reach(const Scene& scene);
+
+/// The forces of all obstacles, those out of reach zero.
+/// @param in_reach  of obstacles_in_reach();  @param forces  of these
+[[nodiscard]] std::vector<Eigen::Vector3d> forces_of_all(
+    const Scene& scene, const std::vector<std::size_t>& in_reach,
+    const std::vector<Eigen::Vector3d>& forces);
 
 }  // namespace dlo::compare

@@ -5,16 +5,12 @@ namespace dlo::compare {
 ForceModelSettings read_force_model(StrictTable& table) {
   ForceModelSettings settings;
   settings.points = table.optional_integer("points", 4, 1'000'000).value_or(settings.points);
-  if (const auto name = table.optional_choice("law", law_names())) settings.law = law_from(*name);
-  if (const auto name = table.optional_choice("bookkeeping", bookkeeping_names())) {
-    settings.bookkeeping = bookkeeping_from(*name);
-  }
-  if (const auto name = table.optional_choice("stepper", stepper_names())) {
-    settings.stepper = stepper_from(*name);
-  }
-  if (const auto name = table.optional_choice("bending_rule", bending_rule_names())) {
-    settings.bending_rule = bending_rule_from(*name);
-  }
+  settings.law = table.optional_choice<BendingLaw>("law").value_or(settings.law);
+  settings.bookkeeping =
+      table.optional_choice<Bookkeeping>("bookkeeping").value_or(settings.bookkeeping);
+  settings.stepper = table.optional_choice<Stepper>("stepper").value_or(settings.stepper);
+  settings.bending_rule =
+      table.optional_choice<BendingRule>("bending_rule").value_or(settings.bending_rule);
   settings.design_curvature =
       table.optional_number("design_curvature", Dimension::curvature, Range::positive());
   settings.point_weight =

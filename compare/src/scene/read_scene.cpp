@@ -96,7 +96,7 @@ Gripper read_gripper(StrictTable& table, double length) {
   Gripper gripper;
   gripper.at = read_arc_length(table, length);
   gripper.position = table.vector("position", Dimension::length);
-  const std::string hold = table.optional_choice("hold", {"clamp", "pin"}).value_or("clamp");
+  const std::string hold = table.has("hold") ? table.choice("hold", {"clamp", "pin"}) : "clamp";
   if (hold == "clamp") {
     gripper.direction = read_direction(table);
   } else if (table.has("direction")) {

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <numbers>
 
+#include "scene/reach.hpp"
+
 namespace dlo::compare {
 
 double Scene::cross_section() const { return std::numbers::pi * diameter * diameter / 4; }
@@ -30,7 +32,7 @@ std::optional<Eigen::Vector3d> Scene::plane_normal() const {
     vectors.emplace_back(gripper.position - grippers.front().position);
   }
   for (const PointLoad& load : loads) vectors.push_back(load.force);
-  for (const Obstacle& obstacle : obstacles) vectors.push_back(obstacle.normal);
+  for (const std::size_t i : obstacles_in_reach(*this)) vectors.push_back(obstacles[i].normal);
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& v : vectors) {
     if (v.norm() > 0) moments += v.normalized() * v.normalized().transpose();

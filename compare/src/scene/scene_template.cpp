@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
@@ -13,6 +12,7 @@
 
 #include "base/fingerprint.hpp"
 #include "base/input_file.hpp"
+#include "base/number.hpp"
 #include "base/text_limits.hpp"
 #include "dlo/compare/error.hpp"
 #include "scene/read_scene.hpp"
@@ -21,20 +21,11 @@
 namespace dlo::compare {
 namespace {
 
-template <typename Number>
-std::optional<Number> whole_text_as(const std::string& text) {
-  Number number = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc() || stop != end) return std::nullopt;
-  return number;
-}
-
 /// Puts a value where `place(node)` wants it, with the type that a file would give it.
 template <typename Place>
 void place_value(const FieldValue& field, const std::string& file, const Place& place) {
-  if (const auto integer = whole_text_as<std::int64_t>(field.value)) return place(*integer);
-  if (const auto number = whole_text_as<double>(field.value)) return place(*number);
+  if (const auto integer = as_number<std::int64_t>(field.value)) return place(*integer);
+  if (const auto number = as_number<double>(field.value)) return place(*number);
   if (field.value.empty() || field.value.front() != '[') return place(field.value);
   const toml::table parsed =
       parse_toml("value = " + field.value, fmt::format("{}, {}", file, field.field));
@@ -96,7 +87,7 @@ class Overrider {
 
   [[nodiscard]] std::size_t element(const toml::array& array, std::string_view step,
                                     const std::string& path) const {
-    const auto index = whole_text_as<std::size_t>(std::string(step));
+    const auto index = as_number<std::size_t>(step);
     if (!index || *index >= array.size()) {
       refuse(path, array.empty() ? fmt::format("there is no \"{}\", the array is empty", step)
                                  : fmt::format("there is no \"{}\" (allowed: 0 to {})", step,
@@ -142,7 +133,7 @@ class Overrider {
 
 /// Gravity that gives the scene this Gamma.
 toml::array scaled_gravity(const Scene& scene, const std::string& gamma) {
-  const auto value = whole_text_as<double>(gamma);
+  const auto value = as_number<double>(gamma);
   if (!value || !(*value >= 0) || !std::isfinite(*value)) {
     throw InputError(
         fmt::format("{}: gamma = {}: must be a number (allowed: >= 0)", scene.file, gamma));

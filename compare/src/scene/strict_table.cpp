@@ -62,13 +62,9 @@ std::string StrictTable::where(const toml::node* node) const {
 
 void StrictTable::fail(std::string_view key, const std::string& problem) const {
   const toml::node* node = table_.get(key);
-  if (node == nullptr) {
-    throw InputError(fmt::format("{}: {}: {}", where(nullptr), name(key), problem));
-  }
-  if (node->is_table() || node->is_array_of_tables()) {
-    throw InputError(fmt::format("{}: {}: {}", where(node), name(key), problem));
-  }
-  throw InputError(fmt::format("{}: {} = {}: {}", where(node), name(key), shown(*node), problem));
+  const bool has_value = node != nullptr && !node->is_table() && !node->is_array_of_tables();
+  throw InputError(where(node), name(key),
+                   has_value ? fmt::format(" = {}: {}", shown(*node), problem) : ": " + problem);
 }
 
 const toml::node* StrictTable::find(std::string_view key) {
@@ -147,12 +143,6 @@ std::string StrictTable::text(std::string_view key) {
 std::optional<std::string> StrictTable::optional_text(std::string_view key) {
   if (find(key) == nullptr) return std::nullopt;
   return text(key);
-}
-
-std::optional<std::string> StrictTable::optional_choice(std::string_view key,
-                                                        const std::vector<std::string>& allowed) {
-  if (find(key) == nullptr) return std::nullopt;
-  return choice(key, allowed);
 }
 
 std::string StrictTable::choice(std::string_view key, const std::vector<std::string>& allowed) {

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dlo/compare/choice.hpp"
 #include "scene/quantity.hpp"
 
 namespace dlo::compare {
@@ -47,8 +48,16 @@ class StrictTable {
   int integer(std::string_view key, int low, int high);
   /// One of `allowed`.
   std::string choice(std::string_view key, const std::vector<std::string>& allowed);
-  std::optional<std::string> optional_choice(std::string_view key,
-                                             const std::vector<std::string>& allowed);
+  /// Of an enumeration with a table of names.
+  template <Chosen Value>
+  Value choice(std::string_view key) {
+    return from_name<Value>(choice(key, names<Value>()));
+  }
+  template <Chosen Value>
+  std::optional<Value> optional_choice(std::string_view key) {
+    if (find(key) == nullptr) return std::nullopt;
+    return choice<Value>(key);
+  }
   Eigen::Vector3d vector(std::string_view key, Dimension dimension);
   std::optional<Eigen::Vector3d> optional_vector(std::string_view key, Dimension dimension);
   std::optional<StrictTable> optional_table(std::string_view key);

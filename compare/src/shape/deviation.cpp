@@ -92,6 +92,10 @@ Deviation deviation(const Shape& shape, const Reference& reference,
   return result;
 }
 
+double distance(const Shape& shape, const Reference& reference) {
+  return rms(shape.arc_length, shape.points - reference(shape.arc_length).points);
+}
+
 std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene, const std::vector<double>& s) {
   const Gripper& grip = scene.grippers.front();
   if (scene.grippers.size() > 1 || !grip.direction) return std::nullopt;

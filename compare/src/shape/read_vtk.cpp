@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "base/number.hpp"
 #include "base/quote.hpp"
@@ -94,13 +93,11 @@ class VtkReader {
 
   std::size_t read_count(const char* what, std::size_t largest) {
     const std::string_view word = next();
-    std::size_t value = 0;
-    const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    const bool whole = error == std::errc() && end == word.data() + word.size() && !word.empty();
-    if (!whole || value > largest) {
+    const std::optional<std::size_t> value = as_number<std::size_t>(word);
+    if (!value || *value > largest) {
       fail(fmt::format("{} {} (allowed: 0 to {})", what, quoted_piece(word), largest));
     }
-    return value;
+    return *value;
   }
 
   RawShape read_points() {

@@ -21,21 +21,23 @@ double polyline_length(const Eigen::Matrix3Xd& points) {
       .sum();
 }
 
+enum class RodEnd { start, end };
+
 /// Past how much of the rod's end the points go on: the running largest distance from the end of
 /// all from the first that lies at it on, for each point; zero before.
 std::vector<double> distances_past(const std::vector<double>& s, const Eigen::Matrix3Xd& points,
                                    double end, double rounding, const Eigen::Vector3d& rod_end,
-                                   bool backwards) {
+                                   RodEnd side) {
   std::vector<double> past(s.size(), 0.0);
   double largest = 0;
   for (std::size_t k = 0; k < s.size(); ++k) {
-    const std::size_t i = backwards ? k : s.size() - 1 - k;
+    const std::size_t i = side == RodEnd::start ? k : s.size() - 1 - k;
     if (std::abs(s[i] - end) > rounding) break;
     past[i] = (points.col(static_cast<Eigen::Index>(i)) - rod_end).norm();
   }
   // From the inside to the outside.
   for (std::size_t k = s.size(); k-- > 0;) {
-    const std::size_t i = backwards ? k : s.size() - 1 - k;
+    const std::size_t i = side == RodEnd::start ? k : s.size() - 1 - k;
     if (past[i] == 0) continue;
     largest = std::max(largest, past[i]);
     past[i] = largest;
@@ -82,9 +84,10 @@ Measured measure(const Alignment& alignment, const Reference& reference, double 
   if (alignment.arc_lengths == ArcLengths::nearest) {
     const double rounding = end_rounding * length;
     const Eigen::Matrix3Xd ends = reference(std::vector<double>{0, length}).points;
-    std::vector<double> before = distances_past(s, shape.points, 0, rounding, ends.col(0), true);
+    std::vector<double> before =
+        distances_past(s, shape.points, 0, rounding, ends.col(0), RodEnd::start);
     std::vector<double> after =
-        distances_past(s, shape.points, length, rounding, ends.col(1), false);
+        distances_past(s, shape.points, length, rounding, ends.col(1), RodEnd::end);
     const double covered = s.back() - s.front();
     const double longer = std::max(0.0, polyline_length(shape.points) - covered);
     const double past = before.front() + after.back();

@@ -28,8 +28,9 @@ GripperLoad balancing_load(const Discretisation& discretisation, const Eigen::Ma
   return result;
 }
 
-Solution solve_rigid_chain(const Scene& scene, const Discretisation& discretisation,
-                           const ChainScene& chain, const SolveOptions& options) {
+Solution solve_rigid_chain(const Scene& scene, const ForceModelSettings& settings,
+                           const Discretisation& discretisation, const ChainScene& chain,
+                           const SolveOptions& options) {
   energy_model::ChainOptions chain_options;
   chain_options.max_evaluations = options.max_evaluations;
   chain_options.time_limit = options.time_limit;
@@ -42,7 +43,7 @@ Solution solve_rigid_chain(const Scene& scene, const Discretisation& discretisat
   if (discretisation.rod.grips.front().first_point != 0) {
     points = points.rowwise().reverse().eval();
   }
-  Solution solution = polygon_solution(discretisation, points);
+  Solution solution = polygon_solution(scene, settings, discretisation, points);
   solution.status = result.status;
   solution.message = result.message;
   solution.grippers = {balancing_load(discretisation, points)};
@@ -55,7 +56,7 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
                              const Discretisation& discretisation, const SolveOptions& options) {
   const LowestPolygon lowest = lowest_polygon(scene, settings, discretisation, options);
   const Eigen::Matrix3Xd& points = lowest.result.points;
-  Solution solution = polygon_solution(discretisation, points);
+  Solution solution = polygon_solution(scene, settings, discretisation, points);
   solution.status = lowest.result.status;
   solution.message = lowest.result.message;
   Eigen::Index next = 0;  // grip_forces are in the order of the grips' points
@@ -80,7 +81,7 @@ Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
                      const SolveOptions& options) {
   const Discretisation discretisation = discretise(scene, settings);
   const std::optional<ChainScene> chain = chain_scene(scene, discretisation, settings);
-  Solution solution = chain ? solve_rigid_chain(scene, discretisation, *chain, options)
+  Solution solution = chain ? solve_rigid_chain(scene, settings, discretisation, *chain, options)
                             : solve_elastic_chain(scene, settings, discretisation, options);
   solution.model = Model::chain;
   return solution;

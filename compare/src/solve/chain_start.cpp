@@ -36,7 +36,7 @@ Directions directions_of(const Shape& shape) {
 /// The chain's rest shape as a rod: its tangent turns evenly from one segment's middle to the next.
 energy_model::Equilibrium chain_start(const Scene& scene, const SolveOptions& options) {
   ForceModelSettings settings = scene.force_model;
-  settings.law = Law::hooke;
+  settings.law = BendingLaw::hooke;
   settings.bookkeeping = Bookkeeping::consistent;
   settings.points = start_points;
   const Shape shape = solve_chain(scene, settings, options).shape;

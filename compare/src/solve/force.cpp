@@ -83,13 +83,13 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
         "(stepper {}, c_F = {:.4g} m/N, c_c = {:.4g} N{})",
         scene.file, result.message, result.steps, result.remaining_error,
         to_string(settings.stepper), simulation.options().c_F, discretisation.parameters.c_c,
-        settings.stepper == StepperName::automatic
+        settings.stepper == Stepper::automatic
             ? ""
             : "; stepper auto chooses its constants, a lower c_c lets the others take larger "
               "steps"));
   }
   require_unstrained(scene, settings, discretisation, simulation.points(), "force");
-  Solution solution = polygon_solution(discretisation, simulation.points());
+  Solution solution = polygon_solution(scene, settings, discretisation, simulation.points());
   solution.model = Model::force;
   solution.message = result.message;
   if (strayed()) solution.message += ", in another state than the chain";

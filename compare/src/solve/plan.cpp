@@ -165,17 +165,17 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
         options.target, options.gripper_speed, options.time_limit));
   }
   const PlanClock clock(options.time_limit);
-  const ReachedScene reached = without_far_obstacles(scene);
-  const Scene& near = reached.scene;
+  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
   const std::vector<double> clearances = obstacle_clearances(scene);
   Plan plan;
   plan.gamma = scene.gamma();
   plan.target = options.target;
-  plan.planar = near.planar();
+  plan.planar = scene.planar();
   plan.spans = spans_of(scene);
   plan.scene_points = scene.force_model.points;
   for (std::size_t i = 0; i < clearances.size(); ++i) {
-    plan.obstacles.push_back({clearances[i], reached.in_reach[i]});
+    plan.obstacles.push_back(
+        {clearances[i], std::find(in_reach.begin(), in_reach.end(), i) != in_reach.end()});
   }
 
   LeftOut stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
@@ -190,9 +190,9 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   plan.contact = true;
   try {
     std::string why;
-    const std::optional<energy_model::Equilibrium> rod = rod_shape(near, options.time_limit, why);
+    const std::optional<energy_model::Equilibrium> rod = rod_shape(scene, options.time_limit, why);
     plan.contact = !rod || touches(*rod);
-    const std::optional<Discretisation> fine = hooke_polygon(near, rod_points);
+    const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points);
     if (!rod) {
       no_bound(why);
     } else if (plan.contact) {
@@ -200,16 +200,16 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     } else if (!fine) {
       no_bound("the grips lie closer than any polygon looked at");
     } else {
-      const PolygonResponse response(near, *fine, *rod);
+      const PolygonResponse response(scene, *fine, *rod);
       const double EA = scene.axial_stiffness();
       stretch.bound_m = bounded(response.stretch(EA), scene.length);
       stretch.why = "tension over EA, as the shape answers it";
       shear.bound_m = bounded(response.shear(0.3 * EA), scene.length);
       shear.why = "force across over kGA, kG >= 0.3 E";
-      polygon.bound_m = polygon_bound(near, *rod, scene.force_model.points);
+      polygon.bound_m = polygon_bound(scene, *rod, scene.force_model.points);
       polygon.why = fmt::format("segments instead of curves, hooke law, bookkeeping {}, N = {}",
                                 to_string(scene.force_model.bookkeeping), plan.scene_points);
-      plan.points = points_for_target(near, *rod, options.target, clock);
+      plan.points = points_for_target(scene, *rod, options.target, clock);
     }
   } catch (const std::exception& error) {
     // A plan is no reason for a solve to fail.
@@ -222,11 +222,11 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
                    inertia(scene, options.gripper_speed),
                    {"twist", "all", 0, "none in a round, naturally straight rod free to twist"}};
   plan.moving = plan.bound("inertia") > options.target * scene.length;
-  if (near.obstacles.size() < scene.obstacles.size()) {
+  if (in_reach.size() < scene.obstacles.size()) {
     plan.left_out.push_back(
         {"obstacles out of reach", "all", 0,
          fmt::format("{} of {}: no point of the rod gets there",
-                     scene.obstacles.size() - near.obstacles.size(), scene.obstacles.size())});
+                     scene.obstacles.size() - in_reach.size(), scene.obstacles.size())});
   }
   return plan;
 }

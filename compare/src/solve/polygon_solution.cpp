@@ -9,6 +9,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "polygon/energy_problems.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -46,7 +47,8 @@ class TimeLeft {
 
 }  // namespace
 
-Solution polygon_solution(const Discretisation& discretisation, const Eigen::Matrix3Xd& points) {
+Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings,
+                          const Discretisation& discretisation, const Eigen::Matrix3Xd& points) {
   const force_model::Rod& rod = discretisation.rod;
   const force_model::RodEnergy inner = force_model::energy(rod, points);
   const Eigen::Matrix3Xd offset = points.colwise() - rod.grips.front().reference;
@@ -62,6 +64,7 @@ Solution polygon_solution(const Discretisation& discretisation, const Eigen::Mat
   for (const force_model::Grip& grip : rod.grips) {
     std::fill_n(held.begin() + grip.first_point, grip.targets.cols(), true);
   }
+  std::vector<Eigen::Vector3d> wall_forces;
   for (const force_model::Wall& wall : rod.walls) {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -69,8 +72,9 @@ Solution polygon_solution(const Discretisation& discretisation, const Eigen::Mat
       force += force_model::wall_force(wall, points.col(i));
       energy.contact += force_model::wall_energy(wall, points.col(i));
     }
-    solution.obstacles.push_back(force);
+    wall_forces.push_back(force);
   }
+  solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene, settings), wall_forces);
   return solution;
 }
 

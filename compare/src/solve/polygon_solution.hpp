@@ -12,7 +12,8 @@ namespace dlo::compare {
 
 /// Shape and energies of a polygon, and what obstacles do to it. Points that a gripper holds do not
 /// touch them: a clamp near an obstacle may hold its inner point behind it.
-[[nodiscard]] Solution polygon_solution(const Discretisation& discretisation,
+[[nodiscard]] Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings,
+                                        const Discretisation& discretisation,
                                         const Eigen::Matrix3Xd& points);
 
 /// A polygon that had to stretch or to shrink is no shape of the rod, however well it balances.

@@ -10,6 +10,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "polygon/energy_problems.hpp"
+#include "scene/reach.hpp"
 #include "solve/chain_start.hpp"
 
 namespace dlo::compare {
@@ -17,11 +18,12 @@ namespace {
 
 /// The exact model's scenes, said in the scene's own words.
 void require_exact_scene(const Scene& scene) {
-  if (scene.obstacles.empty()) return;
+  const std::size_t obstacles = obstacles_in_reach(scene).size();
+  if (obstacles == 0) return;
   throw InputError(fmt::format(
       "{}: obstacle: {} given (allowed for model exact: none; --model energy, chain or force takes "
       "them)",
-      scene.file, scene.obstacles.size()));
+      scene.file, obstacles));
 }
 
 /// What a solver does not take, said of the scene's rod instead of the solver's function.
@@ -85,7 +87,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
     const bool searched = model == Model::energy && options.start == nullptr;
     SolveOptions rest = options;
     rest.time_limit = std::max(options.time_limit - result.seconds, options.time_limit / 4);
-    if (!energy_model::succeeded(result.status) && searched && !scene.obstacles.empty()) {
+    if (!energy_model::succeeded(result.status) && searched && !problem.walls.empty()) {
       try_from_chain(scene, rest, result);
     }
   } catch (const std::invalid_argument& error) {
@@ -98,7 +100,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
         result.status == energy_model::SolveStatus::time_limit
             ? fmt::format("; --time-limit {:g} allows no more", options.time_limit)
             : "",
-        scene.obstacles.empty() ? "" : "; --model chain or an obstacle with a stiffness may do"));
+        problem.walls.empty() ? "" : "; --model chain or an obstacle with a stiffness may do"));
   }
   return result;
 }

@@ -16,17 +16,6 @@
 namespace dlo::compare {
 namespace {
 
-/// Zero for each obstacle that was left out.
-void spread_obstacle_forces(Solution& solution, const std::vector<bool>& in_reach) {
-  std::vector<Eigen::Vector3d> forces;
-  std::size_t next = 0;
-  for (const bool solved : in_reach) {
-    const bool known = solved && next < solution.obstacles.size();
-    forces.emplace_back(known ? solution.obstacles[next++] : Eigen::Vector3d::Zero());
-  }
-  solution.obstacles = std::move(forces);
-}
-
 /// What the part of the rod beyond `at` pulls the part before it with: the opposite of all that
 /// acts on the part before.
 Eigen::Vector3d section_force(const Scene& scene, const std::vector<GripperLoad>& grippers,
@@ -60,7 +49,7 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   for (const energy_model::Reaction& reaction : equilibrium.grips) {
     solution.grippers.push_back({reaction.force, reaction.torque});
   }
-  solution.obstacles = equilibrium.walls;
+  solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene), equilibrium.walls);
   const bool touches = std::any_of(equilibrium.walls.begin(), equilibrium.walls.end(),
                                    [](const Eigen::Vector3d& force) { return force.norm() > 0; });
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -82,31 +71,24 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
 
 Solution solve(const Scene& scene, Model model, const SolveOptions& options,
                const std::vector<double>& arc_lengths) {
-  const ReachedScene reached = without_far_obstacles(scene);
-  const Scene& near = reached.scene;
-  Solution solution;
-  if (model == Model::chain || model == Model::force) {
-    solution = model == Model::chain ? solve_chain(near, near.force_model, options)
-                                     : solve_force(near, near.force_model, options);
-    solution.curvature = joint_curvatures(solution.shape);
-    if (!arc_lengths.empty()) {
-      solution.curvature = interpolated(solution.curvature, solution.shape.arc_length, arc_lengths);
-      solution.shape = resample(solution.shape, arc_lengths);
-    }
-  } else {
-    solution = sampled(near, model, solve_reference(near, model, options), arc_lengths);
+  if (model == Model::energy || model == Model::exact) {
+    return sampled(scene, model, solve_reference(scene, model, options), arc_lengths);
   }
-  spread_obstacle_forces(solution, reached.in_reach);
+  Solution solution = model == Model::chain ? solve_chain(scene, scene.force_model, options)
+                                            : solve_force(scene, scene.force_model, options);
+  solution.curvature = joint_curvatures(solution.shape);
+  if (!arc_lengths.empty()) {
+    solution.curvature = interpolated(solution.curvature, solution.shape.arc_length, arc_lengths);
+    solution.shape = resample(solution.shape, arc_lengths);
+  }
   return solution;
 }
 
 std::vector<Solution> solve_all(const Scene& scene, const SolveOptions& options,
                                 const std::vector<double>& arc_lengths) {
-  const ReachedScene reached = without_far_obstacles(scene);
   std::vector<Solution> solutions;
-  for (const energy_model::Equilibrium& state : reference_states(reached.scene, options)) {
+  for (const energy_model::Equilibrium& state : reference_states(scene, options)) {
     solutions.push_back(sampled(scene, Model::energy, state, arc_lengths));
-    spread_obstacle_forces(solutions.back(), reached.in_reach);
   }
   return solutions;
 }

@@ -29,6 +29,35 @@ std::vector<Scene> benchmark_scenes() {
   return {steel, soft};
 }
 
+ForceModelSettings ForceVariant::settings(const Scene& scene, int points) const {
+  ForceModelSettings result;
+  result.points = points;
+  result.law = law;
+  result.bookkeeping = bookkeeping;
+  result.stepper = stepper;
+  result.c_c = stretch_share * scene.axial_stiffness();
+  return result;
+}
+
+std::string setting_of(const BenchmarkRun& run) {
+  if (!run.variant) return run.model == Model::energy && run.size == 0 ? "K as needed" : "";
+  const ForceVariant& variant = *run.variant;
+  std::string result =
+      fmt::format("{}, {}", to_string(variant.law), to_string(variant.bookkeeping));
+  if (run.model == Model::chain) return result;  // no steps, and rigid or nearly so
+  const double share = variant.stretch_share;
+  return fmt::format("{}, {}, c_c = {}", result, to_string(variant.stepper),
+                     share == 1 ? "AE" : fmt::format("AE/{:g}", 1 / share));
+}
+
+std::string name_of(const BenchmarkRun& run) {
+  std::string name = to_string(run.model);
+  if (run.model == Model::energy && run.size > 0) name += fmt::format(" K = {}", run.size);
+  if (run.variant) name += fmt::format(" N = {}", run.size);
+  const std::string setting = setting_of(run);
+  return setting.empty() ? name : name + ", " + setting;
+}
+
 void mark_front(std::vector<BenchmarkRun>& runs) {
   for (BenchmarkRun& run : runs) {
     run.front = std::none_of(runs.begin(), runs.end(), [&](const BenchmarkRun& other) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
@@ -28,17 +29,36 @@ struct Timing {
   int repeats = 0;              ///< how many runs
 };
 
+/// A force model, or a chain, of the benchmark.
+struct ForceVariant {
+  BendingLaw law = BendingLaw::hooke;                 ///< of the joints
+  Bookkeeping bookkeeping = Bookkeeping::consistent;  ///< of the polygon
+  Stepper stepper = Stepper::automatic;               ///< of `force`; a chain has no steps
+  double stretch_share = 1;                           ///< c_c over AE [-]
+
+  /// On a scene, with N points.
+  [[nodiscard]] ForceModelSettings settings(const Scene& scene, int points) const;
+  /// Equal in all.
+  bool operator==(const ForceVariant&) const = default;
+};
+
 /// One model with one setting on one scene.
 struct BenchmarkRun {
   std::string scene;            ///< its name
   Model model = Model::energy;  ///< what was timed
-  int size = 0;         ///< K of energy (0: as many as needed), N of chain and force, 0 of exact
-  std::string setting;  ///< law, stepper and c_c of chain and force
-  Timing time;          ///< from straight to the shape; of tracking runs, of one frame
-  long work = 0;        ///< evaluations, or steps; of tracking runs, of one frame (mean)
+  int size = 0;  ///< K of energy (0: as many as needed), N of chain and force, 0 of exact
+  std::optional<ForceVariant> variant;  ///< of chain and force
+  Timing time;                 ///< from straight to the shape; of tracking runs, of one frame
+  long work = 0;               ///< evaluations, or steps; of tracking runs, of one frame (mean)
   double rms_over_length = 0;  ///< against the reference; of tracking runs the RMS over all frames
   bool front = false;          ///< no other run of the scene is both faster and nearer
 };
+
+/// Law, bookkeeping, and of `force` stepper and c_c, in words; of energy whether K is as needed.
+[[nodiscard]] std::string setting_of(const BenchmarkRun& run);
+
+/// Model, size and setting in words.
+[[nodiscard]] std::string name_of(const BenchmarkRun& run);
 
 /// What to use for an error.
 struct BenchmarkAnswer {

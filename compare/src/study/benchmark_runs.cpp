@@ -19,7 +19,7 @@ namespace {
 constexpr int reference_samples = 101;
 
 double error_of(const Scene& scene, const Shape& shape, const energy_model::Equilibrium& rod) {
-  return rms(shape.arc_length, shape.points - rod.sample(shape.arc_length).points) / scene.length;
+  return distance(shape, rod.sample) / scene.length;
 }
 
 double error_of(const Scene& scene, const energy_model::Equilibrium& a,
@@ -108,12 +108,12 @@ StaticRuns::StaticRuns(const Scene& scene, const ReferenceShape& reference, Stop
   ForceVariant soft;
   soft.stretch_share = 1e-3;
   ForceVariant paper_law = soft;
-  paper_law.law = Law::paper;
+  paper_law.law = BendingLaw::paper;
   paper_law.bookkeeping = Bookkeeping::paper;
   ForceVariant paper_chain = paper_law;
   paper_chain.stretch_share = 1;
   ForceVariant dynamic = soft;
-  dynamic.stepper = StepperName::dynamic;
+  dynamic.stepper = Stepper::dynamic;
   const auto add = [&](Model model, const ForceVariant& variant, const std::vector<int>& sizes) {
     series_.push_back({.model = model, .variant = variant, .sizes = sizes});
   };
@@ -159,22 +159,21 @@ void StaticRuns::run_continuous(StaticSeries& series, int terms) {
       series.last_s, [&] { result = solve_reference(scene_, model, {.terms = terms}); });
   if (!time) return;
   series.last_s = time->median_s;
-  BenchmarkRun run{.scene = scene_.name,
-                   .model = model,
-                   .size = terms,
-                   .time = *time,
-                   .work = result.evaluations,
-                   .rms_over_length = model == Model::exact
-                                          ? reference_.agreement
-                                          : error_of(scene_, result, reference_.rod)};
-  if (model == Model::energy && terms == 0) run.setting = "K as needed";
-  series.runs.push_back(std::move(run));
+  series.runs.push_back({.scene = scene_.name,
+                         .model = model,
+                         .size = terms,
+                         .variant = std::nullopt,
+                         .time = *time,
+                         .work = result.evaluations,
+                         .rms_over_length = model == Model::exact
+                                                ? reference_.agreement
+                                                : error_of(scene_, result, reference_.rod)});
 }
 
 /// Each is predicted from the one before; what does not fit in, larger ones do not either.
 void StaticRuns::run_polygon(StaticSeries& series, int points) {
   const Model model = series.model;
-  const std::string setting = series.variant.text(model);
+  const std::string name = name_of({.model = model, .size = points, .variant = series.variant});
   const ForceModelSettings settings = series.variant.settings(scene_, points);
   // Longer than most series: what takes more steps is said to be skipped.
   SolveOptions options{.max_steps = 60'000'000 / points};
@@ -183,11 +182,10 @@ void StaticRuns::run_polygon(StaticSeries& series, int points) {
   const double growth = series.last_points > 0 ? std::pow(1.0 * points / series.last_points, 3) : 1;
   Solution solution;
   const std::optional<Timing> time =
-      watch_.time(fmt::format("{}: {}, N = {}, {}", scene_.name, to_string(model), points, setting),
-                  series.last_s * growth, [&] {
-                    solution = model == Model::chain ? solve_chain(scene_, settings, options)
-                                                     : solve_force(scene_, settings, options);
-                  });
+      watch_.time(fmt::format("{}: {}", scene_.name, name), series.last_s * growth, [&] {
+        solution = model == Model::chain ? solve_chain(scene_, settings, options)
+                                         : solve_force(scene_, settings, options);
+      });
   if (!time) {
     series.sizes.clear();
     return;
@@ -197,27 +195,10 @@ void StaticRuns::run_polygon(StaticSeries& series, int points) {
   series.runs.push_back({.scene = scene_.name,
                          .model = model,
                          .size = points,
-                         .setting = setting,
+                         .variant = series.variant,
                          .time = *time,
                          .work = model == Model::chain ? solution.evaluations : solution.steps,
                          .rms_over_length = error_of(scene_, solution.shape, reference_.rod)});
-}
-
-ForceModelSettings ForceVariant::settings(const Scene& scene, int points) const {
-  ForceModelSettings result;
-  result.points = points;
-  result.law = law;
-  result.bookkeeping = bookkeeping;
-  result.stepper = stepper;
-  result.c_c = stretch_share * scene.axial_stiffness();
-  return result;
-}
-
-std::string ForceVariant::text(Model model) const {
-  std::string result = fmt::format("{}, {}", to_string(law), to_string(bookkeeping));
-  if (model == Model::chain) return result;  // no steps, and rigid or nearly so
-  return fmt::format("{}, {}, c_c = {}", result, to_string(stepper),
-                     stretch_share == 1 ? "AE" : fmt::format("AE/{:g}", 1 / stretch_share));
 }
 
 }  // namespace dlo::compare

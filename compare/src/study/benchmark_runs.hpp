@@ -52,17 +52,6 @@ struct ReferenceShape {
 
 [[nodiscard]] ReferenceShape benchmark_reference(const Scene& scene);
 
-/// A force model of the benchmark.
-struct ForceVariant {
-  Law law = Law::hooke;
-  Bookkeeping bookkeeping = Bookkeeping::consistent;
-  StepperName stepper = StepperName::automatic;
-  double stretch_share = 1;  ///< c_c over AE
-
-  [[nodiscard]] ForceModelSettings settings(const Scene& scene, int points) const;
-  [[nodiscard]] std::string text(Model model) const;
-};
-
 /// One model of the static runs over its sizes, the cheapest first.
 struct StaticSeries {
   Model model = Model::exact;

@@ -65,9 +65,7 @@ struct Track {
   [[nodiscard]] static bool looks_at(int frame) { return frame % stride == 0; }
   [[nodiscard]] double square_error(const Scene& scene, const Shape& shape, int frame) const {
     const energy_model::Equilibrium& rod = rods[static_cast<std::size_t>(frame / stride)];
-    const double distance =
-        rms(shape.arc_length, shape.points - rod.sample(shape.arc_length).points) / scene.length;
-    return distance * distance;
+    return std::pow(distance(shape, rod.sample) / scene.length, 2);
   }
 };
 
@@ -97,7 +95,6 @@ BenchmarkRun track_energy(const Scene& scene, int terms, const Track& track,
     if (Track::looks_at(frame)) frames.add_error(track.square_error(scene, {s, points}, frame));
   }
   BenchmarkRun run{.scene = scene.name, .model = Model::energy, .size = terms};
-  if (terms == 0) run.setting = "K as needed";
   frames.add(run);
   return run;
 }
@@ -141,10 +138,7 @@ BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int po
       frames.add_error(track.square_error(scene, now.shape(simulation.points()), frame));
     }
   }
-  BenchmarkRun run{.scene = scene.name,
-                   .model = Model::force,
-                   .size = points,
-                   .setting = variant.text(Model::force)};
+  BenchmarkRun run{.scene = scene.name, .model = Model::force, .size = points, .variant = variant};
   frames.add(run);
   return run;
 }
@@ -170,7 +164,7 @@ std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape
   const auto add_energy = [&](int terms) {
     // Each is about as fast as the one before; the first is short.
     const double predicted = runs.empty() ? 0 : runs.back().time.median_s * options.frames;
-    add(terms > 0 ? fmt::format("energy, K = {}", terms) : "energy, K as needed", predicted, runs,
+    add(name_of({.model = Model::energy, .size = terms}), predicted, runs,
         [&] { return track_energy(scene, terms, track, options); });
   };
   // Of c_c = AE/1000 and AE.
@@ -180,7 +174,7 @@ std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape
     for (std::size_t i = 0; i < shares.size(); ++i) {
       ForceVariant variant;
       variant.stretch_share = shares[i];
-      add(fmt::format("force, N = {}, {}", points, variant.text(Model::force)),
+      add(name_of({.model = Model::force, .size = points, .variant = variant}),
           options.frames * frame_s, force_runs[i],
           [&] { return track_force(scene, variant, points, track, options); });
     }

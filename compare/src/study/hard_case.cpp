@@ -29,8 +29,8 @@ Scene steel_rod(double gamma, const Eigen::Vector3d& direction) {
   scene.file = "hard case";
   scene.length = 0.5;
   scene.diameter = 0.002;
-  scene.material = {
-      .name = "spring_steel", .youngs_modulus = 210e9, .density = 7900, .source = "Table 5"};
+  scene.material = *std::find_if(materials().begin(), materials().end(),
+                                 [](const Material& m) { return m.name == "spring_steel"; });
   scene.gravity = {0, -1, 0};
   scene.gravity *= gamma / scene.gamma();
   scene.grippers = {{.at = 0, .position = {0, 0, 0}, .direction = direction, .where = "hard case"}};
@@ -45,11 +45,15 @@ double soft_stretch_stiffness(const Scene& scene) {
   return std::max(scene.axial_stiffness() / 1000, 1000 * load);
 }
 
-/// As hard_cases says; with `physical` c_c = AE.
-ForceModelSettings settings_for(const Scene& scene, int points, bool physical) {
+enum class Stretch {
+  soft,      // as hard_cases says
+  physical,  // c_c = AE
+};
+
+ForceModelSettings settings_for(const Scene& scene, int points, Stretch stretch) {
   ForceModelSettings settings;
   settings.points = points;
-  if (!physical) settings.c_c = soft_stretch_stiffness(scene);
+  if (stretch == Stretch::soft) settings.c_c = soft_stretch_stiffness(scene);
   return settings;
 }
 
@@ -64,8 +68,8 @@ HardCase make(std::string name, std::string what, const Scene& scene,
 }
 
 HardCase make(std::string name, std::string what, const Scene& scene, int points = 16,
-              bool physical = false) {
-  return make(std::move(name), std::move(what), scene, settings_for(scene, points, physical));
+              Stretch stretch = Stretch::soft) {
+  return make(std::move(name), std::move(what), scene, settings_for(scene, points, stretch));
 }
 
 Eigen::Matrix3Xd rest_shape(const HardCase& hard) {
@@ -152,8 +156,8 @@ HardCase papers_rod() {
   constexpr double orientation = -175 * pi / 180;
   Scene scene = steel_rod(1, {std::cos(orientation), std::sin(orientation), 0});
   scene.gravity = {0, -9.81, 0};
-  ForceModelSettings settings = settings_for(scene, 16, false);
-  settings.law = Law::paper;
+  ForceModelSettings settings = settings_for(scene, 16, Stretch::soft);
+  settings.law = BendingLaw::paper;
   settings.bookkeeping = Bookkeeping::paper;
   return make("the paper's rod", "Table 5 at -175 deg, law and bookkeeping paper", scene, settings);
 }
@@ -161,7 +165,7 @@ HardCase papers_rod() {
 std::vector<HardCase> hard_rods() {
   std::vector<HardCase> cases;
   cases.push_back(make("c_c = AE", "physical stretch stiffness: the stiffest segments for the rod",
-                       horizontal(2), 16, true));
+                       horizontal(2), 16, Stretch::physical));
   cases.push_back(
       make("Gamma = 1e-6", "next to no load; starts bent to half a circle", horizontal(1e-6)));
   cases.back().start = arc(cases.back(), pi);
@@ -237,7 +241,7 @@ std::vector<HardCase> torn_rods() {
   refused.what = "two grippers 20 % further apart than the rod is long: no such rod";
   scene.grippers.back().position.x() = apart;
   try {
-    (void)discretise(scene, settings_for(scene, 16, false));
+    (void)discretise(scene, settings_for(scene, 16, Stretch::soft));
   } catch (const InputError& error) {
     refused.refusal = error.what();
   }

@@ -6,22 +6,6 @@
 
 namespace dlo::compare {
 
-const char* to_string(Outcome outcome) {
-  switch (outcome) {
-    case Outcome::pass:
-      return "pass";
-    case Outcome::wrong:
-      return "wrong";
-    case Outcome::oscillates:
-      return "oscillates";
-    case Outcome::diverges:
-      return "diverges";
-    case Outcome::refused:
-      break;
-  }
-  return "refused";
-}
-
 double largest_distance(const Eigen::Matrix3Xd& points, const Eigen::Matrix3Xd& reference) {
   if (!points.allFinite()) return std::numeric_limits<double>::infinity();
   return (points - reference).colwise().norm().maxCoeff();

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "dlo/compare/choice.hpp"
+
 namespace dlo::compare {
 
 /// What became of a simulation.
@@ -15,7 +17,15 @@ enum class Outcome {
 };
 
 /// In words, for tables.
-[[nodiscard]] const char* to_string(Outcome outcome);
+template <>
+struct Choices<Outcome> {
+  /// In the enumeration's order.
+  static constexpr Choice<Outcome> all[] = {{Outcome::pass, "pass", ""},
+                                            {Outcome::wrong, "wrong", ""},
+                                            {Outcome::oscillates, "oscillates", ""},
+                                            {Outcome::diverges, "diverges", ""},
+                                            {Outcome::refused, "refused", ""}};
+};
 
 /// What is known of a simulation's end.
 struct Trajectory {

@@ -24,7 +24,7 @@ constexpr int looks = 64;              // at a run, and consecutive steps at its
 constexpr double rest_drift = 1e-6;    // what a rod at rest may move, in lengths
 constexpr double rest_energy = 1e-12;  // what its energy may grow, of its size: rounding only
 
-force_model::StepOptions options_for(const HardCase& hard, StepperName stepper) {
+force_model::StepOptions options_for(const HardCase& hard, Stepper stepper) {
   ForceModelSettings settings;
   settings.stepper = stepper;
   return step_options(settings, hard.discretisation);
@@ -101,7 +101,7 @@ void try_other_equilibrium(const force_model::Rod& rod, const Trajectory& trajec
   result.error_over_length = largest_distance(end, other.points) / rod.length();
 }
 
-StabilityResult refused(const HardCase& hard, StepperName stepper) {
+StabilityResult refused(const HardCase& hard, Stepper stepper) {
   StabilityResult result{.name = hard.name, .what = hard.what, .stepper = stepper};
   result.outcome = Outcome::refused;
   result.error_over_length = std::numeric_limits<double>::quiet_NaN();
@@ -110,12 +110,11 @@ StabilityResult refused(const HardCase& hard, StepperName stepper) {
 }
 
 StabilityResult run_against(const energy_model::PolygonResult& reference, const HardCase& hard,
-                            StepperName stepper, const StabilityOptions& options) {
+                            Stepper stepper, const StabilityOptions& options) {
   StabilityResult result{.name = hard.name, .what = hard.what, .stepper = stepper};
   const force_model::Rod rod = hard.rod(1);
   force_model::Simulation simulation(hard.rod(0), hard.start, options_for(hard, stepper));
-  const long budget =
-      stepper == StepperName::automatic ? options.max_steps_auto : options.max_steps;
+  const long budget = stepper == Stepper::automatic ? options.max_steps_auto : options.max_steps;
   const bool rests = hard.steps_at_rest > 0;
   Trajectory trajectory;
   if (move_gripper(hard, simulation)) {
@@ -147,7 +146,7 @@ StabilityResult run_against(const energy_model::PolygonResult& reference, const 
 
 }  // namespace
 
-StabilityResult run_hard_case(const HardCase& hard, StepperName stepper,
+StabilityResult run_hard_case(const HardCase& hard, Stepper stepper,
                               const StabilityOptions& options) {
   if (!hard.refusal.empty()) return refused(hard, stepper);
   return run_against(reference_of(hard), hard, stepper, options);
@@ -177,7 +176,7 @@ std::vector<StabilityResult> stability(const StabilityOptions& options) {
   };
   const auto run = [&](std::size_t i) {
     const HardCase& hard = cases[i / steppers];
-    const StepperName stepper = options.steppers[i % steppers];
+    const Stepper stepper = options.steppers[i % steppers];
     results[i] = hard.refusal.empty()
                      ? run_against(references[i / steppers], hard, stepper, options)
                      : refused(hard, stepper);

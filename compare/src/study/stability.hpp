@@ -23,19 +23,18 @@ struct StabilityOptions {
   std::string name_contains;
   std::vector<std::string> left_out;  ///< names of cases that are not run
   /// with which steppers
-  std::vector<StepperName> steppers = {StepperName::basic, StepperName::limited,
-                                       StepperName::relative, StepperName::dynamic,
-                                       StepperName::automatic};
+  std::vector<Stepper> steppers = {Stepper::basic, Stepper::limited, Stepper::relative,
+                                   Stepper::dynamic, Stepper::automatic};
   Progress progress;  ///< over references and runs; may be empty
 };
 
 /// What one stepper makes of one hard case.
 struct StabilityResult {
-  std::string name;                              ///< of the case
-  std::string what;                              ///< what is hard about it
-  StepperName stepper = StepperName::automatic;  ///< that ran
-  Outcome outcome = Outcome::diverges;           ///< how it ended
-  long steps = 0;                                ///< that it took
+  std::string name;                      ///< of the case
+  std::string what;                      ///< what is hard about it
+  Stepper stepper = Stepper::automatic;  ///< that ran
+  Outcome outcome = Outcome::diverges;   ///< how it ended
+  long steps = 0;                        ///< that it took
   /// Largest distance of a point from the reference over the length [-]; NaN if refused, infinite
   /// if not finite.
   double error_over_length = 0;
@@ -53,7 +52,7 @@ struct StabilityResult {
 /// look at it finds it further than 1e-6 of its length from where it began; the note says what its
 /// energy did, and growth by more than 1e-12 of its size is `wrong`.
 /// @throws ConvergenceError if there is no reference
-[[nodiscard]] StabilityResult run_hard_case(const HardCase& hard, StepperName stepper,
+[[nodiscard]] StabilityResult run_hard_case(const HardCase& hard, Stepper stepper,
                                             const StabilityOptions& options = {});
 
 /// Every hard case with every stepper that the options ask for, the steppers of a case one after

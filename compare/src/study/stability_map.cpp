@@ -18,6 +18,7 @@
 #include "dlo/force_model/simulation.hpp"
 #include "parallel/threads.hpp"
 #include "polygon/energy_problems.hpp"
+#include "polygon/step_constants.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -68,7 +69,7 @@ RodAtRest at_rest(const Scene& scene, double c_c, double c_h) {
   column.c_h = c_h;
   column.fastest_mode = force_model::mode_bounds(result.rod, result.points).fastest;
   column.predicted = force_model::largest_step_factor(column.fastest_mode, c_h);
-  column.table_1 = 0.86 * discretisation.parameters.segment_length / (2 * column.c_c);
+  column.table_1 = table_1_step_share * discretisation.parameters.segment_length / (2 * column.c_c);
   return result;
 }
 

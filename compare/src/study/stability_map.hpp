@@ -38,7 +38,7 @@ struct MapColumn {
   double fastest_mode = 0;  ///< bound at rest, see force_model::mode_bounds [N/m]
   double predicted = 0;     ///< largest stable c_F, see force_model::largest_step_factor [m/N]
   double measured = 0;      ///< NaN if the grid has no bracket for it [m/N]
-  double table_1 = 0;       ///< the paper's own choice, 0.86 L/(2 c_c) [m/N]
+  double table_1 = 0;       ///< the paper's own choice, see table_1_step_share [m/N]
 };
 
 /// Measured and predicted limits of c_F.

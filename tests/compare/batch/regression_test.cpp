@@ -43,7 +43,7 @@ RegressionVerdict verdict(const BaselineCase& before, const BaselineCase& now) {
 TEST(Baseline, ReadsBackWhatItWritesInAnyOrder) {
   BaselineCase strange = entry("a \"quoted\\\" name,\n\ttabbed \x7f, caf\xc3\xa9", 1.0 / 3);
   strange.errors.tip.reset();
-  strange.law = dlo::compare::Law::paper;
+  strange.law = dlo::compare::BendingLaw::paper;
   strange.model = dlo::compare::Model::chain;
   strange.bookkeeping = dlo::compare::Bookkeeping::paper;
   const BaselineCase zero = entry("zero", 0);
@@ -153,7 +153,7 @@ TEST(Regression, ACaseWithOtherSettingsIsChangedWithBothErrors) {
       << points[0].message;
   EXPECT_EQ(points[1].verdict, RegressionVerdict::same);
   BaselineCase law = entry("a", 0.2);
-  law.law = dlo::compare::Law::paper;
+  law.law = dlo::compare::BendingLaw::paper;
   const RegressionResult other = judge_regression({entry("a", 0.1)}, {{law, ""}}).front();
   EXPECT_EQ(other.verdict, RegressionVerdict::changed);
   EXPECT_EQ(other.message.find("law paper (baseline law hooke): RMS 20 %"), 0U) << other.message;
@@ -216,7 +216,7 @@ TEST(Regression, AFingerprintStandsForAllThatTheShapeDependsOn) {
   differs([](auto& s) { s.obstacles.push_back({}); });
   differs([](auto& s) { s.force_model.c_c = 660; });
   differs([](auto& s) { s.force_model.l_s = 660; });
-  differs([](auto& s) { s.force_model.stepper = dlo::compare::StepperName::basic; });
+  differs([](auto& s) { s.force_model.stepper = dlo::compare::Stepper::basic; });
 }
 
 TEST(Regression, ToleratesOnePercentAndAMillionthUnlessToldOtherwise) {
@@ -235,7 +235,7 @@ TEST(Regression, ToleratesOnePercentAndAMillionthUnlessToldOtherwise) {
 TEST(Regression, MeasuresWhatCompareMeasures) {
   dlo::compare::Scene scene = dlo::test::heavy_scene(5, -30);
   scene.length = 2;
-  scene.force_model.law = dlo::compare::Law::paper;
+  scene.force_model.law = dlo::compare::BendingLaw::paper;
   const dlo::compare::Comparison expected = dlo::compare::compare(scene);
   const BaselineCase measured = dlo::compare::measure_case(scene, dlo::compare::Model::force);
   EXPECT_DOUBLE_EQ(measured.errors.rms, expected.deviation.rms_m / 2);

@@ -120,7 +120,7 @@ TEST(SceneTemplate, GivesTheSceneThatAnEditedFileWouldGive) {
   EXPECT_EQ(scene.length, expected.length);
   EXPECT_EQ(*scene.grippers[0].direction, *expected.grippers[0].direction);
   EXPECT_EQ(scene.force_model.points, 24);
-  EXPECT_EQ(scene.force_model.law, dlo::compare::Law::paper);
+  EXPECT_EQ(scene.force_model.law, dlo::compare::BendingLaw::paper);
   EXPECT_EQ(scene.gamma(), expected.gamma());
 }
 
@@ -183,8 +183,8 @@ TEST(Sweep, WritesTheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Sweep, EveryModelFillsItsColumns) {
-  for (const std::string& name : dlo::compare::sweep_model_names()) {
-    const Sweep one = sweep({"gamma=2"}, dlo::compare::sweep_model_from(name));
+  for (const std::string& name : dlo::compare::names<dlo::compare::SweepModel>()) {
+    const Sweep one = sweep({"gamma=2"}, dlo::compare::from_name<dlo::compare::SweepModel>(name));
     const std::string header = one.header();
     const std::string row = one.row(0);
     EXPECT_EQ(std::count(row.begin(), row.end(), ','),

@@ -18,7 +18,7 @@ namespace {
 
 using test::heavy_scene;
 
-std::vector<Scene> scenes_of(const std::vector<double>& gammas, double degrees, Law law) {
+std::vector<Scene> scenes_of(const std::vector<double>& gammas, double degrees, BendingLaw law) {
   std::vector<Scene> scenes;
   for (const double gamma : gammas) {
     scenes.push_back(heavy_scene(gamma, degrees));
@@ -35,8 +35,9 @@ const RuleDeviations& rule_of(const ForceModelFit& fit, StiffnessRule rule) {
 // At N = 16 the physical stiffness is right to 0.1 % up to Gamma = 3.5; beyond, the error of second
 // order is larger (0.38 % at Gamma = 20) and only more points help.
 TEST(ForceModelFit, HookeAtSixteenPointsIsBelowATenthOfAPercentForModerateBending) {
-  const ForceModelFit fit = fit_force_model(
-      scenes_of({0.2, 1}, 0, Law::hooke), scenes_of({0.1, 2, 3.5}, 0, Law::hooke), {.points = 16});
+  const ForceModelFit fit =
+      fit_force_model(scenes_of({0.2, 1}, 0, BendingLaw::hooke),
+                      scenes_of({0.1, 2, 3.5}, 0, BendingLaw::hooke), {.points = 16});
   EXPECT_EQ(fit.settings.points, 16);
   EXPECT_FALSE(fit.settings.c_b);
   EXPECT_LT(fit.worst(), 1e-3);
@@ -46,8 +47,8 @@ TEST(ForceModelFit, HookeAtSixteenPointsIsBelowATenthOfAPercentForModerateBendin
 }
 
 TEST(ForceModelFit, HookeChoosesPointsForTheTargetAndKeepsItOnHoldOutScenes) {
-  const std::vector<Scene> scenes = scenes_of({0.2, 1, 5, 20}, 0, Law::hooke);
-  const std::vector<Scene> holdouts = scenes_of({0.1, 2, 10, 20}, -30, Law::hooke);
+  const std::vector<Scene> scenes = scenes_of({0.2, 1, 5, 20}, 0, BendingLaw::hooke);
+  const std::vector<Scene> holdouts = scenes_of({0.1, 2, 10, 20}, -30, BendingLaw::hooke);
   const ForceModelFit fit = fit_force_model(scenes, holdouts);
   EXPECT_NEAR(fit.order, 2, 0.1);
   EXPECT_LE(fit.worst(), 1e-3);
@@ -62,7 +63,7 @@ TEST(ForceModelFit, HookeChoosesPointsForTheTargetAndKeepsItOnHoldOutScenes) {
 }
 
 TEST(ForceModelFit, StretchTakesATenthOfTheTargetAtMost) {
-  const std::vector<Scene> scenes = scenes_of({1, 8}, -60, Law::hooke);
+  const std::vector<Scene> scenes = scenes_of({1, 8}, -60, BendingLaw::hooke);
   const ForceModelFit fit = fit_force_model(scenes, {}, {.points = 16, .target = 1e-2});
   const RuleDeviations& chain = rule_of(fit, StiffnessRule::physical);
   for (std::size_t i = 0; i < scenes.size(); ++i) {
@@ -73,8 +74,8 @@ TEST(ForceModelFit, StretchTakesATenthOfTheTargetAtMost) {
 }
 
 TEST(ForceModelFit, FittedStiffnessOfThePaperLawIsTheBest) {
-  const std::vector<Scene> scenes = scenes_of({0.5, 2, 8}, 0, Law::paper);
-  const ForceModelFit fit = fit_force_model(scenes, scenes_of({4}, 20, Law::paper));
+  const std::vector<Scene> scenes = scenes_of({0.5, 2, 8}, 0, BendingLaw::paper);
+  const ForceModelFit fit = fit_force_model(scenes, scenes_of({4}, 20, BendingLaw::paper));
   ASSERT_EQ(fit.rules.size(), 4U);
   const RuleDeviations& fitted = rule_of(fit, StiffnessRule::fitted);
   const RuleDeviations& alone = rule_of(fit, StiffnessRule::fitted_alone);
@@ -108,16 +109,16 @@ TEST(ForceModelFit, FittedStiffnessOfThePaperLawIsTheBest) {
 }
 
 TEST(ForceModelFit, SteppedModelRestsWhereTheChainDoes) {
-  for (const Law law : {Law::paper, Law::hooke}) {
+  for (const BendingLaw law : {BendingLaw::paper, BendingLaw::hooke}) {
     const ForceModelFit fit =
         fit_force_model(scenes_of({0.5, 5}, 0, law), scenes_of({2}, -45, law), {.points = 12});
     const RuleDeviations& chain =
-        rule_of(fit, law == Law::paper ? StiffnessRule::fitted : StiffnessRule::physical);
+        rule_of(fit, law == BendingLaw::paper ? StiffnessRule::fitted : StiffnessRule::physical);
     for (std::size_t i = 0; i < fit.scenes.size(); ++i) {
       EXPECT_NEAR(fit.stepped_rms_over_length[i], chain.rms_over_length[i], 1e-4);
       EXPECT_GT(fit.steps[i], 0);
     }
-    EXPECT_EQ(fit.settings.stepper, StepperName::dynamic);
+    EXPECT_EQ(fit.settings.stepper, Stepper::dynamic);
     EXPECT_GT(*fit.settings.c_F, 0);
     EXPECT_LT(*fit.settings.c_h, 1);
   }
@@ -132,8 +133,8 @@ TEST(ForceModelFit, SeveralGrippersAreFittedToo) {
 }
 
 TEST(ForceModelFit, RefusesWhatCannotBeFitted) {
-  const std::vector<Scene> hooke = scenes_of({1}, 0, Law::hooke);
-  const std::vector<Scene> paper = scenes_of({1}, 0, Law::paper);
+  const std::vector<Scene> hooke = scenes_of({1}, 0, BendingLaw::hooke);
+  const std::vector<Scene> paper = scenes_of({1}, 0, BendingLaw::paper);
   EXPECT_THROW((void)fit_force_model({}, {}), InputError);
   EXPECT_THROW((void)fit_force_model(hooke, paper), InputError);
   EXPECT_THROW((void)fit_force_model(hooke, {}, {.target = 0}), InputError);
@@ -146,7 +147,7 @@ TEST(Parameters, AreReadStrictly) {
       "c_h = 0.9\nl_s = 0.01\nc_c = 100\n[derived]\nanything = 1\n",
       "p.toml");
   EXPECT_EQ(settings.points, 9);
-  EXPECT_EQ(settings.law, Law::paper);
+  EXPECT_EQ(settings.law, BendingLaw::paper);
   EXPECT_EQ(settings.c_b, 3.5);
   EXPECT_EQ(settings.c_F, 1e-4);
   EXPECT_THROW((void)parse_parameters("points = 9\n", "p.toml"), InputError);

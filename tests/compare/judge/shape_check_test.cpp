@@ -23,7 +23,7 @@ using test::heavy_scene;
 // What `compare` says of the force model's shape, `check` says of the file that `solve` writes.
 TEST(ShapeCheck, AgreesWithCompareOnTheSameShape) {
   Scene scene = heavy_scene(3, 10);
-  scene.force_model.law = Law::paper;
+  scene.force_model.law = BendingLaw::paper;
   scene.force_model.c_c = scene.axial_stiffness() / 100;
   const Comparison comparison = compare(scene);
   const Shape& shape = comparison.force.shape;

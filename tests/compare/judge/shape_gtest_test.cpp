@@ -17,9 +17,9 @@
 namespace {
 
 using dlo::compare::IsShapeOf;
-using dlo::compare::judge_shape;
 using dlo::compare::Scene;
 using dlo::compare::Shape;
+using dlo::compare::shape_near;
 using testing::HasSubstr;
 using testing::Not;
 
@@ -56,7 +56,7 @@ TEST(ShapeMatcher, SaysWhereAndHowFar) {
 
 TEST(ShapeMatcher, SaysWhatIsNoShape) {
   const auto explanation = [](const Shape& shape) {
-    const auto verdict = judge_shape(shape, bent(), 0.5);
+    const auto verdict = shape_near(shape, bent(), 0.5);
     EXPECT_FALSE(verdict.near);
     return verdict.explanation;
   };
@@ -78,7 +78,7 @@ TEST(ShapeMatcher, SaysWhatIsNoShape) {
 
 TEST(ShapeMatcher, RefusesAToleranceThatIsNone) {
   for (const double tolerance : {0.0, -1.0, static_cast<double>(NAN)}) {
-    EXPECT_THROW((void)judge_shape(exact_shape(), bent(), tolerance), std::invalid_argument);
+    EXPECT_THROW((void)shape_near(exact_shape(), bent(), tolerance), std::invalid_argument);
   }
 }
 

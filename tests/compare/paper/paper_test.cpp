@@ -47,7 +47,7 @@ TEST(PaperReport, MeasuresTheEffectiveModulusAtRestAndOnTheWay) {
   ASSERT_EQ(report.cases.size(), printed.size());
   for (std::size_t i = 0; i < printed.size(); ++i) {
     const PaperCase& entry = report.cases[i];
-    EXPECT_EQ(entry.printed_weight, i >= 3);
+    EXPECT_EQ(entry.weight == PaperWeight::printed, i >= 3);
     EXPECT_NEAR(entry.rest.effective_modulus.ratio, printed[i].ratio, 0.5001e-4) << i;
     EXPECT_NEAR(100 * entry.rest.effective_modulus.rms_m / 0.5, printed[i].residual, 0.5001e-2)
         << i;
@@ -68,7 +68,7 @@ TEST(PaperReport, MeasuresTheEffectiveModulusAtRestAndOnTheWay) {
               std::pow(10, 2. / 3), 0.5);
   // Hooke's law with consistent books is the rod.
   const ModulusVariant& hooke = report.variants.back();
-  EXPECT_EQ(hooke.settings.law, Law::hooke);
+  EXPECT_EQ(hooke.settings.law, BendingLaw::hooke);
   EXPECT_EQ(hooke.settings.bookkeeping, Bookkeeping::consistent);
   EXPECT_NEAR(hooke.modulus.ratio, 1, 0.02);
   EXPECT_FALSE(report.assumptions.empty());

@@ -2,11 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include "dlo/compare/bending_rule.hpp"
 #include "dlo/compare/chain.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force.hpp"
 #include "dlo/compare/force_model_settings.hpp"
-#include "dlo/compare/paper_joint.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "scenes.hpp"

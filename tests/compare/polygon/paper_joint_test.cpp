@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "dlo/compare/bending_rule.hpp"
 #include "dlo/compare/chain.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/effective_modulus.hpp"
@@ -98,7 +99,7 @@ TEST(EquivalentModulus, PredictsTheBestFitOfACantileverUnderLittleWeight) {
   for (const int points : {16, 64}) {
     for (const double gamma : {1e-4, 1e-3}) {
       dlo::compare::Scene scene = dlo::test::heavy_scene(gamma, 0);
-      scene.force_model.law = dlo::compare::Law::paper;
+      scene.force_model.law = dlo::compare::BendingLaw::paper;
       scene.force_model.points = points;
       scene.force_model.design_curvature = 2.5;
       const dlo::compare::Solution chain = dlo::compare::solve(scene, dlo::compare::Model::chain);

@@ -41,7 +41,7 @@ ReportOptions small_report() {
 SceneFile heavy_file(const std::string& name = "heavy") {
   SceneFile file{.name = "heavy.toml", .text = "# heavy", .scene = test::heavy_scene(2, -30)};
   file.scene.name = name;
-  file.scene.force_model.law = Law::paper;
+  file.scene.force_model.law = BendingLaw::paper;
   file.scene.force_model.bookkeeping = Bookkeeping::paper;
   file.scene.force_model.points = 8;
   return file;
@@ -124,7 +124,7 @@ TEST_F(ReportFolder, ShowsTheNumbersOfTheLibrary) {
   const SceneFile file = heavy_file();
   (void)write_report(make_report({file}, small_report()), {}, folder());
   Scene better = file.scene;
-  better.force_model.law = Law::hooke;
+  better.force_model.law = BendingLaw::hooke;
   better.force_model.bookkeeping = Bookkeeping::consistent;
   const std::string html = page();
   for (const Scene& scene : {file.scene, better}) {
@@ -325,7 +325,7 @@ TEST_F(ReportFolder, RefusesPlacesThatCannotBeReplaced) {
 
 TEST_F(ReportFolder, SaysWhatDidNotConverge) {
   SceneFile file = heavy_file();
-  file.scene.force_model.stepper = StepperName::basic;
+  file.scene.force_model.stepper = Stepper::basic;
   file.scene.force_model.c_F = 1;  // a metre for each newton
   const Report report = make_report({file}, small_report());
   ASSERT_FALSE(report.failures.empty());

@@ -70,8 +70,8 @@ c_h = 0.5
   EXPECT_EQ(scene.obstacles.at(0).normal, Eigen::Vector3d(0, 1, 0));
   EXPECT_TRUE(std::isinf(scene.obstacles.at(0).stiffness));
   EXPECT_EQ(scene.force_model.points, 20);
-  EXPECT_EQ(scene.force_model.law, Law::paper);
-  EXPECT_EQ(scene.force_model.stepper, StepperName::dynamic);
+  EXPECT_EQ(scene.force_model.law, BendingLaw::paper);
+  EXPECT_EQ(scene.force_model.stepper, Stepper::dynamic);
   EXPECT_DOUBLE_EQ(*scene.force_model.c_h, 0.5);
 }
 

@@ -11,6 +11,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape_check.hpp"
+#include "dlo/compare/shape_verdict.hpp"
 #include "dlo/compare/solution.hpp"
 #include "measured_shapes.hpp"
 #include "scenes.hpp"

@@ -84,7 +84,7 @@ TEST(Solution, CurvatureAndTensionAreThoseOfTheGrippers) {
 TEST(Solution, AFinePolygonHasTheCurvatureOfTheRod) {
   Scene scene = loaded_arch();
   scene.force_model.points = 160;
-  scene.force_model.law = Law::hooke;
+  scene.force_model.law = BendingLaw::hooke;
   scene.force_model.bookkeeping = Bookkeeping::consistent;
   const Solution chain = solve(scene, Model::chain);
   const std::vector<double>& s = chain.shape.arc_length;

@@ -285,7 +285,7 @@ TEST(PaperLaw, HasATorqueOfItsOwnWhereSegmentsDiffer) {
   // Two clamps leave one part of the rod, of equal segments: chain and force model are one model
   // but for the stretch of the segments, which makes them a little unequal.
   Scene equal = two_clamps(10, {0.8, 0, 0});
-  equal.force_model.law = Law::paper;
+  equal.force_model.law = BendingLaw::paper;
   const auto distance = [](const Scene& scene) {
     const Solution chain = solve_chain(scene, scene.force_model);
     const Solution force = solve_force(scene, scene.force_model);
@@ -293,7 +293,7 @@ TEST(PaperLaw, HasATorqueOfItsOwnWhereSegmentsDiffer) {
   };
   EXPECT_LT(distance(equal), 1e-6);
   Scene unequal = two_pins();
-  unequal.force_model.law = Law::paper;
+  unequal.force_model.law = BendingLaw::paper;
   const double apart = distance(unequal);
   EXPECT_GT(apart, 1e-6);
   EXPECT_LT(apart, 1e-3);
@@ -312,7 +312,7 @@ TEST(Chain, LiesOnAFloorBelowItsPin) {
   for (const int points : {16, 64, 240}) {
     Scene scene = pin_above_floor();
     scene.force_model.points = points;
-    scene.force_model.law = Law::hooke;
+    scene.force_model.law = BendingLaw::hooke;
     scene.force_model.bookkeeping = Bookkeeping::consistent;
     const Solution chain = solve_chain(scene, scene.force_model);
     const double weight = 100 * scene.bending_stiffness();
@@ -334,7 +334,7 @@ TEST(Chain, LiesOnAFloorBelowItsPin) {
 Scene grips_near_each_other() {
   Scene scene = heavy_scene(5, 0);
   scene.grippers.push_back({.at = 0.186, .position = {0.12, 0.05, 0}});
-  scene.force_model.law = Law::hooke;
+  scene.force_model.law = BendingLaw::hooke;
   scene.force_model.bookkeeping = Bookkeeping::consistent;
   return scene;
 }
@@ -396,7 +396,7 @@ TEST(Force, RestsInTheStateOfTheChain) {
       {.at = 0.567,
        .position = {0.3675062348836809, 0.4192120289768312, -0.2173591936662226},
        .direction = Vector3d(-0.37780616912170295, -0.8845221558642805, -0.2736476829041102)}};
-  scene.force_model.law = Law::hooke;
+  scene.force_model.law = BendingLaw::hooke;
   scene.force_model.bookkeeping = Bookkeeping::consistent;
   for (const int points : {9, 17}) {
     scene.force_model.points = points;

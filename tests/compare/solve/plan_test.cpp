@@ -252,7 +252,7 @@ TEST(Plan, BoundsThePolygonOnTheWayToBucklingOrSaysThatItDoesNot) {
     for (const double degrees : {85.0, 89.0, 89.99}) {
       Scene scene = heavy_scene(gamma, degrees);
       scene.force_model.points = 12;
-      scene.force_model.law = Law::hooke;
+      scene.force_model.law = BendingLaw::hooke;
       scene.force_model.bookkeeping = Bookkeeping::consistent;
       const double bound = make_plan(scene).bound("polygon");
       if (std::isinf(bound)) continue;

@@ -63,7 +63,7 @@ TEST(Benchmark, RunsEveryModelOrSaysThatItDidNotAndItsAnswersFitTheRows) {
         EXPECT_FALSE(run.front && beaten);
         // Of one chain, more points are nearer: second order, or first with the paper's books.
         if (run.model == Model::chain && other.model == Model::chain &&
-            run.setting == other.setting && run.setting.starts_with("hooke") &&
+            run.variant == other.variant && run.variant->law == BendingLaw::hooke &&
             run.size == 2 * other.size) {
           EXPECT_LT(run.rms_over_length, other.rms_over_length / 3);
         }

@@ -80,7 +80,7 @@ TEST(HardCases, AreLeftOutByName) {
                                     .max_steps_auto = 1,
                                     .name_contains = "crumpled",
                                     .left_out = {"crumpled 2", "N = 1000"},
-                                    .steppers = {StepperName::automatic}};
+                                    .steppers = {Stepper::automatic}};
   const std::vector<StabilityResult> results = stability(options);
   ASSERT_EQ(results.size(), 2U);
   EXPECT_EQ(results[0].name, "crumpled 1");
@@ -105,7 +105,7 @@ TEST_P(AutomaticStepper, PassesTheHardCaseOrRefusesIt) {
   StabilityOptions options;
   options.max_steps_auto = 1'000'000;
   const HardCase hard = hard_cases(200'000).at(static_cast<std::size_t>(GetParam()));
-  const StabilityResult result = run_hard_case(hard, StepperName::automatic, options);
+  const StabilityResult result = run_hard_case(hard, Stepper::automatic, options);
   RecordProperty("case", hard.name);
   RecordProperty("steps", static_cast<int>(result.steps));
   EXPECT_EQ(!hard.refusal.empty(), hard.name == "pulled too far") << hard.name;
@@ -134,7 +134,7 @@ TEST(HardCases, AThousandPointsCreepOnAndAreNotSaidToRest) {
   const std::vector<HardCase> cases = hard_cases(1);
   const auto found = std::find_if(cases.begin(), cases.end(), needs_millions_of_steps);
   ASSERT_NE(found, cases.end());
-  const StabilityResult result = run_hard_case(*found, StepperName::automatic, options);
+  const StabilityResult result = run_hard_case(*found, Stepper::automatic, options);
   EXPECT_EQ(result.outcome, Outcome::wrong);
   EXPECT_EQ(result.note, "still creeping");
   EXPECT_FALSE(result.at_rest);
@@ -155,7 +155,7 @@ TEST(HardCases, AnotherEquilibriumPassesAndSaysSo) {
     for (Eigen::Index i = 2; i < hard.start.cols(); ++i) {
       hard.start(0, i) += lean * (hard.start(1, i) - hard.start(1, 0));
     }
-    const StabilityResult result = run_hard_case(hard, StepperName::automatic, {});
+    const StabilityResult result = run_hard_case(hard, Stepper::automatic, {});
     EXPECT_EQ(result.outcome, Outcome::pass) << result.note;
     EXPECT_TRUE(result.at_rest);
     EXPECT_LT(result.error_over_length, 1e-5);
@@ -190,7 +190,7 @@ TEST(Stability, ThePapersStepperBlowsUpBetweenUnequalSegments) {
   // Its c_F knows the mean length only.
   StabilityOptions options;
   options.name_contains = "unequal segments";
-  options.steppers = {StepperName::basic};
+  options.steppers = {Stepper::basic};
   EXPECT_EQ(stability(options).front().outcome, Outcome::diverges);
 }
 
@@ -229,7 +229,7 @@ TEST(StabilityMap, PredictionIsSafeAndTightForHookeanRods) {
 
 TEST(StabilityMap, PredictionIsSafeForThePapersLawAndSeveralGrips) {
   Scene paper = test::heavy_scene(2, -175);
-  paper.force_model.law = Law::paper;
+  paper.force_model.law = BendingLaw::paper;
   paper.force_model.bookkeeping = Bookkeeping::paper;
   expect_safe_and_tight("paper_c_c", paper, MapAxis::c_c, 1.1, 4);
   Scene grips = test::heavy_scene(20, 0);

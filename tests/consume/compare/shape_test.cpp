@@ -11,7 +11,8 @@ using namespace dlo::compare;
 
 Scene installed_scene() {
   Scene scene = load_scene(DLO_DATA_DIR "/scenes/spring_steel_175.toml");
-  scene.force_model = {.points = 32, .law = Law::hooke, .bookkeeping = Bookkeeping::consistent};
+  scene.force_model = {
+      .points = 32, .law = BendingLaw::hooke, .bookkeeping = Bookkeeping::consistent};
   return scene;
 }
 

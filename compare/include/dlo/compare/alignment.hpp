@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_file.hpp"
@@ -29,18 +30,27 @@ enum class ArcLengths {
               ///< the curve are invisible.
 };
 
-/// Names of choices, as options spell them.
-[[nodiscard]] const std::vector<std::string>& pose_names();
-/// The same of arc lengths.
-[[nodiscard]] const std::vector<std::string>& arc_lengths_names();
-/// Name of a choice.
-[[nodiscard]] const char* to_string(PoseFreedom pose);
-/// Name of a rule.
-[[nodiscard]] const char* to_string(ArcLengths arc_lengths);
-/// @throws InputError if there is no such choice
-[[nodiscard]] PoseFreedom pose_from(const std::string& name);
-/// @throws InputError if there is no such rule
-[[nodiscard]] ArcLengths arc_lengths_from(const std::string& name);
+/// Of the frame.
+template <>
+struct Choices<PoseFreedom> {
+  /// In the enumeration's order.
+  static constexpr Choice<PoseFreedom> all[] = {
+      {PoseFreedom::known, "known", "the scene's frame"},
+      {PoseFreedom::translation, "translation", "all directions are known"},
+      {PoseFreedom::upright, "upright", "the vertical is known"},
+      {PoseFreedom::rigid, "rigid", "nothing is known"}};
+};
+
+/// Of the arc lengths.
+template <>
+struct Choices<ArcLengths> {
+  /// In the enumeration's order.
+  static constexpr Choice<ArcLengths> all[] = {
+      {ArcLengths::automatic, "auto", "file if there is a column s, else nearest"},
+      {ArcLengths::file, "file", "its column s"},
+      {ArcLengths::chord, "chord", "lengths along the polyline of a whole rod"},
+      {ArcLengths::nearest, "nearest", "nearest points of the rod"}};
+};
 
 /// Direction of "up" for PoseFreedom::upright.
 /// @throws InputError if the pose is `upright` and the scene has no gravity

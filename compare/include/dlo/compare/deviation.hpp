@@ -38,6 +38,9 @@ struct Deviation {
 /// @param difference  at the arc lengths, 3 x M
 [[nodiscard]] double rms(const std::vector<double>& arc_length, const Eigen::Matrix3Xd& difference);
 
+/// RMS distance of a shape from a reference at its own arc lengths [m].
+[[nodiscard]] double distance(const Shape& shape, const Reference& reference);
+
 /// The straight rod of a scene with a single clamp, at arc lengths s [m], 3 x M. Several grips, or
 /// a pin, leave no straight shape to start from: nothing.
 [[nodiscard]] std::optional<Eigen::Matrix3Xd> straight_rod(const Scene& scene,

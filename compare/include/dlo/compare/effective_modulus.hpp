@@ -4,6 +4,7 @@
 #include <limits>
 #include <string>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
@@ -24,7 +25,15 @@ enum class Optimum {
 };
 
 /// In words, for messages.
-[[nodiscard]] const char* to_string(Optimum optimum);
+template <>
+struct Choices<Optimum> {
+  /// In the enumeration's order.
+  static constexpr Choice<Optimum> all[] = {{Optimum::none, "none", ""},
+                                            {Optimum::clear, "clear", ""},
+                                            {Optimum::partial, "partial", ""},
+                                            {Optimum::flat, "flat", ""},
+                                            {Optimum::one_sided, "one-sided", ""}};
+};
 
 /// E* itself is told, whether or not it explains the deviation.
 [[nodiscard]] constexpr bool is_told(Optimum optimum) {

@@ -12,6 +12,20 @@ class InputError : public std::runtime_error {
   /// @param message  a piece of the input that it quotes may hold control characters; each becomes
   /// a "?", so that a malformed file neither breaks the line nor steers a terminal
   explicit InputError(const std::string& message);
+
+  /// Of a key in a file: the message is "where: key" and the problem.
+  /// @param key  its full name, such as rod.length
+  /// @param problem  what follows the key: ": missing ..." or " = 3 mm: out of range ..."
+  InputError(const std::string& where, const std::string& key, const std::string& problem);
+
+  /// The key at fault; empty where it is none of a file's.
+  [[nodiscard]] const std::string& key() const { return key_; }
+  /// What follows the key in the message.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
+
+ private:
+  std::string key_;
+  std::string problem_;
 };
 
 /// A solver did not converge; the message says which one and why.

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
@@ -22,7 +23,16 @@ enum class StiffnessRule {
 };
 
 /// In words, for tables.
-[[nodiscard]] const char* to_string(StiffnessRule rule);
+template <>
+struct Choices<StiffnessRule> {
+  /// In the enumeration's order.
+  static constexpr Choice<StiffnessRule> all[] = {
+      {StiffnessRule::physical, "physical", ""},
+      {StiffnessRule::formula_21, "formula_21", ""},
+      {StiffnessRule::moment_matched, "moment_matched", ""},
+      {StiffnessRule::fitted, "fitted", ""},
+      {StiffnessRule::fitted_alone, "fitted_alone", ""}};
+};
 
 /// What parameters are wanted.
 struct ForceModelFitOptions {

@@ -2,12 +2,16 @@
 
 #include <optional>
 #include <string>
-#include <vector>
+
+#include "dlo/compare/bending_rule.hpp"
+#include "dlo/compare/choice.hpp"
+#include "dlo/force_model/bending_law.hpp"
+#include "dlo/force_model/stepper.hpp"
 
 namespace dlo::compare {
 
-/// The joints' law of the force model, see force_model::BendingLaw.
-enum class Law { paper, hooke };
+using force_model::BendingLaw;
+using force_model::Stepper;
 
 /// Where the polygon's points and weights are along the rod.
 enum class Bookkeeping {
@@ -15,33 +19,41 @@ enum class Bookkeeping {
   consistent,  ///< the gripper holds the middle of a segment, weights w L, w L/2 at a free end
 };
 
-/// The force model's steppers, see force_model::Stepper.
-enum class StepperName { basic, limited, relative, dynamic, automatic };
-
-/// How c_b of the paper's law follows from the material.
-enum class BendingRule {
-  formula_21,      ///< the paper's: EI k^2 / ((1 - cos a) sin(a/2)), a = L k
-  moment_matched,  ///< the physical moment at curvature k: Formula 21 divided by a
+/// Of the joints' law.
+template <>
+struct Choices<BendingLaw> {
+  /// In the enumeration's order.
+  static constexpr Choice<BendingLaw> all[] = {{BendingLaw::paper, "paper", "cubic in the angle"},
+                                               {BendingLaw::hooke, "hooke", "as a rod bends"}};
 };
 
-/// As a scene file spells it.
-[[nodiscard]] const char* to_string(Law law);
+/// Of the bookkeeping.
+template <>
+struct Choices<Bookkeeping> {
+  /// In the enumeration's order.
+  static constexpr Choice<Bookkeeping> all[] = {
+      {Bookkeeping::paper, "paper", "as printed"},
+      {Bookkeeping::consistent, "consistent", "second order in the segment length"}};
+};
 
-/// As a scene file spells it.
-[[nodiscard]] const char* to_string(Bookkeeping bookkeeping);
-
-/// As a scene file spells it.
-[[nodiscard]] const char* to_string(StepperName stepper);
-
-/// As a scene file spells it.
-[[nodiscard]] const char* to_string(BendingRule rule);
+/// Of the stepper.
+template <>
+struct Choices<Stepper> {
+  /// In the enumeration's order.
+  static constexpr Choice<Stepper> all[] = {
+      {Stepper::basic, "basic", "c_F F"},
+      {Stepper::limited, "limited", "no point further than l_s"},
+      {Stepper::relative, "relative", "or than l_s against its neighbour"},
+      {Stepper::dynamic, "dynamic", "relative, plus c_h of the last movement"},
+      {Stepper::automatic, "auto", "finds its own constants"}};
+};
 
 /// Settings of the force model. What is not given is derived from the scene.
 struct ForceModelSettings {
   int points = 16;                                     ///< N
-  Law law = Law::hooke;                                ///< of bending
+  BendingLaw law = BendingLaw::hooke;                  ///< of bending
   Bookkeeping bookkeeping = Bookkeeping::consistent;   ///< of the polygon
-  StepperName stepper = StepperName::automatic;        ///< of the simulation
+  Stepper stepper = Stepper::automatic;                ///< of the simulation
   BendingRule bending_rule = BendingRule::formula_21;  ///< of the law `paper`
   std::optional<double> design_curvature;              ///< k of Formula 21 [1/m]
   std::optional<double> point_weight;  ///< of every point, bookkeeping `paper` only [N]
@@ -50,6 +62,9 @@ struct ForceModelSettings {
   std::optional<double> c_F;           ///< [m/N]
   std::optional<double> c_h;           ///< [-]
   std::optional<double> l_s;           ///< [m]
+
+  /// In every field.
+  bool operator==(const ForceModelSettings&) const = default;
 };
 
 /// @throws InputError, beginning with `where`, if settings contradict each other, such as a c_F for
@@ -63,29 +78,5 @@ void check(const ForceModelSettings& settings, const std::string& where);
 
 /// Reads such a file. @throws InputError as parse_parameters, or if it cannot be read
 [[nodiscard]] ForceModelSettings load_parameters(const std::string& path);
-
-/// Names of choices, as scene files and options spell them.
-[[nodiscard]] const std::vector<std::string>& law_names();
-
-/// Of Bookkeeping.
-[[nodiscard]] const std::vector<std::string>& bookkeeping_names();
-
-/// Of StepperName.
-[[nodiscard]] const std::vector<std::string>& stepper_names();
-
-/// Of BendingRule.
-[[nodiscard]] const std::vector<std::string>& bending_rule_names();
-
-/// @throws InputError if there is no such law
-[[nodiscard]] Law law_from(const std::string& name);
-
-/// @throws InputError if there is no such bookkeeping
-[[nodiscard]] Bookkeeping bookkeeping_from(const std::string& name);
-
-/// @throws InputError if there is no such stepper
-[[nodiscard]] StepperName stepper_from(const std::string& name);
-
-/// @throws InputError if there is no such rule
-[[nodiscard]] BendingRule bending_rule_from(const std::string& name);
 
 }  // namespace dlo::compare

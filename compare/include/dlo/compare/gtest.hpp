@@ -27,11 +27,11 @@ namespace dlo::compare {
 inline testing::AssertionResult assert_shape_near(const char* shape_text, const char* scene_text,
                                                   const char* tolerance_text, const Shape& shape,
                                                   const Scene& scene, double tolerance) {
-  const ShapeVerdict verdict = judge_shape(shape, scene, tolerance);
-  if (verdict.near) return testing::AssertionSuccess();
+  const ShapeNear result = shape_near(shape, scene, tolerance);
+  if (result.near) return testing::AssertionSuccess();
   return testing::AssertionFailure()
          << shape_text << " is not the shape of " << scene_text << " (" << scene.name << ") within "
-         << tolerance_text << ":\n  " << verdict.explanation;
+         << tolerance_text << ":\n  " << result.explanation;
 }
 
 /// What IsShapeOf gives.
@@ -45,9 +45,9 @@ class ShapeMatcher {
 
   /// Whether the shape is the scene's; streams where it is worst.
   bool MatchAndExplain(const Shape& shape, std::ostream* explanation) const {
-    const ShapeVerdict verdict = judge_shape(shape, scene_, tolerance_);
-    if (explanation != nullptr) *explanation << verdict.explanation;
-    return verdict.near;
+    const ShapeNear result = shape_near(shape, scene_, tolerance_);
+    if (explanation != nullptr) *explanation << result.explanation;
+    return result.near;
   }
   /// What is expected.
   void DescribeTo(std::ostream* out) const {
@@ -64,7 +64,7 @@ class ShapeMatcher {
 };
 
 // GoogleTest's names for what GoogleTest calls and for what stands beside its matchers.
-/// EXPECT_THAT(shape, IsShapeOf(scene, 1e-3)): see judge_shape.
+/// EXPECT_THAT(shape, IsShapeOf(scene, 1e-3)): see shape_near.
 // NOLINTNEXTLINE(readability-identifier-naming)
 inline ShapeMatcher IsShapeOf(Scene scene, double tolerance) {
   return {std::move(scene), tolerance};

@@ -11,6 +11,9 @@ struct Material {
   double youngs_modulus = 0;  ///< E [Pa]
   double density = 0;         ///< rho [kg/m^3]
   std::string source;         ///< where the numbers come from
+
+  /// In every field.
+  bool operator==(const Material&) const = default;
 };
 
 /// The materials of data/materials.toml, in the file's order; built into the library.

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "dlo/compare/force_model_settings.hpp"
-
 namespace dlo::compare {
 
 /// The paper's bending law as a rod: which stiffness does a joint of it stand for?
@@ -45,13 +43,5 @@ namespace dlo::compare {
 
 /// E_equiv I, (2) [N m^2]; 0 at angle 0.
 [[nodiscard]] double equivalent_bending_stiffness(double c_b, double length, double angle);
-
-/// c_b [N] of the paper's law for a material.
-///     formula_21:      EI k^2 / ((1 - cos a) sin(a/2)),  a = L k (Formula 21 with L = l/(N-1))
-///     moment_matched:  the same over a, so that the joint's moment at curvature k is EI k
-/// @param bending_stiffness  EI [N m^2], > 0;  @param curvature  k [1/m], > 0
-/// @param segment_length     L [m], > 0, with L k < pi
-[[nodiscard]] double paper_bending_stiffness(BendingRule rule, double bending_stiffness,
-                                             double curvature, double segment_length);
 
 }  // namespace dlo::compare

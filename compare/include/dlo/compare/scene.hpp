@@ -17,12 +17,18 @@ struct Gripper {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< unit; a clamp has one, a pin has none
   std::string where;                                   ///< "file:line", for messages
+
+  /// In every field.
+  bool operator==(const Gripper&) const = default;
 };
 
 /// A force that keeps its direction.
 struct PointLoad {
   double at = 0;                                    ///< arc length [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
+
+  /// In every field.
+  bool operator==(const PointLoad&) const = default;
 };
 
 /// A half-space that the rod stays out of.
@@ -31,6 +37,9 @@ struct Obstacle {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< unit, to the free side
   /// Force per depth and per length of rod [N/m^2]; infinite: rigid.
   double stiffness = std::numeric_limits<double>::infinity();
+
+  /// In every field.
+  bool operator==(const Obstacle&) const = default;
 };
 
 /// A physical scene in SI units.
@@ -58,6 +67,9 @@ struct Scene {
   /// Whether there is one.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }
   [[nodiscard]] int spans() const;  ///< parts that the clamps cut the rod into
+
+  /// In every field.
+  bool operator==(const Scene&) const = default;
 };
 
 }  // namespace dlo::compare

@@ -22,7 +22,7 @@ struct ShapeCheckOptions {
   SolveOptions solve;                              ///< limits of the solvers
 };
 
-/// A measured shape against the energy model of its scene, without obstacles out of reach.
+/// A measured shape against the energy model of its scene.
 struct ShapeCheck {
   std::string scene;    ///< its name
   std::string file;     ///< the shape's name
@@ -57,31 +57,6 @@ struct ShapeCheck {
   EffectiveModulus effective_modulus;  ///< aligned anew for each modulus, in the same state
   double modulus = std::numeric_limits<double>::quiet_NaN();  ///< E* [Pa]; NaN without one
 };
-
-/// What a deviation is held against.
-struct ShapeTolerance {
-  double allowed_m = 0;           ///< largest deviation that passes [m], > 0
-  bool largest = false;           ///< the largest deviation is held against it, not the RMS
-  double least_seen_share = 0.5;  ///< of the rod that the points have to tell [-], 0 to 1
-  /// The file is said to be a part of the rod: only what it has is judged. Else it is the whole
-  /// rod, and what is missing counts.
-  bool part = false;
-};
-
-/// Whether a shape is right.
-struct ShapeJudgement {
-  double judged_m = 0;  ///< the deviation that was held against the tolerance [m]
-  bool pass = false;    ///< near enough, and enough of the rod seen
-  std::string reason;   ///< one clause: of all that made it fail, or why it passes
-};
-
-/// Holds a compared shape against a tolerance: every point and every part of the rod. Parts missing
-/// at the ends count with their distance from the outermost point unless the file is said to be a
-/// part; a part between neighbouring points is seen if a smooth curve through points there tells it
-/// within the tolerance, and the whole rod has to be. Points that cover next to nothing of the rod
-/// lie near it whatever its shape is, so less than `least_seen_share` is never a pass. The reason
-/// names what was left out.
-[[nodiscard]] ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance);
 
 /// Solves the scene with the energy model and compares the shape with the nearest stable state.
 /// @throws InputError, ConvergenceError

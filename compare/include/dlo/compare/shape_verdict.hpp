@@ -4,11 +4,37 @@
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
+#include "dlo/compare/shape_check.hpp"
 
 namespace dlo::compare {
 
-/// Whether a shape is a scene's.
-struct ShapeVerdict {
+/// What a deviation is held against.
+struct ShapeTolerance {
+  double allowed_m = 0;           ///< largest deviation that passes [m], > 0
+  bool largest = false;           ///< the largest deviation is held against it, not the RMS
+  double least_seen_share = 0.5;  ///< of the rod that the points have to tell [-], 0 to 1
+  /// The file is said to be a part of the rod: only what it has is judged. Else it is the whole
+  /// rod, and what is missing counts.
+  bool part = false;
+};
+
+/// Whether a shape is right.
+struct ShapeJudgement {
+  double judged_m = 0;  ///< the deviation that was held against the tolerance [m]
+  bool pass = false;    ///< near enough, and enough of the rod seen
+  std::string reason;   ///< one clause: of all that made it fail, or why it passes
+};
+
+/// Holds a compared shape against a tolerance: every point and every part of the rod. Parts missing
+/// at the ends count with their distance from the outermost point unless the file is said to be a
+/// part; a part between neighbouring points is seen if a smooth curve through points there tells it
+/// within the tolerance, and the whole rod has to be. Points that cover next to nothing of the rod
+/// lie near it whatever its shape is, so less than `least_seen_share` is never a pass. The reason
+/// names what was left out.
+[[nodiscard]] ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance);
+
+/// Whether a shape is a scene's, for a test.
+struct ShapeNear {
   bool near = false;        ///< within the tolerance everywhere
   std::string explanation;  ///< one line: where it is worst, how far, and how far on the whole
 };
@@ -19,6 +45,6 @@ struct ShapeVerdict {
 /// and the explanation says why.
 /// @param tolerance  [-], > 0
 /// @throws std::invalid_argument for such a tolerance, InputError, ConvergenceError
-[[nodiscard]] ShapeVerdict judge_shape(const Shape& shape, const Scene& scene, double tolerance);
+[[nodiscard]] ShapeNear shape_near(const Shape& shape, const Scene& scene, double tolerance);
 
 }  // namespace dlo::compare

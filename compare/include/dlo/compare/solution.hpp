@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
@@ -18,12 +19,16 @@ enum class Model {
   force,   ///< the paper's model, stepped to rest
 };
 
-/// Their names, as options and files spell them.
-[[nodiscard]] const std::vector<std::string>& model_names();
-/// The name of a model.
-[[nodiscard]] const char* to_string(Model model);
-/// @throws InputError if no model has this name
-[[nodiscard]] Model model_from(const std::string& name);
+/// As options and files spell them.
+template <>
+struct Choices<Model> {
+  /// In the enumeration's order.
+  static constexpr Choice<Model> all[] = {
+      {Model::energy, "energy", "the rod's lowest energy"},
+      {Model::chain, "chain", "the lowest energy of the force model's polygon"},
+      {Model::exact, "exact", "the rod's balance, shot"},
+      {Model::force, "force", "the paper's model, stepped to rest"}};
+};
 
 /// Limits of the solvers.
 struct SolveOptions {

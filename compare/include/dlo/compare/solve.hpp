@@ -7,8 +7,8 @@
 
 namespace dlo::compare {
 
-/// Solves a scene, without the obstacles that its rod cannot reach (see make_plan), whose forces
-/// are zero. Continuous models are sampled at `arc_lengths` (or at 101 equal ones if empty);
+/// Solves a scene. Obstacles out of its rod's reach (see make_plan) are given to no solver; their
+/// forces are zero. Continuous models are sampled at `arc_lengths` (or at 101 equal ones if empty);
 /// polygons keep their points, or are resampled on straight lines when `arc_lengths` are given.
 /// @throws InputError if the model does not know such a scene, ConvergenceError
 [[nodiscard]] Solution solve(const Scene& scene, Model model, const SolveOptions& options = {},

@@ -1,4 +1,4 @@
-#include "base/locked_file.hpp"
+#include "batch/locked_file.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace dlo::cli {
+
+/// What the command ends with.
+enum class ExitStatus : int {
+  good = 0,
+  outside_tolerance = 1,
+  bad_input = 2,
+  not_converged = 3,
+  no_resources = 4,  ///< and our own mistakes
+  not_written = 5,
+};
+
+/// Ends a command that has printed its result.
+[[noreturn]] inline void end_with(ExitStatus status) {
+  throw CLI::RuntimeError(static_cast<int>(status));
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <concepts>
+#include <string>
+#include <vector>
+
+namespace dlo::compare {
+
+/// A value of an enumeration as files and options spell it, and in a few words what it means.
+template <typename Value>
+struct Choice {
+  Value value;
+  const char* name;
+  const char* meaning;
+};
+
+/// The one table of an enumeration that files, options, help and output share. Specialised beside
+/// the enumeration, with a constexpr array `all` of a Choice for each value.
+template <typename Value>
+struct Choices;
+
+/// An enumeration that has such a table.
+template <typename Value>
+concept Chosen = requires {
+  Choices<Value>::all;
+};
+
+/// What a message says to a name that is none of those allowed.
+[[nodiscard]] std::string unknown_choice(const std::string& name,
+                                         const std::vector<std::string>& allowed);
+
+/// @throws InputError of unknown_choice()
+[[noreturn]] void refuse_choice(const std::string& name, const std::vector<std::string>& allowed);
+
+/// "a, b or c", for help.
+[[nodiscard]] std::string one_of(const std::vector<std::string>& names);
+
+/// As files and options spell it.
+template <Chosen Value>
+[[nodiscard]] constexpr const char* to_string(Value value) {
+  for (const auto& choice : Choices<Value>::all) {
+    if (choice.value == value) return choice.name;
+  }
+  return "";
+}
+
+/// All names, in the table's order.
+template <Chosen Value>
+[[nodiscard]] std::vector<std::string> names() {
+  std::vector<std::string> result;
+  for (const auto& choice : Choices<Value>::all) result.emplace_back(choice.name);
+  return result;
+}
+
+/// "a, b or c" of all names.
+template <Chosen Value>
+[[nodiscard]] std::string one_of() {
+  return one_of(names<Value>());
+}
+
+/// All names with what they mean: "a (first), b (second) or c (third)".
+template <Chosen Value>
+[[nodiscard]] std::string meanings() {
+  std::vector<std::string> result;
+  for (const auto& choice : Choices<Value>::all) {
+    result.push_back(std::string(choice.name) + " (" + choice.meaning + ")");
+  }
+  return one_of(result);
+}
+
+/// The value of a name. @throws InputError if there is no such name
+template <Chosen Value>
+[[nodiscard]] Value from_name(const std::string& name) {
+  for (const auto& choice : Choices<Value>::all) {
+    if (name == choice.name) return choice.value;
+  }
+  refuse_choice(name, names<Value>());
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,104 @@
+#include "scene/reach.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dlo/compare/chain.hpp"
+#include "dlo/compare/discretise.hpp"
+#include "dlo/compare/force.hpp"
+#include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/shape_check.hpp"
+#include "dlo/compare/solve.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Vector3d;
+using test::heavy_scene;
+
+/// A floor and a tilted wall that no point of a rod of length 1 gets to.
+Scene among_far_obstacles(Scene scene) {
+  scene.obstacles.push_back({.point = {0, -100, 0}});
+  scene.obstacles.push_back(
+      {.point = {-50, 0, 0}, .normal = Vector3d(3, 1, 2).normalized(), .stiffness = 1000});
+  return scene;
+}
+
+Scene between_pins() {
+  Scene scene = heavy_scene(8, 0);
+  scene.grippers = {{.at = 0, .position = {0, 0, 0}}, {.at = 1, .position = {0.8, 0.1, 0}}};
+  return scene;
+}
+
+// Whoever solves a scene solves it as if they were not there, to the last digit and evaluation.
+TEST(Reach, EveryModelLeavesFarObstaclesOut) {
+  for (Scene scene : {heavy_scene(8, 0), between_pins()}) {
+    scene.force_model.points = 12;
+    const Scene among = among_far_obstacles(scene);
+    ASSERT_TRUE(obstacles_in_reach(among).empty());
+    EXPECT_EQ(among.planar(), scene.planar());
+    for (const Model model : {Model::energy, Model::exact, Model::chain, Model::force}) {
+      SCOPED_TRACE(to_string(model));
+      const Solution alone = solve(scene, model);
+      const Solution solution = solve(among, model);
+      EXPECT_EQ(solution.shape.points, alone.shape.points);
+      EXPECT_EQ(solution.evaluations, alone.evaluations);
+      EXPECT_EQ(solution.steps, alone.steps);
+      EXPECT_EQ(solution.obstacles, std::vector<Vector3d>(2, Vector3d::Zero()));
+    }
+  }
+}
+
+TEST(Reach, TheSolversThemselvesLeaveThemOut) {
+  Scene scene = heavy_scene(8, 0);
+  scene.force_model.points = 12;
+  const Scene among = among_far_obstacles(scene);
+  const ForceModelSettings& settings = scene.force_model;
+  EXPECT_TRUE(discretise(among, settings).rod.walls.empty());
+  EXPECT_EQ(solve_chain(among, settings).evaluations, solve_chain(scene, settings).evaluations);
+  EXPECT_EQ(solve_force(among, settings).steps, solve_force(scene, settings).steps);
+  EXPECT_EQ(solve_reference(among, Model::energy).evaluations,
+            solve_reference(scene, Model::energy).evaluations);
+  EXPECT_EQ(reference_states(among).size(), reference_states(scene).size());
+}
+
+// One that can be touched keeps its place among those that cannot.
+TEST(Reach, ForcesAreInTheScenesOrder) {
+  Scene scene = heavy_scene(30, 0);
+  scene.obstacles = {{.point = {0, -100, 0}}, {.point = {0, -0.3, 0}, .stiffness = 1e4}};
+  ASSERT_EQ(obstacles_in_reach(scene), std::vector<std::size_t>{1});
+  for (const Model model : {Model::energy, Model::chain, Model::force}) {
+    const Solution solution = solve(scene, model);
+    ASSERT_EQ(solution.obstacles.size(), 2U);
+    EXPECT_EQ(solution.obstacles[0], Vector3d::Zero());
+    EXPECT_GT(solution.obstacles[1].y(), 0);
+  }
+}
+
+// A soft rod stretches further than a stiff one.
+TEST(Reach, TheSettingsStretchCounts) {
+  Scene scene = heavy_scene(30, 0);
+  scene.obstacles = {{.point = {0, -1.2, 0}}};
+  EXPECT_TRUE(obstacles_in_reach(scene).empty());
+  ForceModelSettings soft = scene.force_model;
+  soft.c_c = scene.weight_per_length().norm();
+  EXPECT_EQ(obstacles_in_reach(scene, soft), std::vector<std::size_t>{0});
+  EXPECT_EQ(discretise(scene, soft).rod.walls.size(), 1U);
+}
+
+TEST(Reach, CheckAndCalibrateLeaveThemOut) {
+  const Scene scene = heavy_scene(8, 0);
+  const Scene among = among_far_obstacles(scene);
+  const Solution solution = solve(scene, Model::energy);
+  const MeasuredShape shape{
+      .file = "own", .points = solution.shape.points, .arc_length = solution.shape.arc_length};
+  const ShapeCheck check = check_shape(scene, shape);
+  const ShapeCheck among_check = check_shape(among, shape);
+  EXPECT_EQ(among_check.deviation.rms_m, check.deviation.rms_m);
+  EXPECT_EQ(among_check.effective_modulus.solves, check.effective_modulus.solves);
+  EXPECT_EQ(fit_material({among}, {shape}).evaluations, fit_material({scene}, {shape}).evaluations);
+}
+
+}  // namespace
+}  // namespace dlo::compare
