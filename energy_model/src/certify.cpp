@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stability.hpp"
+#include "free_directions.hpp"
 
 namespace dlo::energy_model {
 namespace {

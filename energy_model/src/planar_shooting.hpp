@@ -5,6 +5,7 @@
 #include "deadline.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "dlo/energy_model/problem.hpp"
+#include "planar_cantilever.hpp"
 #include "reduction.hpp"
 
 namespace dlo::energy_model {

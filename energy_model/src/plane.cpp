@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dlo/energy_model/planar.hpp"
+#include "dlo/energy_model/plane.hpp"
 
 namespace dlo::energy_model {
 namespace {

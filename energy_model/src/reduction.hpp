@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "dlo/energy_model/equilibrium.hpp"
-#include "dlo/energy_model/planar.hpp"
+#include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/problem.hpp"
+#include "planar_cantilever.hpp"
 
 namespace dlo::energy_model {
 

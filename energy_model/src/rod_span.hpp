@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "dlo/energy_model/planar.hpp"
+#include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/problem.hpp"
 
 namespace dlo::energy_model {

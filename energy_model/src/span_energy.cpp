@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "legendre.hpp"
-#include "stability.hpp"
+#include "free_directions.hpp"
 
 namespace dlo::energy_model {
 namespace {

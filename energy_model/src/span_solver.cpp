@@ -10,7 +10,7 @@
 #include "legendre.hpp"
 #include "minimise.hpp"
 #include "span_starts.hpp"
-#include "stability.hpp"
+#include "free_directions.hpp"
 #include "trust_region.hpp"
 
 namespace dlo::energy_model {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "dlo/energy_model/planar.hpp"
+#include "dlo/energy_model/plane.hpp"
 #include "ordered_grips.hpp"
 #include "require.hpp"
 

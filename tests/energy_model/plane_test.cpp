@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "dlo/energy_model/planar.hpp"
+#include "dlo/energy_model/plane.hpp"
 
 namespace dlo::energy_model {
 namespace {

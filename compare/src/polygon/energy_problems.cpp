@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "dlo/energy_model/planar.hpp"
+#include "dlo/energy_model/plane.hpp"
 #include "polygon/point_layout.hpp"
 #include "scene/reach.hpp"
 

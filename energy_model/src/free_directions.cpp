@@ -1,4 +1,4 @@
-#include "stability.hpp"
+#include "free_directions.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
