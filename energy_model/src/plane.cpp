@@ -1,8 +1,8 @@
+#include "dlo/energy_model/plane.hpp"
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-
-#include "dlo/energy_model/plane.hpp"
 
 namespace dlo::energy_model {
 namespace {

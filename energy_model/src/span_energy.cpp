@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "legendre.hpp"
 #include "free_directions.hpp"
+#include "legendre.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "certify.hpp"
+#include "free_directions.hpp"
 #include "legendre.hpp"
 #include "minimise.hpp"
 #include "span_starts.hpp"
-#include "free_directions.hpp"
 #include "trust_region.hpp"
 
 namespace dlo::energy_model {

@@ -1,8 +1,8 @@
+#include "dlo/energy_model/plane.hpp"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
-#include "dlo/energy_model/plane.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -69,7 +69,9 @@ std::string text_of(const compare::SceneChoices& choices,
         {"rod.material.density", "--density"},
         {"gripper.direction", "--direction"}};
     for (const auto& [key, option] : options) {
-      if (error.key() == key) throw compare::InputError(option + error.problem());
+      // A material of one's own has no name.
+      const bool is_given = option != std::string("--material") || choices.youngs_modulus.empty();
+      if (error.key() == key && is_given) throw compare::InputError(option + error.problem());
     }
     throw;
   }

@@ -160,10 +160,7 @@ void add_sweep(CLI::App& app) {
   command->add_option("--format", options->format, "csv")
       ->check(CLI::IsMember({"csv"}))
       ->capture_default_str();
-  command
-      ->add_option("--model", options->model,
-                   "energy, chain, exact, force, compare (force against energy) or compare-chain "
-                   "(its rest shape, without steps, against energy)")
+  command->add_option("--model", options->model, compare::meanings<compare::SweepModel>())
       ->check(CLI::IsMember(compare::names<compare::SweepModel>()))
       ->capture_default_str();
   command

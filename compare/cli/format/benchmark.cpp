@@ -168,7 +168,7 @@ Json benchmark_json(const compare::BenchmarkReport& report) {
     add_time("force_at_1e-3", scene.force_at_1e3, compare::Model::force);
     answers.push_back(std::move(entry));
   }
-  return {{"schema", "dlo/bench/1"},       {"runs", std::move(runs)},
+  return {{"schema", "dlo/bench/2"},       {"runs", std::move(runs)},
           {"answers", std::move(answers)}, {"gripper_speed_m_per_s", report.options.gripper_speed},
           {"skipped", report.skipped},     {"wall_s", report.seconds}};
 }

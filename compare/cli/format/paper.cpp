@@ -13,8 +13,8 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "format/comparison.hpp"
 #include "option/output.hpp"
-#include "paper/printed.hpp"
-#include "paper/tables.hpp"
+#include "paper/printed_tables.hpp"
+#include "paper/recomputed_tables.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -12,6 +12,22 @@
 #include "option/terminal.hpp"
 
 namespace dlo::cli {
+namespace {
+
+const char* rule_text(compare::ArcLengths rule) {
+  switch (rule) {
+    case compare::ArcLengths::file:
+      return "the file's own";
+    case compare::ArcLengths::chord:
+      return "chord lengths of the whole rod";
+    case compare::ArcLengths::nearest:
+    case compare::ArcLengths::automatic:
+      break;
+  }
+  return "nearest points, so differences along the rod do not show";
+}
+
+}  // namespace
 
 std::string shape_check_text(const ShapeCheckReport& report) {
   const compare::ShapeCheck& c = report.check;
@@ -24,9 +40,7 @@ std::string shape_check_text(const ShapeCheckReport& report) {
   append(out, "  shape           {}: {} points, {}\n", compare::display(c.file), s.size(),
          range_text(a, scene.length));
   if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
-  constexpr const char* rules[] = {"", "the file's own", "chord lengths of the whole rod",
-                                   "nearest points, so differences along the rod do not show"};
-  append(out, "  arc lengths     {}\n", rules[static_cast<std::size_t>(a.arc_lengths)]);
+  append(out, "  arc lengths     {}\n", rule_text(a.arc_lengths));
   append(out,
          "  seen            s = {:.4g} to {:.4g} m, {:.4g} % of l; polyline {:.4g} m; largest gap "
          "{:.4g} m at s = {:.4g} m\n",

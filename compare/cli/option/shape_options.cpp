@@ -5,23 +5,15 @@
 #include "scene/quantity.hpp"
 
 namespace dlo::cli {
-namespace {
-
-const std::vector<std::string>& unit_names() {
-  static const std::vector<std::string> names = {"m", "cm", "mm", "um"};
-  return names;
-}
-
-}  // namespace
-
 void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {
   const std::string group = "Shape files";
   std::vector<std::string> rules = compare::names<compare::ArcLengths>();
   if (chord == ChordLengths::not_exact_enough) {
     std::erase(rules, compare::to_string(compare::ArcLengths::chord));
   }
-  command.add_option("--unit", unit_, "what the numbers are in: m, cm, mm or um")
-      ->check(CLI::IsMember(unit_names()))
+  const std::vector<std::string> units = compare::unit_names(compare::Dimension::length);
+  command.add_option("--unit", unit_, "what the numbers are in: " + compare::one_of(units))
+      ->check(CLI::IsMember(units))
       ->capture_default_str()
       ->group(group);
   command
@@ -57,7 +49,7 @@ std::string ShapeOptions::unit_hint(double polyline_m, double length) const {
   std::string hint = short_one ? fmt::format("polyline is 1/{:.0f} of the rod: ", 1 / ratio)
                                : fmt::format("polyline is {:.4g} times the rod: ", ratio);
   const double given = compare::parse_quantity("1 " + unit_, compare::Dimension::length);
-  for (const std::string& unit : unit_names()) {
+  for (const std::string& unit : compare::unit_names(compare::Dimension::length)) {
     const double value = compare::parse_quantity("1 " + unit, compare::Dimension::length);
     const double share = ratio * value / given;
     // Whole rod or a good part of it, and noise may lengthen the polyline.

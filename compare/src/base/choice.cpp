@@ -6,12 +6,9 @@
 
 namespace dlo::compare {
 
-std::string unknown_choice(const std::string& name, const std::vector<std::string>& allowed) {
-  return fmt::format("unknown choice \"{}\" (allowed: {})", name, fmt::join(allowed, ", "));
-}
-
 void refuse_choice(const std::string& name, const std::vector<std::string>& allowed) {
-  throw InputError(unknown_choice(name, allowed));
+  throw InputError(
+      fmt::format("unknown choice \"{}\" (allowed: {})", name, fmt::join(allowed, ", ")));
 }
 
 std::string one_of(const std::vector<std::string>& names) {

@@ -14,7 +14,7 @@ template <typename Number>
 struct LeadingNumber {
   Number value = 0;
   std::size_t length = 0;                         ///< of its digits; 0: none
-  std::errc error = std::errc::invalid_argument;  ///< none, or `result_out_of_range`
+  std::errc error = std::errc::invalid_argument;  ///< none if it is a number
 };
 
 /// The one reader of numbers: a point whatever the locale, no "+" and no blanks before it.

@@ -9,7 +9,7 @@
 
 #include "base/output_file.hpp"
 #include "batch/locked_file.hpp"
-#include "batch/sweep_lines.hpp"
+#include "batch/read_sweep.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "base/output_file.hpp"
-#include "batch/sweep_lines.hpp"
+#include "batch/read_sweep.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {

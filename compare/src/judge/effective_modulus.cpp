@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <exception>
 #include <map>
 #include <utility>
 
@@ -173,19 +172,9 @@ EffectiveModulus search(FollowedState& mean_square, double resolution) {
     return no_modulus("the shape does not change with E");
   }
   const bool bracketed = values.is_bracketed() && known(best - 1) && known(best + 1);
-  // No exception may cross GSL.
-  std::exception_ptr error;
-  const Function function = [&](double x) {
-    try {
-      if (!error) return mean_square(x);
-    } catch (...) {
-      error = std::current_exception();
-    }
-    return std::numeric_limits<double>::infinity();
-  };
+  const Function function = [&](double x) { return mean_square(x); };
   const Minimum minimum = bracketed ? minimum_near(function, values, log_tolerance)
                                     : Minimum{values.x[best], values.value[best]};
-  if (error) std::rethrow_exception(error);
   EffectiveModulus result;
   result.why_none.clear();
   result.ratio = std::exp(minimum.x);

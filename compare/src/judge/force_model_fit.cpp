@@ -33,8 +33,7 @@ struct FittedCase {
   energy_model::Equilibrium reference;
 
   [[nodiscard]] double rms_over_length(const Shape& shape) const {
-    const Eigen::Matrix3Xd gaps = shape.points - reference.sample(shape.arc_length).points;
-    return rms(shape.arc_length, gaps) / scene.length;
+    return distance(shape, reference.sample) / scene.length;
   }
   [[nodiscard]] double chain(const ForceModelSettings& settings,
                              const SolveOptions& options) const {
@@ -227,10 +226,13 @@ class ForceModelFitter {
       // Brent's method interpolates, so what has no value is made merely large.
       return std::min(sum / static_cast<double>(end - begin), 1e3);
     };
-    constexpr double decades = 4;
-    constexpr int steps = 32;
-    const double reach = decades * std::log(10.0);
-    const Scan values = scan(misfit, centre - reach, centre + reach, steps);
+    constexpr int steps_per_decade = 4;
+    Scan values;
+    for (const int decades : {4, 8, 16}) {
+      const double reach = decades * std::log(10.0);
+      values = scan(misfit, centre - reach, centre + reach, 2 * decades * steps_per_decade);
+      if (values.is_bracketed()) break;
+    }
     return std::exp(minimum_near(misfit, values, 1e-6).x);
   }
 

@@ -6,19 +6,30 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <limits>
 #include <memory>
 
 namespace dlo::compare {
 namespace {
 
-struct Shifted {
+/// What GSL calls; no exception may cross it.
+struct Watched {
   const Function* function;
-  double level;
+  double level = 0;
+  double looked_at = 0;
+  std::exception_ptr error = nullptr;
 };
 
 double call_for_gsl(double x, void* data) {
-  const Shifted& shifted = *static_cast<const Shifted*>(data);
-  return (*shifted.function)(x)-shifted.level;
+  Watched& watched = *static_cast<Watched*>(data);
+  watched.looked_at = x;
+  try {
+    if (!watched.error) return (*watched.function)(x)-watched.level;
+  } catch (...) {
+    watched.error = std::current_exception();
+  }
+  return std::numeric_limits<double>::infinity();
 }
 
 /// GSL aborts the program on errors unless told otherwise; every call looks at its result instead.
@@ -51,13 +62,8 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
   // Of equal values the first is the best, which may be an end.
   if (!scan.is_bracketed()) return result;
   keep_gsl_from_aborting();
-  double looked_at = result.x;
-  const Function watched = [&](double x) {
-    looked_at = x;
-    return function(x);
-  };
-  Shifted shifted{&watched, 0};
-  gsl_function gsl{call_for_gsl, &shifted};
+  Watched watched{&function};
+  gsl_function gsl{call_for_gsl, &watched};
   const std::unique_ptr<gsl_min_fminimizer, decltype(&gsl_min_fminimizer_free)> minimiser(
       gsl_min_fminimizer_alloc(gsl_min_fminimizer_brent), gsl_min_fminimizer_free);
   // A value that is not finite makes GSL stop; the scan's best then stands.
@@ -66,22 +72,25 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
                                          scan.value[best + 1]) != GSL_SUCCESS) {
     return result;
   }
-  // One end of the interval often stays where it was. Once steps are short they are parabolic, and
-  // the next one says how far the minimum still is.
-  constexpr double short_step = 0.03;
+  // One end of the interval often stays where it was. After a short step the next one says how far
+  // the minimum still is; a step of GSL's least length says nothing, it stands for one that left
+  // the interval.
+  constexpr double short_step = 1e-3;
+  const double least_step = 2 * std::sqrt(std::numeric_limits<double>::epsilon());
   bool was_short = false;
   for (int i = 0; i < 100; ++i) {
     const double before = gsl_min_fminimizer_x_minimum(minimiser.get());
     if (gsl_min_fminimizer_iterate(minimiser.get()) != GSL_SUCCESS) break;
-    const double step = std::abs(looked_at - before);
+    const double step = std::abs(watched.looked_at - before);
     if (was_short && step < tolerance) break;
-    was_short = step < short_step;
+    was_short = step < short_step && step > least_step * std::abs(before);
     if (gsl_min_test_interval(gsl_min_fminimizer_x_lower(minimiser.get()),
                               gsl_min_fminimizer_x_upper(minimiser.get()), tolerance,
                               0) == GSL_SUCCESS) {
       break;
     }
   }
+  if (watched.error) std::rethrow_exception(watched.error);
   return {gsl_min_fminimizer_x_minimum(minimiser.get()),
           gsl_min_fminimizer_f_minimum(minimiser.get())};
 }
@@ -93,8 +102,8 @@ double crossing(const Function& function, double inside, double outside, double 
     const double value = function(x);
     return std::isfinite(value) ? value : 1e3 * level + 1e3;
   };
-  Shifted shifted{&finite, level};
-  gsl_function gsl{call_for_gsl, &shifted};
+  Watched watched{&finite, level};
+  gsl_function gsl{call_for_gsl, &watched};
   const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
       gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
   if (gsl_root_fsolver_set(solver.get(), &gsl, std::min(inside, outside),
@@ -108,6 +117,7 @@ double crossing(const Function& function, double inside, double outside, double 
       break;
     }
   }
+  if (watched.error) std::rethrow_exception(watched.error);
   return gsl_root_fsolver_root(solver.get());
 }
 

@@ -5,7 +5,7 @@
 
 namespace dlo::compare {
 
-/// A function of one variable; infinite where it has no value, and never throws.
+/// A function of one variable; infinite where it has no value.
 using Function = std::function<double(double)>;
 
 /// Equal steps over a range and what a function is there.
@@ -25,7 +25,8 @@ struct Minimum {
   double value = 0;
 };
 
-/// GSL's Brent minimiser about the best point of a bracketed scan, to `tolerance` in x.
+/// GSL's Brent minimiser about the best point of a bracketed scan, to `tolerance` in x: it ends
+/// where the step after a short one is below it, or the interval.
 [[nodiscard]] Minimum minimum_near(const Function& function, const Scan& scan,
                                    double tolerance = 1e-7);
 

@@ -64,6 +64,17 @@ double depth_in_obstacles(const Scene& scene, const energy_model::Equilibrium& e
   return depth;
 }
 
+/// Without names and places in files, and without the force model.
+Scene only_the_rod(Scene scene) {
+  scene.name.clear();
+  scene.file.clear();
+  scene.material.name.clear();
+  scene.material.source.clear();
+  scene.force_model = {};
+  for (Gripper& gripper : scene.grippers) gripper.where.clear();
+  return scene;
+}
+
 /// The directions in which a point's residual is seen, as columns.
 std::vector<Eigen::Matrix3Xd> seen_directions(const Alignment& alignment, const Curve& curve,
                                               bool flat) {
@@ -123,7 +134,10 @@ ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, const std::vector<Mea
                        .weights = PointWeights::equal,
                        .up = up_of(scenes[i], options.pose)};
     scenes_.push_back(scenes[i]);
-    const auto first = std::find(scenes_.begin(), scenes_.end(), scenes_.back());
+    const auto like_this = [rod = only_the_rod(scenes[i])](const Scene& other) {
+      return only_the_rod(other) == rod;
+    };
+    const auto first = std::find_if(scenes_.begin(), scenes_.end(), like_this);
     first_like_.push_back(static_cast<std::size_t>(first - scenes_.begin()));
     aligners_.emplace_back(shapes[i], scenes[i].length, align);
     flat_.push_back(lies_in_a_plane(shapes[i].points));

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "dlo/force_model/simulation.hpp"
-#include "paper/printed.hpp"
+#include "paper/printed_tables.hpp"
 
 namespace dlo::compare {
 namespace {

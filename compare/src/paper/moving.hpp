@@ -4,7 +4,7 @@
 
 #include "dlo/compare/choice.hpp"
 #include "dlo/force_model/stepper.hpp"
-#include "paper/printed.hpp"
+#include "paper/printed_tables.hpp"
 
 namespace dlo::compare {
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "paper/printed.hpp"
+#include "paper/printed_tables.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -7,7 +7,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
-#include "paper/printed.hpp"
+#include "paper/printed_tables.hpp"
 #include "polygon/step_constants.hpp"
 
 namespace dlo::compare {

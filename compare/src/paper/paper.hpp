@@ -7,8 +7,8 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/progress.hpp"
 #include "paper/modulus_history.hpp"
-#include "paper/printed.hpp"
-#include "paper/tables.hpp"
+#include "paper/printed_tables.hpp"
+#include "paper/recomputed_tables.hpp"
 
 namespace dlo::compare {
 

@@ -235,6 +235,17 @@ double largest_strain(const Scene& scene, const ForceModelSettings& settings) {
   return asked ? 0.5 : 0.01;
 }
 
+std::vector<force_model::Wall> walls_of(const Scene& scene, const Parameters& parameters) {
+  const double L = parameters.segment_length;
+  std::vector<force_model::Wall> walls;
+  for (const Obstacle& obstacle : scene.obstacles) {
+    const double stiffness =
+        std::isfinite(obstacle.stiffness) ? obstacle.stiffness * L : parameters.c_c / L;
+    walls.push_back({obstacle.point, obstacle.normal, stiffness});
+  }
+  return walls;
+}
+
 Discretisation discretise(const Scene& scene, const ForceModelSettings& settings) {
   const Layout layout = lay_out(scene, settings);
   const double L = layout.segment_length;
@@ -247,11 +258,9 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
   result.rod.c_c = result.parameters.c_c;
   result.rod.grips = grips_of(scene, layout);
   require_fit(scene, settings, layout, result.rod.grips);
+  const std::vector<force_model::Wall> walls = walls_of(scene, result.parameters);
   for (const std::size_t i : obstacles_in_reach(scene, settings)) {
-    const Obstacle& obstacle = scene.obstacles[i];
-    const double stiffness =
-        std::isfinite(obstacle.stiffness) ? obstacle.stiffness * L : result.parameters.c_c / L;
-    result.rod.walls.push_back({obstacle.point, obstacle.normal, stiffness});
+    result.rod.walls.push_back(walls[i]);
   }
   const std::vector<Side> sides = scene.grippers.size() == 1
                                       ? std::vector<Side>{Side::along_load}

@@ -8,7 +8,7 @@
 
 #include "base/quote.hpp"
 #include "dlo/compare/solution.hpp"
-#include "paper/printed.hpp"
+#include "paper/printed_tables.hpp"
 #include "polygon/step_constants.hpp"
 #include "report/again.hpp"
 #include "report/scene_figures.hpp"

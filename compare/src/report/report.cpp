@@ -18,7 +18,7 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
-#include "paper/printed.hpp"
+#include "paper/printed_tables.hpp"
 #include "parallel/threads.hpp"
 #include "scene/builtin_data.hpp"
 #include "study/hard_case.hpp"

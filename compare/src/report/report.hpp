@@ -7,7 +7,7 @@
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/progress.hpp"
 #include "paper/modulus_history.hpp"
-#include "paper/printed.hpp"
+#include "paper/printed_tables.hpp"
 #include "study/benchmark.hpp"
 #include "study/stability.hpp"
 #include "study/stability_map.hpp"

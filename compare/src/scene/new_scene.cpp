@@ -54,7 +54,7 @@ name = {name}
 gravity = [0, -9.81, 0]  # m/s^2; y points up
 
 [rod]
-length = {length}  # m, cm, mm, um
+length = {length}  # {units}
 diameter = {diameter}  # round, solid; bending stiffness EI = E pi d^4 / 64
 {material}
 # What holds the rod; one [[gripper]] for each.
@@ -67,10 +67,25 @@ hold = "clamp"
 # down; without unit: rad), or a vector such as [1, 0, 0]. A pin has none.
 direction = {direction}
 )",
-      fmt::arg("name", toml_string(choices.name)), fmt::arg("length", toml_value(choices.length)),
+      fmt::arg("name", toml_string(choices.name)),
+      fmt::arg("units", known_units(Dimension::length)),
+      fmt::arg("length", toml_value(choices.length)),
       fmt::arg("diameter", toml_value(choices.diameter)),
       fmt::arg("material", material_lines(choices, known)),
       fmt::arg("direction", toml_value(choices.direction)));
+}
+
+enum class Meaning { said, left_out };
+
+/// Names as TOML has them, with what they mean if `meaning` is asked for.
+template <Chosen Value>
+std::string toml_choices(Meaning meaning) {
+  std::vector<std::string> choices;
+  for (const auto& choice : Choices<Value>::all) {
+    choices.push_back(toml_string(choice.name));
+    if (meaning == Meaning::said) choices.back() += fmt::format(" ({})", choice.meaning);
+  }
+  return one_of(choices);
 }
 
 /// Examples that fit the rod: a pin at its end, a small force, a floor in its reach.
@@ -123,11 +138,12 @@ std::string optional_part(const Scene& scene) {
       fmt::arg("floor", std::min(pin.y(), 0.0) - 0.1 * l),
       fmt::arg("stiffness", 1e3 * force / (l * l)), fmt::arg("c_c", scene.axial_stiffness()),
       fmt::arg("points", defaults.points), fmt::arg("law", to_string(defaults.law)),
-      fmt::arg("laws", meanings<BendingLaw>()),
+      fmt::arg("laws", toml_choices<BendingLaw>(Meaning::said)),
       fmt::arg("bookkeeping", to_string(defaults.bookkeeping)),
-      fmt::arg("bookkeepings", meanings<Bookkeeping>()),
-      fmt::arg("stepper", to_string(defaults.stepper)), fmt::arg("steppers", one_of<Stepper>()),
-      fmt::arg("bending_rules", one_of<BendingRule>()));
+      fmt::arg("bookkeepings", toml_choices<Bookkeeping>(Meaning::said)),
+      fmt::arg("stepper", to_string(defaults.stepper)),
+      fmt::arg("steppers", toml_choices<Stepper>(Meaning::left_out)),
+      fmt::arg("bending_rules", toml_choices<BendingRule>(Meaning::left_out)));
 }
 
 }  // namespace

@@ -52,13 +52,14 @@ std::span<const Unit> units(Dimension dimension) {
 
 }  // namespace
 
+std::vector<std::string> unit_names(Dimension dimension) {
+  std::vector<std::string> names;
+  for (const Unit& unit : units(dimension)) names.emplace_back(unit.name);
+  return names;
+}
+
 std::string known_units(Dimension dimension) {
-  std::string list;
-  for (const Unit& unit : units(dimension)) {
-    if (!list.empty()) list += ", ";
-    list += unit.name;
-  }
-  return list;
+  return fmt::format("{}", fmt::join(unit_names(dimension), ", "));
 }
 
 double parse_quantity(std::string_view text, Dimension dimension) {

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace dlo::compare {
 
@@ -18,7 +19,10 @@ enum class Dimension {
   foundation,  ///< force per depth and per length of rod
 };
 
-/// The units that `dimension` knows, SI first, as a list for messages.
+/// The names of the units that `dimension` knows, SI first.
+[[nodiscard]] std::vector<std::string> unit_names(Dimension dimension);
+
+/// The same as a list for messages.
 [[nodiscard]] std::string known_units(Dimension dimension);
 
 /// Value in SI units of "210 GPa", "2 mm" or "-175 deg".

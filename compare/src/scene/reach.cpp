@@ -24,6 +24,7 @@ std::vector<const Gripper*> grippers_along(const Scene& scene) {
 
 std::vector<double> obstacle_clearances(const Scene& scene) {
   const std::vector<const Gripper*> along = grippers_along(scene);
+  if (along.empty()) return std::vector<double>(scene.obstacles.size(), 0);
   std::vector<double> clearances;
   for (const Obstacle& obstacle : scene.obstacles) {
     const auto height = [&](const Eigen::Vector3d& point) {
@@ -46,21 +47,29 @@ std::vector<double> obstacle_clearances(const Scene& scene) {
   return clearances;
 }
 
-std::vector<std::size_t> obstacles_in_reach(const Scene& scene,
-                                            const ForceModelSettings& settings) {
-  const double stiffness =
-      std::min(scene.axial_stiffness(), settings.c_c.value_or(scene.axial_stiffness()));
-  const double stretched = 2 * scene.length * std::sqrt(total_load(scene) / stiffness);
+namespace {
+
+std::vector<std::size_t> nearer_than(const Scene& scene, double distance) {
   const std::vector<double> clearances = obstacle_clearances(scene);
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < clearances.size(); ++i) {
-    if (clearances[i] <= stretched) result.push_back(i);
+    if (clearances[i] <= distance) result.push_back(i);
   }
   return result;
 }
 
+}  // namespace
+
 std::vector<std::size_t> obstacles_in_reach(const Scene& scene) {
-  return obstacles_in_reach(scene, scene.force_model);
+  constexpr double rounding = 1e-9;
+  return nearer_than(scene, rounding * scene.length);
+}
+
+std::vector<std::size_t> obstacles_in_reach(const Scene& scene,
+                                            const ForceModelSettings& settings) {
+  const double stiffness =
+      std::min(scene.axial_stiffness(), settings.c_c.value_or(scene.axial_stiffness()));
+  return nearer_than(scene, 2 * scene.length * std::sqrt(total_load(scene) / stiffness));
 }
 
 std::vector<Eigen::Vector3d> forces_of_all(const Scene& scene,

@@ -15,15 +15,15 @@ namespace dlo::compare {
 /// the rod between them as its long axis), or a ball around the last. Without stretch.
 [[nodiscard]] std::vector<double> obstacle_clearances(const Scene& scene);
 
-/// The indices of the obstacles that the rod can touch, the only ones that a solver is given. Its
-/// stretch is included: at most 2 l sqrt(P / EA), P the sum of all loads, since the stretch energy
-/// EA d^2 / (2 l) is no more than what the loads do over a way of 2 l. The smaller of EA and the
-/// settings' c_c.
+/// The indices of the obstacles that the rod can touch without stretch, the only ones that the
+/// continuous models are given. They do not depend on what the rod is made of.
+[[nodiscard]] std::vector<std::size_t> obstacles_in_reach(const Scene& scene);
+
+/// Of a rod that stretches, the only ones that the polygons are given: by at most 2 l sqrt(P / EA),
+/// P the sum of all loads, since the stretch energy EA d^2 / (2 l) is no more than what the loads
+/// do over a way of 2 l. The smaller of EA and the settings' c_c.
 [[nodiscard]] std::vector<std::size_t> obstacles_in_reach(const Scene& scene,
                                                           const ForceModelSettings& settings);
-
-/// With the scene's own settings.
-[[nodiscard]] std::vector<std::size_t> obstacles_in_reach(const Scene& scene);
 
 /// The forces of all obstacles, those out of reach zero.
 /// @param in_reach  of obstacles_in_reach();  @param forces  of these

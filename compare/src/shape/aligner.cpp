@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
+#include "shape/arc_lengths.hpp"
 #include "shape/shape_measure.hpp"
 
 namespace dlo::compare {
@@ -21,57 +22,11 @@ constexpr Eigen::Index most_coarse_points = 200;
 /// Places along the rod at which a part of it may lie.
 constexpr int coarse_places_along = 5;
 
-double turning_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// Lengths along a curve through the points: each chord d with the mean curvature k at its ends is
-/// an arc of d (1 + (k d)^2 / 24).
-std::vector<double> lengths_along(const Eigen::Matrix3Xd& points) {
-  const Eigen::Index count = points.cols();
-  const Eigen::Matrix3Xd chords = points.rightCols(count - 1) - points.leftCols(count - 1);
-  const Eigen::VectorXd d = chords.colwise().norm().transpose();
-  Eigen::VectorXd curvature = Eigen::VectorXd::Zero(count);
-  for (Eigen::Index i = 1; i + 1 < count; ++i) {
-    curvature[i] = 2 * turning_angle(chords.col(i - 1), chords.col(i)) / (d[i - 1] + d[i]);
-  }
-  if (count > 2) {
-    curvature[0] = curvature[1];
-    curvature[count - 1] = curvature[count - 2];
-  }
-  std::vector<double> result(static_cast<std::size_t>(count), 0.0);
-  for (Eigen::Index i = 0; i + 1 < count; ++i) {
-    const double turn = d[i] * (curvature[i] + curvature[i + 1]) / 2;
-    result[static_cast<std::size_t>(i) + 1] =
-        result[static_cast<std::size_t>(i)] + d[i] * (1 + turn * turn / 24);
-  }
-  return result;
-}
-
 /// l - s, so that it grows again.
 std::vector<double> mirrored(const std::vector<double>& s, double length) {
   std::vector<double> result(s.rbegin(), s.rend());
   for (double& value : result) value = length - value;
   return result;
-}
-
-std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length) {
-  if (shape.arc_length.empty()) {
-    throw InputError(fmt::format(
-        "{}: no arc lengths in it (allowed: a column s, or arc lengths by chord or nearest)",
-        shape.file));
-  }
-  std::vector<double> s = shape.arc_length;
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    if (s[i] < -1e-6 * length || s[i] > (1 + 1e-6) * length) {
-      throw InputError(
-          fmt::format("{}: point {}: s = {:g} m (allowed: 0 to {:g} m, the rod; "
-                      "--unit if the file is not in metres)",
-                      shape.file, i + 1, s[i], length));
-    }
-    s[i] = std::clamp(s[i], 0.0, length);
-  }
-  return s;
 }
 
 double weighted_mean_square(const Eigen::Matrix3Xd& gaps, const Eigen::VectorXd& weight) {
@@ -86,7 +41,7 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
     throw InputError(fmt::format("{}: {} points (allowed with a frame to be found: 3 or more)",
                                  shape.file, shape.points.cols()));
   }
-  choose_rule(shape);
+  rule_ = arc_length_rule(shape, options.arc_lengths);
   Way& along = ways_[0];
   along.points = shape.points;
   if (rule_ == ArcLengths::file) {
@@ -104,12 +59,6 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
   ways_[1].points = along.points.rowwise().reverse();
   const double end = rule_ == ArcLengths::nearest ? along.arc_length.back() : length;
   ways_[1].arc_length = mirrored(along.arc_length, end);
-}
-
-void Aligner::choose_rule(const MeasuredShape& shape) {
-  rule_ = options_.arc_lengths;
-  if (rule_ != ArcLengths::automatic) return;
-  rule_ = shape.arc_length.empty() ? ArcLengths::nearest : ArcLengths::file;
 }
 
 Eigen::Index Aligner::free_coordinates() const {

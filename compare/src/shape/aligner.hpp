@@ -36,7 +36,6 @@ class Aligner {
     double mean_square = 0;  // weighted
   };
 
-  void choose_rule(const MeasuredShape& shape);
   [[nodiscard]] bool has_free_arc_lengths() const { return rule_ == ArcLengths::nearest; }
   [[nodiscard]] Eigen::VectorXd weights(const std::vector<double>& s,
                                         const Eigen::Matrix3Xd& points) const;

@@ -165,7 +165,7 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
         options.target, options.gripper_speed, options.time_limit));
   }
   const PlanClock clock(options.time_limit);
-  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
+  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene, scene.force_model);
   const std::vector<double> clearances = obstacle_clearances(scene);
   Plan plan;
   plan.gamma = scene.gamma();

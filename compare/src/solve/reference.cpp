@@ -20,10 +20,11 @@ namespace {
 void require_exact_scene(const Scene& scene) {
   const std::size_t obstacles = obstacles_in_reach(scene).size();
   if (obstacles == 0) return;
-  throw InputError(fmt::format(
-      "{}: obstacle: {} given (allowed for model exact: none; --model energy, chain or force takes "
-      "them)",
-      scene.file, obstacles));
+  throw InputError(
+      fmt::format("{}: obstacle: {} in reach (allowed for model exact: none; --model energy, chain "
+                  "or force takes "
+                  "them)",
+                  scene.file, obstacles));
 }
 
 /// What a solver does not take, said of the scene's rod instead of the solver's function.

@@ -154,9 +154,8 @@ void StaticRuns::run_continuous(StaticSeries& series, int terms) {
   const Model model = series.model;
   energy_model::Equilibrium result;
   const std::optional<Timing> time = watch_.time(
-      fmt::format("{}: {}{}", scene_.name, to_string(model),
-                  terms > 0 ? fmt::format(", K = {}", terms) : ""),
-      series.last_s, [&] { result = solve_reference(scene_, model, {.terms = terms}); });
+      fmt::format("{}: {}", scene_.name, name_of({.model = model, .size = terms})), series.last_s,
+      [&] { result = solve_reference(scene_, model, {.terms = terms}); });
   if (!time) return;
   series.last_s = time->median_s;
   series.runs.push_back({.scene = scene_.name,

@@ -118,7 +118,8 @@ long steps_per_frame(force_model::Simulation simulation) {
 BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int points,
                          const Track& track, const BenchmarkOptions& options) {
   const ForceModelSettings settings = variant.settings(scene, points);
-  const Discretisation discretisation = discretise(scene, settings);
+  Discretisation discretisation = discretise(scene, settings);
+  discretisation.rod.walls = walls_of(scene, discretisation.parameters);  // the gripper will move
   force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(),
                                      step_options(settings, discretisation));
   (void)simulation.relax({.tolerance = 1e-5});

@@ -23,8 +23,7 @@ struct StabilityOptions {
   std::string name_contains;
   std::vector<std::string> left_out;  ///< names of cases that are not run
   /// with which steppers
-  std::vector<Stepper> steppers = {Stepper::basic, Stepper::limited, Stepper::relative,
-                                   Stepper::dynamic, Stepper::automatic};
+  std::vector<Stepper> steppers = values<Stepper>();
   Progress progress;  ///< over references and runs; may be empty
 };
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "dlo/compare/force_model_settings.hpp"
-#include "paper/tables.hpp"
+#include "paper/recomputed_tables.hpp"
 
 namespace dlo::compare {
 namespace {

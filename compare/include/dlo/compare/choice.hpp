@@ -15,7 +15,8 @@ struct Choice {
 };
 
 /// The one table of an enumeration that files, options, help and output share. Specialised beside
-/// the enumeration, with a constexpr array `all` of a Choice for each value.
+/// the enumeration (those of force_model in force_model_settings.hpp), with a constexpr array `all`
+/// of a Choice for each value.
 template <typename Value>
 struct Choices;
 
@@ -25,11 +26,7 @@ concept Chosen = requires {
   Choices<Value>::all;
 };
 
-/// What a message says to a name that is none of those allowed.
-[[nodiscard]] std::string unknown_choice(const std::string& name,
-                                         const std::vector<std::string>& allowed);
-
-/// @throws InputError of unknown_choice()
+/// @throws InputError that names what is allowed
 [[noreturn]] void refuse_choice(const std::string& name, const std::vector<std::string>& allowed);
 
 /// "a, b or c", for help.
@@ -52,18 +49,27 @@ template <Chosen Value>
   return result;
 }
 
+/// All values, in the table's order.
+template <Chosen Value>
+[[nodiscard]] std::vector<Value> values() {
+  std::vector<Value> result;
+  for (const auto& choice : Choices<Value>::all) result.push_back(choice.value);
+  return result;
+}
+
 /// "a, b or c" of all names.
 template <Chosen Value>
 [[nodiscard]] std::string one_of() {
   return one_of(names<Value>());
 }
 
-/// All names with what they mean: "a (first), b (second) or c (third)".
+/// All names with what they mean, if more than themselves: "a, b (second) or c (third)".
 template <Chosen Value>
 [[nodiscard]] std::string meanings() {
   std::vector<std::string> result;
   for (const auto& choice : Choices<Value>::all) {
-    result.push_back(std::string(choice.name) + " (" + choice.meaning + ")");
+    result.emplace_back(choice.name);
+    if (*choice.meaning != '\0') result.back() += std::string(" (") + choice.meaning + ")";
   }
   return one_of(result);
 }

@@ -57,12 +57,17 @@ struct Discretisation {
 /// A wall acts on points, each with L times the obstacle's stiffness, as the force model's walls
 /// have one stiffness for all points (the last point of a free end has twice its share). A rigid
 /// obstacle gets c_c / L: as stiff as the rod's own segments, so that points enter it by the weight
-/// of a segment over c_c / L; stiffer ones would only slow the steps down.
+/// of a segment over c_c / L; stiffer ones would only slow the steps down. Obstacles out of the
+/// rod's reach have no wall; who moves grips afterwards takes walls_of().
 /// @throws InputError if there are too few points for the grippers (with the number needed), two
 /// grippers hold the same arc length, grippers, or the segments that they hold, are further apart
 /// than the rod between them, or a single segment between two held points does not fit (with the
 /// number of points that do)
 [[nodiscard]] Discretisation discretise(const Scene& scene, const ForceModelSettings& settings);
+
+/// The walls of all obstacles of a scene, in their order, for segments of length L and with c_c.
+[[nodiscard]] std::vector<force_model::Wall> walls_of(const Scene& scene,
+                                                      const Parameters& parameters);
 
 /// Largest share by which a segment's length may differ from its rest length in a result [-]: a
 /// hundredth, so that a rod that is stretched or crushed because its polygon is too coarse, or its

@@ -37,7 +37,7 @@ struct Budget {
   double total_m = 0;         ///< RMS of force model - rod
 };
 
-/// @param scene  without obstacles out of reach;  @param force  its force model at rest
+/// @param scene  the scene;  @param force  its force model at rest
 /// @param reference  the rod in the same state
 /// @throws InputError, ConvergenceError
 [[nodiscard]] Budget error_budget(const Scene& scene, const Solution& force,

@@ -92,7 +92,7 @@ struct ForceModelFit {
 /// N: the deviation of the chain at rest, worst of the scenes, is measured at N = 16 and 32; from
 /// this order of convergence follows the N that brings it below 0.9 of the target, which is then
 /// tried and raised until it does. c_b of the paper's law: Formula 21, moment-matched, and by
-/// NLopt's Nelder-Mead over log c_b, on the chain, whose rest shape is the force model's.
+/// GSL's Brent minimiser over log c_b, on the chain, whose rest shape is the force model's.
 /// c_c: as low as a stretch of a tenth of the target allows, for steps grow with its root; no more
 /// than AE. c_F and c_h: Polyak's heavy ball for the stiffest and slowest modes at the start and at
 /// rest in any of the scenes; l_s: a quarter of a segment. Given numbers in the first scene's

@@ -61,8 +61,8 @@ struct Scene {
   [[nodiscard]] Eigen::Vector3d weight_per_length() const;  ///< rho A g [N/m]
   [[nodiscard]] double mass() const;                        ///< [kg]
   [[nodiscard]] double gamma() const;                       ///< w l^3 / (EI) [-]
-  /// Unit normal of the plane that grips, forces and obstacles share, if they do; of several planes
-  /// any one.
+  /// Unit normal of the plane that grips, forces and obstacles in reach share, if they do; of
+  /// several planes any one.
   [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
   /// Whether there is one.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }

@@ -1,4 +1,4 @@
-#include "paper/tables.hpp"
+#include "paper/recomputed_tables.hpp"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/force_model/heuristics.hpp"
-#include "paper/printed.hpp"
+#include "paper/printed_tables.hpp"
 #include "polygon/step_constants.hpp"
 
 namespace dlo::compare {

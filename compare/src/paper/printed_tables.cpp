@@ -1,4 +1,4 @@
-#include "paper/printed.hpp"
+#include "paper/printed_tables.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "batch/sweep_lines.hpp"
+#include "batch/read_sweep.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/shape_file.hpp"
+
+namespace dlo::compare {
+
+/// The rule that `automatic` stands for; any other as it is.
+[[nodiscard]] ArcLengths arc_length_rule(const MeasuredShape& shape, ArcLengths asked);
+
+/// The file's own, within the rod [m]. @throws InputError if it has none, or they leave the rod
+[[nodiscard]] std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length);
+
+/// Lengths along a curve through the points [m]: each chord d with the mean curvature k at its ends
+/// is an arc of d (1 + (k d)^2 / 24).
+[[nodiscard]] std::vector<double> lengths_along(const Eigen::Matrix3Xd& points);
+
+}  // namespace dlo::compare
