@@ -59,13 +59,18 @@ Eigen::VectorXd step_in_region(const Eigen::VectorXd& d, const Eigen::VectorXd& 
 class Descent {
  public:
   Descent(SpanSolution& solution, const TrustRegionOptions& options)
-      : solution_(solution), model_(*solution.model), options_(options) {}
+      : solution_(solution),
+        model_(*solution.model),
+        options_(options),
+        // What is kept before the first step has as many of them, too.
+        multipliers_(Eigen::VectorXd::Zero(model_.constraints())) {}
 
   void run() {
     PointOnSpan here;
     here.x = solution_.x;
     evaluate(here);
     if (!restore(here, loosest_gap)) {
+      solution_.multipliers = multipliers_;
       return solution_.fail("the grips' positions could not be met from this start");
     }
     double radius = first_radius;

@@ -137,6 +137,23 @@ TEST(Wall, ForceOfATouchingTipIsReportedAndASoftWallIsNear) {
   EXPECT_LT((soft.sample(s).points - rigid.sample(s).points).colwise().norm().maxCoeff(), 0.02);
 }
 
+// A search that is out of time returns what it has, wherever it was.
+TEST(Wall, EndsWithNumbersWheneverTheTimeEnds) {
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.weight_per_length = {0, -2, 0};
+  problem.grips = {{0, {0, 0.03, 0}, Eigen::Vector3d(-0.33, -0.94, 0).normalized()},
+                   {1, {0.48, 0.18, 0}, Eigen::Vector3d(0.8, 0.6, 0).normalized()}};
+  problem.walls = {{}};
+  for (double limit = 1e-6; limit < 0.3; limit *= 1.4) {
+    const Equilibrium result = solve_energy(problem, {.time_limit = limit});
+    for (const Reaction& grip : result.grips) {
+      EXPECT_TRUE(grip.force.allFinite() && grip.torque.allFinite()) << limit;
+    }
+  }
+}
+
 TEST(Wall, OutOfReachChangesNothing) {
   Problem problem = heavy_cantilever(20, 0);
   problem.walls = {{.point = {0, -2, 0}, .normal = {0, 1, 0}}};
