@@ -9,9 +9,9 @@ namespace dlo::compare {
 /// A value of an enumeration as files and options spell it, and in a few words what it means.
 template <typename Value>
 struct Choice {
-  Value value;
-  const char* name;
-  const char* meaning;
+  Value value;          ///< of the enumeration
+  const char* name;     ///< as it is spelt
+  const char* meaning;  ///< for help; may be empty
 };
 
 /// The one table of an enumeration that files, options, help and output share. Specialised beside
