@@ -72,8 +72,9 @@ void run_cases(StabilityOptions& options) {
   write_output(options.output, {.text = [&] { return hard_cases_text(results, steppers); },
                                 .json = [&] { return json_text(hard_cases_json(results)); },
                                 .csv = [&] { return hard_cases_csv(results); }});
-  if (std::any_of(results.begin(), results.end(), auto_fails))
+  if (std::any_of(results.begin(), results.end(), auto_fails)) {
     end_with(ExitStatus::outside_tolerance);
+  }
 }
 
 }  // namespace

@@ -141,11 +141,13 @@ void SceneOptions::apply(compare::Scene& scene) const {
   if (!parameters_.empty()) settings = compare::load_parameters(parameters_);
   if (points_ > 0) settings.points = points_;
   if (!law_.empty()) settings.law = compare::from_name<compare::BendingLaw>(law_);
-  if (!bookkeeping_.empty())
+  if (!bookkeeping_.empty()) {
     settings.bookkeeping = compare::from_name<compare::Bookkeeping>(bookkeeping_);
+  }
   if (!stepper_.empty()) settings.stepper = compare::from_name<compare::Stepper>(stepper_);
-  if (!bending_rule_.empty())
+  if (!bending_rule_.empty()) {
     settings.bending_rule = compare::from_name<compare::BendingRule>(bending_rule_);
+  }
   if (!design_curvature_.empty()) {
     settings.design_curvature =
         option_quantity("--design-curvature", design_curvature_, Dimension::curvature);

@@ -218,20 +218,22 @@ class ForceModelFitter {
 
   /// The c_b that is nearest to the cases [begin, end).
   [[nodiscard]] double fitted_c_b(double centre, std::size_t begin, std::size_t end) const {
+    constexpr double no_value = 1e3;
     const Function misfit = [&](double log_c_b) {
       double sum = 0;
       for (std::size_t i = begin; i < end; ++i) {
         sum += std::pow(cases_[i].chain_with(settings_, std::exp(log_c_b), options_.solve), 2);
       }
       // Brent's method interpolates, so what has no value is made merely large.
-      return std::min(sum / static_cast<double>(end - begin), 1e3);
+      return std::min(sum / static_cast<double>(end - begin), no_value);
     };
     constexpr int steps_per_decade = 4;
     Scan values;
     for (const int decades : {4, 8, 16}) {
       const double reach = decades * std::log(10.0);
       values = scan(misfit, centre - reach, centre + reach, 2 * decades * steps_per_decade);
-      if (values.is_bracketed()) break;
+      // Where no c_b gives a shape there is no end to look beyond.
+      if (values.is_bracketed() || !(values.value[values.best()] < no_value)) break;
     }
     return std::exp(minimum_near(misfit, values, 1e-6).x);
   }

@@ -22,8 +22,7 @@ void require_exact_scene(const Scene& scene) {
   if (obstacles == 0) return;
   throw InputError(
       fmt::format("{}: obstacle: {} in reach (allowed for model exact: none; --model energy, chain "
-                  "or force takes "
-                  "them)",
+                  "or force takes them)",
                   scene.file, obstacles));
 }
 
