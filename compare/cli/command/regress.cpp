@@ -36,7 +36,7 @@ struct RegressOptions {
 
 MeasuredCase measure(const RegressOptions& options, const std::string& path) {
   const compare::Scene scene = options.overrides.load(path);
-  const compare::Model model = compare::from_name<compare::Model>(options.model);
+  const auto model = compare::from_name<compare::Model>(options.model);
   try {
     return {compare::measure_case(scene, model, options.overrides.solve()), ""};
   } catch (const compare::ConvergenceError& error) {

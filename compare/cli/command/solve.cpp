@@ -57,7 +57,7 @@ void require_resolved(const compare::Solution& solution, const compare::Scene& s
 void run(const SolveOptions& options) {
   require_format_for(options);
   const compare::Scene scene = options.overrides.load(options.scene);
-  const compare::Model model = compare::from_name<compare::Model>(options.model);
+  const auto model = compare::from_name<compare::Model>(options.model);
   constexpr int text_samples = 11;
   int samples = options.samples;
   const bool continuous = model == compare::Model::energy || model == compare::Model::exact;

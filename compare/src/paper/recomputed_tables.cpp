@@ -47,7 +47,7 @@ void add_table_1(std::vector<TableRow>& rows) {
   using force_model::Formula13;
   const PrintedTable table("table_1");
   const double mass = table_1().mass;
-  const double points = static_cast<double>(table_1().points);
+  const auto points = static_cast<double>(table_1().points);
   const double length = table_1().length;
   const double force = 0.8 * mass * gravity;
   const double angle = 2.5 * std::numbers::pi / 180;

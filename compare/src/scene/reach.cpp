@@ -24,8 +24,11 @@ std::vector<const Gripper*> grippers_along(const Scene& scene) {
 
 std::vector<double> obstacle_clearances(const Scene& scene) {
   const std::vector<const Gripper*> along = grippers_along(scene);
-  if (along.empty()) return std::vector<double>(scene.obstacles.size(), 0);
   std::vector<double> clearances;
+  if (along.empty()) {
+    clearances.resize(scene.obstacles.size());
+    return clearances;
+  }
   for (const Obstacle& obstacle : scene.obstacles) {
     const auto height = [&](const Eigen::Vector3d& point) {
       return obstacle.normal.dot(point - obstacle.point);
