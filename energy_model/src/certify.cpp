@@ -24,7 +24,7 @@ double newton_step(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobi
   right << -gradient, -residual;
   Eigen::VectorXd step = system.partialPivLu().solve(right);
   if (!((system * step - right).norm() <= 1e-6 * right.norm()) ||
-      !(step.norm() <= largest_next_step)) {
+      !(step.head(n).norm() <= largest_next_step)) {
     step = newton_step_across_neutral(system, right);
   }
   return step.head(n).norm();
@@ -69,12 +69,6 @@ void certify(SpanSolution& solution, double load) {
 void certify_sideways(SpanSolution& solution) {
   if (solution.status != SolveStatus::converged) return;
   if (!solution.model->resists_sideways()) solution.finish(SolveStatus::saddle);
-}
-
-void certify_resolved(SpanSolution& solution) {
-  if (!solution.is_equilibrium() || solution.resolved) return;
-  solution.status = SolveStatus::not_resolved;
-  solution.message = solution.too_few_terms();
 }
 
 }  // namespace dlo::energy_model

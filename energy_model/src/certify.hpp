@@ -17,9 +17,4 @@ void certify(SpanSolution& solution, double load);
 /// sign is told. The model's last value() was at solution.x.
 void certify_sideways(SpanSolution& solution);
 
-/// Takes a claim back whose shape more terms would change: `not_resolved`. The search leaves such
-/// shapes where the tangent comes near to its axis, for a solve about another axis, which the time
-/// may not have sufficed for.
-void certify_resolved(SpanSolution& solution);
-
 }  // namespace dlo::energy_model

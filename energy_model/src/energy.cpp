@@ -6,7 +6,6 @@
 #include <string>
 
 #include "assemble.hpp"
-#include "certify.hpp"
 #include "legendre.hpp"
 #include "lowest_combinations.hpp"
 #include "penetration.hpp"
@@ -225,15 +224,10 @@ class EnergySolver::State {
     PlacedSpan own = placed;
     options.start = field;
     options.all = false;
-    if (placed.span.planar && may_leave_plane) leave_plane(own, options.start);
-    const Eigen::Matrix3d turn = own.frame * placed.frame.transpose();
-    options.start = [&field, turn](const Eigen::VectorXd& s) {
-      return Eigen::Matrix3Xd(turn * field(s));
-    };
+    if (placed.span.planar && may_leave_plane) leave_plane(own, field);
     return std::move(search(own, options).front());
   }
 
-  /// solve_span(), again about another axis while the solution comes too near to its own.
   [[nodiscard]] std::vector<PlacedSolution> search(const PlacedSpan& placed,
                                                    const SpanOptions& options) {
     std::vector<PlacedSolution> found;
@@ -242,20 +236,8 @@ class EnergySolver::State {
       PlacedSolution& last = found.back();
       // The search may have left the plane.
       last.placed.span.planar = last.solution.model->span().planar;
-      if (!last.placed.span.planar) away_from_poles(last, options);
-      certify_resolved(last.solution);
     }
     return found;
-  }
-
-  void away_from_poles(PlacedSolution& found, SpanOptions options) {
-    constexpr int most_turns = 3;
-    for (int turn = 1; turn <= most_turns && !options.deadline.passed(); ++turn) {
-      if (found.solution.model->elevation() < largest_elevation) return;
-      options.past_poles = turn == most_turns;
-      options.all = false;
-      found.solution = with_axis_turned(found.placed, found.solution, options);
-    }
   }
 
   /// A span that could lie in its plane is spatial if its start has left it.
@@ -265,27 +247,6 @@ class EnergySolver::State {
     constexpr double flat = 1e-6;
     if (tangents.row(2).cwiseAbs().maxCoeff() < flat) return;
     placed.span.planar = false;
-    turn_axis(placed, tangents);
-  }
-
-  /// Once more, with an axis from which this solution's tangents stay away.
-  SpanSolution with_axis_turned(PlacedSpan& placed, const SpanSolution& solution,
-                                SpanOptions options) {
-    const SpanShape shape = solution.model->shape(solution.x);
-    const Eigen::Matrix3d before = placed.frame;
-    turn_axis(placed, sample_tangents(shape, solution.model->nodes()));
-    const Eigen::Matrix3d turn = placed.frame * before.transpose();
-    options.start = [shape, turn](const Eigen::VectorXd& s) {
-      return Eigen::Matrix3Xd(turn * sample_tangents(shape, s));
-    };
-    options.least_terms = solution.terms;
-    SpanSolution turned = std::move(solve_span(placed.span, options, workspace_).front());
-    turned.evaluations += solution.evaluations;
-    return turned;
-  }
-
-  static Eigen::Matrix3Xd sample_tangents(const SpanShape& shape, const Eigen::VectorXd& s) {
-    return shape.sample({s.data(), static_cast<std::size_t>(s.size())}).tangents;
   }
 
   /// The nodes are where they were, unless grips or loads have moved along the rod.

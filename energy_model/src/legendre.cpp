@@ -11,8 +11,6 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr int extra_nodes = 6;
-
 /// P_n(x) and its derivative.
 struct Polynomial {
   double value, slope;
@@ -46,8 +44,7 @@ void gauss_legendre(Eigen::VectorXd& nodes, Eigen::VectorXd& weights) {
   }
 }
 
-LegendreTable make_table(int terms) {
-  const Eigen::Index Q = terms + extra_nodes;
+LegendreTable make_table(int terms, Eigen::Index Q) {
   LegendreTable table;
   table.nodes.resize(Q);
   table.weights.resize(Q);
@@ -69,6 +66,21 @@ LegendreTable make_table(int terms) {
   return table;
 }
 
+/// One table for each number of terms, made when it is first asked for.
+class Tables {
+ public:
+  const LegendreTable& of(int terms, int nodes) {
+    require(terms >= 1 && terms <= max_terms, "LegendreTable", "terms", terms, "1 to 128");
+    const auto index = static_cast<std::size_t>(terms);
+    std::call_once(made_[index], [&] { tables_[index] = make_table(terms, nodes); });
+    return tables_[index];
+  }
+
+ private:
+  std::array<LegendreTable, max_terms + 1> tables_;
+  std::array<std::once_flag, max_terms + 1> made_;
+};
+
 }  // namespace
 
 void legendre(double xi, Eigen::Ref<Eigen::VectorXd> values,
@@ -89,12 +101,13 @@ void legendre(double xi, Eigen::Ref<Eigen::VectorXd> values,
 }
 
 const LegendreTable& legendre_table(int terms) {
-  require(terms >= 1 && terms <= max_terms, "legendre_table", "terms", terms, "1 to 128");
-  static std::array<LegendreTable, max_terms + 1> tables;
-  static std::array<std::once_flag, max_terms + 1> made;
-  const auto index = static_cast<std::size_t>(terms);
-  std::call_once(made[index], [&] { tables[index] = make_table(terms); });
-  return tables[index];
+  static Tables tables;
+  return tables.of(terms, terms + 6);
+}
+
+const LegendreTable& director_table(int terms) {
+  static Tables tables;
+  return tables.of(terms, 3 * terms / 2 + 8);
 }
 
 }  // namespace dlo::energy_model

@@ -4,9 +4,8 @@
 
 namespace dlo::energy_model {
 
-/// Orthonormal Legendre polynomials p_k on [0, 1] at the Q = K + 6 nodes of a Gauss-Legendre rule:
-/// for a tangent angle of degree K the sines and cosines of the integrand are then resolved as far
-/// as the angle itself is. All Q polynomials are tabulated, the first K are the unknowns' own.
+/// Orthonormal Legendre polynomials p_k on [0, 1] at the Q nodes of a Gauss-Legendre rule. All Q
+/// polynomials are tabulated, the first K are the unknowns' own.
 struct LegendreTable {
   Eigen::VectorXd nodes;        ///< Q
   Eigen::VectorXd weights;      ///< Q, sum 1
@@ -21,10 +20,15 @@ struct LegendreTable {
 /// Values p_k(xi) and integrals int_0^xi p_k for k = 0 .. K-1 into `values` and `integrals`.
 void legendre(double xi, Eigen::Ref<Eigen::VectorXd> values, Eigen::Ref<Eigen::VectorXd> integrals);
 
-/// Table of K terms, made once and kept. Safe to call from several threads.
+/// Table of K terms, made once and kept, with Q = K + 6: for a tangent angle of degree K the sines
+/// and cosines of the integrand are then resolved as far as the angle itself is. Safe to call from
+/// several threads.
 [[nodiscard]] const LegendreTable& legendre_table(int terms);
 
-/// Largest number of terms that legendre_table knows.
+/// The same with Q = 3 K / 2 + 8, on which directors are collocated whose strains have K terms.
+[[nodiscard]] const LegendreTable& director_table(int terms);
+
+/// Largest number of terms that the tables know.
 inline constexpr int max_terms = 128;
 
 }  // namespace dlo::energy_model

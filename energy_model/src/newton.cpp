@@ -17,6 +17,9 @@ constexpr double last_residual = 1e-8;
 constexpr double finest_step = 1e-11;
 constexpr double coarsest_step = 1e-8;
 
+/// Steps that become shorter by this with a factor of another point's need no new one.
+constexpr double fast_contraction = 0.1;
+
 /// A factor is used again for a last step as long as x has moved less than this since: the residual
 /// still falls by that much.
 constexpr double factor_reach = 1e-3;
@@ -75,7 +78,8 @@ void Newton::solve() {
   right_ << -gradient_, -residual_;
   step_ = lu_.solve(right_);
   // A neutral direction leaves the system singular; least squares stands still along it.
-  if (!((system_ * step_ - right_).norm() <= 1e-6 * right_.norm()) || step_.norm() > 1e3) {
+  const double moved = step_.head(gradient_.size()).norm();
+  if (!((system_ * step_ - right_).norm() <= 1e-6 * right_.norm()) || moved > 1e3) {
     step_ = newton_step_across_neutral(system_, right_);
   }
 }
@@ -124,22 +128,41 @@ double Newton::step_length(SpanSolution& solution, double size) {
   return best;
 }
 
-/// Moves along the step, by a quarter as much as long as the residual is no smaller there.
-/// @return the residual there; the solution is where it was if there is no such part
-double Newton::cut_move(SpanSolution& solution, double size) {
+/// Length of a step, multipliers by their own size.
+double Newton::length_of(const SpanSolution& solution) const {
+  const Eigen::Index n = gradient_.size();
+  const double shape = step_.head(n).norm();
+  if (residual_.size() == 0) return shape;
+  const double scale = 1 + load_ + solution.multipliers.norm();
+  return std::hypot(shape, step_.tail(residual_.size()).norm() / scale);
+}
+
+/// Moves along the step, by a quarter as much as long as the next step with the same factor is not
+/// shorter: Deuflhard's natural monotonicity, which does not depend on how gradients and gaps are
+/// weighed against each other. That step is left in step_, the residual in `size`.
+/// @return whether there is such a part; the solution is where it was if not
+bool Newton::natural_move(SpanSolution& solution, double& size) {
   constexpr double longest = 2;        // of a step; angles of this size have left the path
-  constexpr double least_part = 1e-8;  // of a step
+  constexpr double least_part = 1e-5;  // of a step
   trial_x_ = solution.x;
   trial_multipliers_ = solution.multipliers;
+  first_step_ = step_;
+  const double length = length_of(solution);
   const double first = std::min(1.0, longest / step_.head(gradient_.size()).norm());
   for (double part = first; part > least_part; part /= 4) {
+    step_ = first_step_;
     move(solution, part);
-    const double trial = evaluate(solution);
-    if (trial < size) return trial;
+    size = evaluate(solution);
+    if (std::isfinite(size)) {
+      solve();
+      if (length_of(solution) < (1 - part / 4) * length) return true;
+    }
     solution.x = trial_x_;
     solution.multipliers = trial_multipliers_;
   }
-  return evaluate(solution);
+  step_ = first_step_;
+  size = evaluate(solution);
+  return false;
 }
 
 void Newton::polish(SpanSolution& solution, double load) {
@@ -149,6 +172,7 @@ void Newton::polish(SpanSolution& solution, double load) {
   const int most_steps = walls ? 60 : 30;
   double size = evaluate(solution);
   bool factored = false;
+  bool shrinks = false;  // the steps, with the factor of an earlier point
   const auto finish = [&] {
     solution.residual = size;
     const bool minimum = definite_ || jacobian_.rows() > 0;
@@ -160,7 +184,7 @@ void Newton::polish(SpanSolution& solution, double load) {
     solve();
     const double moved = step_.head(gradient_.size()).norm();
     solution.next_step = moved;
-    const bool small = size <= last_residual * (1 + load);
+    const bool small = size <= last_residual * (1 + load + solution.multipliers.norm());
     if (moved <= finest_step) return finish();
     if (walls && small) {
       // One more step for the multipliers of the walls, which are updated from what it leaves.
@@ -168,14 +192,15 @@ void Newton::polish(SpanSolution& solution, double load) {
       size = evaluate(solution);
       return finish();
     }
-    const double before = size;
     if (walls) {
+      const double before = size;
       move(solution, step_length(solution, size));
       size = evaluate(solution);
+      solution.next_step = moved * size / before;
+    } else if (natural_move(solution, size)) {
+      solution.next_step = step_.head(gradient_.size()).norm();
+      shrinks = solution.next_step < fast_contraction * moved;
     } else {
-      size = cut_move(solution, size);
-    }
-    if (!(size < before) && !walls) {
       // Rounding is all that is left; what it moves a neutral direction by means nothing.
       if (small && moved > coarsest_step && !definite_ && !factored) {
         stand_still_where_neutral();
@@ -191,55 +216,16 @@ void Newton::polish(SpanSolution& solution, double load) {
       if (!small) break;
       return solution.finish(SolveStatus::near_singular);
     }
-    // The steps shrink as the residuals do.
-    const double next = moved * size / before;
-    solution.next_step = next;
-    if (small && next <= finest_step) return finish();
-    factored = !walls && moved * (1 + load) <= factor_reach;
+    const double scale = 1 + load + solution.multipliers.norm();
+    if (!walls && size <= last_residual * scale && solution.next_step <= finest_step) {
+      return finish();
+    }
+    // Between grips the caller looks at the second variation; without, the factor has to tell it.
+    const bool near = moved * (1 + load) <= factor_reach;
+    factored = !walls && (near || (shrinks && jacobian_.rows() > 0));
   }
   solution.residual = size;
   solution.fail("Newton's method did not reduce the residual to rounding");
-}
-
-void Newton::lead(SpanSolution& solution, double load, int max_evaluations) {
-  load_ = load;
-  solution.multipliers.resize(0);
-  begin(solution);
-  (void)evaluate(solution);
-  const Eigen::VectorXd first_gradient = gradient_;
-  const Eigen::VectorXd first_residual = residual_;
-  double reached = 0;
-  double stride = 0.2;
-  const int limit = solution.evaluations + max_evaluations;
-  while (reached < 1 && stride > 1e-3 && solution.evaluations < limit) {
-    const double target = std::min(1.0, reached + stride);
-    const Eigen::VectorXd x = solution.x;
-    const Eigen::VectorXd multipliers = solution.multipliers;
-    bool arrived = false;
-    for (int step = 0; step < 6 && !arrived; ++step) {
-      (void)evaluate(solution);
-      gradient_ -= (1 - target) * first_gradient;
-      residual_ -= (1 - target) * first_residual;
-      const double size = std::hypot(gradient_.norm(), (1 + load_) * residual_.norm());
-      arrived = size < 1e-4 * (1 + load_);
-      if (!std::isfinite(size)) break;
-      factor(solution);
-      solve();
-      // A step that large has left the path.
-      if (step_.norm() > 5) break;
-      move(solution, 1);
-    }
-    if (arrived) {
-      reached = target;
-      stride *= 1.6;
-    } else {
-      solution.x = x;
-      solution.multipliers = multipliers;
-      stride /= 3;
-    }
-  }
-  if (reached < 1) return solution.fail("no path led from the start to an equilibrium");
-  polish(solution, load);
 }
 
 }  // namespace dlo::energy_model

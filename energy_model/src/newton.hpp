@@ -13,16 +13,12 @@ namespace dlo::energy_model {
 class Newton {
  public:
   /// From solution.x to where the residual is at rounding and Newton's next step, evaluated there,
-  /// is below 1e-8; steps are cut while they make the residual larger. Without constraints the
-  /// Hessian then tells a minimum (`converged`) from a `saddle`; with them the caller has to look.
-  /// Ends as `near_singular` where the residual is at rounding and the step is not, and as `failed`
-  /// where the residual does not fall.
+  /// is below 1e-8; steps are cut while the next one, with the same factor, is no shorter. Without
+  /// constraints the Hessian then tells a minimum (`converged`) from a `saddle`; with them the
+  /// caller has to look. Ends as `near_singular` where the residual is at rounding and the step is
+  /// not, and as `failed` where the residual does not fall.
   /// @param load  sum of weight and loads, the scale of the residuals
   void polish(SpanSolution& solution, double load);
-
-  /// The same for a start that is too far away: the residual there is taken off by degrees, each
-  /// one's solution the start of the next. What it finds may be a saddle.
-  void lead(SpanSolution& solution, double load, int max_evaluations);
 
  private:
   void begin(SpanSolution& solution);
@@ -33,10 +29,11 @@ class Newton {
   void move(SpanSolution& solution, double length);
   [[nodiscard]] double step_length(SpanSolution& solution, double size);
   [[nodiscard]] double step_length_by_energy(SpanSolution& solution);
-  [[nodiscard]] double cut_move(SpanSolution& solution, double size);
+  [[nodiscard]] double length_of(const SpanSolution& solution) const;
+  [[nodiscard]] bool natural_move(SpanSolution& solution, double& size);
 
   double load_ = 0;
-  Eigen::VectorXd gradient_, residual_, right_, step_;
+  Eigen::VectorXd gradient_, residual_, right_, step_, first_step_;
   Eigen::MatrixXd jacobian_, hessian_, system_;
   Eigen::LLT<Eigen::MatrixXd> llt_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;

@@ -74,10 +74,10 @@ void check(const PolygonProblem& problem, const Points& start, const PolygonOpti
 }
 
 /// Descends on one problem; holds what all steps need.
-class Descent {
+class PolygonDescent {
  public:
-  Descent(const PolygonProblem& problem, const PolygonOptions& options, const Deadline& deadline,
-          PolygonResult& result)
+  PolygonDescent(const PolygonProblem& problem, const PolygonOptions& options,
+                 const Deadline& deadline, PolygonResult& result)
       : problem_(problem),
         options_(options),
         deadline_(deadline),
@@ -325,13 +325,13 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
       const double stiffness = problem.walls[i].stiffness;
       stage.walls[i].stiffness = last ? stiffness : std::min(stiffness, c_c / shortest);
     }
-    Descent descent(stage, options, deadline, result);
+    PolygonDescent descent(stage, options, deadline, result);
     result.status = descent.run(last ? options.tolerance : stage_tolerance);
     result.message = to_string(result.status);
     const bool go_on = succeeded(result.status) || result.status == SolveStatus::saddle;
     if (!last && go_on) continue;
     // A softer stage may have failed; what is returned belongs to the problem that was asked.
-    Descent asked(problem, options, deadline, result);
+    PolygonDescent asked(problem, options, deadline, result);
     asked.prove();
     result.grip_forces.resize(3, static_cast<Eigen::Index>(problem.held.size()));
     for (std::size_t i = 0; i < problem.held.size(); ++i) {

@@ -8,10 +8,8 @@
 namespace dlo::energy_model {
 
 /// The part of a rod between two clamps, or between a clamp and a free end, or a rod without
-/// clamps. Own units (lengths in l, forces in EI/l^2), own frame: z is the axis against which the
-/// tangent's elevation beta is measured,
-///     t = (cos beta cos theta, cos beta sin theta, sin beta),
-/// so that a planar span lies in x-y and has beta = 0. s runs from the span's start.
+/// clamps. Own units (lengths in l, forces in EI/l^2), own frame, in which a planar span lies in
+/// x-y. s runs from the span's start.
 struct Span {
   struct Hold {
     double at = 0;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "fit_angle.hpp"
 #include "free_directions.hpp"
 #include "legendre.hpp"
 
@@ -21,8 +23,13 @@ double angle_of(const Eigen::Vector3d& direction) {
   return std::atan2(direction.y(), direction.x());
 }
 
-double elevation_of(const Eigen::Vector3d& direction) {
-  return std::asin(std::clamp(direction.z() / direction.norm(), -1.0, 1.0));
+/// A frame whose third column is this tangent; a planar shape then bends by u1 alone.
+Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent) {
+  Eigen::Vector3d first = Eigen::Vector3d::UnitZ() - tangent.z() * tangent;
+  first = first.norm() > 1e-3 ? first.normalized() : tangent.unitOrthogonal();
+  Eigen::Matrix3d frame;
+  frame << first, tangent.cross(first), tangent;
+  return frame;
 }
 
 /// The angle that differs from `angle` by whole turns and is nearest to `target`.
@@ -31,8 +38,9 @@ double nearest_turn(double angle, double target) {
 }
 
 /// Adds basis^T diag(by_node) basis to a symmetric matrix.
-void add_weighted_gram(const Eigen::VectorXd& by_node, const Eigen::MatrixXd& basis,
-                       Eigen::MatrixXd& scaled, Eigen::Ref<Eigen::MatrixXd> result) {
+void add_weighted_gram(const Eigen::Ref<const Eigen::VectorXd>& by_node,
+                       const Eigen::Ref<const Eigen::MatrixXd>& basis, Eigen::MatrixXd& scaled,
+                       Eigen::Ref<Eigen::MatrixXd> result) {
   scaled.noalias() = by_node.asDiagonal() * basis;
   const Eigen::Index columns = basis.cols();
   if (columns > most_for_vectors) {
@@ -52,33 +60,37 @@ void add_weighted_gram(const Eigen::VectorXd& by_node, const Eigen::MatrixXd& ba
 
 }  // namespace
 
+void SpanEnergy::tabulate_nodes() {
+  table_ = span_.planar ? &legendre_table(terms_) : &director_table(terms_);
+  const Eigen::Index Q = table_->nodes.size();
+  const auto count = static_cast<Eigen::Index>(pieces_.size());
+  columns_ = free_start_ + count * terms_;
+  s_.resize(count * Q);
+  weights_.resize(count * Q);
+  for (Eigen::Index e = 0; e < count; ++e) {
+    const Piece& piece = pieces_[static_cast<std::size_t>(e)];
+    s_.segment(e * Q, Q) = piece.begin + piece.length * table_->nodes.array();
+    weights_.segment(e * Q, Q) = piece.length * table_->weights;
+  }
+}
+
 void SpanEnergy::tabulate_angles() {
-  const LegendreTable& table = legendre_table(terms_);
-  const Eigen::Index Q = table.nodes.size();
+  const Eigen::Index Q = table_->nodes.size();
   const Eigen::Index K = terms_;
   const auto count = static_cast<Eigen::Index>(pieces_.size());
-  const Eigen::Index nodes = count * Q;
-  columns_ = free_start_ + count * K;
-  s_.resize(nodes);
-  weights_.resize(nodes);
-  angle_.setZero(nodes, columns_);
-  if (fields_ == 2) slope_.setZero(nodes, columns_);
+  angle_.setZero(s_.size(), columns_);
   end_angle_.setZero(columns_);
   if (free_start_ == 1) {
     angle_.col(0).setOnes();
     end_angle_[0] = 1;
   }
   for (Eigen::Index e = 0; e < count; ++e) {
-    const Piece& piece = pieces_[static_cast<std::size_t>(e)];
-    const double root = std::sqrt(piece.length);
+    const double root = std::sqrt(pieces_[static_cast<std::size_t>(e)].length);
     const Eigen::Index column = free_start_ + e * K;
-    s_.segment(e * Q, Q) = piece.begin + piece.length * table.nodes.array();
-    weights_.segment(e * Q, Q) = piece.length * table.weights;
-    angle_.block(e * Q, column, Q, K) = root * table.integrals.leftCols(K);
+    angle_.block(e * Q, column, Q, K) = root * table_->integrals.leftCols(K);
     // Only p_0 turns the tangent over a whole piece.
     angle_.col(column).tail((count - e - 1) * Q).setConstant(root);
     end_angle_[column] = root;
-    if (fields_ == 2) slope_.block(e * Q, column, Q, K) = table.values.leftCols(K) / root;
   }
 }
 
@@ -96,11 +108,18 @@ void SpanEnergy::tabulate_forces() {
     force_.row(q) = weights_[q] * n.transpose();
   }
   reach_.setZero(nodes, static_cast<Eigen::Index>(span_.holds.size()));
+  const Eigen::Index Q = table_->nodes.size();
+  reach_signs_.assign(span_.holds.size(), std::vector<double>(pieces_.size(), 0));
   for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
     const double at = span_.holds[static_cast<std::size_t>(j)].at;
     for (Eigen::Index q = 0; q < nodes; ++q) {
       if (s_[q] > span_.anchor && s_[q] < at) reach_(q, j) = weights_[q];
       if (s_[q] < span_.anchor && s_[q] > at) reach_(q, j) = -weights_[q];
+    }
+    for (std::size_t e = 0; e < pieces_.size(); ++e) {
+      // All nodes of a piece are on one side of the grips.
+      const Eigen::Index q = static_cast<Eigen::Index>(e) * Q;
+      reach_signs_[static_cast<std::size_t>(j)][e] = reach_(q, j) / weights_[q];
     }
   }
 }
@@ -108,27 +127,51 @@ void SpanEnergy::tabulate_forces() {
 void SpanEnergy::reset(const Span& span, int terms) {
   span_ = span;
   terms_ = terms;
-  fields_ = span.planar ? 1 : 2;
   axes_ = span.planar ? 2 : 3;
   free_start_ = span.start_direction ? 0 : 1;
   pieces_ = pieces_of(span);
-  tabulate_angles();
+  tabulate_nodes();
   tabulate_forces();
-  constraints_ = axes_ * reach_.cols() + (span.end_direction ? fields_ : 0);
-  start_theta_ = span.start_direction ? angle_of(*span.start_direction) : 0;
-  start_beta_ = span.start_direction ? elevation_of(*span.start_direction) : 0;
-  if (span.end_direction) {
-    end_theta_ = nearest_turn(angle_of(*span.end_direction), start_theta_);
-    end_beta_ = elevation_of(*span.end_direction);
-  }
+  const Eigen::Index end_angles = span.planar ? 1 : 2;
+  constraints_ = axes_ * reach_.cols() + (span.end_direction ? end_angles : 0);
   const Eigen::Index nodes = s_.size();
-  for (Eigen::VectorXd* v : {&theta_, &beta_, &kappa_, &along_, &turning_}) v->setZero(nodes);
-  for (Eigen::MatrixX3d* m : {&t_, &t_theta_, &t_beta_, &total_, &carried_}) m->setZero(nodes, 3);
-  scaled_.resize(nodes, columns_);
+  for (Eigen::MatrixX3d* m : {&t_, &t_theta_, &total_, &carried_}) m->setZero(nodes, 3);
+  if (span.planar) {
+    tabulate_angles();
+    start_theta_ = span.start_direction ? angle_of(*span.start_direction) : 0;
+    if (span.end_direction) end_theta_ = nearest_turn(angle_of(*span.end_direction), start_theta_);
+    for (Eigen::VectorXd* v : {&theta_, &kappa_, &along_, &turning_}) v->setZero(nodes);
+    scaled_.resize(table_->nodes.size(), terms_);
+    beside_.resize(terms_);
+  } else {
+    start_frame_ = frame_along(span.start_direction.value_or(Eigen::Vector3d::UnitX()));
+    frames_.reset(pieces_, terms, start_frame_, free_start_ == 1);
+    frames_.resize(state_);
+    pulled_.resize(size());
+  }
   x_.setZero(size());
   gradient_.setZero(size());
   evaluated_ = false;
-  walls_.reset(span_, pieces_, terms_, s_, weights_);
+  walls_.reset(span_, pieces_, *table_, s_, weights_);
+}
+
+/// Into t_ (and t_theta_ in the plane), at x_.
+void SpanEnergy::place_tangents() {
+  if (!span_.planar) {
+    frames_.evaluate(x_, state_);
+    t_ = state_.t.bottomRows(s_.size());
+    return;
+  }
+  theta_.noalias() = angle_ * x_;
+  theta_.array() += start_theta_;
+  for (Eigen::Index q = 0; q < theta_.size(); ++q) {
+    const double c = std::cos(theta_[q]);
+    const double s = std::sin(theta_[q]);
+    t_(q, 0) = c;
+    t_(q, 1) = s;
+    t_theta_(q, 0) = -s;
+    t_theta_(q, 1) = c;
+  }
 }
 
 double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
@@ -138,52 +181,19 @@ double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
     return energy_;
   }
   x_ = x;
-  theta_.noalias() = angle_ * x.head(columns_);
-  theta_.array() += start_theta_;
+  place_tangents();
   gradient = x;
-  if (free_start_ == 1) {
-    gradient[0] = 0;
-    if (fields_ == 2) gradient[columns_] = 0;
-  }
-  double energy = gradient.dot(x) / 2;
-  const Eigen::Index nodes = theta_.size();
-  if (fields_ == 1) {
-    for (Eigen::Index q = 0; q < nodes; ++q) {
-      const double c = std::cos(theta_[q]);
-      const double s = std::sin(theta_[q]);
-      t_(q, 0) = c;
-      t_(q, 1) = s;
-      t_theta_(q, 0) = -s;
-      t_theta_(q, 1) = c;
-    }
-  } else {
-    beta_.noalias() = angle_ * x.tail(columns_);
-    beta_.array() += start_beta_;
-    kappa_.noalias() = slope_ * x.head(columns_);
-    for (Eigen::Index q = 0; q < nodes; ++q) {
-      const double c = std::cos(theta_[q]);
-      const double s = std::sin(theta_[q]);
-      const double cb = std::cos(beta_[q]);
-      const double sb = std::sin(beta_[q]);
-      t_.row(q) << cb * c, cb * s, sb;
-      t_theta_.row(q) << -cb * s, cb * c, 0;
-      t_beta_.row(q) << -sb * c, -sb * s, cb;
-      energy -= weights_[q] * sb * sb * kappa_[q] * kappa_[q] / 2;
-    }
-  }
-  energy -= force_.cwiseProduct(t_).sum();
+  // A free start turns for nothing.
+  if (free_start_ == 1) gradient[0] = 0;
+  if (free_start_ == 1 && !span_.planar) gradient[columns_] = 0;
+  double energy = gradient.dot(x) / 2 - force_.cwiseProduct(t_).sum();
   total_ = force_;
   if (has_walls()) energy += walls_.add(t_, total_);
-
-  turning_ = total_.cwiseProduct(t_theta_).rowwise().sum();
-  gradient.head(columns_).noalias() -= angle_.transpose() * turning_;
-  if (fields_ == 2) {
-    turning_ = weights_.array() * t_.col(2).array().square() * kappa_.array();
-    gradient.head(columns_).noalias() -= slope_.transpose() * turning_;
-    turning_ = total_.cwiseProduct(t_beta_).rowwise().sum();
-    turning_.array() +=
-        weights_.array() * t_.col(2).array() * t_beta_.col(2).array() * kappa_.array().square();
-    gradient.tail(columns_).noalias() -= angle_.transpose() * turning_;
+  if (span_.planar) {
+    turning_ = total_.cwiseProduct(t_theta_).rowwise().sum();
+    gradient.noalias() -= angle_.transpose() * turning_;
+  } else {
+    frames_.pull({&total_}, -1, state_, gradient);
   }
   gradient_ = gradient;
   energy_ = energy;
@@ -191,32 +201,83 @@ double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
   return energy;
 }
 
+EndMiss SpanEnergy::end_miss(Eigen::Index component) const {
+  const Eigen::Vector3d& target = *span_.end_direction;
+  const Eigen::Matrix3d across = frame_along(target);
+  const Eigen::Vector3d e = across.col(component);
+  const Eigen::Vector3d t = state_.end_tangent();
+  const double n = e.dot(t);
+  const double d = 1 + target.dot(t);
+  EndMiss miss;
+  miss.value = 2 * n / d;
+  miss.gradient = 2 * (e / d - n / (d * d) * target);
+  miss.curvature = -2 / (d * d) * (e * target.transpose() + target * e.transpose()) +
+                   4 * n / (d * d * d) * target * target.transpose();
+  return miss;
+}
+
 void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
                             Eigen::Ref<Eigen::MatrixXd> jacobian) {
   Eigen::Index row = 0;
   for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
-    for (Eigen::Index axis = 0; axis < axes_; ++axis, ++row) {
-      residual[row] =
+    for (Eigen::Index axis = 0; axis < axes_; ++axis) {
+      residual[row + axis] =
           t_.col(axis).dot(reach_.col(j)) - span_.holds[static_cast<std::size_t>(j)].offset[axis];
+      if (!span_.planar) continue;
       turning_ = t_theta_.col(axis).cwiseProduct(reach_.col(j));
-      jacobian.row(row).head(columns_).noalias() = turning_.transpose() * angle_;
-      if (fields_ == 2) {
-        turning_ = t_beta_.col(axis).cwiseProduct(reach_.col(j));
-        jacobian.row(row).tail(columns_).noalias() = turning_.transpose() * angle_;
-      }
+      jacobian.row(row + axis).noalias() = turning_.transpose() * angle_;
     }
+    if (!span_.planar) {
+      frames_.pull_position(reach_signs_[static_cast<std::size_t>(j)], state_,
+                            jacobian.middleRows(row, 3));
+    }
+    row += axes_;
   }
   if (!span_.end_direction) return;
-  jacobian.bottomRows(fields_).setZero();
-  residual[row] = start_theta_ + end_angle_.dot(x_.head(columns_)) - end_theta_;
-  jacobian.row(row).head(columns_) = end_angle_.transpose();
-  if (fields_ == 2) {
-    ++row;
-    residual[row] = start_beta_ + end_angle_.dot(x_.tail(columns_)) - end_beta_;
-    jacobian.row(row).tail(columns_) = end_angle_.transpose();
+  if (span_.planar) {
+    residual[row] = start_theta_ + end_angle_.dot(x_) - end_theta_;
+    jacobian.row(row) = end_angle_.transpose();
+    return;
+  }
+  for (Eigen::Index component = 0; component < 2; ++component, ++row) {
+    const EndMiss miss = end_miss(component);
+    residual[row] = miss.value;
+    pulled_.setZero();
+    frames_.pull({nullptr, miss.gradient}, 1, state_, pulled_);
+    jacobian.row(row) = pulled_.transpose();
   }
 }
 
+/// Adds the second derivatives of sum along_ angle^2 / 2. Beyond its own piece an unknown turns the
+/// rod as a whole, if it is the first of its piece or the start's angle, or not at all.
+void SpanEnergy::add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result) {
+  const Eigen::Index Q = table_->nodes.size();
+  const Eigen::Index K = terms_;
+  double later = 0;
+  for (Eigen::Index e = pieces(); e-- > 0;) {
+    const auto along = along_.segment(e * Q, Q);
+    const double root = std::sqrt(pieces_[static_cast<std::size_t>(e)].length);
+    const Eigen::Index column = free_start_ + e * K;
+    const auto angle = angle_.block(e * Q, column, Q, K);
+    auto own = result.block(column, column, K, K);
+    add_weighted_gram(along, angle, scaled_, own);
+    own(0, 0) += root * root * later;
+    auto beside = beside_.head(K);
+    beside.noalias() = angle.transpose() * along;
+    beside[0] += root * later;
+    for (Eigen::Index before = -free_start_; before < e; ++before) {
+      const bool start = before < 0;
+      const double turn = start ? 1 : std::sqrt(pieces_[static_cast<std::size_t>(before)].length);
+      const Eigen::Index row = start ? 0 : free_start_ + before * K;
+      result.row(row).segment(column, K) += turn * beside.transpose();
+      result.col(row).segment(column, K) += turn * beside;
+    }
+    later += along.sum();
+  }
+  if (free_start_ == 1) result(0, 0) += later;
+}
+
+/// Into carried_: weight of the node times the force that the rod carries there with the grips'.
 void SpanEnergy::carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
   carried_ = total_;
   for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
@@ -224,67 +285,48 @@ void SpanEnergy::carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
       carried_.col(axis) += multipliers[j * axes_ + axis] * reach_.col(j);
     }
   }
-  along_ = carried_.cwiseProduct(t_).rowwise().sum();
 }
 
 void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                          Eigen::MatrixXd& result) {
   carry(multipliers);
   result.setIdentity(size(), size());
-  if (free_start_ == 1) {
-    result(0, 0) = 0;
-    if (fields_ == 2) result(columns_, columns_) = 0;
-  }
-  // Adds basis^T diag(by_node) basis to a block on the diagonal.
-  const auto add = [&](const Eigen::VectorXd& by_node, const Eigen::MatrixXd& basis,
-                       Eigen::Index begin) {
-    add_weighted_gram(by_node, basis, scaled_, result.block(begin, begin, columns_, columns_));
-  };
-  // Adds left^T diag(by_node) angle to the block of azimuths by elevations.
-  const auto add_beside = [&](const Eigen::VectorXd& by_node, const Eigen::MatrixXd& left) {
-    scaled_.noalias() = by_node.asDiagonal() * angle_;
-    result.topRightCorner(columns_, columns_).noalias() += left.transpose() * scaled_;
-  };
-  if (fields_ == 1) {
-    add(along_, angle_, 0);
+  if (free_start_ == 1) result(0, 0) = 0;
+  if (span_.planar) {
+    along_ = carried_.cwiseProduct(t_).rowwise().sum();
+    add_angles_squared(result);
   } else {
-    const auto w = weights_.array();
-    const auto k = kappa_.array();
-    const auto sb = t_.col(2).array();
-    const auto cb = t_beta_.col(2).array();
-    // n . (cos theta, sin theta, 0) is what theta's second derivative leaves of n . t.
-    turning_ = carried_.leftCols(2).cwiseProduct(t_.leftCols(2)).rowwise().sum();
-    add(turning_, angle_, 0);
-    turning_ = -w * sb.square();
-    add(turning_, slope_, 0);
-    // d2 t / d theta d beta = -tan(beta) dt / d theta, written without the division.
-    for (Eigen::Index q = 0; q < turning_.size(); ++q) {
-      turning_[q] =
-          sb[q] * (carried_(q, 1) * std::cos(theta_[q]) - carried_(q, 0) * std::sin(theta_[q]));
+    if (free_start_ == 1) result(columns_, columns_) = 0;
+    carried_ = -carried_;
+    TangentGradient f{&carried_};
+    Eigen::Matrix3d end_curvature = Eigen::Matrix3d::Zero();
+    for (Eigen::Index component = 0; span_.end_direction && component < 2; ++component) {
+      const double mu = multipliers[constraints_ - 2 + component];
+      const EndMiss miss = end_miss(component);
+      f.end -= mu * miss.gradient;
+      end_curvature -= mu * miss.curvature;
     }
-    add_beside(turning_, angle_);
-    turning_ = -2 * w * sb * cb * k;
-    add_beside(turning_, slope_);
-    result.bottomLeftCorner(columns_, columns_) =
-        result.topRightCorner(columns_, columns_).transpose();
-    turning_ = along_.array() - w * (cb.square() - sb.square()) * k.square();
-    add(turning_, angle_, columns_);
+    frames_.add_hessian(f, end_curvature, state_, result);
   }
-  if (has_walls()) {
-    walls_.add_hessian(t_theta_, fields_ == 2 ? &t_beta_ : nullptr, angle_, result);
-  }
+  if (has_walls()) walls_.add_hessian(tangent_jacobian(), result);
+}
+
+std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian() {
+  if (!span_.planar) return frames_.tangent_jacobian(state_);
+  return {t_theta_.col(0).asDiagonal() * angle_, t_theta_.col(1).asDiagonal() * angle_,
+          Eigen::MatrixXd::Zero(angle_.rows(), angle_.cols())};
 }
 
 /// Into along_: weight of the node times n.t - kappa^2, which is what the square of an elevation
 /// costs there.
 void SpanEnergy::carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
   carry(multipliers);
-  const LegendreTable& table = legendre_table(terms_);
-  const Eigen::Index Q = table.nodes.size();
+  along_ = carried_.cwiseProduct(t_).rowwise().sum();
+  const Eigen::Index Q = table_->nodes.size();
   for (Eigen::Index e = 0; e < pieces(); ++e) {
     const double root = std::sqrt(pieces_[static_cast<std::size_t>(e)].length);
     kappa_.segment(e * Q, Q).noalias() =
-        table.values.leftCols(terms_) * x_.segment(free_start_ + e * terms_, terms_) / root;
+        table_->values.leftCols(terms_) * x_.segment(free_start_ + e * terms_, terms_) / root;
   }
   along_.array() -= weights_.array() * kappa_.array().square();
 }
@@ -295,7 +337,7 @@ bool SpanEnergy::resists_sideways() {
   const double bending = pi * pi / (4 * span_.length * span_.length);
   if (((along_.array() + bending * weights_.array()) > 0).all()) return true;
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Identity(columns_, columns_);
-  add_weighted_gram(along_, angle_, scaled_, hessian);
+  add_angles_squared(hessian);
   return is_minimum(hessian);
 }
 
@@ -304,35 +346,14 @@ void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
   carry_sideways(multipliers);
   hessian.setIdentity(columns_, columns_);
   if (free_start_ == 1) hessian(0, 0) = 0;
-  add_weighted_gram(along_, angle_, scaled_, hessian);
+  add_angles_squared(hessian);
   jacobian.resize(reach_.cols() + (span_.end_direction ? 1 : 0), columns_);
   jacobian.topRows(reach_.cols()).noalias() = reach_.transpose() * angle_;
   if (span_.end_direction) jacobian.bottomRows(1) = end_angle_.transpose();
 }
 
-Eigen::VectorXd SpanEnergy::fit_field(const Eigen::VectorXd& angles, double start) const {
-  const LegendreTable& table = legendre_table(terms_);
-  const Eigen::Index Q = table.nodes.size();
-  const Eigen::Index K = terms_;
-  const auto count = static_cast<Eigen::Index>(pieces_.size());
-  // Every piece on its own, with the angle where it begins; then p_0 makes them meet.
-  Eigen::MatrixXd own(K + 1, count);
-  for (Eigen::Index e = 0; e < count; ++e) {
-    own.col(e).noalias() = table.fit * angles.segment(e * Q, Q);
-  }
-  const double end = own(0, count - 1) + own(1, count - 1);
-  Eigen::VectorXd x(columns_);
-  if (free_start_ == 1) x[0] = own(0, 0);
-  if (free_start_ == 0) own(0, 0) = start;
-  for (Eigen::Index e = 0; e < count; ++e) {
-    own(1, e) = (e + 1 < count ? own(0, e + 1) : end) - own(0, e);
-    const double root = std::sqrt(pieces_[static_cast<std::size_t>(e)].length);
-    x.segment(free_start_ + e * K, K) = own.col(e).tail(K) / root;
-  }
-  return x;
-}
-
 Eigen::VectorXd SpanEnergy::fit(const Eigen::Matrix3Xd& tangents) {
+  if (!span_.planar) return frames_.fit(tangents);
   const Eigen::Index nodes = s_.size();
   Eigen::VectorXd angles(nodes);
   double previous = free_start_ == 1 ? angle_of(tangents.col(0)) : start_theta_;
@@ -340,12 +361,14 @@ Eigen::VectorXd SpanEnergy::fit(const Eigen::Matrix3Xd& tangents) {
     angles[q] = previous = nearest_turn(angle_of(tangents.col(q)), previous);
   }
   if (span_.end_direction) end_theta_ = nearest_turn(end_theta_, previous);
-  Eigen::VectorXd x(size());
-  x.head(columns_) = fit_field(angles, start_theta_);
-  if (fields_ == 2) {
-    for (Eigen::Index q = 0; q < nodes; ++q) angles[q] = elevation_of(tangents.col(q));
-    x.tail(columns_) = fit_field(angles, start_beta_);
-  }
+  std::vector<double> lengths;
+  for (const Piece& piece : pieces_) lengths.push_back(piece.length);
+  std::optional<double> start;
+  if (free_start_ == 0) start = start_theta_;
+  const FittedAngle fitted = fit_angle(*table_, lengths, angles, start);
+  Eigen::VectorXd x(columns_);
+  if (free_start_ == 1) x[0] = fitted.start;
+  x.tail(columns_ - free_start_) = fitted.coefficients;
   return x;
 }
 
@@ -353,7 +376,9 @@ Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd
   end_theta_ = other.end_theta_;
   const Eigen::Index shared = std::min(terms_, other.terms_);
   Eigen::VectorXd adopted = Eigen::VectorXd::Zero(size());
-  for (Eigen::Index field = 0; field < other.fields_; ++field) {
+  // A planar shape's curvature is u1.
+  const Eigen::Index fields = other.span_.planar ? 1 : 2;
+  for (Eigen::Index field = 0; field < fields; ++field) {
     const Eigen::Index to = field * columns_;
     const Eigen::Index from = field * other.columns_;
     if (free_start_ == 1) adopted[to] = x[from];
@@ -368,7 +393,8 @@ Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd
 double SpanEnergy::tail(const Eigen::VectorXd& x) const {
   const Eigen::Index last = std::min(terms_, 2);
   double tail = 0;
-  for (Eigen::Index field = 0; field < fields_; ++field) {
+  const Eigen::Index fields = span_.planar ? 1 : 2;
+  for (Eigen::Index field = 0; field < fields; ++field) {
     for (std::size_t e = 0; e < pieces_.size(); ++e) {
       const Eigen::Index end =
           field * columns_ + free_start_ + (static_cast<Eigen::Index>(e) + 1) * terms_;
@@ -383,14 +409,16 @@ double SpanEnergy::tail(const Eigen::VectorXd& x) const {
 SpanShape SpanEnergy::shape(const Eigen::VectorXd& x) const {
   SpanShape shape;
   shape.terms = terms_;
-  shape.planar = fields_ == 1;
+  shape.planar = span_.planar;
   shape.anchor = span_.anchor;
   shape.pieces = pieces_;
-  shape.start_theta = start_theta_ + (free_start_ == 1 ? x[0] : 0);
-  shape.theta = x.segment(free_start_, columns_ - free_start_);
-  if (fields_ == 2) {
-    shape.start_beta = start_beta_ + (free_start_ == 1 ? x[columns_] : 0);
-    shape.beta = x.tail(columns_ - free_start_);
+  if (span_.planar) {
+    shape.start_theta = start_theta_ + (free_start_ == 1 ? x[0] : 0);
+    shape.theta = x.tail(columns_ - free_start_);
+  } else {
+    shape.start_frame = start_frame_;
+    shape.free_start = free_start_ == 1;
+    shape.strains = x;
   }
   return shape;
 }
@@ -401,11 +429,7 @@ Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
   Energies energies;
   energies.bending = x.squaredNorm() / 2;
   if (free_start_ == 1) energies.bending -= x[0] * x[0] / 2;
-  if (fields_ == 2) {
-    if (free_start_ == 1) energies.bending -= x[columns_] * x[columns_] / 2;
-    turning_ = weights_.array() * t_.col(2).array().square() * kappa_.array().square();
-    energies.bending -= turning_.sum() / 2;
-  }
+  if (free_start_ == 1 && !span_.planar) energies.bending -= x[columns_] * x[columns_] / 2;
   // A load's point is the sum of the tangents between it and the anchor.
   for (const Span::Load& load : span_.loads) {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();

@@ -1,17 +1,28 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
+#include "bishop_frames.hpp"
 #include "dlo/energy_model/problem.hpp"
 #include "span_shape.hpp"
 #include "wall_contact.hpp"
 
 namespace dlo::energy_model {
 
-/// Bending plus load energy of a span over its unknowns, with constraints. Unknowns x: for theta
-/// the start angle (if no clamp fixes it) and the curvature coefficients of every piece; then the
-/// same for beta unless the span is planar.
+/// By how much the end's tangent t misses a component of its clamp's direction d,
+///     c = 2 e.t / (1 + d.t),
+/// e across d: about the angle, and zero at t = d alone. With derivatives by t.
+struct EndMiss {
+  double value = 0;
+  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
+};
+
+/// Bending plus load energy of a span over its unknowns, with constraints. Unknowns x in the plane:
+/// the tangent's angle at the start (if no clamp fixes it) and the curvature coefficients of every
+/// piece; in space those of BishopFrames. Bending is half the square of the coefficients in both.
 ///
 /// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of end angles)
 /// that the grips exert on the rod. value(), constraint() and hessian() allocate nothing, but for
@@ -24,7 +35,7 @@ class SpanEnergy {
   void reset(const Span& span, int terms);
 
   [[nodiscard]] const Span& span() const { return span_; }
-  [[nodiscard]] Eigen::Index size() const { return fields_ * columns_; }
+  [[nodiscard]] Eigen::Index size() const { return (span_.planar ? 1 : 2) * columns_; }
   [[nodiscard]] Eigen::Index constraints() const { return constraints_; }
   [[nodiscard]] int terms() const { return terms_; }
   [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
@@ -59,8 +70,6 @@ class SpanEnergy {
   [[nodiscard]] double tail(const Eigen::VectorXd& x) const;
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
   [[nodiscard]] Energies energies(const Eigen::VectorXd& x);
-  /// Largest elevation |beta| at the nodes of the last value() [rad].
-  [[nodiscard]] double elevation() const { return beta_.cwiseAbs().maxCoeff(); }
 
   [[nodiscard]] bool has_walls() const { return walls_.any(); }
   [[nodiscard]] WallContact& walls() { return walls_; }
@@ -74,39 +83,50 @@ class SpanEnergy {
   [[nodiscard]] Eigen::Vector3d start_torque(const Eigen::VectorXd& multipliers) const;
 
  private:
+  void tabulate_nodes();
   void tabulate_angles();
   void tabulate_forces();
   void carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
+  void add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result);
   void carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
-  [[nodiscard]] Eigen::VectorXd fit_field(const Eigen::VectorXd& angles, double start) const;
+  void place_tangents();
+  [[nodiscard]] EndMiss end_miss(Eigen::Index component) const;
+  [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian();
 
   Span span_;
   int terms_ = 0;
-  Eigen::Index fields_ = 1;   // 1 planar, 2 spatial
-  Eigen::Index columns_ = 0;  // unknowns of one field
+  Eigen::Index columns_ = 0;  // unknowns of one field: the angle, or each of two strains
   Eigen::Index free_start_ = 0;
   Eigen::Index constraints_ = 0;
   Eigen::Index axes_ = 2;  // position components that are constrained, 2 or 3
-  double start_theta_ = 0, start_beta_ = 0, end_theta_ = 0, end_beta_ = 0;
   std::vector<Piece> pieces_;
+  const LegendreTable* table_ = nullptr;
   Eigen::VectorXd s_, weights_;
+
+  // In the plane
+  double start_theta_ = 0, end_theta_ = 0;
   Eigen::MatrixXd angle_;      // of the nodes by unknown
-  Eigen::MatrixXd slope_;      // its derivative by s; only in space
   Eigen::VectorXd end_angle_;  // of the span's end by unknown
-  Eigen::MatrixX3d force_;     // weight of the node times the sum of weight and loads beyond it
-  Eigen::MatrixXd reach_;      // per hold, weight of the node times -1, 0, 1
+  // In space
+  Eigen::Matrix3d start_frame_ = Eigen::Matrix3d::Identity();
+  BishopFrames frames_;
+  BishopFrames::State state_;
+
+  Eigen::MatrixX3d force_;  // weight of the node times the sum of weight and loads beyond it
+  Eigen::MatrixXd reach_;   // per hold, weight of the node times -1, 0, 1
+  std::vector<std::vector<double>> reach_signs_;  // the same by hold and piece, without weights
   WallContact walls_;
 
   // At the point of the last value(), nodes x 3
-  Eigen::VectorXd theta_, beta_, kappa_;
-  Eigen::MatrixX3d t_, t_theta_, t_beta_, total_;
+  Eigen::VectorXd theta_, kappa_;
+  Eigen::MatrixX3d t_, t_theta_, total_;
   Eigen::VectorXd x_, gradient_;
   double energy_ = 0;
   bool evaluated_ = false;  // x_ is a point that value() has seen since reset()
 
   // Scratch
   Eigen::MatrixX3d carried_;
-  Eigen::VectorXd along_, turning_;
+  Eigen::VectorXd along_, turning_, pulled_, beside_;
   Eigen::MatrixXd scaled_;
 };
 

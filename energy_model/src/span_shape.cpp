@@ -5,41 +5,40 @@
 #include <array>
 #include <cmath>
 
+#include "bishop_frames.hpp"
 #include "legendre.hpp"
+#include "segments.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-Eigen::Vector3d tangent_of(double theta, double beta) {
-  return {std::cos(beta) * std::cos(theta), std::cos(beta) * std::sin(theta), std::sin(beta)};
-}
-
-/// A piece with what is needed to look at any point of it.
+/// A piece with what is needed to look at any point of it, as series in Legendre polynomials.
 struct PlacedPiece {
   Piece piece;
-  double theta, beta;        // at its begin
-  Eigen::Vector3d point;     // of its begin
-  Eigen::Matrix3Xd tangent;  // Legendre coefficients of the tangent, 3 x Q
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // of its begin
+  Eigen::Matrix3Xd tangent;                         // 3 x Q
+  double theta = 0;                                 // planar: the angle at its begin
+  Eigen::Matrix4Xd frame;                           // in space: quaternions w, x, y, z, 4 x Q
 };
 
 class Sampler {
  public:
   explicit Sampler(const SpanShape& shape)
       : shape_(shape),
-        table_(legendre_table(shape.terms)),
+        table_(shape.planar ? legendre_table(shape.terms) : director_table(shape.terms)),
         values_(table_.nodes.size()),
         integrals_(table_.nodes.size()) {
-    PlacedPiece placed{{}, shape.start_theta, shape.start_beta, Eigen::Vector3d::Zero(), {}};
-    for (std::size_t e = 0; e < shape.pieces.size(); ++e) {
-      placed.piece = shape.pieces[e];
-      placed.tangent = tangent_coefficients(placed, e);
-      pieces_.push_back(placed);
+    if (shape.planar) {
+      place_planar();
+    } else {
+      place_spatial();
+    }
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    for (PlacedPiece& placed : pieces_) {
+      placed.point = point;
       // Over a whole piece only p_0 adds up.
-      const double root = std::sqrt(placed.piece.length);
-      placed.theta += root * coefficients(shape_.theta, e)[0];
-      if (!shape_.planar) placed.beta += root * coefficients(shape_.beta, e)[0];
-      placed.point += placed.piece.length * placed.tangent.col(0);
-      if (std::abs(placed.piece.end() - shape.anchor) < closest_cuts) anchor_ = placed.point;
+      point += placed.piece.length * placed.tangent.col(0);
+      if (std::abs(placed.piece.end() - shape.anchor) < closest_cuts) anchor_ = point;
     }
   }
 
@@ -51,49 +50,67 @@ class Sampler {
     const double length = placed.piece.length;
     legendre(std::clamp((at - placed.piece.begin) / length, 0.0, 1.0), values_, integrals_);
     point = placed.point + length * (placed.tangent * integrals_) - anchor_;
-    const Eigen::Index K = shape_.terms;
     const double root = std::sqrt(length);
-    const Eigen::VectorXd theta = coefficients(shape_.theta, e);
-    const double azimuth = placed.theta + root * integrals_.head(K).dot(theta);
-    const double azimuth_rate = values_.head(K).dot(theta) / root;
-    const double s = std::sin(azimuth);
-    const double c = std::cos(azimuth);
+    const auto values = values_.head(shape_.terms);
     if (shape_.planar) {
-      tangent << c, s, 0;
-      curvature << -azimuth_rate * s, azimuth_rate * c, 0;
+      const auto theta = coefficients(shape_.theta, 0, e);
+      const double angle = placed.theta + root * integrals_.head(shape_.terms).dot(theta);
+      const double rate = values.dot(theta) / root;
+      tangent << std::cos(angle), std::sin(angle), 0;
+      curvature << -rate * std::sin(angle), rate * std::cos(angle), 0;
       return;
     }
-    const Eigen::VectorXd beta = coefficients(shape_.beta, e);
-    const double elevation = placed.beta + root * integrals_.head(K).dot(beta);
-    const double elevation_rate = values_.head(K).dot(beta) / root;
-    const double sb = std::sin(elevation);
-    const double cb = std::cos(elevation);
-    tangent << cb * c, cb * s, sb;
-    curvature = azimuth_rate * cb * Eigen::Vector3d(-s, c, 0) +
-                elevation_rate * Eigen::Vector3d(-sb * c, -sb * s, cb);
+    const Eigen::Vector4d q = placed.frame * values_;
+    const Eigen::Matrix3d frame =
+        Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+    tangent = frame.col(2);
+    const Eigen::Index second = shape_.strains.size() / 2;
+    const double u1 = values.dot(coefficients(shape_.strains, first_strain(), e)) / root;
+    const double u2 = values.dot(coefficients(shape_.strains, second + first_strain(), e)) / root;
+    curvature = u2 * frame.col(0) - u1 * frame.col(1);
   }
 
  private:
-  [[nodiscard]] Eigen::VectorXd coefficients(const Eigen::VectorXd& field, std::size_t e) const {
-    return field.segment(static_cast<Eigen::Index>(e) * shape_.terms, shape_.terms);
+  [[nodiscard]] Eigen::Index first_strain() const { return shape_.free_start ? 1 : 0; }
+
+  [[nodiscard]] Eigen::VectorXd coefficients(const Eigen::VectorXd& field, Eigen::Index first,
+                                             std::size_t e) const {
+    return field.segment(first + static_cast<Eigen::Index>(e) * shape_.terms, shape_.terms);
   }
 
-  [[nodiscard]] Eigen::Matrix3Xd tangent_coefficients(const PlacedPiece& placed,
-                                                      std::size_t e) const {
+  void place_planar() {
+    PlacedPiece placed;
+    placed.theta = shape_.start_theta;
+    for (std::size_t e = 0; e < shape_.pieces.size(); ++e) {
+      placed.piece = shape_.pieces[e];
+      const double root = std::sqrt(placed.piece.length);
+      const Eigen::VectorXd theta = coefficients(shape_.theta, 0, e);
+      const Eigen::ArrayXd angle =
+          placed.theta + root * (table_.integrals.leftCols(shape_.terms) * theta).array();
+      Eigen::Matrix3Xd weighted = Eigen::Matrix3Xd::Zero(3, table_.nodes.size());
+      weighted.row(0) = (table_.weights.array() * angle.cos()).matrix().transpose();
+      weighted.row(1) = (table_.weights.array() * angle.sin()).matrix().transpose();
+      placed.tangent = weighted * table_.values;
+      pieces_.push_back(placed);
+      placed.theta += root * theta[0];
+    }
+  }
+
+  void place_spatial() {
+    const BishopFrames frames(shape_.pieces, shape_.terms, shape_.start_frame, shape_.free_start);
+    BishopFrames::State state;
+    frames.resize(state);
+    frames.evaluate(shape_.strains, state);
     const Eigen::Index Q = table_.nodes.size();
-    const double root = std::sqrt(placed.piece.length);
-    const Eigen::VectorXd theta =
-        root * (table_.integrals.leftCols(shape_.terms) * coefficients(shape_.theta, e));
-    Eigen::VectorXd beta = Eigen::VectorXd::Zero(Q);
-    if (!shape_.planar) {
-      beta = root * (table_.integrals.leftCols(shape_.terms) * coefficients(shape_.beta, e));
+    for (std::size_t e = 0; e < shape_.pieces.size(); ++e) {
+      const Eigen::Index node = frames.turn_nodes() + static_cast<Eigen::Index>(e) * Q;
+      PlacedPiece placed;
+      placed.piece = shape_.pieces[e];
+      const Eigen::MatrixXd weighted = table_.weights.asDiagonal() * table_.values;
+      placed.tangent = state.t.middleRows(node, Q).transpose() * weighted;
+      placed.frame = state.q.middleRows(node, Q).transpose() * weighted;
+      pieces_.push_back(std::move(placed));
     }
-    Eigen::Matrix3Xd weighted(3, Q);
-    for (Eigen::Index q = 0; q < Q; ++q) {
-      weighted.col(q) =
-          table_.weights[q] * tangent_of(placed.theta + theta[q], placed.beta + beta[q]);
-    }
-    return weighted * table_.values;
   }
 
   const SpanShape& shape_;
@@ -102,6 +119,27 @@ class Sampler {
   std::vector<PlacedPiece> pieces_;
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
 };
+
+/// Lengths of a layer, (EI / force)^(1/2), at which pieces end: what is left has decayed by exp(-6)
+/// and exp(-24).
+constexpr std::array<double, 2> layer_depths = {6, 24};
+
+/// Cuts where the layers at the grips and the loads of a taut segment have decayed.
+void cut_taut(const Segment& segment, const Span& span, std::vector<double>& cuts) {
+  const double layer = 1 / std::sqrt(segment.tension);
+  std::vector<double> kinks = {segment.begin};
+  for (const Span::Load& load : span.loads) {
+    if (load.at > segment.begin && load.at < segment.end) kinks.push_back(load.at);
+  }
+  kinks.push_back(segment.end);
+  for (std::size_t i = 0; i + 1 < kinks.size(); ++i) {
+    for (const double depth : layer_depths) {
+      if (!(2.5 * depth * layer < kinks[i + 1] - kinks[i])) continue;
+      cuts.push_back(kinks[i] + depth * layer);
+      cuts.push_back(kinks[i + 1] - depth * layer);
+    }
+  }
+}
 
 }  // namespace
 
@@ -112,13 +150,15 @@ std::vector<Piece> pieces_of(const Span& span) {
   for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
   for (const Span::Load& load : span.loads) cuts.push_back(load.at);
   const double layer = 1 / std::sqrt(std::max(1.0, span.total_load()));
-  constexpr std::array<double, 2> depths = {6, 24};
   const double room = span.end_direction ? 0.4 : 0.7;
-  if (depths[1] * layer < room * span.length) {
-    for (const double depth : depths) {
+  if (layer_depths[1] * layer < room * span.length) {
+    for (const double depth : layer_depths) {
       cuts.push_back(depth * layer);
       if (span.end_direction) cuts.push_back(span.length - depth * layer);
     }
+  }
+  for (const Segment& segment : segments_of(span)) {
+    if (segment.taut()) cut_taut(segment, span, cuts);
   }
   std::sort(cuts.begin(), cuts.end());
   std::vector<Piece> pieces;

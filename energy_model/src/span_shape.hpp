@@ -4,21 +4,14 @@
 #include <span>
 #include <vector>
 
+#include "piece.hpp"
 #include "span.hpp"
 
 namespace dlo::energy_model {
 
-/// A smooth part of a span. Pieces end at loads and grips, where curvature has kinks, and where the
-/// layers at a soft rod's clamps have decayed.
-struct Piece {
-  double begin = 0;
-  double length = 0;
-
-  [[nodiscard]] double end() const { return begin + length; }
-};
-
-/// Cuts at grips and loads, and for a soft rod where the layers at its clamps have decayed by
-/// exp(-6) and exp(-24), so that no piece has to resolve all of a layer.
+/// Cuts at grips and loads, and where the layers at the clamps of a soft rod and at the ends of its
+/// taut segments have decayed by exp(-6) and exp(-24), so that no piece has to resolve all of a
+/// layer.
 [[nodiscard]] std::vector<Piece> pieces_of(const Span& span);
 
 /// Cuts closer than this would make pieces too short for a curvature of their own.
@@ -31,17 +24,18 @@ struct SpanSamples {
   Eigen::Matrix3Xd curvature;
 };
 
-/// A span's shape as the angles theta and beta at its start and the Legendre coefficients of their
-/// derivatives on every piece.
+/// A span's shape: in the plane the angle at its start and the Legendre coefficients of its
+/// derivative on every piece, in space the start's frame and the unknowns of BishopFrames.
 struct SpanShape {
   int terms = 0;
   bool planar = true;
   double anchor = 0;
-  double start_theta = 0;
-  double start_beta = 0;
   std::vector<Piece> pieces;
+  double start_theta = 0;
   Eigen::VectorXd theta;  ///< terms x pieces
-  Eigen::VectorXd beta;   ///< the same, or empty
+  Eigen::Matrix3d start_frame = Eigen::Matrix3d::Identity();
+  bool free_start = false;
+  Eigen::VectorXd strains;
 
   [[nodiscard]] SpanSamples sample(std::span<const double> s) const;
 };

@@ -10,6 +10,8 @@
 #include "free_directions.hpp"
 #include "legendre.hpp"
 #include "minimise.hpp"
+#include "penalty_descent.hpp"
+#include "segments.hpp"
 #include "span_starts.hpp"
 #include "trust_region.hpp"
 
@@ -51,6 +53,9 @@ int first_terms(double load, double longest_piece) {
   return static_cast<int>(std::ceil(9 * std::pow(std::clamp(own_load, 0.7, 1000.0), 0.24)));
 }
 
+/// Coefficients that resolve a layer over six of its lengths.
+constexpr int layer_terms = 20;
+
 /// Whether the lowest of the equilibria found can hold itself.
 bool has_stable_lowest(const std::vector<SpanSolution>& found) {
   const SpanSolution* lowest = nullptr;
@@ -72,6 +77,11 @@ class Search {
  public:
   Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
       : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
+    for (const Segment& segment : segments_of(span)) {
+      if (!segment.taut()) continue;
+      taut_ = true;
+      stiffness_ = std::max(stiffness_, segment.tension / std::max(1e-12, segment.slack()));
+    }
     // Where contact begins inside a piece it takes more terms than the piece's length tells.
     if (!span.walls.empty() || span.is_plain_cantilever()) {
       longest_piece_ = span.length;
@@ -117,12 +127,10 @@ class Search {
 
  private:
   [[nodiscard]] int terms() const {
-    return options_.terms > 0 ? options_.terms
-                              : std::max(first_terms(load_, longest_piece_), options_.least_terms);
+    if (options_.terms > 0) return options_.terms;
+    const int layers = taut_ ? layer_terms : 0;
+    return std::max({first_terms(load_, longest_piece_), options_.least_terms, layers});
   }
-
-  /// Evaluations of a residual homotopy, of which each step factors a matrix.
-  [[nodiscard]] int most_led() const { return std::min(options_.max_evaluations, 300); }
 
   [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
 
@@ -167,10 +175,15 @@ class Search {
     if (options_.all) return fields;
     const std::shared_ptr<SpanEnergy> model = workspace_.model(span_, 8);
     std::vector<std::pair<double, std::size_t>> ranks;
+    Eigen::VectorXd gradient(model->size());
+    Eigen::VectorXd missed(model->constraints());
+    Eigen::MatrixXd jacobian(model->constraints(), model->size());
     for (std::size_t i = 0; i < fields.size(); ++i) {
       const Eigen::VectorXd x = model->fit(fields[i](model->nodes()));
-      Eigen::VectorXd gradient(x.size());
-      ranks.emplace_back(model->value(x, gradient), i);
+      const double energy = model->value(x, gradient);
+      model->constraint(missed, jacobian);
+      // Where the rod is taut, springs at the grips as stiff as it is between them.
+      ranks.emplace_back(energy + stiffness_ / 2 * missed.squaredNorm(), i);
     }
     std::stable_sort(ranks.begin(), ranks.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -180,7 +193,7 @@ class Search {
     return ordered;
   }
 
-  /// Downhill from a field, with as many terms as it takes to meet the grips.
+  /// From a field to an equilibrium, with as many terms as it takes to meet the grips.
   [[nodiscard]] SpanSolution from_field(const TangentField& field) {
     SpanSolution solution;
     int spent = 0;
@@ -188,16 +201,33 @@ class Search {
       solution = empty_solution(std::min(count, max_terms));
       solution.x = solution.model->fit(field(solution.model->nodes()));
       const Eigen::VectorXd start = solution.x;
-      descend(solution);
+      // Where the rod is taut such a start is near to the shape already.
+      if (taut_ && !solution.model->has_walls()) {
+        workspace_.newton().polish(solution, load_);
+      } else {
+        descend(solution);
+      }
+      if (solution.model->constraints() > 0 && !solution.is_equilibrium() &&
+          !solution.model->has_walls()) {
+        solution.x = start;
+        solution.multipliers.resize(0);
+        pull_to_grips(solution);
+      }
       spent += solution.evaluations;
       solution.evaluations = spent;
       if (solution.is_equilibrium() || solution.model->constraints() == 0) return solution;
       const bool more = 2 * solution.model->size() <= most_descended && options_.terms == 0;
-      if (more && !out_of_time()) continue;
-      solution.x = start;
-      workspace_.newton().lead(solution, load_, most_led());
-      return solution;
+      if (!more || out_of_time()) return solution;
     }
+  }
+
+  /// By springs at the grips that become stiffer, then Newton's method.
+  void pull_to_grips(SpanSolution& solution) {
+    descend_by_penalty(solution, {.load = load_,
+                                  .gradient_tolerance = handover_gradient,
+                                  .deadline = &options_.deadline,
+                                  .stiffness = stiffness_});
+    if (succeeded(solution.status)) workspace_.newton().polish(solution, load_);
   }
 
   /// From the caller's own start.
@@ -280,10 +310,6 @@ class Search {
         solution.finish(SolveStatus::time_limit);
         break;
       }
-      // Near the poles polynomials need many terms; the caller turns the axis instead, and has to
-      // take what is left like this back (certify_resolved).
-      const bool near_pole = fields == 2 && solution.model->elevation() > largest_elevation;
-      if (near_pole && !options_.all && !options_.past_poles) break;
       if (solution.terms >= most_terms) {
         solution.resolved = !span_.walls.empty();
         if (solution.resolved) break;
@@ -291,9 +317,9 @@ class Search {
         break;
       }
       int more =
-          solution.terms < terms() ? terms() : solution.terms + std::max(2, solution.terms / 6);
+          solution.terms < terms() ? terms() : solution.terms + std::max(2, solution.terms / 4);
       // Grips may pull harder than weight and loads do.
-      if (solution.multipliers.size() > 0) {
+      if (solution.multipliers.size() > 0 && !taut_) {
         more =
             std::max(more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), longest_piece_));
       }
@@ -311,7 +337,8 @@ class Search {
     if (descends && (!finer.is_equilibrium() || finer.model->has_walls())) descend(finer);
     if (!finer.is_equilibrium() && !finer.model->has_walls()) {
       finer.x = finer.model->adopt(*solution.model, solution.x);
-      workspace_.newton().lead(finer, load_, most_led());
+      finer.multipliers = solution.multipliers;
+      pull_to_grips(finer);
     }
     finer.evaluations += solution.evaluations;
     return finer;
@@ -326,8 +353,7 @@ class Search {
     return residual_with_more_terms(solution) < largest_residual * (1 + load_);
   }
 
-  /// Gradient of the shape in twice as many terms, with the quadrature of these. Near a pole of the
-  /// angles the shape's own terms can all look small around something that is no equilibrium.
+  /// Gradient of the shape in twice as many terms, with the quadrature of these.
   [[nodiscard]] double residual_with_more_terms(const SpanSolution& solution) {
     const std::shared_ptr<SpanEnergy> model =
         workspace_.model(span_, std::min(max_terms, 2 * solution.terms));
@@ -397,6 +423,7 @@ class Search {
     if (!sideways) return std::nullopt;
     Span space = model.span();
     space.planar = false;
+    // Out of the plane a planar rod bends by u2, the rate of its tangent's tilt.
     Eigen::VectorXd lift = Eigen::VectorXd::Zero(2 * model.size());
     lift.tail(model.size()) = push * *sideways;
     return pushed_from(space, solution, lift);
@@ -436,6 +463,8 @@ class Search {
   SpanWorkspace& workspace_;
   double load_;
   double longest_piece_ = 0;
+  bool taut_ = false;     // pieces end where the layers at taut segments' ends have decayed
+  double stiffness_ = 0;  // of the tautest segment along its chord
   int spent_ = 0;         // evaluations of everything that was looked at
   std::size_t left_ = 0;  // how many of the equilibria found have been looked at for a way down
 };

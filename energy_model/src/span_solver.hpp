@@ -17,10 +17,6 @@ namespace dlo::energy_model {
 /// Tangents at arc lengths of a span, as a start, 3 x M.
 using TangentField = std::function<Eigen::Matrix3Xd(const Eigen::VectorXd&)>;
 
-/// Elevation beyond which the tangent is too near to its axis for the polynomials to be smooth
-/// [rad].
-inline constexpr double largest_elevation = 1.2;
-
 /// Starts, in the order of their energy, that the search for the lowest minimum follows.
 inline constexpr std::size_t followed_starts = 2;
 
@@ -38,8 +34,7 @@ struct SpanOptions {
   TangentField start;                    ///< instead of the search
   Approach approach = Approach::follow;  ///< from `start`
   int least_terms = 0;                   ///< what resolves the start
-  bool past_poles = false;  ///< go on where the tangent nears its axis: no better one is left
-  Deadline deadline;        ///< of the whole solve
+  Deadline deadline;                     ///< of the whole solve
 };
 
 /// Buffers that survive a solve: models that no solution holds any more are used again.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "segments.hpp"
+
 namespace dlo::energy_model {
 namespace {
 
@@ -51,19 +53,6 @@ double slack_amplitude(double ratio) {
   return low;
 }
 
-struct Waypoint {
-  double at;
-  Eigen::Vector3d position;
-};
-
-std::vector<Waypoint> waypoints(const Span& span) {
-  std::vector<Waypoint> points = {{span.anchor, Eigen::Vector3d::Zero()}};
-  for (const Span::Hold& hold : span.holds) points.push_back({hold.at, hold.offset});
-  std::sort(points.begin(), points.end(),
-            [](const Waypoint& a, const Waypoint& b) { return a.at < b.at; });
-  return points;
-}
-
 struct Pattern {
   bool s_shape = false;
   double sign = 1;
@@ -75,14 +64,12 @@ struct Pattern {
 class GrippedField {
  public:
   GrippedField(const Span& span, const Pattern& pattern)
-      : span_(span), pattern_(pattern), points_(waypoints(span)) {
-    for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
-      const Eigen::Vector3d chord = points_[i + 1].position - points_[i].position;
-      const double arc = points_[i + 1].at - points_[i].at;
-      const double ratio = chord.norm() / arc;
+      : span_(span), pattern_(pattern), segments_(segments_of(span)) {
+    for (const Segment& segment : segments_) {
+      const double ratio = segment.chord.norm() / segment.length();
       Eigen::Vector3d along = Eigen::Vector3d::UnitX();
       if (ratio > 1e-6) {
-        along = chord.normalized();
+        along = segment.chord.normalized();
       } else if (span.start_direction) {
         along = *span.start_direction;
       }
@@ -96,11 +83,11 @@ class GrippedField {
 
   [[nodiscard]] Eigen::Vector3d operator()(double s) const {
     if (chords_.empty()) return free_end(s, Eigen::Vector3d::UnitX());
-    if (s < points_.front().at) return free_end(s, bent(0, 0));
-    if (s > points_.back().at) return free_end(s, bent(chords_.size() - 1, 1));
+    if (s < segments_.front().begin) return free_end(s, bent(0, 0));
+    if (s > segments_.back().end) return free_end(s, bent(chords_.size() - 1, 1));
     std::size_t i = 0;
-    while (i + 1 < chords_.size() && s > points_[i + 1].at) ++i;
-    return bent(i, (s - points_[i].at) / (points_[i + 1].at - points_[i].at));
+    while (i + 1 < chords_.size() && s > segments_[i].end) ++i;
+    return bent(i, (s - segments_[i].begin) / segments_[i].length());
   }
 
  private:
@@ -118,14 +105,32 @@ class GrippedField {
     return std::cos(angle) * chord.along + std::sin(angle) * chord.down;
   }
 
+  /// The chord with layers at its ends, in which a rod under this tension turns to it.
+  [[nodiscard]] Eigen::Vector3d stretched(std::size_t i, double u) const {
+    const Segment& segment = segments_[i];
+    const Eigen::Vector3d pull = segment.tension * segment.pull;
+    const double from_begin = u * segment.length();
+    const Eigen::Vector3d at_begin = pendulum(span_, segment.begin_tangent, pull, from_begin, 0);
+    const Eigen::Vector3d at_end =
+        pendulum(span_, segment.end_tangent, pull, segment.length() - from_begin, 0);
+    return (at_begin + at_end - segment.pull).normalized();
+  }
+
+  /// Whether a clamp or a taut neighbour says what tangent an end of a segment has.
+  [[nodiscard]] bool is_held(bool outermost, bool clamped, std::size_t i, int neighbour) const {
+    if (outermost) return clamped;
+    return segments_[neighbour < 0 ? i - 1 : i + 1].taut();
+  }
+
   [[nodiscard]] Eigen::Vector3d bent(std::size_t i, double u) const {
+    if (segments_[i].taut() && pattern_.loops == 0) return stretched(i, u);
     Eigen::Vector3d t = arch(i, u);
     if (pattern_.loops == 0) {
-      if (i == 0 && span_.start_direction) {
-        t += std::pow(1 - u, 4) * (*span_.start_direction - arch(0, 0));
+      if (is_held(i == 0, span_.start_direction.has_value(), i, -1)) {
+        t += std::pow(1 - u, 4) * (segments_[i].begin_tangent - arch(i, 0));
       }
-      if (i + 1 == chords_.size() && span_.end_direction) {
-        t += std::pow(u, 4) * (*span_.end_direction - arch(i, 1));
+      if (is_held(i + 1 == chords_.size(), span_.end_direction.has_value(), i, 1)) {
+        t += std::pow(u, 4) * (segments_[i].end_tangent - arch(i, 1));
       }
     }
     // Through zero the direction would jump.
@@ -134,19 +139,19 @@ class GrippedField {
   }
 
   [[nodiscard]] Eigen::Vector3d free_end(double s, const Eigen::Vector3d& from) const {
-    if (s >= points_.back().at) {
-      return pendulum(span_, from, total_force(span_, points_.back().at), s - points_.back().at, 0);
-    }
-    Eigen::Vector3d before = points_.front().at * span_.weight;
+    const double last = segments_.empty() ? span_.anchor : segments_.back().end;
+    if (s >= last) return pendulum(span_, from, total_force(span_, last), s - last, 0);
+    const double first = segments_.empty() ? span_.anchor : segments_.front().begin;
+    Eigen::Vector3d before = first * span_.weight;
     for (const Span::Load& load : span_.loads) {
-      if (load.at < points_.front().at) before += load.force;
+      if (load.at < first) before += load.force;
     }
-    return -pendulum(span_, -from, before, points_.front().at - s, 0);
+    return -pendulum(span_, -from, before, first - s, 0);
   }
 
   const Span& span_;
   Pattern pattern_;
-  std::vector<Waypoint> points_;
+  std::vector<Segment> segments_;
   std::vector<Chord> chords_;
 };
 
@@ -187,7 +192,8 @@ std::vector<TangentField> start_fields(const Span& span) {
       fields.push_back(field(GrippedField(span, {.sign = sign, .out_of_plane = true})));
     }
   }
-  if (span.holds.size() == 1) {
+  const std::vector<Segment> segments = segments_of(span);
+  if (segments.size() == 1 && !segments.front().taut()) {
     for (const int loops : {1, -1}) {
       fields.push_back(field(GrippedField(span, {.loops = loops})));
     }

@@ -7,14 +7,11 @@ namespace dlo::energy_model {
 
 Eigen::Vector3d SpanEnergy::end_torque(const Eigen::VectorXd& multipliers) const {
   if (!span_.end_direction) return Eigen::Vector3d::Zero();
-  if (fields_ == 1) return {0, 0, multipliers[constraints_ - 1]};
-  // Turning theta turns the tangent about z, turning beta about t x t_beta; there is no torque
-  // about the tangent.
-  const Eigen::Vector3d t = *span_.end_direction;
-  const double cb = std::cos(end_beta_);
-  const Eigen::Vector3d across(-std::sin(end_theta_), std::cos(end_theta_), 0);
-  return multipliers[constraints_ - 2] / cb * t.cross(across) -
-         multipliers[constraints_ - 1] * across;
+  if (span_.planar) return {0, 0, multipliers[constraints_ - 1]};
+  // A small turn of the end about a changes c by a.(t x dc/dt).
+  const Eigen::Vector3d pull = multipliers[constraints_ - 2] * end_miss(0).gradient +
+                               multipliers[constraints_ - 1] * end_miss(1).gradient;
+  return state_.end_tangent().cross(pull);
 }
 
 Eigen::Vector3d SpanEnergy::start_torque(const Eigen::VectorXd& multipliers) const {

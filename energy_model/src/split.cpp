@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "dlo/energy_model/plane.hpp"
 #include "ordered_grips.hpp"
@@ -18,73 +17,30 @@ struct Directions {
   std::vector<Eigen::Vector3d> forces;
 };
 
-double closest_approach(const Eigen::Vector3d& axis, const std::vector<Eigen::Vector3d>& vectors) {
-  double closest = 0;
-  for (const Eigen::Vector3d& v : vectors) closest = std::max(closest, std::abs(axis.dot(v)));
-  return closest;
-}
-
-/// Points that cover a half sphere evenly.
-std::vector<Eigen::Vector3d> sphere_directions() {
-  constexpr int count = 400;
-  std::vector<Eigen::Vector3d> directions;
-  for (int i = 0; i < count; ++i) {
-    const double z = (i + 0.5) / count;
-    const double angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    const double r = std::sqrt(1 - z * z);
-    directions.emplace_back(r * std::cos(angle), r * std::sin(angle), z);
-  }
-  return directions;
-}
-
-Eigen::Matrix3d frame_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& towards) {
-  Eigen::Vector3d x = towards - towards.dot(axis) * axis;
-  x = x.norm() > 1e-6 ? x.normalized() : axis.unitOrthogonal();
-  Eigen::Matrix3d frame;
-  frame << x.transpose(), axis.cross(x).transpose(), axis.transpose();
-  return frame;
-}
-
-/// The axis of a spatial span: as far as can be from all that its tangents may run along.
-Eigen::Matrix3d spatial_frame(const Directions& directions) {
-  std::vector<Eigen::Vector3d> vectors = directions.grips;
-  for (const Eigen::Vector3d& force : directions.forces) {
-    if (force.norm() > 0) vectors.push_back(force.normalized());
-  }
-  Eigen::Vector3d best = Eigen::Vector3d::UnitZ();
-  double least = 2;
-  for (const Eigen::Vector3d& axis : sphere_directions()) {
-    const double approach = closest_approach(axis, vectors);
-    if (approach < least) {
-      least = approach;
-      best = axis;
-    }
-  }
-  return frame_about(best, vectors.empty() ? Eigen::Vector3d::UnitX().eval() : vectors.front());
-}
-
 void choose_frame(PlacedSpan& placed, const Directions& directions) {
   // find_plane wants the first direction and everything else; a direction and a force count alike.
   Eigen::Vector3d first = Eigen::Vector3d::UnitX();
   std::vector<Eigen::Vector3d> others;
   double largest = 0;
-  for (const Eigen::Vector3d& force : directions.forces) largest = std::max(largest, force.norm());
+  for (const Eigen::Vector3d& force : directions.forces) {
+    if (!(force.norm() > largest)) continue;
+    largest = force.norm();
+    first = force / largest;
+  }
   for (const Eigen::Vector3d& force : directions.forces) {
     if (largest > 0) others.emplace_back(force / largest);
   }
   others.insert(others.end(), directions.grips.begin(), directions.grips.end());
-  if (!directions.grips.empty()) {
-    first = directions.grips.front();
-  } else if (largest > 0) {
-    first = others.front();
-  }
+  if (!directions.grips.empty()) first = directions.grips.front();
   const std::optional<Plane> plane = find_plane(Eigen::Vector3d::Zero(), first, others);
   placed.span.planar = plane.has_value();
   if (plane) {
     placed.frame << plane->x.transpose(), plane->y.transpose(),
         plane->x.cross(plane->y).transpose();
   } else {
-    placed.frame = spatial_frame(directions);
+    // Any will do; a rod that nothing clamps starts near to this x.
+    const Eigen::Vector3d across = first.unitOrthogonal();
+    placed.frame << first.transpose(), across.transpose(), first.cross(across).transpose();
   }
 }
 
@@ -182,21 +138,6 @@ std::vector<PlacedSpan> split(const Problem& problem) {
     spans.push_back(place(problem, grips, clamps.back(), problem.length, true, false));
   }
   return spans;
-}
-
-void turn_axis(PlacedSpan& placed, const Eigen::Matrix3Xd& tangents) {
-  Eigen::Vector3d best = Eigen::Vector3d::UnitZ();
-  double least = 2;
-  for (const Eigen::Vector3d& axis : sphere_directions()) {
-    const double approach = (axis.transpose() * tangents).cwiseAbs().maxCoeff();
-    if (approach < least) {
-      least = approach;
-      best = axis;
-    }
-  }
-  const Eigen::Matrix3d rotation = frame_about(best, tangents.col(0));
-  placed.frame = (rotation * placed.frame).eval();
-  turn_vectors(placed.span, rotation);
 }
 
 }  // namespace dlo::energy_model

@@ -28,7 +28,4 @@ struct PlacedSpan {
 /// rod between them
 [[nodiscard]] std::vector<PlacedSpan> split(const Problem& problem);
 
-/// Turns a spatial span so that these tangents (in its frame) stay away from its z axis.
-void turn_axis(PlacedSpan& placed, const Eigen::Matrix3Xd& tangents);
-
 }  // namespace dlo::energy_model

@@ -56,9 +56,9 @@ Eigen::VectorXd step_in_region(const Eigen::VectorXd& d, const Eigen::VectorXd& 
   return step(high);
 }
 
-class Descent {
+class TrustRegionDescent {
  public:
-  Descent(SpanSolution& solution, const TrustRegionOptions& options)
+  TrustRegionDescent(SpanSolution& solution, const TrustRegionOptions& options)
       : solution_(solution),
         model_(*solution.model),
         options_(options),
@@ -243,7 +243,7 @@ class Descent {
 }  // namespace
 
 void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& options) {
-  Descent(solution, options).run();
+  TrustRegionDescent(solution, options).run();
 }
 
 }  // namespace dlo::energy_model

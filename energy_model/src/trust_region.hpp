@@ -12,6 +12,7 @@ struct TrustRegionOptions {
   double gradient_tolerance = 0;       ///< of the projected gradient, over 1 + load; > 0
   int max_iterations = 100;            ///< steps, accepted or not
   const Deadline* deadline = nullptr;  ///< asked once a step; null: none
+  double stiffness = 0;                ///< of the rod between its grips, force per length
 };
 
 /// Descends from solution.x to a point near a minimum of the energy under the constraints: Newton's

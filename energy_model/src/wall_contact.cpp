@@ -8,12 +8,12 @@
 
 namespace dlo::energy_model {
 
-void WallContact::reset(const Span& span, const std::vector<Piece>& pieces, int terms,
-                        const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights) {
+void WallContact::reset(const Span& span, const std::vector<Piece>& pieces,
+                        const LegendreTable& table, const Eigen::VectorXd& nodes,
+                        const Eigen::VectorXd& weights) {
   walls_ = span.walls;
   if (!any()) return;
   weights_ = weights;
-  const LegendreTable& table = legendre_table(terms);
   const Eigen::Index Q = table.nodes.size();
   position_.setZero(nodes.size(), nodes.size());
   for (std::size_t e = 0; e < pieces.size(); ++e) {
@@ -58,18 +58,14 @@ double WallContact::add(const Eigen::MatrixX3d& tangents, Eigen::MatrixX3d& forc
   return energy;
 }
 
-void WallContact::add_hessian(const Eigen::MatrixX3d& by_theta, const Eigen::MatrixX3d* by_beta,
-                              const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const {
-  const Eigen::Index columns = angle.cols();
-  Eigen::MatrixXd depth(angle.rows(), hessian.cols());
+void WallContact::add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
+                              Eigen::Ref<Eigen::MatrixXd> hessian) const {
+  Eigen::MatrixXd depth(weights_.size(), hessian.cols());
   for (std::size_t i = 0; i < walls_.size(); ++i) {
     // k w (N . dr)(N . dr)^T of the nodes in contact
-    const Eigen::VectorXd turn = by_theta * walls_[i].normal;
-    depth.leftCols(columns).noalias() = position_ * turn.asDiagonal() * angle;
-    if (by_beta != nullptr) {
-      const Eigen::VectorXd lift = *by_beta * walls_[i].normal;
-      depth.rightCols(columns).noalias() = position_ * lift.asDiagonal() * angle;
-    }
+    const Eigen::Vector3d& normal = walls_[i].normal;
+    depth.noalias() = position_ * (normal.x() * tangents[0] + normal.y() * tangents[1] +
+                                   normal.z() * tangents[2]);
     const Eigen::VectorXd springs = (pressure_.col(static_cast<Eigen::Index>(i)).array() > 0)
                                         .select(stiffness(i) * weights_.array(), 0.0);
     hessian.noalias() += depth.transpose() * springs.asDiagonal() * depth;

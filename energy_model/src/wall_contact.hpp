@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <vector>
 
+#include "legendre.hpp"
 #include "span_shape.hpp"
 
 namespace dlo::energy_model {
@@ -12,7 +14,7 @@ namespace dlo::energy_model {
 class WallContact {
  public:
   /// @param nodes, weights  of the span's quadrature
-  void reset(const Span& span, const std::vector<Piece>& pieces, int terms,
+  void reset(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table,
              const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights);
 
   [[nodiscard]] bool any() const { return !walls_.empty(); }
@@ -20,10 +22,11 @@ class WallContact {
   /// Energy of the springs at these tangents (nodes x 3); adds what they push with, carried from
   /// beyond each node, to `force` (nodes x 3). Keeps the pressures.
   double add(const Eigen::MatrixX3d& tangents, Eigen::MatrixX3d& force);
-  /// Adds the springs' second derivatives. `turning` are the derivatives of the tangent by the
-  /// node's angles (nodes x 3), `angle` those of the angles by the unknowns.
-  void add_hessian(const Eigen::MatrixX3d& by_theta, const Eigen::MatrixX3d* by_beta,
-                   const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const;
+  /// Adds the springs' second derivatives but for what bends the tangents twice, which is in the
+  /// force that add() adds.
+  /// @param tangents  derivatives of the tangents by the unknowns, an axis each, nodes x unknowns
+  void add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
+                   Eigen::Ref<Eigen::MatrixXd> hessian) const;
 
   /// What update() would return after the last add().
   [[nodiscard]] double violation() const;

@@ -163,6 +163,28 @@ TEST(Grips, TurnWithTheSceneInSpace) {
   }
 }
 
+TEST(Grips, OnePinCarriesAllThatHangsOnARodInSpace) {
+  // The weight is not the largest force: no frame may be made of it unless it has length 1.
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.weight_per_length = {0, -0.2, 0};
+  problem.grips = {{.at = 0.3}};
+  problem.loads = {{.at = 0.7, .force = {0.1, -0.3, 0.2}}, {.at = 1, .force = {-0.2, 0.1, 0.3}}};
+  for (const double weight : {0.2, 0.0}) {
+    problem.weight_per_length = {0, -weight, 0};
+    const Equilibrium result = solve_energy(problem);
+    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+    const Eigen::Vector3d hanging =
+        problem.weight_per_length + problem.loads[0].force + problem.loads[1].force;
+    EXPECT_LT((result.grips[0].force + hanging).norm(), 1e-12);
+    const Equilibrium exact = solve_exact(problem);
+    ASSERT_EQ(exact.status, SolveStatus::converged) << exact.message;
+    const std::vector<double> s = equal_arc_lengths(1, 21);
+    EXPECT_LT((result.sample(s).points - exact.sample(s).points).colwise().norm().maxCoeff(), 1e-9);
+  }
+}
+
 TEST(Grips, FurtherApartThanTheRodAreRefusedWithTheNumbers) {
   try {
     (void)solve_energy(two_clamps(1, 1.2));

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "../compare/sanitized.hpp"
+#include "../sanitized.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -18,9 +18,10 @@ class RandomScenes : public testing::TestWithParam<RandomSpace> {};
 TEST_P(RandomScenes, HoldTheEnergyModelAgainstMultipleShooting) {
   // Paths are what a sanitizer build is for; counts are proven by the release build.
   constexpr std::uint64_t count = test::sanitized ? 5 : 50;
-  // Of `count`, as measured: these must not grow.
-  const int most_refused_by_energy = GetParam() == RandomSpace::plane ? 6 : 9;
-  constexpr int most_refused_by_exact = 2;
+  // Of `count`, as measured: it must not grow. Multiple shooting gives up on rods that grips pull
+  // with 1e5 EI/l^2 and more, even from the shape.
+  constexpr int most_refused_by_energy = 0;
+  const int most_refused_by_exact = GetParam() == RandomSpace::plane ? 2 : 5;
   // The energy model's curvature is right to its last coefficient, 1e-10 of the largest; moments
   // near a clamp under a large force see the sum of them.
   constexpr double energy_defect = 1e-6;

@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <random>
 
+#include "../sanitized.hpp"
+
 // The sanitizers bring an allocator of their own.
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(DLO_SANITIZED)
 #define DLO_COUNTS_ALLOCATIONS
 
 namespace {

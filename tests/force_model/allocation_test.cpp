@@ -5,11 +5,12 @@
 #include <cstddef>
 #include <vector>
 
+#include "../sanitized.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "rods.hpp"
 
 // The sanitizers bring an allocator of their own.
-#if !defined(__SANITIZE_ADDRESS__)
+#if !defined(DLO_SANITIZED)
 
 namespace {
 long allocations = 0;

@@ -101,7 +101,7 @@ BenchmarkRun track_energy(const Scene& scene, int terms, const Track& track,
 
 /// Steps that fit into a frame, from a copy that is thrown away; a median, since a busy machine may
 /// hold up any trial.
-long steps_per_frame(force_model::Simulation simulation) {
+long frame_steps(force_model::Simulation simulation) {
   constexpr int trials = 15;
   constexpr int steps = 200;
   std::vector<double> seconds;
@@ -123,7 +123,7 @@ BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int po
   force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(),
                                      step_options(settings, discretisation));
   (void)simulation.relax({.tolerance = 1e-5});
-  const long steps = steps_per_frame(simulation);
+  const long steps = frame_steps(simulation);
   Frames frames;
   for (int frame = 0; frame < options.frames; ++frame) {
     const Discretisation now = discretise(moved(scene, options, frame), settings);

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "../../sanitized.hpp"
 #include "command_fixture.hpp"
-#include "sanitized.hpp"
 
 namespace {
 

@@ -17,13 +17,13 @@
 #include <string>
 #include <vector>
 
+#include "../../sanitized.hpp"
 #include "base/display.hpp"
 #include "base/output_file.hpp"
 #include "base/quote.hpp"
 #include "base/temporary_path.hpp"
 #include "command_fixture.hpp"
 #include "dlo/compare/error.hpp"
-#include "sanitized.hpp"
 
 namespace {
 

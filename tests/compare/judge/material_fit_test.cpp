@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "../../sanitized.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
@@ -18,7 +19,6 @@
 #include "dlo/energy_model/energy.hpp"
 #include "measured_shapes.hpp"
 #include "polygon/energy_problems.hpp"
-#include "sanitized.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {

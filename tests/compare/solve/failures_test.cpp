@@ -7,8 +7,8 @@
 #include <cmath>
 #include <string>
 
+#include "../../sanitized.hpp"
 #include "command_fixture.hpp"
-#include "sanitized.hpp"
 
 namespace dlo {
 namespace {

@@ -30,10 +30,11 @@ struct EnergyOptions {
 /// Minimises bending plus gravity plus load energy of an inextensible Hookean rod,
 ///     E = int 1/2 EI |t'|^2 ds - int w . r ds - sum_j F_j . r(s_j),
 /// over its curvature. Clamps cut the rod into independent spans; each lies in a plane if its grips
-/// and forces do. The tangent's angle (in space: azimuth and elevation against an axis that the
-/// tangent stays away from) has a derivative expanded in orthonormal Legendre polynomials on each
-/// piece between loads and grips, so that planar bending is |a|^2 / 2 and the Hessian the identity
-/// plus a compact part. NLopt's LD_LBFGS (where grips are constraints a trust region) comes near
+/// and forces do. On each piece between loads and grips, and in the layers at the ends of soft and
+/// of taut spans, the curvature in the plane, or in space its two components in a frame that does
+/// not turn about the tangent, is expanded in orthonormal Legendre polynomials, so that bending is
+/// |a|^2 / 2 and the Hessian the identity plus a compact part. NLopt's LD_LBFGS (where grips are
+/// constraints a trust region, where they stretch the rod springs that become stiffer) comes near
 /// the minimum with few terms, Newton steps with all of them finish, and their projected Hessian
 /// proves that it is one.
 ///

@@ -1,0 +1,115 @@
+// The directors of a rod in space from its strains, against closed forms and another integrator;
+// their derivatives are looked at with the energy's (span_energy_test.cpp).
+
+#include "bishop_frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace dlo::energy_model {
+namespace {
+
+BishopFrames::State evaluated(const BishopFrames& frames, const Eigen::VectorXd& x) {
+  BishopFrames::State state;
+  frames.resize(state);
+  frames.evaluate(x, state);
+  return state;
+}
+
+Eigen::VectorXd random_strains(Eigen::Index size, double largest) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-largest, largest);
+  return Eigen::VectorXd::NullaryExpr(size, [&] { return uniform(random); });
+}
+
+TEST(BishopFrames, OfAConstantStrainGoRoundACircle) {
+  const std::vector<Piece> pieces = {{0, 0.4}, {0.4, 0.6}};
+  constexpr int terms = 3;
+  const BishopFrames frames(pieces, terms, Eigen::Matrix3d::Identity(), false);
+  const double curvature = 7;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * frames.columns());
+  // u2, which turns about d2 = y; p_0 is 1 / sqrt(length).
+  x[frames.columns()] = curvature * std::sqrt(0.4);
+  x[frames.columns() + terms] = curvature * std::sqrt(0.6);
+  const BishopFrames::State state = evaluated(frames, x);
+  const Eigen::Vector3d end = state.end_tangent();
+  EXPECT_NEAR(end.x(), std::sin(curvature), 1e-14);
+  EXPECT_NEAR(end.y(), 0, 1e-14);
+  EXPECT_NEAR(end.z(), std::cos(curvature), 1e-14);
+}
+
+/// The quaternion at the end of one piece of length 1, by Runge-Kutta's fourth-order method.
+Eigen::Quaterniond integrated(const Eigen::VectorXd& x, int steps) {
+  const Eigen::Index K = x.size() / 2;
+  Eigen::VectorXd values(K);
+  Eigen::VectorXd integrals(K);
+  const auto rate = [&](double s, const Eigen::Vector4d& q) {
+    legendre(s, values, integrals);
+    const Eigen::Quaterniond u(0, values.dot(x.head(K)), values.dot(x.tail(K)), 0);
+    const Eigen::Quaterniond r = Eigen::Quaterniond(q[3], q[0], q[1], q[2]) * u;
+    return Eigen::Vector4d(r.coeffs() / 2);
+  };
+  Eigen::Vector4d q(0, 0, 0, 1);
+  const double h = 1.0 / steps;
+  for (int i = 0; i < steps; ++i) {
+    const double s = i * h;
+    const Eigen::Vector4d a = rate(s, q);
+    const Eigen::Vector4d b = rate(s + h / 2, q + h / 2 * a);
+    const Eigen::Vector4d c = rate(s + h / 2, q + h / 2 * b);
+    const Eigen::Vector4d d = rate(s + h, q + h * c);
+    q += h / 6 * (a + 2 * b + 2 * c + d);
+  }
+  return Eigen::Quaterniond(q).normalized();
+}
+
+TEST(BishopFrames, AgreeWithAnotherIntegratorWhereTheRodWindsThirtyTimes) {
+  constexpr int terms = 24;
+  const BishopFrames frames({{0, 1}}, terms, Eigen::Matrix3d::Identity(), false);
+  Eigen::VectorXd x = random_strains(2 * terms, 1);
+  // Smooth, and of |u| l = 30 in the mean.
+  for (Eigen::Index k = 0; k < x.size(); ++k)
+    x[k] *= std::exp(-0.5 * static_cast<double>(k % terms));
+  x *= 30 / x.norm();
+  const BishopFrames::State state = evaluated(frames, x);
+  const Eigen::Quaterniond exact = integrated(x, 40000);
+  EXPECT_LT(exact.angularDistance(state.end), 1e-9);
+  EXPECT_LT((state.q.rowwise().norm().array() - 1).abs().maxCoeff(), 1e-14);
+}
+
+TEST(BishopFrames, FreeStartTurnsTheRodAsAWhole) {
+  const BishopFrames held({{0, 1}}, 6, Eigen::Matrix3d::Identity(), false);
+  const BishopFrames loose({{0, 1}}, 6, Eigen::Matrix3d::Identity(), true);
+  const Eigen::VectorXd x = random_strains(12, 1);
+  Eigen::VectorXd turned(14);
+  const Eigen::Vector3d turn(1.1, -0.7, 0);
+  turned << turn.x(), x.head(6), turn.y(), x.tail(6);
+  const Eigen::Matrix3d R = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+  const BishopFrames::State a = evaluated(held, x);
+  const BishopFrames::State b = evaluated(loose, turned);
+  const Eigen::MatrixX3d expected = a.t * R.transpose();
+  EXPECT_LT((b.t.bottomRows(a.t.rows()) - expected).cwiseAbs().maxCoeff(), 1e-13);
+}
+
+TEST(BishopFrames, AreFittedToTheirOwnTangents) {
+  for (const bool free_start : {false, true}) {
+    const std::vector<Piece> pieces = {{0, 0.3}, {0.3, 0.7}};
+    const BishopFrames frames(pieces, 10, Eigen::Matrix3d::Identity(), free_start);
+    Eigen::VectorXd x = random_strains(2 * frames.columns(), 2);
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      x[k] *= std::exp(-0.8 * static_cast<double>((k % frames.columns()) % 10));
+    }
+    const BishopFrames::State state = evaluated(frames, x);
+    const Eigen::Matrix3Xd tangents =
+        state.t.bottomRows(state.t.rows() - frames.turn_nodes()).transpose();
+    const BishopFrames::State fitted = evaluated(frames, frames.fit(tangents));
+    EXPECT_LT((fitted.t.bottomRows(tangents.cols()) - tangents.transpose()).cwiseAbs().maxCoeff(),
+              1e-3)
+        << "free start " << free_start;
+  }
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
