@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "free_directions.hpp"
+#include "newton.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -44,6 +45,9 @@ void certify(SpanSolution& solution, double load) {
   model.constraint(residual, jacobian);
   model.hessian(solution.multipliers, hessian);
   gradient -= jacobian.transpose() * solution.multipliers;
+  if (!(solution.multipliers.norm() <= largest_pull * (1 + load))) {
+    return solution.fail("the grips would have to pull without bound");
+  }
   const double scale = 1 + load + solution.multipliers.norm();
   solution.residual = std::hypot(gradient.norm(), scale * residual.norm());
   // With rigid walls the multipliers have moved on since; how far the shape is behind them is told

@@ -175,6 +175,9 @@ void Newton::polish(SpanSolution& solution, double load) {
   bool shrinks = false;  // the steps, with the factor of an earlier point
   const auto finish = [&] {
     solution.residual = size;
+    if (!(solution.multipliers.norm() <= largest_pull * (1 + load))) {
+      return solution.fail("Newton's method left for forces without bound");
+    }
     const bool minimum = definite_ || jacobian_.rows() > 0;
     solution.finish(minimum ? SolveStatus::converged : SolveStatus::saddle);
   };

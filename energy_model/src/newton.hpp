@@ -8,6 +8,10 @@
 
 namespace dlo::energy_model {
 
+/// Forces of grips over 1 + weight and loads beyond which nothing is taken for a shape: residuals
+/// are measured against them.
+inline constexpr double largest_pull = 1e10;
+
 /// Newton's method on the gradient of E - mu . c and on the constraints, with its buffers. Without
 /// constraints and walls it allocates nothing once they have their size.
 class Newton {

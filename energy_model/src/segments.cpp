@@ -6,11 +6,12 @@
 namespace dlo::energy_model {
 namespace {
 
+/// Share of its length by which a segment that is stretched may be longer than its chord: with more
+/// it hangs or arches.
+constexpr double largest_slack = 0.05;
+
 /// No rod is pulled harder without being stretched to its length.
 constexpr double largest_tension = 1e9;
-
-/// Share of the rod that grips have to be apart for it to be pulled.
-constexpr double least_stretch = 0.7;
 
 double sine_of_half(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).norm() / 2;
@@ -30,10 +31,11 @@ Eigen::Vector3d side_of(const Eigen::Vector3d& tangent, const Eigen::Vector3d& p
   return sine_of_half(tangent, pull) / size * side;
 }
 
-/// Tension under which a segment reaches this far.
+/// Tension under which a segment reaches this far; 0 for one that has slack enough.
 double tension_for(const Span& span, const Segment& segment, double distance) {
   const double length = segment.length();
   const double slack = length - distance;
+  if (!(slack < largest_slack * length)) return 0;
   const auto across = [&](const Eigen::Vector3d& force) {
     return (force - force.dot(segment.pull) * segment.pull).squaredNorm();
   };
@@ -58,21 +60,14 @@ double tension_for(const Span& span, const Segment& segment, double distance) {
 /// points at what is left of the chord.
 /// @return by how much the tension has changed, of itself
 double pull(const Span& span, Segment& segment) {
-  if (!(segment.chord.norm() > least_stretch * segment.length())) return 0;
-  if (segment.tension == 0) {
-    segment.tension = tension_for(span, segment, segment.chord.norm());
-    return 1;
-  }
   const Eigen::Vector3d aside =
       2 / std::sqrt(segment.tension) *
       (side_of(segment.begin_tangent, segment.pull) + side_of(segment.end_tangent, segment.pull));
   const Eigen::Vector3d rest = segment.chord - aside;
-  if (!(rest.norm() > 0.5 * segment.chord.norm())) return 0;
   segment.pull = rest.normalized();
   // Half way, where aside and tension chase each other.
-  const double tension = tension_for(span, segment, rest.dot(segment.pull));
   const double before = segment.tension;
-  segment.tension = std::sqrt(std::max(1e-12, before) * std::max(1e-12, tension));
+  segment.tension = std::sqrt(before * tension_for(span, segment, rest.dot(segment.pull)));
   return std::abs(segment.tension / before - 1);
 }
 
@@ -85,6 +80,16 @@ Eigen::Vector3d tangent_between(const Segment& before, const Segment& after) {
   const double share = stiffness(before) / (stiffness(before) + stiffness(after));
   const Eigen::Vector3d sum = share * before.pull + (1 - share) * after.pull;
   return sum.norm() > 1e-3 ? sum.normalized() : before.pull;
+}
+
+void set_tangents(const Span& span, std::vector<Segment>& segments) {
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    Segment& own = segments[i];
+    own.begin_tangent =
+        i > 0 ? tangent_between(segments[i - 1], own) : span.start_direction.value_or(own.pull);
+    own.end_tangent = i + 1 < segments.size() ? tangent_between(own, segments[i + 1])
+                                              : span.end_direction.value_or(own.pull);
+  }
 }
 
 }  // namespace
@@ -103,20 +108,22 @@ std::vector<Segment> segments_of(const Span& span) {
     if (segment.chord.norm() > 0) segment.pull = segment.chord.normalized();
     segments.push_back(segment);
   }
-  constexpr int most_rounds = 25;
-  double change = 1;
-  for (int round = 0; round < most_rounds && change > 1e-4; ++round) {
-    change = 0;
-    for (std::size_t i = 0; i < segments.size(); ++i) {
-      Segment& own = segments[i];
-      own.begin_tangent =
-          i > 0 ? tangent_between(segments[i - 1], own) : span.start_direction.value_or(own.pull);
-      own.end_tangent = i + 1 < segments.size() ? tangent_between(own, segments[i + 1])
-                                                : span.end_direction.value_or(own.pull);
-    }
-    for (Segment& segment : segments) change = std::max(change, pull(span, segment));
+  set_tangents(span, segments);
+  for (Segment& segment : segments) {
+    segment.tension = tension_for(span, segment, segment.chord.norm());
   }
-  return segments;
+  const std::vector<Segment> along_chords = segments;
+  constexpr int most_rounds = 25;
+  constexpr double settled = 1e-2;
+  double change = 1;
+  for (int round = 0; round < most_rounds && change > settled * settled; ++round) {
+    change = 0;
+    set_tangents(span, segments);
+    for (Segment& segment : segments) {
+      if (segment.taut()) change = std::max(change, pull(span, segment));
+    }
+  }
+  return change < settled ? segments : along_chords;
 }
 
 }  // namespace dlo::energy_model

@@ -32,6 +32,18 @@ Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent) {
   return frame;
 }
 
+/// Where a rod that nothing clamps may point at its start: what hangs there pulls it. Two
+/// components of a turn lead from there to every direction but the opposite one, where they become
+/// one.
+Eigen::Vector3d first_tangent(const Span& span) {
+  if (span.start_direction) return *span.start_direction;
+  Eigen::Vector3d before = span.anchor * span.weight;
+  for (const Span::Load& load : span.loads) {
+    if (load.at < span.anchor) before += load.force;
+  }
+  return before.norm() > 0 ? Eigen::Vector3d(-before.normalized()) : Eigen::Vector3d::UnitX();
+}
+
 /// The angle that differs from `angle` by whole turns and is nearest to `target`.
 double nearest_turn(double angle, double target) {
   return angle + 2 * pi * std::round((target - angle) / (2 * pi));
@@ -144,7 +156,7 @@ void SpanEnergy::reset(const Span& span, int terms) {
     scaled_.resize(table_->nodes.size(), terms_);
     beside_.resize(terms_);
   } else {
-    start_frame_ = frame_along(span.start_direction.value_or(Eigen::Vector3d::UnitX()));
+    start_frame_ = frame_along(first_tangent(span));
     frames_.reset(pieces_, terms, start_frame_, free_start_ == 1);
     frames_.resize(state_);
     pulled_.resize(size());
@@ -382,6 +394,9 @@ Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd
     const Eigen::Index to = field * columns_;
     const Eigen::Index from = field * other.columns_;
     if (free_start_ == 1) adopted[to] = x[from];
+    if (free_start_ == 1 && other.span_.planar && !span_.planar) {
+      adopted[to] = nearest_turn(x[from] - angle_of(start_frame_.col(2)), 0);
+    }
     for (Eigen::Index e = 0; e < pieces(); ++e) {
       adopted.segment(to + free_start_ + e * terms_, shared) =
           x.segment(from + free_start_ + e * other.terms_, shared);

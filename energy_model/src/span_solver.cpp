@@ -215,7 +215,8 @@ class Search {
       }
       spent += solution.evaluations;
       solution.evaluations = spent;
-      if (solution.is_equilibrium() || solution.model->constraints() == 0) return solution;
+      const bool plain = solution.model->constraints() == 0 && !solution.model->has_walls();
+      if (solution.is_equilibrium() || plain) return solution;
       const bool more = 2 * solution.model->size() <= most_descended && options_.terms == 0;
       if (!more || out_of_time()) return solution;
     }

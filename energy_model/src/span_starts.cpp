@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "segments.hpp"
 
@@ -164,6 +165,25 @@ TangentField field(Tangent tangent) {
   };
 }
 
+/// From a clamp down onto a wall and along it: over (72 EI h / w)^(1/4), as a rod of small slopes
+/// under its weight w comes to lie from the height h. Nothing where it does not come to lie.
+std::optional<TangentField> lying_field(const Span& span, const Span::Wall& wall) {
+  const double pressed = -span.weight.dot(wall.normal);
+  const double height = wall.offset;
+  const Eigen::Vector3d& start = *span.start_direction;
+  const Eigen::Vector3d along = start - start.dot(wall.normal) * wall.normal;
+  if (!(pressed > 0 && height >= 0 && height < span.length / 2 && along.norm() > 0.1)) return {};
+  const double reach = std::max(2 * height, std::pow(72 * height / pressed, 0.25));
+  if (!(reach < span.length)) return {};
+  return field([start, flat = along.normalized(), normal = wall.normal, height, reach](double s) {
+    const double u = s / reach;
+    if (!(u < 1)) return flat;
+    const double slope = -6 * height / reach * u * (1 - u);
+    return Eigen::Vector3d(
+        (flat + slope * normal + std::pow(1 - u, 4) * (start - flat)).normalized());
+  });
+}
+
 }  // namespace
 
 TangentField soft_field(const Span& span) {
@@ -175,6 +195,9 @@ TangentField soft_field(const Span& span) {
 std::vector<TangentField> start_fields(const Span& span) {
   std::vector<TangentField> fields;
   if (span.holds.empty() && span.start_direction) {
+    for (const Span::Wall& wall : span.walls) {
+      if (std::optional<TangentField> lying = lying_field(span, wall)) fields.push_back(*lying);
+    }
     fields.push_back(soft_field(span));
     fields.push_back(field([&span](double) { return *span.start_direction; }));
     fields.push_back(field([&span](double s) {
