@@ -302,8 +302,12 @@ class Search {
   [[nodiscard]] SpanSolution refined(SpanSolution solution) {
     const int fields = span_.planar ? 1 : 2;
     const int affordable = std::max(32, most_unknowns / (fields * solution.model->pieces()));
-    // With walls the curvature has kinks where contact begins; more terms help only so far.
-    const int most_terms = span_.walls.empty() ? std::min(max_terms, affordable) : 32;
+    // With walls the curvature has kinks where contact begins; more terms help only so far, where
+    // the walls yield somewhat farther.
+    const bool yields = std::all_of(span_.walls.begin(), span_.walls.end(),
+                                    [](const auto& wall) { return std::isfinite(wall.stiffness); });
+    const int most_with_walls = yields ? 64 : 32;
+    const int most_terms = std::min(affordable, span_.walls.empty() ? max_terms : most_with_walls);
     while (solution.is_equilibrium()) {
       solution.resolved = options_.terms > 0 || resolved(solution);
       if (solution.resolved) break;
