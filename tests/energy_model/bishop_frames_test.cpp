@@ -68,7 +68,7 @@ Eigen::Quaterniond integrated(const Eigen::VectorXd& x, int steps) {
 TEST(BishopFrames, AgreeWithAnotherIntegratorWhereTheRodWindsThirtyTimes) {
   constexpr int terms = 24;
   const BishopFrames frames({{0, 1}}, terms, Eigen::Matrix3d::Identity(), false);
-  Eigen::VectorXd x = random_strains(2 * terms, 1);
+  Eigen::VectorXd x = random_strains(2 * frames.columns(), 1);
   // Smooth, and of |u| l = 30 in the mean.
   for (Eigen::Index k = 0; k < x.size(); ++k)
     x[k] *= std::exp(-0.5 * static_cast<double>(k % terms));
