@@ -9,9 +9,8 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double first_penalty_radius = 1;
-constexpr double largest_penalty_radius = 8;
-constexpr double smallest_penalty_radius = 1e-9;
+/// A region this small ends a minimum: the multipliers may move on.
+constexpr double least_penalty_radius = 1e-9;
 /// Miss of the constraints from which Newton's method takes over [l].
 constexpr double close_enough = 1e-7;
 constexpr int most_updates = 40;
@@ -41,7 +40,7 @@ class PenaltyDescent {
       missed = miss;
     }
     if (out_of_time()) return finish(SolveStatus::time_limit);
-    finish(SolveStatus::not_run);
+    finish(SolveStatus::failed);
     solution_.fail("the grips' positions could not be met from this start");
   }
 
@@ -65,13 +64,12 @@ class PenaltyDescent {
   /// `precision` of its forces. @return whether it was reached
   [[nodiscard]] bool minimise(double precision) {
     evaluate();
-    double radius = std::min(first_penalty_radius, radius_);
+    double radius = std::min(first_radius, radius_);
     for (int i = 0; i < options_.max_iterations; ++i) {
       if (out_of_time()) return false;
       const Eigen::VectorXd nu = forces();
       slope_ = gradient_ - jacobian_.transpose() * nu;
       const bool flat = slope_.norm() <= precision * 1e-3 * (1 + options_.load + nu.norm());
-      (void)model_.value(solution_.x, gradient_);
       model_.hessian(nu, hessian_);
       hessian_.noalias() += kappa_ * jacobian_.transpose() * jacobian_;
       if (!step(radius, flat)) return true;
@@ -87,9 +85,9 @@ class PenaltyDescent {
         solution_.x = before_x;
         evaluate();
         radius = std::min(radius, length) / 4;
-        if (radius < smallest_penalty_radius) return true;
+        if (radius < least_penalty_radius) return true;
       } else if (ratio > 0.75 && length > 0.9 * radius) {
-        radius = std::min(largest_penalty_radius, 2 * radius);
+        radius = std::min(largest_radius, 2 * radius);
       }
       radius_ = radius;
     }
@@ -165,7 +163,7 @@ class PenaltyDescent {
   const TrustRegionOptions& options_;
   double kappa_ = 0;
   double value_ = 0;
-  double radius_ = first_penalty_radius;
+  double radius_ = first_radius;
   Eigen::VectorXd mu_, gradient_, residual_, slope_, step_;
   Eigen::MatrixXd jacobian_, hessian_, shifted_;
   Eigen::LLT<Eigen::MatrixXd> llt_;

@@ -8,6 +8,14 @@ double Span::total_load() const {
   return total;
 }
 
+Eigen::Vector3d Span::force_before(double s) const {
+  Eigen::Vector3d force = s * weight;
+  for (const Load& load : loads) {
+    if (load.at < s) force += load.force;
+  }
+  return force;
+}
+
 bool Span::pulled_one_way() const {
   Eigen::Vector3d sum = weight * length;
   for (const Load& load : loads) sum += load.force;

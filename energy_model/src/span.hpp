@@ -38,6 +38,8 @@ struct Span {
 
   /// Sum of weight and loads, for scales.
   [[nodiscard]] double total_load() const;
+  /// Of weight and loads on what lies before s.
+  [[nodiscard]] Eigen::Vector3d force_before(double s) const;
   /// Weight and loads all point the same way.
   [[nodiscard]] bool pulled_one_way() const;
   /// One clamp and nothing but weight and loads, in a plane.

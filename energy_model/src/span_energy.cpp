@@ -37,10 +37,7 @@ Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent) {
 /// one.
 Eigen::Vector3d first_tangent(const Span& span) {
   if (span.start_direction) return *span.start_direction;
-  Eigen::Vector3d before = span.anchor * span.weight;
-  for (const Span::Load& load : span.loads) {
-    if (load.at < span.anchor) before += load.force;
-  }
+  const Eigen::Vector3d before = span.force_before(span.anchor);
   return before.norm() > 0 ? Eigen::Vector3d(-before.normalized()) : Eigen::Vector3d::UnitX();
 }
 

@@ -224,10 +224,8 @@ class Search {
 
   /// By springs at the grips that become stiffer, then Newton's method.
   void pull_to_grips(SpanSolution& solution) {
-    descend_by_penalty(solution, {.load = load_,
-                                  .gradient_tolerance = handover_gradient,
-                                  .deadline = &options_.deadline,
-                                  .stiffness = stiffness_});
+    descend_by_penalty(solution,
+                       {.load = load_, .deadline = &options_.deadline, .stiffness = stiffness_});
     if (succeeded(solution.status)) workspace_.newton().polish(solution, load_);
   }
 

@@ -143,11 +143,7 @@ class GrippedField {
     const double last = segments_.empty() ? span_.anchor : segments_.back().end;
     if (s >= last) return pendulum(span_, from, total_force(span_, last), s - last, 0);
     const double first = segments_.empty() ? span_.anchor : segments_.front().begin;
-    Eigen::Vector3d before = first * span_.weight;
-    for (const Span::Load& load : span_.loads) {
-      if (load.at < first) before += load.force;
-    }
-    return -pendulum(span_, -from, before, first - s, 0);
+    return -pendulum(span_, -from, span_.force_before(first), first - s, 0);
   }
 
   const Span& span_;

@@ -12,8 +12,6 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double first_radius = 1;
-constexpr double largest_radius = 8;
 /// A region this small moves the shape by less than rounding does.
 constexpr double smallest_radius = 1e-10;
 /// Gap at the grips from which a start is taken.

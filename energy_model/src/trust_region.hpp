@@ -7,6 +7,10 @@
 
 namespace dlo::energy_model {
 
+/// Of the region in the unknowns: where a descent begins, and the most that it grows to.
+inline constexpr double first_radius = 1;
+inline constexpr double largest_radius = 8;
+
 struct TrustRegionOptions {
   double load = 0;                     ///< sum of weight and loads, the scale of the gradient
   double gradient_tolerance = 0;       ///< of the projected gradient, over 1 + load; > 0

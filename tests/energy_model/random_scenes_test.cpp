@@ -18,10 +18,11 @@ class RandomScenes : public testing::TestWithParam<RandomSpace> {};
 TEST_P(RandomScenes, HoldTheEnergyModelAgainstMultipleShooting) {
   // Paths are what a sanitizer build is for; counts are proven by the release build.
   constexpr std::uint64_t count = test::sanitized ? 5 : 50;
-  // Of `count`, as measured: it must not grow. Multiple shooting gives up on rods that grips pull
-  // with 1e5 EI/l^2 and more, even from the shape.
+  // Of `count`, as measured: these must not grow.
   constexpr int most_refused_by_energy = 0;
-  const int most_refused_by_exact = GetParam() == RandomSpace::plane ? 2 : 5;
+  constexpr int most_refused_by_exact = 2;
+  // Multiple shooting gives up on rods that grips pull harder, even from the shape.
+  constexpr double hard_pull = 1e5;  // EI/l^2
   // The energy model's curvature is right to its last coefficient, 1e-10 of the largest; moments
   // near a clamp under a large force see the sum of them.
   constexpr double energy_defect = 1e-6;
@@ -42,7 +43,10 @@ TEST_P(RandomScenes, HoldTheEnergyModelAgainstMultipleShooting) {
         number, problem, 20, searches ? test::ExactFrom::search : test::ExactFrom::energy);
     const bool asked = searches || succeeded(scene.energy.status);
     refused_by_energy += succeeded(scene.energy.status) ? 0 : 1;
-    refused_by_exact += asked && !succeeded(scene.exact.status) ? 1 : 0;
+    double pull = 0;
+    for (const Reaction& grip : scene.energy.grips) pull = std::max(pull, grip.force.norm());
+    const bool may_give_up = succeeded(scene.energy.status) && pull > hard_pull;
+    refused_by_exact += asked && !may_give_up && !succeeded(scene.exact.status) ? 1 : 0;
     EXPECT_LE(scene.energy_defects.worst(), energy_defect);
     EXPECT_LE(scene.exact_defects.worst(), exact_defect);
     if (!searches && succeeded(scene.exact.status)) {

@@ -96,7 +96,7 @@ TEST(PenaltyDescent, MeetsTheGripsFromAStartThatIsFarFromThem) {
   solution.model = std::make_shared<SpanEnergy>(span, 16);
   solution.terms = 16;
   solution.x.setZero(solution.model->size());
-  descend_by_penalty(solution, {.load = span.total_load(), .gradient_tolerance = 1e-5});
+  descend_by_penalty(solution, {.load = span.total_load()});
   ASSERT_EQ(solution.status, SolveStatus::converged) << solution.message;
   Eigen::VectorXd gradient(solution.model->size());
   Eigen::VectorXd missed(solution.model->constraints());
@@ -104,9 +104,9 @@ TEST(PenaltyDescent, MeetsTheGripsFromAStartThatIsFarFromThem) {
   (void)solution.model->value(solution.x, gradient);
   solution.model->constraint(missed, jacobian);
   EXPECT_LT(missed.norm(), 1e-6);
-  // The multipliers balance the gradient.
+  // The multipliers balance the gradient, to a thousandth of the hundredth that a minimum may miss.
   EXPECT_LT((gradient - jacobian.transpose() * solution.multipliers).norm(),
-            1e-3 * (1 + solution.multipliers.norm()));
+            1e-5 * (1 + span.total_load() + solution.multipliers.norm()));
 }
 
 }  // namespace
