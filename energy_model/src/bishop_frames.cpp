@@ -108,7 +108,7 @@ void BishopFrames::reset(const std::vector<Piece>& pieces, int terms, const Eige
   for (const Piece& piece : pieces) add(piece.length, terms);
 }
 
-void BishopFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& state) const {
+void BishopFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& state) {
   const LegendreTable& table = *panel.table;
   const Eigen::Index Q = panel.nodes();
   const auto u = state.u.middleRows(panel.node, Q);
@@ -272,7 +272,7 @@ void BishopFrames::pull_position(const std::vector<double>& signs, State& state,
 }
 
 /// Into state.spins: spins of the panel's nodes by its own unknowns, axis by axis.
-void BishopFrames::own_spins(const Panel& panel, State& state) const {
+void BishopFrames::own_spins(const Panel& panel, State& state) {
   const Eigen::Index Q = panel.nodes();
   const double scale = std::sqrt(panel.length);
   for (Eigen::Index field = 0; field < 2; ++field) {

@@ -96,10 +96,10 @@ class BishopFrames {
     [[nodiscard]] Eigen::Index nodes() const { return table->nodes.size(); }
   };
 
-  void integrate(const Panel& panel, Eigen::Quaterniond& at, State& state) const;
+  static void integrate(const Panel& panel, Eigen::Quaterniond& at, State& state);
   void moments(const Panel& panel, const TangentGradient& f, const Eigen::Vector3d& later,
                State& state) const;
-  void own_spins(const Panel& panel, State& state) const;
+  static void own_spins(const Panel& panel, State& state);
   void end_spins(const Panel& panel, State& state) const;
   void add_panel(const Panel& panel, const Eigen::Matrix3d& later_curvature, State& state,
                  Eigen::Ref<Eigen::MatrixXd> hessian) const;
