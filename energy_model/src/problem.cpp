@@ -1,6 +1,9 @@
 #include "dlo/energy_model/problem.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
+#include <vector>
 
 #include "require.hpp"
 
@@ -11,6 +14,37 @@ void require_on_rod(const char* argument, double at, double length) {
   // Asked first, because the text costs more than a solve's other checks together.
   if (at >= 0 && at <= length) return;
   require(false, "Problem", argument, at, "in [0, " + std::to_string(length) + "]");
+}
+
+void check_frame(const Grip& grip) {
+  constexpr double least_across = 1e-6;
+  require(grip.direction.has_value(), "Problem", "frame of a grip without direction", grip.at,
+          "that of a clamp");
+  require(std::isfinite(grip.frame->roll), "Problem", "roll of a clamp", grip.frame->roll,
+          "finite");
+  if (!grip.frame->d1) return;
+  const double across = grip.frame->d1->cross(*grip.direction).norm();
+  require(across > least_across * grip.frame->d1->norm() * grip.direction->norm(), "Problem",
+          "d1 of a clamp's frame, across its direction", across, "> 0");
+}
+
+/// Twist passes through a clamp that does not hold it, which nobody computes here.
+void check_twist(const Problem& problem) {
+  std::vector<const Grip*> clamps;
+  for (const Grip& grip : problem.grips) {
+    if (grip.direction) clamps.push_back(&grip);
+  }
+  std::sort(clamps.begin(), clamps.end(), [](auto* a, auto* b) { return a->at < b->at; });
+  const auto holds = [](const Grip* grip) { return grip->frame.has_value(); };
+  const auto first = std::find_if(clamps.begin(), clamps.end(), holds);
+  const auto last = std::find_if(clamps.rbegin(), clamps.rend(), holds).base();
+  if (first == clamps.end() || last - first < 2) return;
+  require(problem.torsional_stiffness > 0, "Problem", "torsional_stiffness",
+          problem.torsional_stiffness, "> 0 where two clamps hold the rod's frame");
+  const auto open = std::find_if_not(first, last, holds);
+  if (open == last) return;
+  require(false, "Problem", "arc length of a clamp without frame between two that hold it",
+          (*open)->at, "that of a clamp with a frame, or of a pin");
 }
 
 }  // namespace
@@ -28,7 +62,9 @@ void check(const Problem& problem) {
     if (grip.direction) {
       require_positive("Problem", "|direction| of a clamp", grip.direction->norm());
     }
+    if (grip.frame) check_frame(grip);
   }
+  check_twist(problem);
   for (const Wall& wall : problem.walls) {
     require(wall.point.allFinite(), "Problem", "point of a wall", wall.point.norm(), "finite");
     require_positive("Problem", "|normal| of a wall", wall.normal.norm());

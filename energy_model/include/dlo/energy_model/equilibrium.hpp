@@ -29,6 +29,7 @@ struct [[nodiscard]] Equilibrium {
   Energies energy;                     ///< of the shape [J]
   std::vector<Eigen::Vector3d> walls;  ///< force of each wall on the rod [N]
   std::vector<Reaction> grips;         ///< in the order of Problem::grips
+  std::vector<TwistedPart> twists;     ///< of what clamps that hold frames twist; by arc length
 
   /// The shape at arc lengths within [0, length], in any order [m].
   std::function<Samples(std::span<const double>)> sample;

@@ -10,11 +10,21 @@
 
 namespace dlo::energy_model {
 
-/// Holds the rod at one arc length: a clamp (position and direction) or a pin (position).
+/// Keeps a clamped cross-section from turning about its direction.
+struct FrameHold {
+  /// First director of the rod's frame there, of which the part across the direction counts; none:
+  /// where the same rod without twist has it.
+  std::optional<Eigen::Vector3d> d1;
+  double roll = 0;  ///< turned on from there about the direction, whole turns counted [rad]
+};
+
+/// Holds the rod at one arc length: a clamp (position and direction) or a pin (position). A clamp
+/// leaves the twist free unless it holds the frame too.
 struct Grip {
   double at = 0;                                       ///< arc length [m], 0 .. length
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< along growing arc length, any length > 0
+  std::optional<FrameHold> frame;                      ///< of a clamp
 };
 
 /// A dead force.
@@ -31,10 +41,17 @@ struct Wall {
   double stiffness = std::numeric_limits<double>::infinity();
 };
 
-/// A round, naturally straight, inextensible rod whose grips leave the twist free.
+/// A round, naturally straight, inextensible rod.
+///
+/// Two neighbouring clamps that hold frames twist the rod between them by the difference of their
+/// rolls, the later less the earlier; if both say where d1 is, by the angle in (-pi, pi] more by
+/// which the later one's is turned from the earlier one's as the rod without twist transports it.
+/// That rod is the lowest minimum of the same problem without frames; from there the twist is put
+/// in little by little, and where a shape cannot hold itself any more it falls to the next one.
 struct Problem {
-  double length = 0;                                            ///< l [m], > 0
-  double bending_stiffness = 0;                                 ///< EI [N m^2], > 0
+  double length = 0;               ///< l [m], > 0
+  double bending_stiffness = 0;    ///< EI [N m^2], > 0
+  double torsional_stiffness = 0;  ///< GJ [N m^2]; > 0 where two clamps hold frames
   Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
   std::vector<Grip> grips;                                      ///< one or more
   std::vector<Load> loads;                                      ///< may be empty
@@ -46,18 +63,26 @@ void check(const Problem& problem);
 
 /// Energies [J]; gravity and loads are zero where their points sit at the first grip.
 struct Energies {
-  double bending = 0;  ///< int 1/2 EI |t'|^2 ds
-  double gravity = 0;  ///< of the rod's weight
-  double load = 0;     ///< of point loads
+  double bending = 0;   ///< int 1/2 EI |t'|^2 ds
+  double twisting = 0;  ///< int 1/2 GJ tau^2 ds, tau the twist per length
+  double gravity = 0;   ///< of the rod's weight
+  double load = 0;      ///< of point loads
 
   /// Of all [J].
-  [[nodiscard]] double total() const { return bending + gravity + load; }
+  [[nodiscard]] double total() const { return bending + twisting + gravity + load; }
 };
 
 /// What a gripper exerts on the rod, the torque about the gripper's position.
 struct Reaction {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
+};
+
+/// Twist of a part of the rod whose ends hold frames; it is the same all along.
+struct TwistedPart {
+  double begin = 0, end = 0;  ///< arc lengths [m]
+  double angle = 0;           ///< by which the frame at the end is turned ahead of transport [rad]
+  double torque = 0;          ///< GJ angle / (end - begin) [N m]
 };
 
 /// A shape at given arc lengths.
