@@ -88,6 +88,13 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     if (solution.x.size() == 0) continue;
     const Energies own = solution.model->energies(solution.x);
     result.energy.bending += own.bending * energy_unit;
+    result.energy.twisting += own.twisting * energy_unit;
+    if (solution.model->span().twist) {
+      const double angle = solution.model->twist(solution.x);
+      const double length = place.span.length * l;
+      result.twists.push_back(
+          {place.start, place.start + length, angle, problem.torsional_stiffness * angle / length});
+    }
     const Eigen::Vector3d lift = place.anchor_position - origin;
     const Eigen::Vector3d weight = problem.weight_per_length * place.span.length * l;
     result.energy.gravity += own.gravity * energy_unit - weight.dot(lift);

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "fit_angle.hpp"
+#include "spin.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -68,19 +69,6 @@ void add_product(Rows q, const ConstRows& a) {
 }
 
 Eigen::Vector4d as_vector(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
-
-/// What the square of a spin costs through g . t: sym(g t^T) - (g.t) 1.
-Eigen::Matrix3d spin_curvature(const Eigen::Vector3d& t, const Eigen::Vector3d& g) {
-  Eigen::Matrix3d a = (g * t.transpose() + t * g.transpose()) / 2;
-  a.diagonal().array() -= g.dot(t);
-  return a;
-}
-
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d m;
-  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return m;
-}
 
 /// Rotation vector, in body axes and across the tangent, that takes the tangent e3 to v.
 Eigen::Vector2d turn_to(const Eigen::Vector3d& v) {
@@ -205,8 +193,8 @@ void BishopFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& s
 /// Into state.couples and state.moments (rows of a panel): t x g of the nodes, and the moment
 ///     M(s) = int_s^end t x dg
 /// that the discrete spins give them; `later` is the sum of t x g beyond the panel.
-void BishopFrames::moments(const Panel& panel, const TangentGradient& f,
-                           const Eigen::Vector3d& later, State& state) const {
+void BishopFrames::moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
+                           State& state) const {
   const Eigen::Index Q = panel.nodes();
   auto couples = state.couples.topRows(Q);
   auto moments = state.moments.topRows(Q);
@@ -224,9 +212,9 @@ void BishopFrames::moments(const Panel& panel, const TangentGradient& f,
   moments.noalias() += panel.length * (panel.table->integration.transpose() * couples);
 }
 
-void BishopFrames::pull(const TangentGradient& f, double sense, State& state,
+void BishopFrames::pull(const FrameGradient& f, double sense, State& state,
                         Eigen::Ref<Eigen::VectorXd> gradient) const {
-  Eigen::Vector3d later = state.end_tangent().cross(f.end);
+  Eigen::Vector3d later = f.end_couple;
   for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
     moments(*panel, f, later, state);
     const Eigen::Index Q = panel->nodes();
@@ -300,14 +288,15 @@ void BishopFrames::end_spins(const Panel& panel, State& state) const {
   }
 }
 
-void BishopFrames::add_hessian(const TangentGradient& f, const Eigen::Matrix3d& end_curvature,
-                               State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
+void BishopFrames::turn_end(State& state) const {
   for (const Panel& panel : panels_) end_spins(panel, state);
-  const Eigen::Vector3d t_end = state.end_tangent();
-  const Eigen::Matrix3d turn_end = cross_matrix(t_end);
-  Eigen::Matrix3d later_curvature =
-      spin_curvature(t_end, f.end) + turn_end.transpose() * end_curvature * turn_end;
-  Eigen::Vector3d later = t_end.cross(f.end);
+}
+
+void BishopFrames::add_hessian(const FrameGradient& f, const Eigen::Matrix3d& end_curvature,
+                               State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
+  turn_end(state);
+  Eigen::Matrix3d later_curvature = end_curvature;
+  Eigen::Vector3d later = f.end_couple;
   for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
     moments(*panel, f, later, state);
     const Eigen::Index Q = panel->nodes();

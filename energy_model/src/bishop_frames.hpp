@@ -10,11 +10,12 @@
 
 namespace dlo::energy_model {
 
-/// What a function f of the tangents has at a point, for derivatives by the strains: its gradient
-/// by the tangents at the nodes (nodes x 3; null: none) and by that at the span's end.
-struct TangentGradient {
+/// What a function f of the tangents and of the end's frame has at a point, for derivatives by the
+/// strains: its gradient by the tangents at the nodes (nodes x 3; null: none), and what a turn
+/// theta of the end's frame, a rotation vector in space, changes: end_couple . theta.
+struct FrameGradient {
   const Eigen::MatrixX3d* nodes = nullptr;
-  Eigen::Vector3d end = Eigen::Vector3d::Zero();
+  Eigen::Vector3d end_couple = Eigen::Vector3d::Zero();
 };
 
 /// A rod's directors in space from its body strains,
@@ -43,7 +44,7 @@ class BishopFrames {
     Eigen::MatrixXd spins, weighted, scaled, own, before;
     Eigen::Matrix3Xd beside, turned, ends;
 
-    [[nodiscard]] Eigen::Vector3d end_tangent() const { return end * Eigen::Vector3d::UnitZ(); }
+    [[nodiscard]] Eigen::Matrix3d end_frame() const { return end.toRotationMatrix(); }
   };
 
   BishopFrames() = default;
@@ -67,7 +68,7 @@ class BishopFrames {
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& state) const;
 
   /// Adds `sense` times the gradient of f by x.
-  void pull(const TangentGradient& f, double sense, State& state,
+  void pull(const FrameGradient& f, double sense, State& state,
             Eigen::Ref<Eigen::VectorXd> gradient) const;
 
   /// Derivatives by x of sum_e sign_e int_e t ds over the pieces e, which is where a grip is seen
@@ -76,9 +77,12 @@ class BishopFrames {
                      Eigen::Ref<Eigen::MatrixXd> jacobian) const;
 
   /// Adds the second derivatives of f by x.
-  /// @param end_curvature  second derivatives of f by the tangent at the end
-  void add_hessian(const TangentGradient& f, const Eigen::Matrix3d& end_curvature, State& state,
+  /// @param end_curvature  second derivatives of f by turns of the end's frame
+  void add_hessian(const FrameGradient& f, const Eigen::Matrix3d& end_curvature, State& state,
                    Eigen::Ref<Eigen::MatrixXd> hessian) const;
+
+  /// Derivatives of the turn of the end's frame by x, 3 x unknowns, into state.ends.
+  void turn_end(State& state) const;
 
   /// Derivatives of the tangents at the nodes by x: three matrices, one an axis, nodes x unknowns.
   [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian(State& state) const;
@@ -97,7 +101,7 @@ class BishopFrames {
   };
 
   static void integrate(const Panel& panel, Eigen::Quaterniond& at, State& state);
-  void moments(const Panel& panel, const TangentGradient& f, const Eigen::Vector3d& later,
+  void moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
                State& state) const;
   static void own_spins(const Panel& panel, State& state);
   void end_spins(const Panel& panel, State& state) const;

@@ -13,6 +13,7 @@
 #include "require.hpp"
 #include "span_solver.hpp"
 #include "split.hpp"
+#include "twist_path.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -112,7 +113,8 @@ class EnergySolver::State {
       options.max_evaluations = options_.max_evaluations;
       options.all = all;
       options.deadline = deadline;
-      solutions.push_back(solve_placed(placed[i], problem, options, last));
+      solutions.push_back(placed[i].frames ? twisted(placed[i], problem, options)
+                                           : solve_placed(placed[i], problem, options, last));
       remember(solutions.back().front(), remembered_[i]);
     }
     std::vector<Equilibrium> result = combine(problem, solutions);
@@ -131,12 +133,40 @@ class EnergySolver::State {
     [[nodiscard]] bool planar() const { return !model || model->span().planar; }
   };
 
+  /// Searches without twist, whatever there is to start from: where the clamp has the frame starts
+  /// there. Then turns what is stable there.
+  [[nodiscard]] std::vector<PlacedSolution> twisted(const PlacedSpan& placed,
+                                                    const Problem& problem,
+                                                    const SpanOptions& options) {
+    std::vector<PlacedSolution> untwisted = solve_placed(placed, problem, options, nullptr);
+    if (!succeeded(untwisted.front().solution.status)) return untwisted;
+    const HeldFrames& held = *placed.frames;
+    const EndFrame frame = end_frame(held, untwisted.front().solution);
+    std::vector<PlacedSolution> found;
+    int spent = 0;
+    for (const PlacedSolution& from : untwisted) {
+      if (!succeeded(from.solution.status)) continue;
+      PlacedSolution to = from;
+      to.solution = twist_by(twist_to(frame, from.solution), placed.span, held, from.solution,
+                             options, workspace_);
+      to.placed.span.planar = false;
+      spent += from.solution.evaluations + to.solution.evaluations;
+      const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
+        return other.solution.is_equilibrium() && is_same(to, other);
+      });
+      if (!known) found.push_back(std::move(to));
+    }
+    sort(found);
+    found.front().solution.evaluations = spent;
+    return found;
+  }
+
   [[nodiscard]] std::vector<PlacedSolution> solve_placed(const PlacedSpan& placed,
                                                          const Problem& problem,
                                                          SpanOptions options,
                                                          const Remembered* last) {
     TangentField start;
-    if (options_.start != nullptr) {
+    if (options_.start != nullptr && !placed.frames) {
       start = field_of(*options_.start, placed, problem.length);
     } else if (last != nullptr && last->model) {
       options.least_terms = last->model->terms();

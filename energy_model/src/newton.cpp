@@ -20,6 +20,9 @@ constexpr double coarsest_step = 1e-8;
 /// Steps that become shorter by this with a factor of another point's need no new one.
 constexpr double fast_contraction = 0.1;
 
+/// Directions in which the rod moves for next to nothing.
+constexpr Eigen::Index most_neutral = 3;
+
 /// A factor is used again for a last step as long as x has moved less than this since: the residual
 /// still falls by that much.
 constexpr double factor_reach = 1e-3;
@@ -65,6 +68,29 @@ void Newton::factor(SpanSolution& solution) {
   system_.bottomLeftCorner(m, n) = jacobian_;
   system_.bottomRightCorner(m, m).setZero();
   lu_.compute(system_);
+  if (stands_still_)
+    find_neutral(neutral + rounded_curvature * (load_ + solution.multipliers.norm()));
+}
+
+/// Into neutral_: orthonormal vectors that the system makes shorter than `limit`, by inverse
+/// iteration. A step along them would be any.
+void Newton::find_neutral(double limit) {
+  const Eigen::Index size = system_.rows();
+  neutral_.resize(size, 0);
+  const Eigen::VectorXd seed = Eigen::VectorXd::LinSpaced(size, 1, 2).normalized();
+  for (Eigen::Index found = 0; found < most_neutral; ++found) {
+    Eigen::VectorXd v = seed;
+    double shrinks = 1;
+    for (int i = 0; i < 2; ++i) {
+      v = lu_.solve(v);
+      v -= neutral_ * (neutral_.transpose() * v);
+      shrinks = 1 / v.norm();
+      v *= shrinks;
+    }
+    if (!(shrinks < limit)) return;
+    neutral_.conservativeResize(Eigen::NoChange, found + 1);
+    neutral_.col(found) = v;
+  }
 }
 
 /// Into step_, from gradient_ and residual_.
@@ -77,6 +103,7 @@ void Newton::solve() {
   right_.resize(gradient_.size() + residual_.size());
   right_ << -gradient_, -residual_;
   step_ = lu_.solve(right_);
+  if (stands_still_) step_ -= neutral_ * (neutral_.transpose() * step_);
   // A neutral direction leaves the system singular; least squares stands still along it.
   const double moved = step_.head(gradient_.size()).norm();
   if (!((system_ * step_ - right_).norm() <= 1e-6 * right_.norm()) || moved > 1e3) {
@@ -165,7 +192,24 @@ bool Newton::natural_move(SpanSolution& solution, double& size) {
   return false;
 }
 
+void Newton::polish_along_branch(SpanSolution& solution, double load) {
+  stands_still_ = true;
+  run(solution, load);
+  stands_still_ = false;
+}
+
 void Newton::polish(SpanSolution& solution, double load) {
+  const Eigen::VectorXd x = solution.x;
+  const Eigen::VectorXd multipliers = solution.multipliers;
+  run(solution, load);
+  const SpanEnergy& model = *solution.model;
+  if (solution.is_equilibrium() || model.constraints() == 0 || model.has_walls()) return;
+  solution.x = x;
+  solution.multipliers = multipliers;
+  polish_along_branch(solution, load);
+}
+
+void Newton::run(SpanSolution& solution, double load) {
   load_ = load;
   begin(solution);
   const bool walls = solution.model->has_walls();

@@ -12,6 +12,9 @@ namespace dlo::energy_model {
 /// are measured against them.
 inline constexpr double largest_pull = 1e10;
 
+/// Curvature over the forces below which rounding alone would move a shape visibly.
+inline constexpr double rounded_curvature = 1e-9;
+
 /// Newton's method on the gradient of E - mu . c and on the constraints, with its buffers. Without
 /// constraints and walls it allocates nothing once they have their size.
 class Newton {
@@ -20,14 +23,20 @@ class Newton {
   /// is below 1e-8; steps are cut while the next one, with the same factor, is no shorter. Without
   /// constraints the Hessian then tells a minimum (`converged`) from a `saddle`; with them the
   /// caller has to look. Ends as `near_singular` where the residual is at rounding and the step is
-  /// not, and as `failed` where the residual does not fall.
+  /// not, and as `failed` where the residual does not fall; between grips it tries once more as
+  /// polish_along_branch().
   /// @param load  sum of weight and loads, the scale of the residuals
   void polish(SpanSolution& solution, double load);
+  /// The same, standing still in directions in which the rod moves for next to nothing, where
+  /// rounding would make any step: for one of many steps along a branch.
+  void polish_along_branch(SpanSolution& solution, double load);
 
  private:
+  void run(SpanSolution& solution, double load);
   void begin(SpanSolution& solution);
   [[nodiscard]] double evaluate(SpanSolution& solution);
   void factor(SpanSolution& solution);
+  void find_neutral(double limit);
   void solve();
   void stand_still_where_neutral();
   void move(SpanSolution& solution, double length);
@@ -37,8 +46,9 @@ class Newton {
   [[nodiscard]] bool natural_move(SpanSolution& solution, double& size);
 
   double load_ = 0;
+  bool stands_still_ = false;
   Eigen::VectorXd gradient_, residual_, right_, step_, first_step_;
-  Eigen::MatrixXd jacobian_, hessian_, system_;
+  Eigen::MatrixXd jacobian_, hessian_, system_, neutral_;
   Eigen::LLT<Eigen::MatrixXd> llt_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   bool definite_ = false;  // llt_ is what the system is solved with

@@ -1,6 +1,13 @@
 #include "span.hpp"
 
+#include <Eigen/Geometry>
+
 namespace dlo::energy_model {
+
+Eigen::Vector3d Span::d1(const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  return direction.cross(z).norm() > 1e-3 ? z : direction.unitOrthogonal();
+}
 
 double Span::total_load() const {
   double total = weight.norm() * length;

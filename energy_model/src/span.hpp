@@ -26,6 +26,12 @@ struct Span {
     double stiffness = std::numeric_limits<double>::infinity();  ///< per length
   };
 
+  /// Both clamps hold the rod's frame; whole turns are in SpanEnergy's unknown.
+  struct Twist {
+    double stiffness = 0;                               ///< GJ / EI
+    Eigen::Vector3d end_d1 = Eigen::Vector3d::UnitX();  ///< of a rod whose d1 at the start is d1()
+  };
+
   double length = 1;
   bool planar = true;
   std::optional<Eigen::Vector3d> start_direction;  ///< a clamp holds the start, which is the anchor
@@ -35,6 +41,10 @@ struct Span {
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();
   std::vector<Load> loads;  ///< by growing s
   std::vector<Wall> walls;
+  std::optional<Twist> twist;  ///< where both ends are clamped, not planar
+
+  /// d1 of the frame that a clamp's direction has here: z, if that is not nearly the direction.
+  [[nodiscard]] static Eigen::Vector3d d1(const Eigen::Vector3d& direction);
 
   /// Sum of weight and loads, for scales.
   [[nodiscard]] double total_load() const;

@@ -23,13 +23,17 @@ double angle_of(const Eigen::Vector3d& direction) {
   return std::atan2(direction.y(), direction.x());
 }
 
-/// A frame whose third column is this tangent; a planar shape then bends by u1 alone.
-Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent) {
-  Eigen::Vector3d first = Eigen::Vector3d::UnitZ() - tangent.z() * tangent;
-  first = first.norm() > 1e-3 ? first.normalized() : tangent.unitOrthogonal();
+/// The frame with this tangent and with d1 on this side of it.
+Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent, const Eigen::Vector3d& d1) {
+  const Eigen::Vector3d first = (d1 - tangent.dot(d1) * tangent).normalized();
   Eigen::Matrix3d frame;
   frame << first, tangent.cross(first), tangent;
   return frame;
+}
+
+/// A frame whose third column is this tangent; a planar shape then bends by u1 alone.
+Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent) {
+  return frame_along(tangent, Span::d1(tangent));
 }
 
 /// Where a rod that nothing clamps may point at its start: what hangs there pulls it. Two
@@ -141,8 +145,13 @@ void SpanEnergy::reset(const Span& span, int terms) {
   pieces_ = pieces_of(span);
   tabulate_nodes();
   tabulate_forces();
-  const Eigen::Index end_angles = span.planar ? 1 : 2;
-  constraints_ = axes_ * reach_.cols() + (span.end_direction ? end_angles : 0);
+  end_rows_ = span.planar ? 1 : 2;
+  if (span.twist) {
+    ++end_rows_;
+    twist_root_ = std::sqrt(span.twist->stiffness / span.length);
+  }
+  if (!span.end_direction) end_rows_ = 0;
+  constraints_ = axes_ * reach_.cols() + end_rows_;
   const Eigen::Index nodes = s_.size();
   for (Eigen::MatrixX3d* m : {&t_, &t_theta_, &total_, &carried_}) m->setZero(nodes, 3);
   if (span.planar) {
@@ -210,19 +219,26 @@ double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
   return energy;
 }
 
-EndMiss SpanEnergy::end_miss(Eigen::Index component) const {
+/// Of the tangent at the end along two directions across its clamp's, and of the rod's d1 there.
+DirectorMiss SpanEnergy::end_miss(Eigen::Index component) const {
   const Eigen::Vector3d& target = *span_.end_direction;
-  const Eigen::Matrix3d across = frame_along(target);
-  const Eigen::Vector3d e = across.col(component);
-  const Eigen::Vector3d t = state_.end_tangent();
-  const double n = e.dot(t);
-  const double d = 1 + target.dot(t);
-  EndMiss miss;
-  miss.value = 2 * n / d;
-  miss.gradient = 2 * (e / d - n / (d * d) * target);
-  miss.curvature = -2 / (d * d) * (e * target.transpose() + target * e.transpose()) +
-                   4 * n / (d * d * d) * target * target.transpose();
-  return miss;
+  const Eigen::Matrix3d frame = state_.end_frame();
+  if (component < 2) {
+    return director_miss(frame.col(2), target, frame_along(target).col(component));
+  }
+  const Eigen::Matrix3d held = frame_along(target, span_.twist->end_d1);
+  const double psi = twist(x_);
+  const Eigen::Vector3d d1 = std::cos(psi) * frame.col(0) + std::sin(psi) * frame.col(1);
+  return director_miss(d1, held.col(0), held.col(1));
+}
+
+double SpanEnergy::twist(const Eigen::VectorXd& x) const {
+  return span_.twist ? x[x.size() - 1] / twist_root_ : 0;
+}
+
+Eigen::VectorXd SpanEnergy::with_twist(Eigen::VectorXd x, double angle) const {
+  x[x.size() - 1] = angle * twist_root_;
+  return x;
 }
 
 void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
@@ -239,6 +255,7 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
     if (!span_.planar) {
       frames_.pull_position(reach_signs_[static_cast<std::size_t>(j)], state_,
                             jacobian.middleRows(row, 3));
+      if (span_.twist) jacobian.col(bends()).segment<3>(row).setZero();
     }
     row += axes_;
   }
@@ -248,11 +265,15 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
     jacobian.row(row) = end_angle_.transpose();
     return;
   }
-  for (Eigen::Index component = 0; component < 2; ++component, ++row) {
-    const EndMiss miss = end_miss(component);
+  for (Eigen::Index component = 0; component < end_rows_; ++component, ++row) {
+    const DirectorMiss miss = end_miss(component);
     residual[row] = miss.value;
     pulled_.setZero();
-    frames_.pull({nullptr, miss.gradient}, 1, state_, pulled_);
+    frames_.pull({nullptr, miss.couple}, 1, state_, pulled_);
+    // Twist turns d1 about the tangent.
+    if (component == 2) {
+      pulled_[bends()] = miss.couple.dot(state_.end_frame().col(2)) / twist_root_;
+    }
     jacobian.row(row) = pulled_.transpose();
   }
 }
@@ -307,17 +328,37 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
   } else {
     if (free_start_ == 1) result(columns_, columns_) = 0;
     carried_ = -carried_;
-    TangentGradient f{&carried_};
-    Eigen::Matrix3d end_curvature = Eigen::Matrix3d::Zero();
-    for (Eigen::Index component = 0; span_.end_direction && component < 2; ++component) {
-      const double mu = multipliers[constraints_ - 2 + component];
-      const EndMiss miss = end_miss(component);
-      f.end -= mu * miss.gradient;
-      end_curvature -= mu * miss.curvature;
+    FrameGradient f{&carried_};
+    FrameGradient of_d1;
+    Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d curvature_of_d1 = Eigen::Matrix3d::Zero();
+    for (Eigen::Index component = 0; component < end_rows_; ++component) {
+      const double mu = multipliers[constraints_ - end_rows_ + component];
+      const DirectorMiss miss = end_miss(component);
+      f.end_couple -= mu * miss.couple;
+      curvature -= mu * miss.curvature;
+      if (component < 2) continue;
+      of_d1.end_couple = -mu * miss.couple;
+      curvature_of_d1 = -mu * miss.curvature;
     }
-    frames_.add_hessian(f, end_curvature, state_, result);
+    frames_.add_hessian(f, curvature, state_, result);
+    if (span_.twist) add_twist_hessian(of_d1, curvature_of_d1, result);
   }
-  if (has_walls()) walls_.add_hessian(tangent_jacobian(), result);
+  if (!has_walls()) return;
+  walls_.add_hessian(tangent_jacobian(), result.topLeftCorner(bends(), bends()));
+}
+
+/// Second derivatives with the twist psi of what the end's d1 misses: psi turns it about the
+/// tangent t, after which the strains turn it, which is the sum of both turns and half their cross
+/// product. frames_.add_hessian() has left the turns of the end.
+void SpanEnergy::add_twist_hessian(const FrameGradient& f, const Eigen::Matrix3d& twisting,
+                                   Eigen::MatrixXd& result) {
+  const Eigen::Vector3d t = state_.end_frame().col(2);
+  const Eigen::Vector3d mixed = (twisting * t + t.cross(f.end_couple) / 2) / twist_root_;
+  pulled_.head(bends()).noalias() = state_.ends.transpose() * mixed;
+  result.col(bends()).head(bends()) += pulled_.head(bends());
+  result.row(bends()).head(bends()) += pulled_.head(bends()).transpose();
+  result(bends(), bends()) += t.dot(twisting * t) / (twist_root_ * twist_root_);
 }
 
 std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian() {
@@ -362,7 +403,11 @@ void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
 }
 
 Eigen::VectorXd SpanEnergy::fit(const Eigen::Matrix3Xd& tangents) {
-  if (!span_.planar) return frames_.fit(tangents);
+  if (!span_.planar) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
+    x.head(bends()) = frames_.fit(tangents);
+    return x;
+  }
   const Eigen::Index nodes = s_.size();
   Eigen::VectorXd angles(nodes);
   double previous = free_start_ == 1 ? angle_of(tangents.col(0)) : start_theta_;
@@ -399,6 +444,7 @@ Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd
           x.segment(from + free_start_ + e * other.terms_, shared);
     }
   }
+  if (span_.twist && other.span_.twist) adopted[bends()] = x[other.bends()];
   return adopted;
 }
 
@@ -430,7 +476,7 @@ SpanShape SpanEnergy::shape(const Eigen::VectorXd& x) const {
   } else {
     shape.start_frame = start_frame_;
     shape.free_start = free_start_ == 1;
-    shape.strains = x;
+    shape.strains = x.head(bends());
   }
   return shape;
 }
@@ -439,7 +485,8 @@ Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
   Eigen::VectorXd gradient(x.size());
   (void)value(x, gradient);
   Energies energies;
-  energies.bending = x.squaredNorm() / 2;
+  energies.bending = x.head(bends()).squaredNorm() / 2;
+  energies.twisting = x.squaredNorm() / 2 - energies.bending;
   if (free_start_ == 1) energies.bending -= x[0] * x[0] / 2;
   if (free_start_ == 1 && !span_.planar) energies.bending -= x[columns_] * x[columns_] / 2;
   // A load's point is the sum of the tangents between it and the anchor.

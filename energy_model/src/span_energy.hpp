@@ -5,24 +5,19 @@
 #include <vector>
 
 #include "bishop_frames.hpp"
+#include "director_miss.hpp"
 #include "dlo/energy_model/problem.hpp"
 #include "span_shape.hpp"
 #include "wall_contact.hpp"
 
 namespace dlo::energy_model {
 
-/// By how much the end's tangent t misses a component of its clamp's direction d,
-///     c = 2 e.t / (1 + d.t),
-/// e across d: about the angle, and zero at t = d alone. With derivatives by t.
-struct EndMiss {
-  double value = 0;
-  Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
-};
-
 /// Bending plus load energy of a span over its unknowns, with constraints. Unknowns x in the plane:
 /// the tangent's angle at the start (if no clamp fixes it) and the curvature coefficients of every
 /// piece; in space those of BishopFrames. Bending is half the square of the coefficients in both.
+/// Where the ends' frames are held, the last unknown is the angle psi by which the rod's frame is
+/// turned ahead of Bishop's at the end, whole turns counted, times (GJ / EI / length)^(1/2): its
+/// square is twice the energy of twist. psi makes the end's frame meet its clamp's.
 ///
 /// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of end angles)
 /// that the grips exert on the rod. value(), constraint() and hessian() allocate nothing, but for
@@ -35,7 +30,7 @@ class SpanEnergy {
   void reset(const Span& span, int terms);
 
   [[nodiscard]] const Span& span() const { return span_; }
-  [[nodiscard]] Eigen::Index size() const { return (span_.planar ? 1 : 2) * columns_; }
+  [[nodiscard]] Eigen::Index size() const { return bends() + (span_.twist ? 1 : 0); }
   [[nodiscard]] Eigen::Index constraints() const { return constraints_; }
   [[nodiscard]] int terms() const { return terms_; }
   [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
@@ -68,6 +63,16 @@ class SpanEnergy {
 
   /// Size of the last coefficients, which tells whether the curvature is resolved.
   [[nodiscard]] double tail(const Eigen::VectorXd& x) const;
+  /// The rod's twist, end ahead of start [rad]; 0 where nothing holds it.
+  [[nodiscard]] double twist(const Eigen::VectorXd& x) const;
+  /// Unknowns with this twist.
+  [[nodiscard]] Eigen::VectorXd with_twist(Eigen::VectorXd x, double angle) const;
+  /// d1 at the end, at the point of the last value(), of the Bishop frame with Span::d1() at the
+  /// start.
+  [[nodiscard]] Eigen::Vector3d transported_d1() const { return state_.end_frame().col(0); }
+  /// Turns the clamp at the end of a span whose frames are held.
+  void turn_end_clamp(const Eigen::Vector3d& end_d1) { span_.twist->end_d1 = end_d1; }
+
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
   [[nodiscard]] Energies energies(const Eigen::VectorXd& x);
 
@@ -83,6 +88,8 @@ class SpanEnergy {
   [[nodiscard]] Eigen::Vector3d start_torque(const Eigen::VectorXd& multipliers) const;
 
  private:
+  /// Unknowns that bend the rod or turn it as a whole.
+  [[nodiscard]] Eigen::Index bends() const { return (span_.planar ? 1 : 2) * columns_; }
   void tabulate_nodes();
   void tabulate_angles();
   void tabulate_forces();
@@ -90,7 +97,9 @@ class SpanEnergy {
   void add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result);
   void carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
   void place_tangents();
-  [[nodiscard]] EndMiss end_miss(Eigen::Index component) const;
+  [[nodiscard]] DirectorMiss end_miss(Eigen::Index component) const;
+  void add_twist_hessian(const FrameGradient& f, const Eigen::Matrix3d& twisting,
+                         Eigen::MatrixXd& result);
   [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian();
 
   Span span_;
@@ -98,7 +107,9 @@ class SpanEnergy {
   Eigen::Index columns_ = 0;  // unknowns of one field: the angle, or each of two strains
   Eigen::Index free_start_ = 0;
   Eigen::Index constraints_ = 0;
-  Eigen::Index axes_ = 2;  // position components that are constrained, 2 or 3
+  Eigen::Index end_rows_ = 0;  // the last constraints, of the end's frame
+  double twist_root_ = 0;      // unknown by twist
+  Eigen::Index axes_ = 2;      // position components that are constrained, 2 or 3
   std::vector<Piece> pieces_;
   const LegendreTable* table_ = nullptr;
   Eigen::VectorXd s_, weights_;

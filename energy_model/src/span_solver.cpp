@@ -92,12 +92,14 @@ class Search {
     }
   }
 
+  [[nodiscard]] SpanSolution finish(SpanSolution solution) {
+    solution = refined(std::move(solution));
+    certify(solution, load_);
+    return solution;
+  }
+
   [[nodiscard]] std::vector<SpanSolution> run() {
-    if (options_.start) {
-      SpanSolution solution = refined(from_start());
-      certify(solution, load_);
-      return list_of(std::move(solution));
-    }
+    if (options_.start) return list_of(finish(from_start()));
     std::vector<SpanSolution> found;
     if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
       SpanSolution solution = plain_cantilever();
@@ -488,6 +490,11 @@ std::shared_ptr<SpanEnergy> SpanWorkspace::model(const Span& span, int terms) {
 std::vector<SpanSolution> solve_span(const Span& span, const SpanOptions& options,
                                      SpanWorkspace& workspace) {
   return Search(span, options, workspace).run();
+}
+
+SpanSolution finish_span(const Span& span, const SpanOptions& options, SpanWorkspace& workspace,
+                         SpanSolution solution) {
+  return Search(span, options, workspace).finish(std::move(solution));
 }
 
 }  // namespace dlo::energy_model

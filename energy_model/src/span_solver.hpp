@@ -53,4 +53,8 @@ class SpanWorkspace {
 [[nodiscard]] std::vector<SpanSolution> solve_span(const Span& span, const SpanOptions& options,
                                                    SpanWorkspace& workspace);
 
+/// From an equilibrium of the span with too few terms to one with enough, and certified.
+[[nodiscard]] SpanSolution finish_span(const Span& span, const SpanOptions& options,
+                                       SpanWorkspace& workspace, SpanSolution solution);
+
 }  // namespace dlo::energy_model

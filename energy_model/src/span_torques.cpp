@@ -8,10 +8,11 @@ namespace dlo::energy_model {
 Eigen::Vector3d SpanEnergy::end_torque(const Eigen::VectorXd& multipliers) const {
   if (!span_.end_direction) return Eigen::Vector3d::Zero();
   if (span_.planar) return {0, 0, multipliers[constraints_ - 1]};
-  // A small turn of the end about a changes c by a.(t x dc/dt).
-  const Eigen::Vector3d pull = multipliers[constraints_ - 2] * end_miss(0).gradient +
-                               multipliers[constraints_ - 1] * end_miss(1).gradient;
-  return state_.end_tangent().cross(pull);
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  for (Eigen::Index component = 0; component < end_rows_; ++component) {
+    torque += multipliers[constraints_ - end_rows_ + component] * end_miss(component).couple;
+  }
+  return torque;
 }
 
 Eigen::Vector3d SpanEnergy::start_torque(const Eigen::VectorXd& multipliers) const {

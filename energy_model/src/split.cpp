@@ -54,6 +54,18 @@ void turn_vectors(Span& span, const Eigen::Matrix3d& rotation) {
   turn(span.weight);
 }
 
+/// What two clamps do with the rod's frame between them, seen in a span's own axes.
+std::optional<HeldFrames> frames_of(const Problem& problem, const Grip& start, const Grip& end,
+                                    const Eigen::Matrix3d& axes) {
+  if (!start.frame || !end.frame) return std::nullopt;
+  HeldFrames frames;
+  frames.stiffness = problem.torsional_stiffness / problem.bending_stiffness;
+  frames.roll = end.frame->roll - start.frame->roll;
+  if (start.frame->d1) frames.start_d1 = axes * *start.frame->d1;
+  if (end.frame->d1) frames.end_d1 = axes * *end.frame->d1;
+  return frames;
+}
+
 /// The span between arc lengths `begin` and `end`; it runs backwards from a clamp at `end` if there
 /// is none at `begin`.
 PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
@@ -111,6 +123,9 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   }
   choose_frame(placed, directions);
   turn_vectors(span, placed.frame);
+  if (clamped_begin && clamped_end) {
+    placed.frames = frames_of(problem, *held.front().grip, *held.back().grip, placed.frame);
+  }
   return placed;
 }
 

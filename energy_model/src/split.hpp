@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
 #include <vector>
 
 #include "dlo/energy_model/problem.hpp"
@@ -8,9 +10,17 @@
 
 namespace dlo::energy_model {
 
+/// What the clamps at both ends of a span do with the rod's frame; in the span's frame.
+struct HeldFrames {
+  double stiffness = 0;                             ///< GJ / EI
+  std::optional<Eigen::Vector3d> start_d1, end_d1;  ///< none: where the untwisted rod has it
+  double roll = 0;                                  ///< of the end, less the start's [rad]
+};
+
 /// A span and where it lies in its problem.
 struct PlacedSpan {
-  Span span;
+  Span span;                                            ///< without twist
+  std::optional<HeldFrames> frames;                     ///< that twist it
   bool reversed = false;                                ///< s runs against the arc length
   double start = 0;                                     ///< arc length of s = 0 [m]
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: the span's axes in space

@@ -58,6 +58,13 @@ Span span_on_wall(bool planar) {
   return span;
 }
 
+/// Both clamps hold the rod's frame; a rod in the plane has no twist.
+Span twisted_span(bool planar) {
+  Span span = gripped_span(planar);
+  span.twist = Span::Twist{0.7, {0.1, 0.9, 0.8}};
+  return span;
+}
+
 /// Makes a span, planar or not.
 struct Case {
   Span (*make)(bool planar);
@@ -157,13 +164,15 @@ TEST_P(ObjectiveWithoutWalls, DoesNotAllocate) {
 
 INSTANTIATE_TEST_SUITE_P(Spans, ObjectiveWithoutWalls,
                          testing::Values(Case{gripped_span, true}, Case{gripped_span, false},
-                                         Case{free_span, true}, Case{free_span, false}));
+                                         Case{free_span, true}, Case{free_span, false},
+                                         Case{twisted_span, false}));
 #endif
 
 INSTANTIATE_TEST_SUITE_P(Spans, Objective,
                          testing::Values(Case{gripped_span, true}, Case{gripped_span, false},
                                          Case{free_span, true}, Case{free_span, false},
-                                         Case{span_on_wall, true}, Case{span_on_wall, false}));
+                                         Case{span_on_wall, true}, Case{span_on_wall, false},
+                                         Case{twisted_span, false}));
 
 }  // namespace
 }  // namespace dlo::energy_model

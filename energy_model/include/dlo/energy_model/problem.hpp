@@ -80,9 +80,10 @@ struct Reaction {
 
 /// Twist of a part of the rod whose ends hold frames; it is the same all along.
 struct TwistedPart {
-  double begin = 0, end = 0;  ///< arc lengths [m]
-  double angle = 0;           ///< by which the frame at the end is turned ahead of transport [rad]
-  double torque = 0;          ///< GJ angle / (end - begin) [N m]
+  double begin = 0;   ///< arc length [m]
+  double end = 0;     ///< arc length [m]
+  double angle = 0;   ///< by which the frame at the end is turned ahead of transport [rad]
+  double torque = 0;  ///< GJ angle / (end - begin) [N m]
 };
 
 /// A shape at given arc lengths.

@@ -1,0 +1,269 @@
+#include "twist_path.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "free_directions.hpp"
+#include "legendre.hpp"
+#include "penalty_descent.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using std::numbers::pi;
+
+/// Turns of the end in one step [rad].
+constexpr double first_turn = 0.25;
+constexpr double largest_turn = 1.5;
+constexpr double least_turn = 1e-4;
+/// A shape that has lost its stability is left from this near to where it did.
+constexpr double turn_at_loss = 0.02;
+
+/// By how much, of a rod's own twisting energy over such a turn, a step's energy may differ from
+/// the torque's work on the same branch.
+constexpr double branch_share = 0.05;
+/// The same for a step after which the next one may be longer.
+constexpr double smooth_share = 0.005;
+
+/// Push along the direction in which a shape gives way, and how often it is made larger.
+constexpr double first_push = 0.1;
+constexpr int most_pushes = 4;
+
+/// Coefficients up to this of the angle that they turn are left for the end of the path.
+constexpr double coarse_tolerance = 1e-6;
+
+/// Newton's method factors a dense matrix of this size at most.
+constexpr Eigen::Index most_unknowns = 480;
+
+/// d1 at the end of the untwisted shape, transported from Span::d1() at the start.
+Eigen::Vector3d transported(const SpanSolution& untwisted) {
+  Span span = untwisted.model->span();
+  span.planar = false;
+  SpanEnergy model(span, untwisted.terms);
+  Eigen::VectorXd gradient(model.size());
+  (void)model.value(model.adopt(*untwisted.model, untwisted.x), gradient);
+  return model.transported_d1();
+}
+
+/// Angle about `axis` from a to the part of b across it, in (-pi, pi].
+double angle_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& a,
+                   const Eigen::Vector3d& b) {
+  const double angle = std::atan2(axis.dot(a.cross(b)), a.dot(b) - axis.dot(a) * axis.dot(b));
+  // Half a turn is half a turn, whatever rounding says.
+  constexpr double rounding = 1e-9;
+  return angle < -pi + rounding ? pi : angle;
+}
+
+class TwistPath {
+ public:
+  TwistPath(const Span& span, const HeldFrames& held, const SpanSolution& untwisted,
+            const SpanOptions& options, SpanWorkspace& workspace)
+      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
+    span_.planar = false;
+    first_d1_ = transported(untwisted);
+    span_.twist = Span::Twist{held.stiffness, first_d1_};
+    here_ = with_terms(untwisted, untwisted.terms);
+    here_.multipliers.resize(0);
+    turn_clamp(here_, 0);
+  }
+
+  [[nodiscard]] SpanSolution run(double whole) {
+    workspace_.newton().polish_along_branch(here_, load_);
+    double turn = std::copysign(first_turn, whole);
+    while (here_.is_equilibrium() && angle_ != whole) {
+      if (options_.deadline.passed()) {
+        here_.finish(SolveStatus::time_limit);
+        break;
+      }
+      const bool last = std::abs(whole - angle_) < 1.001 * std::abs(turn);
+      const double angle = last ? whole : angle_ + turn;
+      turn = angle - angle_;
+      std::optional<SpanSolution> next = stepped(turn);
+      if (next && (is_stable(*next) || std::abs(turn) <= turn_at_loss)) {
+        accept(std::move(*next), angle);
+        if (!is_stable(here_)) leave();
+        if (smooth_) turn *= 1.5;
+        turn = std::clamp(turn, -largest_turn, largest_turn);
+      } else if (std::abs(turn) > least_turn) {
+        turn /= 3;
+      } else {
+        // The branch ends.
+        angle_ += turn;
+        turn_clamp(here_, angle_);
+        leave();
+        turn = std::copysign(turn_at_loss, whole);
+      }
+    }
+    here_.evaluations = spent_;
+    if (here_.status != SolveStatus::time_limit && angle_ != whole) {
+      here_.fail("the rod could not be followed beyond a twist of " + std::to_string(angle_) +
+                 " rad");
+    }
+    return std::move(here_);
+  }
+
+  [[nodiscard]] const Span& span() const { return span_; }
+
+ private:
+  /// Turns the end's clamp from where the untwisted rod has it.
+  void turn_clamp(SpanSolution& solution, double angle) const {
+    const Eigen::AngleAxisd about(angle, *span_.end_direction);
+    solution.model->turn_end_clamp(about * first_d1_);
+  }
+
+  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) const {
+    SpanSolution other;
+    other.model = workspace_.model(span_, terms);
+    other.terms = terms;
+    other.x = other.model->adopt(*solution.model, solution.x);
+    other.multipliers = solution.multipliers;
+    turn_clamp(other, angle_);
+    return other;
+  }
+
+  /// The equilibrium next to where the last two point at.
+  [[nodiscard]] std::optional<SpanSolution> stepped(double turn) {
+    SpanSolution next = here_;
+    turn_clamp(next, angle_ + turn);
+    next.evaluations = 0;
+    if (slope_x_.size() == here_.x.size()) {
+      next.x += turn * slope_x_;
+      next.multipliers += turn * slope_multipliers_;
+    } else {
+      next.x = next.model->with_twist(next.x, next.model->twist(next.x) + turn);
+    }
+    const Eigen::VectorXd predicted = next.x;
+    workspace_.newton().polish_along_branch(next, load_);
+    spent_ += next.evaluations;
+    if (!next.is_equilibrium()) return std::nullopt;
+    // On the same branch the energy has risen by the torque's work. The shape tells less: it may
+    // turn about a line for nothing.
+    const double work = (torque(here_) + torque(next)) / 2 * turn;
+    const double unit = span_.twist->stiffness / span_.length * turn * turn;
+    const double rounding = 1e-9 * (1 + load_ + std::abs(next.energy));
+    const double leap = std::abs(next.energy - here_.energy - work);
+    if (!(leap <= branch_share * unit + rounding)) return std::nullopt;
+    smooth_ = leap <= smooth_share * unit + rounding;
+    aside_ = (next.x - predicted).norm() > (predicted - here_.x).norm();
+    return next;
+  }
+
+  /// About the end's tangent, over EI/l.
+  [[nodiscard]] double torque(const SpanSolution& solution) const {
+    return span_.twist->stiffness / span_.length * solution.model->twist(solution.x);
+  }
+
+  void accept(SpanSolution next, double angle) {
+    const double turn = angle - angle_;
+    slope_x_.resize(0);
+    if (!aside_) {
+      slope_x_ = (next.x - here_.x) / turn;
+      slope_multipliers_ = (next.multipliers - here_.multipliers) / turn;
+    }
+    here_ = std::move(next);
+    angle_ = angle;
+    const double K = here_.terms;
+    const bool affordable = here_.model->size() * 5 / 4 < most_unknowns;
+    if (here_.model->tail(here_.x) < coarse_tolerance * 4 * K * K || !affordable) return;
+    here_ = with_terms(here_, std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
+    workspace_.newton().polish_along_branch(here_, load_);
+    spent_ += here_.evaluations;
+    here_.evaluations = 0;
+    slope_x_.resize(0);
+  }
+
+  [[nodiscard]] bool is_stable(const SpanSolution& solution) {
+    derive(solution);
+    const Eigen::MatrixXd Z = free_directions(jacobian_, hessian_.rows());
+    Eigen::MatrixXd projected = Z.transpose() * hessian_ * Z;
+    // Under large forces what is next to neutral is lost in rounding, whichever sign it has.
+    projected.diagonal().array() += rounded_curvature * solution.multipliers.norm();
+    return is_minimum(projected);
+  }
+
+  /// Into hessian_ and jacobian_.
+  void derive(const SpanSolution& solution) {
+    SpanEnergy& model = *solution.model;
+    gradient_.resize(model.size());
+    residual_.resize(model.constraints());
+    jacobian_.resize(model.constraints(), model.size());
+    (void)model.value(solution.x, gradient_);
+    model.constraint(residual_, jacobian_);
+    model.hessian(solution.multipliers, hessian_);
+  }
+
+  /// Downhill to what is stable, from beside here.
+  void leave() {
+    slope_x_.resize(0);
+    derive(here_);
+    const std::optional<Eigen::VectorXd> way = falling_direction(hessian_, jacobian_);
+    double push = way ? first_push : 0;
+    for (int i = 0; i < most_pushes; ++i, push *= 3) {
+      SpanSolution next = here_;
+      next.evaluations = 0;
+      if (way) next.x += push * *way;
+      next.multipliers.setZero();
+      descend_by_penalty(next, {.load = load_, .deadline = &options_.deadline});
+      if (succeeded(next.status)) workspace_.newton().polish(next, load_);
+      spent_ += next.evaluations;
+      next.evaluations = 0;
+      if (!next.is_equilibrium() || !is_stable(next)) continue;
+      here_ = std::move(next);
+      return;
+    }
+    here_.fail("nothing stable was found below a twist of " + std::to_string(angle_) + " rad");
+  }
+
+  Span span_;
+  const SpanOptions& options_;
+  SpanWorkspace& workspace_;
+  double load_;
+  Eigen::Vector3d first_d1_;  // of the end, untwisted
+  SpanSolution here_;
+  double angle_ = 0;
+  int spent_ = 0;
+  bool smooth_ = false;  // the last step was shorter than it need be
+  bool aside_ = false;   // the last step has gone aside from where it pointed at
+  Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a leap
+  Eigen::VectorXd gradient_, residual_;
+  Eigen::MatrixXd jacobian_, hessian_;
+};
+
+}  // namespace
+
+EndFrame end_frame(const HeldFrames& held, const SpanSolution& untwisted) {
+  const Span& span = untwisted.model->span();
+  const Eigen::Vector3d& axis = *span.end_direction;
+  const Eigen::Vector3d d1 = transported(untwisted);
+  double twist = held.roll;
+  if (held.start_d1 && held.end_d1) {
+    // The rod's own d1 is ahead of the transported one by as much at the end as at the start.
+    const Eigen::Vector3d& start = *span.start_direction;
+    const double ahead = angle_about(start, Span::d1(start), *held.start_d1);
+    twist += angle_about(axis, Eigen::AngleAxisd(ahead, axis) * d1, *held.end_d1);
+  }
+  return {Eigen::AngleAxisd(twist, axis) * d1, twist};
+}
+
+double twist_to(const EndFrame& frame, const SpanSolution& untwisted) {
+  const Eigen::Vector3d& axis = *untwisted.model->span().end_direction;
+  const double least = angle_about(axis, transported(untwisted), frame.d1);
+  return least + 2 * pi * std::round((frame.twist - least) / (2 * pi));
+}
+
+SpanSolution twist_by(double angle, const Span& span, const HeldFrames& held,
+                      const SpanSolution& untwisted, const SpanOptions& options,
+                      SpanWorkspace& workspace) {
+  TwistPath path(span, held, untwisted, options, workspace);
+  SpanSolution solution = path.run(angle);
+  if (!solution.is_equilibrium()) return solution;
+  const Span twisted = solution.model->span();
+  return finish_span(twisted, options, workspace, std::move(solution));
+}
+
+}  // namespace dlo::energy_model

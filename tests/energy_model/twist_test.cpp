@@ -1,0 +1,233 @@
+// Rods whose clamps hold their frames: twist against closed forms, laws and symmetries.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "dlo/energy_model/energy.hpp"
+#include "equilibrium_balance.hpp"
+#include "free_directions.hpp"
+#include "span_energy.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using std::numbers::pi;
+
+/// Two clamps that face each other, `distance` apart on a line, the second turned by `roll`.
+Problem turned_rod(double distance, double roll, double weight) {
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.torsional_stiffness = 0.75;
+  problem.weight_per_length = {0, -weight, 0};
+  const Eigen::Vector3d x = Eigen::Vector3d::UnitX();
+  problem.grips = {{0, {0, 0, 0}, x, FrameHold{}}, {1, {distance, 0, 0}, x, FrameHold{}}};
+  problem.grips.back().frame->roll = roll;
+  return problem;
+}
+
+Equilibrium solved(const Problem& problem) {
+  Equilibrium result = solve_energy(problem);
+  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
+  return result;
+}
+
+double axial_torque(const Equilibrium& equilibrium) { return equilibrium.twists.at(0).torque; }
+
+/// Eigenvalues of the second variation under the constraints; those without effect at this point,
+/// as of the distance between the ends of a straight rod, are left out.
+Eigen::VectorXd second_variation_at(SpanEnergy& model, const Eigen::VectorXd& x,
+                                    const Eigen::VectorXd& multipliers) {
+  Eigen::VectorXd gradient(model.size());
+  Eigen::VectorXd residual(model.constraints());
+  Eigen::MatrixXd jacobian(model.constraints(), model.size());
+  Eigen::MatrixXd hessian;
+  (void)model.value(x, gradient);
+  model.constraint(residual, jacobian);
+  model.hessian(multipliers, hessian);
+  Eigen::MatrixXd effective(0, model.size());
+  for (Eigen::Index row = 0; row < jacobian.rows(); ++row) {
+    if (jacobian.row(row).norm() < 1e-9) continue;
+    effective.conservativeResize(effective.rows() + 1, Eigen::NoChange);
+    effective.bottomRows<1>() = jacobian.row(row);
+  }
+  EXPECT_LT(residual.norm(), 1e-12);
+  EXPECT_LT((gradient - jacobian.transpose() * multipliers).norm(), 1e-9);
+  const Eigen::MatrixXd Z = free_directions(effective, model.size());
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Z.transpose() * hessian * Z).eigenvalues();
+}
+
+/// d1 at the end of a straight rod along x, or of a ring, that is twisted by psi.
+Eigen::Vector3d turned(double psi) {
+  return Eigen::AngleAxisd(psi, Eigen::Vector3d::UnitX()) * Eigen::Vector3d::UnitZ();
+}
+
+/// Root of a function by bisection.
+template <typename Function>
+double root(const Function& f, double low, double high) {
+  const bool rises = f(high) > 0;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = (low + high) / 2;
+    ((f(middle) > 0) == rises ? high : low) = middle;
+  }
+  return low;
+}
+
+// Love's treatise: tan(m/4) = m/4 for two clamped ends that stay where they are, without tension.
+TEST(Twist, BucklesAStraightClampedRodAtItsCriticalMoment) {
+  Span span;
+  span.planar = false;
+  span.start_direction = span.end_direction = Eigen::Vector3d::UnitX();
+  span.holds = {{1, {1, 0, 0}}};
+  const double stiffness = 0.7;
+  const auto smallest = [&](double moment) {
+    const double psi = moment / stiffness;
+    span.twist = Span::Twist{stiffness, turned(psi)};
+    SpanEnergy model(span, 24);
+    const Eigen::VectorXd x = model.with_twist(Eigen::VectorXd::Zero(model.size()), psi);
+    Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(model.constraints());
+    multipliers.tail<1>()[0] = moment;
+    return second_variation_at(model, x, multipliers)[0];
+  };
+  EXPECT_NEAR(root(smallest, 6, 10), 8.986818916, 1e-8);
+}
+
+// Michell 1889, Zajac 1962: 2 pi sqrt(3) EI / GJ.
+TEST(Twist, MakesARingUnstableAtMichellsAngle) {
+  Span span;
+  span.planar = false;
+  span.start_direction = span.end_direction = Eigen::Vector3d::UnitX();
+  span.holds = {{1, {0, 0, 0}}};
+  const double stiffness = 0.7;
+  const auto second_smallest = [&](double psi) {
+    span.twist = Span::Twist{stiffness, turned(psi)};
+    SpanEnergy model(span, 32);
+    Eigen::VectorXd x = model.with_twist(Eigen::VectorXd::Zero(model.size()), psi);
+    x[0] = 2 * pi;
+    Eigen::VectorXd gradient(model.size());
+    Eigen::VectorXd residual(model.constraints());
+    Eigen::MatrixXd jacobian(model.constraints(), model.size());
+    (void)model.value(x, gradient);
+    model.constraint(residual, jacobian);
+    const Eigen::VectorXd multipliers = jacobian.transpose().colPivHouseholderQr().solve(gradient);
+    // The ring turns about its clamps' direction for nothing.
+    const Eigen::VectorXd eigenvalues = second_variation_at(model, x, multipliers);
+    return std::abs(eigenvalues[0]) < 1e-9 ? eigenvalues[1] : eigenvalues[0];
+  };
+  const double critical = 2 * pi * std::sqrt(3.0) / stiffness;
+  EXPECT_NEAR(root(second_smallest, 0.9 * critical, 1.1 * critical), critical, 1e-7 * critical);
+}
+
+TEST(Twist, OfZeroChangesNothing) {
+  Problem problem = turned_rod(0.8, 0, 20);
+  const Equilibrium held = solved(problem);
+  for (Grip& grip : problem.grips) grip.frame.reset();
+  const Equilibrium loose = solved(problem);
+  EXPECT_NEAR(held.energy.total(), loose.energy.total(), 1e-10);
+  EXPECT_NEAR(axial_torque(held), 0, 1e-9);
+  EXPECT_TRUE(loose.twists.empty());
+  const std::vector<double> s = equal_arc_lengths(1, 21);
+  EXPECT_LT((held.sample(s).points - loose.sample(s).points).norm(), 1e-8);
+}
+
+TEST(Twist, OfOppositeSignGivesTheMirrorImage) {
+  const Equilibrium left = solved(turned_rod(0.8, 2, 20));
+  const Equilibrium right = solved(turned_rod(0.8, -2, 20));
+  const std::vector<double> s = equal_arc_lengths(1, 21);
+  Eigen::Matrix3Xd mirrored = right.sample(s).points;
+  mirrored.row(2) *= -1;
+  EXPECT_LT((left.sample(s).points - mirrored).norm(), 1e-8);
+  EXPECT_GT(left.sample(s).points.row(2).norm(), 1e-3);
+  EXPECT_NEAR(axial_torque(left), -axial_torque(right), 1e-9);
+}
+
+// What the gripper does when it turns the end a little more is stored.
+TEST(Twist, TorqueIsTheDerivativeOfTheEnergyByTheTurn) {
+  constexpr double h = 1e-4;
+  for (const double roll : {0.5, 2.0, 4.0}) {
+    const Equilibrium here = solved(turned_rod(0.7, roll, 30));
+    const double slope = (solved(turned_rod(0.7, roll + h, 30)).energy.total() -
+                          solved(turned_rod(0.7, roll - h, 30)).energy.total()) /
+                         (2 * h);
+    EXPECT_NEAR(slope, axial_torque(here), 1e-6);
+    EXPECT_NEAR(here.grips.back().torque.x(), axial_torque(here), 1e-8);
+    EXPECT_NEAR(here.energy.twisting, 0.5 * 0.75 * std::pow(here.twists.front().angle, 2), 1e-9);
+  }
+}
+
+TEST(Twist, KeepsForcesAndTorquesInBalance) {
+  Problem problem = turned_rod(0.75, 3, 10);
+  problem.grips.back().direction = Eigen::Vector3d(1, 0.3, -0.5);
+  problem.grips.push_back({0.4, {0.25, -0.1, 0.05}});
+  problem.loads = {{0.6, {0, 4, -2}}};
+  const Equilibrium equilibrium = solved(problem);
+  EXPECT_LT(test::balance_of(problem, equilibrium, 0.02).worst(), 1e-7);
+}
+
+/// A point of a helix, its tangent and its normal.
+struct HelixPoint {
+  Eigen::Vector3d r, t, normal;
+};
+
+HelixPoint helix(double curvature, double torsion, double s) {
+  const double rate = std::hypot(curvature, torsion);
+  const double radius = curvature / (rate * rate);
+  const double rise = torsion / rate;
+  const double a = rate * s;
+  return {{radius * std::cos(a), radius * std::sin(a), rise * s},
+          {-radius * rate * std::sin(a), radius * rate * std::cos(a), rise},
+          {-std::cos(a), -std::sin(a), 0}};
+}
+
+// Kirchhoff: every helix is a shape of a round rod, under a force rate (m - torsion) along its axis
+// and any twisting moment m.
+TEST(Twist, HoldsAHelixUnderItsWrench) {
+  const double curvature = 2;
+  const double torsion = 1;
+  for (const double moment : {0.5, 1.0, 2.0}) {
+    Problem problem = turned_rod(0.5, 0, 0);
+    const double twist = moment / problem.torsional_stiffness;
+    for (Grip& grip : problem.grips) {
+      const HelixPoint point = helix(curvature, torsion, grip.at);
+      grip.position = point.r;
+      grip.direction = point.t;
+      // Bishop's frame falls behind Frenet's by the torsion.
+      const Eigen::AngleAxisd ahead((twist - torsion) * grip.at, point.t);
+      grip.frame->d1 = ahead * point.normal;
+    }
+    const Equilibrium equilibrium = solved(problem);
+    EXPECT_NEAR(equilibrium.twists.at(0).angle, twist, 1e-9);
+    const double force = std::hypot(curvature, torsion) * (moment - torsion);
+    EXPECT_LT((equilibrium.grips.back().force - Eigen::Vector3d(0, 0, force)).norm(), 1e-8);
+    const std::vector<double> s = equal_arc_lengths(1, 11);
+    const Samples samples = equilibrium.sample(s);
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      EXPECT_LT((samples.points.col(column) - helix(curvature, torsion, s[i]).r).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(Twist, IsRefusedWhereItMeansNothing) {
+  Problem problem = turned_rod(0.8, 1, 0);
+  problem.torsional_stiffness = 0;
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  problem = turned_rod(0.8, 1, 0);
+  problem.grips.front().direction.reset();
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  problem = turned_rod(0.8, 1, 0);
+  problem.grips.back().frame->d1 = Eigen::Vector3d(2, 0, 0);
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  // Twist would pass through.
+  problem = turned_rod(0.8, 1, 0);
+  problem.grips.push_back({0.5, {0.4, 0, 0}, Eigen::Vector3d::UnitX(), {}});
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
