@@ -22,10 +22,12 @@ std::string twist_text(const compare::Plan& plan) {
   if (plan.twist.empty()) {
     return "  twist           no: one gripper alone holds the frame, and the rod turns with it\n";
   }
+  constexpr double rounding = 1e-9;  // of an angle between directors [rad]
   std::string out;
   for (const compare::PlannedTwist& part : plan.twist) {
-    append(out, "  twist           {}: ", part.angle == 0 ? "no" : "yes");
-    if (part.angle == 0) {
+    const bool none = std::abs(part.angle) < rounding;
+    append(out, "  twist           {}: ", none ? "no" : "yes");
+    if (none) {
       append(out, "the grippers hold {:g} to {:g} m without a turn\n", part.begin, part.end);
     } else if (std::isfinite(part.angle)) {
       append(out, "the grippers turn it by {:.6g} degrees from {:g} to {:g} m\n",

@@ -106,7 +106,7 @@ TEST(TwistOutput, APlanTellsWhoTwistsWhat) {
   EXPECT_EQ(dlo::cli::plan_text(plan, scene).find("twist"), std::string::npos);
   plan.frame_held = true;
   expect_line(plan, "no: one gripper alone holds the frame, and the rod turns with it");
-  plan.twist = {{.begin = 0, .end = 0.4, .angle = pi}, {.begin = 0.4, .end = 1, .angle = 0}};
+  plan.twist = {{.begin = 0, .end = 0.4, .angle = pi}, {.begin = 0.4, .end = 1, .angle = 1e-15}};
   expect_line(plan, "yes: the grippers turn it by 180 degrees from 0 to 0.4 m");
   expect_line(plan, "no: the grippers hold 0.4 to 1 m without a turn");
   plan.twist[0].angle = NAN;
