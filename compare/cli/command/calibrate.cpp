@@ -110,6 +110,9 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
 void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
   const std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   const std::vector<compare::Scene> holdouts = load_all(options.holdouts, options.overrides);
+  for (const auto* list : {&scenes, &holdouts}) {
+    for (const compare::Scene& scene : *list) warn_of_twist(scene);
+  }
   compare::ForceModelFitOptions fit_options;
   if (points_are_given) fit_options.points = scenes.front().force_model.points;
   if (options.target) fit_options.target = *options.target;

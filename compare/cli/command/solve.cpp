@@ -28,6 +28,15 @@ struct SolveOptions {
 };
 
 /// What a format cannot say is not left out in silence.
+void warn_of_left_out(const SolveOptions& options, const compare::Solution& solution,
+                      const compare::Scene& scene) {
+  if (options.output.is(Format::text) || options.output.is(Format::json)) return;
+  for (const std::string& what : solution.left_out) {
+    say("{}: model {} leaves out the {} that the scene has", scene.file, options.model, what);
+  }
+}
+
+/// The same of what is asked for.
 void require_format_for(const SolveOptions& options) {
   const std::string& format = options.output.format;
   if (format != "csv" && format != "vtk") return;
@@ -75,6 +84,7 @@ void run(const SolveOptions& options) {
           ? compare::solve_all(scene, solve, arc_lengths)
           : std::vector<compare::Solution>{compare::solve(scene, model, solve, arc_lengths)};
   const compare::Solution& solution = solutions.front();
+  warn_of_left_out(options, solution, scene);
   if (options.output.format == "vtk") {
     write_output(options.output, compare::vtk_polyline(solution.shape, solution.curvature,
                                                        solution.tension, scene.name));

@@ -58,6 +58,16 @@ compare::Sweep sweep_of(const SweepOptions& options) {
           options.scene.solve()};
 }
 
+/// By the first scene of the grid; one that cannot be read says so in its row.
+void warn_of_twist_in(const compare::Sweep& sweep, const std::string& model) {
+  if (model == "energy" || model == "exact") return;
+  try {
+    warn_of_twist(sweep.scene(0));
+  } catch (const compare::InputError&) {
+    return;
+  }
+}
+
 void warn_of_unresolved(const compare::SweepOutcome& outcome, const std::string& file) {
   if (outcome.unresolved == 0) return;
   say("{}: {} of {} scenes have no result, the column status says why", file, outcome.unresolved,
@@ -109,6 +119,7 @@ void run(SweepOptions options, const std::vector<std::string>& inputs) {
         "sweep: no --vary FIELD=VALUES given (allowed: such as --vary gamma=1,10)");
   }
   const compare::Sweep sweep = sweep_of(options);
+  warn_of_twist_in(sweep, options.model);
   const std::optional<compare::Shard> shard = chosen_shard(options.shard);
   if (options.output.empty()) return print_sweep(sweep, shard, options.threads);
   const std::string path = output_path(options.output, shard);

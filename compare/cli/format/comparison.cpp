@@ -80,6 +80,10 @@ std::string comparison_text(const compare::Comparison& c) {
          c.settings.points, p.c_c);
   if (p.c_b > 0) append(out, ", c_b = {:.6g} N", p.c_b);
   append(out, "\n");
+  if (!c.force.left_out.empty()) {
+    append(out, "  left out        {} that the grippers hold, by the force model: in all below\n",
+           fmt::join(c.force.left_out, ", "));
+  }
   if (!c.unresolved.empty()) {
     append(out, "  reference       {}: nothing below is proven\n", c.unresolved);
   }
@@ -135,6 +139,7 @@ Json comparison_json(const compare::Comparison& comparison) {
                         {"stretch", budget.stretch.share},
                         {"not_at_rest", budget.not_at_rest.share},
                         {"interaction", budget.interaction.share}}}};
+  if (!comparison.force.left_out.empty()) result["left_out"] = comparison.force.left_out;
   result["reference_resolved"] = comparison.unresolved.empty();
   result["state"] = to_json(comparison.state);
   result["cost"] = {{"force_s", comparison.force.seconds},

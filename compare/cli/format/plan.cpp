@@ -1,6 +1,7 @@
 #include "format/plan.hpp"
 
 #include <cmath>
+#include <numbers>
 
 #include "base/display.hpp"
 #include "option/output.hpp"
@@ -13,6 +14,36 @@ std::string span_text(const compare::PlannedSpan& span) {
   append(out, "{:g} to {:g} m, {} - {}", span.begin, span.end, span.begin_held, span.end_held);
   if (span.inner_pins > 0) append(out, " with {} inner pin(s)", span.inner_pins);
   return out;
+}
+
+/// Only where a gripper holds the rod's frame.
+std::string twist_text(const compare::Plan& plan) {
+  if (!plan.frame_held) return "";
+  if (plan.twist.empty()) {
+    return "  twist           no: one gripper alone holds the frame, and the rod turns with it\n";
+  }
+  constexpr double rounding = 1e-9;  // of an angle between directors [rad]
+  std::string out;
+  for (const compare::PlannedTwist& part : plan.twist) {
+    const bool none = std::abs(part.angle) < rounding;
+    append(out, "  twist           {}: ", none ? "no" : "yes");
+    if (none) {
+      append(out, "the grippers hold {:g} to {:g} m without a turn\n", part.begin, part.end);
+    } else if (std::isfinite(part.angle)) {
+      append(out, "the grippers turn it by {:.6g} degrees from {:g} to {:g} m\n",
+             part.angle * 180 / std::numbers::pi, part.begin, part.end);
+    } else {
+      append(out, "the grippers hold {:g} to {:g} m, by an angle that only its shape tells\n",
+             part.begin, part.end);
+    }
+  }
+  return out;
+}
+
+std::string stretch_text(const compare::Plan& plan) {
+  if (!plan.stretch) return "none";
+  return plan.twist.empty() ? "needed: use force, or chain with c_c = AE"
+                            : "no bound; chain and force, which have it, leave the twist out";
 }
 
 std::string left_out_text(const compare::LeftOut& item, double length) {
@@ -47,8 +78,8 @@ std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
              obstacle.clearance);
     }
   }
-  append(out, "  stretch         {}\n",
-         plan.stretch ? "needed: use force, or chain with c_c = AE" : "none");
+  out += twist_text(plan);
+  append(out, "  stretch         {}\n", stretch_text(plan));
   append(out, "  N               ");
   if (plan.points > 0) {
     append(out, "{} for {:g} % of l with the hooke law; the scene has {}\n", plan.points,
@@ -85,17 +116,26 @@ Json plan_json(const compare::Plan& plan) {
                         {"bound_m", item.bound_m},
                         {"why", item.why}});
   }
-  return {{"gamma", plan.gamma},
-          {"target_over_length", plan.target},
-          {"geometry", plan.planar ? "planar" : "spatial"},
-          {"spans", std::move(spans)},
-          {"obstacles", std::move(obstacles)},
-          {"stretch", plan.stretch},
-          {"moving", plan.moving},
-          {"contact", plan.contact},
-          {"points_for_target", plan.points > 0 ? Json(plan.points) : Json()},
-          {"scene_points", plan.scene_points},
-          {"left_out", std::move(left_out)}};
+  Json result = {{"gamma", plan.gamma},
+                 {"target_over_length", plan.target},
+                 {"geometry", plan.planar ? "planar" : "spatial"},
+                 {"spans", std::move(spans)},
+                 {"obstacles", std::move(obstacles)},
+                 {"stretch", plan.stretch},
+                 {"moving", plan.moving},
+                 {"contact", plan.contact},
+                 {"points_for_target", plan.points > 0 ? Json(plan.points) : Json()},
+                 {"scene_points", plan.scene_points},
+                 {"left_out", std::move(left_out)}};
+  if (plan.frame_held) {
+    Json twist = Json::array();
+    for (const compare::PlannedTwist& part : plan.twist) {
+      // An angle that is not known is null.
+      twist.push_back({{"from_m", part.begin}, {"to_m", part.end}, {"angle_rad", part.angle}});
+    }
+    result["twist"] = std::move(twist);
+  }
+  return result;
 }
 
 }  // namespace dlo::cli

@@ -34,6 +34,19 @@ const char* status_name(energy_model::SolveStatus status) {
   }
 }
 
+Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
+  double total = 0;
+  Json parts = Json::array();
+  for (const energy_model::TwistedPart& part : twists) {
+    total += part.angle;
+    parts.push_back({{"from_m", part.begin},
+                     {"to_m", part.end},
+                     {"angle_rad", part.angle},
+                     {"torque_Nm", part.torque}});
+  }
+  return {{"total_rad", total}, {"parts", std::move(parts)}};
+}
+
 }  // namespace
 
 std::string solution_text(const compare::Solution& solution, const compare::Scene& scene) {
@@ -50,11 +63,20 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     append(out, "\n");
   }
   append(out, "wall time  {:.3g} ms\n", solution.seconds * 1e3);
+  if (!solution.left_out.empty()) {
+    append(out, "left out   {}: the scene has it, model {} has not\n",
+           fmt::join(solution.left_out, ", "), compare::to_string(solution.model));
+  }
   compare::SceneEnergies e = solution.energy;
   // Adding zero turns -0 into 0.
-  for (double* part : {&e.bending, &e.gravity, &e.load, &e.stretch}) *part += 0.0;
-  append(out, "energy     bending {:.9g} J, gravity {:.9g} J, load {:.9g} J, stretch {:.3g} J\n",
-         e.bending, e.gravity, e.load, e.stretch);
+  for (double* part : {&e.bending, &e.twisting, &e.gravity, &e.load, &e.stretch}) *part += 0.0;
+  append(out, "energy     bending {:.9g} J, ", e.bending);
+  if (!solution.twists.empty()) append(out, "twisting {:.9g} J, ", e.twisting);
+  append(out, "gravity {:.9g} J, load {:.9g} J, stretch {:.3g} J\n", e.gravity, e.load, e.stretch);
+  for (const energy_model::TwistedPart& part : solution.twists) {
+    append(out, "twist      {:.6g} rad, torque {:.6g} Nm from s = {:.4g} to {:.4g} m\n", part.angle,
+           part.torque, part.begin, part.end);
+  }
   for (const Eigen::Vector3d& force : solution.obstacles) {
     append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
            force.z());
@@ -83,8 +105,14 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
 Json solution_json(const compare::Solution& solution, const compare::Scene& scene,
                    const compare::Plan& plan) {
   Json grippers = Json::array();
-  for (const compare::GripperLoad& load : solution.grippers) {
-    grippers.push_back({{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}});
+  for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
+    const compare::GripperLoad& load = solution.grippers[i];
+    const compare::Gripper& gripper = scene.grippers[i];
+    Json entry = {{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}};
+    if (gripper.frame && gripper.direction && solution.left_out.empty()) {
+      entry["axial_torque_Nm"] = load.torque.dot(*gripper.direction);
+    }
+    grippers.push_back(std::move(entry));
   }
   const compare::SceneEnergies& energy = solution.energy;
   Json result = {{"schema", "dlo/solve/1"},
@@ -96,6 +124,7 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
                  {"points_m", points_json(solution.shape.points)},
                  {"energy_J",
                   {{"bending", energy.bending},
+                   {"twisting", energy.twisting},
                    {"gravity", energy.gravity},
                    {"load", energy.load},
                    {"stretch", energy.stretch},
@@ -109,6 +138,8 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
                    {"terms", solution.terms},
                    {"wall_s", solution.seconds}}},
                  {"plan", plan_json(plan)}};
+  if (!solution.twists.empty()) result["twist"] = twist_json(solution.twists);
+  if (!solution.left_out.empty()) result["left_out"] = solution.left_out;
   if (!solution.obstacles.empty()) {
     Json obstacles = Json::array();
     for (const Eigen::Vector3d& force : solution.obstacles) {

@@ -43,6 +43,11 @@ double option_quantity(const std::string& option, const std::string& text, Dimen
 
 }  // namespace
 
+void warn_of_twist(const compare::Scene& scene) {
+  if (!scene.holds_twist()) return;
+  say("{}: the grippers hold twist, which models chain and force leave out", scene.file);
+}
+
 void add_output_options(CLI::App& command, OutputOptions& options,
                         const std::vector<std::string>& formats) {
   command.add_option("--format", options.format, fmt::format("{}", fmt::join(formats, ", ")))

@@ -49,6 +49,9 @@ class PlanOptions {
   compare::PlanOptions plan_;
 };
 
+/// Says on standard error that models chain and force leave the twist out that a scene holds.
+void warn_of_twist(const compare::Scene& scene);
+
 /// @param formats  those that the command writes
 void add_output_options(CLI::App& command, OutputOptions& options,
                         const std::vector<std::string>& formats = compare::names<Format>());

@@ -73,11 +73,19 @@ std::string content_of(const Scene& scene) {
   add(scene.diameter);
   add(scene.material.youngs_modulus);
   add(scene.material.density);
+  if (scene.torsional_stiffness) {
+    text += "torsion ";
+    add(*scene.torsional_stiffness);
+  }
   for (const Gripper& gripper : scene.grippers) {
     text += "\ngripper ";
     add(gripper.at);
     add_vector(gripper.position);
     if (gripper.direction) add_vector(*gripper.direction);
+    if (!gripper.frame) continue;
+    text += "frame ";
+    if (gripper.frame->d1) add_vector(*gripper.frame->d1);
+    add(gripper.frame->roll);
   }
   for (const PointLoad& load : scene.loads) {
     text += "\nload ";

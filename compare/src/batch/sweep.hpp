@@ -72,6 +72,9 @@ class Sweep {
   /// How a row begins: its number and its fields, each with a comma behind it.
   [[nodiscard]] std::string row_start(std::int64_t row) const;
 
+  /// The scene of a row. @throws InputError if the grid's values make none
+  [[nodiscard]] Scene scene(std::int64_t row) const;
+
   /// One row as a CSV line. status is "ok", or why there are no results: a scene that is refused or
   /// does not converge is a row like any other. Numbers have 10 significant digits.
   [[nodiscard]] std::string row(std::int64_t row) const;
@@ -84,7 +87,6 @@ class Sweep {
            const std::function<void(const std::string& line)>& take) const;
 
  private:
-  [[nodiscard]] Scene scene(std::int64_t row) const;
   [[nodiscard]] std::string results(const Scene& scene) const;
   [[nodiscard]] std::string compared(const Scene& scene, const Solution& solution) const;
   [[nodiscard]] std::string without_results(const std::string& status) const;

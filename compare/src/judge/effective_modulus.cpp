@@ -38,8 +38,7 @@ class FollowedState {
       : scene_(scene),
         distance_(distance),
         options_(options),
-        s_(equal_arc_lengths(scene.length, 41)),
-        modulus_(scene.material.youngs_modulus) {
+        s_(equal_arc_lengths(scene.length, 41)) {
     remember(0, state);
   }
 
@@ -99,10 +98,11 @@ class FollowedState {
     const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
     options.time_limit -= spent.count();
     if (!(options.time_limit > 0)) throw OutOfTime();
-    scene_.material.youngs_modulus = modulus_ * std::exp(log_ratio);
+    Scene scene = scene_;
+    scene.scale_modulus(std::exp(log_ratio));
     ++solves_;
     try {
-      energy_model::Equilibrium state = solve_reference(scene_, Model::energy, options);
+      energy_model::Equilibrium state = solve_reference(scene, Model::energy, options);
       const double way = rms(s_, state.sample(s_).points - start.points);
       if (!(way <= largest_way * scene_.length)) return nullptr;
       return &remember(log_ratio, std::move(state));
@@ -113,11 +113,10 @@ class FollowedState {
     }
   }
 
-  Scene scene_;
+  Scene scene_;  // at E*/E = 1
   const ShapeDistance& distance_;
   SolveOptions options_;
   std::vector<double> s_;
-  double modulus_;  // E of the scene [Pa]
   std::map<double, Known> known_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
   int solves_ = 0;

@@ -168,7 +168,7 @@ std::shared_ptr<ShapeMisfit::Solved> ShapeMisfit::solve(std::size_t i,
                     options_.solve.time_limit, scenes_.size() > 1 ? " per scene" : "", solves_));
   }
   Scene scene = scenes_[i];
-  scene.material.youngs_modulus *= std::exp(material.log_modulus);
+  scene.scale_modulus(std::exp(material.log_modulus));
   scene.material.density *= std::exp(material.log_density);
   ++solves_;
   auto result = std::make_shared<Solved>();

@@ -70,9 +70,12 @@ energy_model::Problem energy_problem(const Scene& scene) {
   energy_model::Problem problem;
   problem.length = scene.length;
   problem.bending_stiffness = scene.bending_stiffness();
+  problem.torsional_stiffness = scene.torsional_stiffness.value_or(0);
   problem.weight_per_length = scene.weight_per_length();
   for (const Gripper& grip : scene.grippers) {
-    problem.grips.push_back({grip.at, grip.position, grip.direction});
+    energy_model::Grip held{grip.at, grip.position, grip.direction, std::nullopt};
+    if (grip.frame) held.frame = {grip.frame->d1, grip.frame->roll};
+    problem.grips.push_back(std::move(held));
   }
   for (const PointLoad& load : scene.loads) problem.loads.push_back({load.at, load.force});
   for (const std::size_t i : obstacles_in_reach(scene)) {

@@ -39,6 +39,7 @@ std::string hold_of(const Scene& scene) {
   for (const Gripper& gripper : scene.grippers) {
     if (!text.empty()) text += ", ";
     text += fmt::format("{} at {} m", gripper.direction ? "clamp" : "pin", page_number(gripper.at));
+    if (gripper.frame) text += " that holds the frame";
   }
   return text;
 }

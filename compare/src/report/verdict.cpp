@@ -104,6 +104,15 @@ void say_shapes(const Report& report, std::vector<std::string>& verdict) {
   }
 }
 
+void say_left_out(const Report& report, std::vector<std::string>& verdict) {
+  for (const SceneReport& scene : report.scenes) {
+    if (scene.comparisons.empty() || scene.comparisons.front().force.left_out.empty()) continue;
+    verdict.push_back(fmt::format("{}: the force model leaves out the {} that the grippers hold.",
+                                  scene.file.scene.name,
+                                  fmt::join(scene.comparisons.front().force.left_out, ", ")));
+  }
+}
+
 void say_claim_of_a_third(const Report& report, std::vector<std::string>& verdict) {
   constexpr int poses_of_the_paper = 3;
   if (!report.paper || report.printed_weight.empty()) return;
@@ -187,6 +196,7 @@ std::vector<std::string> report_verdict(const Report& report) {
     verdict.push_back("Not computed: " + failure);
   }
   say_shapes(report, verdict);
+  say_left_out(report, verdict);
   say_claim_of_a_third(report, verdict);
   say_speed(report, verdict);
   say_stability(report, verdict);

@@ -97,6 +97,13 @@ std::string optional_part(const Scene& scene) {
   const double force = weight > 0 ? weight : scene.bending_stiffness() / (l * l);
   return fmt::format(
       R"(
+# A clamp lets the rod turn about its direction unless it holds the rod's frame, by one of
+#   roll = "90 deg"             turned on from where the same rod without twist is, turns counted
+#   frame = [[1, 0, 0], ..]     rows d1, d2, d3; d3 is the direction
+#   quaternion = [1, 0, 0, 0]   w, x, y, z; it turns the axes x, y, z into d1, d2, d3
+# the latter two with turns = 1, 2, .. for whole turns more. Two such clamps twist the rod between
+# them; [rod] then needs torsional_stiffness = "{torsion:.3g} N m^2" (GJ, here EI / 1.3).
+
 # A second gripper, here a pin at the other end.
 #[[gripper]]
 #at = {length:.4g}
@@ -133,7 +140,8 @@ std::string optional_part(const Scene& scene) {
 #   c_h              [-]    share of the last movement, 0 <= c_h < 1, stepper dynamic
 #   l_s              [m]    largest movement per step, not with stepper basic
 )",
-      fmt::arg("length", l), fmt::arg("x", pin.x()), fmt::arg("y", pin.y()), fmt::arg("z", pin.z()),
+      fmt::arg("torsion", scene.bending_stiffness() / 1.3), fmt::arg("length", l),
+      fmt::arg("x", pin.x()), fmt::arg("y", pin.y()), fmt::arg("z", pin.z()),
       fmt::arg("middle", l / 2), fmt::arg("force", -0.1 * force),
       fmt::arg("floor", std::min(pin.y(), 0.0) - 0.1 * l),
       fmt::arg("stiffness", 1e3 * force / (l * l)), fmt::arg("c_c", scene.axial_stiffness()),

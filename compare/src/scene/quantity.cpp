@@ -25,6 +25,7 @@ constexpr Unit forces[] = {{"N", 1}, {"mN", 1e-3}, {"kN", 1e3}};
 constexpr Unit accelerations[] = {{"m/s^2", 1}};
 constexpr Unit curvatures[] = {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}};
 constexpr Unit foundations[] = {{"N/m^2", 1}, {"N/mm^2", 1e6}};
+constexpr Unit section_stiffnesses[] = {{"N m^2", 1}, {"N mm^2", 1e-6}};
 
 std::span<const Unit> units(Dimension dimension) {
   switch (dimension) {
@@ -44,6 +45,8 @@ std::span<const Unit> units(Dimension dimension) {
       return curvatures;
     case Dimension::foundation:
       return foundations;
+    case Dimension::section_stiffness:
+      return section_stiffnesses;
     case Dimension::number:
       break;
   }

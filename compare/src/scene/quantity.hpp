@@ -16,7 +16,8 @@ enum class Dimension {
   force,
   acceleration,
   curvature,
-  foundation,  ///< force per depth and per length of rod
+  foundation,         ///< force per depth and per length of rod
+  section_stiffness,  ///< moment per curvature (EI), torque per twist (GJ)
 };
 
 /// The names of the units that `dimension` knows, SI first.

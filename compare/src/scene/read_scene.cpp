@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <functional>
 #include <numbers>
 
 #include "base/display.hpp"
@@ -68,6 +70,66 @@ Eigen::Vector3d read_direction(StrictTable& table) {
   return {std::cos(angle), std::sin(angle), 0};
 }
 
+/// What six decimals leave of a rotation matrix or a quaternion.
+constexpr double rotation_tolerance = 2e-6;
+constexpr int most_turns = 1000;
+constexpr const char* frame_keys[] = {"roll", "frame", "quaternion", "turns"};
+
+/// Columns d1, d2, d3 of a clamp that has them in the file.
+std::optional<Eigen::Matrix3d> read_directors(StrictTable& table) {
+  const std::optional<Eigen::Matrix3d> rows = table.optional_rows("frame");
+  const std::optional<Eigen::Quaterniond> quaternion = table.optional_quaternion("quaternion");
+  if (quaternion) {
+    if (!(std::abs(quaternion->norm() - 1) <= rotation_tolerance)) {
+      table.fail("quaternion", fmt::format("has the norm {:.7g} (allowed: 1 within {:g})",
+                                           quaternion->norm(), rotation_tolerance));
+    }
+    return quaternion->normalized().toRotationMatrix();
+  }
+  if (!rows) return std::nullopt;
+  const Eigen::Matrix3d off = *rows * rows->transpose() - Eigen::Matrix3d::Identity();
+  if (!(off.cwiseAbs().maxCoeff() <= rotation_tolerance)) {
+    table.fail("frame", fmt::format("rows d1, d2, d3 are off by {:.2g} from unit length or right "
+                                    "angles (allowed: up to {:g})",
+                                    off.cwiseAbs().maxCoeff(), rotation_tolerance));
+  }
+  if (rows->determinant() < 0) table.fail("frame", "is left-handed (allowed: d3 = d1 x d2)");
+  return rows->transpose();
+}
+
+/// Direction and frame of a clamp: the frame is a roll, or three directors, and there may be none.
+void read_clamp(StrictTable& table, Gripper& gripper) {
+  const char* given = nullptr;
+  for (const char* key : {"roll", "frame", "quaternion"}) {
+    if (!table.has(key)) continue;
+    if (given != nullptr) {
+      table.fail(
+          key, fmt::format("given besides {} (allowed: one of roll, frame and quaternion)", given));
+    }
+    given = key;
+  }
+  const std::optional<double> roll = table.optional_number("roll", Dimension::angle, Range::any());
+  const std::optional<Eigen::Matrix3d> directors = read_directors(table);
+  const std::optional<int> turns = table.optional_integer("turns", -most_turns, most_turns);
+  if (turns && !directors) {
+    table.fail("turns", "needs frame or quaternion (allowed: a roll of any size, \"720 deg\")");
+  }
+  if (roll) gripper.frame = FrameHold{.d1 = std::nullopt, .roll = *roll};
+  const Eigen::Vector3d d3 = directors ? directors->col(2).normalized() : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d direction =
+      directors && !table.has("direction") ? d3 : read_direction(table);
+  gripper.direction = direction;
+  if (!directors) return;
+  if (!((direction - d3).norm() <= rotation_tolerance)) {
+    table.fail("direction", fmt::format("is not d3 = [{:.6g}, {:.6g}, {:.6g}] of {} (allowed: the "
+                                        "same, or none)",
+                                        d3.x(), d3.y(), d3.z(), given));
+  }
+  const Eigen::Vector3d d1 = directors->col(0);
+  gripper.frame = FrameHold{.d1 = (d1 - d1.dot(direction) * direction).normalized(),
+                            .roll = 2 * std::numbers::pi * turns.value_or(0)};
+}
+
 double read_arc_length(StrictTable& table, double length) {
   return table.number("at", Dimension::length, Range::between(0, length, " m, the rod's length"));
 }
@@ -98,13 +160,57 @@ Gripper read_gripper(StrictTable& table, double length) {
   gripper.position = table.vector("position", Dimension::length);
   const std::string hold = table.has("hold") ? table.choice("hold", {"clamp", "pin"}) : "clamp";
   if (hold == "clamp") {
-    gripper.direction = read_direction(table);
-  } else if (table.has("direction")) {
-    table.fail("direction", "a pin has no direction (allowed: hold = \"clamp\", or no direction)");
+    read_clamp(table, gripper);
+  } else {
+    if (table.has("direction")) {
+      table.fail("direction",
+                 "a pin has no direction (allowed: hold = \"clamp\", or no direction)");
+    }
+    for (const char* key : frame_keys) {
+      if (!table.has(key)) continue;
+      table.fail(key,
+                 fmt::format("a pin holds no frame (allowed: hold = \"clamp\", or no {})", key));
+    }
   }
   gripper.where = table.where();
   table.finish();
   return gripper;
+}
+
+/// What clamps that hold frames need, and twist that would have to pass a clamp that holds none.
+/// @param entries  the grippers' tables, in the scene's order
+void check_twist(const Scene& scene, const StrictTable& rod,
+                 const std::vector<StrictTable>& entries) {
+  if (!scene.holds_twist()) return;
+  if (!scene.torsional_stiffness) {
+    rod.fail("torsional_stiffness",
+             fmt::format("missing, it is required where two clamps hold the rod's frame (allowed: "
+                         "> 0; of a round rod EI / (1 + nu), here {:.3g} N m^2 with nu = 0.3)",
+                         scene.bending_stiffness() / 1.3));
+  }
+  std::vector<std::size_t> clamps;  // by arc length
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    if (scene.grippers[i].direction) clamps.push_back(i);
+  }
+  std::stable_sort(clamps.begin(), clamps.end(), [&](std::size_t a, std::size_t b) {
+    return scene.grippers[a].at < scene.grippers[b].at;
+  });
+  const auto refuse_between = [&](const auto& outer, const auto& inner, const char* problem) {
+    const auto is_outer = [&](std::size_t i) { return outer(scene.grippers[i]); };
+    const auto first = std::find_if(clamps.begin(), clamps.end(), is_outer);
+    const auto last = std::find_if(clamps.rbegin(), clamps.rend(), is_outer).base();
+    for (auto i = first; i < last; ++i) {
+      if (inner(scene.grippers[*i])) entries[*i].fail("roll", problem);
+    }
+  };
+  const auto holds = [](const Gripper& clamp) { return clamp.frame.has_value(); };
+  const auto has_d1 = [](const Gripper& clamp) { return clamp.frame && clamp.frame->d1; };
+  refuse_between(holds, std::not_fn(holds),
+                 "missing, clamps on both sides hold the rod's frame (allowed: roll, frame or "
+                 "quaternion here too, or hold = \"pin\")");
+  refuse_between(has_d1, std::not_fn(has_d1),
+                 "between clamps whose frame or quaternion says where d1 is (allowed: frame or "
+                 "quaternion here too)");
 }
 
 Obstacle read_obstacle(StrictTable& table) {
@@ -134,13 +240,16 @@ Scene read_scene(const toml::table& root, const std::string& file,
   scene.length = rod.number("length", Dimension::length, Range::between(1e-6, 1e6, " m"));
   scene.diameter = rod.number("diameter", Dimension::length, Range::between(1e-9, 1e3, " m"));
   scene.material = read_material(rod, known_materials);
+  scene.torsional_stiffness =
+      rod.optional_number("torsional_stiffness", Dimension::section_stiffness, Range::positive());
   require_finite_rod(scene, rod);
   rod.finish();
 
   for (StrictTable& entry : bounded_tables(table, "obstacle", most_obstacles)) {
     scene.obstacles.push_back(read_obstacle(entry));
   }
-  for (StrictTable& entry : bounded_tables(table, "gripper", most_grippers)) {
+  std::vector<StrictTable> grippers = bounded_tables(table, "gripper", most_grippers);
+  for (StrictTable& entry : grippers) {
     scene.grippers.push_back(read_gripper(entry, scene.length));
     for (const Obstacle& obstacle : scene.obstacles) {
       if ((scene.grippers.back().position - obstacle.point).dot(obstacle.normal) >= 0) continue;
@@ -152,6 +261,7 @@ Scene read_scene(const toml::table& root, const std::string& file,
         "{}: gripper: none given, nothing would hold the rod (allowed: one or more [[gripper]])",
         file));
   }
+  check_twist(scene, rod, grippers);
   for (StrictTable& entry : bounded_tables(table, "load", most_loads)) {
     PointLoad load;
     load.at = read_arc_length(entry, scene.length);

@@ -1,6 +1,7 @@
 #include "dlo/compare/scene.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <numbers>
 
 #include "scene/reach.hpp"
@@ -25,7 +26,18 @@ double Scene::gamma() const {
   return weight_per_length().norm() * length * length * length / bending_stiffness();
 }
 
+bool Scene::holds_twist() const {
+  return std::count_if(grippers.begin(), grippers.end(),
+                       [](const Gripper& gripper) { return gripper.frame.has_value(); }) > 1;
+}
+
+void Scene::scale_modulus(double factor) {
+  material.youngs_modulus *= factor;
+  if (torsional_stiffness) *torsional_stiffness *= factor;
+}
+
 std::optional<Eigen::Vector3d> Scene::plane_normal() const {
+  if (holds_twist()) return std::nullopt;
   std::vector<Eigen::Vector3d> vectors = {gravity};
   for (const Gripper& gripper : grippers) {
     if (gripper.direction) vectors.push_back(*gripper.direction);

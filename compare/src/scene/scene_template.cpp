@@ -131,6 +131,18 @@ class Overrider {
   const std::vector<Material>& materials_;
 };
 
+/// EI of a scene whose GJ is given; none if the file is no scene without other values.
+std::optional<double> bending_stiffness_with_torsion(const toml::table& root,
+                                                     const std::string& name,
+                                                     const std::vector<Material>& materials) {
+  if (!root["rod"]["torsional_stiffness"]) return std::nullopt;
+  try {
+    return read_scene(root, name, materials).bending_stiffness();
+  } catch (const InputError&) {
+    return std::nullopt;
+  }
+}
+
 /// Gravity that gives the scene this Gamma.
 toml::array scaled_gravity(const Scene& scene, const std::string& gamma) {
   const auto value = as_number<double>(gamma);
@@ -153,6 +165,7 @@ struct SceneTemplate::Parsed {
   toml::table root;
   std::string name;
   std::vector<Material> materials;
+  std::optional<double> bending_stiffness;  // with the file's own values, if it has a GJ
   std::string fingerprint;
 };
 
@@ -162,9 +175,10 @@ SceneTemplate::SceneTemplate(const std::string& text, std::string name,
   for (const Material& material : known_materials) {
     all += fmt::format("\n{} {} {}", material.name, material.youngs_modulus, material.density);
   }
-  parsed_ =
-      std::make_shared<const Parsed>(Parsed{parse_toml(text, name), std::move(name),
-                                            std::move(known_materials), compare::fingerprint(all)});
+  toml::table root = parse_toml(text, name);
+  const std::optional<double> EI = bending_stiffness_with_torsion(root, name, known_materials);
+  parsed_ = std::make_shared<const Parsed>(Parsed{
+      std::move(root), std::move(name), std::move(known_materials), EI, compare::fingerprint(all)});
 }
 
 const std::string& SceneTemplate::fingerprint() const { return parsed_->fingerprint; }
@@ -181,9 +195,18 @@ Scene SceneTemplate::with(const std::vector<FieldValue>& values) const {
     }
   }
   Scene scene = read_scene(root, parsed_->name, parsed_->materials);
-  if (gamma == nullptr) return scene;
-  root.insert_or_assign("gravity", scaled_gravity(scene, gamma->value));
-  return read_scene(root, parsed_->name, parsed_->materials);
+  if (gamma != nullptr) {
+    root.insert_or_assign("gravity", scaled_gravity(scene, gamma->value));
+    scene = read_scene(root, parsed_->name, parsed_->materials);
+  }
+  const bool gives_torsion = std::any_of(values.begin(), values.end(), [](const FieldValue& value) {
+    return value.field == "rod.torsional_stiffness";
+  });
+  if (scene.torsional_stiffness && parsed_->bending_stiffness && !gives_torsion) {
+    // Dividing first leaves GJ as it is where EI is.
+    *scene.torsional_stiffness *= scene.bending_stiffness() / *parsed_->bending_stiffness;
+  }
+  return scene;
 }
 
 SceneTemplate load_scene_template(const std::string& path,

@@ -21,6 +21,8 @@ struct FieldValue {
 ///
 /// A material that is given by name can be varied in parts, as rod.material.youngs_modulus. The
 /// derived field `gamma` scales gravity so that w l^3 / (EI) is its value, whatever else is varied.
+/// Where fields change EI, a torsional stiffness that is not varied itself changes with it: GJ / EI
+/// = 1 / (1 + nu) of a round rod, whatever its modulus and diameter.
 ///
 /// Safe to use from several threads at once.
 class SceneTemplate {

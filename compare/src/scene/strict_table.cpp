@@ -154,22 +154,48 @@ std::string StrictTable::choice(std::string_view key, const std::vector<std::str
   return value;
 }
 
-Eigen::Vector3d StrictTable::vector(std::string_view key, Dimension dimension) {
-  const toml::array* array = need(key).as_array();
-  if (array == nullptr || array->size() != 3) {
-    fail(key, "must be a vector of three numbers [x, y, z]");
-  }
-  Eigen::Vector3d value;
-  for (Eigen::Index i = 0; i < 3; ++i) {
+template <int Size>
+Eigen::Vector<double, Size> StrictTable::read_numbers(std::string_view key, const toml::node& node,
+                                                      Dimension dimension, const char* form) const {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->size() != Size) fail(key, form);
+  Eigen::Vector<double, Size> value;
+  for (Eigen::Index i = 0; i < Size; ++i) {
     value[i] = read_number(key, *array->get(static_cast<std::size_t>(i)), dimension);
   }
   return value;
+}
+
+Eigen::Vector3d StrictTable::vector(std::string_view key, Dimension dimension) {
+  return read_numbers<3>(key, need(key), dimension, "must be a vector of three numbers [x, y, z]");
 }
 
 std::optional<Eigen::Vector3d> StrictTable::optional_vector(std::string_view key,
                                                             Dimension dimension) {
   if (find(key) == nullptr) return std::nullopt;
   return vector(key, dimension);
+}
+
+std::optional<Eigen::Matrix3d> StrictTable::optional_rows(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  constexpr const char* form = "must be three rows of three numbers [[x, y, z], [..], [..]]";
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->size() != 3) fail(key, form);
+  Eigen::Matrix3d rows;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const toml::node& row = *array->get(static_cast<std::size_t>(i));
+    rows.row(i) = read_numbers<3>(key, row, Dimension::number, form);
+  }
+  return rows;
+}
+
+std::optional<Eigen::Quaterniond> StrictTable::optional_quaternion(std::string_view key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  const Eigen::Vector4d numbers =
+      read_numbers<4>(key, *node, Dimension::number, "must be four numbers [w, x, y, z]");
+  return Eigen::Quaterniond(numbers[0], numbers[1], numbers[2], numbers[3]);
 }
 
 bool StrictTable::is_table(std::string_view key) const {

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <optional>
 #include <set>
@@ -60,6 +61,10 @@ class StrictTable {
   }
   Eigen::Vector3d vector(std::string_view key, Dimension dimension);
   std::optional<Eigen::Vector3d> optional_vector(std::string_view key, Dimension dimension);
+  /// Rows of three numbers each.
+  std::optional<Eigen::Matrix3d> optional_rows(std::string_view key);
+  /// As it is written, of any norm.
+  std::optional<Eigen::Quaterniond> optional_quaternion(std::string_view key);
   std::optional<StrictTable> optional_table(std::string_view key);
   StrictTable table(std::string_view key);
   /// The tables of [[key]], in order.
@@ -84,6 +89,12 @@ class StrictTable {
   [[nodiscard]] std::string name(std::string_view key) const;
   [[nodiscard]] double read_number(std::string_view key, const toml::node& node,
                                    Dimension dimension) const;
+  /// An array of `Size` numbers. @param form  what a message says it must be
+  template <int Size>
+  [[nodiscard]] Eigen::Vector<double, Size> read_numbers(std::string_view key,
+                                                         const toml::node& node,
+                                                         Dimension dimension,
+                                                         const char* form) const;
 
   const toml::table& table_;
   std::string path_;

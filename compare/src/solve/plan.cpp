@@ -68,6 +68,23 @@ std::vector<PlannedSpan> spans_of(const Scene& scene) {
   return spans;
 }
 
+/// Between neighbouring clamps that hold frames; by the grippers alone.
+std::vector<PlannedTwist> twists_of(const Scene& scene) {
+  std::vector<PlannedTwist> twists;
+  const Gripper* before = nullptr;
+  for (const Gripper* gripper : grippers_along(scene)) {
+    if (!gripper->frame) continue;
+    if (before != nullptr) {
+      const bool by_directors = before->frame->d1 && gripper->frame->d1;
+      twists.push_back({before->at, gripper->at,
+                        by_directors ? std::numeric_limits<double>::quiet_NaN()
+                                     : gripper->frame->roll - before->frame->roll});
+    }
+    before = gripper;
+  }
+  return twists;
+}
+
 /// The rod's own shape; nothing, and why, if the energy model finds none, as for a taut rod.
 std::optional<energy_model::Equilibrium> rod_shape(const Scene& scene, double time_limit,
                                                    std::string& why) {
@@ -149,6 +166,13 @@ LeftOut inertia(const Scene& scene, double speed) {
   return result;
 }
 
+LeftOut twist_left_out(const Plan& plan) {
+  if (plan.twist.empty()) {
+    return {"twist", "all", 0, "none in a round, naturally straight rod free to twist"};
+  }
+  return {"twist", "chain, force", unbounded, "the grippers hold it"};
+}
+
 }  // namespace
 
 double Plan::bound(const std::string& what) const {
@@ -172,6 +196,9 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   plan.target = options.target;
   plan.planar = scene.planar();
   plan.spans = spans_of(scene);
+  plan.twist = twists_of(scene);
+  plan.frame_held = std::any_of(scene.grippers.begin(), scene.grippers.end(),
+                                [](const Gripper& gripper) { return gripper.frame.has_value(); });
   plan.scene_points = scene.force_model.points;
   for (std::size_t i = 0; i < clearances.size(); ++i) {
     plan.obstacles.push_back(
@@ -192,11 +219,18 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     std::string why;
     const std::optional<energy_model::Equilibrium> rod = rod_shape(scene, options.time_limit, why);
     plan.contact = !rod || touches(*rod);
+    if (rod && rod->twists.size() == plan.twist.size()) {
+      for (std::size_t i = 0; i < plan.twist.size(); ++i) {
+        plan.twist[i].angle = rod->twists[i].angle;
+      }
+    }
     const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points);
     if (!rod) {
       no_bound(why);
     } else if (plan.contact) {
       no_bound("the rod touches an obstacle");
+    } else if (!plan.twist.empty()) {
+      no_bound("the polygon that answers has no twist");
     } else if (!fine) {
       no_bound("the grips lie closer than any polygon looked at");
     } else {
@@ -216,11 +250,8 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     no_bound(fmt::format("not found out: {}", error.what()));
   }
   plan.stretch = stretch.bound_m > options.target * scene.length / 10;
-  plan.left_out = {stretch,
-                   shear,
-                   polygon,
-                   inertia(scene, options.gripper_speed),
-                   {"twist", "all", 0, "none in a round, naturally straight rod free to twist"}};
+  plan.left_out = {stretch, shear, polygon, inertia(scene, options.gripper_speed),
+                   twist_left_out(plan)};
   plan.moving = plan.bound("inertia") > options.target * scene.length;
   if (in_reach.size() < scene.obstacles.size()) {
     plan.left_out.push_back(

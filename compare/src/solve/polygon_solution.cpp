@@ -55,6 +55,7 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
   Solution solution;
   solution.shape = discretisation.shape(points);
   solution.parameters = discretisation.parameters;
+  if (scene.holds_twist()) solution.left_out = {"twist"};
   SceneEnergies& energy = solution.energy;
   energy.bending = inner.bending;
   energy.stretch = inner.stretch;

@@ -44,12 +44,15 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   const energy_model::Samples shape = equilibrium.sample(samples);
   solution.shape = {samples, shape.points};
   solution.energy = {.bending = equilibrium.energy.bending,
+                     .twisting = equilibrium.energy.twisting,
                      .gravity = equilibrium.energy.gravity,
                      .load = equilibrium.energy.load};
   for (const energy_model::Reaction& reaction : equilibrium.grips) {
     solution.grippers.push_back({reaction.force, reaction.torque});
   }
   solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene), equilibrium.walls);
+  solution.twists = equilibrium.twists;
+  if (scene.holds_twist() && solution.twists.empty()) solution.left_out = {"twist"};
   const bool touches = std::any_of(equilibrium.walls.begin(), equilibrium.walls.end(),
                                    [](const Eigen::Vector3d& force) { return force.norm() > 0; });
   for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -53,6 +53,7 @@ Scene moved(const Scene& scene, const BenchmarkOptions& options, int frame) {
   for (Gripper& gripper : result.grippers) {
     gripper.position = origin + way * Eigen::Vector3d::UnitX() + turn * (gripper.position - origin);
     if (gripper.direction) gripper.direction = (turn * *gripper.direction).normalized();
+    if (gripper.frame && gripper.frame->d1) gripper.frame->d1 = turn * *gripper.frame->d1;
   }
   return result;
 }

@@ -212,6 +212,16 @@ TEST(Regression, AFingerprintStandsForAllThatTheShapeDependsOn) {
   differs([](auto& s) { s.grippers.front().at += 1e-4; });
   differs([](auto& s) { s.grippers.front().position.x() += 1e-4; });
   differs([](auto& s) { s.grippers.front().direction.reset(); });
+  differs([](auto& s) { s.torsional_stiffness = 1; });
+  differs([](auto& s) { s.grippers.front().frame.emplace(); });
+  dlo::compare::Scene held = scene;
+  held.grippers.front().frame.emplace();
+  dlo::compare::Scene turned = held;
+  turned.grippers.front().frame->roll = 1;
+  dlo::compare::Scene directed = held;
+  directed.grippers.front().frame->d1 = Eigen::Vector3d::UnitZ();
+  EXPECT_NE(digits(turned), digits(held));
+  EXPECT_NE(digits(directed), digits(held));
   differs([](auto& s) { s.loads.push_back({.at = 0}); });
   differs([](auto& s) { s.obstacles.push_back({}); });
   differs([](auto& s) { s.force_model.c_c = 660; });

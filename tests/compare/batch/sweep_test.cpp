@@ -147,6 +147,35 @@ TEST(SceneTemplate, GammaScalesGravityWhateverElseIsVaried) {
   EXPECT_THROW((void)base.with({{"gamma", "1"}, {"gravity", "[0, 0, 0]"}}), InputError);
 }
 
+TEST(SceneTemplate, TorsionKeepsItsRatioToBendingUnlessItIsVaried) {
+  std::string text = sweep_scene;
+  text.insert(text.find("[[gripper]]"), "torsional_stiffness = 0.1\n");
+  const SceneTemplate base(text, "swept.toml");
+  const double ratio = 0.1 / base.with({}).bending_stiffness();
+  EXPECT_EQ(base.with({}).torsional_stiffness, 0.1);
+  EXPECT_EQ(base.with({{"rod.length", "2"}, {"gamma", "3"}}).torsional_stiffness, 0.1);
+  for (const auto& [field, value] :
+       {std::pair{"rod.diameter", "1 mm"}, std::pair{"rod.material.youngs_modulus", "7 GPa"},
+        std::pair{"rod.material", "copper"}}) {
+    const Scene scene = base.with({{field, value}});
+    EXPECT_NEAR(*scene.torsional_stiffness / scene.bending_stiffness(), ratio, 1e-12) << field;
+    EXPECT_EQ(
+        base.with({{field, value}, {"rod.torsional_stiffness", "0.2 N m^2"}}).torsional_stiffness,
+        0.2);
+  }
+  // A file that is no scene by itself has no ratio to keep.
+  const std::string no_length = std::string(text).erase(text.find("length"), 16);
+  const SceneTemplate part(no_length, "swept.toml");
+  EXPECT_EQ(part.with({{"rod.length", "1"}, {"rod.diameter", "3 mm"}}).torsional_stiffness, 0.1);
+}
+
+TEST(SceneTemplate, SetsTheFrameOfAClamp) {
+  const SceneTemplate base(sweep_scene, "swept.toml");
+  EXPECT_EQ(base.with({{"gripper.0.roll", "2"}}).grippers[0].frame->roll, 2);
+  const Scene scene = base.with({{"gripper.0.frame", "[[0, 0, 1], [0, -1, 0], [1, 0, 0]]"}});
+  EXPECT_EQ(*scene.grippers[0].frame->d1, Eigen::Vector3d::UnitZ());
+}
+
 TEST(SceneTemplate, ErrorsNameFileFieldAndValue) {
   const SceneTemplate base(sweep_scene, "swept.toml");
   const std::pair<dlo::compare::FieldValue, const char*> cases[] = {

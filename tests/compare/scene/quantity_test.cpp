@@ -52,7 +52,9 @@ constexpr UnitCase unit_cases[] = {
     {Dimension::curvature, "1/cm", none, 100},
     {Dimension::curvature, "1/mm", none, 1000},
     {Dimension::foundation, "N/m^2", 1, none},
-    {Dimension::foundation, "N/mm^2", none, 1000.0 * 1000}};
+    {Dimension::foundation, "N/mm^2", none, 1000.0 * 1000},
+    {Dimension::section_stiffness, "N m^2", 1, none},
+    {Dimension::section_stiffness, "N mm^2", 1000.0 * 1000, none}};
 
 TEST(Quantity, EveryUnitHasItsFactor) {
   std::map<Dimension, std::string> tested;
@@ -68,7 +70,7 @@ TEST(Quantity, EveryUnitHasItsFactor) {
   for (const Dimension dimension :
        {Dimension::number, Dimension::length, Dimension::angle, Dimension::pressure,
         Dimension::density, Dimension::force, Dimension::acceleration, Dimension::curvature,
-        Dimension::foundation}) {
+        Dimension::foundation, Dimension::section_stiffness}) {
     EXPECT_EQ(tested[dimension], known_units(dimension));
   }
 }

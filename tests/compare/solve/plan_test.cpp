@@ -276,6 +276,27 @@ TEST(Plan, IsMadeInTimeAndNeverFails) {
   EXPECT_THROW((void)make_plan(scene, {.time_limit = 0}), std::invalid_argument);
 }
 
+TEST(Plan, SaysWhatGrippersTwistAndThatNoPolygonKnowsOfIt) {
+  Scene scene = clamps_apart(5, {0.8, 0, 0}, {1, 0, 0});
+  EXPECT_FALSE(make_plan(scene).frame_held);
+  scene.grippers[1].frame = FrameHold{.d1 = std::nullopt, .roll = 3};
+  const Plan alone = make_plan(scene);
+  EXPECT_TRUE(alone.frame_held);
+  EXPECT_TRUE(alone.twist.empty());
+  EXPECT_EQ(alone.bound("twist"), 0);
+  scene.torsional_stiffness = scene.bending_stiffness() / 1.3;
+  scene.grippers[0].frame = FrameHold{.d1 = std::nullopt, .roll = 1};
+  const Plan plan = make_plan(scene);
+  ASSERT_EQ(plan.twist.size(), 1U);
+  EXPECT_EQ(plan.twist.front().begin, 0);
+  EXPECT_EQ(plan.twist.front().end, 1);
+  EXPECT_NEAR(plan.twist.front().angle, 2, 1e-12);
+  EXPECT_FALSE(plan.planar);
+  for (const char* what : {"twist", "stretch", "shear", "polygon"}) {
+    EXPECT_TRUE(std::isinf(plan.bound(what))) << what;
+  }
+}
+
 TEST(Plan, NoBoundIsGivenWhereTheRodTouches) {
   Scene scene = heavy_scene(20, 0);
   scene.obstacles = {{.point = {0, -0.15, 0}}};

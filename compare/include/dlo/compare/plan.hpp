@@ -33,6 +33,15 @@ struct PlannedObstacle {
   bool in_reach = true;  ///< some point of the rod could touch it
 };
 
+/// A part of the rod between clamps that hold its frame.
+struct PlannedTwist {
+  double begin = 0;  ///< arc length [m]
+  double end = 0;    ///< arc length [m]
+  /// By which the grippers turn the end ahead of the begin [rad]; NaN where their directors say it
+  /// and the rod was not solved.
+  double angle = 0;
+};
+
 /// What a model leaves out, with the most that it could change.
 struct LeftOut {
   std::string what;    ///< short name, as Plan::bound takes it
@@ -51,6 +60,8 @@ struct Plan {
   bool stretch = false;            ///< its bound is above a tenth of the target
   std::vector<PlannedSpan> spans;  ///< by growing arc length
   std::vector<PlannedObstacle> obstacles;  ///< as in the scene
+  bool frame_held = false;                 ///< a gripper holds the rod's frame
+  std::vector<PlannedTwist> twist;  ///< by growing arc length; one frame alone twists nothing
   /// N at which the hooke polygon with the scene's bookkeeping meets the target; 0: none up to
   /// `most_planned_points`, or unknown.
   int points = 0;
@@ -87,6 +98,8 @@ inline constexpr int most_planned_points = 4000;
 ///   d, so the rod leaves its static shape by d <= v l^2 sqrt(rho A / (3 EI)) (small deflections).
 ///   A single pin lets the rod swing: no bound.
 /// - Twist: a round, naturally straight rod whose grips leave the twist free has none: nothing.
+///   Where two clamps hold frames, chain and force leave it out without a bound, and no polygon
+///   says what stretch, shear and itself change.
 /// A scene that cannot be planned in time or at all has a plan without bounds, and why.
 /// @throws std::invalid_argument if an option is out of range
 [[nodiscard]] Plan make_plan(const Scene& scene, const PlanOptions& options = {});

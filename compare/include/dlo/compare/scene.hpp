@@ -11,11 +11,23 @@
 
 namespace dlo::compare {
 
+/// Keeps a clamped cross-section from turning about its direction.
+struct FrameHold {
+  /// First director of the rod's frame, unit and across the direction; none: where the same rod
+  /// without twist has it.
+  std::optional<Eigen::Vector3d> d1;
+  double roll = 0;  ///< turned on from there about the direction, whole turns counted [rad]
+
+  /// In every field.
+  bool operator==(const FrameHold&) const = default;
+};
+
 /// What holds a point of the rod.
 struct Gripper {
   double at = 0;                                       ///< arc length [m]
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< unit; a clamp has one, a pin has none
+  std::optional<FrameHold> frame;                      ///< of a clamp that does not let it turn
   std::string where;                                   ///< "file:line", for messages
 
   /// In every field.
@@ -50,10 +62,12 @@ struct Scene {
   double length = 0;                        ///< l [m]
   double diameter = 0;                      ///< d [m]
   Material material;                        ///< round rod of one material
-  std::vector<Gripper> grippers;            ///< one or more, in the file's order
-  std::vector<PointLoad> loads;             ///< may be empty
-  std::vector<Obstacle> obstacles;          ///< may be empty
-  ForceModelSettings force_model;           ///< as the file has it
+  /// GJ [N m^2], > 0; needed where two clamps hold frames, of no effect elsewhere.
+  std::optional<double> torsional_stiffness;
+  std::vector<Gripper> grippers;    ///< one or more, in the file's order
+  std::vector<PointLoad> loads;     ///< may be empty
+  std::vector<Obstacle> obstacles;  ///< may be empty
+  ForceModelSettings force_model;   ///< as the file has it
 
   [[nodiscard]] double cross_section() const;               ///< A [m^2]
   [[nodiscard]] double bending_stiffness() const;           ///< EI [N m^2]
@@ -61,12 +75,17 @@ struct Scene {
   [[nodiscard]] Eigen::Vector3d weight_per_length() const;  ///< rho A g [N/m]
   [[nodiscard]] double mass() const;                        ///< [kg]
   [[nodiscard]] double gamma() const;                       ///< w l^3 / (EI) [-]
-  /// Unit normal of the plane that grips, forces and obstacles in reach share, if they do; of
-  /// several planes any one.
+  /// Whether two clamps or more hold the rod's frame, which twists it or keeps it from twisting.
+  [[nodiscard]] bool holds_twist() const;
+  /// Unit normal of the plane that grips, forces and obstacles in reach share, if they do and no
+  /// twist is held, which bends a rod out of its plane; of several planes any one.
   [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
   /// Whether there is one.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }
   [[nodiscard]] int spans() const;  ///< parts that the clamps cut the rod into
+
+  /// Multiplies E, and GJ with it: their ratio is one of Poisson's ratio and the section's shape.
+  void scale_modulus(double factor);
 
   /// In every field.
   bool operator==(const Scene&) const = default;

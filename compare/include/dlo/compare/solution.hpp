@@ -46,14 +46,17 @@ struct SolveOptions {
 
 /// Energies [J]; gravity and loads are zero at the first gripper.
 struct SceneEnergies {
-  double bending = 0;  ///< of the joints or the curvature
-  double gravity = 0;  ///< of the rod's weight
-  double load = 0;     ///< of point loads
-  double stretch = 0;  ///< of elastic segments
-  double contact = 0;  ///< of obstacles that yield
+  double bending = 0;   ///< of the joints or the curvature
+  double twisting = 0;  ///< of energy and exact, where the scene holds twist
+  double gravity = 0;   ///< of the rod's weight
+  double load = 0;      ///< of point loads
+  double stretch = 0;   ///< of elastic segments
+  double contact = 0;   ///< of obstacles that yield
 
   /// Of all [J].
-  [[nodiscard]] double total() const { return bending + gravity + load + stretch + contact; }
+  [[nodiscard]] double total() const {
+    return bending + twisting + gravity + load + stretch + contact;
+  }
 };
 
 /// What a gripper exerts on the rod, torque about its position.
@@ -77,9 +80,12 @@ struct Solution {
   /// Of energy and exact: tension [N] there, positive where the rod is pulled; at a gripper or load
   /// inside the rod that of the side towards l. None where an obstacle is touched.
   std::vector<double> tension;
-  SceneEnergies energy;                    ///< of that shape
-  std::vector<GripperLoad> grippers;       ///< in the scene's order
-  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod [N]
+  SceneEnergies energy;                           ///< of that shape
+  std::vector<GripperLoad> grippers;              ///< in the scene's order
+  std::vector<Eigen::Vector3d> obstacles;         ///< force of each on the rod [N]
+  std::vector<energy_model::TwistedPart> twists;  ///< of energy and exact: Equilibrium::twists
+  /// Of what the scene asks for, what the model left out: "twist", or nothing.
+  std::vector<std::string> left_out;
   /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   long evaluations = 0;        ///< of minimisers; shots of exact

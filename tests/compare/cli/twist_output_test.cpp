@@ -1,0 +1,187 @@
+// What is said of a rod that grippers twist: by the models that have twist and by those that have
+// not.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "command_fixture.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "format/plan.hpp"
+#include "format/solution.hpp"
+#include "scenes.hpp"
+
+namespace {
+
+using dlo::compare::Plan;
+using dlo::compare::Scene;
+using dlo::compare::Solution;
+using dlo::test::Outcome;
+using Eigen::Vector3d;
+using nlohmann::json;
+using std::numbers::pi;
+
+/// Two clamps along x, the second of which is turned by half a turn.
+Scene twisted_scene() {
+  Scene scene = dlo::test::heavy_scene(1, 0);
+  scene.torsional_stiffness = 0.5;
+  scene.grippers.push_back({.at = 1, .position = {0.8, 0, 0}, .direction = Vector3d::UnitX()});
+  scene.grippers[0].frame.emplace();
+  scene.grippers[1].frame = {.d1 = std::nullopt, .roll = pi};
+  return scene;
+}
+
+Solution twisted_solution() {
+  Solution solution;
+  solution.shape = {{0, 1}, (Eigen::Matrix3Xd(3, 2) << 0, 0.8, 0, 0, 0, 0).finished()};
+  solution.energy = {.bending = 1, .twisting = 2.5, .gravity = -0.25};
+  solution.grippers = {{.force = {0, 1, 0}, .torque = {-1.5, 7, 8}},
+                       {.force = {0, 1, 0}, .torque = {1.5, 9, 10}}};
+  solution.twists = {{.begin = 0, .end = 0.4, .angle = 3, .torque = 1.5},
+                     {.begin = 0.4, .end = 1, .angle = -0.5, .torque = -0.25}};
+  return solution;
+}
+
+TEST(TwistOutput, JsonHasAnglesTorquesAndEnergyOfWhatIsTwisted) {
+  const Scene scene = twisted_scene();
+  const json document = dlo::cli::solution_json(twisted_solution(), scene, Plan());
+  EXPECT_EQ(document.at("energy_J").at("twisting"), 2.5);
+  EXPECT_EQ(document.at("energy_J").at("total"), 3.25);
+  EXPECT_EQ(document.at("grippers")[0].at("axial_torque_Nm"), -1.5);
+  EXPECT_EQ(document.at("grippers")[1].at("axial_torque_Nm"), 1.5);
+  EXPECT_EQ(document.at("twist").at("total_rad"), 2.5);
+  const json& parts = document.at("twist").at("parts");
+  ASSERT_EQ(parts.size(), 2U);
+  EXPECT_EQ(parts[1],
+            json({{"from_m", 0.4}, {"to_m", 1.0}, {"angle_rad", -0.5}, {"torque_Nm", -0.25}}));
+  EXPECT_FALSE(document.contains("left_out"));
+}
+
+TEST(TwistOutput, JsonOfARodWithoutFramesHasNoTwist) {
+  Solution solution = twisted_solution();
+  solution.twists.clear();
+  solution.energy.twisting = 0;
+  Scene scene = twisted_scene();
+  for (dlo::compare::Gripper& gripper : scene.grippers) gripper.frame.reset();
+  const json document = dlo::cli::solution_json(solution, scene, Plan());
+  EXPECT_EQ(document.at("energy_J").at("twisting"), 0);
+  for (const char* key : {"twist", "left_out"}) EXPECT_FALSE(document.contains(key)) << key;
+  EXPECT_FALSE(document.at("grippers")[0].contains("axial_torque_Nm"));
+  EXPECT_FALSE(document.at("plan").contains("twist"));
+  const std::string text = dlo::cli::solution_text(solution, scene);
+  EXPECT_EQ(text.find("twist"), std::string::npos) << text;
+}
+
+TEST(TwistOutput, JsonSaysWhatWasLeftOutInsteadOfATorqueOfNone) {
+  Solution solution = twisted_solution();
+  solution.twists.clear();
+  solution.left_out = {"twist"};
+  const json document = dlo::cli::solution_json(solution, twisted_scene(), Plan());
+  EXPECT_EQ(document.at("left_out"), json({"twist"}));
+  EXPECT_FALSE(document.contains("twist"));
+  EXPECT_FALSE(document.at("grippers")[0].contains("axial_torque_Nm"));
+}
+
+TEST(TwistOutput, TextHasALineForEachPart) {
+  const std::string text = dlo::cli::solution_text(twisted_solution(), twisted_scene());
+  for (const char* line : {"energy     bending 1 J, twisting 2.5 J, gravity -0.25 J, load 0 J",
+                           "\ntwist      3 rad, torque 1.5 Nm from s = 0 to 0.4 m\n",
+                           "\ntwist      -0.5 rad, torque -0.25 Nm from s = 0.4 to 1 m\n"}) {
+    EXPECT_NE(text.find(line), std::string::npos) << line << "\n" << text;
+  }
+}
+
+TEST(TwistOutput, APlanTellsWhoTwistsWhat) {
+  const Scene scene = twisted_scene();
+  const auto expect_line = [&](const Plan& plan, const std::string& line) {
+    const std::string text = dlo::cli::plan_text(plan, scene);
+    EXPECT_NE(text.find("\n  twist           " + line + "\n"), std::string::npos) << line << "\n"
+                                                                                  << text;
+  };
+  Plan plan;
+  EXPECT_EQ(dlo::cli::plan_text(plan, scene).find("twist"), std::string::npos);
+  plan.frame_held = true;
+  expect_line(plan, "no: one gripper alone holds the frame, and the rod turns with it");
+  plan.twist = {{.begin = 0, .end = 0.4, .angle = pi}, {.begin = 0.4, .end = 1, .angle = 1e-15}};
+  expect_line(plan, "yes: the grippers turn it by 180 degrees from 0 to 0.4 m");
+  expect_line(plan, "no: the grippers hold 0.4 to 1 m without a turn");
+  plan.twist[0].angle = NAN;
+  expect_line(plan, "yes: the grippers hold 0 to 0.4 m, by an angle that only its shape tells");
+  EXPECT_TRUE(
+      json::parse(json(dlo::cli::plan_json(plan)).dump()).at("twist")[0].at("angle_rad").is_null());
+}
+
+/// The command on the scene that comes with it.
+class TwistCommand : public dlo::test::Command {
+ protected:
+  static std::string wire() { return std::string(DLO_DATA) + "/scenes/twisted_wire.toml"; }
+};
+
+TEST_F(TwistCommand, ModelsThatHaveNoTwistSaySo) {
+  for (const std::string model : {"chain", "force"}) {
+    const std::string solve = "solve " + wire() + " --model " + model;
+    const Outcome text = run(solve);
+    ASSERT_EQ(text.status, 0) << text.err;
+    EXPECT_NE(text.out.find("left out   twist: the scene has it, model " + model),
+              std::string::npos)
+        << text.out;
+    EXPECT_EQ(text.err, "");
+    EXPECT_EQ(json::parse(run(solve + " --format json").out).at("left_out"), json({"twist"}));
+    const Outcome csv = run(solve + " --format csv");
+    EXPECT_NE(csv.err.find("model " + model + " leaves out the twist"), std::string::npos);
+  }
+}
+
+TEST_F(TwistCommand, CommandsThatUseThemSaySo) {
+  const std::string note = "the grippers hold twist, which models chain and force leave out";
+  const std::vector<std::string> commands = {
+      "compare --no-modulus --format csv ",
+      "stability --map cF-cc --columns 2 --rows 4 --map-steps 500 ",
+      "bench --seconds 0.1 --repeats 1 ", "sweep --model chain --vary gamma=1 ",
+      "regress --update --baseline " + path("b.toml") + " "};
+  for (const std::string& command : commands) {
+    EXPECT_NE(run(command + wire()).err.find(note), std::string::npos) << command;
+  }
+  EXPECT_EQ(run("sweep --vary rod.torsional_stiffness=0.01 " + wire()).err, "");
+}
+
+TEST_F(TwistCommand, AComparisonSaysThatTheForceModelHasNone) {
+  const Outcome text = run("compare --no-modulus " + wire());
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("left out        twist that the grippers hold, by the force model"),
+            std::string::npos)
+      << text.out;
+  const json document = json::parse(run("compare --no-modulus --format json " + wire()).out);
+  EXPECT_EQ(document.at("cases")[0].at("left_out"), json({"twist"}));
+}
+
+TEST_F(TwistCommand, ExplainTellsTheAngle) {
+  const Outcome text = run("solve --explain " + wire());
+  ASSERT_EQ(text.status, 0) << text.err;
+  for (const char* expected :
+       {"twist           yes: the grippers turn it by 180 degrees from 0 to 0.5 m",
+        "no bound: the grippers hold it (left out by chain, force)", "spatial"}) {
+    EXPECT_NE(text.out.find(expected), std::string::npos) << expected << "\n" << text.out;
+  }
+}
+
+TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
+  const Outcome result = run("solve --format json " + wire());
+  ASSERT_EQ(result.status, 0) << result.err;
+  const json document = json::parse(result.out);
+  if (document.contains("left_out")) GTEST_SKIP() << "solved without twist, and it says so";
+  const double torque = 7.93e-3 * pi / 0.5;
+  const json& twist = document.at("twist");
+  EXPECT_NEAR(twist.at("total_rad").get<double>(), pi, 1e-9);
+  EXPECT_NEAR(twist.at("parts")[0].at("torque_Nm").get<double>(), torque, 1e-9 * torque);
+  EXPECT_NEAR(document.at("energy_J").at("twisting").get<double>(), torque * pi / 2,
+              1e-9 * torque * pi);
+  EXPECT_NEAR(document.at("grippers")[1].at("axial_torque_Nm").get<double>(), torque,
+              1e-6 * torque);
+}
+
+}  // namespace

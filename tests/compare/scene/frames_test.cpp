@@ -1,0 +1,219 @@
+// Clamps that hold the rod's frame: what a file may say of it, and what is refused.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "polygon/energy_problems.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Vector3d;
+using std::numbers::pi;
+
+const std::string rod = R"([rod]
+length = 0.5
+diameter = "1 mm"
+material = "spring_steel"
+torsional_stiffness = "7.9e-3 N m^2"
+)";
+const std::string rod_without_torsion = rod.substr(0, rod.find("torsional"));
+
+/// A gripper of five lines and what else it says; the first one after `rod` is on lines 6 to 10.
+std::string gripper(double at, const std::string& more, const std::string& hold = "clamp") {
+  std::string text = "[[gripper]]\nat = " + std::to_string(at) + "\nposition = [" +
+                     std::to_string(0.8 * at) + ", 0, 0]\nhold = \"" + hold + "\"\n";
+  return text + more;
+}
+
+Scene read(const std::string& text) { return parse_scene(text, "my.toml"); }
+
+/// The frame of the second of two clamps along x.
+FrameHold frame_of(const std::string& keys) {
+  const Scene scene =
+      read(rod + gripper(0, "direction = 0\nroll = 0\n") + gripper(0.5, keys + "\n"));
+  EXPECT_TRUE(scene.holds_twist());
+  return scene.grippers.at(1).frame.value();
+}
+
+TEST(Frames, ARollIsAnAngleOfAnySize) {
+  const FrameHold half = frame_of("direction = 0\nroll = \"180 deg\"");
+  EXPECT_DOUBLE_EQ(half.roll, pi);
+  EXPECT_FALSE(half.d1);
+  EXPECT_EQ(frame_of("direction = 0\nroll = -25").roll, -25);
+  EXPECT_DOUBLE_EQ(frame_of("direction = 0\nroll = \"1080 deg\"").roll, 6 * pi);
+}
+
+TEST(Frames, DirectorsAreRowsAndGiveTheDirection) {
+  const std::string text = rod + gripper(0, "direction = 0\nroll = 0\n") +
+                           gripper(0.5, "frame = [[0, 0, 1], [1, 0, 0], [0, 1, 0]]\n");
+  const Gripper clamp = read(text).grippers.at(1);
+  EXPECT_EQ(*clamp.direction, Vector3d::UnitY());
+  EXPECT_EQ(*clamp.frame->d1, Vector3d::UnitZ());
+  EXPECT_EQ(clamp.frame->roll, 0);
+  const FrameHold turned = frame_of("frame = [[0, 0, 1], [0, -1, 0], [1, 0, 0]]\nturns = -2");
+  EXPECT_DOUBLE_EQ(turned.roll, -4 * pi);
+}
+
+TEST(Frames, AQuaternionTurnsTheAxesIntoTheDirectors) {
+  const Eigen::Quaterniond q = Eigen::Quaterniond(0.3, -0.2, 0.7, 0.5).normalized();
+  const std::string text =
+      rod + gripper(0, "direction = 0\nroll = 0\n") +
+      gripper(0.5, "quaternion = [" + std::to_string(q.w()) + ", " + std::to_string(q.x()) + ", " +
+                       std::to_string(q.y()) + ", " + std::to_string(q.z()) + "]\nturns = 1\n");
+  const Gripper clamp = read(text).grippers.at(1);  // of six decimals
+  EXPECT_LT((*clamp.direction - q * Vector3d::UnitZ()).norm(), 3e-6);
+  EXPECT_LT((*clamp.frame->d1 - q * Vector3d::UnitX()).norm(), 3e-6);
+  EXPECT_NEAR(clamp.frame->d1->norm(), 1, 1e-15);
+  EXPECT_NEAR(clamp.frame->d1->dot(*clamp.direction), 0, 1e-15);
+  EXPECT_DOUBLE_EQ(clamp.frame->roll, 2 * pi);
+}
+
+TEST(Frames, ADirectionBesideDirectorsIsTheSame) {
+  const FrameHold frame = frame_of(
+      "direction = \"30 deg\"\nframe = [[0, 0, 1], [0.5, -0.866025, 0], [0.866025, 0.5, 0]]");
+  EXPECT_LT((*frame.d1 - Vector3d::UnitZ()).norm(), 1e-15);
+}
+
+TEST(Frames, OneFrameAloneNeedsNothing) {
+  const Scene scene = read(rod_without_torsion + gripper(0, "direction = 0\nroll = 1\n") +
+                           gripper(0.5, "direction = 0\n"));
+  EXPECT_FALSE(scene.holds_twist());
+  EXPECT_FALSE(scene.torsional_stiffness);
+  EXPECT_TRUE(scene.planar());
+  EXPECT_EQ(energy_problem(scene).grips.at(0).frame->roll, 1);
+}
+
+TEST(Frames, APinBetweenThemIsAllowed) {
+  EXPECT_NO_THROW((void)read(rod + gripper(0.5, "direction = 0\nroll = 1\n") +
+                             gripper(0.2, "", "pin") + gripper(0, "direction = 0\nroll = 0\n")));
+}
+
+struct BadFrame {
+  std::string text;
+  std::vector<std::string> named;  // what the message has to name
+};
+
+TEST(Frames, ErrorsNameFileLineKeyAndWhatIsAllowed) {
+  const std::string first = gripper(0, "direction = 0\nroll = 0\n");  // lines 6 to 11
+  const std::string directors = "frame = [[0, 0, 1], [0, -1, 0], [1, 0, 0]]\n";
+  const std::string plain = "direction = 0\n";
+  const std::vector<BadFrame> cases = {
+      {rod + gripper(0, plain + "roll = \"90 grad\"\n"),
+       {"my.toml:11", "gripper.roll", "rad, deg"}},
+      {rod + gripper(0, plain + "roll = inf\n"), {"my.toml:11", "gripper.roll", "finite"}},
+      {rod + gripper(0, plain + "roll = 0\nframe = 3\n"),
+       {"my.toml:12", "gripper.frame", "besides roll", "one of roll, frame and quaternion"}},
+      {rod + gripper(0, directors + "quaternion = [1, 0, 0, 0]\n"),
+       {"my.toml:11", "gripper.quaternion", "besides frame"}},
+      {rod + gripper(0, plain + "roll = 0\nturns = 1\n"),
+       {"my.toml:12", "gripper.turns", "frame or quaternion", "720 deg"}},
+      {rod + gripper(0, directors + "turns = 1.5\n"),
+       {"my.toml:11", "gripper.turns", "1.5", "whole number", "-1000 to 1000"}},
+      {rod + gripper(0, "frame = [[0, 0, 1], [0, -1, 0]]\n"),
+       {"my.toml:10", "gripper.frame", "three rows of three"}},
+      {rod + gripper(0, "frame = [[0, 0, 1], [0, -1, 0], [1, 0]]\n"),
+       {"my.toml:10", "gripper.frame", "three rows of three"}},
+      {rod + gripper(0, "frame = [[0, 0, 1], [0, -1, 0], [1, 1e-5, 0]]\n"),
+       {"my.toml:10", "gripper.frame", "1e-05", "up to 2e-06"}},
+      {rod + gripper(0, "frame = [[0, 0, 1], [0, -1, 0], [nan, 0, 0]]\n"),
+       {"my.toml:10", "gripper.frame", "finite"}},
+      {rod + gripper(0, "frame = [[0, 0, 1], [0, 1, 0], [1, 0, 0]]\n"),
+       {"my.toml:10", "gripper.frame", "left-handed", "d3 = d1 x d2"}},
+      {rod + gripper(0, "direction = 1\n" + directors),
+       {"my.toml:10", "gripper.direction = 1", "d3 = [1, 0, 0] of frame", "the same, or none"}},
+      {rod + gripper(0, "quaternion = [1, 0, 0]\n"),
+       {"my.toml:10", "gripper.quaternion", "four numbers [w, x, y, z]"}},
+      {rod + gripper(0, "quaternion = [1, 1, 0, 0]\n"),
+       {"my.toml:10", "gripper.quaternion", "norm 1.41421", "1 within"}},
+      {rod + gripper(0, "roll = 1\n", "pin"),
+       {"my.toml:10", "gripper.roll", "a pin holds no frame"}},
+      {rod + gripper(0, directors, "pin"), {"my.toml:10", "gripper.frame", "a pin holds no frame"}},
+      {rod + gripper(0, "quaternion = [1, 0, 0, 0]\n", "pin"),
+       {"my.toml:10", "gripper.quaternion", "a pin holds no frame", "hold = \"clamp\""}},
+      {rod + gripper(0, "turns = 1\n", "pin"), {"my.toml:10", "gripper.turns", "a pin"}},
+      {rod_without_torsion + first + gripper(0.5, plain + "roll = 1\n"),
+       {"my.toml:1: rod.torsional_stiffness: missing", "two clamps", "> 0", "0.00793 N m^2"}},
+      {rod_without_torsion + "torsional_stiffness = \"-1 N m^2\"\n" + first,
+       {"my.toml:5", "rod.torsional_stiffness", "> 0"}},
+      {rod_without_torsion + "torsional_stiffness = \"1 Nm^2\"\n" + first,
+       {"my.toml:5", "rod.torsional_stiffness", "N m^2, N mm^2"}},
+      // By arc length it is between the others.
+      {rod + first + gripper(0.5, plain + "roll = 1\n") + gripper(0.2, plain),
+       {"my.toml:18: gripper.roll: missing", "on both sides", "hold = \"pin\""}},
+      {rod + gripper(0, directors) + gripper(0.5, directors) + gripper(0.2, plain + "roll = 1\n"),
+       {"my.toml:21: gripper.roll = 1", "frame or quaternion"}},
+  };
+  for (const BadFrame& bad : cases) {
+    std::string text = "no error";
+    try {
+      (void)read(bad.text);
+    } catch (const InputError& error) {
+      text = error.what();
+    }
+    for (const std::string& name : bad.named) {
+      EXPECT_NE(text.find(name), std::string::npos) << "no \"" << name << "\" in: " << text;
+    }
+    EXPECT_EQ(text.find('\n'), std::string::npos) << text;
+  }
+}
+
+TEST(Frames, TheEnergyModelTakesWhatAFileMaySay) {
+  const Scene scene = read(
+      rod + gripper(0, "frame = [[0, 0, 1], [0, -1, 0], [1, 0, 0]]\nturns = 1\n") +
+      gripper(0.2, "", "pin") + gripper(0.5, "quaternion = [0.5, 0.5, 0.5, 0.5]\nturns = 3\n"));
+  const energy_model::Problem problem = energy_problem(scene);
+  EXPECT_NO_THROW(energy_model::check(problem));
+  EXPECT_EQ(problem.torsional_stiffness, 7.9e-3);
+  EXPECT_EQ(*problem.grips.at(0).frame->d1, Vector3d::UnitZ());
+  EXPECT_FALSE(problem.grips.at(1).frame);
+  EXPECT_DOUBLE_EQ(problem.grips.at(2).frame->roll, 6 * pi);
+}
+
+TEST(Frames, AFrameAndATorsionalStiffnessAreFieldsOfAScene) {
+  const Scene scene = read(rod + gripper(0, "direction = 0\nroll = 0\n") +
+                           gripper(0.5, "frame = [[0, 0, 1], [0, -1, 0], [1, 0, 0]]\n"));
+  const auto differs = [&](const auto& change) {
+    Scene changed = scene;
+    change(changed);
+    EXPECT_FALSE(changed == scene);
+  };
+  EXPECT_TRUE(Scene(scene) == scene);
+  differs([](Scene& s) { *s.torsional_stiffness *= 2; });
+  differs([](Scene& s) { s.torsional_stiffness.reset(); });
+  differs([](Scene& s) { s.grippers[0].frame.reset(); });
+  differs([](Scene& s) { s.grippers[0].frame->roll = 1; });
+  differs([](Scene& s) { s.grippers[1].frame->d1 = Vector3d::UnitY(); });
+}
+
+TEST(Frames, TheModulusScalesBothStiffnesses) {
+  Scene scene = test::heavy_scene(1, 0);
+  scene.torsional_stiffness = 0.5;
+  const double ratio = *scene.torsional_stiffness / scene.bending_stiffness();
+  scene.scale_modulus(3);
+  EXPECT_DOUBLE_EQ(*scene.torsional_stiffness, 1.5);
+  EXPECT_DOUBLE_EQ(*scene.torsional_stiffness / scene.bending_stiffness(), ratio);
+}
+
+TEST(Frames, HeldTwistIsInNoPlane) {
+  Scene scene = test::heavy_scene(1, 0);
+  scene.grippers.push_back({.at = 1, .position = {0.8, 0, 0}, .direction = Vector3d::UnitX()});
+  EXPECT_TRUE(scene.planar());
+  scene.grippers[0].frame = FrameHold{};
+  EXPECT_TRUE(scene.planar());
+  scene.grippers[1].frame = FrameHold{.d1 = std::nullopt, .roll = 1};
+  EXPECT_FALSE(scene.planar());
+}
+
+}  // namespace
+}  // namespace dlo::compare
