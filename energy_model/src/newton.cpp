@@ -68,13 +68,15 @@ void Newton::factor(SpanSolution& solution) {
   system_.bottomLeftCorner(m, n) = jacobian_;
   system_.bottomRightCorner(m, m).setZero();
   lu_.compute(system_);
-  if (stands_still_)
-    find_neutral(neutral + rounded_curvature * (load_ + solution.multipliers.norm()));
+  if (!stands_still_) return;
+  pull_ = 1 + load_ + solution.multipliers.norm();
+  find_neutral();
 }
 
-/// Into neutral_: orthonormal vectors that the system makes shorter than `limit`, by inverse
-/// iteration. A step along them would be any.
-void Newton::find_neutral(double limit) {
+/// Into neutral_: orthonormal vectors that the system makes shorter than `neutral`, by inverse
+/// iteration; a step along them would be any. Multipliers count by their own size, or a gap that
+/// grips hardly close would pass for neutral.
+void Newton::find_neutral() {
   const Eigen::Index size = system_.rows();
   neutral_.resize(size, 0);
   const Eigen::VectorXd seed = Eigen::VectorXd::LinSpaced(size, 1, 2).normalized();
@@ -82,15 +84,24 @@ void Newton::find_neutral(double limit) {
     Eigen::VectorXd v = seed;
     double shrinks = 1;
     for (int i = 0; i < 2; ++i) {
+      v.tail(residual_.size()) /= pull_;
       v = lu_.solve(v);
+      v.tail(residual_.size()) /= pull_;
       v -= neutral_ * (neutral_.transpose() * v);
       shrinks = 1 / v.norm();
       v *= shrinks;
     }
-    if (!(shrinks < limit)) return;
+    if (!(shrinks < neutral)) return;
     neutral_.conservativeResize(Eigen::NoChange, found + 1);
     neutral_.col(found) = v;
   }
+}
+
+void Newton::stand_still() {
+  auto multipliers = step_.tail(residual_.size());
+  multipliers /= pull_;
+  step_ -= neutral_ * (neutral_.transpose() * step_);
+  multipliers *= pull_;
 }
 
 /// Into step_, from gradient_ and residual_.
@@ -103,7 +114,7 @@ void Newton::solve() {
   right_.resize(gradient_.size() + residual_.size());
   right_ << -gradient_, -residual_;
   step_ = lu_.solve(right_);
-  if (stands_still_) step_ -= neutral_ * (neutral_.transpose() * step_);
+  if (stands_still_) stand_still();
   // A neutral direction leaves the system singular; least squares stands still along it.
   const double moved = step_.head(gradient_.size()).norm();
   if (!((system_ * step_ - right_).norm() <= 1e-6 * right_.norm()) || moved > 1e3) {

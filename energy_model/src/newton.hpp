@@ -12,9 +12,6 @@ namespace dlo::energy_model {
 /// are measured against them.
 inline constexpr double largest_pull = 1e10;
 
-/// Curvature over the forces below which rounding alone would move a shape visibly.
-inline constexpr double rounded_curvature = 1e-9;
-
 /// Newton's method on the gradient of E - mu . c and on the constraints, with its buffers. Without
 /// constraints and walls it allocates nothing once they have their size.
 class Newton {
@@ -36,7 +33,8 @@ class Newton {
   void begin(SpanSolution& solution);
   [[nodiscard]] double evaluate(SpanSolution& solution);
   void factor(SpanSolution& solution);
-  void find_neutral(double limit);
+  void find_neutral();
+  void stand_still();
   void solve();
   void stand_still_where_neutral();
   void move(SpanSolution& solution, double length);
@@ -47,6 +45,7 @@ class Newton {
 
   double load_ = 0;
   bool stands_still_ = false;
+  double pull_ = 1;  // scale of forces
   Eigen::VectorXd gradient_, residual_, right_, step_, first_step_;
   Eigen::MatrixXd jacobian_, hessian_, system_, neutral_;
   Eigen::LLT<Eigen::MatrixXd> llt_;

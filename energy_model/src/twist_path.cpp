@@ -30,6 +30,9 @@ constexpr double branch_share = 0.05;
 /// The same for a step after which the next one may be longer.
 constexpr double smooth_share = 0.005;
 
+/// Curvature over the forces below which rounding alone would move a shape visibly.
+constexpr double rounded_curvature = 1e-9;
+
 /// Push along the direction in which a shape gives way, and how often it is made larger.
 constexpr double first_push = 0.1;
 constexpr int most_pushes = 4;

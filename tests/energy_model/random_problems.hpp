@@ -12,8 +12,9 @@
 
 namespace dlo::test {
 
-/// Where a random rod, its grips and its forces lie: in the x-y plane or anywhere.
-enum class RandomSpace { plane, space };
+/// Where a random rod, its grips and its forces lie: in the x-y plane or anywhere; there it may be
+/// twisted too.
+enum class RandomSpace { plane, space, twisted };
 
 /// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine and with every library,
 /// which the distributions of <random> do not promise.
@@ -117,12 +118,18 @@ inline std::vector<double> random_grip_places(RandomNumbers& random, int count) 
   }
 }
 
+inline energy_model::Problem twisted_problem(std::uint64_t number);
+
 /// A rod of unit length and stiffness under a weight along -y with Gamma = w l^3 / (EI) between
 /// 1e-2 and 1e4, 1 to 3 clamps and pins and 0 to 3 loads of up to 0.6 (1 + Gamma) EI/l^2 each.
 /// Grips can be reached: they are read off a random curve, and then in one of three problems turned
 /// at random, in one of three moved towards each other. The same number always gives the same
 /// problem.
+///
+/// What is twisted is one of those in space with two grips or more, all of them clamps that hold
+/// frames, turned by up to three turns, with GJ of 0.4 to 1.2 EI.
 inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace space) {
+  if (space == RandomSpace::twisted) return twisted_problem(number);
   RandomNumbers random(2 * number + (space == RandomSpace::space ? 1 : 0));
   energy_model::Problem problem;
   problem.length = 1;
@@ -148,6 +155,23 @@ inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace sp
     const double size = random.uniform(0, 0.6) * (1 + gamma);
     const double at = random.chance(0.3) ? 1 : random_arc_length(random, 0, 1);
     problem.loads.push_back({at, size * random.direction(space)});
+  }
+  return problem;
+}
+
+inline energy_model::Problem twisted_problem(std::uint64_t number) {
+  constexpr double most_turns = 3;
+  constexpr std::uint64_t of_their_own = 1U << 20U;
+  RandomNumbers random(of_their_own + number);
+  energy_model::Problem problem;
+  for (std::uint64_t next = of_their_own + 64 * number; problem.grips.size() < 2; ++next) {
+    problem = random_problem(next, RandomSpace::space);
+  }
+  problem.torsional_stiffness = random.uniform(0.4, 1.2);
+  for (energy_model::Grip& grip : problem.grips) {
+    if (!grip.direction) grip.direction = random.direction(RandomSpace::space);
+    grip.frame = energy_model::FrameHold{};
+    grip.frame->roll = 2 * std::numbers::pi * random.uniform(-most_turns, most_turns) / 2;
   }
   return problem;
 }

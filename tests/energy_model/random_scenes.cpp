@@ -1,6 +1,7 @@
 // Random scenes, the minimiser against multiple shooting, each shape against force and torque
 // balance. Prints what converged, what was refused and why, the slowest, and how both agree.
-//   dlo_random_scenes [--plane N] [--space N] [--first K] [--time-limit SECONDS] [--write FOLDER]
+//   dlo_random_scenes [--plane N] [--space N] [--twisted N] [--first K] [--time-limit SECONDS]
+//   [--write FOLDER]
 // Ends with 0 if no two converged shapes contradict each other, no equilibrium is out of balance
 // and no solve overran the limit; 1 if not; 2 for bad usage.
 
@@ -26,6 +27,7 @@ using dlo::test::RandomSpace;
 struct Options {
   std::uint64_t plane = 200;
   std::uint64_t space = 200;
+  std::uint64_t twisted = 100;
   std::uint64_t first = 0;
   double time_limit = 20;
   std::string folder;
@@ -42,6 +44,8 @@ Options read_options(int argc, char** argv) {
       options.plane = std::stoul(value, &used);
     } else if (name == "--space") {
       options.space = std::stoul(value, &used);
+    } else if (name == "--twisted") {
+      options.twisted = std::stoul(value, &used);
     } else if (name == "--first") {
       options.first = std::stoul(value, &used);
     } else if (name == "--time-limit") {
@@ -98,9 +102,14 @@ struct Tally {
 /// A shape whose forces and torques do not balance to this is no equilibrium.
 constexpr double largest_defect = 1e-6;
 
+const char* name_of(RandomSpace space) {
+  if (space == RandomSpace::twisted) return "twisted";
+  return space == RandomSpace::plane ? "plane" : "space";
+}
+
 /// @return how many scenes must not be as they are
 int run(const Options& options, RandomSpace space, std::uint64_t count) {
-  const char* kind = space == RandomSpace::plane ? "plane" : "space";
+  const char* kind = name_of(space);
   if (count == 0) return 0;
   Tally energy;
   Tally exact;
@@ -169,7 +178,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   const int bad = run(options, RandomSpace::plane, options.plane) +
-                  run(options, RandomSpace::space, options.space);
+                  run(options, RandomSpace::space, options.space) +
+                  run(options, RandomSpace::twisted, options.twisted);
   std::printf("%d scenes contradict, are out of balance or overran the limit\n", bad);
   return bad == 0 ? 0 : 1;
 }

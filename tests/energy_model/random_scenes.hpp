@@ -117,6 +117,9 @@ inline std::string scene_text(const energy_model::Problem& problem, const std::s
   text << "name = \"" << name << "\"\ngravity = [0, -9.81, 0]\n\n[rod]\nlength = " << problem.length
        << "\ndiameter = " << diameter << "\nmaterial = { youngs_modulus = " << modulus
        << ", density = " << density << " }\n";
+  if (problem.torsional_stiffness > 0) {
+    text << "torsional_stiffness = " << problem.torsional_stiffness << "\n";
+  }
   for (const energy_model::Grip& grip : problem.grips) {
     text << "\n[[gripper]]\nat = " << grip.at << "\nposition = ";
     vector(grip.position);
@@ -124,6 +127,7 @@ inline std::string scene_text(const energy_model::Problem& problem, const std::s
       text << "direction = ";
       vector(*grip.direction);
     }
+    if (grip.frame) text << "roll = " << grip.frame->roll << "\n";
     text << "hold = \"" << (grip.direction ? "clamp" : "pin") << "\"\n";
   }
   for (const energy_model::Load& load : problem.loads) {
