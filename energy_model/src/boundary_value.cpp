@@ -20,7 +20,7 @@ constexpr double last_step = 1e-9;      // Newton's next one is of the size of r
 double largest_force(const RodSpan& span, const std::vector<RodState>& nodes) {
   double force = std::max(1.0, total_load(span));
   for (const RodState& node : nodes) {
-    force = std::max({force, node.n.norm(), node.v.squaredNorm()});
+    force = std::max({force, node.n.norm(), node.v.squaredNorm(), node.torque * node.torque});
   }
   return force;
 }
@@ -99,8 +99,7 @@ std::optional<double> levenberg_step(const ShootingSystem& system, Triplets deri
 
 ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector<RodState>& start,
                      const ShootingOptions& options) {
-  const ShootingSystem system(span, mesh, options.planar, options.tolerance,
-                              largest_force(span, start), options.deadline);
+  const ShootingSystem system(span, mesh, options, largest_force(span, start));
   std::vector<ShootingNode> nodes;
   nodes.reserve(start.size());
   for (const RodState& state : start) nodes.push_back(system.make_node(state));
