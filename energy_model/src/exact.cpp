@@ -220,15 +220,20 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
                          : solve_spans(problem, options, deadline);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const bool twisted = std::any_of(problem.grips.begin(), problem.grips.end(),
+                                   [](const Grip& grip) { return grip.frame.has_value(); });
   for (Equilibrium& equilibrium : found.equilibria) {
     equilibrium.seconds = seconds;
     if (!found.left_out.empty()) equilibrium.message += "; " + found.left_out;
     if (!found.out_of_time) continue;
     const bool holds = static_cast<bool>(equilibrium.sample);
+    const std::string reached = equilibrium.message;
     equilibrium.status = SolveStatus::time_limit;
     equilibrium.message = std::string(to_string(equilibrium.status)) + " after " +
                           std::to_string(options.time_limit) + " s" +
-                          (holds ? ": others may be lower" : "");
+                          (holds     ? ": others may be lower"
+                           : twisted ? ": " + reached
+                                     : "");
   }
   return std::move(found.equilibria);
 }

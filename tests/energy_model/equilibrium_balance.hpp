@@ -15,10 +15,11 @@ namespace dlo::test {
 
 /// How far a shape is from what defines an equilibrium, from its samples and reactions alone.
 struct BalanceDefects {
-  double force = 0;     ///< |sum of all forces on the rod| over the largest of them
-  double torque = 0;    ///< of all torques about a section, the largest of all sections, over
-                        ///< largest force times l plus largest torque
-  double moment = 0;    ///< largest |EI t x t' - torque of all that lies beyond|, over the same
+  double force = 0;   ///< |sum of all forces on the rod| over the largest of them
+  double torque = 0;  ///< of all torques about a section, the largest of all sections, over
+                      ///< largest force times l plus largest torque
+  /// Largest |EI t x t' + torque of twist t - torque of all that lies beyond|, over the same.
+  double moment = 0;
   double grips = 0;     ///< positions over l, and directions
   double integral = 0;  ///< largest |r(b) - r(a) - int t ds| over l, and ||t| - 1|
 
@@ -138,9 +139,13 @@ inline BalanceDefects balance_of(const energy_model::Problem& problem,
     // Where something happens, the curvature has a kink or a jump.
     const bool event = std::binary_search(events.begin(), events.end(), cuts[c]);
     if (!event) {
-      const Eigen::Vector3d moment =
+      Eigen::Vector3d moment =
           problem.bending_stiffness * Eigen::Vector3d(at_cuts.tangents.col(here))
                                           .cross(Eigen::Vector3d(at_cuts.curvature.col(here)));
+      for (const energy_model::TwistedPart& part : shape.twists) {
+        if (part.begin > cuts[c] || part.end < cuts[c]) continue;
+        moment += part.torque * at_cuts.tangents.col(here);
+      }
       const Eigen::Vector3d carried = beyond.torque_about_origin - point.cross(beyond.force);
       raise(defects.moment, (moment - carried).norm() / torque_unit);
     }
