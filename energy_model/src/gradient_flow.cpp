@@ -7,8 +7,8 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr int most_steps = 120;
-constexpr int step_iterations = 15;       // of Newton's method, which starts nearby
+constexpr int most_steps = 200;
+constexpr int step_iterations = 10;       // of Newton's method, which starts nearby
 constexpr double first_duration = 0.01;   // of a step, in the rod's units: it bends in about 1 / 40
 constexpr double shortest = 1e-8;         // step
 constexpr double longest = 1e8;           // step
@@ -18,6 +18,7 @@ constexpr double settled = 3e-3;          // turn in a step of at least settled_
 constexpr double settled_duration = 0.1;  // several times that of most modes
 constexpr double departure = 0.1;         // from a saddle: largest change of a tangent [rad]
 constexpr int most_departures = 6;
+constexpr int steps_after_failure = 3;  // of equal duration: a failure costs as much as ten of them
 
 Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& nodes) {
   Eigen::Matrix3Xd tangents(3, static_cast<Eigen::Index>(nodes.size()));
@@ -32,21 +33,13 @@ double largest_turn(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
 }
 
 /// One step, from nodes near `aim` and to it.
-ShootingResult step(const RodSpan& span, const RodMesh& mesh, std::vector<RodState> nodes,
+ShootingResult step(const RodSpan& span, RodMesh mesh, const std::vector<RodState>& nodes,
                     const Eigen::Matrix3Xd& aim, double duration, ShootingOptions options) {
-  RodMesh pulled = mesh;
-  const Eigen::Index last = mesh.intervals();
-  for (Eigen::Index i = 0; i < last; ++i) {
-    const double h = mesh.s[i + 1] - mesh.s[i];
-    pulled.weight.col(i) -= (aim.col(i + 1) - aim.col(i)) / (h * duration);
-    nodes[static_cast<std::size_t>(i)].n += aim.col(i) / duration;
+  for (Eigen::Index i = 1; i < mesh.intervals(); ++i) {
+    mesh.pull.col(i) = (mesh.s[i + 1] - mesh.s[i - 1]) / (2 * duration) * aim.col(i);
   }
   options.max_iterations = step_iterations;
-  ShootingResult result = shoot(span, pulled, nodes, options);
-  for (Eigen::Index i = 0; i < last; ++i) {
-    result.nodes[static_cast<std::size_t>(i)].n -= aim.col(i) / duration;
-  }
-  return result;
+  return shoot(span, mesh, nodes, options);
 }
 
 }  // namespace
@@ -58,6 +51,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
   failed.message = "the gradient flow did not settle";
   double duration = first_duration;
   int departures = 0;
+  int wait = 0;  // steps before the next longer one
   for (int k = 0; k < most_steps && duration > shortest; ++k) {
     if (options.deadline.passed()) {
       failed.message = to_string(SolveStatus::time_limit);
@@ -69,8 +63,10 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
     const double turn = largest_turn(reached, aim);
     if (!result.converged || turn > most_turn) {
       duration /= 4;
+      wait = steps_after_failure;
       continue;
     }
+    --wait;
     start = std::move(result.nodes);
     aim = std::move(reached);
     if (turn < settled && duration > settled_duration) {
@@ -88,7 +84,8 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
         continue;
       }
     }
-    if (turn < small_turn) duration = std::min(longest, duration * (turn < settled ? 10 : 3));
+    if (turn < small_turn && wait < 0)
+      duration = std::min(longest, duration * (turn < settled ? 10 : 3));
   }
   return failed;
 }

@@ -8,9 +8,9 @@ namespace dlo::energy_model {
 
 /// Where the gradient flow t_ = -grad E of a clamped span leads, by backward Euler: a step of
 /// duration D from the tangents p is the equilibrium next to them with
-///     E + int |t - p|^2 / (2 D) ds,
-/// that is with n + p / D in place of n, which multiple shooting takes as a weight per length (p is
-/// linear along the intervals). Steps are longer the less a step turns the tangents; the last ones
+///     E + sum w |t - p|^2 / (2 D),
+/// the sum over the nodes of multiple shooting with their share w of the length, where t' jumps by
+/// -w (p - (p.t) t) / D. Steps are longer the less a step turns the tangents; the last ones
 /// are Newton's method without p. Where that leads to an unstable shape, the flow starts beside it
 /// again, along the mode of its smallest eigenvalue.
 /// @param start    cross-sections at the nodes of the mesh; need not be an equilibrium

@@ -137,8 +137,8 @@ RodMesh make_mesh(const RodSpan& span, double longest) {
 RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
   RodMesh mesh;
   mesh.s = nodes;
-  mesh.weight = span.weight.replicate(1, mesh.intervals());
   mesh.load = Eigen::Matrix3Xd::Zero(3, nodes.size());
+  mesh.pull = mesh.load;
   mesh.hold.assign(static_cast<std::size_t>(nodes.size()), nullptr);
   const auto node_at = [&](double s) {
     return std::lower_bound(nodes.begin(), nodes.end(), s) - nodes.begin();

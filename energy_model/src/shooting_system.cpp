@@ -144,7 +144,7 @@ double ShootingSystem::gap(const std::vector<ShootingNode>& nodes) const {
     RodState end = nodes[i].state;
     RodIntegrals integrals;
     const auto k = static_cast<Eigen::Index>(i);
-    if (!follow_rod(mesh_.weight.col(k), mesh_.s[k + 1] - mesh_.s[k], tolerance_, end, integrals)) {
+    if (!follow_rod(span_.weight, mesh_.s[k + 1] - mesh_.s[k], tolerance_, end, integrals)) {
       return INFINITY;
     }
     largest = std::max(largest, (end.t - nodes[i + 1].state.t).cwiseAbs().maxCoeff());
@@ -266,15 +266,15 @@ bool ShootingSystem::interval_equations(const std::vector<ShootingNode>& nodes, 
     change.n.middleCols(2 * turns, d) = rate_ * rate_ * axes_;
     if (frames_) change.torque[bends] = rate_;
   }
-  if (!follow_rod(mesh_.weight.col(i), mesh_.s[i + 1] - mesh_.s[i], tolerance_, end, change,
-                  integrals)) {
+  if (!follow_rod(span_.weight, mesh_.s[i + 1] - mesh_.s[i], tolerance_, end, change, integrals)) {
     return false;
   }
   const double force = rate_ * rate_;
+  const Eigen::Vector3d v = end.v - mesh_.pull.col(i + 1);  // across the tangent
   equations.segment(row, d) = axes_.transpose() * (end.r - next.state.r);
   equations.segment(row + layout_.t(), turns) = next.across.transpose() * end.t;
   equations.segment(row + layout_.v(), turns) =
-      next.across.transpose() * (end.v - next.state.v) / rate_;
+      next.across.transpose() * (v - next.state.v) / rate_;
   if (hold != nullptr) {
     equations.segment(row + layout_.n(), d) = axes_.transpose() * (next.state.r - hold->position);
   } else {
@@ -298,7 +298,7 @@ bool ShootingSystem::interval_equations(const std::vector<ShootingNode>& nodes, 
   // `across` turns with the next tangent, v keeps its components in it.
   add_block(*derivatives, row + layout_.t(), other + layout_.t(), -next.state.t.dot(end.t) * turn);
   add_block(*derivatives, row + layout_.v(), other + layout_.t(),
-            -next.state.t.dot(end.v) / rate_ * turn);
+            -next.state.t.dot(v) / rate_ * turn);
   add_block(*derivatives, row + layout_.v(), other + layout_.v(), -turn);
   if (hold != nullptr) {
     add_block(*derivatives, row + layout_.n(), other, one);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double first_step = 0.5;           // of the roll [rad]
 constexpr double longest_step = 3;           // [rad]
-constexpr double shortest_step = 1.0 / 256;  // [rad]
+constexpr double shortest_step = 1.0 / 64;  // [rad]
 constexpr int few_shots = 12;                // Newton's method takes two an iteration
 constexpr int step_iterations = 12;       // of Newton's method: more are slower than a shorter step
 constexpr double most_turn = 0.5;         // of a tangent in a step [rad]
