@@ -16,7 +16,7 @@ namespace {
 constexpr double largest_turn = 0.5;    // of a tangent in one Newton step [rad]
 constexpr double smallest_part = 1e-3;  // of a Newton step
 constexpr double last_step = 1e-9;      // Newton's next one is of the size of rounding
-constexpr double nearly_closed = 1e-5;  // gaps of a twisted rod, from which on it must not drift
+constexpr double nearly_closed = 0.1;   // gaps of a twisted rod, from which on it must not drift
 constexpr double least_weight = 1e-12;  // of Levenberg's: its root is far above rounding
 
 double largest_force(const RodSpan& span, const std::vector<RodState>& nodes) {
@@ -109,19 +109,20 @@ std::optional<double> last_steps(const ShootingSystem& system, const Triplets& d
                                  const Eigen::VectorXd& equations, std::vector<ShootingNode>& nodes,
                                  int& shots) {
   const double gaps = equations.norm();
-  const std::optional<Eigen::VectorXd> step =
-      regular_step(derivatives, equations, std::max(gaps, least_weight));
-  if (!step) return std::nullopt;
-  const std::vector<ShootingNode> trial = system.moved(nodes, *step);
-  const double largest = step->lpNorm<Eigen::Infinity>();
   Eigen::VectorXd trial_equations;
-  ++shots;
-  if (!system.evaluate(trial, trial_equations, nullptr)) return std::nullopt;
-  if (trial_equations.norm() > (largest < last_step ? system.closed() : gaps / 2)) {
-    return std::nullopt;
+  for (double weight = std::max(gaps * gaps, least_weight); weight <= std::max(gaps, least_weight);
+       weight *= 30) {
+    const std::optional<Eigen::VectorXd> step = regular_step(derivatives, equations, weight);
+    if (!step) return std::nullopt;
+    const std::vector<ShootingNode> trial = system.moved(nodes, *step);
+    const double largest = step->lpNorm<Eigen::Infinity>();
+    ++shots;
+    if (!system.evaluate(trial, trial_equations, nullptr)) return std::nullopt;
+    if (trial_equations.norm() > (largest < last_step ? system.closed() : gaps / 2)) continue;
+    nodes = trial;
+    return largest;
   }
-  nodes = trial;
-  return largest;
+  return std::nullopt;
 }
 
 }  // namespace

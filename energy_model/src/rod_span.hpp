@@ -48,9 +48,9 @@ struct RodSpan {
 
 /// The nodes of a span: ends, grips and loads, and as many between them as are asked for.
 struct RodMesh {
-  Eigen::VectorXd s;                       ///< growing, at least 2
-  Eigen::Matrix3Xd load;                   ///< on each node
-  Eigen::Matrix3Xd pull;                   ///< q on each node's tangent, of energy -q.t; zero
+  Eigen::VectorXd s;      ///< growing, at least 2
+  Eigen::Matrix3Xd load;  ///< on each node
+  Eigen::Matrix3Xd pull;  ///< q on each node's tangent, of energy -q.t; zero at first
   std::vector<const RodSpan::Hold*> hold;  ///< at each node, null for none; of the span
 
   [[nodiscard]] Eigen::Index intervals() const { return s.size() - 1; }

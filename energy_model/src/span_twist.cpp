@@ -11,10 +11,10 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double first_step = 0.5;           // of the roll [rad]
-constexpr double longest_step = 3;           // [rad]
+constexpr double first_step = 0.5;          // of the roll [rad]
+constexpr double longest_step = 3;          // [rad]
 constexpr double shortest_step = 1.0 / 64;  // [rad]
-constexpr int few_shots = 12;                // Newton's method takes two an iteration
+constexpr int few_shots = 12;               // Newton's method takes two an iteration
 constexpr int step_iterations = 12;       // of Newton's method: more are slower than a shorter step
 constexpr double most_turn = 0.5;         // of a tangent in a step [rad]
 constexpr double most_correction = 0.15;  // of a predicted tangent [rad]
@@ -88,6 +88,10 @@ class Continuation {
         step = std::min(longest_step, step * factor);
         continue;
       }
+      if (!before_.nodes.empty()) {
+        before_ = {};  // a shape that has slid for nearly nothing spoils the secant
+        continue;
+      }
       if (step > shortest_step) {
         step /= 2;
         continue;
@@ -117,7 +121,7 @@ class Continuation {
                                  span_.twist->stiffness}};
   }
 
-  SpanEquilibrium failure(const std::string& message) {
+  [[nodiscard]] SpanEquilibrium failure(const std::string& message) const {
     SpanEquilibrium failed;
     failed.shots = shots_;
     failed.message = "twisted by a roll of " + std::to_string(reached_) + " of " +

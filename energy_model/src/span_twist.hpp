@@ -9,10 +9,11 @@ namespace dlo::energy_model {
 
 /// Twists a span by what its clamps ask for (Problem), from its equilibrium without twist on.
 ///
-/// Natural continuation in the roll of the end's frame: Newton's method starts from a secant, the
-/// steps grow where it takes few shots and are halved where it does not converge or the shape
-/// jumps. Where a shape has become unstable, and where the branch ends at a fold, the rod follows
-/// the gradient flow of its energy, by backward Euler, to a shape that is stable at that roll.
+/// Natural continuation in the roll of the end's frame: Newton's method starts from a secant, or
+/// else from the last shape; the steps grow where it takes few shots and are halved where it does
+/// not converge or the shape jumps. Where a shape has become unstable, and where the branch ends at
+/// a fold, the rod follows the gradient flow of its energy, by backward Euler, to a shape that is
+/// stable at that roll.
 /// @param span     with `twist`
 /// @param without  equilibrium without frames
 /// @return not converged, and the roll that was reached in the message, if a step failed

@@ -98,7 +98,8 @@ RodState ring_state(double c, double angle, double s) {
 }
 
 TEST(TwistedSecondVariation, VanishesWhereMichellsRingBuckles) {
-  // At a twist of 2 pi 3^(1/2) / c, in two ways. It turns about the clamps' line for nothing before.
+  // At a twist of 2 pi 3^(1/2) / c, in two ways. It turns about the clamps' line for nothing
+  // before.
   for (const double c : {0.6, 1.0, 1.5}) {
     const RodSpan span = span_of(clamped({0, 0, 0}, {1, 0, 0}, c, 0));
     const auto stability = [&](double angle) {
