@@ -16,11 +16,13 @@ namespace {
 constexpr double largest_turn = 0.5;    // of a tangent in one Newton step [rad]
 constexpr double smallest_part = 1e-3;  // of a Newton step
 constexpr double last_step = 1e-9;      // Newton's next one is of the size of rounding
+constexpr double nearly_closed = 0.1;   // gaps of a twisted rod, from which on it must not drift
+constexpr double least_weight = 1e-12;  // of Levenberg's: its root is far above rounding
 
 double largest_force(const RodSpan& span, const std::vector<RodState>& nodes) {
   double force = std::max(1.0, total_load(span));
   for (const RodState& node : nodes) {
-    force = std::max({force, node.n.norm(), node.v.squaredNorm()});
+    force = std::max({force, node.n.norm(), node.v.squaredNorm(), node.torque * node.torque});
   }
   return force;
 }
@@ -65,32 +67,60 @@ std::optional<double> newton_step(const ShootingSystem& system, const Triplets& 
   return std::nullopt;
 }
 
-/// Levenberg's step with a weight of the order of the gaps: it makes them smaller and moves nothing
-/// that can move for nothing, where Newton's step is not defined.
-std::optional<double> levenberg_step(const ShootingSystem& system, Triplets derivatives,
-                                     const Eigen::VectorXd& equations,
-                                     std::vector<ShootingNode>& nodes, int& shots) {
-  const Eigen::Index size = system.size();
-  const std::size_t own = derivatives.size();
+/// The step for which |derivatives step + equations|^2 + weight |step|^2 is least.
+std::optional<Eigen::VectorXd> regular_step(Triplets derivatives, const Eigen::VectorXd& equations,
+                                            double weight) {
+  const Eigen::Index size = equations.size();
+  for (Eigen::Index i = 0; i < size; ++i) {
+    derivatives.emplace_back(static_cast<int>(size + i), static_cast<int>(i), std::sqrt(weight));
+  }
+  const Solver solver(matrix_of(derivatives, 2 * size, size));
+  if (solver.info() != Eigen::Success) return std::nullopt;
   Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
   right.head(size) = -equations;
+  return Eigen::VectorXd(solver.solve(right));
+}
+
+/// Levenberg's step with a weight of the order of the gaps: it makes them smaller and moves nothing
+/// that can move for nothing, where Newton's step is not defined.
+std::optional<double> levenberg_step(const ShootingSystem& system, const Triplets& derivatives,
+                                     const Eigen::VectorXd& equations,
+                                     std::vector<ShootingNode>& nodes, int& shots) {
   Eigen::VectorXd trial_equations;
   for (double weight = equations.norm(); weight < 1e6 && !system.out_of_time(); weight *= 8) {
-    derivatives.resize(own);
-    for (Eigen::Index i = 0; i < size; ++i) {
-      derivatives.emplace_back(static_cast<int>(size + i), static_cast<int>(i), std::sqrt(weight));
-    }
-    Solver solver(matrix_of(derivatives, 2 * size, size));
-    if (solver.info() != Eigen::Success) return std::nullopt;
-    const Eigen::VectorXd step = solver.solve(right);
+    const std::optional<Eigen::VectorXd> step = regular_step(derivatives, equations, weight);
+    if (!step) return std::nullopt;
     ++shots;
-    const std::vector<ShootingNode> trial = system.moved(nodes, step);
-    if (system.turn(step) > largest_turn || !system.evaluate(trial, trial_equations, nullptr) ||
+    const std::vector<ShootingNode> trial = system.moved(nodes, *step);
+    if (system.turn(*step) > largest_turn || !system.evaluate(trial, trial_equations, nullptr) ||
         trial_equations.norm() > equations.norm()) {
       continue;
     }
     nodes = trial;
-    return step.lpNorm<Eigen::Infinity>();
+    return step->lpNorm<Eigen::Infinity>();
+  }
+  return std::nullopt;
+}
+
+/// The same near the end, where a twisted rod would drift: a buckle far from both clamps moves
+/// along the rod, and turns about its line, for nearly nothing, so that Newton's steps stay long.
+/// As fast as Newton's method in all other directions (Yamashita and Fukushima 2001).
+std::optional<double> last_steps(const ShootingSystem& system, const Triplets& derivatives,
+                                 const Eigen::VectorXd& equations, std::vector<ShootingNode>& nodes,
+                                 int& shots) {
+  const double gaps = equations.norm();
+  Eigen::VectorXd trial_equations;
+  for (double weight = std::max(gaps * gaps, least_weight); weight <= std::max(gaps, least_weight);
+       weight *= 30) {
+    const std::optional<Eigen::VectorXd> step = regular_step(derivatives, equations, weight);
+    if (!step) return std::nullopt;
+    const std::vector<ShootingNode> trial = system.moved(nodes, *step);
+    const double largest = step->lpNorm<Eigen::Infinity>();
+    ++shots;
+    if (!system.evaluate(trial, trial_equations, nullptr)) return std::nullopt;
+    if (trial_equations.norm() > (largest < last_step ? system.closed() : gaps / 2)) continue;
+    nodes = trial;
+    return largest;
   }
   return std::nullopt;
 }
@@ -99,8 +129,7 @@ std::optional<double> levenberg_step(const ShootingSystem& system, Triplets deri
 
 ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector<RodState>& start,
                      const ShootingOptions& options) {
-  const ShootingSystem system(span, mesh, options.planar, options.tolerance,
-                              largest_force(span, start), options.deadline);
+  const ShootingSystem system(span, mesh, options, largest_force(span, start));
   std::vector<ShootingNode> nodes;
   nodes.reserve(start.size());
   for (const RodState& state : start) nodes.push_back(system.make_node(state));
@@ -118,7 +147,11 @@ ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector
       result.message = "the integrator gave up";
       break;
     }
-    std::optional<double> step = newton_step(system, derivatives, equations, nodes, result.shots);
+    std::optional<double> step;
+    if (options.frames && equations.norm() < nearly_closed) {
+      step = last_steps(system, derivatives, equations, nodes, result.shots);
+    }
+    if (!step) step = newton_step(system, derivatives, equations, nodes, result.shots);
     if (!step) step = levenberg_step(system, derivatives, equations, nodes, result.shots);
     if (!step) {
       result.message = "Newton's method found no shorter step";

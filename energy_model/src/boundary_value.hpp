@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,11 +11,20 @@
 
 namespace dlo::energy_model {
 
+/// The rod's frame at the clamps of a span: its first directors, unit and across the directions.
+struct HeldFrames {
+  Eigen::Vector3d start;
+  Eigen::Vector3d end;
+  double stiffness;  ///< c = GJ / EI
+};
+
 struct ShootingOptions {
   double tolerance = 1e-13;  ///< of the integrator, see follow_rod
   bool planar = false;       ///< stay in the span's plane
   int max_iterations = 60;   ///< Newton steps
   Deadline deadline{};       ///< the result is a failure once it has passed
+  /// Of a rod with twist, in space; its torque is unknown. The start's d are those of its frame.
+  std::optional<HeldFrames> frames{};
 };
 
 struct [[nodiscard]] ShootingResult {
@@ -29,7 +40,9 @@ struct [[nodiscard]] ShootingResult {
 /// method closes the gaps in r, t, v and n (which jumps by a load). At a grip the position is given
 /// and n free instead; at a clamp t is given, at a free end v = n = 0. At each node Newton moves in
 /// minimal coordinates: r and n, a turn of t and a change of v across t, which makes the system
-/// square. Steps are damped until the next simplified step is shorter (Deuflhard's natural
+/// square. Of a rod with held frames Newton also turns the frames about t, which twist by M h / c
+/// over an interval h, and changes M at each node: so whole turns are counted and the matrix stays
+/// banded. Steps are damped until the next simplified step is shorter (Deuflhard's natural
 /// monotonicity); where there is no such step, because the rod can move for nothing or nearly so, a
 /// Levenberg step makes the gaps smaller.
 ///

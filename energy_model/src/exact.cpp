@@ -36,7 +36,7 @@ struct Pieces {
 };
 
 /// What the grips of a span feel from it: the force that makes up for the jump of n, the torque
-/// that bends the rod as it is bent at its clamps.
+/// that bends and twists the rod as it is at its clamps.
 void add_reactions(const RodSpan& span, const SpanEquilibrium& equilibrium, double force_unit,
                    double torque_unit, std::vector<Reaction>& reactions) {
   const auto nodes = static_cast<std::ptrdiff_t>(equilibrium.nodes.size());
@@ -54,10 +54,18 @@ void add_reactions(const RodSpan& span, const SpanEquilibrium& equilibrium, doub
     }
     Reaction& reaction = reactions[hold.grip];
     reaction.force += force_unit * force;
-    const Eigen::Vector3d moment = torque_unit * node.t.cross(node.v);
+    Eigen::Vector3d moment = torque_unit * node.t.cross(node.v);
+    if (span.twist) moment += torque_unit * node.torque * node.t;
     if (i == 0 && span.start_direction) reaction.torque -= moment;
     if (i + 1 == nodes && span.end_direction) reaction.torque += moment;
   }
+}
+
+TwistedPart twisted_part(const Problem& problem, const RodSpan& span, double torque) {
+  return {.begin = span.begin * problem.length,
+          .end = (span.begin + span.length) * problem.length,
+          .angle = torque * span.length / span.twist->stiffness,
+          .torque = torque * problem.bending_stiffness / problem.length};
 }
 
 /// Loads on clamps belong to no span.
@@ -115,16 +123,21 @@ Equilibrium assemble(const Problem& problem, const Pieces& pieces, double tolera
     }
     const Energies energy = restore(problem, equilibrium.energy);
     result.energy.bending += energy.bending;
+    result.energy.twisting += energy.twisting;
     result.energy.gravity += energy.gravity;
     result.energy.load += energy.load;
     add_reactions(span, equilibrium, force_unit, torque_unit, result.grips);
+    if (span.twist) {
+      result.twists.push_back(twisted_part(problem, span, equilibrium.nodes.front().torque));
+    }
     stability.negative += equilibrium.stability.negative;
     stability.neutral += equilibrium.stability.neutral;
     stability.smallest = std::min(stability.smallest, equilibrium.stability.smallest);
   }
   if (result.status == SolveStatus::failed) {
-    result.energy = {NAN, NAN, NAN};
+    result.energy = {NAN, NAN, NAN, NAN};
     result.grips.clear();
+    result.twists.clear();
     return result;
   }
   add_loads_on_clamps(problem, result);
@@ -151,7 +164,8 @@ Found solve_spans(const Problem& problem, const ExactOptions& options, const Dea
   std::vector<std::vector<SpanCandidate>> candidates;
   for (const RodSpan& span : pieces.spans) {
     if (options.start == nullptr) {
-      SpanSearchResult search = search_span(span, options.tolerance, deadline);
+      SpanSearchResult search = span.twist ? search_twisted_span(span, options.tolerance, deadline)
+                                           : search_span(span, options.tolerance, deadline);
       result.out_of_time = result.out_of_time || !search.complete;
       found.push_back(std::move(search.found));
     } else {
@@ -206,15 +220,20 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
                          : solve_spans(problem, options, deadline);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  const bool twisted = std::any_of(problem.grips.begin(), problem.grips.end(),
+                                   [](const Grip& grip) { return grip.frame.has_value(); });
   for (Equilibrium& equilibrium : found.equilibria) {
     equilibrium.seconds = seconds;
     if (!found.left_out.empty()) equilibrium.message += "; " + found.left_out;
     if (!found.out_of_time) continue;
     const bool holds = static_cast<bool>(equilibrium.sample);
+    const std::string reached = equilibrium.message;
     equilibrium.status = SolveStatus::time_limit;
     equilibrium.message = std::string(to_string(equilibrium.status)) + " after " +
                           std::to_string(options.time_limit) + " s" +
-                          (holds ? ": others may be lower" : "");
+                          (holds     ? ": others may be lower"
+                           : twisted ? ": " + reached
+                                     : "");
   }
   return std::move(found.equilibria);
 }

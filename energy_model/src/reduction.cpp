@@ -76,6 +76,7 @@ Reaction clamp_reaction(const Problem& problem, const ReducedCantilever& reduced
 Energies restore(const Problem& problem, const Energies& own_units) {
   const double unit = problem.bending_stiffness / problem.length;
   return {.bending = own_units.bending * unit,
+          .twisting = own_units.twisting * unit,
           .gravity = own_units.gravity * unit,
           .load = own_units.load * unit};
 }

@@ -3,6 +3,7 @@
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_odeiv2.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -12,15 +13,21 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Layout of the integrated vector: r, t, v, bending, gravity, then r, t, v of each parameter.
-constexpr Eigen::Index state_size = 11;
-constexpr Eigen::Index variation_size = 9;
+/// Layout of the integrated vector: r, t, v, bending, gravity, d without twist if there is one,
+/// then r, t, v and with d its turn, of each parameter.
+constexpr Eigen::Index plain_state = 11;
+constexpr Eigen::Index plain_variation = 9;
 constexpr int most_steps = 20000;
 
 struct FlowPiece {
   Eigen::Vector3d weight;
-  Eigen::Vector3d n;                 // at its beginning
-  const Eigen::Matrix3Xd* n_change;  // derivatives of n, constant along the piece
+  Eigen::Vector3d n;  // at its beginning
+  double torque;
+  bool framed;                    // a director comes along
+  const RodVariation* variation;  // whose n and torque are constant along the piece
+
+  [[nodiscard]] Eigen::Index state_size() const { return plain_state + (framed ? 3 : 0); }
+  [[nodiscard]] Eigen::Index variation_size() const { return plain_variation + (framed ? 1 : 0); }
 };
 
 int rod_rates(double s, const double* y, double* rate, void* data) {
@@ -37,16 +44,23 @@ int rod_rates(double s, const double* y, double* rate, void* data) {
   Rate(rate + 6) = pull * t - n;
   rate[9] = v.squaredNorm() / 2;
   rate[10] = -piece.weight.dot(r);
-  for (Eigen::Index k = 0; k < piece.n_change->cols(); ++k) {
-    const double* change = y + state_size + k * variation_size;
-    double* change_rate = rate + state_size + k * variation_size;
+  if (piece.torque != 0) Rate(rate + 6) += piece.torque * t.cross(v);
+  if (piece.framed) Rate(rate + plain_state) = -Vector(y + plain_state).dot(v) * t;
+  const RodVariation& variation = *piece.variation;
+  for (Eigen::Index k = 0; k < variation.n.cols(); ++k) {
+    const double* change = y + piece.state_size() + k * piece.variation_size();
+    double* change_rate = rate + piece.state_size() + k * piece.variation_size();
     const Vector dt(change + 3);
     const Vector dv(change + 6);
-    const Eigen::Vector3d dn = piece.n_change->col(k);
+    const Eigen::Vector3d dn = variation.n.col(k);
     const double dpull = dn.dot(t) + n.dot(dt) - 2 * v.dot(dv);
     Rate(change_rate + 0) = dt;
     Rate(change_rate + 3) = dv;
     Rate(change_rate + 6) = dpull * t + pull * dt - dn;
+    if (!piece.framed) continue;
+    Rate(change_rate + 6) +=
+        piece.torque * (dt.cross(v) + t.cross(dv)) + variation.torque[k] * t.cross(v);
+    change_rate[plain_variation] = v.dot(t.cross(dt));
   }
   return GSL_SUCCESS;
 }
@@ -87,30 +101,42 @@ RodVariation::RodVariation(Eigen::Index parameters)
     : r(Eigen::Matrix3Xd::Zero(3, parameters)),
       t(Eigen::Matrix3Xd::Zero(3, parameters)),
       v(Eigen::Matrix3Xd::Zero(3, parameters)),
-      n(Eigen::Matrix3Xd::Zero(3, parameters)) {}
+      n(Eigen::Matrix3Xd::Zero(3, parameters)),
+      torque(Eigen::RowVectorXd::Zero(parameters)),
+      turn(Eigen::RowVectorXd::Zero(parameters)) {}
 
 bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance, RodState& state,
                 RodVariation& variation, RodIntegrals& integrals) {
   const Eigen::Index parameters = variation.n.cols();
-  FlowPiece piece{weight, state.n, &variation.n};
-  std::vector<double> y(static_cast<std::size_t>(state_size + parameters * variation_size), 0.0);
+  const bool framed = !state.d.isZero(0);
+  FlowPiece piece{weight, state.n, state.torque, framed, &variation};
+  std::vector<double> y(
+      static_cast<std::size_t>(piece.state_size() + parameters * piece.variation_size()), 0.0);
   Eigen::Map<Eigen::VectorXd> all(y.data(), static_cast<Eigen::Index>(y.size()));
   all.head<9>() << state.r, state.t, state.v;
+  if (framed) all.segment<3>(plain_state) = state.d;
   for (Eigen::Index k = 0; k < parameters; ++k) {
-    all.segment<variation_size>(state_size + k * variation_size) << variation.r.col(k),
-        variation.t.col(k), variation.v.col(k);
+    const Eigen::Index at = piece.state_size() + k * piece.variation_size();
+    all.segment<plain_variation>(at) << variation.r.col(k), variation.t.col(k), variation.v.col(k);
+    if (framed) all[at + plain_variation] = variation.turn[k];
   }
   if (length > 0 && !integrate(piece, length, tolerance, y)) return false;
   state.r = all.segment<3>(0);
   state.t = all.segment<3>(3);
   state.v = all.segment<3>(6);
   state.n -= length * weight;
+  if (framed) {
+    const Eigen::Vector3d transported = all.segment<3>(plain_state);
+    const double ahead = length * state.twist;
+    state.d = std::cos(ahead) * transported + std::sin(ahead) * state.t.cross(transported);
+  }
   integrals = {all[9], all[10]};
   for (Eigen::Index k = 0; k < parameters; ++k) {
-    const Eigen::Index at = state_size + k * variation_size;
+    const Eigen::Index at = piece.state_size() + k * piece.variation_size();
     variation.r.col(k) = all.segment<3>(at);
     variation.t.col(k) = all.segment<3>(at + 3);
     variation.v.col(k) = all.segment<3>(at + 6);
+    if (framed) variation.turn[k] = all[at + plain_variation];
   }
   return true;
 }

@@ -4,21 +4,27 @@
 
 namespace dlo::energy_model {
 
-/// Cross-section of an inextensible, twist-free, naturally straight Kirchhoff rod in units of its
-/// length and stiffness (l, EI/l^2).
+/// Cross-section of an inextensible, round, naturally straight Kirchhoff rod in units of its length
+/// and stiffness (l, EI/l, EI/l^2).
 struct RodState {
   Eigen::Vector3d r = Eigen::Vector3d::Zero();  ///< position
   Eigen::Vector3d t = Eigen::Vector3d::Zero();  ///< unit tangent
-  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< dt/ds, across t; the moment is t x v
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< dt/ds, across t; the moment is t x v + M t
   Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< force of what lies beyond s on what lies before
+  double torque = 0;                            ///< M, about t: the same all along a round rod
+  Eigen::Vector3d d = Eigen::Vector3d::Zero();  ///< director across t; zero: none comes along
+  double twist = 0;                             ///< M EI / GJ, by which d turns ahead per length
 };
 
-/// Derivatives of a RodState by some parameters, one a column; those of r, t, v and n.
+/// Derivatives of a RodState by some parameters, one a column.
 struct RodVariation {
   Eigen::Matrix3Xd r;
   Eigen::Matrix3Xd t;
   Eigen::Matrix3Xd v;
   Eigen::Matrix3Xd n;
+  Eigen::RowVectorXd torque;
+  /// Of d about t, if the twist stays: dd = turn t x d - (d . dt) t. Zero without d.
+  Eigen::RowVectorXd turn;
 
   explicit RodVariation(Eigen::Index parameters = 0);
 };
@@ -30,9 +36,11 @@ struct RodIntegrals {
 };
 
 /// Follows the rod's equations over `length`,
-///     r' = t,   t' = v,   v' = -(n - (n.t) t) - |v|^2 t,   n' = -w,
-/// which follow from m' + t x n = 0 with m = t x v, and their linearisation, with GSL's rk8pd.
-/// No angles, so no chart that could end. Along a piece without weight n and |v|^2/2 + n.t stay.
+///     r' = t,   t' = v,   v' = -(n - (n.t) t) - |v|^2 t + M t x v,   n' = -w,   M' = 0,
+/// which follow from m' + t x n = 0 with m = t x v + M t, and their linearisation, with GSL's
+/// rk8pd. No angles, so no chart that could end. Along a piece without weight n and |v|^2/2 + n.t
+/// stay. A director d and its derivatives come along,
+///     d' = -(d.v) t + twist t x d,   turn' = v . (t x dt).
 /// @param weight     w
 /// @param tolerance  local error per step, relative to 1 + |component|
 /// @param[in,out] state, variation  from the beginning of the piece to its end

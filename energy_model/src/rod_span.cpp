@@ -40,6 +40,23 @@ std::optional<Plane> plane_of(const RodSpan& span) {
   return find_plane(span.holds.front().position, *first, directions);
 }
 
+/// What the clamps at the ends of a span hold; nothing unless both hold the rod's frame.
+std::optional<RodSpan::Twist> twist_between(const Problem& problem, const Grip* start,
+                                            const Grip* end) {
+  if (start == nullptr || end == nullptr || !start->frame || !end->frame) return std::nullopt;
+  RodSpan::Twist twist;
+  twist.stiffness = problem.torsional_stiffness / problem.bending_stiffness;
+  twist.roll = end->frame->roll - start->frame->roll;
+  if (!start->frame->d1 || !end->frame->d1) return twist;
+  const auto across = [](const Grip& grip) {
+    const Eigen::Vector3d t = grip.direction->normalized();
+    return Eigen::Vector3d((*grip.frame->d1 - grip.frame->d1->dot(t) * t).normalized());
+  };
+  twist.start_d1 = across(*start);
+  twist.end_d1 = across(*end);
+  return twist;
+}
+
 RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
                   double end) {
   const double l = problem.length;
@@ -49,12 +66,15 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
   span.begin = begin;
   span.length = end - begin;
   span.weight = problem.weight_per_length * l / force_unit;
+  const Grip* start_clamp = nullptr;
+  const Grip* end_clamp = nullptr;
   for (const OrderedGrip& grip : grips) {
     const double at = own_arc_length(grip.grip->at, l);
     if (at < begin || at > end) continue;
     span.holds.push_back({at - begin, (grip.grip->position - origin) / l, grip.index});
     if (!grip.grip->direction) continue;
     (at == begin ? span.start_direction : span.end_direction) = grip.grip->direction->normalized();
+    (at == begin ? start_clamp : end_clamp) = grip.grip;
   }
   for (const Load& load : problem.loads) {
     const double at = own_arc_length(load.at, l);
@@ -64,6 +84,7 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
   std::stable_sort(span.loads.begin(), span.loads.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
   span.plane = plane_of(span);
+  span.twist = twist_between(problem, start_clamp, end_clamp);
   return span;
 }
 
@@ -109,11 +130,16 @@ RodMesh make_mesh(const RodSpan& span, double longest) {
     for (int k = 1; k < parts; ++k) nodes.push_back(fixed[i] + width * k / parts);
     nodes.push_back(fixed[i + 1]);
   }
+  return mesh_at(span, Eigen::Map<const Eigen::VectorXd>(nodes.data(),
+                                                         static_cast<Eigen::Index>(nodes.size())));
+}
+
+RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
   RodMesh mesh;
-  const auto count = static_cast<Eigen::Index>(nodes.size());
-  mesh.s = Eigen::Map<const Eigen::VectorXd>(nodes.data(), count);
-  mesh.load = Eigen::Matrix3Xd::Zero(3, count);
-  mesh.hold.assign(nodes.size(), nullptr);
+  mesh.s = nodes;
+  mesh.load = Eigen::Matrix3Xd::Zero(3, nodes.size());
+  mesh.pull = mesh.load;
+  mesh.hold.assign(static_cast<std::size_t>(nodes.size()), nullptr);
   const auto node_at = [&](double s) {
     return std::lower_bound(nodes.begin(), nodes.end(), s) - nodes.begin();
   };

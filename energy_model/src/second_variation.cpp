@@ -65,14 +65,14 @@ Eigen::VectorXd elements_of(const RodSpan& span, const SpanStates& states) {
   for (int i = 0; i < probes; ++i) s.push_back(span.length * (i + 0.5) / probes);
   double force = total_load(span);
   for (const RodState& state : states(s)) {
-    force = std::max({force, state.n.norm(), state.v.squaredNorm()});
+    force = std::max({force, state.n.norm(), state.v.squaredNorm(), state.torque * state.torque});
   }
   const double soft = 1 / std::sqrt(std::max(force, 1.0));
   const double longest = std::min({span.length / 8, longest_element, soft});
   return make_mesh(span, std::max(longest, span.length / most_elements)).s;
 }
 
-/// Mass and stiffness of the variations of a span, and its constraints.
+/// Mass and stiffness of the variations of a span, its constraints and what couples all of it.
 class VariationProblem {
  public:
   VariationProblem(const RodSpan& span, const SpanStates& states)
@@ -103,7 +103,7 @@ class VariationProblem {
     for (int attempt = 0; attempt < 5; ++attempt) {
       if (factorise(mu, factors)) {
         const auto negative = (factors.vectorD().array() < 0).count();
-        return static_cast<int>(negative) - constraints_;
+        return static_cast<int>(negative) - constraints_ - (turn_unknown_ < 0 ? 0 : 1);
       }
       mu -= 1e-3 * neutral_eigenvalue * (1 + attempt);
     }
@@ -111,7 +111,14 @@ class VariationProblem {
   }
 
   [[nodiscard]] bool finite() const { return finite_; }
-  [[nodiscard]] const Sparse& second() const { return second_; }
+  /// Q of a vector of unknowns.
+  [[nodiscard]] double second(const Eigen::VectorXd& x) const {
+    const double bends = x.dot(second_ * x);
+    if (turn_unknown_ < 0) return bends;
+    // The column of its unknown, without its own element.
+    const double turn = fixed_.col(turn_unknown_).dot(x) + turn_compliance_ * x[turn_unknown_];
+    return bends + turn * turn / turn_compliance_;
+  }
   [[nodiscard]] const Sparse& norm() const { return norm_; }
   [[nodiscard]] Eigen::Index size() const { return size_; }
 
@@ -127,7 +134,8 @@ class VariationProblem {
   [[nodiscard]] const std::vector<double>& nodes() const { return s_; }
 
  private:
-  /// Two unknowns a node, none at clamps; three multipliers after the nodes between two grips.
+  /// Two unknowns a node, none at clamps; three multipliers after the nodes between two grips; last
+  /// the one of the twist.
   void number_unknowns(const RodSpan& span) {
     const Eigen::Index count = elements_.size() - 1;
     std::size_t next_hold = 1;
@@ -149,6 +157,9 @@ class VariationProblem {
         size_ += 2;
       }
     }
+    if (!span.twist) return;
+    turn_unknown_ = size_++;
+    turn_compliance_ = span.length / span.twist->stiffness;
   }
 
   void make_bases(const SpanStates& states) {
@@ -176,6 +187,8 @@ class VariationProblem {
         fixed_triplets_.emplace_back(multiplier + i, multiplier + i, -compliance);
       }
     }
+    if (turn_unknown_ < 0) return;
+    fixed_triplets_.emplace_back(turn_unknown_, turn_unknown_, -turn_compliance_);
   }
 
   void add_element(Eigen::Index e, const RodSpan& span, const std::vector<RodState>& inside) {
@@ -185,6 +198,7 @@ class VariationProblem {
     Eigen::Matrix<double, own, own> second = Eigen::Matrix<double, own, own>::Zero();
     Eigen::Matrix<double, own, own> norm = Eigen::Matrix<double, own, own>::Zero();
     Eigen::Matrix<double, 3, own> integral = Eigen::Matrix<double, 3, own>::Zero();
+    Eigen::Matrix<double, 1, own> turn = Eigen::Matrix<double, 1, own>::Zero();
     const auto first_node = static_cast<std::size_t>(e) * order;
     for (std::size_t q = 0; q < quadrature_nodes; ++q) {
       const RodState& state = inside[static_cast<std::size_t>(e) * quadrature_nodes + q];
@@ -209,6 +223,12 @@ class VariationProblem {
       second += weight * (rates + (state.n.dot(t) - v.squaredNorm()) * values);
       norm += weight * (rates + values);
       integral += weight * eta;
+      turn += weight * t.cross(v).transpose() * eta;
+      if (state.torque == 0) continue;
+      Eigen::Matrix<double, 3, own> turned;  // eta x t
+      for (Eigen::Index i = 0; i < own; ++i) turned.col(i) = eta.col(i).cross(t);
+      const Eigen::Matrix<double, own, own> twists = rate.transpose() * turned;
+      second += weight * state.torque / 2 * (twists + twists.transpose());
     }
     finite_ = finite_ && second.allFinite();
     const Eigen::Index multiplier = multiplier_of(elements_[e] + h / 2, span);
@@ -225,6 +245,9 @@ class VariationProblem {
         fixed_triplets_.emplace_back(row, multiplier + k, integral(k, i));
         fixed_triplets_.emplace_back(multiplier + k, row, integral(k, i));
       }
+      if (turn_unknown_ < 0) continue;
+      fixed_triplets_.emplace_back(row, turn_unknown_, turn[i]);
+      fixed_triplets_.emplace_back(turn_unknown_, row, turn[i]);
     }
   }
 
@@ -249,6 +272,8 @@ class VariationProblem {
   std::vector<Eigen::Matrix<double, 3, 2>> across_;
   Eigen::Index size_ = 0;
   int constraints_ = 0;
+  Eigen::Index turn_unknown_ = -1;  // -1: nothing holds the twist
+  double turn_compliance_ = 0;
   bool finite_ = true;
   VariationTriplets second_triplets_, norm_triplets_, fixed_triplets_;
   Sparse second_, norm_, fixed_;
@@ -298,6 +323,20 @@ void judge(const SecondVariation& stability, Equilibrium& shape) {
                    (stability.neutral == 1 ? " way" : " ways");
 }
 
+Eigen::Matrix3Xd mode_at(const SecondVariation& variation, const Eigen::VectorXd& s) {
+  Eigen::Matrix3Xd result(3, s.size());
+  for (Eigen::Index i = 0; i < s.size(); ++i) {
+    const Eigen::Index after = std::clamp<Eigen::Index>(
+        std::upper_bound(variation.s.begin(), variation.s.end(), s[i]) - variation.s.begin(), 1,
+        variation.s.size() - 1);
+    const double part =
+        (s[i] - variation.s[after - 1]) / (variation.s[after] - variation.s[after - 1]);
+    result.col(i) =
+        (1 - part) * variation.direction.col(after - 1) + part * variation.direction.col(after);
+  }
+  return result;
+}
+
 SecondVariation second_variation(const RodSpan& span, const SpanStates& states) {
   const VariationProblem variations(span, states);
   SecondVariation result;
@@ -319,7 +358,7 @@ SecondVariation second_variation(const RodSpan& span, const SpanStates& states) 
     x /= std::sqrt(x.dot(variations.norm() * x));
   }
   if (!x.allFinite()) return result;
-  const double quotient = x.dot(variations.second() * x);
+  const double quotient = variations.second(x);
   if (quotient >= bracket.low && quotient <= bracket.high) result.smallest = quotient;
   result.direction = variations.tangents(x);
   result.direction /= std::max(result.direction.colwise().norm().maxCoeff(), 1e-300);

@@ -31,16 +31,24 @@ using SpanStates = std::function<std::vector<RodState>(const std::vector<double>
 /// Second variation of the energy of a span at an equilibrium, from nothing but its states. For a
 /// change eta of the tangent, across it,
 ///     Q(eta) = int |eta'|^2 + (n.t - |t'|^2) |eta|^2 ds,
-/// in units of the rod, n the force that the span carries with what the grips add: the constraints'
-/// curvature is in n.t. eta is zero at clamps and its integral between neighbouring grips is zero;
-/// in space and free of the plane even for a planar shape, so that buckling sideways and turning
-/// about a line are among its modes. Finite elements of fourth order; the signs of the pivots of
+/// and where the clamps at the ends hold the twist Psi of a rod,
+///     Q(eta) + int M t . (eta' x eta) ds + (c / L) (int (t x t') . eta ds)^2,
+/// in units of the rod, M = c Psi / L, c = GJ / EI: the last integral is the change of Psi. n is
+/// the force that the span carries with what the grips add: the constraints' curvature is in n.t.
+/// eta is zero at clamps and its integral between neighbouring grips is zero; in space and free of
+/// the plane even for a planar shape, so that buckling sideways and turning about a line are among
+/// its modes. Finite elements of fourth order; the signs of the pivots of
 ///     (K - mu S   C^T)
 ///     (C          -0 )
 /// count the eigenvalues below mu (Sylvester's law of inertia), K of Q, S of int |eta'|^2 +
-/// |eta|^2, C the constraints.
+/// |eta|^2, C the constraints. The square of the twist would fill K: its integral is one more row
+/// of C, with -L / c in place of -0.
 /// @return counts of -1 if the states are not finite
 [[nodiscard]] SecondVariation second_variation(const RodSpan& span, const SpanStates& states);
+
+/// Changes of the tangents in the mode of the smallest eigenvalue, at other arc lengths: linear
+/// between those of the mode, which must have some.
+[[nodiscard]] Eigen::Matrix3Xd mode_at(const SecondVariation& variation, const Eigen::VectorXd& s);
 
 /// Writes the verdict into a shape that is an equilibrium: `converged`, or `saddle` if it is
 /// unstable; neutral modes are named in the message.

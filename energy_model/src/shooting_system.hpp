@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "boundary_value.hpp"
 #include "deadline.hpp"
 #include "rod_flow.hpp"
 #include "rod_span.hpp"
@@ -17,27 +18,29 @@ using Triplets = std::vector<Eigen::Triplet<double>>;
 /// A node and the directions in which its tangent can turn.
 struct ShootingNode {
   RodState state;
-  Eigen::Matrix3Xd across;  ///< 3 x 1 in the plane, 3 x 2 in space
+  Eigen::Matrix3Xd across;  ///< 3 x 1 in the plane, 3 x 2 in space; the rod's frame if it is held
 };
 
-/// Newton's unknowns of a node, and the equations of an interval, in this order: r, t, v, n.
+/// Newton's unknowns of a node, and the equations of an interval, in this order: r, t, v, n, and if
+/// the rod's frame is held its turn about t and the torque M.
 struct NodeLayout {
   Eigen::Index d;  ///< dimensions of space
+  bool framed = false;
   [[nodiscard]] Eigen::Index t() const { return d; }
   [[nodiscard]] Eigen::Index v() const { return 2 * d - 1; }
   [[nodiscard]] Eigen::Index n() const { return 3 * d - 2; }
-  [[nodiscard]] Eigen::Index size() const { return 4 * d - 2; }
+  [[nodiscard]] Eigen::Index frame() const { return 4 * d - 2; }
+  [[nodiscard]] Eigen::Index torque() const { return 4 * d - 1; }
+  [[nodiscard]] Eigen::Index size() const { return 4 * d - (framed ? 0 : 2); }
 };
 
-/// The equations of multiple shooting (see boundary_value.hpp) and their derivatives. Units: v in
-/// sqrt(force), n in force.
+/// The equations of multiple shooting (see boundary_value.hpp) and their derivatives. Units: v and
+/// M in sqrt(force), n in force.
 class ShootingSystem {
  public:
-  /// @param planar     stay in the span's plane
-  /// @param tolerance  of the integrator
   /// @param span, mesh  have to outlive the system
-  ShootingSystem(const RodSpan& span, const RodMesh& mesh, bool planar, double tolerance,
-                 double force, const Deadline& deadline);
+  ShootingSystem(const RodSpan& span, const RodMesh& mesh, const ShootingOptions& options,
+                 double force);
 
   [[nodiscard]] Eigen::Index size() const { return layout_.size() * mesh_.s.size(); }
 
@@ -47,7 +50,8 @@ class ShootingSystem {
   /// they cannot be closed to less than its tolerance.
   [[nodiscard]] double closed() const { return std::max(1e-11, 10 * tolerance_); }
 
-  /// Into the plane, onto |t| = 1 and v.t = 0, with directions across t.
+  /// Into the plane, onto |t| = 1 and v.t = 0, with directions across t, along its d if the frame
+  /// is held.
   [[nodiscard]] ShootingNode make_node(const RodState& state) const;
 
   [[nodiscard]] std::vector<ShootingNode> moved(const std::vector<ShootingNode>& nodes,
@@ -80,6 +84,16 @@ class ShootingSystem {
                            const std::optional<Eigen::Vector3d>& direction,
                            Eigen::VectorXd& equations, Triplets* derivatives) const;
 
+  /// A held frame comes to the next node turned by M h / c; M stays.
+  void twist_equations(const ShootingNode& node, const ShootingNode& next, Eigen::Index i,
+                       Eigen::Index row, const RodState& end, const RodVariation& change,
+                       Eigen::VectorXd& equations, Triplets* derivatives) const;
+
+  /// The director at a clamp.
+  void frame_equation(const ShootingNode& node, Eigen::Index row, Eigen::Index column,
+                      const Eigen::Vector3d& director, Eigen::VectorXd& equations,
+                      Triplets* derivatives) const;
+
   [[nodiscard]] bool interval_equations(const std::vector<ShootingNode>& nodes, Eigen::Index i,
                                         Eigen::Index row, Eigen::VectorXd& equations,
                                         Triplets* derivatives) const;
@@ -88,6 +102,7 @@ class ShootingSystem {
   const RodMesh& mesh_;
   double tolerance_;
   Deadline deadline_;
+  std::optional<HeldFrames> frames_;
   double rate_;  // unit of v; its square is that of n
   Eigen::Matrix3Xd axes_;
   NodeLayout layout_{3};

@@ -7,28 +7,21 @@
 #include "boundary_value.hpp"
 #include "relaxed_polygon.hpp"
 #include "require.hpp"
+#include "span_twist.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 constexpr double largest_load = 1e6;      // of weight and loads, in EI/l^2
-constexpr double largest_growth = 3;      // of an interval: its length times |n|^(1/2)
 constexpr double in_plane = 1e-6;         // of tangents
 constexpr double same_tangents = 1e-6;    // of two equilibria
 constexpr std::size_t most_descents = 6;  // polygons that are shot from if one leads to a minimum
 constexpr int most_departures = 8;        // saddles that are left
 constexpr double departure = 0.3;         // largest change of a tangent when a saddle is left
-/// Of the integrator for the second variation, whose elements are right to 1e-8.
-constexpr double variation_tolerance = 1e-10;
-constexpr int finer_polygons = 2;              // after a shot that has failed
+constexpr int finer_polygons = 2;         // after a shot that has failed
 constexpr Eigen::Index most_intervals = 1000;  // of a polygon that is made finer
 constexpr int search_iterations = 30;   // of Newton's method, which takes 6 to 12 near a minimum
 constexpr double polygons_share = 0.5;  // of the time that is left
-
-/// Intervals that resolve boundary layers under a force, and the bends of a span without any.
-double longest_interval(const RodSpan& span, double force) {
-  return std::min(span.length / 16, 1 / std::sqrt(std::max(force, 1.0)));
-}
 
 void check_load(const RodSpan& span) {
   const double load = total_load(span);
@@ -36,76 +29,10 @@ void check_load(const RodSpan& span) {
           "<= 1e6");
 }
 
-double largest_force(const std::vector<RodState>& nodes) {
-  double force = 0;
-  for (const RodState& node : nodes) force = std::max({force, node.n.norm(), node.v.squaredNorm()});
-  return force;
-}
-
 bool stays_in_plane(const RodSpan& span, const Eigen::Matrix3Xd& tangents, double tolerance) {
   if (!span.plane) return false;
   const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
   return (normal.transpose() * tangents).cwiseAbs().maxCoeff() < tolerance;
-}
-
-void add_energies(const RodSpan& span, const RodMesh& mesh, double tolerance,
-                  SpanEquilibrium& equilibrium) {
-  for (Eigen::Index i = 0; i < mesh.s.size(); ++i) {
-    RodState state = equilibrium.nodes[static_cast<std::size_t>(i)];
-    equilibrium.energy.load -= mesh.load.col(i).dot(state.r);
-    if (i == mesh.intervals()) break;
-    RodIntegrals integrals;
-    if (!follow_rod(span.weight, mesh.s[i + 1] - mesh.s[i], tolerance, state, integrals)) {
-      equilibrium.converged = false;
-      equilibrium.message = "the integrator gave up on the energies";
-      equilibrium.energy = {NAN, NAN, NAN};
-      return;
-    }
-    equilibrium.energy.bending += integrals.bending;
-    equilibrium.energy.gravity += integrals.gravity;
-  }
-}
-
-/// Shoots, on a finer mesh once more if the force turns out to be large.
-SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh, std::vector<RodState> start,
-                           const ShootingOptions& options) {
-  SpanEquilibrium equilibrium;
-  for (int level = 0; level < 3; ++level) {
-    ShootingResult result = shoot(span, mesh, start, options);
-    equilibrium.converged = result.converged;
-    equilibrium.message = result.message;
-    equilibrium.residual = result.residual;
-    equilibrium.shots += result.shots;
-    equilibrium.s = mesh.s;
-    equilibrium.nodes = std::move(result.nodes);
-    const double force = largest_force(equilibrium.nodes);
-    const double longest =
-        (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
-    if (!result.converged || longest * std::sqrt(force) <= largest_growth) break;
-    mesh = make_mesh(span, longest_interval(span, force));
-    start.clear();
-    for (const double s : mesh.s) {
-      start.push_back(state_at(equilibrium, span.weight, s, options.tolerance));
-    }
-    start.back().n.setZero();
-  }
-  if (!equilibrium.converged) return equilibrium;
-  add_energies(span, mesh, options.tolerance, equilibrium);
-  equilibrium.stability = second_variation(span, [&](const std::vector<double>& s) {
-    return states_at(equilibrium, span.weight, s, std::max(options.tolerance, variation_tolerance));
-  });
-  std::vector<double> probes;
-  for (int i = 0; i <= 32; ++i) probes.push_back(span.length * i / 32);
-  equilibrium.tangents.resize(3, static_cast<Eigen::Index>(probes.size()));
-  Eigen::Index column = 0;
-  for (const RodState& state : states_at(equilibrium, span.weight, probes, variation_tolerance)) {
-    equilibrium.tangents.col(column++) = state.t;
-  }
-  if (equilibrium.stability.negative < 0 || !equilibrium.tangents.allFinite()) {
-    equilibrium.converged = false;
-    equilibrium.message = "the integrator gave up on the second variation";
-  }
-  return equilibrium;
 }
 
 bool same(const SpanEquilibrium& a, const SpanEquilibrium& b) {
@@ -259,21 +186,13 @@ class SpanSearch {
   void leave(const SpanEquilibrium& saddle, double amplitude) {
     const SecondVariation& mode = saddle.stability;
     if (mode.s.size() == 0) return;
-    std::vector<double> middles;
+    const Eigen::VectorXd middles =
+        (mesh_.s.head(mesh_.intervals()) + mesh_.s.tail(mesh_.intervals())) / 2;
+    const std::vector<RodState> states =
+        states_at(saddle, span_.weight, {middles.begin(), middles.end()}, tolerance_);
+    Eigen::Matrix3Xd tangents = amplitude * mode_at(mode, middles);
     for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
-      middles.push_back((mesh_.s[i] + mesh_.s[i + 1]) / 2);
-    }
-    const std::vector<RodState> states = states_at(saddle, span_.weight, middles, tolerance_);
-    Eigen::Matrix3Xd tangents(3, mesh_.intervals());
-    for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
-      const double at = middles[static_cast<std::size_t>(i)];
-      const Eigen::Index after = std::clamp<Eigen::Index>(
-          std::upper_bound(mode.s.begin(), mode.s.end(), at) - mode.s.begin(), 1,
-          mode.s.size() - 1);
-      const double part = (at - mode.s[after - 1]) / (mode.s[after] - mode.s[after - 1]);
-      const Eigen::Vector3d change =
-          (1 - part) * mode.direction.col(after - 1) + part * mode.direction.col(after);
-      tangents.col(i) = (states[static_cast<std::size_t>(i)].t + amplitude * change).normalized();
+      tangents.col(i) = (states[static_cast<std::size_t>(i)].t + tangents.col(i)).normalized();
     }
     const bool planar = stays_in_plane(span_, tangents, in_plane);
     RelaxedPolygon polygon = relax_polygon(span_, mesh_, std::move(tangents), planar, deadline_);
@@ -288,6 +207,16 @@ class SpanSearch {
   SpanEquilibrium failed_;
   int shots_ = 0;
 };
+
+/// What a shape says of the twist of a span that holds some; null for nothing.
+const TwistedPart* twist_of(const RodSpan& span, const Problem& problem, const Equilibrium& shape) {
+  if (!span.twist) return nullptr;
+  const double middle = (span.begin + span.length / 2) * problem.length;
+  const auto found = std::find_if(shape.twists.begin(), shape.twists.end(), [&](const auto& part) {
+    return part.begin < middle && middle < part.end;
+  });
+  return found == shape.twists.end() ? nullptr : &*found;
+}
 
 }  // namespace
 
@@ -308,6 +237,15 @@ Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, 
   return n * problem.length * problem.length / problem.bending_stiffness;
 }
 
+SpanSearchResult search_twisted_span(const RodSpan& span, double tolerance,
+                                     const Deadline& deadline) {
+  RodSpan plain = span;
+  plain.twist.reset();
+  SpanSearchResult search = search_span(plain, tolerance, deadline);
+  SpanEquilibrium twisted = twist_span(span, search.found.front(), tolerance, deadline);
+  return {{std::move(twisted)}, search.complete && !deadline.passed()};
+}
+
 SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const Equilibrium& shape,
                             double tolerance, const Deadline& deadline) {
   check_load(span);
@@ -316,6 +254,10 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
     const double unit = problem.bending_stiffness / (problem.length * problem.length);
     force = std::max(force, grip.force.norm() / unit);
   }
+  const TwistedPart* twisted = twist_of(span, problem, shape);
+  const double torque =
+      twisted == nullptr ? 0 : twisted->torque * problem.length / problem.bending_stiffness;
+  force = std::max(force, torque * torque);
   const RodMesh mesh = make_mesh(span, longest_interval(span, std::min(force, largest_load)));
   std::vector<double> arc_lengths;
   for (const double s : mesh.s) {
@@ -329,49 +271,18 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
     state.t = samples.tangents.col(i);
     state.v = samples.curvature.col(i) * problem.length;
     if (i < mesh.intervals()) state.n = implied_force(problem, shape, span.begin + mesh.s[i]);
+    state.torque = torque;
     start.push_back(state);
   }
-  return shoot_span(span, mesh, std::move(start),
-                    {.tolerance = tolerance,
-                     .planar = stays_in_plane(span, samples.tangents, in_plane),
-                     .deadline = deadline});
-}
-
-RodState state_at(const SpanEquilibrium& span, const Eigen::Vector3d& weight, double s,
-                  double tolerance) {
-  return states_at(span, weight, {s}, tolerance).front();
-}
-
-std::vector<RodState> states_at(const SpanEquilibrium& span, const Eigen::Vector3d& weight,
-                                const std::vector<double>& s, double tolerance) {
-  const auto last = static_cast<std::ptrdiff_t>(span.nodes.size()) - 2;
-  std::vector<RodState> states;
-  states.reserve(s.size());
-  RodState state;
-  std::ptrdiff_t interval = -1;
-  double reached = 0;
-  for (const double at : s) {
-    const auto after = std::upper_bound(span.s.begin(), span.s.end(), at) - span.s.begin();
-    const std::ptrdiff_t i = std::clamp<std::ptrdiff_t>(after - 1, 0, last);
-    if (at >= span.s[i + 1]) {
-      states.push_back(span.nodes.back());
-      continue;
-    }
-    if (i != interval) {
-      state = span.nodes[static_cast<std::size_t>(i)];
-      interval = i;
-      reached = span.s[i];
-    }
-    RodIntegrals integrals;
-    if (at > reached && !follow_rod(weight, at - reached, tolerance, state, integrals)) {
-      state.r.setConstant(NAN);
-      state.t.setConstant(NAN);
-      state.v.setConstant(NAN);
-    }
-    reached = at;
-    states.push_back(state);
-  }
-  return states;
+  if (twisted != nullptr) return refine_twisted(span, mesh, std::move(start), tolerance, deadline);
+  RodSpan plain = span;
+  plain.twist.reset();
+  SpanEquilibrium equilibrium =
+      shoot_span(plain, mesh_at(plain, mesh.s), std::move(start),
+                 {.tolerance = tolerance,
+                  .planar = stays_in_plane(span, samples.tangents, in_plane),
+                  .deadline = deadline});
+  return span.twist ? twist_span(span, equilibrium, tolerance, deadline) : equilibrium;
 }
 
 }  // namespace dlo::energy_model

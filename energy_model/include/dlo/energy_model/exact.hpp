@@ -14,14 +14,19 @@ struct ExactOptions {
   /// there is one: it is an equilibrium, but others were not looked for.
   double time_limit = std::numeric_limits<double>::infinity();
   /// A shape to confirm or correct, of this problem or a similar one, with its grips' reactions:
-  /// Newton's method starts from it, without a search. Has to outlive the call.
+  /// Newton's method starts from it, without a search. Has to outlive the call. Where clamps twist
+  /// the rod it starts with the torque of the shape's `twists` and counts whole turns as they do;
+  /// the frame at the end is held where both clamps' d1 and the rolls say, or without d1 where the
+  /// shape has it. A shape without `twists` is taken for the rod without twist.
   const Equilibrium* start = nullptr;
 };
 
 /// Equilibrium of the inextensible, naturally straight rod as a boundary value problem, by GSL and
 /// without any basis or minimiser,
-///     r' = t,  EI t'' = -(n - (n.t) t) - EI |t'|^2 t,  n' = -w, n falls by F at a load F,
-/// n the force of what lies beyond s on what lies before.
+///     r' = t,  EI t'' = -(n - (n.t) t) - EI |t'|^2 t + M t x t',  n' = -w, n falls by F at a load
+///     F,
+/// n the force of what lies beyond s on what lies before, M the torque of the twist, which is
+/// constant between two clamps that hold the rod's frame and zero elsewhere.
 ///
 /// A planar rod with one clamp at an end is shot from its tip and all of the tip's angles are
 /// scanned; for sums of weight and loads over EI/l^2 up to 4e5 if they are parallel, up to 60 if
@@ -36,6 +41,12 @@ struct ExactOptions {
 /// nothing is stable) that a coarse polygon finds when it is relaxed from straight, arched,
 /// S-shaped and looped shapes, in the plane and out of it, and from beside the unstable equilibria
 /// that lie below all stable ones. That is a search: it may miss equilibria.
+///
+/// Twist (Problem) is put in from the lowest equilibrium without it, by continuation in the roll;
+/// where a shape becomes unstable the gradient flow of the energy leads to the next stable one, the
+/// rod passing through itself if it has to. `all_exact` has one shape of a twisted part then. If it
+/// ends before the whole roll the status is `failed` and the message says how far it came: long
+/// rods whose buckle moves along them for nearly nothing may need a `start`.
 ///
 /// The second variation of each equilibrium is looked at on its own shape, by finite elements, in
 /// space and under the grips' constraints: `smallest_curvature` is its smallest eigenvalue over

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "boundary_value.hpp"
+#include "dlo/energy_model/problem.hpp"
+#include "rod_flow.hpp"
+#include "rod_span.hpp"
+#include "second_variation.hpp"
+
+namespace dlo::energy_model {
+
+/// An equilibrium of a span in its own units, or why there is none.
+struct SpanEquilibrium {
+  bool converged = false;
+  std::string message = "never ran";
+  int shots = 0;
+  double residual = -1;
+  Eigen::VectorXd s;            ///< nodes, which are grips, loads and some between
+  std::vector<RodState> nodes;  ///< n is the force after the node
+  Energies energy;              ///< zero where points sit at the problem's first grip
+  SecondVariation stability;    ///< of an equilibrium that has converged
+  Eigen::Matrix3Xd tangents;    ///< of an equilibrium, at equal distances, to compare it
+
+  [[nodiscard]] bool stable() const { return converged && stability.stable(); }
+};
+
+/// Newton's method from a start, on a finer mesh once more if the force turns out to be large;
+/// energies and stability of where it leads.
+[[nodiscard]] SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh,
+                                         std::vector<RodState> start,
+                                         const ShootingOptions& options);
+
+/// Looks at the second variation of an equilibrium.
+/// @param tolerance  of the integrator
+void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium);
+
+/// Intervals that resolve boundary layers under a force, and the bends of a span without any.
+[[nodiscard]] double longest_interval(const RodSpan& span, double force);
+
+/// Of n, |v|^2 and M^2, which bend the rod over lengths of one over its root.
+[[nodiscard]] double largest_force(const std::vector<RodState>& nodes);
+
+/// The cross-section at s; NaN if the integrator gave up.
+[[nodiscard]] RodState state_at(const SpanEquilibrium& span, const Eigen::Vector3d& weight,
+                                double s, double tolerance);
+
+/// The same at arc lengths that grow, each from the one before.
+[[nodiscard]] std::vector<RodState> states_at(const SpanEquilibrium& span,
+                                              const Eigen::Vector3d& weight,
+                                              const std::vector<double>& s, double tolerance);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,495 @@
+// The exact solver with twist: closed forms of shapes and of where they buckle, the second
+// variation against differences, balances and symmetries.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+#include "dlo/energy_model/exact.hpp"
+#include "equilibrium_balance.hpp"
+#include "problems.hpp"
+#include "rod_span.hpp"
+#include "second_variation.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using std::numbers::pi;
+
+/// A rod of unit length and stiffness, clamped at both ends.
+Problem clamped(const Eigen::Vector3d& end, const Eigen::Vector3d& direction, double c,
+                double roll) {
+  Problem problem = test::two_clamps(0, 0.5);
+  problem.torsional_stiffness = c;
+  problem.grips[1].position = end;
+  problem.grips[1].direction = direction;
+  problem.grips[0].frame = FrameHold{};
+  problem.grips[1].frame = FrameHold{.d1 = std::nullopt, .roll = roll};
+  return problem;
+}
+
+/// The span of a rod between clamps that hold frames.
+RodSpan span_of(const Problem& problem) { return cut_at_clamps(problem).front(); }
+
+SpanStates states_of(const std::function<RodState(double)>& state) {
+  return [state](const std::vector<double>& s) {
+    std::vector<RodState> states;
+    for (const double at : s) states.push_back(state(at));
+    return states;
+  };
+}
+
+/// Where a smooth function is zero: of the inverse polynomial through its values at x + k h, k = 1
+/// .. 5.
+double extrapolated_root(double x, double h, const std::function<double(double)>& value) {
+  constexpr int count = 5;
+  std::array<double, count> at{};
+  std::array<double, count> own{};
+  for (int k = 0; k < count; ++k) {
+    at[k] = x + h * (k + 1);
+    own[k] = value(at[k]);
+  }
+  double root = 0;
+  for (int k = 0; k < count; ++k) {
+    double part = at[k];
+    for (int j = 0; j < count; ++j) {
+      if (j != k) part *= own[j] / (own[j] - own[k]);
+    }
+    root += part;
+  }
+  return root;
+}
+
+TEST(TwistedSecondVariation, VanishesWhereAStraightRodBuckles) {
+  // Without tension between clamps: tan(M / 2) = M / 2.
+  const RodSpan span = span_of(clamped({0.5, 0, 0}, {1, 0, 0}, 0.01, 0));
+  const auto smallest = [&](double torque) {
+    return second_variation(span, states_of([&](double) {
+                              RodState state;
+                              state.t = Eigen::Vector3d::UnitX();
+                              state.torque = torque;
+                              return state;
+                            }))
+        .smallest;
+  };
+  constexpr double critical = 8.986818916;
+  EXPECT_GT(smallest(critical - 1e-3), 0);
+  EXPECT_LT(smallest(critical + 1e-3), 0);
+  EXPECT_NEAR(extrapolated_root(critical, -0.01, smallest), critical, 1e-8);
+  EXPECT_NEAR(extrapolated_root(critical, 0.01, smallest), critical, 1e-8);
+}
+
+/// A circle in the plane, its twist turned by an angle: the torque needs a force out of the plane.
+RodState ring_state(double c, double angle, double s) {
+  const double k = 2 * pi;
+  RodState state;
+  state.r = Eigen::Vector3d(std::sin(k * s), 1 - std::cos(k * s), 0) / k;
+  state.t = {std::cos(k * s), std::sin(k * s), 0};
+  state.v = k * Eigen::Vector3d(-state.t.y(), state.t.x(), 0);
+  state.torque = c * angle;
+  state.n = {0, 0, k * state.torque};
+  return state;
+}
+
+TEST(TwistedSecondVariation, VanishesWhereMichellsRingBuckles) {
+  // At a twist of 2 pi 3^(1/2) / c, in two ways. It turns about the clamps' line for nothing
+  // before.
+  for (const double c : {0.6, 1.0, 1.5}) {
+    const RodSpan span = span_of(clamped({0, 0, 0}, {1, 0, 0}, c, 0));
+    const auto stability = [&](double angle) {
+      return second_variation(span, states_of([&](double s) { return ring_state(c, angle, s); }));
+    };
+    const double critical = 2 * pi * std::sqrt(3.0) / c;
+    EXPECT_EQ(stability(critical * (1 - 1e-5)).negative, 0);
+    EXPECT_EQ(stability(critical * (1 - 1e-5)).neutral, 1);
+    EXPECT_EQ(stability(critical * (1 + 1e-5)).negative, 2);
+    const double root = extrapolated_root(critical, 1e-3 * critical,
+                                          [&](double angle) { return stability(angle).smallest; });
+    EXPECT_NEAR(root / critical, 1, 1e-7) << c;
+  }
+}
+
+/// A smooth curve with a given tangent, and what a change of it costs.
+struct Curve {
+  std::function<Eigen::Vector3d(double)> tangent;
+  Eigen::Vector3d n;
+  double c;
+
+  static constexpr int parts = 2000;
+
+  /// Turn of the transported frame at the end against that along another curve with its ends.
+  [[nodiscard]] double turn_against(const Curve& other) const {
+    const Eigen::Vector3d own = transported();
+    const Eigen::Vector3d theirs = other.transported();
+    return std::atan2(tangent(1).cross(theirs).dot(own), theirs.dot(own));
+  }
+
+  [[nodiscard]] double bending_and_force() const {
+    double energy = 0;
+    for (int i = 0; i < parts; ++i) {
+      const Eigen::Vector3d t = tangent(static_cast<double>(i) / parts);
+      const Eigen::Vector3d next = tangent((i + 1.0) / parts);
+      energy += (next - t).squaredNorm() * parts / 2 - n.dot(t + next) / (2 * parts);
+    }
+    return energy;
+  }
+
+ private:
+  [[nodiscard]] Eigen::Vector3d transported() const {
+    Eigen::Vector3d d = tangent(0).unitOrthogonal();
+    for (int i = 0; i < parts; ++i) {
+      d = Eigen::Quaterniond::FromTwoVectors(tangent(static_cast<double>(i) / parts),
+                                             tangent((i + 1.0) / parts)) *
+          d;
+    }
+    return d;
+  }
+};
+
+/// A function on the elements of the second variation, polynomials through their nodes.
+Eigen::Vector3d on_elements(const SecondVariation& mode, double s) {
+  constexpr Eigen::Index order = 4;
+  Eigen::Index first = 0;
+  while (first + 2 * order < mode.s.size() && mode.s[first + order] < s) first += order;
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();
+  for (Eigen::Index k = first; k <= first + order; ++k) {
+    double part = 1;
+    for (Eigen::Index j = first; j <= first + order; ++j) {
+      if (j != k) part *= (s - mode.s[j]) / (mode.s[k] - mode.s[j]);
+    }
+    value += part * mode.direction.col(k);
+  }
+  return value;
+}
+
+TEST(TwistedSecondVariation, IsTheSecondDifferenceOfTheEnergy) {
+  // On a curve of no special shape, with a force and a twist that do not fit it.
+  const auto tangent = [](double s) {
+    return Eigen::Vector3d(1 + 0.5 * std::sin(2 * s), std::sin(3 * s) - 0.3 * s, 1.5 * s * s - 0.4)
+        .normalized();
+  };
+  for (const double angle : {-9.0, 0.0, 4.0, 13.0}) {
+    const Curve curve{tangent, {2, -3, 5}, 0.8};
+    Problem problem = clamped({0.4, 0.3, 0.2}, tangent(1), curve.c, 0);
+    problem.grips[0].direction = tangent(0);
+    const SecondVariation found = second_variation(
+        span_of(problem), states_of([&](double s) {
+          constexpr double h = 1e-3;
+          RodState state;
+          state.t = tangent(s);
+          state.v =
+              (8 * (tangent(s + h) - tangent(s - h)) - (tangent(s + 2 * h) - tangent(s - 2 * h))) /
+              (12 * h);
+          state.n = curve.n;
+          state.torque = curve.c * angle;
+          return state;
+        }));
+    const auto change = [&](double s) {
+      const Eigen::Vector3d z = on_elements(found, s);
+      return Eigen::Vector3d(z - z.dot(tangent(s)) * tangent(s));
+    };
+    const auto energy = [&](double amount) {
+      Curve moved = curve;
+      moved.tangent = [&](double s) {
+        return Eigen::Vector3d((tangent(s) + amount * change(s)).normalized());
+      };
+      const double twist = angle - moved.turn_against(curve);
+      return moved.bending_and_force() + curve.c * twist * twist / 2;
+    };
+    double norm = 0;
+    for (int i = 0; i < Curve::parts; ++i) {
+      const Eigen::Vector3d here = change(static_cast<double>(i) / Curve::parts);
+      const Eigen::Vector3d next = change((i + 1.0) / Curve::parts);
+      norm += (next - here).squaredNorm() * Curve::parts +
+              (here.squaredNorm() + next.squaredNorm()) / (2 * Curve::parts);
+    }
+    constexpr double h = 1e-3;
+    const double second = (energy(h) - 2 * energy(0) + energy(-h)) / (h * h);
+    // Differences of the polygon: 1e-6 of what they are made of.
+    EXPECT_NEAR(second / norm, found.smallest, 1e-5) << angle;
+  }
+}
+
+TEST(ExactTwist, ZeroIsWhatTheRodWithoutFramesHas) {
+  Problem problem = clamped({0.6, 0.2, 0.1}, {0.8, 0.3, -0.5}, 0.7, 0);
+  problem.weight_per_length = {0, -5, 0};
+  const Equilibrium twisted = solve_exact(problem);
+  ASSERT_EQ(twisted.status, SolveStatus::converged) << twisted.message;
+  Problem plain = problem;
+  for (Grip& grip : plain.grips) grip.frame.reset();
+  const Equilibrium expected = solve_exact(plain);
+  const std::vector<double> s = equal_arc_lengths(1, 21);
+  EXPECT_EQ((twisted.sample(s).points - expected.sample(s).points).norm(), 0);
+  ASSERT_EQ(twisted.twists.size(), 1U);
+  EXPECT_EQ(twisted.twists[0].angle, 0);
+  EXPECT_TRUE(expected.twists.empty());
+}
+
+/// A shape from its states, in units of l and EI, with its force at the ends.
+Equilibrium shape_of(const std::function<RodState(double)>& state, double c) {
+  Equilibrium shape;
+  shape.sample = [state](std::span<const double> arc_lengths) {
+    Samples samples;
+    const auto count = static_cast<Eigen::Index>(arc_lengths.size());
+    samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
+    samples.points.resize(3, count);
+    samples.tangents.resize(3, count);
+    samples.curvature.resize(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const RodState at = state(arc_lengths[static_cast<std::size_t>(i)]);
+      samples.points.col(i) = at.r;
+      samples.tangents.col(i) = at.t;
+      samples.curvature.col(i) = at.v;
+    }
+    return samples;
+  };
+  shape.grips.resize(2);
+  shape.grips[0].force = -state(0).n;
+  shape.grips[1].force = state(1).n;
+  const double torque = state(0).torque;
+  shape.twists = {{.begin = 0, .end = 1, .angle = torque / c, .torque = torque}};
+  return shape;
+}
+
+Eigen::Vector3d turned(const Eigen::Vector3d& d, const Eigen::Vector3d& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis) * d;
+}
+
+/// A helix around z, of radius R and pitch 2 pi P: curvature R / rho^2, torsion P / rho^2 with
+/// rho^2 = R^2 + P^2, and the force along its axis n = (M - P / rho^2) / rho.
+struct Helix {
+  double radius;
+  double pitch;
+  double torque;
+
+  [[nodiscard]] double rho() const { return std::hypot(radius, pitch); }
+  [[nodiscard]] double torsion() const { return pitch / (rho() * rho()); }
+  [[nodiscard]] RodState operator()(double s) const {
+    const double angle = s / rho();
+    RodState state;
+    state.r = {radius * (std::cos(angle) - 1), radius * std::sin(angle), pitch * angle};
+    state.t = Eigen::Vector3d(-radius * std::sin(angle), radius * std::cos(angle), pitch) / rho();
+    state.v = radius / (rho() * rho()) * Eigen::Vector3d(-std::cos(angle), -std::sin(angle), 0);
+    state.n = {0, 0, (torque - torsion()) / rho()};
+    state.torque = torque;
+    return state;
+  }
+};
+
+TEST(ExactTwist, FindsKirchhoffsHelix) {
+  const Helix helix{0.15, 0.1, 2.5};
+  const double c = 0.7;
+  const RodState end = helix(1);
+  Problem problem = clamped(end.r, end.t, c, 0);
+  problem.grips[0].direction = helix(0).t;
+  // The normal turns by the torsion against the transported frame, the rod's frame by the twist.
+  problem.grips[0].frame->d1 = helix(0).v;
+  problem.grips[1].frame->d1 = turned(end.v, end.t, helix.torque / c - helix.torsion());
+  const Equilibrium near = shape_of(
+      [&](double s) {
+        RodState state = helix(s);
+        state.r += 1e-3 * Eigen::Vector3d(std::sin(5 * s), s, s * s);
+        state.t = (state.t + 0.02 * Eigen::Vector3d(s, std::sin(3 * s), 0)).normalized();
+        state.v *= 1.05;
+        state.n *= 1.1;
+        state.torque *= 0.95;
+        return state;
+      },
+      c);
+  const Equilibrium result = solve_exact(problem, {.start = &near});
+  ASSERT_TRUE(static_cast<bool>(result.sample)) << result.message;
+  const std::vector<double> s = equal_arc_lengths(1, 21);
+  const Samples samples = result.sample(s);
+  for (Eigen::Index i = 0; i < 21; ++i) {
+    const RodState expected = helix(s[static_cast<std::size_t>(i)]);
+    EXPECT_LT((samples.points.col(i) - expected.r).norm(), 1e-11);
+    EXPECT_LT((samples.curvature.col(i) - expected.v).norm(), 1e-10);
+  }
+  ASSERT_EQ(result.twists.size(), 1U);
+  EXPECT_NEAR(result.twists[0].torque, helix.torque, 1e-11);
+  EXPECT_NEAR(result.twists[0].angle, helix.torque / c, 1e-11);
+  EXPECT_LT((result.grips[1].force - end.n).norm(), 1e-10);
+  EXPECT_LT((result.grips[1].torque - end.t.cross(end.v) - helix.torque * end.t).norm(), 1e-10);
+  EXPECT_NEAR(result.energy.twisting, helix.torque * helix.torque / (2 * c), 1e-10);
+}
+
+/// The homoclinic solution of a long rod under tension T and torque M (Coyne 1990): with k^2 = T -
+/// M^2 / 4 and theta its angle to the line,
+///     1 - cos theta = 2 k^2 / T / cosh^2(k s),   phi = M s / 2 + atan(2 k / M tanh(k s)),
+/// from s = -1/2 on; it takes 4 k / T of the length and turns the transported frame by
+/// 4 acos(M / (2 T^(1/2))).
+struct LocalisedBuckle {
+  double torque;
+  double tension;
+
+  [[nodiscard]] double slack() const { return 4 * rate() / tension; }
+  [[nodiscard]] double turn() const { return 4 * std::acos(torque / (2 * std::sqrt(tension))); }
+  [[nodiscard]] double rate() const { return std::sqrt(tension - torque * torque / 4); }
+  [[nodiscard]] RodState operator()(double from_start) const {
+    const double s = from_start - 0.5;
+    const double k = rate();
+    const Eigen::Vector3d line = Eigen::Vector3d::UnitX();
+    const double w = 2 * k * k / tension / (std::cosh(k * s) * std::cosh(k * s));
+    const double phi = torque * s / 2 + std::atan(2 * k / torque * std::tanh(k * s));
+    const double sine = std::sqrt(w * (2 - w));
+    const Eigen::Vector3d outward(0, std::cos(phi), std::sin(phi));
+    const double w_rate = -2 * k * std::tanh(k * s) * w;
+    RodState state;
+    state.t = (1 - w) * line + sine * outward;
+    state.v = -w_rate * line + (1 - w) * w_rate / sine * outward +
+              sine * torque / (2 - w) * line.cross(outward);
+    state.n = tension * line;
+    state.torque = torque;
+    // From m + r x n = M line.
+    const Eigen::Vector3d moment = state.t.cross(state.v) + torque * (state.t - line);
+    state.r = line.cross(-moment) / tension;
+    state.r.x() = from_start - 2 * k / tension * (std::tanh(k * s) + std::tanh(k / 2));
+    return state;
+  }
+};
+
+TEST(ExactTwist, ConfirmsTheLocalisedBuckleOfALongRod) {
+  // EI 1.345, GJ 0.789 N m^2 (van der Heijden, Neukirch, Goss, Thompson 2003), 27 turns, 3 % slack.
+  const double c = 0.789 / 1.345;
+  const Problem plain = clamped({0.97, 0, 0}, {1, 0, 0}, c, 54 * pi);
+  Problem problem = plain;
+  problem.grips[0].frame->d1 = Eigen::Vector3d::UnitY();
+  problem.grips[1].frame->d1 = Eigen::Vector3d::UnitY();
+  const Equilibrium near = shape_of(LocalisedBuckle{98.5, 2900}, c);
+  const Equilibrium result = solve_exact(problem, {.start = &near});
+  ASSERT_TRUE(static_cast<bool>(result.sample)) << result.message;
+  EXPECT_NEAR(result.twists[0].torque, 98.541496171, 98.54e-7);
+  EXPECT_NEAR(result.grips[1].force.x(), 2900.993206, 2901e-7);
+}
+
+/// Director that is carried along a shape without twist, by double reflections (Wang, Juettler,
+/// Zheng and Liu 2008).
+Eigen::Vector3d carried_director(const Equilibrium& shape, Eigen::Vector3d d) {
+  const Samples samples = shape.sample(equal_arc_lengths(1, 2001));
+  for (Eigen::Index i = 0; i + 1 < samples.points.cols(); ++i) {
+    const Eigen::Vector3d chord = samples.points.col(i + 1) - samples.points.col(i);
+    const auto reflected = [](const Eigen::Vector3d& x, const Eigen::Vector3d& normal) {
+      return Eigen::Vector3d(x - 2 * x.dot(normal) / normal.squaredNorm() * normal);
+    };
+    const Eigen::Vector3d t = reflected(samples.tangents.col(i), chord);
+    d = reflected(reflected(d, chord), samples.tangents.col(i + 1) - t);
+  }
+  return d;
+}
+
+/// Clamps that do not fit each other, and weight.
+Problem askew(double roll) {
+  Problem problem = clamped({0.6, 0.2, 0.1}, {0.8, 0.3, -0.5}, 0.7, roll);
+  problem.weight_per_length = {0, -5, 0};
+  return problem;
+}
+
+TEST(ExactTwist, PutsTheFrameAtTheEndWhereTheRollSays) {
+  const Eigen::Vector3d start = Eigen::Vector3d::UnitZ();
+  const Eigen::Vector3d t = Eigen::Vector3d(0.8, 0.3, -0.5).normalized();
+  const Eigen::Vector3d untwisted = carried_director(solve_exact(askew(0)), start);
+  for (const double roll : {-2.0, 1.0, 6.0, 12.0}) {
+    const Equilibrium result = solve_exact(askew(roll));
+    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+    const Eigen::Vector3d end =
+        turned(carried_director(result, start), t, result.twists.at(0).angle);
+    EXPECT_LT((end - turned(untwisted, t, roll)).norm(), 1e-9) << roll;
+  }
+}
+
+TEST(ExactTwist, IsInBalance) {
+  Problem problem = askew(3);
+  problem.loads = {{0.3, {2, 0, 1}}, {1, {0, 4, 0}}};
+  const Equilibrium result = solve_exact(problem);
+  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  EXPECT_GT(std::abs(result.twists.at(0).torque), 0.5);
+  EXPECT_LT(test::balance_of(problem, result, 0.01).worst(), 1e-10);
+}
+
+TEST(ExactTwist, OfSeveralPartsIsInBalance) {
+  // A clamp in the middle holds a frame, another beyond does not: the last part has no twist.
+  Problem problem = askew(2);
+  problem.length = 2;
+  problem.bending_stiffness = 3;
+  problem.torsional_stiffness = 2;
+  problem.grips.push_back({1.5, {0.7, 0.5, 0.1}, Eigen::Vector3d(0, 1, 1)});
+  problem.grips.push_back({0.6, {0.35, 0.1, 0.15}, std::nullopt});
+  const Equilibrium result = solve_exact(problem);
+  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  ASSERT_EQ(result.twists.size(), 1U);
+  EXPECT_EQ(result.twists[0].begin, 0);
+  EXPECT_EQ(result.twists[0].end, 1);
+  EXPECT_NEAR(result.twists[0].torque, problem.torsional_stiffness * result.twists[0].angle, 1e-12);
+  EXPECT_NEAR(result.energy.twisting, result.twists[0].torque * result.twists[0].angle / 2, 1e-12);
+  EXPECT_LT(test::balance_of(problem, result, 0.01).worst(), 1e-10);
+}
+
+TEST(ExactTwist, OfTheMirroredRollIsTheMirroredShape) {
+  // Clamps, weight and the rod without twist in the plane.
+  Problem problem = clamped({0.8, 0.1, 0}, {1, 0.5, 0}, 0.7, 2.5);
+  problem.weight_per_length = {0, -5, 0};
+  const Equilibrium one = solve_exact(problem);
+  problem.grips[1].frame->roll *= -1;
+  const Equilibrium other = solve_exact(problem);
+  ASSERT_EQ(one.status, SolveStatus::converged) << one.message;
+  ASSERT_EQ(other.status, SolveStatus::converged) << other.message;
+  EXPECT_NEAR(one.twists.at(0).angle, -other.twists.at(0).angle, 1e-10);
+  const std::vector<double> s = equal_arc_lengths(1, 21);
+  Eigen::Matrix3Xd mirrored = other.sample(s).points;
+  mirrored.row(2) *= -1;
+  EXPECT_GT(mirrored.row(2).cwiseAbs().maxCoeff(), 0.01);
+  EXPECT_LT((one.sample(s).points - mirrored).norm(), 1e-10);
+}
+
+TEST(ExactTwist, StartsFromAnEquilibriumWithoutContinuation) {
+  for (const bool known : {false, true}) {
+    Problem problem = askew(5);
+    if (known) {
+      problem.grips[0].frame->d1 = Eigen::Vector3d(0.3, 0, 1);
+      problem.grips[1].frame->d1 = Eigen::Vector3d(0.1, -2, 1);
+    }
+    const Equilibrium cold = solve_exact(problem);
+    ASSERT_EQ(cold.status, SolveStatus::converged) << cold.message;
+    const Equilibrium again = solve_exact(problem, {.start = &cold});
+    ASSERT_EQ(again.status, SolveStatus::converged) << again.message;
+    EXPECT_LT(again.evaluations, 6);
+    EXPECT_NEAR(again.twists.at(0).angle, cold.twists.at(0).angle, 1e-9);
+    const std::vector<double> s = equal_arc_lengths(1, 21);
+    EXPECT_LT((again.sample(s).points - cold.sample(s).points).norm(), 1e-10);
+  }
+}
+
+TEST(ExactTwist, RefusesWhatItCannotTwist) {
+  const auto refusal = [](const Problem& problem) {
+    try {
+      (void)solve_exact(problem);
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string("none");
+  };
+  Problem soft = askew(1);
+  soft.torsional_stiffness = 0;
+  EXPECT_NE(refusal(soft).find("torsional_stiffness"), std::string::npos) << refusal(soft);
+  Problem pin = askew(1);
+  pin.grips[1].direction.reset();
+  EXPECT_NE(refusal(pin).find("frame of a grip without direction"), std::string::npos);
+  Problem open = askew(1);
+  open.grips.push_back({0.5, {0.3, 0, 0}, Eigen::Vector3d::UnitX()});
+  EXPECT_NE(refusal(open).find("clamp without frame between"), std::string::npos);
+}
+
+TEST(ExactTwist, SaysHowFarItCame) {
+  const Equilibrium result = solve_exact(askew(1e7), {.time_limit = 1});
+  EXPECT_EQ(result.status, SolveStatus::time_limit);
+  EXPECT_NE(result.message.find("of 10000000.000000 rad"), std::string::npos) << result.message;
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
