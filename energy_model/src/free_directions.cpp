@@ -4,6 +4,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
+#include <utility>
 
 namespace dlo::energy_model {
 
@@ -35,13 +36,34 @@ bool is_minimum(const Eigen::MatrixXd& hessian) {
   return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(shifted).info() == Eigen::Success;
 }
 
-std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
-                                                 const Eigen::MatrixXd& jacobian) {
+namespace {
+
+struct Softest {
+  double eigenvalue;
+  Eigen::VectorXd direction;
+};
+
+std::optional<Softest> softest(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
   const Eigen::MatrixXd Z = free_directions(jacobian, hessian.rows());
   if (Z.cols() == 0) return std::nullopt;
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Z.transpose() * hessian * Z);
-  if (eigen.eigenvalues()[0] > -neutral) return std::nullopt;
-  return Eigen::VectorXd((Z * eigen.eigenvectors().col(0)).normalized());
+  return Softest{eigen.eigenvalues()[0], (Z * eigen.eigenvectors().col(0)).normalized()};
+}
+
+}  // namespace
+
+std::optional<Eigen::VectorXd> softest_direction(const Eigen::MatrixXd& hessian,
+                                                 const Eigen::MatrixXd& jacobian) {
+  std::optional<Softest> found = softest(hessian, jacobian);
+  if (!found) return std::nullopt;
+  return std::move(found->direction);
+}
+
+std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
+                                                 const Eigen::MatrixXd& jacobian) {
+  std::optional<Softest> found = softest(hessian, jacobian);
+  if (!found || found->eigenvalue > -neutral) return std::nullopt;
+  return std::move(found->direction);
 }
 
 }  // namespace dlo::energy_model

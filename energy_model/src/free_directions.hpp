@@ -23,6 +23,10 @@ inline constexpr double neutral = 1e-7;
 /// Whether no eigenvalue of a matrix, of which the lower half is read, is negative.
 [[nodiscard]] bool is_minimum(const Eigen::MatrixXd& hessian);
 
+/// The direction of the smallest eigenvalue, whatever it is; none if the constraints leave none.
+[[nodiscard]] std::optional<Eigen::VectorXd> softest_direction(const Eigen::MatrixXd& hessian,
+                                                               const Eigen::MatrixXd& jacobian);
+
 /// The direction in which an unstable equilibrium gives way first; none if it is stable.
 [[nodiscard]] std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
                                                                const Eigen::MatrixXd& jacobian);

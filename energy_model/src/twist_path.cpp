@@ -11,6 +11,7 @@
 #include "free_directions.hpp"
 #include "legendre.hpp"
 #include "penalty_descent.hpp"
+#include "trust_region.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -29,6 +30,9 @@ constexpr double turn_at_loss = 0.02;
 constexpr double branch_share = 0.05;
 /// The same for a step after which the next one may be longer.
 constexpr double smooth_share = 0.005;
+
+/// Gradient over the load at which a descent hands over to Newton's method.
+constexpr double handover_gradient = 1e-5;
 
 /// Curvature over the forces below which rounding alone would move a shape visibly.
 constexpr double rounded_curvature = 1e-9;
@@ -164,8 +168,9 @@ class TwistPath {
   void accept(SpanSolution next, double angle) {
     const double turn = angle - angle_;
     slope_x_.resize(0);
+    last_step_ = next.x - here_.x;
     if (!aside_) {
-      slope_x_ = (next.x - here_.x) / turn;
+      slope_x_ = last_step_ / turn;
       slope_multipliers_ = (next.multipliers - here_.multipliers) / turn;
     }
     here_ = std::move(next);
@@ -178,6 +183,7 @@ class TwistPath {
     spent_ += here_.evaluations;
     here_.evaluations = 0;
     slope_x_.resize(0);
+    last_step_.resize(0);
   }
 
   [[nodiscard]] bool is_stable(const SpanSolution& solution) {
@@ -202,21 +208,31 @@ class TwistPath {
 
   /// Downhill to what is stable, from beside here.
   void leave() {
-    slope_x_.resize(0);
     derive(here_);
-    const std::optional<Eigen::VectorXd> way = falling_direction(hessian_, jacobian_);
-    double push = way ? first_push : 0;
-    for (int i = 0; i < most_pushes; ++i, push *= 3) {
+    std::optional<Eigen::VectorXd> way = falling_direction(hessian_, jacobian_);
+    // Next to a fold the branch goes where the rod gives way.
+    if (!way && last_step_.norm() > 0) way = last_step_.normalized();
+    if (!way) way = softest_direction(hessian_, jacobian_);
+    slope_x_.resize(0);
+    double push = first_push;
+    for (int i = 0; i < 2 * most_pushes; ++i) {
       SpanSolution next = here_;
       next.evaluations = 0;
       if (way) next.x += push * *way;
-      next.multipliers.setZero();
-      descend_by_penalty(next, {.load = load_, .deadline = &options_.deadline});
+      if (i % 2 == 0) {
+        descend_by_penalty(next, {.load = load_, .deadline = &options_.deadline});
+      } else {
+        descend_in_trust_region(next, {.load = load_,
+                                       .gradient_tolerance = handover_gradient,
+                                       .deadline = &options_.deadline});
+        push *= 3;
+      }
       if (succeeded(next.status)) workspace_.newton().polish(next, load_);
       spent_ += next.evaluations;
       next.evaluations = 0;
       if (!next.is_equilibrium() || !is_stable(next)) continue;
       here_ = std::move(next);
+      last_step_.resize(0);
       return;
     }
     here_.fail("nothing stable was found below a twist of " + std::to_string(angle_) + " rad");
@@ -232,6 +248,7 @@ class TwistPath {
   int spent_ = 0;
   bool smooth_ = false;  // the last step was shorter than it need be
   bool aside_ = false;   // the last step has gone aside from where it pointed at
+  Eigen::VectorXd last_step_;
   Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a leap
   Eigen::VectorXd gradient_, residual_;
   Eigen::MatrixXd jacobian_, hessian_;
