@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "assemble.hpp"
 #include "legendre.hpp"
@@ -20,6 +21,9 @@ namespace {
 
 /// Most combinations of the spans' equilibria that are put together.
 constexpr std::size_t most_combinations = 64;
+
+/// Turn of a clamp at once that may be followed on the same branch [rad].
+constexpr double largest_followed_turn = 1;
 
 void check(const EnergyOptions& options) {
   require(options.terms >= 0 && options.terms <= max_terms, "solve_energy", "terms", options.terms,
@@ -103,6 +107,7 @@ class EnergySolver::State {
     const std::vector<PlacedSpan> placed = split(problem);
     const bool warm = follow && remembered_.size() == placed.size();
     remembered_.resize(placed.size());
+    twists_.resize(placed.size());
     std::vector<std::vector<PlacedSolution>> solutions;
     solutions.reserve(placed.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
@@ -113,8 +118,15 @@ class EnergySolver::State {
       options.max_evaluations = options_.max_evaluations;
       options.all = all;
       options.deadline = deadline;
-      solutions.push_back(placed[i].frames ? twisted(placed[i], problem, options)
-                                           : solve_placed(placed[i], problem, options, last));
+      if (placed[i].frames) {
+        RememberedTwist& memory = twists_[i];
+        solutions.push_back(twisted(placed[i], problem, options, warm, memory));
+        const PlacedSolution& found = solutions.back().front();
+        remember(found, memory.twisted);
+        memory.twist = found.solution.model->twist(found.solution.x);
+        continue;
+      }
+      solutions.push_back(solve_placed(placed[i], problem, options, last));
       remember(solutions.back().front(), remembered_[i]);
     }
     std::vector<Equilibrium> result = combine(problem, solutions);
@@ -133,15 +145,46 @@ class EnergySolver::State {
     [[nodiscard]] bool planar() const { return !model || model->span().planar; }
   };
 
-  /// Searches without twist, whatever there is to start from: where the clamp has the frame starts
-  /// there. Then turns what is stable there.
+  /// The same of a span that is twisted, which is followed without twist too.
+  struct RememberedTwist {
+    Remembered untwisted, twisted;
+    double twist = 0;   // of `twisted`
+    double turned = 0;  // of the end's frame from where the untwisted rod has it
+  };
+
+  /// From a shape whose twist is known, if there is one. Else searches without twist: where the
+  /// clamp has the frame starts there; then turns what is stable there.
   [[nodiscard]] std::vector<PlacedSolution> twisted(const PlacedSpan& placed,
                                                     const Problem& problem,
-                                                    const SpanOptions& options) {
-    std::vector<PlacedSolution> untwisted = solve_placed(placed, problem, options, nullptr);
-    if (!succeeded(untwisted.front().solution.status)) return untwisted;
+                                                    const SpanOptions& options, bool warm,
+                                                    RememberedTwist& memory) {
     const HeldFrames& held = *placed.frames;
+    const auto from_shape = [&](const TangentField& field, double twist,
+                                const std::optional<Eigen::Vector3d>& end_d1) {
+      PlacedSolution to{placed, twist_from(field, twist, end_d1, placed.span, held.stiffness,
+                                           options, workspace_)};
+      to.placed.span.planar = false;
+      return to;
+    };
+    if (const TwistedPart* part = known_part(placed, problem.length); part && !options.all) {
+      PlacedSolution to = from_shape(field_of(*options_.start, placed, problem.length), part->angle,
+                                     known_end_d1(held, placed.span));
+      if (to.solution.is_equilibrium()) return one(std::move(to));
+    }
+    const Remembered* last = warm && memory.untwisted.model ? &memory.untwisted : nullptr;
+    std::vector<PlacedSolution> untwisted = solve_placed(placed, problem, options, last);
+    remember(untwisted.front(), memory.untwisted);
+    if (!succeeded(untwisted.front().solution.status)) return untwisted;
     const EndFrame frame = end_frame(held, untwisted.front().solution);
+    const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
+    if (warm && memory.twisted.model && std::abs(turned) < largest_followed_turn && !options.all) {
+      const auto field = [&placed, &memory](const Eigen::VectorXd& s) {
+        return follow_field(placed, memory.twisted, s);
+      };
+      PlacedSolution to = from_shape(field, memory.twist + turned, frame.d1);
+      to.solution.evaluations += untwisted.front().solution.evaluations;
+      if (to.solution.is_equilibrium()) return one(std::move(to));
+    }
     std::vector<PlacedSolution> found;
     int spent = 0;
     for (const PlacedSolution& from : untwisted) {
@@ -159,6 +202,15 @@ class EnergySolver::State {
     sort(found);
     found.front().solution.evaluations = spent;
     return found;
+  }
+
+  /// What the shape to start from says of the twist of a span; null: nothing.
+  [[nodiscard]] const TwistedPart* known_part(const PlacedSpan& placed, double length) const {
+    if (options_.start == nullptr) return nullptr;
+    for (const TwistedPart& part : options_.start->twists) {
+      if (std::abs(part.begin - placed.start) < 1e-9 * length) return &part;
+    }
+    return nullptr;
   }
 
   [[nodiscard]] std::vector<PlacedSolution> solve_placed(const PlacedSpan& placed,
@@ -302,6 +354,7 @@ class EnergySolver::State {
   EnergyOptions options_;
   SpanWorkspace workspace_;
   std::vector<Remembered> remembered_;
+  std::vector<RememberedTwist> twists_;
 };
 
 EnergySolver::EnergySolver(const EnergyOptions& options)

@@ -44,6 +44,9 @@ constexpr int most_pushes = 4;
 /// Coefficients up to this of the angle that they turn are left for the end of the path.
 constexpr double coarse_tolerance = 1e-6;
 
+/// Coefficients that a twisted shape is first given.
+constexpr int first_terms = 24;
+
 /// Newton's method factors a dense matrix of this size at most.
 constexpr Eigen::Index most_unknowns = 480;
 
@@ -256,18 +259,21 @@ class TwistPath {
 
 }  // namespace
 
+std::optional<Eigen::Vector3d> known_end_d1(const HeldFrames& held, const Span& span) {
+  if (!held.start_d1 || !held.end_d1) return std::nullopt;
+  const Eigen::Vector3d& start = *span.start_direction;
+  const double ahead = angle_about(start, Span::d1(start), *held.start_d1);
+  return Eigen::AngleAxisd(held.roll - ahead, *span.end_direction) * *held.end_d1;
+}
+
 EndFrame end_frame(const HeldFrames& held, const SpanSolution& untwisted) {
   const Span& span = untwisted.model->span();
   const Eigen::Vector3d& axis = *span.end_direction;
   const Eigen::Vector3d d1 = transported(untwisted);
-  double twist = held.roll;
-  if (held.start_d1 && held.end_d1) {
-    // The rod's own d1 is ahead of the transported one by as much at the end as at the start.
-    const Eigen::Vector3d& start = *span.start_direction;
-    const double ahead = angle_about(start, Span::d1(start), *held.start_d1);
-    twist += angle_about(axis, Eigen::AngleAxisd(ahead, axis) * d1, *held.end_d1);
-  }
-  return {Eigen::AngleAxisd(twist, axis) * d1, twist};
+  const std::optional<Eigen::Vector3d> known = known_end_d1(held, span);
+  if (!known) return {Eigen::AngleAxisd(held.roll, axis) * d1, held.roll};
+  const double least = angle_about(axis, d1, Eigen::AngleAxisd(-held.roll, axis) * *known);
+  return {*known, least + held.roll};
 }
 
 double twist_to(const EndFrame& frame, const SpanSolution& untwisted) {
@@ -283,6 +289,36 @@ SpanSolution twist_by(double angle, const Span& span, const HeldFrames& held,
   SpanSolution solution = path.run(angle);
   if (!solution.is_equilibrium()) return solution;
   const Span twisted = solution.model->span();
+  return finish_span(twisted, options, workspace, std::move(solution));
+}
+
+SpanSolution twist_from(const TangentField& field, double twist,
+                        const std::optional<Eigen::Vector3d>& end_d1, const Span& span,
+                        double stiffness, const SpanOptions& options, SpanWorkspace& workspace) {
+  Span twisted = span;
+  twisted.planar = false;
+  twisted.twist = Span::Twist{stiffness, end_d1.value_or(Span::d1(*span.end_direction))};
+  SpanSolution solution;
+  // The shape does not say how many terms it takes.
+  for (int terms = std::max(first_terms, options.least_terms);;
+       terms = std::min(max_terms, 3 * terms / 2)) {
+    solution = SpanSolution();
+    solution.model = workspace.model(twisted, terms);
+    SpanEnergy& model = *solution.model;
+    solution.terms = terms;
+    solution.x = model.with_twist(model.fit(field(model.nodes())), twist);
+    if (!end_d1) {
+      Eigen::VectorXd gradient(model.size());
+      (void)model.value(solution.x, gradient);
+      const Eigen::AngleAxisd about(twist, *span.end_direction);
+      twisted.twist->end_d1 = about * model.transported_d1();
+      model.turn_end_clamp(twisted.twist->end_d1);
+    }
+    workspace.newton().polish(solution, span.total_load());
+    const bool more = terms < max_terms && 3 * model.size() / 2 < most_unknowns;
+    if (solution.is_equilibrium()) break;
+    if (!more || options.deadline.passed()) return solution;
+  }
   return finish_span(twisted, options, workspace, std::move(solution));
 }
 

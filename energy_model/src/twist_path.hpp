@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "span_solver.hpp"
 #include "split.hpp"
 
@@ -10,6 +12,9 @@ struct EndFrame {
   Eigen::Vector3d d1;  ///< Span::Twist::end_d1
   double twist;        ///< of the rod that has been twisted from the untwisted shape [rad]
 };
+
+/// d1 at the end where both clamps say where d1 is, whatever the shape: Span::Twist::end_d1.
+[[nodiscard]] std::optional<Eigen::Vector3d> known_end_d1(const HeldFrames& held, const Span& span);
 
 /// Where the later clamp holds d1, and how far that twists this untwisted shape of the span, whole
 /// turns counted.
@@ -26,5 +31,13 @@ struct EndFrame {
 [[nodiscard]] SpanSolution twist_by(double angle, const Span& span, const HeldFrames& held,
                                     const SpanSolution& untwisted, const SpanOptions& options,
                                     SpanWorkspace& workspace);
+
+/// The equilibrium next to a twisted shape that is known: its tangents, and its twist, whole turns
+/// counted.
+/// @param end_d1  where the end's clamp holds d1; none: where the shape has it
+[[nodiscard]] SpanSolution twist_from(const TangentField& field, double twist,
+                                      const std::optional<Eigen::Vector3d>& end_d1,
+                                      const Span& span, double stiffness,
+                                      const SpanOptions& options, SpanWorkspace& workspace);
 
 }  // namespace dlo::energy_model

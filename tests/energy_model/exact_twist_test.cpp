@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
 #include "problems.hpp"
@@ -366,6 +367,11 @@ TEST(ExactTwist, ConfirmsTheLocalisedBuckleOfALongRod) {
   ASSERT_TRUE(static_cast<bool>(result.sample)) << result.message;
   EXPECT_NEAR(result.twists[0].torque, 98.541496171, 98.54e-7);
   EXPECT_NEAR(result.grips[1].force.x(), 2900.993206, 2901e-7);
+  // The energy model goes from there to its own.
+  const Equilibrium energy = solve_energy(problem, {.start = &result});
+  ASSERT_EQ(energy.status, SolveStatus::converged) << energy.message;
+  EXPECT_NEAR(energy.twists.at(0).torque, 98.541496171, 98.54e-7);
+  EXPECT_NEAR(energy.grips[1].force.x(), 2900.993206, 2901e-7);
 }
 
 /// Director that is carried along a shape without twist, by double reflections (Wang, Juettler,

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
 #include "free_directions.hpp"
 #include "span_energy.hpp"
@@ -210,6 +211,42 @@ TEST(Twist, HoldsAHelixUnderItsWrench) {
       const auto column = static_cast<Eigen::Index>(i);
       EXPECT_LT((samples.points.col(column) - helix(curvature, torsion, s[i]).r).norm(), 1e-9);
     }
+  }
+}
+
+// Each of both puts the twist in by a continuation of its own.
+TEST(Twist, AgreesWithMultipleShooting) {
+  Problem problem = turned_rod(0.7, 0, 8);
+  problem.grips.back().direction = Eigen::Vector3d(0.8, 0.3, -0.5);
+  problem.loads = {{0.4, {1, 3, -2}}};
+  problem.grips.front().frame->roll = 0.7;
+  const auto expect_agreement = [&] {
+    const Equilibrium energy = solved(problem);
+    const Equilibrium exact = solve_exact(problem);
+    ASSERT_EQ(exact.status, SolveStatus::converged) << exact.message;
+    const std::vector<double> s = equal_arc_lengths(1, 21);
+    EXPECT_LT((energy.sample(s).points - exact.sample(s).points).colwise().norm().maxCoeff(), 1e-9);
+    EXPECT_NEAR(energy.twists.at(0).angle, exact.twists.at(0).angle, 1e-8);
+  };
+  for (const double roll : {-5.0, 3.0}) {
+    problem.grips.back().frame->roll = roll;
+    expect_agreement();
+  }
+  problem.grips.front().frame->d1 = Eigen::Vector3d(0.2, 1, 0.4);
+  problem.grips.back().frame->d1 = Eigen::Vector3d(1, -0.2, 0.6);
+  expect_agreement();
+}
+
+TEST(Twist, IsFollowedWhileTheGripperTurns) {
+  EnergySolver solver;
+  Equilibrium followed = solver.solve(turned_rod(0.7, 1, 8));
+  for (const double roll : {1.1, 1.3, 1.2}) {
+    followed = solver.follow(turned_rod(0.7, roll, 8));
+    ASSERT_EQ(followed.status, SolveStatus::converged) << followed.message;
+    const Equilibrium fresh = solved(turned_rod(0.7, roll, 8));
+    EXPECT_LT(followed.evaluations, fresh.evaluations);
+    EXPECT_NEAR(followed.energy.total(), fresh.energy.total(), 1e-9);
+    EXPECT_NEAR(axial_torque(followed), axial_torque(fresh), 1e-8);
   }
 }
 

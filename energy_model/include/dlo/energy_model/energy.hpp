@@ -44,6 +44,10 @@ struct EnergyOptions {
 /// lead to nothing stable), and what cannot hold itself is followed to where it falls, also out of
 /// its plane.
 ///
+/// Twist (Problem) is put in from the lowest shape without it, in small turns of the later clamp;
+/// what loses its stability or comes to the end of its branch is followed downhill. Nothing keeps
+/// the rod from passing through itself. `start` with its `twists` is gone from directly.
+///
 /// Rigid walls are met by an augmented Lagrangian whose multipliers live at the quadrature's nodes,
 /// between which a shape may enter a wall: a tip that just touches one by up to 1e-3 l. Equilibrium
 /// has the depth as `penetration`; a shape deeper than `allowed_penetration`, or whose contact
