@@ -263,6 +263,9 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
   for (const double s : mesh.s) {
     arc_lengths.push_back(std::min((span.begin + s) * problem.length, problem.length));
   }
+  // At a clamp the curvature jumps: that of this side is wanted.
+  constexpr double inside = 1e-12;
+  if (span.begin > 0) arc_lengths.front() += inside * problem.length;
   const Samples samples = shape.sample(arc_lengths);
   std::vector<RodState> start;
   for (Eigen::Index i = 0; i < mesh.s.size(); ++i) {

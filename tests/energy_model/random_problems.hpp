@@ -16,6 +16,11 @@ namespace dlo::test {
 /// twisted too.
 enum class RandomSpace { plane, space, twisted };
 
+inline const char* name_of(RandomSpace space) {
+  if (space == RandomSpace::twisted) return "twisted";
+  return space == RandomSpace::plane ? "plane" : "space";
+}
+
 /// SplitMix64 (Steele, Lea, Flood 2014): the same numbers on every machine and with every library,
 /// which the distributions of <random> do not promise.
 class RandomNumbers {

@@ -102,14 +102,9 @@ struct Tally {
 /// A shape whose forces and torques do not balance to this is no equilibrium.
 constexpr double largest_defect = 1e-6;
 
-const char* name_of(RandomSpace space) {
-  if (space == RandomSpace::twisted) return "twisted";
-  return space == RandomSpace::plane ? "plane" : "space";
-}
-
 /// @return how many scenes must not be as they are
 int run(const Options& options, RandomSpace space, std::uint64_t count) {
-  const char* kind = name_of(space);
+  const char* kind = dlo::test::name_of(space);
   if (count == 0) return 0;
   Tally energy;
   Tally exact;

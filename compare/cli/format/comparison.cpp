@@ -12,12 +12,14 @@ namespace dlo::cli {
 
 namespace {
 
-void add_budget(std::string& out, const compare::Budget& b) {
+void add_budget(std::string& out, const compare::Comparison& comparison) {
+  const compare::Budget& b = comparison.budget;
   // A share is a part's projection on the total, so that the shares add up; a part across the total
   // has millimetres but no share.
   append(out, "  error budget    RMS, and share of the total {:.4g} mm with sign\n",
          b.total_m * 1e3);
   const std::pair<const char*, const compare::BudgetPart*> parts[] = {
+      {"twist", &b.twist},
       {"law", &b.law},
       {"bookkeeping", &b.bookkeeping},
       {"discretisation", &b.discretisation},
@@ -25,6 +27,7 @@ void add_budget(std::string& out, const compare::Budget& b) {
       {"not at rest", &b.not_at_rest},
       {"interaction", &b.interaction}};
   for (const auto& [name, part] : parts) {
+    if (part == &b.twist && comparison.force.left_out.empty()) continue;
     append(out, "                  {:<16}{:>10.4g} mm {:>9.2f} %\n", name, part->rms_m * 1e3,
            part->share * 100 + 0.0);
   }
@@ -106,7 +109,7 @@ std::string comparison_text(const compare::Comparison& c) {
     const double movement_m = c.deviation.rms_m / c.deviation.rms_over_movement;
     add_modulus(out, c.effective_modulus, movement_m, NAN);
   }
-  add_budget(out, c.budget);
+  add_budget(out, c);
   add_state(out, c.state, c.length, "force");
   append(out, "  cost            force {} steps, {:.3g} ms; energy {} evaluations, {:.3g} ms\n\n",
          c.force.steps, c.force.seconds * 1e3, c.energy_evaluations, c.energy_seconds * 1e3);
@@ -139,7 +142,11 @@ Json comparison_json(const compare::Comparison& comparison) {
                         {"stretch", budget.stretch.share},
                         {"not_at_rest", budget.not_at_rest.share},
                         {"interaction", budget.interaction.share}}}};
-  if (!comparison.force.left_out.empty()) result["left_out"] = comparison.force.left_out;
+  if (!comparison.force.left_out.empty()) {
+    result["left_out"] = comparison.force.left_out;
+    result["budget"]["twist_m"] = budget.twist.rms_m;
+    result["budget"]["shares_of_total"]["twist"] = budget.twist.share;
+  }
   result["reference_resolved"] = comparison.unresolved.empty();
   result["state"] = to_json(comparison.state);
   result["cost"] = {{"force_s", comparison.force.seconds},
@@ -156,8 +163,9 @@ Json comparison_json(const compare::Comparison& comparison) {
 std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons) {
   std::string text =
       "scene,law,bookkeeping,points,gamma,rms_m,max_m,tip_m,rms_over_length,rms_over_movement,"
-      "effective_modulus_ratio,rms_at_effective_modulus_m,optimum,c_b,c_c,budget_law_m,"
-      "budget_bookkeeping_m,budget_discretisation_m,budget_stretch_m,budget_not_at_rest_m,"
+      "effective_modulus_ratio,rms_at_effective_modulus_m,optimum,c_b,c_c,budget_twist_m,"
+      "budget_law_m,budget_bookkeeping_m,budget_discretisation_m,budget_stretch_m,budget_not_at_"
+      "rest_m,"
       "budget_interaction_m,budget_parts_share,residual_over_movement,state_rank,states_stable,"
       "force_steps,force_s,energy_evaluations,energy_s\n";
   for (const compare::Comparison& c : comparisons) {
@@ -178,6 +186,7 @@ std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons)
         has_modulus ? compare::to_string(c.effective_modulus.optimum) : "",
         csv_number(c.force.parameters.c_b),
         csv_number(c.force.parameters.c_c),
+        csv_number(c.budget.twist.rms_m),
         csv_number(c.budget.law.rms_m),
         csv_number(c.budget.bookkeeping.rms_m),
         csv_number(c.budget.discretisation.rms_m),

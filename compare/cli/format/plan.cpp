@@ -23,19 +23,23 @@ std::string twist_text(const compare::Plan& plan) {
     return "  twist           no: one gripper alone holds the frame, and the rod turns with it\n";
   }
   constexpr double rounding = 1e-9;  // of an angle between directors [rad]
+  constexpr double degrees = 180 / std::numbers::pi;
   std::string out;
   for (const compare::PlannedTwist& part : plan.twist) {
-    const bool none = std::abs(part.angle) < rounding;
+    const bool none = std::abs(part.turn) < rounding;
     append(out, "  twist           {}: ", none ? "no" : "yes");
     if (none) {
-      append(out, "the grippers hold {:g} to {:g} m without a turn\n", part.begin, part.end);
-    } else if (std::isfinite(part.angle)) {
-      append(out, "the grippers turn it by {:.6g} degrees from {:g} to {:g} m\n",
-             part.angle * 180 / std::numbers::pi, part.begin, part.end);
-    } else {
-      append(out, "the grippers hold {:g} to {:g} m, by an angle that only its shape tells\n",
+      append(out, "the grippers hold {:g} to {:g} m without a turn", part.begin, part.end);
+    } else if (std::isfinite(part.turn)) {
+      append(out, "the grippers turn it by {:.6g} degrees from {:g} to {:g} m", part.turn * degrees,
              part.begin, part.end);
+    } else {
+      append(out, "the grippers' directors turn it from {:g} to {:g} m", part.begin, part.end);
     }
+    if (!none && std::isfinite(part.twist)) {
+      append(out, "; {:.4g} degrees stay as twist", part.twist * degrees);
+    }
+    out += "\n";
   }
   return out;
 }
@@ -130,8 +134,11 @@ Json plan_json(const compare::Plan& plan) {
   if (plan.frame_held) {
     Json twist = Json::array();
     for (const compare::PlannedTwist& part : plan.twist) {
-      // An angle that is not known is null.
-      twist.push_back({{"from_m", part.begin}, {"to_m", part.end}, {"angle_rad", part.angle}});
+      // What is not known is null.
+      twist.push_back({{"from_m", part.begin},
+                       {"to_m", part.end},
+                       {"turn_rad", part.turn},
+                       {"twist_rad", part.twist}});
     }
     result["twist"] = std::move(twist);
   }

@@ -1,6 +1,7 @@
 #include "dlo/compare/error_budget.hpp"
 
 #include "dlo/compare/chain.hpp"
+#include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
 
 namespace dlo::compare {
@@ -18,6 +19,10 @@ class Fields {
   [[nodiscard]] Eigen::Matrix3Xd of(const Shape& shape) const {
     const Shape difference{shape.arc_length, shape.points - reference_(shape.arc_length).points};
     return resample(difference, s_).points;
+  }
+
+  [[nodiscard]] Eigen::Matrix3Xd of(const energy_model::Equilibrium& rod) const {
+    return rod.sample(s_).points - reference_(s_).points;
   }
 
   [[nodiscard]] BudgetPart part(const Eigen::Matrix3Xd& field,
@@ -62,12 +67,19 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   const Eigen::Matrix3Xd total = fields.of(force.shape);
   const Eigen::Matrix3Xd moving = total - fields.of(rested);
 
+  // The lowest shape without twist, of which the polygon is one.
+  Eigen::Matrix3Xd twist = Eigen::Matrix3Xd::Zero(3, total.cols());
+  if (scene.holds_twist()) {
+    twist = fields.of(solve_reference(scene.without_twist(), Model::energy, options));
+  }
+
   Budget budget;
   budget.total_m = fields.part(total, total).rms_m;
   const Eigen::Matrix3Xd law = other_law - base;
   const Eigen::Matrix3Xd bookkeeping = other_bookkeeping - base;
   const Eigen::Matrix3Xd stretch = elastic - stiff;
-  budget.discretisation = fields.part(base, total);
+  budget.twist = fields.part(twist, total);
+  budget.discretisation = fields.part(base - twist, total);
   budget.bookkeeping = fields.part(bookkeeping, total);
   budget.law = fields.part(law, total);
   budget.stretch = fields.part(stretch, total);

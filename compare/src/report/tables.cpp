@@ -142,6 +142,7 @@ HtmlTable budget_table(const Report& report) {
                   .columns = {{"scene", HtmlCell::text},
                               {setting_head, HtmlCell::word},
                               {"total"},
+                              {"twist"},
                               {"law"},
                               {"bookkeeping"},
                               {"discretisation"},
@@ -151,8 +152,8 @@ HtmlTable budget_table(const Report& report) {
   for_each_comparison(report, [&](const Comparison& c) {
     const Budget& b = c.budget;
     std::vector<std::string> row = {c.scene, setting_of(c), millimetres(b.total_m)};
-    for (const BudgetPart* part :
-         {&b.law, &b.bookkeeping, &b.discretisation, &b.stretch, &b.not_at_rest, &b.interaction}) {
+    for (const BudgetPart* part : {&b.twist, &b.law, &b.bookkeeping, &b.discretisation, &b.stretch,
+                                   &b.not_at_rest, &b.interaction}) {
       row.push_back(
           fmt::format("{} ({}\u00a0%)", millimetres(part->rms_m), tenths(part->share * 100)));
     }

@@ -63,6 +63,7 @@ std::vector<std::vector<const Comparison*>> groups_of(const Report& report) {
 
 std::string largest_part(const Budget& b) {
   const std::pair<const char*, const BudgetPart*> parts[] = {
+      {"twist", &b.twist},
       {"the law", &b.law},
       {"the bookkeeping", &b.bookkeeping},
       {"discretisation", &b.discretisation},

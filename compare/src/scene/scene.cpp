@@ -31,6 +31,12 @@ bool Scene::holds_twist() const {
                        [](const Gripper& gripper) { return gripper.frame.has_value(); }) > 1;
 }
 
+Scene Scene::without_twist() const {
+  Scene scene = *this;
+  for (Gripper& gripper : scene.grippers) gripper.frame.reset();
+  return scene;
+}
+
 void Scene::scale_modulus(double factor) {
   material.youngs_modulus *= factor;
   if (torsional_stiffness) *torsional_stiffness *= factor;

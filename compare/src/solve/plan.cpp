@@ -10,6 +10,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
@@ -76,9 +77,10 @@ std::vector<PlannedTwist> twists_of(const Scene& scene) {
     if (!gripper->frame) continue;
     if (before != nullptr) {
       const bool by_directors = before->frame->d1 && gripper->frame->d1;
-      twists.push_back({before->at, gripper->at,
-                        by_directors ? std::numeric_limits<double>::quiet_NaN()
-                                     : gripper->frame->roll - before->frame->roll});
+      twists.push_back({.begin = before->at,
+                        .end = gripper->at,
+                        .turn = by_directors ? std::numeric_limits<double>::quiet_NaN()
+                                             : gripper->frame->roll - before->frame->roll});
     }
     before = gripper;
   }
@@ -173,6 +175,21 @@ LeftOut twist_left_out(const Plan& plan) {
   return {"twist", "chain, force", unbounded, "the grippers hold it"};
 }
 
+/// How much of the turn the rod takes up, and what leaving twist out changes: the rod is solved
+/// without it too.
+void look_at_twist(const Scene& scene, const energy_model::Equilibrium& rod, double time_limit,
+                   Plan& plan, LeftOut& twist) {
+  if (rod.twists.size() != plan.twist.size() || !(time_limit > 0)) return;
+  for (std::size_t i = 0; i < plan.twist.size(); ++i) plan.twist[i].twist = rod.twists[i].angle;
+  std::string why;
+  const std::optional<energy_model::Equilibrium> loose =
+      rod_shape(scene.without_twist(), time_limit, why);
+  if (!loose) return;
+  const std::vector<double> s = equal_arc_lengths(scene.length, rod_points);
+  twist.bound_m = rms(s, rod.sample(s).points - loose->sample(s).points);
+  twist.why = "distance from the lowest shape without it";
+}
+
 }  // namespace
 
 double Plan::bound(const std::string& what) const {
@@ -208,6 +225,7 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   LeftOut stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
   LeftOut shear{.what = "shear", .models = "all"};
   LeftOut polygon{.what = "polygon", .models = "chain, force"};
+  LeftOut twist = twist_left_out(plan);
   const auto no_bound = [&](const std::string& why) {
     for (LeftOut* item : {&stretch, &shear, &polygon}) {
       item->bound_m = unbounded;
@@ -219,11 +237,7 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     std::string why;
     const std::optional<energy_model::Equilibrium> rod = rod_shape(scene, options.time_limit, why);
     plan.contact = !rod || touches(*rod);
-    if (rod && rod->twists.size() == plan.twist.size()) {
-      for (std::size_t i = 0; i < plan.twist.size(); ++i) {
-        plan.twist[i].angle = rod->twists[i].angle;
-      }
-    }
+    if (rod && !plan.twist.empty()) look_at_twist(scene, *rod, clock.left(), plan, twist);
     const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points);
     if (!rod) {
       no_bound(why);
@@ -250,8 +264,7 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     no_bound(fmt::format("not found out: {}", error.what()));
   }
   plan.stretch = stretch.bound_m > options.target * scene.length / 10;
-  plan.left_out = {stretch, shear, polygon, inertia(scene, options.gripper_speed),
-                   twist_left_out(plan)};
+  plan.left_out = {stretch, shear, polygon, inertia(scene, options.gripper_speed), twist};
   plan.moving = plan.bound("inertia") > options.target * scene.length;
   if (in_reach.size() < scene.obstacles.size()) {
     plan.left_out.push_back(

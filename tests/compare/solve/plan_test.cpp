@@ -290,9 +290,13 @@ TEST(Plan, SaysWhatGrippersTwistAndThatNoPolygonKnowsOfIt) {
   ASSERT_EQ(plan.twist.size(), 1U);
   EXPECT_EQ(plan.twist.front().begin, 0);
   EXPECT_EQ(plan.twist.front().end, 1);
-  EXPECT_NEAR(plan.twist.front().angle, 2, 1e-12);
+  EXPECT_NEAR(plan.twist.front().turn, 2, 1e-12);
+  EXPECT_GT(plan.twist.front().twist, 1);
+  EXPECT_LT(plan.twist.front().twist, 2);
   EXPECT_FALSE(plan.planar);
-  for (const char* what : {"twist", "stretch", "shear", "polygon"}) {
+  EXPECT_GT(plan.bound("twist"), 0.01);
+  EXPECT_LT(plan.bound("twist"), 0.2);
+  for (const char* what : {"stretch", "shear", "polygon"}) {
     EXPECT_TRUE(std::isinf(plan.bound(what))) << what;
   }
 }

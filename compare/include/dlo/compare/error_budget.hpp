@@ -16,7 +16,8 @@ struct BudgetPart {
 
 /// Where a deviation comes from, each part found by switching one thing. With chain(law,
 /// bookkeeping, c_c) the polygon at rest, and "rigid" standing for c_c = 100 AE,
-///     discretisation  chain(hooke, consistent, rigid) - rod
+///     twist           rod without the twist that the scene holds - rod
+///     discretisation  chain(hooke, consistent, rigid) - rod without twist
 ///     bookkeeping     chain(hooke, the scene's, rigid) - chain(hooke, consistent, rigid)
 ///     law             chain(the scene's, consistent, rigid) - chain(hooke, consistent, rigid)
 ///     stretch         chain(the scene's, the scene's, c_c)
@@ -30,6 +31,7 @@ struct BudgetPart {
 struct Budget {
   BudgetPart law;             ///< see above
   BudgetPart bookkeeping;     ///< see above
+  BudgetPart twist;           ///< see above; no model of the polygon has any
   BudgetPart discretisation;  ///< see above
   BudgetPart stretch;         ///< see above
   BudgetPart not_at_rest;     ///< see above

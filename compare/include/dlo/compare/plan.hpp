@@ -37,9 +37,10 @@ struct PlannedObstacle {
 struct PlannedTwist {
   double begin = 0;  ///< arc length [m]
   double end = 0;    ///< arc length [m]
-  /// By which the grippers turn the end ahead of the begin [rad]; NaN where their directors say it
-  /// and the rod was not solved.
-  double angle = 0;
+  /// By which the grippers turn the end ahead of the begin [rad]; NaN where their directors say it.
+  double turn = 0;
+  /// What of it the rod takes up as twist [rad]; NaN where it was not solved.
+  double twist = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// What a model leaves out, with the most that it could change.

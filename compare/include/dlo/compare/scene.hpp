@@ -77,6 +77,8 @@ struct Scene {
   [[nodiscard]] double gamma() const;                       ///< w l^3 / (EI) [-]
   /// Whether two clamps or more hold the rod's frame, which twists it or keeps it from twisting.
   [[nodiscard]] bool holds_twist() const;
+  /// The same with clamps that let the rod turn about their directions.
+  [[nodiscard]] Scene without_twist() const;
   /// Unit normal of the plane that grips, forces and obstacles in reach share, if they do and no
   /// twist is held, which bends a rod out of its plane; of several planes any one.
   [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
