@@ -21,10 +21,6 @@ class Fields {
     return resample(difference, s_).points;
   }
 
-  [[nodiscard]] Eigen::Matrix3Xd of(const energy_model::Equilibrium& rod) const {
-    return rod.sample(s_).points - reference_(s_).points;
-  }
-
   [[nodiscard]] BudgetPart part(const Eigen::Matrix3Xd& field,
                                 const Eigen::Matrix3Xd& total) const {
     const double a = rms(s_, field + total);
@@ -70,7 +66,10 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   // The lowest shape without twist, of which the polygon is one.
   Eigen::Matrix3Xd twist = Eigen::Matrix3Xd::Zero(3, total.cols());
   if (scene.holds_twist()) {
-    twist = fields.of(solve_reference(scene.without_twist(), Model::energy, options));
+    const energy_model::Equilibrium loose =
+        solve_reference(scene.without_twist(), Model::energy, options);
+    const std::vector<double>& s = force.shape.arc_length;
+    twist = fields.of({s, loose.sample(s).points});
   }
 
   Budget budget;
