@@ -243,7 +243,8 @@ void Newton::run(SpanSolution& solution, double load) {
     const double moved = step_.head(gradient_.size()).norm();
     solution.next_step = moved;
     const bool small = size <= last_residual * (1 + load + solution.multipliers.norm());
-    if (moved <= finest_step) return finish();
+    // Where the shape is right the forces need not be.
+    if (moved <= finest_step && (small || walls)) return finish();
     if (walls && small) {
       // One more step for the multipliers of the walls, which are updated from what it leaves.
       move(solution, 1);

@@ -18,16 +18,9 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Gradient norm at which L-BFGS hands over: two Newton steps square it to below rounding, while
-/// its own line search, which compares energies, would stall near the root of the rounding error.
-constexpr double handover_gradient = 1e-5;
-
 /// Above this sum of weight and loads (in EI/l^2) a rod is nearer to its soft limit than to
 /// straight.
 constexpr double soft_load = 12;
-
-/// Newton's method factors a dense matrix of this size at most.
-constexpr int most_unknowns = 480;
 
 /// Coefficients up to which a coarser start is not worth its set-up, and the fewest of one.
 constexpr int few_terms = 10;
@@ -44,14 +37,6 @@ constexpr Eigen::Index most_descended = 160;
 
 /// Unstable equilibria that are left for what lies below them.
 constexpr std::size_t most_saddles = 8;
-
-/// Coefficients of each piece that resolve a rod under this load (which a piece of length h feels
-/// as a rod of length 1 feels h^2 of it) to about 1e-10 of its length. A softer rod has the layers
-/// at its clamps in pieces of their own.
-int first_terms(double load, double longest_piece) {
-  const double own_load = load * longest_piece * longest_piece;
-  return static_cast<int>(std::ceil(9 * std::pow(std::clamp(own_load, 0.7, 1000.0), 0.24)));
-}
 
 /// Coefficients that resolve a layer over six of its lengths.
 constexpr int layer_terms = 20;
@@ -351,6 +336,7 @@ class Search {
 
   [[nodiscard]] bool resolved(const SpanSolution& solution) {
     if (span_.is_plain_cantilever() && solution.terms < terms()) return false;
+    if (span_.twist && solution.terms < terms_under_twist(solution)) return false;
     const double K = solution.terms;
     // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
     if (solution.model->tail(solution.x) > options_.tolerance * 4 * K * K) return false;
@@ -475,6 +461,19 @@ class Search {
 };
 
 }  // namespace
+
+int first_terms(double load, double longest_piece) {
+  const double own_load = load * longest_piece * longest_piece;
+  return static_cast<int>(std::ceil(9 * std::pow(std::clamp(own_load, 0.7, 1000.0), 0.24)));
+}
+
+int terms_under_twist(const SpanSolution& solution) {
+  const Span& span = solution.model->span();
+  const double torque = span.twist->stiffness / span.length * solution.model->twist(solution.x);
+  double longest = 0;
+  for (const Piece& piece : pieces_of(span)) longest = std::max(longest, piece.length);
+  return first_terms(torque * torque, longest);
+}
 
 std::shared_ptr<SpanEnergy> SpanWorkspace::model(const Span& span, int terms) {
   const auto unused = std::find_if(models_.begin(), models_.end(),

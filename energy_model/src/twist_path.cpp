@@ -31,11 +31,11 @@ constexpr double branch_share = 0.05;
 /// The same for a step after which the next one may be longer.
 constexpr double smooth_share = 0.005;
 
-/// Gradient over the load at which a descent hands over to Newton's method.
-constexpr double handover_gradient = 1e-5;
-
 /// Curvature over the forces below which rounding alone would move a shape visibly.
 constexpr double rounded_curvature = 1e-9;
+
+/// Leaps to other branches, which would go on without an end where each leads to the next.
+constexpr int most_leaps = 60;
 
 /// Push along the direction in which a shape gives way, and how often it is made larger.
 constexpr double first_push = 0.1;
@@ -44,11 +44,8 @@ constexpr int most_pushes = 4;
 /// Coefficients up to this of the angle that they turn are left for the end of the path.
 constexpr double coarse_tolerance = 1e-6;
 
-/// Coefficients that a twisted shape is first given.
-constexpr int first_terms = 24;
-
-/// Newton's method factors a dense matrix of this size at most.
-constexpr Eigen::Index most_unknowns = 480;
+/// Coefficients that a twisted shape of which nothing else is known is first given.
+constexpr int unknown_terms = 24;
 
 /// d1 at the end of the untwisted shape, transported from Span::d1() at the start.
 Eigen::Vector3d transported(const SpanSolution& untwisted) {
@@ -117,8 +114,6 @@ class TwistPath {
     return std::move(here_);
   }
 
-  [[nodiscard]] const Span& span() const { return span_; }
-
  private:
   /// Turns the end's clamp from where the untwisted rod has it.
   void turn_clamp(SpanSolution& solution, double angle) const {
@@ -180,7 +175,9 @@ class TwistPath {
     angle_ = angle;
     const double K = here_.terms;
     const bool affordable = here_.model->size() * 5 / 4 < most_unknowns;
-    if (here_.model->tail(here_.x) < coarse_tolerance * 4 * K * K || !affordable) return;
+    const bool resolved = here_.model->tail(here_.x) < coarse_tolerance * 4 * K * K &&
+                          here_.terms >= terms_under_twist(here_);
+    if (resolved || !affordable) return;
     here_ = with_terms(here_, std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
     workspace_.newton().polish_along_branch(here_, load_);
     spent_ += here_.evaluations;
@@ -211,6 +208,7 @@ class TwistPath {
 
   /// Downhill to what is stable, from beside here.
   void leave() {
+    if (++leaps_ > most_leaps) return here_.fail("the rod leaps from branch to branch");
     derive(here_);
     std::optional<Eigen::VectorXd> way = falling_direction(hessian_, jacobian_);
     // Next to a fold the branch goes where the rod gives way.
@@ -249,6 +247,7 @@ class TwistPath {
   SpanSolution here_;
   double angle_ = 0;
   int spent_ = 0;
+  int leaps_ = 0;
   bool smooth_ = false;  // the last step was shorter than it need be
   bool aside_ = false;   // the last step has gone aside from where it pointed at
   Eigen::VectorXd last_step_;
@@ -300,7 +299,7 @@ SpanSolution twist_from(const TangentField& field, double twist,
   twisted.twist = Span::Twist{stiffness, end_d1.value_or(Span::d1(*span.end_direction))};
   SpanSolution solution;
   // The shape does not say how many terms it takes.
-  for (int terms = std::max(first_terms, options.least_terms);;
+  for (int terms = std::max(unknown_terms, options.least_terms);;
        terms = std::min(max_terms, 3 * terms / 2)) {
     solution = SpanSolution();
     solution.model = workspace.model(twisted, terms);

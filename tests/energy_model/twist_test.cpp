@@ -124,6 +124,17 @@ TEST(Twist, MakesARingUnstableAtMichellsAngle) {
   EXPECT_NEAR(root(second_smallest, 0.9 * critical, 1.1 * critical), critical, 1e-7 * critical);
 }
 
+// The same by the solver: beyond that angle the ring passes through itself and loses two turns.
+TEST(Twist, LeavesTheRingThatItMakesUnstable) {
+  const double critical = 2 * pi * std::sqrt(3.0) / 0.75;
+  const Equilibrium ring = solved(turned_rod(0, critical - 0.1, 0));
+  EXPECT_NEAR(ring.energy.bending, 2 * pi * pi, 1e-9);
+  EXPECT_NEAR(ring.twists.at(0).angle, critical - 0.1, 1e-9);
+  const Equilibrium other = solved(turned_rod(0, critical + 0.1, 0));
+  EXPECT_NEAR(other.energy.bending, 2 * pi * pi, 1e-9);
+  EXPECT_NEAR(other.twists.at(0).angle, critical + 0.1 - 4 * pi, 1e-9);
+}
+
 TEST(Twist, OfZeroChangesNothing) {
   Problem problem = turned_rod(0.8, 0, 20);
   const Equilibrium held = solved(problem);
