@@ -12,7 +12,7 @@
 namespace dlo::energy_model {
 
 /// The rod's frame at the clamps of a span: its first directors, unit and across the directions.
-struct HeldFrames {
+struct ShotFrames {
   Eigen::Vector3d start;
   Eigen::Vector3d end;
   double stiffness;  ///< c = GJ / EI
@@ -24,7 +24,7 @@ struct ShootingOptions {
   int max_iterations = 60;   ///< Newton steps
   Deadline deadline{};       ///< the result is a failure once it has passed
   /// Of a rod with twist, in space; its torque is unknown. The start's d are those of its frame.
-  std::optional<HeldFrames> frames{};
+  std::optional<ShotFrames> frames{};
 };
 
 struct [[nodiscard]] ShootingResult {

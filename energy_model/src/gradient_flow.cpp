@@ -28,7 +28,7 @@ Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& nodes) {
   return tangents;
 }
 
-double largest_turn(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+double widest_turn(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return (a - b).colwise().norm().maxCoeff();
 }
 
@@ -60,7 +60,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
     ShootingResult result = step(span, mesh, start, aim, duration, options);
     failed.shots += result.shots;
     Eigen::Matrix3Xd reached = tangents_of(result.nodes);
-    const double turn = largest_turn(reached, aim);
+    const double turn = widest_turn(reached, aim);
     if (!result.converged || turn > most_turn) {
       duration /= 4;
       wait = steps_after_failure;
@@ -74,7 +74,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
       equilibrium.shots += failed.shots;
       failed.shots = equilibrium.shots;
       const bool near = equilibrium.converged && equilibrium.s.size() == mesh.s.size() &&
-                        largest_turn(tangents_of(equilibrium.nodes), aim) < most_turn;
+                        widest_turn(tangents_of(equilibrium.nodes), aim) < most_turn;
       if (near && equilibrium.stable()) return equilibrium;
       if (near && equilibrium.stability.s.size() > 0 && ++departures <= most_departures) {
         start = equilibrium.nodes;

@@ -102,7 +102,7 @@ class ShootingSystem {
   const RodMesh& mesh_;
   double tolerance_;
   Deadline deadline_;
-  std::optional<HeldFrames> frames_;
+  std::optional<ShotFrames> frames_;
   double rate_;  // unit of v; its square is that of n
   Eigen::Matrix3Xd axes_;
   NodeLayout layout_{3};

@@ -23,7 +23,7 @@ Eigen::Vector3d turned(const Eigen::Vector3d& d, const Eigen::Vector3d& t, doubl
   return std::cos(angle) * d + std::sin(angle) * t.cross(d);
 }
 
-double largest_turn(const std::vector<RodState>& a, const std::vector<RodState>& b) {
+double widest_turn(const std::vector<RodState>& a, const std::vector<RodState>& b) {
   double largest = 0;
   for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i].t - b[i].t).norm());
   return largest;
@@ -116,7 +116,7 @@ class Continuation {
     return {.tolerance = tolerance_,
             .max_iterations = step_iterations,
             .deadline = deadline_,
-            .frames = HeldFrames{first_director(span_),
+            .frames = ShotFrames{first_director(span_),
                                  turned(untwisted_end_, *span_.end_direction, roll),
                                  span_.twist->stiffness}};
   }
@@ -163,8 +163,8 @@ class Continuation {
     if (!found.converged) return 0;
     const std::vector<RodState> at_nodes =
         states_at(found, span_.weight, {now_.s.begin(), now_.s.end()}, tolerance_);
-    if (largest_turn(at_nodes, now_.nodes) > most_turn) return 0;
-    if (!before_.nodes.empty() && largest_turn(at_nodes, start) > most_correction) return 0;
+    if (widest_turn(at_nodes, now_.nodes) > most_turn) return 0;
+    if (!before_.nodes.empty() && widest_turn(at_nodes, start) > most_correction) return 0;
     const double factor = found.shots <= few_shots ? 1.6 : 1;
     if (found.stable()) {
       accept(next, std::move(found));
@@ -237,7 +237,7 @@ SpanEquilibrium refine_twisted(const RodSpan& span, const RodMesh& mesh,
       shoot_span(span, mesh, std::move(start),
                  {.tolerance = tolerance,
                   .deadline = deadline,
-                  .frames = HeldFrames{first_director(span), end, span.twist->stiffness}}));
+                  .frames = ShotFrames{first_director(span), end, span.twist->stiffness}}));
 }
 
 }  // namespace dlo::energy_model

@@ -20,7 +20,7 @@ using std::numbers::pi;
 
 /// Turns of the end in one step [rad].
 constexpr double first_turn = 0.25;
-constexpr double largest_turn = 1.5;
+constexpr double longest_turn = 1.5;
 constexpr double least_turn = 1e-4;
 /// A shape that has lost its stability is left from this near to where it did.
 constexpr double turn_at_loss = 0.02;
@@ -95,7 +95,7 @@ class TwistPath {
         accept(std::move(*next), angle);
         if (!is_stable(here_)) leave();
         if (smooth_) turn *= 1.5;
-        turn = std::clamp(turn, -largest_turn, largest_turn);
+        turn = std::clamp(turn, -longest_turn, longest_turn);
       } else if (std::abs(turn) > least_turn) {
         turn /= 3;
       } else {

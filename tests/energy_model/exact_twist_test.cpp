@@ -41,6 +41,7 @@ RodSpan span_of(const Problem& problem) { return cut_at_clamps(problem).front();
 SpanStates states_of(const std::function<RodState(double)>& state) {
   return [state](const std::vector<double>& s) {
     std::vector<RodState> states;
+    states.reserve(s.size());
     for (const double at : s) states.push_back(state(at));
     return states;
   };
