@@ -70,9 +70,12 @@ class TwistPath {
  public:
   TwistPath(const Span& span, const HeldFrames& held, const SpanSolution& untwisted,
             const SpanOptions& options, SpanWorkspace& workspace)
-      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
+      : span_(span),
+        options_(options),
+        workspace_(workspace),
+        load_(span.total_load()),
+        first_d1_(transported(untwisted)) {
     span_.planar = false;
-    first_d1_ = transported(untwisted);
     span_.twist = Span::Twist{held.stiffness, first_d1_};
     here_ = with_terms(untwisted, untwisted.terms);
     here_.multipliers.resize(0);
