@@ -288,13 +288,9 @@ void BishopFrames::end_spins(const Panel& panel, State& state) const {
   }
 }
 
-void BishopFrames::turn_end(State& state) const {
-  for (const Panel& panel : panels_) end_spins(panel, state);
-}
-
 void BishopFrames::add_hessian(const FrameGradient& f, const Eigen::Matrix3d& end_curvature,
                                State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
-  turn_end(state);
+  for (const Panel& panel : panels_) end_spins(panel, state);
   Eigen::Matrix3d later_curvature = end_curvature;
   Eigen::Vector3d later = f.end_couple;
   for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {

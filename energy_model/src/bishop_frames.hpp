@@ -36,13 +36,15 @@ class BishopFrames {
     /// Weighted int_s^end t within each piece, in lengths of the piece, at the nodes.
     Eigen::MatrixX3d tails;
     Eigen::Quaterniond end;  ///< frame of the span's end
+    /// Derivatives of the turn of the end's frame by x, 3 x unknowns, of the last add_hessian().
+    Eigen::Matrix3Xd ends;
 
     // Scratch, of a piece
     Eigen::MatrixX4d product, defect, turn;
     Eigen::MatrixX3d couples, moments, levers;
     Eigen::VectorXd along;
     Eigen::MatrixXd spins, weighted, scaled, own, before;
-    Eigen::Matrix3Xd beside, turned, ends;
+    Eigen::Matrix3Xd beside, turned;
 
     [[nodiscard]] Eigen::Matrix3d end_frame() const { return end.toRotationMatrix(); }
   };
@@ -80,9 +82,6 @@ class BishopFrames {
   /// @param end_curvature  second derivatives of f by turns of the end's frame
   void add_hessian(const FrameGradient& f, const Eigen::Matrix3d& end_curvature, State& state,
                    Eigen::Ref<Eigen::MatrixXd> hessian) const;
-
-  /// Derivatives of the turn of the end's frame by x, 3 x unknowns, into state.ends.
-  void turn_end(State& state) const;
 
   /// Derivatives of the tangents at the nodes by x: three matrices, one an axis, nodes x unknowns.
   [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian(State& state) const;

@@ -19,14 +19,6 @@ constexpr double last_step = 1e-9;      // Newton's next one is of the size of r
 constexpr double nearly_closed = 0.1;   // gaps of a twisted rod, from which on it must not drift
 constexpr double least_weight = 1e-12;  // of Levenberg's: its root is far above rounding
 
-double largest_force(const RodSpan& span, const std::vector<RodState>& nodes) {
-  double force = std::max(1.0, total_load(span));
-  for (const RodState& node : nodes) {
-    force = std::max({force, node.n.norm(), node.v.squaredNorm(), node.torque * node.torque});
-  }
-  return force;
-}
-
 using Solver = Eigen::SparseQR<Eigen::SparseMatrix<double>, Eigen::NaturalOrdering<int>>;
 
 Eigen::SparseMatrix<double> matrix_of(const Triplets& triplets, Eigen::Index rows,
@@ -129,7 +121,8 @@ std::optional<double> last_steps(const ShootingSystem& system, const Triplets& d
 
 ShootingResult shoot(const RodSpan& span, const RodMesh& mesh, const std::vector<RodState>& start,
                      const ShootingOptions& options) {
-  const ShootingSystem system(span, mesh, options, largest_force(span, start));
+  const ShootingSystem system(span, mesh, options,
+                              std::max({1.0, total_load(span), largest_force(start)}));
   std::vector<ShootingNode> nodes;
   nodes.reserve(start.size());
   for (const RodState& state : start) nodes.push_back(system.make_node(state));

@@ -126,7 +126,7 @@ class EnergySolver::State {
         memory.twist = found.solution.model->twist(found.solution.x);
         continue;
       }
-      solutions.push_back(solve_placed(placed[i], problem, options, last));
+      solutions.push_back(solve_placed(placed[i], problem, options, options_.start, last));
       remember(solutions.back().front(), remembered_[i]);
     }
     std::vector<Equilibrium> result = combine(problem, solutions);
@@ -172,10 +172,10 @@ class EnergySolver::State {
       if (to.solution.is_equilibrium()) return one(std::move(to));
     }
     const Remembered* last = warm && memory.untwisted.model ? &memory.untwisted : nullptr;
-    std::vector<PlacedSolution> untwisted = solve_placed(placed, problem, options, last);
+    std::vector<PlacedSolution> untwisted = solve_placed(placed, problem, options, nullptr, last);
     remember(untwisted.front(), memory.untwisted);
     if (!succeeded(untwisted.front().solution.status)) return untwisted;
-    const EndFrame frame = end_frame(held, untwisted.front().solution);
+    const EndFrame frame = end_frame(held, untwisted_shape(untwisted.front().solution, workspace_));
     const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
     if (warm && memory.twisted.model && std::abs(turned) < largest_followed_turn && !options.all) {
       const auto field = [&placed, &memory](const Eigen::VectorXd& s) {
@@ -190,8 +190,8 @@ class EnergySolver::State {
     for (const PlacedSolution& from : untwisted) {
       if (!succeeded(from.solution.status)) continue;
       PlacedSolution to = from;
-      to.solution = twist_by(twist_to(frame, from.solution), placed.span, held, from.solution,
-                             options, workspace_);
+      to.solution = twist_to(frame, placed.span, held.stiffness,
+                             untwisted_shape(from.solution, workspace_), options, workspace_);
       to.placed.span.planar = false;
       spent += from.solution.evaluations + to.solution.evaluations;
       const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
@@ -213,13 +213,15 @@ class EnergySolver::State {
     return nullptr;
   }
 
+  /// @param shape, last  to start from, the first of them that is there, or neither
   [[nodiscard]] std::vector<PlacedSolution> solve_placed(const PlacedSpan& placed,
                                                          const Problem& problem,
                                                          SpanOptions options,
+                                                         const Equilibrium* shape,
                                                          const Remembered* last) {
     TangentField start;
-    if (options_.start != nullptr && !placed.frames) {
-      start = field_of(*options_.start, placed, problem.length);
+    if (shape != nullptr) {
+      start = field_of(*shape, placed, problem.length);
     } else if (last != nullptr && last->model) {
       options.least_terms = last->model->terms();
       start = [&placed, last = *last](const Eigen::VectorXd& s) {
@@ -228,8 +230,8 @@ class EnergySolver::State {
     }
     int spent = 0;
     if (start && !options.all) {
-      PlacedSolution followed = from_field(placed, start, options,
-                                           options_.start != nullptr || (last && !last->planar()));
+      PlacedSolution followed =
+          from_field(placed, start, options, shape != nullptr || (last && !last->planar()));
       if (followed.solution.is_equilibrium()) return one(std::move(followed));
       // The branch has ended, or the step was too large for it.
       spent = followed.solution.evaluations;

@@ -220,8 +220,6 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
                          : solve_spans(problem, options, deadline);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  const bool twisted = std::any_of(problem.grips.begin(), problem.grips.end(),
-                                   [](const Grip& grip) { return grip.frame.has_value(); });
   for (Equilibrium& equilibrium : found.equilibria) {
     equilibrium.seconds = seconds;
     if (!found.left_out.empty()) equilibrium.message += "; " + found.left_out;
@@ -231,9 +229,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
     equilibrium.status = SolveStatus::time_limit;
     equilibrium.message = std::string(to_string(equilibrium.status)) + " after " +
                           std::to_string(options.time_limit) + " s" +
-                          (holds     ? ": others may be lower"
-                           : twisted ? ": " + reached
-                                     : "");
+                          (holds ? ": others may be lower" : ": " + reached);
   }
   return std::move(found.equilibria);
 }

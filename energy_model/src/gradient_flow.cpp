@@ -20,14 +20,6 @@ constexpr double departure = 0.1;         // from a saddle: largest change of a 
 constexpr int most_departures = 6;
 constexpr int steps_after_failure = 3;  // of equal duration: a failure costs as much as ten of them
 
-Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& nodes) {
-  Eigen::Matrix3Xd tangents(3, static_cast<Eigen::Index>(nodes.size()));
-  for (Eigen::Index i = 0; i < tangents.cols(); ++i) {
-    tangents.col(i) = nodes[static_cast<std::size_t>(i)].t;
-  }
-  return tangents;
-}
-
 double widest_turn(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return (a - b).colwise().norm().maxCoeff();
 }

@@ -210,11 +210,12 @@ void Newton::polish_along_branch(SpanSolution& solution, double load) {
 }
 
 void Newton::polish(SpanSolution& solution, double load) {
+  const SpanEnergy& model = *solution.model;
+  if (model.constraints() == 0 || model.has_walls()) return run(solution, load);
   const Eigen::VectorXd x = solution.x;
   const Eigen::VectorXd multipliers = solution.multipliers;
   run(solution, load);
-  const SpanEnergy& model = *solution.model;
-  if (solution.is_equilibrium() || model.constraints() == 0 || model.has_walls()) return;
+  if (solution.is_equilibrium()) return;
   solution.x = x;
   solution.multipliers = multipliers;
   polish_along_branch(solution, load);

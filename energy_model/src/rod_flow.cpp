@@ -4,6 +4,7 @@
 #include <gsl/gsl_odeiv2.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -97,6 +98,26 @@ bool integrate(FlowPiece& piece, double length, double tolerance, std::vector<do
 
 }  // namespace
 
+double largest_force(const std::vector<RodState>& states) {
+  double force = 0;
+  for (const RodState& state : states) {
+    force = std::max({force, state.n.norm(), state.v.squaredNorm(), state.torque * state.torque});
+  }
+  return force;
+}
+
+Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states) {
+  Eigen::Matrix3Xd tangents(3, static_cast<Eigen::Index>(states.size()));
+  for (Eigen::Index i = 0; i < tangents.cols(); ++i) {
+    tangents.col(i) = states[static_cast<std::size_t>(i)].t;
+  }
+  return tangents;
+}
+
+Eigen::Vector3d turned(const Eigen::Vector3d& d, const Eigen::Vector3d& t, double angle) {
+  return std::cos(angle) * d + std::sin(angle) * t.cross(d);
+}
+
 RodVariation::RodVariation(Eigen::Index parameters)
     : r(Eigen::Matrix3Xd::Zero(3, parameters)),
       t(Eigen::Matrix3Xd::Zero(3, parameters)),
@@ -125,11 +146,7 @@ bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance, 
   state.t = all.segment<3>(3);
   state.v = all.segment<3>(6);
   state.n -= length * weight;
-  if (framed) {
-    const Eigen::Vector3d transported = all.segment<3>(plain_state);
-    const double ahead = length * state.twist;
-    state.d = std::cos(ahead) * transported + std::sin(ahead) * state.t.cross(transported);
-  }
+  if (framed) state.d = turned(all.segment<3>(plain_state), state.t, length * state.twist);
   integrals = {all[9], all[10]};
   for (Eigen::Index k = 0; k < parameters; ++k) {
     const Eigen::Index at = piece.state_size() + k * piece.variation_size();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace dlo::energy_model {
 
@@ -15,6 +16,17 @@ struct RodState {
   Eigen::Vector3d d = Eigen::Vector3d::Zero();  ///< director across t; zero: none comes along
   double twist = 0;                             ///< M EI / GJ, by which d turns ahead per length
 };
+
+/// Largest of |n|, |v|^2 and M^2, which bend the rod over lengths of one over its root; 0 without
+/// states.
+[[nodiscard]] double largest_force(const std::vector<RodState>& states);
+
+/// The tangents of states, 3 x states.
+[[nodiscard]] Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states);
+
+/// A vector across the unit vector t, turned about it.
+[[nodiscard]] Eigen::Vector3d turned(const Eigen::Vector3d& d, const Eigen::Vector3d& t,
+                                     double angle);
 
 /// Derivatives of a RodState by some parameters, one a column.
 struct RodVariation {

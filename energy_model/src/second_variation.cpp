@@ -63,11 +63,7 @@ Eigen::VectorXd elements_of(const RodSpan& span, const SpanStates& states) {
   std::vector<double> s;
   s.reserve(probes);
   for (int i = 0; i < probes; ++i) s.push_back(span.length * (i + 0.5) / probes);
-  double force = total_load(span);
-  for (const RodState& state : states(s)) {
-    force = std::max({force, state.n.norm(), state.v.squaredNorm(), state.torque * state.torque});
-  }
-  const double soft = 1 / std::sqrt(std::max(force, 1.0));
+  const double soft = 1 / std::sqrt(std::max({1.0, total_load(span), largest_force(states(s))}));
   const double longest = std::min({span.length / 8, longest_element, soft});
   return make_mesh(span, std::max(longest, span.length / most_elements)).s;
 }

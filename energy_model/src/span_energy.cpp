@@ -329,36 +329,32 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
     if (free_start_ == 1) result(columns_, columns_) = 0;
     carried_ = -carried_;
     FrameGradient f{&carried_};
-    FrameGradient of_d1;
     Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
-    Eigen::Matrix3d curvature_of_d1 = Eigen::Matrix3d::Zero();
     for (Eigen::Index component = 0; component < end_rows_; ++component) {
       const double mu = multipliers[constraints_ - end_rows_ + component];
       const DirectorMiss miss = end_miss(component);
       f.end_couple -= mu * miss.couple;
       curvature -= mu * miss.curvature;
-      if (component < 2) continue;
-      of_d1.end_couple = -mu * miss.couple;
-      curvature_of_d1 = -mu * miss.curvature;
     }
     frames_.add_hessian(f, curvature, state_, result);
-    if (span_.twist) add_twist_hessian(of_d1, curvature_of_d1, result);
+    if (span_.twist) add_twist_hessian(-multipliers[constraints_ - 1], result);
   }
   if (!has_walls()) return;
   walls_.add_hessian(tangent_jacobian(), result.topLeftCorner(bends(), bends()));
 }
 
-/// Second derivatives with the twist psi of what the end's d1 misses: psi turns it about the
-/// tangent t, after which the strains turn it, which is the sum of both turns and half their cross
-/// product. frames_.add_hessian() has left the turns of the end.
-void SpanEnergy::add_twist_hessian(const FrameGradient& f, const Eigen::Matrix3d& twisting,
-                                   Eigen::MatrixXd& result) {
+/// Second derivatives with the twist psi of what the end's d1 misses, times a factor: psi turns it
+/// about the tangent t, after which the strains turn it, which is the sum of both turns and half
+/// their cross product. frames_.add_hessian() has left the turns of the end.
+void SpanEnergy::add_twist_hessian(double factor, Eigen::MatrixXd& result) {
   const Eigen::Vector3d t = state_.end_frame().col(2);
-  const Eigen::Vector3d mixed = (twisting * t + t.cross(f.end_couple) / 2) / twist_root_;
+  const DirectorMiss miss = end_miss(2);
+  const Eigen::Vector3d turned = miss.curvature * t;
+  const Eigen::Vector3d mixed = factor / twist_root_ * (turned + t.cross(miss.couple) / 2);
   pulled_.head(bends()).noalias() = state_.ends.transpose() * mixed;
   result.col(bends()).head(bends()) += pulled_.head(bends());
   result.row(bends()).head(bends()) += pulled_.head(bends()).transpose();
-  result(bends(), bends()) += t.dot(twisting * t) / (twist_root_ * twist_root_);
+  result(bends(), bends()) += factor * t.dot(turned) / (twist_root_ * twist_root_);
 }
 
 std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian() {
@@ -448,6 +444,12 @@ Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd
   return adopted;
 }
 
+double SpanEnergy::longest_piece() const {
+  double longest = 0;
+  for (const Piece& piece : pieces_) longest = std::max(longest, piece.length);
+  return longest;
+}
+
 double SpanEnergy::tail(const Eigen::VectorXd& x) const {
   const Eigen::Index last = std::min(terms_, 2);
   double tail = 0;
@@ -486,7 +488,7 @@ Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
   (void)value(x, gradient);
   Energies energies;
   energies.bending = x.head(bends()).squaredNorm() / 2;
-  energies.twisting = x.squaredNorm() / 2 - energies.bending;
+  energies.twisting = x.tail(x.size() - bends()).squaredNorm() / 2;
   if (free_start_ == 1) energies.bending -= x[0] * x[0] / 2;
   if (free_start_ == 1 && !span_.planar) energies.bending -= x[columns_] * x[columns_] / 2;
   // A load's point is the sum of the tangents between it and the anchor.

@@ -34,6 +34,7 @@ class SpanEnergy {
   [[nodiscard]] Eigen::Index constraints() const { return constraints_; }
   [[nodiscard]] int terms() const { return terms_; }
   [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
+  [[nodiscard]] double longest_piece() const;
 
   /// Energy in EI/l and its gradient; known already where the last value() was, unless walls'
   /// multipliers may have moved on.
@@ -65,6 +66,10 @@ class SpanEnergy {
   [[nodiscard]] double tail(const Eigen::VectorXd& x) const;
   /// The rod's twist, end ahead of start [rad]; 0 where nothing holds it.
   [[nodiscard]] double twist(const Eigen::VectorXd& x) const;
+  /// What it turns the clamp at the end with, about the tangent.
+  [[nodiscard]] double twisting_torque(const Eigen::VectorXd& x) const {
+    return twist(x) * twist_root_ * twist_root_;
+  }
   /// Unknowns with this twist.
   [[nodiscard]] Eigen::VectorXd with_twist(Eigen::VectorXd x, double angle) const;
   /// d1 at the end, at the point of the last value(), of the Bishop frame with Span::d1() at the
@@ -98,8 +103,7 @@ class SpanEnergy {
   void carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
   void place_tangents();
   [[nodiscard]] DirectorMiss end_miss(Eigen::Index component) const;
-  void add_twist_hessian(const FrameGradient& f, const Eigen::Matrix3d& twisting,
-                         Eigen::MatrixXd& result);
+  void add_twist_hessian(double factor, Eigen::MatrixXd& result);
   [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian();
 
   Span span_;

@@ -37,13 +37,6 @@ double longest_interval(const RodSpan& span, double force) {
   return std::min(span.length / 16, 1 / std::sqrt(std::max(force, 1.0)));
 }
 
-double largest_force(const std::vector<RodState>& nodes) {
-  double force = 0;
-  for (const RodState& node : nodes)
-    force = std::max({force, node.n.norm(), node.v.squaredNorm(), node.torque * node.torque});
-  return force;
-}
-
 SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh, std::vector<RodState> start,
                            const ShootingOptions& options) {
   SpanEquilibrium equilibrium;
@@ -78,11 +71,8 @@ void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equ
   });
   std::vector<double> probes;
   for (int i = 0; i <= 32; ++i) probes.push_back(span.length * i / 32);
-  equilibrium.tangents.resize(3, static_cast<Eigen::Index>(probes.size()));
-  Eigen::Index column = 0;
-  for (const RodState& state : states_at(equilibrium, span.weight, probes, variation_tolerance)) {
-    equilibrium.tangents.col(column++) = state.t;
-  }
+  equilibrium.tangents =
+      tangents_of(states_at(equilibrium, span.weight, probes, variation_tolerance));
   if (equilibrium.stability.negative < 0 || !equilibrium.tangents.allFinite()) {
     equilibrium.converged = false;
     equilibrium.message = "the integrator gave up on the second variation";

@@ -39,9 +39,6 @@ void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equ
 /// Intervals that resolve boundary layers under a force, and the bends of a span without any.
 [[nodiscard]] double longest_interval(const RodSpan& span, double force);
 
-/// Of n, |v|^2 and M^2, which bend the rod over lengths of one over its root.
-[[nodiscard]] double largest_force(const std::vector<RodState>& nodes);
-
 /// The cross-section at s; NaN if the integrator gave up.
 [[nodiscard]] RodState state_at(const SpanEquilibrium& span, const Eigen::Vector3d& weight,
                                 double s, double tolerance);

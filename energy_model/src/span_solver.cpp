@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "certify.hpp"
+#include "enough_terms.hpp"
 #include "free_directions.hpp"
 #include "legendre.hpp"
 #include "minimise.hpp"
@@ -461,19 +462,6 @@ class Search {
 };
 
 }  // namespace
-
-int first_terms(double load, double longest_piece) {
-  const double own_load = load * longest_piece * longest_piece;
-  return static_cast<int>(std::ceil(9 * std::pow(std::clamp(own_load, 0.7, 1000.0), 0.24)));
-}
-
-int terms_under_twist(const SpanSolution& solution) {
-  const Span& span = solution.model->span();
-  const double torque = span.twist->stiffness / span.length * solution.model->twist(solution.x);
-  double longest = 0;
-  for (const Piece& piece : pieces_of(span)) longest = std::max(longest, piece.length);
-  return first_terms(torque * torque, longest);
-}
 
 std::shared_ptr<SpanEnergy> SpanWorkspace::model(const Span& span, int terms) {
   const auto unused = std::find_if(models_.begin(), models_.end(),

@@ -27,15 +27,6 @@ inline constexpr double handover_gradient = 1e-5;
 /// Newton's method factors a dense matrix of this size at most.
 inline constexpr int most_unknowns = 480;
 
-/// Coefficients of each piece that resolve a rod under this load (which a piece of length h feels
-/// as a rod of length 1 feels h^2 of it) to about 1e-10 of its length. A softer rod has the layers
-/// at its clamps in pieces of their own.
-[[nodiscard]] int first_terms(double load, double longest_piece);
-
-/// Coefficients that resolve the ways in which a twisted span gives way, helices of a rate of half
-/// its torque, however simple its own shape is.
-[[nodiscard]] int terms_under_twist(const SpanSolution& solution);
-
 /// How a given start is left.
 enum class Approach {
   follow,   ///< by Newton's method, to the equilibrium next to it, stable or not

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -19,14 +20,8 @@ constexpr int step_iterations = 12;       // of Newton's method: more are slower
 constexpr double most_turn = 0.5;         // of a tangent in a step [rad]
 constexpr double most_correction = 0.15;  // of a predicted tangent [rad]
 
-Eigen::Vector3d turned(const Eigen::Vector3d& d, const Eigen::Vector3d& t, double angle) {
-  return std::cos(angle) * d + std::sin(angle) * t.cross(d);
-}
-
-double widest_turn(const std::vector<RodState>& a, const std::vector<RodState>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) largest = std::max(largest, (a[i].t - b[i].t).norm());
-  return largest;
+double largest_change(const std::vector<RodState>& a, const std::vector<RodState>& b) {
+  return (tangents_of(a) - tangents_of(b)).colwise().norm().maxCoeff();
 }
 
 /// Lets a director come along from node to node, by the flow and the shortest turn to the next
@@ -107,9 +102,12 @@ class Continuation {
   void find_target() {
     target_ = span_.twist->roll;
     if (!span_.twist->end_d1) return;
-    const Eigen::Vector3d& t = *span_.end_direction;
-    const Eigen::Vector3d& d = untwisted_end_;
-    target_ += std::atan2(t.cross(d).dot(*span_.twist->end_d1), d.dot(*span_.twist->end_d1));
+    const Eigen::Vector3d& d = *span_.twist->end_d1;
+    const Eigen::Vector3d ahead = span_.end_direction->cross(untwisted_end_);
+    const double angle = std::atan2(ahead.dot(d), untwisted_end_.dot(d));
+    // In (-pi, pi]: half a turn is half a turn, whatever rounding says.
+    constexpr double rounding = 1e-9;
+    target_ += angle < rounding - std::numbers::pi ? std::numbers::pi : angle;
   }
 
   [[nodiscard]] ShootingOptions options(double roll) const {
@@ -163,8 +161,8 @@ class Continuation {
     if (!found.converged) return 0;
     const std::vector<RodState> at_nodes =
         states_at(found, span_.weight, {now_.s.begin(), now_.s.end()}, tolerance_);
-    if (widest_turn(at_nodes, now_.nodes) > most_turn) return 0;
-    if (!before_.nodes.empty() && widest_turn(at_nodes, start) > most_correction) return 0;
+    if (largest_change(at_nodes, now_.nodes) > most_turn) return 0;
+    if (!before_.nodes.empty() && largest_change(at_nodes, start) > most_correction) return 0;
     const double factor = found.shots <= few_shots ? 1.6 : 1;
     if (found.stable()) {
       accept(next, std::move(found));
@@ -182,11 +180,8 @@ class Continuation {
   /// The gradient flow at a roll beyond the end of the branch.
   bool fall(double next) {
     const RodMesh mesh = mesh_at(span_, now_.s);
-    Eigen::Matrix3Xd aim(3, mesh.s.size());
-    for (Eigen::Index i = 0; i < aim.cols(); ++i) {
-      aim.col(i) = now_.nodes[static_cast<std::size_t>(i)].t;
-    }
-    SpanEquilibrium found = follow_gradient(span_, mesh, now_.nodes, aim, options(next));
+    SpanEquilibrium found =
+        follow_gradient(span_, mesh, now_.nodes, tangents_of(now_.nodes), options(next));
     shots_ += found.shots;
     problem_ = found.message;
     if (!found.converged) return false;

@@ -3,11 +3,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "enough_terms.hpp"
 #include "free_directions.hpp"
 #include "legendre.hpp"
 #include "penalty_descent.hpp"
@@ -47,16 +49,6 @@ constexpr double coarse_tolerance = 1e-6;
 /// Coefficients that a twisted shape of which nothing else is known is first given.
 constexpr int unknown_terms = 24;
 
-/// d1 at the end of the untwisted shape, transported from Span::d1() at the start.
-Eigen::Vector3d transported(const SpanSolution& untwisted) {
-  Span span = untwisted.model->span();
-  span.planar = false;
-  SpanEnergy model(span, untwisted.terms);
-  Eigen::VectorXd gradient(model.size());
-  (void)model.value(model.adopt(*untwisted.model, untwisted.x), gradient);
-  return model.transported_d1();
-}
-
 /// Angle about `axis` from a to the part of b across it, in (-pi, pi].
 double angle_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& a,
                    const Eigen::Vector3d& b) {
@@ -68,16 +60,16 @@ double angle_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& a,
 
 class TwistPath {
  public:
-  TwistPath(const Span& span, const HeldFrames& held, const SpanSolution& untwisted,
+  TwistPath(const Span& span, double stiffness, const UntwistedShape& untwisted,
             const SpanOptions& options, SpanWorkspace& workspace)
       : span_(span),
         options_(options),
         workspace_(workspace),
         load_(span.total_load()),
-        first_d1_(transported(untwisted)) {
+        first_d1_(untwisted.end_d1) {
     span_.planar = false;
-    span_.twist = Span::Twist{held.stiffness, first_d1_};
-    here_ = with_terms(untwisted, untwisted.terms);
+    span_.twist = Span::Twist{stiffness, first_d1_};
+    here_ = with_terms(untwisted.solution, untwisted.solution.terms);
     here_.multipliers.resize(0);
     turn_clamp(here_, 0);
   }
@@ -94,9 +86,11 @@ class TwistPath {
       const double angle = last ? whole : angle_ + turn;
       turn = angle - angle_;
       std::optional<SpanSolution> next = stepped(turn);
-      if (next && (is_stable(*next) || std::abs(turn) <= turn_at_loss)) {
+      const bool stable = next && is_stable(*next);
+      if (next && (stable || std::abs(turn) <= turn_at_loss)) {
         accept(std::move(*next), angle);
-        if (!is_stable(here_)) leave();
+        const bool finer = resolve();
+        if (!(finer ? is_stable(here_) : stable)) leave();
         if (smooth_) turn *= 1.5;
         turn = std::clamp(turn, -longest_turn, longest_turn);
       } else if (std::abs(turn) > least_turn) {
@@ -161,9 +155,8 @@ class TwistPath {
     return next;
   }
 
-  /// About the end's tangent, over EI/l.
-  [[nodiscard]] double torque(const SpanSolution& solution) const {
-    return span_.twist->stiffness / span_.length * solution.model->twist(solution.x);
+  [[nodiscard]] static double torque(const SpanSolution& solution) {
+    return solution.model->twisting_torque(solution.x);
   }
 
   void accept(SpanSolution next, double angle) {
@@ -176,17 +169,22 @@ class TwistPath {
     }
     here_ = std::move(next);
     angle_ = angle;
+  }
+
+  /// More terms, where the shape needs them. @return whether it has got some
+  bool resolve() {
     const double K = here_.terms;
     const bool affordable = here_.model->size() * 5 / 4 < most_unknowns;
     const bool resolved = here_.model->tail(here_.x) < coarse_tolerance * 4 * K * K &&
                           here_.terms >= terms_under_twist(here_);
-    if (resolved || !affordable) return;
+    if (resolved || !affordable) return false;
     here_ = with_terms(here_, std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
     workspace_.newton().polish_along_branch(here_, load_);
     spent_ += here_.evaluations;
     here_.evaluations = 0;
     slope_x_.resize(0);
     last_step_.resize(0);
+    return true;
   }
 
   [[nodiscard]] bool is_stable(const SpanSolution& solution) {
@@ -268,27 +266,31 @@ std::optional<Eigen::Vector3d> known_end_d1(const HeldFrames& held, const Span& 
   return Eigen::AngleAxisd(held.roll - ahead, *span.end_direction) * *held.end_d1;
 }
 
-EndFrame end_frame(const HeldFrames& held, const SpanSolution& untwisted) {
-  const Span& span = untwisted.model->span();
+UntwistedShape untwisted_shape(const SpanSolution& solution, SpanWorkspace& workspace) {
+  Span span = solution.model->span();
+  span.planar = false;
+  const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);
+  Eigen::VectorXd gradient(model->size());
+  (void)model->value(model->adopt(*solution.model, solution.x), gradient);
+  return {solution, model->transported_d1()};
+}
+
+EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted) {
+  const Span& span = untwisted.solution.model->span();
   const Eigen::Vector3d& axis = *span.end_direction;
-  const Eigen::Vector3d d1 = transported(untwisted);
+  const Eigen::Vector3d& d1 = untwisted.end_d1;
   const std::optional<Eigen::Vector3d> known = known_end_d1(held, span);
   if (!known) return {Eigen::AngleAxisd(held.roll, axis) * d1, held.roll};
   const double least = angle_about(axis, d1, Eigen::AngleAxisd(-held.roll, axis) * *known);
   return {*known, least + held.roll};
 }
 
-double twist_to(const EndFrame& frame, const SpanSolution& untwisted) {
-  const Eigen::Vector3d& axis = *untwisted.model->span().end_direction;
-  const double least = angle_about(axis, transported(untwisted), frame.d1);
-  return least + 2 * pi * std::round((frame.twist - least) / (2 * pi));
-}
-
-SpanSolution twist_by(double angle, const Span& span, const HeldFrames& held,
-                      const SpanSolution& untwisted, const SpanOptions& options,
+SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
+                      const UntwistedShape& untwisted, const SpanOptions& options,
                       SpanWorkspace& workspace) {
-  TwistPath path(span, held, untwisted, options, workspace);
-  SpanSolution solution = path.run(angle);
+  const double least = angle_about(*span.end_direction, untwisted.end_d1, frame.d1);
+  const double angle = least + 2 * pi * std::round((frame.twist - least) / (2 * pi));
+  SpanSolution solution = TwistPath(span, stiffness, untwisted, options, workspace).run(angle);
   if (!solution.is_equilibrium()) return solution;
   const Span twisted = solution.model->span();
   return finish_span(twisted, options, workspace, std::move(solution));

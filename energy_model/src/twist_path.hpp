@@ -13,23 +13,29 @@ struct EndFrame {
   double twist;        ///< of the rod that has been twisted from the untwisted shape [rad]
 };
 
+/// A shape of a span, planar or not, and d1 at its end, transported from Span::d1() at its start.
+struct UntwistedShape {
+  const SpanSolution& solution;
+  Eigen::Vector3d end_d1;
+};
+
+[[nodiscard]] UntwistedShape untwisted_shape(const SpanSolution& solution,
+                                             SpanWorkspace& workspace);
+
 /// d1 at the end where both clamps say where d1 is, whatever the shape: Span::Twist::end_d1.
 [[nodiscard]] std::optional<Eigen::Vector3d> known_end_d1(const HeldFrames& held, const Span& span);
 
-/// Where the later clamp holds d1, and how far that twists this untwisted shape of the span, whole
-/// turns counted.
-[[nodiscard]] EndFrame end_frame(const HeldFrames& held, const SpanSolution& untwisted);
+/// Where the later clamp holds d1, and how far that twists this shape, whole turns counted.
+[[nodiscard]] EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted);
 
-/// Of another untwisted shape the twist nearest to `frame.twist` that makes its end meet the frame.
-[[nodiscard]] double twist_to(const EndFrame& frame, const SpanSolution& untwisted);
-
-/// Turns the end of an untwisted, stable shape by this angle, little by little, as a gripper would:
-/// each step by Newton's method from where the last two point at, and where the shape has lost its
-/// stability or the branch has ended, downhill to the next one. Ends with few terms, stable, or as
-/// `failed` or `time_limit` with the angle that it came to.
-/// @param span  of the untwisted shape, planar or not
-[[nodiscard]] SpanSolution twist_by(double angle, const Span& span, const HeldFrames& held,
-                                    const SpanSolution& untwisted, const SpanOptions& options,
+/// Turns the end of a stable shape until it meets the frame, by the angle nearest to `frame.twist`,
+/// little by little, as a gripper would: each step by Newton's method from where the last two point
+/// at, and where the shape has lost its stability or the branch has ended, downhill to the next
+/// one. Certified, or `failed` or `time_limit` with the angle that it came to.
+/// @param span       without twist
+/// @param stiffness  GJ / EI
+[[nodiscard]] SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
+                                    const UntwistedShape& untwisted, const SpanOptions& options,
                                     SpanWorkspace& workspace);
 
 /// The equilibrium next to a twisted shape that is known: its tangents, and its twist, whole turns

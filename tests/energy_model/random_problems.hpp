@@ -176,7 +176,8 @@ inline energy_model::Problem twisted_problem(std::uint64_t number) {
   for (energy_model::Grip& grip : problem.grips) {
     if (!grip.direction) grip.direction = random.direction(RandomSpace::space);
     grip.frame = energy_model::FrameHold{};
-    grip.frame->roll = 2 * std::numbers::pi * random.uniform(-most_turns, most_turns) / 2;
+    // Two of them are turned against each other by as much again.
+    grip.frame->roll = std::numbers::pi * random.uniform(-most_turns, most_turns);
   }
   return problem;
 }

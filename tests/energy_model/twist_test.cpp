@@ -246,6 +246,14 @@ TEST(Twist, AgreesWithMultipleShooting) {
   problem.grips.front().frame->d1 = Eigen::Vector3d(0.2, 1, 0.4);
   problem.grips.back().frame->d1 = Eigen::Vector3d(1, -0.2, 0.6);
   expect_agreement();
+  // Half a turn is +pi for both, on whichever side of it rounding is.
+  for (const double aside : {-1e-12, 1e-12}) {
+    problem = turned_rod(0.8, 0, 8);
+    problem.grips.front().frame->d1 = Eigen::Vector3d::UnitZ();
+    problem.grips.back().frame->d1 = Eigen::Vector3d(0, aside, -1);
+    EXPECT_GT(solved(problem).twists.at(0).angle, 1);
+    expect_agreement();
+  }
 }
 
 TEST(Twist, IsFollowedWhileTheGripperTurns) {
