@@ -4,10 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string>
 
 #include "ordered_grips.hpp"
-#include "require.hpp"
+#include "sized_samples.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -16,25 +15,21 @@ namespace {
 struct PlacedShape {
   SpanShape shape;
   bool reversed;
-  double start, end;         // arc lengths of s = 0 and of the last point in the rod's order [m]
-  Eigen::Matrix3d to_space;  // from the span's frame
-  Eigen::Vector3d anchor;    // [m]
+  double start, end;            // arc lengths of s = 0 and of the last point in the rod's order [m]
+  Eigen::Matrix3d to_space;     // from the span's frame
+  Eigen::Vector3d anchor;       // [m]
+  std::optional<double> ahead;  // by which the rod's own frame is turned on from the span's [rad]
 };
 
 Samples sample(const std::vector<PlacedShape>& shapes, double length,
                std::span<const double> arc_lengths) {
   const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-  Samples samples;
-  samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
-  samples.points.resize(3, count);
-  samples.tangents.resize(3, count);
-  samples.curvature.resize(3, count);
+  Samples samples = sized_samples(arc_lengths, length);
+  if (!shapes.empty() && shapes.front().ahead) samples.d1.resize(3, count);
   std::vector<std::vector<Eigen::Index>> columns(shapes.size());
   std::vector<std::vector<double>> own_s(shapes.size());
   for (Eigen::Index i = 0; i < count; ++i) {
     const double at = arc_lengths[static_cast<std::size_t>(i)];
-    require(at >= 0 && at <= length, "sample", "arc length", at,
-            "in [0, " + std::to_string(length) + "]");
     std::size_t p = 0;
     while (p + 1 < shapes.size() && at > shapes[p].end) ++p;
     columns[p].push_back(i);
@@ -50,6 +45,9 @@ Samples sample(const std::vector<PlacedShape>& shapes, double length,
       samples.points.col(i) = placed.anchor + length * (placed.to_space * own.points.col(from));
       samples.tangents.col(i) = sense * (placed.to_space * own.tangents.col(from));
       samples.curvature.col(i) = placed.to_space * own.curvature.col(from) / length;
+      if (!placed.ahead) continue;
+      const Eigen::AngleAxisd about(*placed.ahead, own.tangents.col(from));
+      samples.d1.col(i) = placed.to_space * (about * own.d1.col(from));
     }
   }
   return samples;
@@ -90,15 +88,14 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     result.energy.bending += own.bending * energy_unit;
     result.energy.twisting += own.twisting * energy_unit;
     if (solution.model->span().twist) {
-      const double angle = solution.model->twist(solution.x);
-      const double length = place.span.length * l;
       result.twists.push_back(
-          {place.start, place.start + length, angle, problem.torsional_stiffness * angle / length});
+          {place.start, place.start + place.span.length * l, solution.model->twist(solution.x),
+           energy_unit * solution.model->twisting_torque(solution.x, solution.multipliers)});
     }
     const Eigen::Vector3d lift = place.anchor_position - origin;
-    const Eigen::Vector3d weight = problem.weight_per_length * place.span.length * l;
+    Eigen::Vector3d carried = place.span.weight_between(0, place.span.length);
+    const Eigen::Vector3d weight = force_unit * (place.frame.transpose() * carried);
     result.energy.gravity += own.gravity * energy_unit - weight.dot(lift);
-    Eigen::Vector3d carried = place.frame * weight / force_unit;
     result.energy.load += own.load * energy_unit;
     for (const Span::Load& load : place.span.loads) {
       carried += load.force;
@@ -122,9 +119,9 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     };
     result.grips[place.anchor_grip].torque +=
         to_space(solution.model->start_torque(solution.multipliers));
-    if (place.span.end_direction) {
-      result.grips[place.hold_grips.back()].torque +=
-          to_space(solution.model->end_torque(solution.multipliers));
+    for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
+      result.grips[place.hold_grips[j]].torque +=
+          to_space(solution.model->hold_torque(static_cast<Eigen::Index>(j), solution.multipliers));
     }
   }
   for (const Load& load : problem.loads) {
@@ -139,7 +136,8 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     const PlacedSpan& place = *placed[i];
     const double end = place.reversed ? place.start : place.start + place.span.length * l;
     shapes.push_back({solutions[i]->model->shape(solutions[i]->x), place.reversed, place.start, end,
-                      place.frame.transpose(), place.anchor_position});
+                      place.frame.transpose(), place.anchor_position,
+                      place.span.natural.empty() ? std::nullopt : std::optional(place.ahead)});
   }
   result.sample = [l, shapes = std::move(shapes)](std::span<const double> arc_lengths) {
     return sample(shapes, l, arc_lengths);

@@ -15,7 +15,6 @@ namespace dlo::energy_model {
 struct ShotFrames {
   Eigen::Vector3d start;
   Eigen::Vector3d end;
-  double stiffness;  ///< c = GJ / EI
 };
 
 struct ShootingOptions {
@@ -32,19 +31,17 @@ struct [[nodiscard]] ShootingResult {
   std::string message = "never ran";
   int shots = 0;  ///< integrations of the whole span, with or without linearisation
   double residual =
-      -1;  ///< largest gap in r, t, v / f, n / f^2 at a node, f^2 the largest |n| or 1
+      -1;  ///< largest gap in r, t, b v / f, n / f^2 at a node, f^2 the largest |n| or 1
   std::vector<RodState> nodes;  ///< n is the force after the node
 };
 
 /// Multiple shooting: the span is integrated from every node of the mesh to the next, and Newton's
-/// method closes the gaps in r, t, v and n (which jumps by a load). At a grip the position is given
-/// and n free instead; at a clamp t is given, at a free end v = n = 0. At each node Newton moves in
-/// minimal coordinates: r and n, a turn of t and a change of v across t, which makes the system
-/// square. Of a rod with held frames Newton also turns the frames about t, which twist by M h / c
-/// over an interval h, and changes M at each node: so whole turns are counted and the matrix stays
-/// banded. Steps are damped until the next simplified step is shorter (Deuflhard's natural
-/// monotonicity); where there is no such step, because the rod can move for nothing or nearly so, a
-/// Levenberg step makes the gaps smaller.
+/// method closes the gaps in r, t, b v and n (which jumps by a load). At a grip the position is
+/// given and n free instead; at a clamp t is given, at a free end v = n = 0. At each node Newton
+/// moves in minimal coordinates: r and n, a turn of t and a change of v across t, which makes the
+/// system square. Of a rod with held frames Newton also turns the frames about t, which twist by M
+/// h / c over an interval h, and changes M at each node: so whole turns are counted and the matrix
+/// stays banded. close_gaps.hpp says how it steps.
 ///
 /// Well posed for soft rods as long as the intervals are not much longer than |n|^(-1/2), over
 /// which errors grow e-fold.

@@ -10,6 +10,7 @@
 #include "fold_angle.hpp"
 #include "minimise.hpp"
 #include "require.hpp"
+#include "unlike_joints.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -38,6 +39,24 @@ AngleJoint joint_by_angle(JointLaw law, double stiffness, double L, double alpha
           followed == alpha ? k / (c * c) : 0};
 }
 
+double joint_length(const ChainProblem& problem, Eigen::Index i) {
+  return (problem.segment_lengths[i - 1] + problem.segment_lengths[i]) / 2;
+}
+
+/// The joint between segments i-1 and i as it is turned by alpha, its natural turn counted.
+AngleJoint joint_at(const ChainProblem& problem, Eigen::Index i, double alpha) {
+  const double stiffness =
+      problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
+  const double L = joint_length(problem, i);
+  AngleJoint joint = joint_by_angle(problem.law, stiffness, L, alpha);
+  if (problem.natural_turns.size() == 0) return joint;
+  const double natural = problem.natural_turns[i - 1];
+  const AngleJoint free = joint_by_angle(problem.law, stiffness, L, natural);
+  joint.energy -= free.energy + free.moment * (alpha - natural);
+  joint.moment -= free.moment;
+  return joint;
+}
+
 /// Force in each segment: the sum of the node forces beyond it.
 Eigen::Matrix2Xd segment_forces(const ChainProblem& problem) {
   const Eigen::Index n = problem.segment_lengths.size();
@@ -48,10 +67,6 @@ Eigen::Matrix2Xd segment_forces(const ChainProblem& problem) {
     forces.col(j) = sum;
   }
   return forces;
-}
-
-double joint_length(const ChainProblem& problem, Eigen::Index i) {
-  return (problem.segment_lengths[i - 1] + problem.segment_lengths[i]) / 2;
 }
 
 void check(const ChainProblem& problem, const ChainOptions& options) {
@@ -67,6 +82,7 @@ void check(const ChainProblem& problem, const ChainOptions& options) {
   require(std::isfinite(problem.held_angle), "ChainProblem", "held_angle", problem.held_angle,
           "finite");
   require_positive("ChainProblem", "stiffness", problem.stiffness);
+  require_unlike_joints("ChainProblem", problem.law, problem.stiffnesses, problem.natural_turns, n);
   require_positive("ChainOptions", "tolerance", options.tolerance);
   require(options.max_evaluations >= 1, "ChainOptions", "max_evaluations", options.max_evaluations,
           ">= 1");
@@ -90,9 +106,11 @@ Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
   for (Eigen::Index i = n - 1; i >= 1; --i) {
     moment += forces.col(i).dot(normal) * problem.segment_lengths[i];
     const double L = joint_length(problem, i);
+    const double stiffness =
+        problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
     const double size = problem.law == JointLaw::paper
-                            ? std::cbrt(4 * std::abs(moment) / (problem.stiffness * L))
-                            : std::abs(moment) * L / problem.stiffness;
+                            ? std::cbrt(4 * std::abs(moment) / (stiffness * L))
+                            : std::abs(moment) * L / stiffness;
     turns[i] = std::copysign(std::min(size, 1.0), moment);
   }
   const Eigen::Vector2d total = forces.col(0);
@@ -101,6 +119,7 @@ Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
   if (turned > limit) turns *= limit / turned;
   // An upright chain has no moment at all; a hair's turn lets it find its buckled shape.
   if (turned < 1e-6 && total.dot(tangent) < 0) turns[1] = 1e-3;
+  if (problem.natural_turns.size() > 0) turns.tail(n - 1) += problem.natural_turns;
   Eigen::VectorXd angles(n);
   double angle = problem.held_angle;
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -140,9 +159,7 @@ Tridiagonal second_derivative(const ChainProblem& problem, const Eigen::Matrix2X
   const Eigen::Index free = angles.size() - 1;
   Tridiagonal matrix{Eigen::VectorXd::Zero(free), Eigen::VectorXd::Zero(free - 1)};
   for (Eigen::Index i = 1; i <= free; ++i) {
-    const double stiffness = joint_by_angle(problem.law, problem.stiffness,
-                                            joint_length(problem, i), angles[i] - angles[i - 1])
-                                 .stiffness;
+    const double stiffness = joint_at(problem, i, angles[i] - angles[i - 1]).stiffness;
     matrix.diagonal[i - 1] +=
         stiffness + problem.segment_lengths[i] *
                         (forces(0, i) * std::cos(angles[i]) + forces(1, i) * std::sin(angles[i]));
@@ -163,6 +180,15 @@ Eigen::Matrix2Xd chain_points(const ChainProblem& problem, const Eigen::VectorXd
         problem.segment_lengths[i] * Eigen::Vector2d(std::cos(angles[i]), std::sin(angles[i]));
   }
   return points;
+}
+
+/// Of the joints' couples that turn them at rest [N m].
+double largest_natural_moment(const ChainProblem& problem) {
+  double largest = 0;
+  for (Eigen::Index i = 1; i <= problem.natural_turns.size(); ++i) {
+    largest = std::max(largest, std::abs(joint_at(problem, i, 0).moment));
+  }
+  return largest;
 }
 
 /// Damped Newton steps; each must lower the energy or the gradient.
@@ -243,8 +269,7 @@ double chain_energy(const ChainProblem& problem, const Eigen::Ref<const Eigen::V
     energy -= L * (force.x() * c + force.y() * s);
     if (i == 0) break;
     gradient[i] += L * (force.x() * s - force.y() * c);
-    const AngleJoint j = joint_by_angle(problem.law, problem.stiffness, joint_length(problem, i),
-                                        angles[i] - angles[i - 1]);
+    const AngleJoint j = joint_at(problem, i, angles[i] - angles[i - 1]);
     energy += j.energy;
     gradient[i] += j.moment;
     gradient[i - 1] -= j.moment;
@@ -286,7 +311,7 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   };
   const double moment_scale =
       problem.node_forces.colwise().norm().sum() * problem.segment_lengths.sum() +
-      1e-300;  // a chain without forces is straight at once
+      largest_natural_moment(problem) + 1e-300;  // a chain without forces is straight at once
   const MinimiseResult first =
       minimise_lbfgs(objective, turns, {1e-6 * moment_scale, options.max_evaluations});
   result.evaluations = first.evaluations;
@@ -299,10 +324,7 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
   const double total = chain_energy(problem, result.angles, gradient);
   result.points = chain_points(problem, result.angles);
   for (Eigen::Index i = 1; i < n; ++i) {
-    result.bending_energy +=
-        joint_by_angle(problem.law, problem.stiffness, joint_length(problem, i),
-                       result.angles[i] - result.angles[i - 1])
-            .energy;
+    result.bending_energy += joint_at(problem, i, result.angles[i] - result.angles[i - 1]).energy;
   }
   result.load_energy = total - result.bending_energy;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

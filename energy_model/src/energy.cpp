@@ -43,8 +43,12 @@ TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double
       const double arc = placed.start + (placed.reversed ? -at : at) * length;
       arc_lengths.push_back(std::clamp(arc, 0.0, length));
     }
-    const Eigen::Matrix3Xd tangents = start.sample(arc_lengths).tangents;
-    return Eigen::Matrix3Xd((placed.reversed ? -1.0 : 1.0) * (placed.frame * tangents));
+    const Samples samples = start.sample(arc_lengths);
+    StartShape shape((placed.reversed ? -1.0 : 1.0) * (placed.frame * samples.tangents));
+    if (!placed.span.natural.empty() && samples.d1.cols() > 0) {
+      shape.roll = roll_of(shape.tangents, placed.frame * samples.d1);
+    }
+    return shape;
   };
 }
 
@@ -327,23 +331,28 @@ class EnergySolver::State {
   /// A span that could lie in its plane is spatial if its start has left it.
   static void leave_plane(PlacedSpan& placed, const TangentField& start) {
     const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(17, 0, placed.span.length);
-    const Eigen::Matrix3Xd tangents = start(s);
+    const Eigen::Matrix3Xd tangents = start(s).tangents;
     constexpr double flat = 1e-6;
     if (tangents.row(2).cwiseAbs().maxCoeff() < flat) return;
     placed.span.planar = false;
   }
 
   /// The nodes are where they were, unless grips or loads have moved along the rod.
-  static Eigen::Matrix3Xd follow_field(const PlacedSpan& placed, const Remembered& last,
-                                       const Eigen::VectorXd& s) {
-    Eigen::Matrix3Xd tangents = placed.frame * last.frame.transpose() * last.model->tangents();
+  static StartShape follow_field(const PlacedSpan& placed, const Remembered& last,
+                                 const Eigen::VectorXd& s) {
+    StartShape shape(placed.frame * last.frame.transpose() * last.model->tangents());
+    if (!placed.span.natural.empty() && !last.planar()) {
+      shape.roll = roll_of(last.model->tangents(), last.model->d1());
+    }
     const Eigen::VectorXd& nodes = last.model->nodes();
-    if (s.size() == nodes.size() && s == nodes) return tangents;
-    Eigen::Matrix3Xd nearest(3, s.size());
+    if (s.size() == nodes.size() && s == nodes) return shape;
+    StartShape nearest(Eigen::Matrix3Xd(3, s.size()),
+                       Eigen::VectorXd(shape.roll.size() > 0 ? s.size() : 0));
     for (Eigen::Index q = 0; q < s.size(); ++q) {
       Eigen::Index at = 0;
       (nodes.array() - s[q]).abs().minCoeff(&at);
-      nearest.col(q) = tangents.col(at);
+      nearest.tangents.col(q) = shape.tangents.col(at);
+      if (shape.roll.size() > 0) nearest.roll[q] = shape.roll[at];
     }
     return nearest;
   }

@@ -12,7 +12,7 @@ int first_terms(double load, double longest_piece) {
 
 int terms_under_twist(const SpanSolution& solution) {
   const SpanEnergy& model = *solution.model;
-  const double torque = model.twisting_torque(solution.x);
+  const double torque = model.twisting_torque(solution.x, solution.multipliers);
   return first_terms(torque * torque, model.longest_piece());
 }
 

@@ -13,6 +13,7 @@
 #include <string>
 #include <utility>
 
+#include "curved_solution.hpp"
 #include "deadline.hpp"
 #include "lowest_combinations.hpp"
 #include "ordered_grips.hpp"
@@ -22,6 +23,7 @@
 #include "rod_span.hpp"
 #include "second_variation.hpp"
 #include "silence_gsl.hpp"
+#include "sized_samples.hpp"
 #include "span_shooting.hpp"
 
 namespace dlo::energy_model {
@@ -47,14 +49,16 @@ void add_reactions(const RodSpan& span, const SpanEquilibrium& equilibrium, doub
     Eigen::Vector3d force = -node.n;
     if (i > 0) {
       const double h = equilibrium.s[i] - equilibrium.s[i - 1];
-      force += equilibrium.nodes[static_cast<std::size_t>(i - 1)].n - h * span.weight;
+      const Eigen::Vector3d& weight = section_at(span, equilibrium.s[i - 1] + h / 2).weight;
+      force += equilibrium.nodes[static_cast<std::size_t>(i - 1)].n - h * weight;
     }
     for (const RodSpan::Load& load : span.loads) {
       if (load.at == hold.at) force -= load.force;
     }
     Reaction& reaction = reactions[hold.grip];
     reaction.force += force_unit * force;
-    Eigen::Vector3d moment = torque_unit * node.t.cross(node.v);
+    const double bending = section_at(span, hold.at).bending;
+    Eigen::Vector3d moment = torque_unit * bending * node.t.cross(node.v);
     if (span.twist) moment += torque_unit * node.torque * node.t;
     if (i == 0 && span.start_direction) reaction.torque -= moment;
     if (i + 1 == nodes && span.end_direction) reaction.torque += moment;
@@ -64,7 +68,7 @@ void add_reactions(const RodSpan& span, const SpanEquilibrium& equilibrium, doub
 TwistedPart twisted_part(const Problem& problem, const RodSpan& span, double torque) {
   return {.begin = span.begin * problem.length,
           .end = (span.begin + span.length) * problem.length,
-          .angle = torque * span.length / span.twist->stiffness,
+          .angle = torque * span.twist->compliance,
           .torque = torque * problem.bending_stiffness / problem.length};
 }
 
@@ -83,19 +87,13 @@ Samples sample(const Problem& problem, const Pieces& pieces, double tolerance,
                std::span<const double> arc_lengths) {
   const double l = problem.length;
   const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-  Samples samples;
-  samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
-  samples.points.resize(3, count);
-  samples.tangents.resize(3, count);
-  samples.curvature.resize(3, count);
+  Samples samples = sized_samples(arc_lengths, l);
   for (Eigen::Index i = 0; i < count; ++i) {
     const double at = arc_lengths[static_cast<std::size_t>(i)];
-    require(at >= 0 && at <= l, "sample", "arc length", at, "in [0, " + std::to_string(l) + "]");
     std::size_t p = 0;
     while (p + 1 < pieces.spans.size() && at / l > pieces.spans[p + 1].begin) ++p;
     const RodSpan& span = pieces.spans[p];
-    const RodState state =
-        state_at(pieces.equilibria[p], span.weight, at / l - span.begin, tolerance);
+    const RodState state = state_at(pieces.equilibria[p], span, at / l - span.begin, tolerance);
     samples.points.col(i) = problem.grips.front().position + l * state.r;
     samples.tangents.col(i) = state.t;
     samples.curvature.col(i) = state.v / l;
@@ -204,6 +202,34 @@ Found scan_tip(const Problem& problem, const ReducedCantilever& cantilever,
   return result;
 }
 
+/// The spans of a rod that is straight by nature are twisted each on its own.
+void refuse_passed_torque(const Problem& problem) {
+  const std::vector<OrderedGrip> grips = ordered_grips(problem);
+  const auto holds = [](const OrderedGrip& g) { return g.grip->frame.has_value(); };
+  const auto first = std::find_if(grips.begin(), grips.end(), holds);
+  const auto last = std::find_if(grips.rbegin(), grips.rend(), holds).base();
+  for (auto g = first; g < last; ++g) {
+    require(!g->grip->direction || holds(*g), "solve_exact",
+            "arc length of a clamp without frame between two that hold it", g->grip->at,
+            "that of a clamp with a frame, or of a pin");
+  }
+}
+
+Found search(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
+  if (!problem.natural_strains.empty()) {
+    CurvedSolutions curved = solve_curved(problem, options, deadline);
+    return {std::move(curved.equilibria), curved.out_of_time, ""};
+  }
+  refuse_passed_torque(problem);
+  // The scan knows of one section.
+  const std::optional<ReducedCantilever> cantilever =
+      problem.sections.empty() ? reduce_cantilever(problem) : std::nullopt;
+  const bool from_tip =
+      options.start == nullptr && cantilever && planar_shots_are_well_posed(cantilever->rod);
+  return from_tip ? scan_tip(problem, *cantilever, options, deadline)
+                  : solve_spans(problem, options, deadline);
+}
+
 /// Never empty. Out of time, what is found is marked: it is an equilibrium, but others were not
 /// looked for to the end.
 std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& options) {
@@ -213,11 +239,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
   require(problem.walls.empty(), "solve_exact", "number of walls",
           static_cast<double>(problem.walls.size()), "0");
-  const std::optional<ReducedCantilever> cantilever = reduce_cantilever(problem);
-  const bool from_tip =
-      options.start == nullptr && cantilever && planar_shots_are_well_posed(cantilever->rod);
-  Found found = from_tip ? scan_tip(problem, *cantilever, options, deadline)
-                         : solve_spans(problem, options, deadline);
+  Found found = search(problem, options, deadline);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (Equilibrium& equilibrium : found.equilibria) {

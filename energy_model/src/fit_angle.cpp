@@ -1,14 +1,12 @@
 #include "fit_angle.hpp"
 
-#include <cmath>
-
 namespace dlo::energy_model {
 
-FittedAngle fit_angle(const LegendreTable& table, const std::vector<double>& lengths,
+FittedAngle fit_angle(const LegendreTable& table, const std::vector<double>& turns,
                       const Eigen::VectorXd& angles, std::optional<double> start) {
   const Eigen::Index Q = table.nodes.size();
   const Eigen::Index K = table.fit.rows() - 1;
-  const auto count = static_cast<Eigen::Index>(lengths.size());
+  const auto count = static_cast<Eigen::Index>(turns.size());
   // Every piece on its own, with the angle where it begins; then p_0 makes them meet.
   Eigen::MatrixXd own(K + 1, count);
   for (Eigen::Index e = 0; e < count; ++e) {
@@ -19,8 +17,7 @@ FittedAngle fit_angle(const LegendreTable& table, const std::vector<double>& len
   FittedAngle fitted{own(0, 0), Eigen::VectorXd(K * count)};
   for (Eigen::Index e = 0; e < count; ++e) {
     own(1, e) = (e + 1 < count ? own(0, e + 1) : end) - own(0, e);
-    const double root = std::sqrt(lengths[static_cast<std::size_t>(e)]);
-    fitted.coefficients.segment(e * K, K) = own.col(e).tail(K) / root;
+    fitted.coefficients.segment(e * K, K) = own.col(e).tail(K) / turns[static_cast<std::size_t>(e)];
   }
   return fitted;
 }

@@ -87,7 +87,8 @@ MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
             nullptr};
   nlopt_set_min_objective(optimiser.get(), evaluate, &call);
   nlopt_set_maxeval(optimiser.get(), options.max_evaluations);
-  nlopt_set_vector_storage(optimiser.get(), n);
+  const int remembered = options.remembered_steps;
+  nlopt_set_vector_storage(optimiser.get(), remembered > 0 ? static_cast<unsigned>(remembered) : n);
   double minimum = 0;
   const nlopt_result code = nlopt_optimize(optimiser.get(), x.data(), &minimum);
   if (call.thrown) std::rethrow_exception(call.thrown);

@@ -15,6 +15,8 @@ using Objective =
 struct MinimiseOptions {
   double gradient_tolerance = 0;  ///< stop at a Euclidean gradient norm below this
   int max_evaluations = 0;
+  /// Steps that L-BFGS remembers; 0: as many as unknowns, which takes fewer but longer ones.
+  int remembered_steps = 0;
 };
 
 struct [[nodiscard]] MinimiseResult {

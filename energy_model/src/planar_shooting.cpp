@@ -57,7 +57,7 @@ struct Frame {
   }
 };
 
-struct Section {
+struct TipSection {
   Eigen::Vector2d weight;
   Eigen::Vector2d loads;  // sum of those that have been passed
   bool changes = false;   // by psi at the tip
@@ -92,7 +92,7 @@ Frame make_frame(const PlanarCantilever& rod) {
 }
 
 int section_rates(double sigma, const double* state, double* rate, void* data) {
-  const auto& section = *static_cast<const Section*>(data);
+  const auto& section = *static_cast<const TipSection*>(data);
   const Eigen::Vector2d n = sigma * section.weight + section.loads;
   const double sine = std::sin(state[psi]);
   const double cosine = std::cos(state[psi]);
@@ -115,7 +115,7 @@ int section_rates(double sigma, const double* state, double* rate, void* data) {
 bool shoot(const Frame& frame, double start, double tolerance, const std::vector<double>& stops,
            std::vector<State>& states, bool changes = false) {
   const std::size_t n = changes ? components_and_changes : components;
-  Section section{frame.weight, Eigen::Vector2d::Zero(), changes};
+  TipSection section{frame.weight, Eigen::Vector2d::Zero(), changes};
   gsl_odeiv2_system system{section_rates, nullptr, n, &section};
   const std::unique_ptr<gsl_odeiv2_step, decltype(&gsl_odeiv2_step_free)> step(
       gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, n), gsl_odeiv2_step_free);

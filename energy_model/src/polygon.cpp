@@ -10,6 +10,7 @@
 #include "deadline.hpp"
 #include "polygon_energy.hpp"
 #include "require.hpp"
+#include "unlike_joints.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -32,6 +33,13 @@ constexpr int most_escapes = 10;
 /// far below it, one that is pressed between two constraints far above.
 constexpr double force_left = 1e-6;
 
+/// Of polygons whose joints are turned at rest.
+void require_in_plane(const char* problem, const char* what, const Points& vectors) {
+  const double across = vectors.row(2).cwiseAbs().maxCoeff();
+  require(across == 0, problem, (std::string("z of ") + what).c_str(), across,
+          "0 with natural turns");
+}
+
 void check(const PolygonProblem& problem, const Points& start, const PolygonOptions& options) {
   constexpr const char* name = "PolygonProblem";
   const Eigen::Index n = problem.rest_lengths.size();
@@ -41,6 +49,7 @@ void check(const PolygonProblem& problem, const Points& start, const PolygonOpti
           "finite and > 0");
   require_positive(name, "stretch_stiffness", problem.stretch_stiffness);
   require_positive(name, "stiffness", problem.stiffness);
+  require_unlike_joints(name, problem.law, problem.stiffnesses, problem.natural_turns, n);
   require(problem.node_forces.cols() == n + 1, name, "columns of node_forces",
           static_cast<double>(problem.node_forces.cols()), "one more than segments");
   require(problem.node_forces.allFinite(), name, "node_forces", problem.node_forces.norm(),
@@ -69,6 +78,16 @@ void check(const PolygonProblem& problem, const Points& start, const PolygonOpti
   require(start.cols() == n + 1, "solve_polygon", "columns of start",
           static_cast<double>(start.cols()), "one more than segments");
   const double closest = (start.rightCols(n) - start.leftCols(n)).colwise().norm().minCoeff();
+  if (problem.natural_turns.size() > 0) {
+    require_in_plane(name, "a node force", problem.node_forces);
+    require_in_plane("solve_polygon", "a point of start", start);
+    for (const HeldPoint& held : problem.held) {
+      require_in_plane(name, "a held point", held.position);
+    }
+    for (const PointWall& wall : problem.walls) {
+      require_in_plane(name, "a wall's normal", wall.normal);
+    }
+  }
   require(start.allFinite() && closest > 0, "solve_polygon", "shortest segment of start", closest,
           "finite and > 0");
 }
@@ -83,6 +102,7 @@ class PolygonDescent {
         deadline_(deadline),
         result_(result),
         length_(problem.rest_lengths.sum()),
+        planar_(problem.natural_turns.size() > 0),
         index_(static_cast<std::size_t>(problem.node_forces.cols()), 0),
         gradient_(3, problem.node_forces.cols()),
         trial_gradient_(3, problem.node_forces.cols()) {
@@ -217,13 +237,22 @@ class PolygonDescent {
                       const Eigen::Index r = index_[static_cast<std::size_t>(row)];
                       const Eigen::Index c = index_[static_cast<std::size_t>(column)];
                       if (r < 0 || c < 0 || r < c) return;
-                      for (int i = 0; i < 3; ++i) {
-                        for (int j = 0; j < 3; ++j) {
+                      // Of a polygon that stays in its plane nothing else is asked.
+                      const int axes = planar_ ? 2 : 3;
+                      for (int i = 0; i < axes; ++i) {
+                        for (int j = 0; j < axes; ++j) {
                           entries_.emplace_back(static_cast<int>(3 * r + i),
                                                 static_cast<int>(3 * c + j), block(i, j));
                         }
                       }
                     });
+    if (planar_) {
+      const double stiff = problem_.stretch_stiffness / problem_.rest_lengths.minCoeff();
+      for (Eigen::Index i = 0; i < free_; ++i) {
+        const auto z = static_cast<int>(3 * i + 2);
+        entries_.emplace_back(z, z, stiff);
+      }
+    }
     hessian_.resize(3 * free_, 3 * free_);
     hessian_.setFromTriplets(entries_.begin(), entries_.end());
     largest_ = hessian_.diagonal().cwiseAbs().maxCoeff();
@@ -263,6 +292,9 @@ class PolygonDescent {
       direction[i] = 1 + std::sin(static_cast<double>(i));  // anything without a symmetry
     }
     for (int i = 0; i < iterations; ++i) direction = solver_.solve(direction).normalized();
+    if (planar_) {
+      for (Eigen::Index i = 0; i < free_; ++i) direction[3 * i + 2] = 0;
+    }
     direction *= size * length_ / direction.cwiseAbs().maxCoeff();
     const Eigen::Matrix3Xd ahead = moved(direction);
     const Eigen::Matrix3Xd back = moved(-direction);
@@ -278,6 +310,7 @@ class PolygonDescent {
   const Deadline& deadline_;
   PolygonResult& result_;
   double length_;
+  bool planar_;  // free points keep z = 0
   double tolerance_ = 0;
   std::vector<Eigen::Index> index_;  // of each point among the free ones, -1 for held points
   Eigen::Index free_ = 0;

@@ -60,6 +60,39 @@ double joint_length(const PolygonProblem& problem, Eigen::Index i) {
   return (problem.rest_lengths[i - 1] + problem.rest_lengths[i]) / 2;
 }
 
+double joint_stiffness(const PolygonProblem& problem, Eigen::Index i) {
+  return problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
+}
+
+/// What a natural turn alpha_0 adds to the potential P of a joint: -P(alpha_0) - C (alpha -
+/// alpha_0), C = P'(alpha_0), alpha from a to b in the plane z = 0.
+struct NaturalTurn {
+  double couple = 0;    // C [N m]
+  double constant = 0;  // P(alpha_0) - C alpha_0 [J]
+};
+
+NaturalTurn natural_turn(const PolygonProblem& problem, Eigen::Index i) {
+  const double turn = problem.natural_turns[i - 1];
+  const double L = joint_length(problem, i);
+  const double stiffness = joint_stiffness(problem, i);
+  const double s = std::sin(turn / 2);
+  NaturalTurn result;
+  result.couple = 2 * stiffness / L * std::tan(turn / 2);
+  result.constant = joint(problem.law, stiffness, L, s * s).energy - result.couple * turn;
+  return result;
+}
+
+/// Second derivative by d = length u of the angle of d in the plane z = 0.
+Eigen::Matrix3d second_of_angle(const Eigen::Vector3d& u, double length) {
+  const double xy = 2 * u.x() * u.y();
+  const double difference = u.y() * u.y() - u.x() * u.x();
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  result.topLeftCorner<2, 2>() << xy, difference, difference, -xy;
+  return result / (length * length);
+}
+
+Eigen::Vector3d left_of(const Eigen::Vector3d& u) { return {-u.y(), u.x(), 0}; }
+
 /// Whether a point is held, for each; a held one does not feel walls.
 std::vector<bool> held_points(const PolygonProblem& problem) {
   std::vector<bool> held(static_cast<std::size_t>(problem.node_forces.cols()), false);
@@ -99,11 +132,20 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
   }
   for (Eigen::Index i = 1; i < n; ++i) {
     const Corner corner(points, i);
-    const Joint j = joint(problem.law, problem.stiffness, joint_length(problem, i), corner.h);
+    const Joint j =
+        joint(problem.law, joint_stiffness(problem, i), joint_length(problem, i), corner.h);
     energy += j.energy;
     // h = (1 - cos alpha) / 2
-    const Eigen::Vector3d by_a = -j.first / 2 * corner.by_a;
-    const Eigen::Vector3d by_b = -j.first / 2 * corner.by_b;
+    Eigen::Vector3d by_a = -j.first / 2 * corner.by_a;
+    Eigen::Vector3d by_b = -j.first / 2 * corner.by_b;
+    if (problem.natural_turns.size() > 0) {
+      const NaturalTurn natural = natural_turn(problem, i);
+      const double alpha = std::atan2(corner.u.x() * corner.v.y() - corner.u.y() * corner.v.x(),
+                                      corner.u.dot(corner.v));
+      energy -= natural.constant + natural.couple * alpha;
+      by_a += natural.couple / corner.a * left_of(corner.u);
+      by_b -= natural.couple / corner.b * left_of(corner.v);
+    }
     gradient.col(i - 1) -= by_a;
     gradient.col(i) += by_a - by_b;
     gradient.col(i + 1) += by_b;
@@ -135,22 +177,27 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, const 
   }
   for (Eigen::Index i = 1; i < n; ++i) {
     const Corner c(points, i);
-    const Joint j = joint(problem.law, problem.stiffness, joint_length(problem, i), c.h);
+    const Joint j = joint(problem.law, joint_stiffness(problem, i), joint_length(problem, i), c.h);
     const double curved = j.second / 4;
     const double slope = -j.first / 2;  // by cos alpha
     const double cosine = 1 - 2 * c.h;
     const Eigen::Matrix3d beside_u = one - c.u * c.u.transpose();
     const Eigen::Matrix3d beside_v = one - c.v * c.v.transpose();
-    const Eigen::Matrix3d aa =
+    Eigen::Matrix3d aa =
         curved * c.by_a * c.by_a.transpose() -
         slope / c.a *
             (c.u * c.by_a.transpose() + c.by_a * c.u.transpose() + cosine / c.a * beside_u);
-    const Eigen::Matrix3d bb =
+    Eigen::Matrix3d bb =
         curved * c.by_b * c.by_b.transpose() -
         slope / c.b *
             (c.v * c.by_b.transpose() + c.by_b * c.v.transpose() + cosine / c.b * beside_v);
     const Eigen::Matrix3d ab =
         curved * c.by_a * c.by_b.transpose() + slope / (c.a * c.b) * beside_u * beside_v;
+    if (problem.natural_turns.size() > 0) {
+      const double couple = natural_turn(problem, i).couple;
+      aa += couple * second_of_angle(c.u, c.a);
+      bb -= couple * second_of_angle(c.v, c.b);
+    }
     add_difference_block(i - 1, i - 1, aa, add);
     add_difference_block(i, i, bb, add);
     add_difference_block(i - 1, i, ab, add);

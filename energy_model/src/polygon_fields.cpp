@@ -29,6 +29,9 @@ Eigen::Vector3d tangent_at(const Eigen::VectorXd& middles, const Eigen::Matrix3X
 
 std::vector<TangentField> polygon_fields(const Problem& problem, const PlacedSpan& placed,
                                          const Deadline& deadline) {
+  // The polygon knows no torque that clamps pass on.
+  const auto is_clamp = [](const Span::Hold& hold) { return hold.direction.has_value(); };
+  if (std::any_of(placed.span.holds.begin(), placed.span.holds.end(), is_clamp)) return {};
   const double begin = (placed.reversed ? placed.start / problem.length - placed.span.length
                                         : placed.start / problem.length);
   const std::vector<RodSpan> spans = cut_at_clamps(problem);

@@ -28,23 +28,41 @@ void check_frame(const Grip& grip) {
           "d1 of a clamp's frame, across its direction", across, "> 0");
 }
 
-/// Twist passes through a clamp that does not hold it, which nobody computes here.
 void check_twist(const Problem& problem) {
-  std::vector<const Grip*> clamps;
-  for (const Grip& grip : problem.grips) {
-    if (grip.direction) clamps.push_back(&grip);
-  }
-  std::sort(clamps.begin(), clamps.end(), [](auto* a, auto* b) { return a->at < b->at; });
-  const auto holds = [](const Grip* grip) { return grip->frame.has_value(); };
-  const auto first = std::find_if(clamps.begin(), clamps.end(), holds);
-  const auto last = std::find_if(clamps.rbegin(), clamps.rend(), holds).base();
-  if (first == clamps.end() || last - first < 2) return;
+  const auto held = std::count_if(problem.grips.begin(), problem.grips.end(),
+                                  [](const Grip& grip) { return grip.frame.has_value(); });
+  if (held < 2) return;
   require(problem.torsional_stiffness > 0, "Problem", "torsional_stiffness",
           problem.torsional_stiffness, "> 0 where two clamps hold the rod's frame");
-  const auto open = std::find_if_not(first, last, holds);
-  if (open == last) return;
-  require(false, "Problem", "arc length of a clamp without frame between two that hold it",
-          (*open)->at, "that of a clamp with a frame, or of a pin");
+}
+
+void check_sections(const Problem& problem) {
+  double before = 0;
+  for (const Section& section : problem.sections) {
+    require_on_rod("begin of a section", section.begin, problem.length);
+    require_on_rod("end of a section", section.end, problem.length);
+    require(section.end > section.begin, "Problem", "end of a section", section.end,
+            "> its begin, " + std::to_string(section.begin));
+    require(section.begin >= before, "Problem", "begin of a section", section.begin,
+            ">= " + std::to_string(before) + ", where the one before it ends");
+    before = section.end;
+    require_positive("Problem", "bending_stiffness of a section", section.bending_stiffness);
+    require(section.torsional_stiffness >= 0 && std::isfinite(section.torsional_stiffness) &&
+                (section.torsional_stiffness > 0 || !(problem.torsional_stiffness > 0)),
+            "Problem", "torsional_stiffness of a section", section.torsional_stiffness,
+            "finite, and > 0 where the rod's is");
+    require(section.weight_per_length.allFinite(), "Problem", "weight_per_length of a section",
+            section.weight_per_length.norm(), "finite");
+  }
+}
+
+void check_natural_strains(const Problem& problem) {
+  for (const Eigen::Vector3d& strain : problem.natural_strains) {
+    require(strain.allFinite(), "Problem", "natural strain", strain.norm(), "finite");
+  }
+  if (problem.natural_strains.empty()) return;
+  require_positive("Problem", "torsional_stiffness, of a rod that is not straight by nature",
+                   problem.torsional_stiffness);
 }
 
 }  // namespace
@@ -65,6 +83,8 @@ void check(const Problem& problem) {
     if (grip.frame) check_frame(grip);
   }
   check_twist(problem);
+  check_sections(problem);
+  check_natural_strains(problem);
   for (const Wall& wall : problem.walls) {
     require(wall.point.allFinite(), "Problem", "point of a wall", wall.point.norm(), "finite");
     require_positive("Problem", "|normal| of a wall", wall.normal.norm());

@@ -45,7 +45,8 @@ std::vector<Closure> closures_of(const RodSpan& span, const RodMesh& mesh) {
       const Eigen::VectorXd h = mesh.s.segment(first + 1, size) - mesh.s.segment(first, size);
       const Eigen::Vector3d chord = hold->position - previous->position;
       const double length = h.sum();
-      const double penalty = (100 / (length * length) + 4 * total_load(span)) / length;
+      const double penalty =
+          (100 * softest(span) / (length * length) + 4 * total_load(span)) / length;
       closures.push_back({first, h, chord, length - chord.norm(), penalty});
     }
     previous = hold;
@@ -54,19 +55,25 @@ std::vector<Closure> closures_of(const RodSpan& span, const RodMesh& mesh) {
   return closures;
 }
 
-double middle_distance(const RodMesh& mesh, Eigen::Index i) {
-  return (mesh.s[i + 2] - mesh.s[i]) / 2;
+/// Of the rod in an interval: int ds / b.
+double compliance_in(const RodMesh& mesh, Eigen::Index i) {
+  return mesh.width(i) / mesh.section_of(i).bending;
 }
 
-/// Sum of the tangents that an interval's bends to, over their distances: it pulls the interval.
+/// Of the rod between the middles of an interval and the next.
+double compliance_between(const RodMesh& mesh, Eigen::Index i) {
+  return (compliance_in(mesh, i) + compliance_in(mesh, i + 1)) / 2;
+}
+
+/// Sum of the tangents that an interval's bends to, over the compliances: it pulls the interval.
 Eigen::Vector3d bending_pull(const RodSpan& span, const RodMesh& mesh, const Eigen::Matrix3Xd& t,
                              Eigen::Index i) {
   Eigen::Vector3d pull = Eigen::Vector3d::Zero();
-  const double h = mesh.s[i + 1] - mesh.s[i];
-  if (i > 0) pull += t.col(i - 1) / middle_distance(mesh, i - 1);
-  if (i + 1 < t.cols()) pull += t.col(i + 1) / middle_distance(mesh, i);
-  if (i == 0 && span.start_direction) pull += 2 / h * *span.start_direction;
-  if (i + 1 == t.cols() && span.end_direction) pull += 2 / h * *span.end_direction;
+  const double c = compliance_in(mesh, i);
+  if (i > 0) pull += t.col(i - 1) / compliance_between(mesh, i - 1);
+  if (i + 1 < t.cols()) pull += t.col(i + 1) / compliance_between(mesh, i);
+  if (i == 0 && span.start_direction) pull += 2 / c * *span.start_direction;
+  if (i + 1 == t.cols() && span.end_direction) pull += 2 / c * *span.end_direction;
   return pull;
 }
 
@@ -93,16 +100,16 @@ double energy_of(const RodSpan& span, const RodMesh& mesh, const RelaxedPolygon&
   for (Eigen::Index i = 0; i <= last; ++i) {
     const double h = mesh.s[i + 1] - mesh.s[i];
     energy -= h * carried.col(i).dot(t.col(i));
-    if (i < last) energy += (1 - t.col(i).dot(t.col(i + 1))) / middle_distance(mesh, i);
+    if (i < last) energy += (1 - t.col(i).dot(t.col(i + 1))) / compliance_between(mesh, i);
   }
-  const auto to_clamp = [](const Eigen::Vector3d& tangent, const Eigen::Vector3d& clamp, double h) {
-    return 2 * (1 - tangent.dot(clamp)) / h;
+  const auto to_clamp = [](const Eigen::Vector3d& tangent, const Eigen::Vector3d& clamp, double c) {
+    return 2 * (1 - tangent.dot(clamp)) / c;
   };
   if (span.start_direction) {
-    energy += to_clamp(t.col(0), *span.start_direction, mesh.s[1] - mesh.s[0]);
+    energy += to_clamp(t.col(0), *span.start_direction, compliance_in(mesh, 0));
   }
   if (span.end_direction) {
-    energy += to_clamp(t.col(last), *span.end_direction, mesh.s[last + 1] - mesh.s[last]);
+    energy += to_clamp(t.col(last), *span.end_direction, compliance_in(mesh, last));
   }
   return energy;
 }
@@ -263,7 +270,10 @@ std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
     const Eigen::Index before = std::max<Eigen::Index>(i - 1, 0);
     const Eigen::Index after = std::min(i, last - 1);
     state.t = (t.col(before) + t.col(after)).normalized();
-    if (before < after) state.v = (t.col(after) - t.col(before)) / middle_distance(mesh, before);
+    if (before < after) {
+      state.v = (t.col(after) - t.col(before)) /
+                (compliance_between(mesh, before) * mesh.section_of(after).bending);
+    }
     if (i == 0 && span.start_direction) {
       state.t = *span.start_direction;
       state.v = 2 * (t.col(0) - state.t) / (mesh.s[1] - mesh.s[0]);

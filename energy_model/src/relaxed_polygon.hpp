@@ -9,8 +9,9 @@
 namespace dlo::energy_model {
 
 /// A coarse equilibrium: unit tangents t_i of the intervals h_i of a mesh, at a local minimum of
-///     sum (1 - t_i.t_(i+1)) / h_(i,i+1) - sum h_i n_i.t_i
-/// with h_(i,i+1) the distance of the intervals' middles and n_i the force that they carry, while
+///     sum (1 - t_i.t_(i+1)) / c_(i,i+1) - sum h_i n_i.t_i
+/// with c_(i,i+1) the compliance int ds / b between the intervals' middles and n_i the force that
+/// they carry, while
 /// sum h_i t_i between two grips is the grips' distance.
 struct RelaxedPolygon {
   Eigen::Matrix3Xd tangents;  ///< 3 x intervals

@@ -1,15 +1,13 @@
 #include "rod_flow.hpp"
 
 #include <gsl/gsl_errno.h>
-#include <gsl/gsl_odeiv2.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <vector>
 
-#include "silence_gsl.hpp"
+#include "integrate.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -18,12 +16,13 @@ namespace {
 /// then r, t, v and with d its turn, of each parameter.
 constexpr Eigen::Index plain_state = 11;
 constexpr Eigen::Index plain_variation = 9;
-constexpr int most_steps = 20000;
 
 struct FlowPiece {
   Eigen::Vector3d weight;
+  // Forces and torques over the stiffness: so they bend every section in the same way.
   Eigen::Vector3d n;  // at its beginning
   double torque;
+  double bending;
   bool framed;                    // a director comes along
   const RodVariation* variation;  // whose n and torque are constant along the piece
 
@@ -38,7 +37,7 @@ int rod_rates(double s, const double* y, double* rate, void* data) {
   const Vector r(y);
   const Vector t(y + 3);
   const Vector v(y + 6);
-  const Eigen::Vector3d n = piece.n - s * piece.weight;
+  const Eigen::Vector3d n = piece.n - s / piece.bending * piece.weight;
   const double pull = n.dot(t) - v.squaredNorm();
   Rate(rate + 0) = t;
   Rate(rate + 3) = v;
@@ -53,55 +52,26 @@ int rod_rates(double s, const double* y, double* rate, void* data) {
     double* change_rate = rate + piece.state_size() + k * piece.variation_size();
     const Vector dt(change + 3);
     const Vector dv(change + 6);
-    const Eigen::Vector3d dn = variation.n.col(k);
+    const Eigen::Vector3d dn = variation.n.col(k) / piece.bending;
     const double dpull = dn.dot(t) + n.dot(dt) - 2 * v.dot(dv);
     Rate(change_rate + 0) = dt;
     Rate(change_rate + 3) = dv;
     Rate(change_rate + 6) = dpull * t + pull * dt - dn;
     if (!piece.framed) continue;
-    Rate(change_rate + 6) +=
-        piece.torque * (dt.cross(v) + t.cross(dv)) + variation.torque[k] * t.cross(v);
+    Rate(change_rate + 6) += piece.torque * (dt.cross(v) + t.cross(dv)) +
+                             variation.torque[k] / piece.bending * t.cross(v);
     change_rate[plain_variation] = v.dot(t.cross(dt));
   }
   return GSL_SUCCESS;
 }
 
-template <class T, void (*release)(T*)>
-struct Release {
-  void operator()(T* pointer) const { release(pointer); }
-};
-template <class T, void (*release)(T*)>
-using Owned = std::unique_ptr<T, Release<T, release>>;
-
-bool integrate(FlowPiece& piece, double length, double tolerance, std::vector<double>& y) {
-  silence_gsl();
-  const std::size_t size = y.size();
-  gsl_odeiv2_system system{rod_rates, nullptr, size, &piece};
-  const Owned<gsl_odeiv2_step, gsl_odeiv2_step_free> step(
-      gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, size));
-  const Owned<gsl_odeiv2_control, gsl_odeiv2_control_free> control(
-      gsl_odeiv2_control_y_new(tolerance, tolerance));
-  const Owned<gsl_odeiv2_evolve, gsl_odeiv2_evolve_free> evolve(gsl_odeiv2_evolve_alloc(size));
-  double s = 0;
-  double h = length / 4;
-  for (int i = 0; i < most_steps && s < length; ++i) {
-    if (gsl_odeiv2_evolve_apply(evolve.get(), control.get(), step.get(), &system, &s, length, &h,
-                                y.data()) != GSL_SUCCESS) {
-      return false;
-    }
-  }
-  if (s < length) return false;
-  double sum = 0;
-  for (const double component : y) sum += component;
-  return std::isfinite(sum);
-}
-
 }  // namespace
 
-double largest_force(const std::vector<RodState>& states) {
+double largest_force(const std::vector<RodState>& states, double bending) {
   double force = 0;
   for (const RodState& state : states) {
-    force = std::max({force, state.n.norm(), state.v.squaredNorm(), state.torque * state.torque});
+    const double torque = state.torque / bending;
+    force = std::max({force, state.n.norm() / bending, state.v.squaredNorm(), torque * torque});
   }
   return force;
 }
@@ -126,11 +96,12 @@ RodVariation::RodVariation(Eigen::Index parameters)
       torque(Eigen::RowVectorXd::Zero(parameters)),
       turn(Eigen::RowVectorXd::Zero(parameters)) {}
 
-bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance, RodState& state,
+bool follow_rod(const RodSection& section, double length, double tolerance, RodState& state,
                 RodVariation& variation, RodIntegrals& integrals) {
   const Eigen::Index parameters = variation.n.cols();
   const bool framed = !state.d.isZero(0);
-  FlowPiece piece{weight, state.n, state.torque, framed, &variation};
+  const double b = section.bending;
+  FlowPiece piece{section.weight, state.n / b, state.torque / b, b, framed, &variation};
   std::vector<double> y(
       static_cast<std::size_t>(piece.state_size() + parameters * piece.variation_size()), 0.0);
   Eigen::Map<Eigen::VectorXd> all(y.data(), static_cast<Eigen::Index>(y.size()));
@@ -141,13 +112,16 @@ bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance, 
     all.segment<plain_variation>(at) << variation.r.col(k), variation.t.col(k), variation.v.col(k);
     if (framed) all[at + plain_variation] = variation.turn[k];
   }
-  if (length > 0 && !integrate(piece, length, tolerance, y)) return false;
+  if (length > 0 && !integrate(rod_rates, &piece, length, tolerance, y)) return false;
   state.r = all.segment<3>(0);
   state.t = all.segment<3>(3);
   state.v = all.segment<3>(6);
-  state.n -= length * weight;
-  if (framed) state.d = turned(all.segment<3>(plain_state), state.t, length * state.twist);
-  integrals = {all[9], all[10]};
+  state.n -= length * section.weight;
+  if (framed) {
+    const double twist = length * state.torque / section.torsion;
+    state.d = turned(all.segment<3>(plain_state), state.t, twist);
+  }
+  integrals = {b * all[9], all[10]};
   for (Eigen::Index k = 0; k < parameters; ++k) {
     const Eigen::Index at = piece.state_size() + k * piece.variation_size();
     variation.r.col(k) = all.segment<3>(at);
@@ -158,10 +132,10 @@ bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance, 
   return true;
 }
 
-bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance, RodState& state,
+bool follow_rod(const RodSection& section, double length, double tolerance, RodState& state,
                 RodIntegrals& integrals) {
   RodVariation none;
-  return follow_rod(weight, length, tolerance, state, none, integrals);
+  return follow_rod(section, length, tolerance, state, none, integrals);
 }
 
 }  // namespace dlo::energy_model

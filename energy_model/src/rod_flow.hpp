@@ -5,21 +5,27 @@
 
 namespace dlo::energy_model {
 
+/// A section of the rod, in units of the rod.
+struct RodSection {
+  double bending = 1;  ///< b, its EI over that of the problem
+  double torsion = 0;  ///< c, its GJ over the problem's EI; > 0 where directors come along
+  Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< w
+};
+
 /// Cross-section of an inextensible, round, naturally straight Kirchhoff rod in units of its length
 /// and stiffness (l, EI/l, EI/l^2).
 struct RodState {
   Eigen::Vector3d r = Eigen::Vector3d::Zero();  ///< position
   Eigen::Vector3d t = Eigen::Vector3d::Zero();  ///< unit tangent
-  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< dt/ds, across t; the moment is t x v + M t
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< dt/ds, across t; the moment is b t x v + M t
   Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< force of what lies beyond s on what lies before
   double torque = 0;                            ///< M, about t: the same all along a round rod
   Eigen::Vector3d d = Eigen::Vector3d::Zero();  ///< director across t; zero: none comes along
-  double twist = 0;                             ///< M EI / GJ, by which d turns ahead per length
 };
 
-/// Largest of |n|, |v|^2 and M^2, which bend the rod over lengths of one over its root; 0 without
-/// states.
-[[nodiscard]] double largest_force(const std::vector<RodState>& states);
+/// Largest of |n| / b, |v|^2 and (M / b)^2, which bend a rod of the section's stiffness b over
+/// lengths of one over its root; 0 without states.
+[[nodiscard]] double largest_force(const std::vector<RodState>& states, double bending = 1);
 
 /// The tangents of states, 3 x states.
 [[nodiscard]] Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states);
@@ -43,26 +49,26 @@ struct RodVariation {
 
 /// Integrals over a piece of the rod.
 struct RodIntegrals {
-  double bending = 0;  ///< of |v|^2 / 2
+  double bending = 0;  ///< of b |v|^2 / 2
   double gravity = 0;  ///< of -w . r
 };
 
 /// Follows the rod's equations over `length`,
-///     r' = t,   t' = v,   v' = -(n - (n.t) t) - |v|^2 t + M t x v,   n' = -w,   M' = 0,
-/// which follow from m' + t x n = 0 with m = t x v + M t, and their linearisation, with GSL's
-/// rk8pd. No angles, so no chart that could end. Along a piece without weight n and |v|^2/2 + n.t
+///     r' = t,   t' = v,   b v' = -(n - (n.t) t) - b |v|^2 t + M t x v,   n' = -w,   M' = 0,
+/// which follow from m' + t x n = 0 with m = b t x v + M t, and their linearisation, with GSL's
+/// rk8pd. No angles, so no chart that could end. Along a piece without weight n and b |v|^2/2 + n.t
 /// stay. A director d and its derivatives come along,
-///     d' = -(d.v) t + twist t x d,   turn' = v . (t x dt).
-/// @param weight     w
+///     d' = -(d.v) t + M / c t x d,   turn' = v . (t x dt).
+/// @param section    of the piece
 /// @param tolerance  local error per step, relative to 1 + |component|
 /// @param[in,out] state, variation  from the beginning of the piece to its end
 /// @param[out] integrals  of the piece
 /// @return false if the integrator gave up
-[[nodiscard]] bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance,
+[[nodiscard]] bool follow_rod(const RodSection& section, double length, double tolerance,
                               RodState& state, RodVariation& variation, RodIntegrals& integrals);
 
 /// The same without linearisation.
-[[nodiscard]] bool follow_rod(const Eigen::Vector3d& weight, double length, double tolerance,
+[[nodiscard]] bool follow_rod(const RodSection& section, double length, double tolerance,
                               RodState& state, RodIntegrals& integrals);
 
 }  // namespace dlo::energy_model

@@ -5,6 +5,7 @@
 
 #include "ordered_grips.hpp"
 #include "require.hpp"
+#include "rod_law.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -28,7 +29,9 @@ std::optional<Plane> plane_of(const RodSpan& span) {
   }
   const double largest = total_load(span);
   if (largest > 0) {
-    directions.emplace_back(span.weight / largest);
+    for (const RodSpan::Part& part : span.parts) {
+      directions.emplace_back(part.section.weight / largest);
+    }
     for (const RodSpan::Load& load : span.loads) directions.emplace_back(load.force / largest);
   }
   if (directions.empty()) directions.emplace_back(Eigen::Vector3d::UnitX());
@@ -41,11 +44,13 @@ std::optional<Plane> plane_of(const RodSpan& span) {
 }
 
 /// What the clamps at the ends of a span hold; nothing unless both hold the rod's frame.
-std::optional<RodSpan::Twist> twist_between(const Problem& problem, const Grip* start,
-                                            const Grip* end) {
+std::optional<RodSpan::Twist> twist_between(const std::vector<RodSpan::Part>& parts,
+                                            const Grip* start, const Grip* end) {
   if (start == nullptr || end == nullptr || !start->frame || !end->frame) return std::nullopt;
   RodSpan::Twist twist;
-  twist.stiffness = problem.torsional_stiffness / problem.bending_stiffness;
+  for (const RodSpan::Part& part : parts) {
+    twist.compliance += (part.end - part.begin) / part.section.torsion;
+  }
   twist.roll = end->frame->roll - start->frame->roll;
   if (!start->frame->d1 || !end->frame->d1) return twist;
   const auto across = [](const Grip& grip) {
@@ -57,6 +62,27 @@ std::optional<RodSpan::Twist> twist_between(const Problem& problem, const Grip* 
   return twist;
 }
 
+/// Of the rod from `begin` to `end`, both in units of l.
+std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, double end) {
+  const double l = problem.length;
+  const double bending = problem.bending_stiffness;
+  std::vector<RodSpan::Part> parts;
+  for (const Section& section : rod_parts(problem)) {
+    const double from = std::max(own_arc_length(section.begin, l), begin);
+    const double to = std::min(own_arc_length(section.end, l), end);
+    // What is shorter than the distance of two places is none.
+    if (to - from < same_place) continue;
+    parts.push_back({from - begin,
+                     to - begin,
+                     {section.bending_stiffness / bending, section.torsional_stiffness / bending,
+                      section.weight_per_length * l * l * l / bending}});
+  }
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i) parts[i].end = parts[i + 1].begin;
+  parts.front().begin = 0;
+  parts.back().end = end - begin;
+  return parts;
+}
+
 RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
                   double end) {
   const double l = problem.length;
@@ -65,7 +91,7 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
   RodSpan span;
   span.begin = begin;
   span.length = end - begin;
-  span.weight = problem.weight_per_length * l / force_unit;
+  span.parts = parts_between(problem, begin, end);
   const Grip* start_clamp = nullptr;
   const Grip* end_clamp = nullptr;
   for (const OrderedGrip& grip : grips) {
@@ -84,17 +110,43 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
   std::stable_sort(span.loads.begin(), span.loads.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
   span.plane = plane_of(span);
-  span.twist = twist_between(problem, start_clamp, end_clamp);
+  span.twist = twist_between(span.parts, start_clamp, end_clamp);
   return span;
+}
+
+std::vector<OrderedGrip> checked_grips(const Problem& problem) {
+  check(problem);
+  require(problem.walls.empty(), "solve_exact", "number of walls",
+          static_cast<double>(problem.walls.size()), "0");
+  return ordered_grips(problem);
 }
 
 }  // namespace
 
+RodSpan uncut(const Problem& problem) {
+  const double l = problem.length;
+  const double force_unit = problem.bending_stiffness / (l * l);
+  const Eigen::Vector3d& origin = problem.grips.front().position;
+  RodSpan span;
+  for (const OrderedGrip& grip : checked_grips(problem)) {
+    span.holds.push_back(
+        {own_arc_length(grip.grip->at, l), (grip.grip->position - origin) / l, grip.index});
+  }
+  for (const Load& load : problem.loads) {
+    double at = own_arc_length(load.at, l);
+    for (const RodSpan::Hold& hold : span.holds) {
+      if (std::abs(at - hold.at) < same_place) at = hold.at;
+    }
+    span.loads.push_back({at, load.force / force_unit});
+  }
+  std::stable_sort(span.loads.begin(), span.loads.end(),
+                   [](const auto& a, const auto& b) { return a.at < b.at; });
+  span.parts = parts_between(problem, 0, 1);
+  return span;
+}
+
 std::vector<RodSpan> cut_at_clamps(const Problem& problem) {
-  check(problem);
-  require(problem.walls.empty(), "solve_exact", "number of walls",
-          static_cast<double>(problem.walls.size()), "0");
-  const std::vector<OrderedGrip> grips = ordered_grips(problem);
+  const std::vector<OrderedGrip> grips = checked_grips(problem);
   std::vector<double> cuts = {0, 1};
   for (const OrderedGrip& grip : grips) {
     if (grip.grip->direction) cuts.push_back(own_arc_length(grip.grip->at, problem.length));
@@ -112,6 +164,7 @@ RodMesh make_mesh(const RodSpan& span, double longest) {
   std::vector<double> fixed = {0, span.length};
   for (const RodSpan::Hold& hold : span.holds) fixed.push_back(hold.at);
   for (const RodSpan::Load& load : span.loads) fixed.push_back(load.at);
+  for (const RodSpan::Part& part : span.parts) fixed.push_back(part.begin);
   std::sort(fixed.begin(), fixed.end());
   fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
   std::vector<double> nodes = {0};
@@ -147,6 +200,9 @@ RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
   for (const RodSpan::Hold& hold : span.holds) {
     mesh.hold[static_cast<std::size_t>(node_at(hold.at))] = &hold;
   }
+  for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
+    mesh.section.push_back(&section_at(span, (nodes[i] + nodes[i + 1]) / 2));
+  }
   return mesh;
 }
 
@@ -157,21 +213,40 @@ ForceField carried_force(const RodSpan& span, const RodMesh& mesh) {
   field.after_node.resize(3, last + 1);
   // The first grip carries what nothing else does.
   Eigen::Vector3d n = Eigen::Vector3d::Zero();
-  const Eigen::Vector3d all = span.length * span.weight + mesh.load.rowwise().sum();
+  Eigen::Vector3d all = mesh.load.rowwise().sum();
+  for (const RodSpan::Part& part : span.parts) {
+    all += (part.end - part.begin) * part.section.weight;
+  }
   for (Eigen::Index i = 0; i <= last; ++i) {
     n -= mesh.load.col(i);
     if (mesh.hold[static_cast<std::size_t>(i)] == &span.holds.front()) n += all;
     field.after_node.col(i) = n;
     if (i == last) break;
-    const double h = mesh.s[i + 1] - mesh.s[i];
-    field.on_interval.col(i) = n - h / 2 * span.weight;
-    n -= h * span.weight;
+    const Eigen::Vector3d weight = mesh.width(i) * mesh.section_of(i).weight;
+    field.on_interval.col(i) = n - weight / 2;
+    n -= weight;
   }
   return field;
 }
 
+const RodSection& section_at(const RodSpan& span, double s) {
+  const auto after =
+      std::upper_bound(span.parts.begin(), span.parts.end(), s,
+                       [](double at, const RodSpan::Part& part) { return at < part.begin; });
+  return (after == span.parts.begin() ? after : after - 1)->section;
+}
+
+double softest(const RodSpan& span) {
+  double least = INFINITY;
+  for (const RodSpan::Part& part : span.parts) least = std::min(least, part.section.bending);
+  return least;
+}
+
 double total_load(const RodSpan& span) {
-  double load = span.length * span.weight.norm();
+  double load = 0;
+  for (const RodSpan::Part& part : span.parts) {
+    load += (part.end - part.begin) * part.section.weight.norm();
+  }
   for (const RodSpan::Load& l : span.loads) load += l.force.norm();
   return load;
 }

@@ -7,6 +7,7 @@
 
 #include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/problem.hpp"
+#include "rod_flow.hpp"
 
 namespace dlo::energy_model {
 
@@ -23,16 +24,22 @@ struct RodSpan {
     double at = 0;  ///< s
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
   };
+  /// Of one section.
+  struct Part {
+    double begin = 0;  ///< s
+    double end = 0;    ///< s
+    RodSection section;
+  };
   /// What clamps at both ends that hold the rod's frame ask for.
   struct Twist {
-    double stiffness = 0;  ///< GJ / EI
-    double roll = 0;       ///< of the end less that of the beginning [rad]
+    double compliance = 0;  ///< int EI / GJ ds
+    double roll = 0;        ///< of the end less that of the beginning [rad]
     /// First directors, across the directions, unit; of both ends or of none.
     std::optional<Eigen::Vector3d> start_d1, end_d1;
   };
   double begin = 0;  ///< arc length of s = 0
   double length = 1;
-  Eigen::Vector3d weight = Eigen::Vector3d::Zero();
+  std::vector<Part> parts;                         ///< by growing s, from 0 to its length
   std::optional<Eigen::Vector3d> start_direction;  ///< unit; free if not given
   std::optional<Eigen::Vector3d> end_direction;
   std::vector<Hold> holds;     ///< by growing s, those of the clamps at the ends included
@@ -46,20 +53,30 @@ struct RodSpan {
 /// apart than the rod between them
 [[nodiscard]] std::vector<RodSpan> cut_at_clamps(const Problem& problem);
 
-/// The nodes of a span: ends, grips and loads, and as many between them as are asked for.
+/// All of the rod as one span without directions; loads on clamps are the gripper's and the span's.
+/// @throws std::invalid_argument as cut_at_clamps()
+[[nodiscard]] RodSpan uncut(const Problem& problem);
+
+/// The nodes of a span: its ends and those of its parts, grips and loads, and as many between them
+/// as are asked for.
 struct RodMesh {
   Eigen::VectorXd s;      ///< growing, at least 2
   Eigen::Matrix3Xd load;  ///< on each node
   Eigen::Matrix3Xd pull;  ///< q on each node's tangent, of energy -q.t; zero at first
   std::vector<const RodSpan::Hold*> hold;  ///< at each node, null for none; of the span
+  std::vector<const RodSection*> section;  ///< of each interval; of the span
 
   [[nodiscard]] Eigen::Index intervals() const { return s.size() - 1; }
+  [[nodiscard]] double width(Eigen::Index interval) const { return s[interval + 1] - s[interval]; }
+  [[nodiscard]] const RodSection& section_of(Eigen::Index interval) const {
+    return *section[static_cast<std::size_t>(interval)];
+  }
 };
 
 /// @param longest  no interval is longer; between two grips there are eight at least
 [[nodiscard]] RodMesh make_mesh(const RodSpan& span, double longest);
 
-/// The mesh with given nodes, the span's ends, grips and loads among them.
+/// The mesh with given nodes, the span's ends, parts, grips and loads among them.
 [[nodiscard]] RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes);
 
 /// The inner force n, of what lies beyond on what lies before, if the first grip alone carried
@@ -69,6 +86,12 @@ struct ForceField {
   Eigen::Matrix3Xd after_node;
 };
 [[nodiscard]] ForceField carried_force(const RodSpan& span, const RodMesh& mesh);
+
+/// The section at s; of two that meet there the one after it.
+[[nodiscard]] const RodSection& section_at(const RodSpan& span, double s);
+
+/// Least bending stiffness of a span, b.
+[[nodiscard]] double softest(const RodSpan& span);
 
 /// Sum of the norms of weight and loads.
 [[nodiscard]] double total_load(const RodSpan& span);

@@ -1,69 +1,30 @@
 #include "second_variation.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "constrained_pencil.hpp"
+#include "lobatto_element.hpp"
+
 namespace dlo::energy_model {
 namespace {
 
-using Sparse = Eigen::SparseMatrix<double>;
 using VariationTriplets = std::vector<Eigen::Triplet<double>>;
 
-constexpr std::size_t order = 4;              // of the elements' polynomials
-constexpr std::size_t quadrature_nodes = 6;   // exact to order 11
 constexpr double longest_element = 1.0 / 16;  // [l]
 constexpr double most_elements = 5000;
-/// Weight of the constraints' own block: far below what the constraints see (1 / |C|^2), far above
-/// rounding.
-constexpr double compliance = 1e-12;
-
-/// Gauss-Lobatto nodes of an element on [-1, 1].
-const std::array<double, order + 1> lobatto = {-1, -std::sqrt(3.0 / 7.0), 0, std::sqrt(3.0 / 7.0),
-                                               1};
-/// Gauss-Legendre nodes and weights on [-1, 1] (Abramowitz and Stegun, table 25.4).
-constexpr std::array<double, quadrature_nodes> gauss = {
-    -0.932469514203152028, -0.661209386466264514, -0.238619186083196909,
-    0.238619186083196909,  0.661209386466264514,  0.932469514203152028};
-constexpr std::array<double, quadrature_nodes> gauss_weight = {
-    0.171324492379170345, 0.360761573048138608, 0.467913934572691047,
-    0.467913934572691047, 0.360761573048138608, 0.171324492379170345};
-
-/// Lagrange's polynomials on the Lobatto nodes, and their derivatives, at the Gauss nodes.
-struct ElementBasis {
-  Eigen::Matrix<double, quadrature_nodes, order + 1> value;
-  Eigen::Matrix<double, quadrature_nodes, order + 1> rate;
-
-  ElementBasis() {
-    for (std::size_t q = 0; q < quadrature_nodes; ++q) {
-      for (std::size_t a = 0; a <= order; ++a) {
-        double product = 1;
-        double sum = 0;
-        for (std::size_t b = 0; b <= order; ++b) {
-          if (b == a) continue;
-          const double factor = 1 / (lobatto[a] - lobatto[b]);
-          sum = sum * (gauss[q] - lobatto[b]) * factor + product * factor;
-          product *= (gauss[q] - lobatto[b]) * factor;
-        }
-        value(static_cast<Eigen::Index>(q), static_cast<Eigen::Index>(a)) = product;
-        rate(static_cast<Eigen::Index>(q), static_cast<Eigen::Index>(a)) = sum;
-      }
-    }
-  }
-};
-
 /// Elements that are short where the rod changes its shape over a short length, (EI / n)^(1/2).
 Eigen::VectorXd elements_of(const RodSpan& span, const SpanStates& states) {
   constexpr int probes = 64;
   std::vector<double> s;
   s.reserve(probes);
   for (int i = 0; i < probes; ++i) s.push_back(span.length * (i + 0.5) / probes);
-  const double soft = 1 / std::sqrt(std::max({1.0, total_load(span), largest_force(states(s))}));
+  const double soft = 1 / std::sqrt(std::max({1.0, total_load(span) / softest(span),
+                                              largest_force(states(s), softest(span))}));
   const double longest = std::min({span.length / 8, longest_element, soft});
   return make_mesh(span, std::max(longest, span.length / most_elements)).s;
 }
@@ -84,26 +45,8 @@ class VariationProblem {
     fixed_.setFromTriplets(fixed_triplets_.begin(), fixed_triplets_.end());
   }
 
-  using Factors = Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>>;
-
-  /// Factors of the matrix of the header's formula. @return false if a pivot is zero
-  [[nodiscard]] bool factorise(double mu, Factors& factors) const {
-    factors.compute(second_ - mu * norm_ + fixed_);
-    return factors.info() == Eigen::Success && factors.vectorD().allFinite();
-  }
-
-  /// Number of eigenvalues below mu.
-  [[nodiscard]] int count_below(double mu) const {
-    Factors factors;
-    // A pivot is zero on a set of mu that a small change leaves.
-    for (int attempt = 0; attempt < 5; ++attempt) {
-      if (factorise(mu, factors)) {
-        const auto negative = (factors.vectorD().array() < 0).count();
-        return static_cast<int>(negative) - constraints_ - (turn_unknown_ < 0 ? 0 : 1);
-      }
-      mu -= 1e-3 * neutral_eigenvalue * (1 + attempt);
-    }
-    return 0;
+  [[nodiscard]] ConstrainedPencil pencil() const {
+    return {second_, norm_, fixed_, constraints_ + (turn_unknown_ < 0 ? 0 : 1)};
   }
 
   [[nodiscard]] bool finite() const { return finite_; }
@@ -115,8 +58,6 @@ class VariationProblem {
     const double turn = fixed_.col(turn_unknown_).dot(x) + turn_compliance_ * x[turn_unknown_];
     return bends + turn * turn / turn_compliance_;
   }
-  [[nodiscard]] const Sparse& norm() const { return norm_; }
-  [[nodiscard]] Eigen::Index size() const { return size_; }
 
   /// Changes of the tangents at the nodes of a vector of unknowns.
   [[nodiscard]] Eigen::Matrix3Xd tangents(const Eigen::VectorXd& x) const {
@@ -147,15 +88,16 @@ class VariationProblem {
         ++next_hold;
       }
       if (e == count) break;
-      for (std::size_t a = 1; a < order; ++a) {
-        s_.push_back(elements_[e] + (elements_[e + 1] - elements_[e]) * (1 + lobatto[a]) / 2);
+      for (std::size_t a = 1; a < element_order; ++a) {
+        s_.push_back(elements_[e] +
+                     (elements_[e + 1] - elements_[e]) * (1 + element_lobatto[a]) / 2);
         first_unknown_.push_back(size_);
         size_ += 2;
       }
     }
     if (!span.twist) return;
     turn_unknown_ = size_++;
-    turn_compliance_ = span.length / span.twist->stiffness;
+    turn_compliance_ = span.twist->compliance;
   }
 
   void make_bases(const SpanStates& states) {
@@ -170,17 +112,11 @@ class VariationProblem {
 
   void add_elements(const RodSpan& span, const SpanStates& states) {
     const Eigen::Index count = elements_.size() - 1;
-    std::vector<double> inner;
-    for (Eigen::Index e = 0; e < count; ++e) {
-      for (const double x : gauss) {
-        inner.push_back(elements_[e] + (elements_[e + 1] - elements_[e]) * (1 + x) / 2);
-      }
-    }
-    const std::vector<RodState> inside = states(inner);
+    const std::vector<RodState> inside = states(gauss_points(elements_));
     for (Eigen::Index e = 0; e < count; ++e) add_element(e, span, inside);
     for (const Eigen::Index multiplier : first_multiplier_) {
       for (Eigen::Index i = 0; i < 3; ++i) {
-        fixed_triplets_.emplace_back(multiplier + i, multiplier + i, -compliance);
+        fixed_triplets_.emplace_back(multiplier + i, multiplier + i, -constraint_compliance);
       }
     }
     if (turn_unknown_ < 0) return;
@@ -189,21 +125,22 @@ class VariationProblem {
 
   void add_element(Eigen::Index e, const RodSpan& span, const std::vector<RodState>& inside) {
     const double h = elements_[e + 1] - elements_[e];
-    constexpr Eigen::Index own = 2 * (order + 1);
+    const double b = section_at(span, elements_[e] + h / 2).bending;
+    constexpr Eigen::Index own = 2 * (element_order + 1);
     static const ElementBasis basis;
     Eigen::Matrix<double, own, own> second = Eigen::Matrix<double, own, own>::Zero();
     Eigen::Matrix<double, own, own> norm = Eigen::Matrix<double, own, own>::Zero();
     Eigen::Matrix<double, 3, own> integral = Eigen::Matrix<double, 3, own>::Zero();
     Eigen::Matrix<double, 1, own> turn = Eigen::Matrix<double, 1, own>::Zero();
-    const auto first_node = static_cast<std::size_t>(e) * order;
-    for (std::size_t q = 0; q < quadrature_nodes; ++q) {
-      const RodState& state = inside[static_cast<std::size_t>(e) * quadrature_nodes + q];
+    const auto first_node = static_cast<std::size_t>(e) * element_order;
+    for (std::size_t q = 0; q < element_quadrature; ++q) {
+      const RodState& state = inside[static_cast<std::size_t>(e) * element_quadrature + q];
       const Eigen::Vector3d& t = state.t;
       const Eigen::Vector3d& v = state.v;
-      const double weight = h / 2 * gauss_weight[q];
+      const double weight = h / 2 * element_weight[q];
       Eigen::Matrix<double, 3, own> eta;
       Eigen::Matrix<double, 3, own> rate;
-      for (std::size_t a = 0; a <= order; ++a) {
+      for (std::size_t a = 0; a <= element_order; ++a) {
         const auto row = static_cast<Eigen::Index>(q);
         const auto node = static_cast<Eigen::Index>(a);
         const Eigen::Matrix<double, 3, 2> z = basis.value(row, node) * across_[first_node + a];
@@ -216,7 +153,7 @@ class VariationProblem {
       }
       const Eigen::Matrix<double, own, own> rates = rate.transpose() * rate;
       const Eigen::Matrix<double, own, own> values = eta.transpose() * eta;
-      second += weight * (rates + (state.n.dot(t) - v.squaredNorm()) * values);
+      second += weight * (b * rates + (state.n.dot(t) - b * v.squaredNorm()) * values);
       norm += weight * (rates + values);
       integral += weight * eta;
       turn += weight * t.cross(v).transpose() * eta;
@@ -275,39 +212,6 @@ class VariationProblem {
   Sparse second_, norm_, fixed_;
 };
 
-/// Bounds of the smallest eigenvalue, to 1 % or a tenth of what counts as zero.
-struct Bracket {
-  double low;
-  double high;
-};
-
-Bracket bracket_smallest(const VariationProblem& variations) {
-  Bracket bracket{-1, 1};
-  constexpr int most_doublings = 60;
-  if (variations.count_below(0) > 0) {
-    bracket.high = 0;
-    for (int i = 0; i < most_doublings && variations.count_below(bracket.low) > 0; ++i) {
-      bracket.high = bracket.low;
-      bracket.low *= 4;
-    }
-  } else {
-    bracket.low = 0;
-    for (int i = 0; i < most_doublings && variations.count_below(bracket.high) == 0; ++i) {
-      bracket.low = bracket.high;
-      bracket.high *= 4;
-    }
-  }
-  const auto wide = [&] {
-    const double size = std::max(std::abs(bracket.low), std::abs(bracket.high));
-    return bracket.high - bracket.low > std::max(0.01 * size, 0.1 * neutral_eigenvalue);
-  };
-  while (wide()) {
-    const double middle = (bracket.low + bracket.high) / 2;
-    (variations.count_below(middle) > 0 ? bracket.high : bracket.low) = middle;
-  }
-  return bracket;
-}
-
 }  // namespace
 
 void judge(const SecondVariation& stability, Equilibrium& shape) {
@@ -337,26 +241,13 @@ SecondVariation second_variation(const RodSpan& span, const SpanStates& states) 
   const VariationProblem variations(span, states);
   SecondVariation result;
   if (!variations.finite()) return result;
-  result.negative = variations.count_below(-neutral_eigenvalue);
-  result.neutral = variations.count_below(neutral_eigenvalue) - result.negative;
-  const Bracket bracket = bracket_smallest(variations);
-  // Inverse iteration from below the smallest eigenvalue.
-  const double shift = bracket.low - (bracket.high - bracket.low) / 2;
-  VariationProblem::Factors factors;
-  result.smallest = (bracket.low + bracket.high) / 2;
-  if (!variations.factorise(shift, factors)) return result;
-  Eigen::VectorXd x(variations.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) x[i] = std::sin(1.0 + 2.3 * static_cast<double>(i));
-  constexpr int iterations = 12;
-  for (int i = 0; i < iterations; ++i) {
-    const Eigen::VectorXd right = variations.norm() * x;
-    x = factors.solve(right);
-    x /= std::sqrt(x.dot(variations.norm() * x));
-  }
-  if (!x.allFinite()) return result;
-  const double quotient = variations.second(x);
-  if (quotient >= bracket.low && quotient <= bracket.high) result.smallest = quotient;
-  result.direction = variations.tangents(x);
+  const SmallestMode mode = smallest_mode(
+      variations.pencil(), [&](const Eigen::VectorXd& x) { return variations.second(x); });
+  result.negative = mode.negative;
+  result.neutral = mode.neutral;
+  result.smallest = mode.smallest;
+  if (mode.x.size() == 0) return result;
+  result.direction = variations.tangents(mode.x);
   result.direction /= std::max(result.direction.colwise().norm().maxCoeff(), 1e-300);
   const std::vector<double>& nodes = variations.nodes();
   result.s =

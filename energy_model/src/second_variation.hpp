@@ -5,14 +5,12 @@
 #include <limits>
 #include <vector>
 
+#include "constrained_pencil.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 #include "rod_flow.hpp"
 #include "rod_span.hpp"
 
 namespace dlo::energy_model {
-
-/// Eigenvalues of the second variation closer to zero than this count as zero [-].
-inline constexpr double neutral_eigenvalue = 1e-7;
 
 /// What the second variation says of an equilibrium of a span.
 struct SecondVariation {
@@ -30,10 +28,10 @@ using SpanStates = std::function<std::vector<RodState>(const std::vector<double>
 
 /// Second variation of the energy of a span at an equilibrium, from nothing but its states. For a
 /// change eta of the tangent, across it,
-///     Q(eta) = int |eta'|^2 + (n.t - |t'|^2) |eta|^2 ds,
+///     Q(eta) = int b |eta'|^2 + (n.t - b |t'|^2) |eta|^2 ds,
 /// and where the clamps at the ends hold the twist Psi of a rod,
-///     Q(eta) + int M t . (eta' x eta) ds + (c / L) (int (t x t') . eta ds)^2,
-/// in units of the rod, M = c Psi / L, c = GJ / EI: the last integral is the change of Psi. n is
+///     Q(eta) + int M t . (eta' x eta) ds + (int (t x t') . eta ds)^2 / k,   k = int ds / c,
+/// in units of the rod (rod_flow.hpp), M = Psi / k: the last integral is the change of Psi. n is
 /// the force that the span carries with what the grips add: the constraints' curvature is in n.t.
 /// eta is zero at clamps and its integral between neighbouring grips is zero; in space and free of
 /// the plane even for a planar shape, so that buckling sideways and turning about a line are among
@@ -42,7 +40,7 @@ using SpanStates = std::function<std::vector<RodState>(const std::vector<double>
 ///     (C          -0 )
 /// count the eigenvalues below mu (Sylvester's law of inertia), K of Q, S of int |eta'|^2 +
 /// |eta|^2, C the constraints. The square of the twist would fill K: its integral is one more row
-/// of C, with -L / c in place of -0.
+/// of C, with -k in place of -0.
 /// @return counts of -1 if the states are not finite
 [[nodiscard]] SecondVariation second_variation(const RodSpan& span, const SpanStates& states);
 

@@ -85,10 +85,11 @@ Eigen::Vector3d tangent_between(const Segment& before, const Segment& after) {
 void set_tangents(const Span& span, std::vector<Segment>& segments) {
   for (std::size_t i = 0; i < segments.size(); ++i) {
     Segment& own = segments[i];
-    own.begin_tangent =
-        i > 0 ? tangent_between(segments[i - 1], own) : span.start_direction.value_or(own.pull);
-    own.end_tangent = i + 1 < segments.size() ? tangent_between(own, segments[i + 1])
-                                              : span.end_direction.value_or(own.pull);
+    own.begin_tangent = own.begin_direction.value_or(
+        i > 0 ? tangent_between(segments[i - 1], own) : span.start_direction.value_or(own.pull));
+    own.end_tangent =
+        own.end_direction.value_or(i + 1 < segments.size() ? tangent_between(own, segments[i + 1])
+                                                           : span.end_direction.value_or(own.pull));
   }
 }
 
@@ -104,6 +105,8 @@ std::vector<Segment> segments_of(const Span& span) {
     Segment segment;
     segment.begin = points[i].at;
     segment.end = points[i + 1].at;
+    segment.begin_direction = points[i].direction;
+    segment.end_direction = points[i + 1].direction;
     segment.chord = points[i + 1].offset - points[i].offset;
     if (segment.chord.norm() > 0) segment.pull = segment.chord.normalized();
     segments.push_back(segment);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "span.hpp"
@@ -13,6 +14,7 @@ struct Segment {
   Eigen::Vector3d chord = Eigen::Vector3d::Zero();
   /// Of the force that stretches it; the chord's, but for what the layers at its ends take aside.
   Eigen::Vector3d pull = Eigen::Vector3d::UnitX();
+  std::optional<Eigen::Vector3d> begin_direction, end_direction;  ///< of clamps inside the span
   /// Unit tangents that its ends have, or about have: a clamp's direction, at a pin between two
   /// segments one between their pulls, at other pins the pull.
   Eigen::Vector3d begin_tangent = Eigen::Vector3d::UnitX();

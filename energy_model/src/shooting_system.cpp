@@ -74,7 +74,6 @@ ShootingNode ShootingSystem::make_node(const RodState& state) const {
   }
   if (frames_) {
     node.state.torque = state.torque;
-    node.state.twist = state.torque / frames_->stiffness;
     node.state.d = node.across.col(0);
   }
   return node;
@@ -108,7 +107,6 @@ std::vector<ShootingNode> ShootingSystem::moved(const std::vector<ShootingNode>&
     across.col(1) = std::cos(turn) * old.col(1) - std::sin(turn) * old.col(0);
     state.d = across.col(0);
     state.torque += rate_ * x[layout_.torque()];
-    state.twist = state.torque / frames_->stiffness;
   }
   return result;
 }
@@ -144,7 +142,7 @@ double ShootingSystem::gap(const std::vector<ShootingNode>& nodes) const {
     RodState end = nodes[i].state;
     RodIntegrals integrals;
     const auto k = static_cast<Eigen::Index>(i);
-    if (!follow_rod(span_.weight, mesh_.s[k + 1] - mesh_.s[k], tolerance_, end, integrals)) {
+    if (!follow_rod(mesh_.section_of(k), mesh_.width(k), tolerance_, end, integrals)) {
       return INFINITY;
     }
     largest = std::max(largest, (end.t - nodes[i + 1].state.t).cwiseAbs().maxCoeff());
@@ -222,7 +220,7 @@ void ShootingSystem::twist_equations(const ShootingNode& node, const ShootingNod
   const Eigen::RowVector3d rate = frame_angle_rate(next, director);
   const double rate_by_turn = rate.dot(end.t.cross(director));
   // The director turns about the tangent, and along with it.
-  const double turn_by_torque = (mesh_.s[i + 1] - mesh_.s[i]) / frames_->stiffness;
+  const double turn_by_torque = mesh_.width(i) / mesh_.section_of(i).torsion;
   const Eigen::RowVectorXd turns = change.turn + turn_by_torque * change.torque;
   const Eigen::RowVectorXd by_parameter =
       rate_by_turn * turns - rate.dot(end.t) * (director.transpose() * change.t);
@@ -244,7 +242,7 @@ void ShootingSystem::twist_equations(const ShootingNode& node, const ShootingNod
   add_block(*derivatives, row + layout_.t(), own + layout_.torque(),
             next.across.transpose() * change.t.col(bends));
   add_block(*derivatives, row + layout_.v(), own + layout_.torque(),
-            next.across.transpose() * change.v.col(bends) / rate_);
+            mesh_.section_of(i).bending / rate_ * next.across.transpose() * change.v.col(bends));
 }
 
 bool ShootingSystem::interval_equations(const std::vector<ShootingNode>& nodes, Eigen::Index i,
@@ -266,15 +264,18 @@ bool ShootingSystem::interval_equations(const std::vector<ShootingNode>& nodes, 
     change.n.middleCols(2 * turns, d) = rate_ * rate_ * axes_;
     if (frames_) change.torque[bends] = rate_;
   }
-  if (!follow_rod(span_.weight, mesh_.s[i + 1] - mesh_.s[i], tolerance_, end, change, integrals)) {
+  if (!follow_rod(mesh_.section_of(i), mesh_.width(i), tolerance_, end, change, integrals)) {
     return false;
   }
   const double force = rate_ * rate_;
-  const Eigen::Vector3d v = end.v - mesh_.pull.col(i + 1);  // across the tangent
+  // The moment is continuous: b v, with the stiffness on either side; across the tangent.
+  const double before = mesh_.section_of(i).bending;
+  const double after = mesh_.section_of(std::min(i + 1, mesh_.intervals() - 1)).bending;
+  const Eigen::Vector3d bv = before * end.v - mesh_.pull.col(i + 1);
   equations.segment(row, d) = axes_.transpose() * (end.r - next.state.r);
   equations.segment(row + layout_.t(), turns) = next.across.transpose() * end.t;
   equations.segment(row + layout_.v(), turns) =
-      next.across.transpose() * (v - next.state.v) / rate_;
+      next.across.transpose() * (bv - after * next.state.v) / rate_;
   if (hold != nullptr) {
     equations.segment(row + layout_.n(), d) = axes_.transpose() * (next.state.r - hold->position);
   } else {
@@ -293,13 +294,13 @@ bool ShootingSystem::interval_equations(const std::vector<ShootingNode>& nodes, 
   add_block(*derivatives, row + layout_.t(), own + d,
             next.across.transpose() * change.t.leftCols(bends));
   add_block(*derivatives, row + layout_.v(), own + d,
-            next.across.transpose() * change.v.leftCols(bends) / rate_);
+            before / rate_ * next.across.transpose() * change.v.leftCols(bends));
   add_block(*derivatives, row, other, -one);
   // `across` turns with the next tangent, v keeps its components in it.
   add_block(*derivatives, row + layout_.t(), other + layout_.t(), -next.state.t.dot(end.t) * turn);
   add_block(*derivatives, row + layout_.v(), other + layout_.t(),
-            -next.state.t.dot(v) / rate_ * turn);
-  add_block(*derivatives, row + layout_.v(), other + layout_.v(), -turn);
+            -next.state.t.dot(bv) / rate_ * turn);
+  add_block(*derivatives, row + layout_.v(), other + layout_.v(), -after * turn);
   if (hold != nullptr) {
     add_block(*derivatives, row + layout_.n(), other, one);
   } else {

@@ -1,19 +1,17 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <optional>
 #include <vector>
 
 #include "boundary_value.hpp"
+#include "close_gaps.hpp"
 #include "deadline.hpp"
 #include "rod_flow.hpp"
 #include "rod_span.hpp"
 
 namespace dlo::energy_model {
-
-using Triplets = std::vector<Eigen::Triplet<double>>;
 
 /// A node and the directions in which its tangent can turn.
 struct ShootingNode {
@@ -38,6 +36,8 @@ struct NodeLayout {
 /// M in sqrt(force), n in force.
 class ShootingSystem {
  public:
+  using Node = ShootingNode;
+
   /// @param span, mesh  have to outlive the system
   ShootingSystem(const RodSpan& span, const RodMesh& mesh, const ShootingOptions& options,
                  double force);

@@ -8,6 +8,7 @@
 #include "fit_angle.hpp"
 #include "free_directions.hpp"
 #include "legendre.hpp"
+#include "spin.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -23,16 +24,8 @@ double angle_of(const Eigen::Vector3d& direction) {
   return std::atan2(direction.y(), direction.x());
 }
 
-/// The frame with this tangent and with d1 on this side of it.
-Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent, const Eigen::Vector3d& d1) {
-  const Eigen::Vector3d first = (d1 - tangent.dot(d1) * tangent).normalized();
-  Eigen::Matrix3d frame;
-  frame << first, tangent.cross(first), tangent;
-  return frame;
-}
-
 /// A frame whose third column is this tangent; a planar shape then bends by u1 alone.
-Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent) {
+Eigen::Matrix3d default_frame(const Eigen::Vector3d& tangent) {
   return frame_along(tangent, Span::d1(tangent));
 }
 
@@ -92,18 +85,30 @@ void SpanEnergy::tabulate_angles() {
   const Eigen::Index K = terms_;
   const auto count = static_cast<Eigen::Index>(pieces_.size());
   angle_.setZero(s_.size(), columns_);
-  end_angle_.setZero(columns_);
+  held_angle_.setZero(static_cast<Eigen::Index>(director_rows_.size()), columns_);
   if (free_start_ == 1) {
     angle_.col(0).setOnes();
-    end_angle_[0] = 1;
+    held_angle_.col(0).setOnes();
   }
   for (Eigen::Index e = 0; e < count; ++e) {
-    const double root = std::sqrt(pieces_[static_cast<std::size_t>(e)].length);
+    const double turn = pieces_[static_cast<std::size_t>(e)].angle();
     const Eigen::Index column = free_start_ + e * K;
-    angle_.block(e * Q, column, Q, K) = root * table_->integrals.leftCols(K);
+    angle_.block(e * Q, column, Q, K) = turn * table_->integrals.leftCols(K);
     // Only p_0 turns the tangent over a whole piece.
-    angle_.col(column).tail((count - e - 1) * Q).setConstant(root);
-    end_angle_[column] = root;
+    angle_.col(column).tail((count - e - 1) * Q).setConstant(turn);
+    for (std::size_t i = 0; i < director_rows_.size(); ++i) {
+      if (e <= director_rows_[i].piece) held_angle_(static_cast<Eigen::Index>(i), column) = turn;
+    }
+  }
+}
+
+/// Of the nodes of a free rod.
+void SpanEnergy::tabulate_natural_angles() {
+  natural_angle_.resize(0);
+  if (span_.natural.empty()) return;
+  natural_angle_.resize(s_.size());
+  for (Eigen::Index q = 0; q < s_.size(); ++q) {
+    natural_angle_[q] = span_.natural.integral(s_[q]).x();
   }
 }
 
@@ -113,7 +118,7 @@ void SpanEnergy::tabulate_forces() {
   for (Eigen::Index q = 0; q < nodes; ++q) {
     // What hangs beyond a node, seen from the anchor.
     const bool after = s_[q] > span_.anchor;
-    Eigen::Vector3d n = (after ? span_.length - s_[q] : -s_[q]) * span_.weight;
+    Eigen::Vector3d n = span_.weight_between(s_[q], after ? span_.length : 0);
     for (const Span::Load& load : span_.loads) {
       if (after && load.at > s_[q]) n += load.force;
       if (!after && load.at < s_[q]) n -= load.force;
@@ -145,32 +150,66 @@ void SpanEnergy::reset(const Span& span, int terms) {
   pieces_ = pieces_of(span);
   tabulate_nodes();
   tabulate_forces();
-  end_rows_ = span.planar ? 1 : 2;
-  if (span.twist) {
-    ++end_rows_;
-    twist_root_ = std::sqrt(span.twist->stiffness / span.length);
-  }
-  if (!span.end_direction) end_rows_ = 0;
-  constraints_ = axes_ * reach_.cols() + end_rows_;
+  if (span.twist) twist_root_ = std::sqrt(span.twist->stiffness / span.length);
+  list_director_rows();
+  constraints_ = first_director_row() + static_cast<Eigen::Index>(director_rows_.size());
   const Eigen::Index nodes = s_.size();
   for (Eigen::MatrixX3d* m : {&t_, &t_theta_, &total_, &carried_}) m->setZero(nodes, 3);
   if (span.planar) {
     tabulate_angles();
+    tabulate_natural_angles();
     start_theta_ = span.start_direction ? angle_of(*span.start_direction) : 0;
-    if (span.end_direction) end_theta_ = nearest_turn(angle_of(*span.end_direction), start_theta_);
+    for (DirectorRow& row : director_rows_) {
+      row.angle = nearest_turn(angle_of(row.to), start_theta_);
+    }
     for (Eigen::VectorXd* v : {&theta_, &kappa_, &along_, &turning_}) v->setZero(nodes);
     scaled_.resize(table_->nodes.size(), terms_);
     beside_.resize(terms_);
   } else {
-    start_frame_ = frame_along(first_tangent(span));
-    frames_.reset(pieces_, terms, start_frame_, free_start_ == 1);
+    start_frame_ = default_frame(first_tangent(span));
+    frames_.reset(pieces_, terms, start_frame_, free_start_ == 1, span_.natural);
     frames_.resize(state_);
     pulled_.resize(size());
+    couples_.assign(pieces_.size(), Eigen::Vector3d::Zero());
+    curvatures_.assign(pieces_.size(), Eigen::Matrix3d::Zero());
   }
   x_.setZero(size());
   gradient_.setZero(size());
   evaluated_ = false;
   walls_.reset(span_, pieces_, *table_, s_, weights_);
+}
+
+/// The directions of the clamps inside the span and at its end; there of d1 too if it is held.
+void SpanEnergy::list_director_rows() {
+  director_rows_.clear();
+  const auto add = [&](Eigen::Index hold, Eigen::Index piece, const Eigen::Vector3d& to) {
+    const Eigen::Matrix3d frame = default_frame(to);
+    director_rows_.push_back({hold, piece, to, frame.col(0)});
+    if (!span_.planar) director_rows_.push_back({hold, piece, to, frame.col(1)});
+  };
+  const auto holds = static_cast<Eigen::Index>(span_.holds.size());
+  for (Eigen::Index j = 0; j < holds; ++j) {
+    const Span::Hold& hold = span_.holds[static_cast<std::size_t>(j)];
+    if (!hold.direction) continue;
+    const auto ends_there = [&](const Piece& piece) {
+      return std::abs(piece.end() - hold.at) < closest_cuts;
+    };
+    const auto piece = std::find_if(pieces_.begin(), pieces_.end(), ends_there);
+    add(j, piece - pieces_.begin(), *hold.direction);
+  }
+  if (!span_.end_direction) return;
+  add(holds - 1, pieces() - 1, *span_.end_direction);
+  if (!span_.twist) return;
+  director_rows_.push_back(
+      {holds - 1, pieces() - 1, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), true});
+  turn_end_clamp(span_.twist->end_d1);
+}
+
+void SpanEnergy::turn_end_clamp(const Eigen::Vector3d& end_d1) {
+  span_.twist->end_d1 = end_d1;
+  const Eigen::Matrix3d held = frame_along(*span_.end_direction, end_d1);
+  director_rows_.back().to = held.col(0);
+  director_rows_.back().across = held.col(1);
 }
 
 /// Into t_ (and t_theta_ in the plane), at x_.
@@ -182,6 +221,7 @@ void SpanEnergy::place_tangents() {
   }
   theta_.noalias() = angle_ * x_;
   theta_.array() += start_theta_;
+  if (natural_angle_.size() > 0) theta_ += natural_angle_;
   for (Eigen::Index q = 0; q < theta_.size(); ++q) {
     const double c = std::cos(theta_[q]);
     const double s = std::sin(theta_[q]);
@@ -202,8 +242,7 @@ double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
   place_tangents();
   gradient = x;
   // A free start turns for nothing.
-  if (free_start_ == 1) gradient[0] = 0;
-  if (free_start_ == 1 && !span_.planar) gradient[columns_] = 0;
+  for (Eigen::Index f = 0; f < fields() && free_start_ == 1; ++f) gradient[f * columns_] = 0;
   double energy = gradient.dot(x) / 2 - force_.cwiseProduct(t_).sum();
   total_ = force_;
   if (has_walls()) energy += walls_.add(t_, total_);
@@ -219,25 +258,43 @@ double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
   return energy;
 }
 
-/// Of the tangent at the end along two directions across its clamp's, and of the rod's d1 there.
-DirectorMiss SpanEnergy::end_miss(Eigen::Index component) const {
-  const Eigen::Vector3d& target = *span_.end_direction;
-  const Eigen::Matrix3d frame = state_.end_frame();
-  if (component < 2) {
-    return director_miss(frame.col(2), target, frame_along(target).col(component));
-  }
-  const Eigen::Matrix3d held = frame_along(target, span_.twist->end_d1);
-  const double psi = twist(x_);
+DirectorMiss SpanEnergy::miss_of(const DirectorRow& row) const {
+  const Eigen::Matrix3d frame = frames_.frame_after(state_, row.piece);
+  if (!row.of_d1) return director_miss(frame.col(2), row.to, row.across);
+  const double psi = has_psi() ? twist(x_) : 0;
   const Eigen::Vector3d d1 = std::cos(psi) * frame.col(0) + std::sin(psi) * frame.col(1);
-  return director_miss(d1, held.col(0), held.col(1));
+  return director_miss(d1, row.to, row.across);
 }
 
 double SpanEnergy::twist(const Eigen::VectorXd& x) const {
-  return span_.twist ? x[x.size() - 1] / twist_root_ : 0;
+  if (has_psi()) return x[x.size() - 1] / twist_root_;
+  if (span_.planar || span_.natural.empty()) return 0;
+  double angle = span_.natural.integral(span_.length).z();
+  for (Eigen::Index e = 0; e < pieces(); ++e) {
+    angle += pieces_[static_cast<std::size_t>(e)].twist_angle() * x[first_twist(e)];
+  }
+  return angle;
+}
+
+double SpanEnergy::twisting_torque(const Eigen::VectorXd& x,
+                                   const Eigen::VectorXd& multipliers) const {
+  if (!span_.twist) return 0;
+  // A turn of the clamp's d1 is all that its multiplier works on.
+  return has_psi() ? twist(x) * twist_root_ * twist_root_ : multipliers[constraints_ - 1];
 }
 
 Eigen::VectorXd SpanEnergy::with_twist(Eigen::VectorXd x, double angle) const {
-  x[x.size() - 1] = angle * twist_root_;
+  if (has_psi()) {
+    x[x.size() - 1] = angle * twist_root_;
+    return x;
+  }
+  // A torque is the same everywhere.
+  double compliance = 0;
+  for (const Piece& piece : pieces_) compliance += piece.length / piece.torsion;
+  const double torque = (angle - twist(x)) / compliance;
+  for (Eigen::Index e = 0; e < pieces(); ++e) {
+    x[first_twist(e)] += torque * pieces_[static_cast<std::size_t>(e)].twist_angle();
+  }
   return x;
 }
 
@@ -255,27 +312,38 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
     if (!span_.planar) {
       frames_.pull_position(reach_signs_[static_cast<std::size_t>(j)], state_,
                             jacobian.middleRows(row, 3));
-      if (span_.twist) jacobian.col(bends()).segment<3>(row).setZero();
+      if (has_psi()) jacobian.col(strains()).segment<3>(row).setZero();
     }
     row += axes_;
   }
-  if (!span_.end_direction) return;
   if (span_.planar) {
-    residual[row] = start_theta_ + end_angle_.dot(x_) - end_theta_;
-    jacobian.row(row) = end_angle_.transpose();
+    if (director_rows_.empty()) return;
+    jacobian.bottomRows(held_angle_.rows()) = held_angle_;
+    residual.tail(held_angle_.rows()).noalias() = held_angle_ * x_;
+    for (const DirectorRow& held : director_rows_) {
+      residual[row++] += start_theta_ + natural_turn(held.piece) - held.angle;
+    }
     return;
   }
-  for (Eigen::Index component = 0; component < end_rows_; ++component, ++row) {
-    const DirectorMiss miss = end_miss(component);
+  for (const DirectorRow& held : director_rows_) {
+    const DirectorMiss miss = miss_of(held);
     residual[row] = miss.value;
     pulled_.setZero();
-    frames_.pull({nullptr, miss.couple}, 1, state_, pulled_);
+    Eigen::Vector3d& couple = couples_[static_cast<std::size_t>(held.piece)];
+    couple = miss.couple;
+    frames_.pull({nullptr, couples_}, 1, state_, pulled_);
+    couple.setZero();
     // Twist turns d1 about the tangent.
-    if (component == 2) {
-      pulled_[bends()] = miss.couple.dot(state_.end_frame().col(2)) / twist_root_;
+    if (held.of_d1 && has_psi()) {
+      pulled_[strains()] = miss.couple.dot(state_.end_frame().col(2)) / twist_root_;
     }
-    jacobian.row(row) = pulled_.transpose();
+    jacobian.row(row++) = pulled_.transpose();
   }
+}
+
+double SpanEnergy::natural_turn(Eigen::Index piece) const {
+  if (span_.natural.empty()) return 0;
+  return span_.natural.integral(pieces_[static_cast<std::size_t>(piece)].end()).x();
 }
 
 /// Adds the second derivatives of sum along_ angle^2 / 2. Beyond its own piece an unknown turns the
@@ -286,18 +354,18 @@ void SpanEnergy::add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result) {
   double later = 0;
   for (Eigen::Index e = pieces(); e-- > 0;) {
     const auto along = along_.segment(e * Q, Q);
-    const double root = std::sqrt(pieces_[static_cast<std::size_t>(e)].length);
+    const double own_turn = pieces_[static_cast<std::size_t>(e)].angle();
     const Eigen::Index column = free_start_ + e * K;
     const auto angle = angle_.block(e * Q, column, Q, K);
     auto own = result.block(column, column, K, K);
     add_weighted_gram(along, angle, scaled_, own);
-    own(0, 0) += root * root * later;
+    own(0, 0) += own_turn * own_turn * later;
     auto beside = beside_.head(K);
     beside.noalias() = angle.transpose() * along;
-    beside[0] += root * later;
+    beside[0] += own_turn * later;
     for (Eigen::Index before = -free_start_; before < e; ++before) {
       const bool start = before < 0;
-      const double turn = start ? 1 : std::sqrt(pieces_[static_cast<std::size_t>(before)].length);
+      const double turn = start ? 1 : pieces_[static_cast<std::size_t>(before)].angle();
       const Eigen::Index row = start ? 0 : free_start_ + before * K;
       result.row(row).segment(column, K) += turn * beside.transpose();
       result.col(row).segment(column, K) += turn * beside;
@@ -321,26 +389,30 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                          Eigen::MatrixXd& result) {
   carry(multipliers);
   result.setIdentity(size(), size());
-  if (free_start_ == 1) result(0, 0) = 0;
+  for (Eigen::Index f = 0; f < fields() && free_start_ == 1; ++f) {
+    result(f * columns_, f * columns_) = 0;
+  }
   if (span_.planar) {
     along_ = carried_.cwiseProduct(t_).rowwise().sum();
     add_angles_squared(result);
   } else {
-    if (free_start_ == 1) result(columns_, columns_) = 0;
     carried_ = -carried_;
-    FrameGradient f{&carried_};
-    Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
-    for (Eigen::Index component = 0; component < end_rows_; ++component) {
-      const double mu = multipliers[constraints_ - end_rows_ + component];
-      const DirectorMiss miss = end_miss(component);
-      f.end_couple -= mu * miss.couple;
-      curvature -= mu * miss.curvature;
+    Eigen::Index row = first_director_row();
+    for (const DirectorRow& held : director_rows_) {
+      const double mu = multipliers[row++];
+      const DirectorMiss miss = miss_of(held);
+      couples_[static_cast<std::size_t>(held.piece)] -= mu * miss.couple;
+      curvatures_[static_cast<std::size_t>(held.piece)] -= mu * miss.curvature;
     }
-    frames_.add_hessian(f, curvature, state_, result);
-    if (span_.twist) add_twist_hessian(-multipliers[constraints_ - 1], result);
+    frames_.add_hessian({&carried_, couples_}, curvatures_, state_, result);
+    for (const DirectorRow& held : director_rows_) {
+      couples_[static_cast<std::size_t>(held.piece)].setZero();
+      curvatures_[static_cast<std::size_t>(held.piece)].setZero();
+    }
+    if (has_psi()) add_twist_hessian(-multipliers[constraints_ - 1], result);
   }
   if (!has_walls()) return;
-  walls_.add_hessian(tangent_jacobian(), result.topLeftCorner(bends(), bends()));
+  walls_.add_hessian(tangent_jacobian(), result.topLeftCorner(strains(), strains()));
 }
 
 /// Second derivatives with the twist psi of what the end's d1 misses, times a factor: psi turns it
@@ -348,13 +420,13 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
 /// their cross product. frames_.add_hessian() has left the turns of the end.
 void SpanEnergy::add_twist_hessian(double factor, Eigen::MatrixXd& result) {
   const Eigen::Vector3d t = state_.end_frame().col(2);
-  const DirectorMiss miss = end_miss(2);
+  const DirectorMiss miss = miss_of(director_rows_.back());
   const Eigen::Vector3d turned = miss.curvature * t;
   const Eigen::Vector3d mixed = factor / twist_root_ * (turned + t.cross(miss.couple) / 2);
-  pulled_.head(bends()).noalias() = state_.ends.transpose() * mixed;
-  result.col(bends()).head(bends()) += pulled_.head(bends());
-  result.row(bends()).head(bends()) += pulled_.head(bends()).transpose();
-  result(bends(), bends()) += factor * t.dot(turned) / (twist_root_ * twist_root_);
+  pulled_.head(strains()).noalias() = state_.ends.transpose() * mixed;
+  result.col(strains()).head(strains()) += pulled_.head(strains());
+  result.row(strains()).head(strains()) += pulled_.head(strains()).transpose();
+  result(strains(), strains()) += factor * t.dot(turned) / (twist_root_ * twist_root_);
 }
 
 std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian() {
@@ -370,11 +442,13 @@ void SpanEnergy::carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipl
   along_ = carried_.cwiseProduct(t_).rowwise().sum();
   const Eigen::Index Q = table_->nodes.size();
   for (Eigen::Index e = 0; e < pieces(); ++e) {
-    const double root = std::sqrt(pieces_[static_cast<std::size_t>(e)].length);
+    const double scale = pieces_[static_cast<std::size_t>(e)].curvature();
     kappa_.segment(e * Q, Q).noalias() =
-        table_->values.leftCols(terms_) * x_.segment(free_start_ + e * terms_, terms_) / root;
+        scale * (table_->values.leftCols(terms_) * x_.segment(free_start_ + e * terms_, terms_));
+    const double stiffness = pieces_[static_cast<std::size_t>(e)].bending;
+    along_.segment(e * Q, Q).array() -=
+        stiffness * weights_.segment(e * Q, Q).array() * kappa_.segment(e * Q, Q).array().square();
   }
-  along_.array() -= weights_.array() * kappa_.array().square();
 }
 
 bool SpanEnergy::resists_sideways() {
@@ -389,19 +463,53 @@ bool SpanEnergy::resists_sideways() {
 
 void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                           Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
+  if (!span_.natural.empty()) return sideways_with_twist(hessian, jacobian);
   carry_sideways(multipliers);
   hessian.setIdentity(columns_, columns_);
   if (free_start_ == 1) hessian(0, 0) = 0;
   add_angles_squared(hessian);
-  jacobian.resize(reach_.cols() + (span_.end_direction ? 1 : 0), columns_);
+  jacobian.resize(reach_.cols() + held_angle_.rows(), columns_);
   jacobian.topRows(reach_.cols()).noalias() = reach_.transpose() * angle_;
-  if (span_.end_direction) jacobian.bottomRows(1) = end_angle_.transpose();
+  jacobian.bottomRows(held_angle_.rows()) = held_angle_;
 }
 
-Eigen::VectorXd SpanEnergy::fit(const Eigen::Matrix3Xd& tangents) {
+/// A curved rod that leaves its plane twists: what the same span in space says.
+void SpanEnergy::sideways_with_twist(Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
+  Span space = span_;
+  space.planar = false;
+  SpanEnergy twin(space, terms_);
+  Eigen::VectorXd gradient(twin.size());
+  (void)twin.value(twin.adopt(*this, x_), gradient);
+  Eigen::VectorXd residual(twin.constraints());
+  Eigen::MatrixXd all(twin.constraints(), twin.size());
+  twin.constraint(residual, all);
+  // The forces are the plane's, seen in the twin's constraints.
+  const Eigen::VectorXd multipliers =
+      twin.constraints() == 0
+          ? Eigen::VectorXd()
+          : Eigen::VectorXd(all.transpose().completeOrthogonalDecomposition().solve(gradient));
+  Eigen::MatrixXd curvature;
+  twin.hessian(multipliers, curvature);
+  const Eigen::Index out = twin.size() - size();
+  hessian = curvature.bottomRightCorner(out, out);
+  // Of a position its z, of a direction what is across it along z.
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) rows.push_back(3 * j + 2);
+  for (Eigen::Index row = twin.first_director_row(); row < twin.constraints(); row += 2) {
+    rows.push_back(row);
+  }
+  jacobian.resize(static_cast<Eigen::Index>(rows.size()), out);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    jacobian.row(static_cast<Eigen::Index>(i)) = all.row(rows[i]).tail(out);
+  }
+}
+
+Eigen::VectorXd SpanEnergy::fit(const StartShape& shape) {
+  const Eigen::Matrix3Xd& tangents = shape.tangents;
   if (!span_.planar) {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
-    x.head(bends()) = frames_.fit(tangents);
+    x.head(strains()) = frames_.fit(tangents);
+    if (fields() == 3 && shape.roll.size() > 0) x = frames_.rolled(x, shape.roll);
     return x;
   }
   const Eigen::Index nodes = s_.size();
@@ -410,12 +518,16 @@ Eigen::VectorXd SpanEnergy::fit(const Eigen::Matrix3Xd& tangents) {
   for (Eigen::Index q = 0; q < nodes; ++q) {
     angles[q] = previous = nearest_turn(angle_of(tangents.col(q)), previous);
   }
-  if (span_.end_direction) end_theta_ = nearest_turn(end_theta_, previous);
-  std::vector<double> lengths;
-  for (const Piece& piece : pieces_) lengths.push_back(piece.length);
+  for (DirectorRow& row : director_rows_) {
+    const Eigen::Index last = (row.piece + 1) * table_->nodes.size() - 1;
+    row.angle = nearest_turn(row.angle, angles[last]);
+  }
+  std::vector<double> turns;
+  for (const Piece& piece : pieces_) turns.push_back(piece.angle());
   std::optional<double> start;
   if (free_start_ == 0) start = start_theta_;
-  const FittedAngle fitted = fit_angle(*table_, lengths, angles, start);
+  if (natural_angle_.size() > 0) angles -= natural_angle_;
+  const FittedAngle fitted = fit_angle(*table_, turns, angles, start);
   Eigen::VectorXd x(columns_);
   if (free_start_ == 1) x[0] = fitted.start;
   x.tail(columns_ - free_start_) = fitted.coefficients;
@@ -423,12 +535,14 @@ Eigen::VectorXd SpanEnergy::fit(const Eigen::Matrix3Xd& tangents) {
 }
 
 Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd& x) {
-  end_theta_ = other.end_theta_;
+  for (std::size_t i = 0; i < director_rows_.size() && other.span_.planar && span_.planar; ++i) {
+    director_rows_[i].angle = other.director_rows_[i].angle;
+  }
   const Eigen::Index shared = std::min(terms_, other.terms_);
   Eigen::VectorXd adopted = Eigen::VectorXd::Zero(size());
   // A planar shape's curvature is u1.
-  const Eigen::Index fields = other.span_.planar ? 1 : 2;
-  for (Eigen::Index field = 0; field < fields; ++field) {
+  const Eigen::Index known = std::min(fields(), other.fields());
+  for (Eigen::Index field = 0; field < known; ++field) {
     const Eigen::Index to = field * columns_;
     const Eigen::Index from = field * other.columns_;
     if (free_start_ == 1) adopted[to] = x[from];
@@ -440,7 +554,7 @@ Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd
           x.segment(from + free_start_ + e * other.terms_, shared);
     }
   }
-  if (span_.twist && other.span_.twist) adopted[bends()] = x[other.bends()];
+  if (has_psi() && other.has_psi()) adopted[strains()] = x[other.strains()];
   return adopted;
 }
 
@@ -453,14 +567,12 @@ double SpanEnergy::longest_piece() const {
 double SpanEnergy::tail(const Eigen::VectorXd& x) const {
   const Eigen::Index last = std::min(terms_, 2);
   double tail = 0;
-  const Eigen::Index fields = span_.planar ? 1 : 2;
-  for (Eigen::Index field = 0; field < fields; ++field) {
+  for (Eigen::Index field = 0; field < fields(); ++field) {
     for (std::size_t e = 0; e < pieces_.size(); ++e) {
       const Eigen::Index end =
           field * columns_ + free_start_ + (static_cast<Eigen::Index>(e) + 1) * terms_;
-      // A coefficient bends its piece by sqrt(length) of itself.
-      tail = std::max(
-          tail, x.segment(end - last, last).cwiseAbs().maxCoeff() * std::sqrt(pieces_[e].length));
+      const double turn = field == 2 ? pieces_[e].twist_angle() : pieces_[e].angle();
+      tail = std::max(tail, turn * x.segment(end - last, last).cwiseAbs().maxCoeff());
     }
   }
   return tail;
@@ -478,8 +590,9 @@ SpanShape SpanEnergy::shape(const Eigen::VectorXd& x) const {
   } else {
     shape.start_frame = start_frame_;
     shape.free_start = free_start_ == 1;
-    shape.strains = x.head(bends());
+    shape.strains = x.head(strains());
   }
+  shape.natural = span_.natural;
   return shape;
 }
 
@@ -487,10 +600,11 @@ Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
   Eigen::VectorXd gradient(x.size());
   (void)value(x, gradient);
   Energies energies;
-  energies.bending = x.head(bends()).squaredNorm() / 2;
-  energies.twisting = x.tail(x.size() - bends()).squaredNorm() / 2;
-  if (free_start_ == 1) energies.bending -= x[0] * x[0] / 2;
-  if (free_start_ == 1 && !span_.planar) energies.bending -= x[columns_] * x[columns_] / 2;
+  Eigen::VectorXd stored = x;
+  for (Eigen::Index f = 0; f < fields() && free_start_ == 1; ++f) stored[f * columns_] = 0;
+  const Eigen::Index bends = std::min<Eigen::Index>(fields(), 2) * columns_;
+  energies.bending = stored.head(bends).squaredNorm() / 2;
+  energies.twisting = stored.tail(stored.size() - bends).squaredNorm() / 2;
   // A load's point is the sum of the tangents between it and the anchor.
   for (const Span::Load& load : span_.loads) {
     Eigen::Vector3d point = Eigen::Vector3d::Zero();

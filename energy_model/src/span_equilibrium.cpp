@@ -17,7 +17,7 @@ void add_energies(const RodSpan& span, const RodMesh& mesh, double tolerance,
     equilibrium.energy.load -= mesh.load.col(i).dot(state.r);
     if (i == mesh.intervals()) break;
     RodIntegrals integrals;
-    if (!follow_rod(span.weight, mesh.s[i + 1] - mesh.s[i], tolerance, state, integrals)) {
+    if (!follow_rod(mesh.section_of(i), mesh.width(i), tolerance, state, integrals)) {
       equilibrium.converged = false;
       equilibrium.message = "the integrator gave up on the energies";
       equilibrium.energy = {NAN, NAN, NAN, NAN};
@@ -28,7 +28,7 @@ void add_energies(const RodSpan& span, const RodMesh& mesh, double tolerance,
   }
   if (!span.twist) return;
   const double torque = equilibrium.nodes.front().torque;
-  equilibrium.energy.twisting = torque * torque * span.length / (2 * span.twist->stiffness);
+  equilibrium.energy.twisting = torque * torque * span.twist->compliance / 2;
 }
 
 }  // namespace
@@ -48,14 +48,14 @@ SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh, std::vector<RodSta
     equilibrium.shots += result.shots;
     equilibrium.s = mesh.s;
     equilibrium.nodes = std::move(result.nodes);
-    const double force = largest_force(equilibrium.nodes);
+    const double force = largest_force(equilibrium.nodes, softest(span));
     const double longest =
         (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
     if (!result.converged || longest * std::sqrt(force) <= largest_growth) break;
     mesh = make_mesh(span, longest_interval(span, force));
     start.clear();
     for (const double s : mesh.s) {
-      start.push_back(state_at(equilibrium, span.weight, s, options.tolerance));
+      start.push_back(state_at(equilibrium, span, s, options.tolerance));
     }
     start.back().n.setZero();
   }
@@ -67,45 +67,46 @@ SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh, std::vector<RodSta
 
 void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
   equilibrium.stability = second_variation(span, [&](const std::vector<double>& s) {
-    return states_at(equilibrium, span.weight, s, std::max(tolerance, variation_tolerance));
+    return states_at(equilibrium, span, s, std::max(tolerance, variation_tolerance));
   });
   std::vector<double> probes;
   for (int i = 0; i <= 32; ++i) probes.push_back(span.length * i / 32);
-  equilibrium.tangents =
-      tangents_of(states_at(equilibrium, span.weight, probes, variation_tolerance));
+  equilibrium.tangents = tangents_of(states_at(equilibrium, span, probes, variation_tolerance));
   if (equilibrium.stability.negative < 0 || !equilibrium.tangents.allFinite()) {
     equilibrium.converged = false;
     equilibrium.message = "the integrator gave up on the second variation";
   }
 }
 
-RodState state_at(const SpanEquilibrium& span, const Eigen::Vector3d& weight, double s,
+RodState state_at(const SpanEquilibrium& equilibrium, const RodSpan& span, double s,
                   double tolerance) {
-  return states_at(span, weight, {s}, tolerance).front();
+  return states_at(equilibrium, span, {s}, tolerance).front();
 }
 
-std::vector<RodState> states_at(const SpanEquilibrium& span, const Eigen::Vector3d& weight,
+std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpan& span,
                                 const std::vector<double>& s, double tolerance) {
-  const auto last = static_cast<std::ptrdiff_t>(span.nodes.size()) - 2;
+  const auto last = static_cast<std::ptrdiff_t>(equilibrium.nodes.size()) - 2;
   std::vector<RodState> states;
   states.reserve(s.size());
   RodState state;
   std::ptrdiff_t interval = -1;
   double reached = 0;
   for (const double at : s) {
-    const auto after = std::upper_bound(span.s.begin(), span.s.end(), at) - span.s.begin();
+    const auto after =
+        std::upper_bound(equilibrium.s.begin(), equilibrium.s.end(), at) - equilibrium.s.begin();
     const std::ptrdiff_t i = std::clamp<std::ptrdiff_t>(after - 1, 0, last);
-    if (at >= span.s[i + 1]) {
-      states.push_back(span.nodes.back());
+    if (at >= equilibrium.s[i + 1]) {
+      states.push_back(equilibrium.nodes.back());
       continue;
     }
     if (i != interval) {
-      state = span.nodes[static_cast<std::size_t>(i)];
+      state = equilibrium.nodes[static_cast<std::size_t>(i)];
       interval = i;
-      reached = span.s[i];
+      reached = equilibrium.s[i];
     }
     RodIntegrals integrals;
-    if (at > reached && !follow_rod(weight, at - reached, tolerance, state, integrals)) {
+    const RodSection& section = section_at(span, (equilibrium.s[i] + equilibrium.s[i + 1]) / 2);
+    if (at > reached && !follow_rod(section, at - reached, tolerance, state, integrals)) {
       state.r.setConstant(NAN);
       state.t.setConstant(NAN);
       state.v.setConstant(NAN);

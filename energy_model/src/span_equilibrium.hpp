@@ -36,16 +36,17 @@ struct SpanEquilibrium {
 /// @param tolerance  of the integrator
 void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium);
 
-/// Intervals that resolve boundary layers under a force, and the bends of a span without any.
+/// Intervals that resolve boundary layers under a force over b, and the bends of a span without
+/// any.
 [[nodiscard]] double longest_interval(const RodSpan& span, double force);
 
 /// The cross-section at s; NaN if the integrator gave up.
-[[nodiscard]] RodState state_at(const SpanEquilibrium& span, const Eigen::Vector3d& weight,
-                                double s, double tolerance);
+[[nodiscard]] RodState state_at(const SpanEquilibrium& equilibrium, const RodSpan& span, double s,
+                                double tolerance);
 
 /// The same at arc lengths that grow, each from the one before.
-[[nodiscard]] std::vector<RodState> states_at(const SpanEquilibrium& span,
-                                              const Eigen::Vector3d& weight,
-                                              const std::vector<double>& s, double tolerance);
+[[nodiscard]] std::vector<RodState> states_at(const SpanEquilibrium& equilibrium,
+                                              const RodSpan& span, const std::vector<double>& s,
+                                              double tolerance);
 
 }  // namespace dlo::energy_model

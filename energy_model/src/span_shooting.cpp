@@ -5,8 +5,10 @@
 #include <cmath>
 
 #include "boundary_value.hpp"
+#include "found_equilibria.hpp"
 #include "relaxed_polygon.hpp"
 #include "require.hpp"
+#include "rod_law.hpp"
 #include "span_twist.hpp"
 
 namespace dlo::energy_model {
@@ -24,7 +26,7 @@ constexpr int search_iterations = 30;   // of Newton's method, which takes 6 to 
 constexpr double polygons_share = 0.5;  // of the time that is left
 
 void check_load(const RodSpan& span) {
-  const double load = total_load(span);
+  const double load = total_load(span) / softest(span);
   require(load <= largest_load, "solve_exact", "sum of weight and loads over EI/l^2", load,
           "<= 1e6");
 }
@@ -84,7 +86,7 @@ class SpanSearch {
  public:
   SpanSearch(const RodSpan& span, double tolerance, const Deadline& deadline)
       : span_(span),
-        mesh_(make_mesh(span, longest_interval(span, total_load(span)))),
+        mesh_(make_mesh(span, longest_interval(span, total_load(span) / softest(span)))),
         tolerance_(tolerance),
         deadline_(deadline) {}
 
@@ -93,7 +95,8 @@ class SpanSearch {
     const Deadline polygons(polygons_share * deadline_.remaining());
     bool complete = polygon_starts(span_, mesh_, polygons, starts);
     for (std::size_t i = 0; i < starts.size(); ++i) {
-      if (i >= (lowest_stable() < INFINITY ? most_descents : 2 * most_descents)) break;
+      if (i >= (std::isfinite(lowest_stable_energy(found_)) ? most_descents : 2 * most_descents))
+        break;
       if (deadline_.passed()) break;
       descend(starts[i]);
     }
@@ -103,12 +106,7 @@ class SpanSearch {
       if (!complete) failed_.message = to_string(SolveStatus::time_limit);
       found_.push_back(std::move(failed_));
     }
-    // Mirror images have the same energy up to rounding and keep their order.
-    std::stable_sort(found_.begin(), found_.end(), [](const auto& a, const auto& b) {
-      if (a.stable() != b.stable()) return a.stable();
-      const double rounding = 1e-11 * (1 + std::abs(a.energy.total()));
-      return a.energy.total() < b.energy.total() - rounding;
-    });
+    sort_by_stability(found_);
     found_.front().shots = shots_;
     return {std::move(found_), complete};
   }
@@ -137,7 +135,7 @@ class SpanSearch {
       mesh = std::move(finer);
     };
     // Under a large reaction the coarse polygon is not near enough.
-    const double force = polygon.force.colwise().norm().maxCoeff();
+    const double force = polygon.force.colwise().norm().maxCoeff() / softest(span_);
     const double resolved = std::max(1 / std::sqrt(std::max(force, 1.0)),
                                      span_.length / static_cast<double>(most_intervals));
     if (longest_of() > 1.5 * resolved) refine(resolved);
@@ -156,25 +154,11 @@ class SpanSearch {
     if (!known) found_.push_back(std::move(equilibrium));
   }
 
-  [[nodiscard]] double lowest_stable() const {
-    double lowest = INFINITY;
-    for (const SpanEquilibrium& equilibrium : found_) {
-      if (equilibrium.stable()) lowest = std::min(lowest, equilibrium.energy.total());
-    }
-    return lowest;
-  }
-
   /// An unstable equilibrium below all stable ones shows that a minimum has been missed.
   void leave_saddles() {
     std::vector<double> energies;  // of those that have been left
     for (int i = 0; i < most_departures && !deadline_.passed(); ++i) {
-      const SpanEquilibrium* lowest = nullptr;
-      for (const SpanEquilibrium& equilibrium : found_) {
-        const double energy = equilibrium.energy.total();
-        const bool known = std::find(energies.begin(), energies.end(), energy) != energies.end();
-        if (equilibrium.stable() || known || energy > lowest_stable()) continue;
-        if (lowest == nullptr || energy < lowest->energy.total()) lowest = &equilibrium;
-      }
+      const SpanEquilibrium* lowest = missed_minimum(found_, energies);
       if (lowest == nullptr) return;
       energies.push_back(lowest->energy.total());
       const SpanEquilibrium saddle = *lowest;
@@ -189,7 +173,7 @@ class SpanSearch {
     const Eigen::VectorXd middles =
         (mesh_.s.head(mesh_.intervals()) + mesh_.s.tail(mesh_.intervals())) / 2;
     const std::vector<RodState> states =
-        states_at(saddle, span_.weight, {middles.begin(), middles.end()}, tolerance_);
+        states_at(saddle, span_, {middles.begin(), middles.end()}, tolerance_);
     Eigen::Matrix3Xd tangents = amplitude * mode_at(mode, middles);
     for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
       tangents.col(i) = (states[static_cast<std::size_t>(i)].t + tangents.col(i)).normalized();
@@ -227,7 +211,11 @@ SpanSearchResult search_span(const RodSpan& span, double tolerance, const Deadli
 
 Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, double s) {
   const double at = s * problem.length * (1 + 1e-12);
-  Eigen::Vector3d n = -s * problem.length * problem.weight_per_length;
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();
+  for (const Section& part : rod_parts(problem)) {
+    const double until = std::min(part.end, s * problem.length);
+    n -= std::max(0.0, until - part.begin) * part.weight_per_length;
+  }
   for (std::size_t i = 0; i < problem.grips.size(); ++i) {
     if (problem.grips[i].at <= at) n -= shape.grips[i].force;
   }
@@ -257,7 +245,8 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
   const TwistedPart* twisted = twist_of(span, problem, shape);
   const double torque =
       twisted == nullptr ? 0 : twisted->torque * problem.length / problem.bending_stiffness;
-  force = std::max(force, torque * torque);
+  const double b = softest(span);
+  force = std::max(force / b, torque * torque / (b * b));
   const RodMesh mesh = make_mesh(span, longest_interval(span, std::min(force, largest_load)));
   std::vector<double> arc_lengths;
   for (const double s : mesh.s) {

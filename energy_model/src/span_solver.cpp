@@ -76,6 +76,10 @@ class Search {
     for (const Piece& piece : pieces_of(span)) {
       longest_piece_ = std::max(longest_piece_, piece.length);
     }
+    if (span.natural.empty()) return;
+    // What the free rod turns by has to be resolved as well.
+    const double curvature = span.natural.largest();
+    natural_terms_ = first_terms(curvature * curvature, longest_piece_);
   }
 
   [[nodiscard]] SpanSolution finish(SpanSolution solution) {
@@ -94,7 +98,8 @@ class Search {
       add(std::move(solution), found);
     }
     const std::vector<TangentField> fields = ranked_fields();
-    const std::size_t followed = options_.all ? fields.size() : followed_starts;
+    const std::size_t tried = span_.natural.empty() ? followed_starts : followed_natural_starts;
+    const std::size_t followed = options_.all ? fields.size() : std::min(tried, fields.size());
     std::vector<SpanSolution> coarse;
     for (std::size_t i = 0; i < fields.size() && !out_of_time(); ++i) {
       // The other starts only where the first ones and what they lead to do not hold.
@@ -110,6 +115,7 @@ class Search {
       if (options_.all) add(refined(near_field(fields[i])), found);
       if (i + 1 >= followed) leave_saddles(found);
     }
+    if (span_.planar && !span_.natural.empty()) look_in_space(found);
     return sorted(std::move(found));
   }
 
@@ -117,7 +123,8 @@ class Search {
   [[nodiscard]] int terms() const {
     if (options_.terms > 0) return options_.terms;
     const int layers = taut_ ? layer_terms : 0;
-    return std::max({first_terms(load_, longest_piece_), options_.least_terms, layers});
+    return std::max(
+        {first_terms(load_, longest_piece_), options_.least_terms, layers, natural_terms_});
   }
 
   [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
@@ -126,7 +133,7 @@ class Search {
   [[nodiscard]] int coarse_terms() const {
     if (options_.terms > 0) return options_.terms;
     if (terms() <= few_terms) return terms();
-    const int fields = span_.planar ? 1 : 2;
+    const int fields = span_.planar ? 1 : span_.natural.empty() ? 2 : 3;
     int coarse = terms() / 2;
     if (!span_.holds.empty()) {
       const int pieces = static_cast<int>(pieces_of(span_).size());
@@ -159,9 +166,11 @@ class Search {
   }
 
   [[nodiscard]] std::vector<TangentField> ranked_fields() {
-    std::vector<TangentField> fields = start_fields(span_);
+    std::vector<TangentField> fields =
+        span_.natural.empty() ? start_fields(span_) : natural_fields(span_);
     if (options_.all) return fields;
-    const std::shared_ptr<SpanEnergy> model = workspace_.model(span_, 8);
+    const std::shared_ptr<SpanEnergy> model =
+        workspace_.model(span_, std::max(8, std::min(natural_terms_, coarse_terms())));
     std::vector<std::pair<double, std::size_t>> ranks;
     Eigen::VectorXd gradient(model->size());
     Eigen::VectorXd missed(model->constraints());
@@ -179,6 +188,19 @@ class Search {
     ordered.reserve(ranks.size());
     for (const auto& rank : ranks) ordered.push_back(fields[rank.second]);
     return ordered;
+  }
+
+  /// A curved rod that gives way out of its plane twists far: it has shapes of its own there.
+  void look_in_space(std::vector<SpanSolution>& found) {
+    const auto is_saddle = [](const auto& solution) {
+      return solution.status == SolveStatus::saddle;
+    };
+    if (!options_.all && std::none_of(found.begin(), found.end(), is_saddle)) return;
+    Span space = span_;
+    space.planar = false;
+    for (SpanSolution& solution : Search(space, options_, workspace_).run()) {
+      add(std::move(solution), found);
+    }
   }
 
   /// From a field to an equilibrium, with as many terms as it takes to meet the grips.
@@ -286,7 +308,7 @@ class Search {
 
   /// Raises the number of terms until the last ones do not matter any more.
   [[nodiscard]] SpanSolution refined(SpanSolution solution) {
-    const int fields = span_.planar ? 1 : 2;
+    const int fields = span_.planar ? 1 : span_.natural.empty() ? 2 : 3;
     const int affordable = std::max(32, most_unknowns / (fields * solution.model->pieces()));
     // With walls the curvature has kinks where contact begins; more terms help only so far, where
     // the walls yield somewhat farther.
@@ -415,9 +437,9 @@ class Search {
     if (!sideways) return std::nullopt;
     Span space = model.span();
     space.planar = false;
-    // Out of the plane a planar rod bends by u2, the rate of its tangent's tilt.
-    Eigen::VectorXd lift = Eigen::VectorXd::Zero(2 * model.size());
-    lift.tail(model.size()) = push * *sideways;
+    // Out of the plane a planar rod bends by u2, the rate of its tangent's tilt, and twists.
+    Eigen::VectorXd lift = Eigen::VectorXd::Zero(model.size() + sideways->size());
+    lift.tail(sideways->size()) = push * *sideways;
     return pushed_from(space, solution, lift);
   }
 
@@ -455,10 +477,11 @@ class Search {
   SpanWorkspace& workspace_;
   double load_;
   double longest_piece_ = 0;
-  bool taut_ = false;     // pieces end where the layers at taut segments' ends have decayed
-  double stiffness_ = 0;  // of the tautest segment along its chord
-  int spent_ = 0;         // evaluations of everything that was looked at
-  std::size_t left_ = 0;  // how many of the equilibria found have been looked at for a way down
+  int natural_terms_ = 0;  // that the free rod's own strains take
+  bool taut_ = false;      // pieces end where the layers at taut segments' ends have decayed
+  double stiffness_ = 0;   // of the tautest segment along its chord
+  int spent_ = 0;          // evaluations of everything that was looked at
+  std::size_t left_ = 0;   // how many of the equilibria found have been looked at for a way down
 };
 
 }  // namespace

@@ -15,10 +15,12 @@
 namespace dlo::energy_model {
 
 /// Tangents at arc lengths of a span, as a start, 3 x M.
-using TangentField = std::function<Eigen::Matrix3Xd(const Eigen::VectorXd&)>;
+using TangentField = std::function<StartShape(const Eigen::VectorXd&)>;
 
 /// Starts, in the order of their energy, that the search for the lowest minimum follows.
 inline constexpr std::size_t followed_starts = 2;
+/// The same of a rod that is not straight by nature, whose lowest shape is harder to guess.
+inline constexpr std::size_t followed_natural_starts = 6;
 
 /// Gradient norm at which a descent hands over: two Newton steps square it to below rounding, while
 /// a line search, which compares energies, would stall near the root of the rounding error.

@@ -14,7 +14,7 @@ namespace {
 using std::numbers::pi;
 
 Eigen::Vector3d total_force(const Span& span, double beyond) {
-  Eigen::Vector3d n = (span.length - beyond) * span.weight;
+  Eigen::Vector3d n = span.weight_between(beyond, span.length);
   for (const Span::Load& load : span.loads) {
     if (load.at > beyond) n += load.force;
   }
@@ -53,6 +53,9 @@ double slack_amplitude(double ratio) {
   }
   return low;
 }
+
+/// Terms that the shape of the free rod is looked at with.
+constexpr int natural_shape_terms = 32;
 
 struct Pattern {
   bool s_shape = false;
@@ -127,10 +130,12 @@ class GrippedField {
     if (segments_[i].taut() && pattern_.loops == 0) return stretched(i, u);
     Eigen::Vector3d t = arch(i, u);
     if (pattern_.loops == 0) {
-      if (is_held(i == 0, span_.start_direction.has_value(), i, -1)) {
+      if (segments_[i].begin_direction ||
+          is_held(i == 0, span_.start_direction.has_value(), i, -1)) {
         t += std::pow(1 - u, 4) * (segments_[i].begin_tangent - arch(i, 0));
       }
-      if (is_held(i + 1 == chords_.size(), span_.end_direction.has_value(), i, 1)) {
+      if (segments_[i].end_direction ||
+          is_held(i + 1 == chords_.size(), span_.end_direction.has_value(), i, 1)) {
         t += std::pow(u, 4) * (segments_[i].end_tangent - arch(i, 1));
       }
     }
@@ -215,6 +220,38 @@ std::vector<TangentField> start_fields(const Span& span) {
   if (segments.size() == 1 && !segments.front().taut()) {
     for (const int loops : {1, -1}) {
       fields.push_back(field(GrippedField(span, {.loops = loops})));
+    }
+  }
+  return fields;
+}
+
+std::vector<TangentField> natural_fields(const Span& span) {
+  std::vector<TangentField> fields;
+  const SpanEnergy model(span, natural_shape_terms);
+  const SpanShape free = model.shape(Eigen::VectorXd::Zero(model.size()));
+  fields.emplace_back([free](const Eigen::VectorXd& s) {
+    const SpanSamples samples = free.sample({s.data(), static_cast<std::size_t>(s.size())});
+    return StartShape(samples.tangents, roll_of(samples.tangents, samples.d1));
+  });
+  if (span.planar && span.start_direction && span.end_direction) {
+    const auto angle_of = [](const Eigen::Vector3d& t) { return std::atan2(t.y(), t.x()); };
+    const double start = angle_of(*span.start_direction);
+    const double end = start + span.natural.integral(span.length).x();
+    const double least = std::remainder(angle_of(*span.end_direction) - end, 2 * pi);
+    for (const int turns : {0, 1, -1}) {
+      fields.push_back(field([&span, start, more = (least + 2 * pi * turns)](double s) {
+        const double angle = start + span.natural.integral(s).x() + more * s / span.length;
+        return Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+      }));
+    }
+  }
+  for (const TangentField& plain : start_fields(span)) {
+    fields.push_back(plain);
+    if (span.planar) continue;
+    for (const double turn : {pi / 2, -pi / 2, pi, -pi}) {
+      fields.emplace_back([plain, turn, length = span.length](const Eigen::VectorXd& s) {
+        return StartShape(plain(s).tangents, turn / length * s);
+      });
     }
   }
   return fields;

@@ -26,14 +26,14 @@ double largest_change(const std::vector<RodState>& a, const std::vector<RodState
 
 /// Lets a director come along from node to node, by the flow and the shortest turn to the next
 /// tangent. @return false if the integrator gave up
-bool carry_director(const RodSpan& span, const RodMesh& mesh, double tolerance,
-                    const Eigen::Vector3d& first, std::vector<RodState>& nodes) {
+bool carry_director(const RodMesh& mesh, double tolerance, const Eigen::Vector3d& first,
+                    std::vector<RodState>& nodes) {
   nodes.front().d = first;
   for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
     RodState state = nodes[static_cast<std::size_t>(i)];
     RodState& next = nodes[static_cast<std::size_t>(i + 1)];
     RodIntegrals integrals;
-    if (!follow_rod(span.weight, mesh.s[i + 1] - mesh.s[i], tolerance, state, integrals)) {
+    if (!follow_rod(mesh.section_of(i), mesh.width(i), tolerance, state, integrals)) {
       return false;
     }
     next.d = Eigen::Quaterniond::FromTwoVectors(state.t, next.t) * state.d;
@@ -63,8 +63,7 @@ class Continuation {
   SpanEquilibrium run(const SpanEquilibrium& without) {
     now_ = without;
     shots_ = without.shots;
-    if (!carry_director(span_, mesh_at(span_, now_.s), tolerance_, first_director(span_),
-                        now_.nodes)) {
+    if (!carry_director(mesh_at(span_, now_.s), tolerance_, first_director(span_), now_.nodes)) {
       return failure("the integrator gave up on the frame");
     }
     untwisted_end_ = now_.nodes.back().d;
@@ -115,8 +114,7 @@ class Continuation {
             .max_iterations = step_iterations,
             .deadline = deadline_,
             .frames = ShotFrames{first_director(span_),
-                                 turned(untwisted_end_, *span_.end_direction, roll),
-                                 span_.twist->stiffness}};
+                                 turned(untwisted_end_, *span_.end_direction, roll)}};
   }
 
   [[nodiscard]] SpanEquilibrium failure(const std::string& message) const {
@@ -133,7 +131,7 @@ class Continuation {
     if (before_.nodes.empty()) return nodes;
     const double part = (next - reached_) / (reached_ - reached_before_);
     const std::vector<RodState> before =
-        states_at(before_, span_.weight, {now_.s.begin(), now_.s.end()}, tolerance_);
+        states_at(before_, span_, {now_.s.begin(), now_.s.end()}, tolerance_);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       RodState& node = nodes[i];
       node.r += part * (node.r - before[i].r);
@@ -160,7 +158,7 @@ class Continuation {
     problem_ = found.message;
     if (!found.converged) return 0;
     const std::vector<RodState> at_nodes =
-        states_at(found, span_.weight, {now_.s.begin(), now_.s.end()}, tolerance_);
+        states_at(found, span_, {now_.s.begin(), now_.s.end()}, tolerance_);
     if (largest_change(at_nodes, now_.nodes) > most_turn) return 0;
     if (!before_.nodes.empty() && largest_change(at_nodes, start) > most_correction) return 0;
     const double factor = found.shots <= few_shots ? 1.6 : 1;
@@ -219,8 +217,7 @@ SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without, 
 SpanEquilibrium refine_twisted(const RodSpan& span, const RodMesh& mesh,
                                std::vector<RodState> start, double tolerance,
                                const Deadline& deadline) {
-  for (RodState& node : start) node.twist = node.torque / span.twist->stiffness;
-  if (!carry_director(span, mesh, tolerance, first_director(span), start)) {
+  if (!carry_director(mesh, tolerance, first_director(span), start)) {
     SpanEquilibrium failed;
     failed.message = "the integrator gave up on the frame";
     return failed;
@@ -228,11 +225,10 @@ SpanEquilibrium refine_twisted(const RodSpan& span, const RodMesh& mesh,
   const Eigen::Vector3d end =
       span.twist->end_d1 ? turned(*span.twist->end_d1, *span.end_direction, span.twist->roll)
                          : start.back().d;
-  return without_directors(
-      shoot_span(span, mesh, std::move(start),
-                 {.tolerance = tolerance,
-                  .deadline = deadline,
-                  .frames = ShotFrames{first_director(span), end, span.twist->stiffness}}));
+  return without_directors(shoot_span(span, mesh, std::move(start),
+                                      {.tolerance = tolerance,
+                                       .deadline = deadline,
+                                       .frames = ShotFrames{first_director(span), end}}));
 }
 
 }  // namespace dlo::energy_model

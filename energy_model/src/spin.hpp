@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
 
 namespace dlo::energy_model {
 
@@ -9,6 +11,21 @@ inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
   return m;
+}
+
+/// The rotation about v by the angle |v|.
+inline Eigen::Quaterniond from_rotation_vector(const Eigen::Vector3d& v) {
+  const double angle = v.norm();
+  const double half_sine = angle > 1e-8 ? std::sin(angle / 2) / angle : 0.5;
+  return {std::cos(angle / 2), half_sine * v.x(), half_sine * v.y(), half_sine * v.z()};
+}
+
+/// The frame (d1, d2, t) with this unit tangent and with d1 on this side of it.
+inline Eigen::Matrix3d frame_along(const Eigen::Vector3d& tangent, const Eigen::Vector3d& d1) {
+  const Eigen::Vector3d first = (d1 - tangent.dot(d1) * tangent).normalized();
+  Eigen::Matrix3d frame;
+  frame << first, tangent.cross(first), tangent;
+  return frame;
 }
 
 /// What the square of a spin of the director p costs through g . p: sym(g p^T) - (g.p) 1.

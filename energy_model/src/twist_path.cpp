@@ -156,7 +156,7 @@ class TwistPath {
   }
 
   [[nodiscard]] static double torque(const SpanSolution& solution) {
-    return solution.model->twisting_torque(solution.x);
+    return solution.model->twisting_torque(solution.x, solution.multipliers);
   }
 
   void accept(SpanSolution next, double angle) {

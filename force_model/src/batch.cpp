@@ -24,6 +24,8 @@ void require_alike(const std::vector<BatchRod>& rods) {
     const StepPolicy& policy = rod.options.policy;
     require_same(rod.rod.points() == first.rod.points(), "rod with another number of points", i);
     require_same(rod.rod.bending.law == first.rod.bending.law, "rod with another bending law", i);
+    require_same(rod.rod.bending.natural_turns.size() == first.rod.bending.natural_turns.size(),
+                 "rod with another number of natural turns", i);
     require_same(policy == first.options.policy, "rod with another step policy", i);
     require_same(rod.options.instruction_set == first.options.instruction_set,
                  "rod with another instruction set", i);

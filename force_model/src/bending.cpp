@@ -60,11 +60,49 @@ JointForces hooke_forces(double EI_over_L, const Eigen::Vector3d& u, double a,
           moment / b * orthogonal_part(e, v).normalized()};
 }
 
+/// From a to b, seen from the side of +z.
+double signed_turn(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.x() * b.y() - a.y() * b.x(), a.x() * b.x() + a.y() * b.y());
+}
+
+/// A vector of the plane z = 0 turned to the left.
+Eigen::Vector3d left_of(const Eigen::Vector3d& vector) { return {-vector.y(), vector.x(), 0}; }
+
 double turning_angle(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
 }  // namespace
+
+Bending bending_at(const Bending& bending, Eigen::Index i) {
+  return {bending.law,
+          bending.stiffnesses.size() > 0 ? bending.stiffnesses[i - 1] : bending.stiffness};
+}
+
+double natural_moment(const Bending& bending, Eigen::Index i, double segment_length) {
+  if (bending.natural_turns.size() == 0) return 0;
+  return 2 * bending_at(bending, i).stiffness / segment_length *
+         std::tan(bending.natural_turns[i - 1] / 2);
+}
+
+void check(const Bending& bending, Eigen::Index segments) {
+  require_not_negative("Bending", "stiffness", bending.stiffness);
+  const auto require_each = [&](const Eigen::VectorXd& numbers, const char* size) {
+    require(numbers.size() == 0 || numbers.size() == segments - 1, "Bending", size,
+            static_cast<double>(numbers.size()), "0 or the number of joints");
+  };
+  require_each(bending.stiffnesses, "size of stiffnesses");
+  require_each(bending.natural_turns, "size of natural_turns");
+  for (const double stiffness : bending.stiffnesses) {
+    require_not_negative("Bending", "stiffness of a joint", stiffness);
+  }
+  if (bending.natural_turns.size() == 0) return;
+  require(bending.law == BendingLaw::hooke, "Bending", "number of natural turns",
+          static_cast<double>(bending.natural_turns.size()), "0 for the paper's law");
+  for (const double turn : bending.natural_turns) {
+    require(std::abs(turn) < hooke_fold_angle, "Bending", "natural turn", turn, "in (-3, 3) rad");
+  }
+}
 
 double joint_moment(const Bending& bending, double segment_length, double alpha) {
   require_joint("joint_moment", bending, segment_length, alpha);
@@ -106,7 +144,7 @@ double joint_stiffness(const Bending& bending, double segment_length, double alp
 void add_bending_forces(const Points& points, const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,
                         const Bending& bending, Eigen::Ref<Eigen::Matrix3Xd> forces) {
   require_polygon("add_bending_forces", points, rest_lengths);
-  require_not_negative("add_bending_forces", "bending stiffness", bending.stiffness);
+  check(bending, rest_lengths.size());
   require(forces.cols() == points.cols(), "add_bending_forces", "columns of forces",
           static_cast<double>(forces.cols()), "the number of points");
   for (Eigen::Index i = 1; i < rest_lengths.size(); ++i) {
@@ -118,9 +156,14 @@ void add_bending_forces(const Points& points, const Eigen::Ref<const Eigen::Vect
     const Eigen::Vector3d u = before / a;
     const Eigen::Vector3d v = after / b;
     const double L = (rest_lengths[i - 1] + rest_lengths[i]) / 2;
-    const JointForces joint = bending.law == BendingLaw::paper
-                                  ? paper_forces(bending.stiffness, u, a, v, b)
-                                  : hooke_forces(bending.stiffness / L, u, a, v, b);
+    const double stiffness = bending_at(bending, i).stiffness;
+    JointForces joint = bending.law == BendingLaw::paper ? paper_forces(stiffness, u, a, v, b)
+                                                         : hooke_forces(stiffness / L, u, a, v, b);
+    if (bending.natural_turns.size() > 0) {
+      const double couple = natural_moment(bending, i, L);
+      joint.on_previous += couple / a * left_of(u);
+      joint.on_next += couple / b * left_of(v);
+    }
     forces.col(i - 1) += joint.on_previous;
     forces.col(i + 1) += joint.on_next;
     forces.col(i) -= joint.on_previous + joint.on_next;
@@ -130,12 +173,18 @@ void add_bending_forces(const Points& points, const Eigen::Ref<const Eigen::Vect
 double bending_energy(const Points& points, const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,
                       const Bending& bending) {
   require_polygon("bending_energy", points, rest_lengths);
+  check(bending, rest_lengths.size());
   double energy = 0;
   for (Eigen::Index i = 1; i < rest_lengths.size(); ++i) {
     const double L = (rest_lengths[i - 1] + rest_lengths[i]) / 2;
-    const double alpha =
-        turning_angle(points.col(i) - points.col(i - 1), points.col(i + 1) - points.col(i));
-    energy += joint_potential(bending, L, alpha);
+    const Eigen::Vector3d before = points.col(i) - points.col(i - 1);
+    const Eigen::Vector3d after = points.col(i + 1) - points.col(i);
+    const Bending joint = bending_at(bending, i);
+    energy += joint_potential(joint, L, turning_angle(before, after));
+    if (bending.natural_turns.size() == 0) continue;
+    const double natural = bending.natural_turns[i - 1];
+    energy -= joint_potential(joint, L, std::abs(natural)) +
+              natural_moment(bending, i, L) * (signed_turn(before, after) - natural);
   }
   return energy;
 }

@@ -8,18 +8,18 @@
 
 namespace dlo::force_model {
 
-using KernelOfSet = const StepKernel& (*)(BendingLaw law, int dimension, std::ptrdiff_t stride);
+using KernelOfSet = const StepKernel& (*)(const KernelChoice& choice, std::ptrdiff_t stride);
 
 // One for each time that step_kernel.cpp is compiled.
 namespace kernel_baseline {
-const StepKernel& step_kernel(BendingLaw law, int dimension, std::ptrdiff_t stride);
+const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride);
 }
 #if defined(__x86_64__)
 namespace kernel_avx2 {
-const StepKernel& step_kernel(BendingLaw law, int dimension, std::ptrdiff_t stride);
+const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride);
 }
 namespace kernel_avx512 {
-const StepKernel& step_kernel(BendingLaw law, int dimension, std::ptrdiff_t stride);
+const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride);
 }
 #endif
 
@@ -74,14 +74,14 @@ InstructionSet fastest_instruction_set() {
   return fastest;
 }
 
-const StepKernel& step_kernel(InstructionSet set, BendingLaw law, int dimension,
+const StepKernel& step_kernel(InstructionSet set, const KernelChoice& choice,
                               std::ptrdiff_t stride) {
   const KernelOfSet kernel = kernel_of(set);
   if (kernel == nullptr) {
     throw std::invalid_argument(std::string("step_kernel: instruction set = ") + to_string(set) +
                                 ", must be one that this machine has");
   }
-  return kernel(law, dimension, stride);
+  return kernel(choice, stride);
 }
 
 }  // namespace dlo::force_model

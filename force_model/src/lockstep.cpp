@@ -13,11 +13,17 @@ namespace {
 // Movements below this share of the coordinates are rounding, which turns back and forth at rest.
 constexpr double rounding_share = 1024 * std::numeric_limits<double>::epsilon();
 
+/// Natural turns have a sign in the plane z = 0 only.
+bool is_bound_to_plane(const Rod& rod) { return rod.bending.natural_turns.size() > 0; }
+
 std::vector<Rod> checked_rods(std::span<const BatchRod> start) {
   std::vector<Rod> rods;
   for (const BatchRod& one : start) {
     check(one.rod);
     require_polygon("Simulation", one.points, one.rod.rest_lengths);
+    const double across = one.points.row(2).cwiseAbs().maxCoeff();
+    require(!is_bound_to_plane(one.rod) || across == 0, "Simulation", "largest z of a point",
+            across, "0 of a rod with natural turns, which have no sign in space");
     rods.push_back(one.rod);
   }
   return rods;
@@ -172,6 +178,8 @@ void Lockstep::move_grip(std::size_t rod, std::size_t grip,
           static_cast<double>(targets.cols()), "the number of points held");
   require(targets.allFinite() && reference.allFinite(), "Simulation::move_grip", "targets",
           targets.norm(), "finite");
+  require(!is_bound_to_plane(held) || targets.row(2).isZero(0), "Simulation::move_grip",
+          "z of targets", targets.row(2).cwiseAbs().maxCoeff(), "0 of a rod with natural turns");
   moved.targets = targets;
   moved.reference = reference;
   if (moved.hold == GripHold::rigid) {
@@ -188,6 +196,8 @@ void Lockstep::move_wall(std::size_t rod, std::size_t wall, const Wall& moved) {
   require(wall < held.walls.size(), "Simulation::move_wall", "wall", static_cast<double>(wall),
           "smaller than the number of walls");
   check(moved);
+  require(!is_bound_to_plane(held) || moved.normal.z() == 0, "Simulation::move_wall",
+          "z of the normal", moved.normal.z(), "0 of a rod with natural turns");
   held.walls[wall] = moved;
   block_.set_walls(rods_);
   block_.update_dimension(rods_);

@@ -45,6 +45,14 @@ Eigen::Vector3d on_held_point(const Grip& grip, Eigen::Index k, const Points& po
 
 }  // namespace
 
+bool is_planar(const Rod& rod) {
+  const auto in_plane = [](const Grip& grip) { return (grip.targets.row(2).array() == 0).all(); };
+  const auto upright = [](const Wall& wall) { return wall.normal.z() == 0; };
+  return (rod.loads.row(2).array() == 0).all() &&
+         std::all_of(rod.grips.begin(), rod.grips.end(), in_plane) &&
+         std::all_of(rod.walls.begin(), rod.walls.end(), upright);
+}
+
 void check(const Rod& rod) {
   const auto segments = static_cast<double>(rod.rest_lengths.size());
   require(segments >= 1, "Rod", "number of segments", segments, ">= 1");
@@ -52,13 +60,18 @@ void check(const Rod& rod) {
   require(shortest > 0 && rod.rest_lengths.allFinite(), "Rod", "smallest rest length", shortest,
           "finite and > 0");
   require_not_negative("Rod", "c_c", rod.c_c);
-  require_not_negative("Rod", "bending stiffness", rod.bending.stiffness);
+  check(rod.bending, rod.rest_lengths.size());
   require(rod.loads.cols() == rod.points(), "Rod", "columns of loads",
           static_cast<double>(rod.loads.cols()), "the number of points");
   require(rod.loads.allFinite(), "Rod", "loads", rod.loads.norm(), "finite");
   for (const Wall& wall : rod.walls) check(wall);
   for (const Grip& grip : rod.grips) check_grip(grip, rod.points());
   require_own_points("Rod", rod.grips);
+  if (rod.bending.natural_turns.size() > 0) {
+    require(is_planar(rod), "Rod", "number of natural turns",
+            static_cast<double>(rod.bending.natural_turns.size()),
+            "0 unless loads, grips and walls lie in the plane z = 0");
+  }
 }
 
 void total_forces(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matrix3Xd> forces) {

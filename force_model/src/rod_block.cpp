@@ -7,14 +7,7 @@ namespace {
 
 constexpr int axes = 3;
 
-/// Whether no force can leave the plane z = 0 that all points lie in.
-bool is_planar(const Rod& rod) {
-  const auto in_plane = [](const Grip& grip) { return (grip.targets.row(2).array() == 0).all(); };
-  const auto upright = [](const Wall& wall) { return wall.normal.z() == 0; };
-  return (rod.loads.row(2).array() == 0).all() &&
-         std::all_of(rod.grips.begin(), rod.grips.end(), in_plane) &&
-         std::all_of(rod.walls.begin(), rod.walls.end(), upright);
-}
+bool is_naturally_bent(const Rod& rod) { return rod.bending.natural_turns.size() > 0; }
 
 bool has_spring_grips(const Rod& rod) {
   return std::any_of(rod.grips.begin(), rod.grips.end(),
@@ -34,6 +27,7 @@ RodBlock::RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set)
       pitch_(size_ + block_lanes),
       set_(set),
       law_(rods.front().bending.law),
+      natural_(std::any_of(rods.begin(), rods.end(), is_naturally_bent)),
       spring_grips_(std::any_of(rods.begin(), rods.end(), has_spring_grips)),
       plain_points_(axes, points_),
       plain_forces_(axes, points_) {
@@ -45,7 +39,7 @@ RodBlock::RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set)
     set_rod(lane, rods[lane < rods.size() ? lane : 0]);
   }
   set_walls(rods);
-  kernel_ = &step_kernel(set_, law_, 3, stride_);
+  kernel_ = &step_kernel(set_, {.law = law_}, stride_);
 }
 
 PointBlock RodBlock::block() {
@@ -99,8 +93,10 @@ void RodBlock::set_rod(std::size_t lane, const Rod& rod) {
     at(stretch, k) = rod.c_c / L[i];
     if (i == 0) continue;
     at(is_joint, k) = 1;
-    const double c = rod.bending.stiffness;
-    at(bend, k) = law_ == BendingLaw::hooke ? 2 * c / ((L[i - 1] + L[i]) / 2) : c;
+    const double c = bending_at(rod.bending, i).stiffness;
+    const double mean = (L[i - 1] + L[i]) / 2;
+    at(bend, k) = law_ == BendingLaw::hooke ? 2 * c / mean : c;
+    at(natural, k) = natural_moment(rod.bending, i, mean);
   }
   for (const Grip& grip : rod.grips) {
     if (grip.hold == GripHold::spring) continue;
@@ -134,7 +130,9 @@ void RodBlock::update_dimension(std::span<const Rod> rods) {
   };
   const bool planar = std::all_of(rods.begin(), rods.end(), is_planar) && flat(positions) &&
                       flat(proposals) && flat(proposals + axes);
-  kernel_ = &step_kernel(set_, law_, planar ? 2 : 3, stride_);
+  // In space there is no kernel with natural turns; Lockstep lets no such rod leave the plane.
+  kernel_ = &step_kernel(
+      set_, {.law = law_, .dimension = planar ? 2 : 3, .natural = natural_ && planar}, stride_);
 }
 
 void RodBlock::add_spring_grips(std::span<const Rod> rods) {

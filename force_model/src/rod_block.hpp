@@ -74,6 +74,7 @@ class RodBlock {
   std::ptrdiff_t pitch_ = 0;
   InstructionSet set_ = InstructionSet::baseline;
   BendingLaw law_ = BendingLaw::hooke;
+  bool natural_ = false;  // some rod is not straight by nature
   const StepKernel* kernel_ = nullptr;
   std::vector<Line> memory_;
   std::vector<WallLanes> walls_;

@@ -16,7 +16,10 @@
 // so what acts through segment k, contraction and the joints at its ends, is one force
 //     T_k = c_c (1/L_k - 1/|s_k|) s_k - (h - (h.u_k) u_k)         (c)
 //     h = m_k s_{k-1} + m_{k+1} s_{k+1}
-// on P_k and its opposite on P_{k+1}; the inner force of a point is T_k - T_{k-1}.
+// on P_k and its opposite on P_{k+1}; the inner force of a point is T_k - T_{k-1}. Joints that are
+// turned at rest (hooke, in the plane z = 0) have constant couples C_k besides, against which a
+// segment bears, with s turned to the left by a right angle,
+//     T_k += (C_{k+1} - C_k) left(s_k) / |s_k|^2                  (d)
 
 namespace dlo::force_model::DLO_KERNEL {
 namespace {
@@ -36,7 +39,10 @@ struct Segments {
   Lanes m = {};
 };
 
-template <BendingLaw law, int dimension, std::ptrdiff_t stride>
+/// Of vectors in the plane z = 0.
+inline LaneVector<2> left(const LaneVector<2>& s) { return {{-s.axis[1], s.axis[0]}}; }
+
+template <BendingLaw law, int dimension, std::ptrdiff_t stride, bool with_couples>
 void compute_forces(const PointBlock& block, PointArray applied, PerLane& regular) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
@@ -82,7 +88,11 @@ void compute_forces(const PointBlock& block, PointArray applied, PerLane& regula
       const Vector h = here.m * here.s_before +
                        All::after(here.m, following.m) * All::after(here.s, following.s);
       const Lanes along = (tension + dot(h, here.s) * inverse) * inverse;
-      const Vector T = along * here.s - h;                   // (c)
+      Vector T = along * here.s - h;  // (c)
+      if constexpr (with_couples) {
+        const Lanes couple = all.load(natural, k + stride) - all.load(natural, k);
+        T = T + (couple * inverse * inverse) * left(here.s);  // (d)
+      }
       const Vector inner = T - All::before(T_previous, T);   // (2), (4)
       const Vector F = inner + all.load_vector(applied, k);  // (6)
       all.store_vector(forces, k, all.load(is_free, k) * F);
@@ -115,7 +125,7 @@ Lanes joint_mode(Lanes stiffness, Lanes ab, Lanes product, Lanes L, Lanes lever)
   }
 }
 
-template <BendingLaw law, int dimension, std::ptrdiff_t stride>
+template <BendingLaw law, int dimension, std::ptrdiff_t stride, bool with_couples>
 void look_at_modes(const PointBlock& block, ModeLook& look) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
@@ -141,8 +151,12 @@ void look_at_modes(const PointBlock& block, ModeLook& look) {
       const Lanes product = dot(All::before(s_previous, s), s);
       const Lanes mean = (All::before(rest_previous, rest) + rest) / 2;
       const Lanes lever = min(All::before(bounded_previous, bounded), bounded);
-      const Lanes joint = joint_mode<law>(
+      Lanes joint = joint_mode<law>(
           all.load(bend, k), All::before(length_previous, length) * length, product, mean, lever);
+      if constexpr (with_couples) {
+        const Lanes couple = all.load(natural, k);
+        joint += 4 * max(couple, -couple) / (lever * lever);
+      }
       bending = max(all.load(is_joint, k) > 0 ? joint : Lanes{}, bending);
 
       const Vector F = all.load_vector(forces, k);
@@ -250,19 +264,20 @@ void move(const PointBlock& block, int turn, const PerLane& c_m) {
   }
 }
 
-template <BendingLaw law, int dimension, std::ptrdiff_t stride>
+template <BendingLaw law, int dimension, std::ptrdiff_t stride, bool with_couples>
 constexpr StepKernel kernel = {
     .add_walls = add_walls<dimension, stride>,
-    .compute_forces = compute_forces<law, dimension, stride>,
-    .look_at_modes = look_at_modes<law, dimension, stride>,
+    .compute_forces = compute_forces<law, dimension, stride, with_couples>,
+    .look_at_modes = look_at_modes<law, dimension, stride, with_couples>,
     .propose_relative = propose<true, dimension, stride>,
     .propose_absolute = propose<false, dimension, stride>,
     .move = move<dimension, stride>,
 };
 
-template <BendingLaw law, int dimension>
+template <BendingLaw law, int dimension, bool with_couples = false>
 const StepKernel& with_stride(std::ptrdiff_t stride) {
-  return stride == 1 ? kernel<law, dimension, 1> : kernel<law, dimension, block_lanes>;
+  return stride == 1 ? kernel<law, dimension, 1, with_couples>
+                     : kernel<law, dimension, block_lanes, with_couples>;
 }
 
 template <BendingLaw law>
@@ -272,11 +287,13 @@ const StepKernel& with_dimension(int dimension, std::ptrdiff_t stride) {
 
 }  // namespace
 
-const StepKernel& step_kernel(BendingLaw law, int dimension, std::ptrdiff_t stride);
+const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride);
 
-const StepKernel& step_kernel(BendingLaw law, int dimension, std::ptrdiff_t stride) {
-  return law == BendingLaw::hooke ? with_dimension<BendingLaw::hooke>(dimension, stride)
-                                  : with_dimension<BendingLaw::paper>(dimension, stride);
+const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride) {
+  if (choice.natural) return with_stride<BendingLaw::hooke, 2, true>(stride);
+  return choice.law == BendingLaw::hooke
+             ? with_dimension<BendingLaw::hooke>(choice.dimension, stride)
+             : with_dimension<BendingLaw::paper>(choice.dimension, stride);
 }
 
 }  // namespace dlo::force_model::DLO_KERNEL

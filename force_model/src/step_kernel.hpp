@@ -33,7 +33,8 @@ enum PointArray : int {
   turned_back = 24,      ///< 1 where a step goes against the one before; of this step and the last
   last_positions = 26,   ///< when the modes were last looked at [m], 3 axes
   last_forces = 29,      ///< then [N], 3 axes
-  point_array_count = 32
+  natural = 32,          ///< couple of a joint that is turned at rest [N m], from x to y
+  point_array_count = 33
 };
 
 /// Structure of arrays. Element k of a single rod is point k (`stride` 1); of eight rods in
@@ -67,7 +68,14 @@ struct ModeLook {
   PerLane point_change;  ///< dP.dP [m^2]
 };
 
-/// The parts of a step for one bending law, dimension, stride and instruction set.
+/// What a kernel is made for.
+struct KernelChoice {
+  BendingLaw law = BendingLaw::hooke;  ///< of all joints
+  int dimension = 3;                   ///< 2 (z stays 0) or 3
+  bool natural = false;                ///< joints have couples; law hooke and dimension 2 only
+};
+
+/// The parts of a step for one choice, stride and instruction set.
 struct StepKernel {
   /// external_forces = loads + walls
   void (*add_walls)(const PointBlock& block, const WallLanes* walls, std::ptrdiff_t count);
@@ -92,9 +100,9 @@ struct StepKernel {
   void (*move)(const PointBlock& block, int turn, const PerLane& c_m);
 };
 
-/// @param stride  1 or 8; @param dimension  2 (z stays 0) or 3
+/// @param stride  1 or 8
 /// @throws std::invalid_argument if the machine lacks the instruction set
-[[nodiscard]] const StepKernel& step_kernel(InstructionSet set, BendingLaw law, int dimension,
+[[nodiscard]] const StepKernel& step_kernel(InstructionSet set, const KernelChoice& choice,
                                             std::ptrdiff_t stride);
 
 }  // namespace dlo::force_model

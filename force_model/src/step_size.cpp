@@ -33,8 +33,10 @@ double fastest_inner_mode(const Rod& rod, const Points& points) {
       const bool directed = !previous.isZero(0) && !segment.isZero(0);
       const double alpha =
           directed ? std::atan2(previous.cross(segment).norm(), previous.dot(segment)) : 0;
-      bending = std::max(bending, (16 * joint_stiffness(rod.bending, mean, alpha) +
-                                   4 * joint_moment(rod.bending, mean, alpha)) /
+      const Bending joint = bending_at(rod.bending, i);
+      bending = std::max(bending, (16 * joint_stiffness(joint, mean, alpha) +
+                                   4 * joint_moment(joint, mean, alpha) +
+                                   4 * std::abs(natural_moment(rod.bending, i, mean))) /
                                       (lever * lever));
     }
     previous = segment;
@@ -45,10 +47,13 @@ double fastest_inner_mode(const Rod& rod, const Points& points) {
 
 /// EI of a Hookean rod that would bend as far under these loads.
 double equivalent_rigidity(const Rod& rod) {
-  if (rod.bending.law == BendingLaw::hooke) return rod.bending.stiffness;
+  const bool alike = rod.bending.stiffnesses.size() == 0;
+  const double stiffness =
+      alike ? rod.bending.stiffness : rod.bending.stiffnesses.minCoeff();  // the slowest
+  if (rod.bending.law == BendingLaw::hooke) return stiffness;
   const double L = rod.rest_lengths.mean();
   const double moment = rod.loads.colwise().norm().sum() * rod.length() / 2;
-  const double full = joint_moment(rod.bending, L, 3.0);
+  const double full = joint_moment({rod.bending.law, stiffness}, L, 3.0);
   if (!(moment > 0 && full > 0)) return 0;
   const double alpha = 2 * std::asin(std::cbrt(std::min(1.0, moment / full)));
   return std::min(moment, full) * L / alpha;

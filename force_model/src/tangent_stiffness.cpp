@@ -62,7 +62,10 @@ Eigen::Matrix3Xd falling_direction(const Factor& factor, const std::vector<Eigen
 /// With x the points that a term depends on and f its force on them, each adds -df/dx.
 class TangentStiffness {
  public:
-  explicit TangentStiffness(const Rod& rod) : index_(free_indices(rod, count_)) {
+  explicit TangentStiffness(const Rod& rod)
+      : index_(free_indices(rod, count_)),
+        across_plane_(rod.bending.natural_turns.size() > 0 ? rod.c_c / rod.rest_lengths.minCoeff()
+                                                           : 0) {
     entries_.reserve(static_cast<std::size_t>(45 * count_));
   }
 
@@ -74,8 +77,9 @@ class TangentStiffness {
     const Eigen::Index row = index_[static_cast<std::size_t>(i)];
     const Eigen::Index column = index_[static_cast<std::size_t>(j)];
     if (row < 0 || column < 0) return;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      for (Eigen::Index m = 0; m < 3; ++m) {
+    const Eigen::Index axes = across_plane_ > 0 ? 2 : 3;
+    for (Eigen::Index k = 0; k < axes; ++k) {
+      for (Eigen::Index m = 0; m < axes; ++m) {
         entries_.emplace_back(3 * row + k, 3 * column + m, block(k, m));
         if (i != j) entries_.emplace_back(3 * column + m, 3 * row + k, block(k, m));
       }
@@ -85,6 +89,9 @@ class TangentStiffness {
   [[nodiscard]] Eigen::SparseMatrix<double> matrix() const {
     Eigen::SparseMatrix<double> result(3 * count_, 3 * count_);
     result.setFromTriplets(entries_.begin(), entries_.end());
+    if (across_plane_ > 0) {
+      for (Eigen::Index i = 2; i < 3 * count_; i += 3) result.insert(i, i) = across_plane_;
+    }
     return result;
   }
 
@@ -109,6 +116,7 @@ class TangentStiffness {
  private:
   Eigen::Index count_ = 0;
   std::vector<Eigen::Index> index_;
+  double across_plane_ = 0;  // of points that stay in the plane z = 0, else 0 [N/m]
   std::vector<Eigen::Triplet<double>> entries_;
 };
 
@@ -171,6 +179,16 @@ JointFactor joint_factor(const Bending& bending, double L, const Eigen::Vector3d
   return factor;
 }
 
+/// Second derivative by s of the angle of s in the plane z = 0.
+Eigen::Matrix3d second_of_direction_angle(const Eigen::Vector3d& s) {
+  const double square = s.head<2>().squaredNorm();
+  const double xy = 2 * s.x() * s.y();
+  const double difference = s.y() * s.y() - s.x() * s.x();
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  result.topLeftCorner<2, 2>() << xy, difference, difference, -xy;
+  return result / (square * square);
+}
+
 void add_joints(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                 TangentStiffness& stiffness) {
   const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
@@ -198,11 +216,17 @@ void add_joints(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points
         (one - v * v.transpose() - u * by_b.transpose()) / (a_length * b_length);
     second.bottomLeftCorner<3, 3>() = second.topRightCorner<3, 3>().transpose();
     const double L = (rod.rest_lengths[i - 1] + rod.rest_lengths[i]) / 2;
-    const JointFactor factor = joint_factor(rod.bending, L, a, b, c, slope);
+    const JointFactor factor = joint_factor(bending_at(rod.bending, i), L, a, b, c, slope);
     const Matrix6d turning = slope * factor.slope.transpose();
     const Matrix6d by_segments = -(turning + turning.transpose()) / 2 - factor.S * second;
-    const Eigen::Matrix3d A = by_segments.topLeftCorner<3, 3>();
-    const Eigen::Matrix3d B = by_segments.bottomRightCorner<3, 3>();
+    Eigen::Matrix3d A = by_segments.topLeftCorner<3, 3>();
+    Eigen::Matrix3d B = by_segments.bottomRightCorner<3, 3>();
+    if (rod.bending.natural_turns.size() > 0) {
+      // Its potential is -C (angle of b - angle of a).
+      const double couple = natural_moment(rod.bending, i, L);
+      A += couple * second_of_direction_angle(a);
+      B -= couple * second_of_direction_angle(b);
+    }
     const Eigen::Matrix3d AB = by_segments.topRightCorner<3, 3>();
     // a = P_i - P_{i-1}, b = P_{i+1} - P_i
     stiffness.add(i - 1, i - 1, A);

@@ -19,7 +19,7 @@ struct BalanceDefects {
   double torque = 0;    ///< of all torques about a section, the largest of all sections, over
                         ///< largest force times l plus largest torque
   double moment = 0;    ///< largest |EI t x t' + GJ tau t - torque of all that lies beyond|, over
-                        ///< the same
+                        ///< the same; of a rod that is straight by nature
   double grips = 0;     ///< positions over l, and directions
   double integral = 0;  ///< largest |r(b) - r(a) - int t ds| over l, and ||t| - 1|
 
@@ -40,11 +40,24 @@ struct CarriedLoad {
   }
 };
 
-/// The arc lengths where something happens: ends, grips, loads; growing, each once.
+/// The rod's section at an arc length.
+inline energy_model::Section section_at(const energy_model::Problem& problem, double at) {
+  for (const energy_model::Section& section : problem.sections) {
+    if (section.begin < at && at < section.end) return section;
+  }
+  return {0, problem.length, problem.bending_stiffness, problem.torsional_stiffness,
+          problem.weight_per_length};
+}
+
+/// The arc lengths where something happens: ends, grips, loads, sections; growing, each once.
 inline std::vector<double> events_of(const energy_model::Problem& problem) {
   std::vector<double> events = {0, problem.length};
   for (const energy_model::Grip& grip : problem.grips) events.push_back(grip.at);
   for (const energy_model::Load& load : problem.loads) events.push_back(load.at);
+  for (const energy_model::Section& section : problem.sections) {
+    events.push_back(section.begin);
+    events.push_back(section.end);
+  }
   std::sort(events.begin(), events.end());
   events.erase(std::unique(events.begin(), events.end()), events.end());
   return events;
@@ -138,20 +151,21 @@ inline BalanceDefects balance_of(const energy_model::Problem& problem,
     raise(defects.integral, (point - at_cuts.points.col(here - 1) - run).norm() / l);
     // Where something happens, the curvature has a kink or a jump.
     const bool event = std::binary_search(events.begin(), events.end(), cuts[c]);
-    if (!event) {
+    if (!event && problem.natural_strains.empty()) {
       const Eigen::Vector3d tangent = at_cuts.tangents.col(here);
-      Eigen::Vector3d moment =
-          problem.bending_stiffness * tangent.cross(Eigen::Vector3d(at_cuts.curvature.col(here)));
+      Eigen::Vector3d moment = section_at(problem, cuts[c]).bending_stiffness *
+                               tangent.cross(Eigen::Vector3d(at_cuts.curvature.col(here)));
       for (const energy_model::TwistedPart& part : shape.twists) {
         if (part.begin < cuts[c] && cuts[c] < part.end) moment += part.torque * tangent;
       }
       const Eigen::Vector3d carried = beyond.torque_about_origin - point.cross(beyond.force);
       raise(defects.moment, (moment - carried).norm() / torque_unit);
     }
+    const Eigen::Vector3d own_weight =
+        section_at(problem, (cuts[c - 1] + cuts[c]) / 2).weight_per_length;
     for (std::size_t k = 0; k < per_panel; ++k) {
       const auto q = static_cast<Eigen::Index>((c - 1) * per_panel + k);
-      beyond.add(between.points.col(q),
-                 share[static_cast<std::size_t>(q)] * problem.weight_per_length);
+      beyond.add(between.points.col(q), share[static_cast<std::size_t>(q)] * own_weight);
     }
   }
   defects.force = beyond.force.norm() / largest_force;

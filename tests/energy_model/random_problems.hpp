@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "dlo/energy_model/problem.hpp"
@@ -13,11 +14,12 @@
 namespace dlo::test {
 
 /// Where a random rod, its grips and its forces lie: in the x-y plane or anywhere; there it may be
-/// twisted too.
-enum class RandomSpace { plane, space, twisted };
+/// twisted too, or curved by nature.
+enum class RandomSpace { plane, space, twisted, curved };
 
 inline const char* name_of(RandomSpace space) {
   if (space == RandomSpace::twisted) return "twisted";
+  if (space == RandomSpace::curved) return "curved";
   return space == RandomSpace::plane ? "plane" : "space";
 }
 
@@ -124,6 +126,7 @@ inline std::vector<double> random_grip_places(RandomNumbers& random, int count) 
 }
 
 inline energy_model::Problem twisted_problem(std::uint64_t number);
+inline energy_model::Problem curved_problem(std::uint64_t number);
 
 /// A rod of unit length and stiffness under a weight along -y with Gamma = w l^3 / (EI) between
 /// 1e-2 and 1e4, 1 to 3 clamps and pins and 0 to 3 loads of up to 0.6 (1 + Gamma) EI/l^2 each.
@@ -133,8 +136,13 @@ inline energy_model::Problem twisted_problem(std::uint64_t number);
 ///
 /// What is twisted is one of those in space with two grips or more, all of them clamps that hold
 /// frames, turned by up to three turns, with GJ of 0.4 to 1.2 EI.
+///
+/// What is curved by nature has strains of up to 5/l about each axis, in one of two cases a section
+/// of another kind, a clamp at its begin and in three of four cases a clamp or a pin besides; Gamma
+/// is between 0.1 and 300. Every other one lies in the x-y plane.
 inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace space) {
   if (space == RandomSpace::twisted) return twisted_problem(number);
+  if (space == RandomSpace::curved) return curved_problem(number);
   RandomNumbers random(2 * number + (space == RandomSpace::space ? 1 : 0));
   energy_model::Problem problem;
   problem.length = 1;
@@ -147,13 +155,12 @@ inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace sp
   const double nearer = kind == 2 ? random.uniform(0.05, 1) : 0.999;
   const int grips = 1 + random.below(3);
   for (const double at : random_grip_places(random, grips)) {
-    energy_model::Grip grip;
+    energy_model::Grip& grip = problem.grips.emplace_back();
     grip.at = at;
     grip.position = nearer * curve.point(at);
     if (random.chance(grips == 1 ? 0.85 : 0.55)) {
       grip.direction = turned ? random.direction(space) : curve.tangent(at);
     }
-    problem.grips.push_back(grip);
   }
   const int loads = random.below(4);
   for (int j = 0; j < loads; ++j) {
@@ -179,6 +186,44 @@ inline energy_model::Problem twisted_problem(std::uint64_t number) {
     // Two of them are turned against each other by as much again.
     grip.frame->roll = std::numbers::pi * random.uniform(-most_turns, most_turns);
   }
+  return problem;
+}
+
+inline energy_model::Problem curved_problem(std::uint64_t number) {
+  constexpr std::uint64_t of_their_own = 1U << 24U;
+  RandomNumbers random(of_their_own + number);
+  const bool planar = number % 2 == 0;
+  const RandomSpace space = planar ? RandomSpace::plane : RandomSpace::space;
+  const auto strain = [&](double most) {
+    const double bend = random.uniform(-most, most);
+    if (planar) return Eigen::Vector3d(0, bend, 0);
+    return Eigen::Vector3d(random.uniform(-most, most), bend, random.uniform(-most, most));
+  };
+  energy_model::Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.torsional_stiffness = random.uniform(0.4, 1.2);
+  const double gamma = std::pow(10, random.uniform(-1, 2.5));
+  problem.weight_per_length = gamma * random.direction(space);
+  problem.natural_strains = {strain(5), strain(2)};
+  if (random.chance(0.5)) {
+    const double begin = random_arc_length(random, 0.1, 0.5);
+    problem.sections = {{begin, begin + 0.3, random.uniform(0.3, 4), random.uniform(0.3, 4),
+                         random.uniform(0, 3) * problem.weight_per_length}};
+  }
+  const Eigen::Vector3d y = Eigen::Vector3d::UnitY();
+  const double roll = planar ? 0 : random.uniform(-1, 1);
+  problem.grips = {{0, {0, 0, 0}, Eigen::Vector3d::UnitX(), energy_model::FrameHold{y, roll}}};
+  const int kind = random.below(4);
+  if (kind == 0) return problem;
+  const double at = kind == 1 ? 0.7 : 1;
+  const double height = planar ? 0 : random.uniform(-0.3, 0.3);
+  energy_model::Grip& grip = problem.grips.emplace_back();
+  grip.at = at;
+  grip.position = {at * random.uniform(0.2, 0.75), at * random.uniform(-0.3, 0.3), height};
+  if (kind > 1) grip.direction = random.direction(space);
+  if (kind < 3) return problem;
+  grip.frame.emplace().roll = planar ? 0 : random.uniform(-std::numbers::pi, std::numbers::pi);
   return problem;
 }
 

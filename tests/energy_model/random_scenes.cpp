@@ -1,6 +1,7 @@
 // Random scenes, the minimiser against multiple shooting, each shape against force and torque
 // balance. Prints what converged, what was refused and why, the slowest, and how both agree.
-//   dlo_random_scenes [--plane N] [--space N] [--twisted N] [--first K] [--time-limit SECONDS]
+//   dlo_random_scenes [--plane N] [--space N] [--twisted N] [--curved N] [--first K] [--time-limit
+//   SECONDS]
 //   [--write FOLDER]
 // Ends with 0 if no two converged shapes contradict each other, no equilibrium is out of balance
 // and no solve overran the limit; 1 if not; 2 for bad usage.
@@ -28,6 +29,7 @@ struct Options {
   std::uint64_t plane = 200;
   std::uint64_t space = 200;
   std::uint64_t twisted = 100;
+  std::uint64_t curved = 100;
   std::uint64_t first = 0;
   double time_limit = 20;
   std::string folder;
@@ -46,6 +48,8 @@ Options read_options(int argc, char** argv) {
       options.space = std::stoul(value, &used);
     } else if (name == "--twisted") {
       options.twisted = std::stoul(value, &used);
+    } else if (name == "--curved") {
+      options.curved = std::stoul(value, &used);
     } else if (name == "--first") {
       options.first = std::stoul(value, &used);
     } else if (name == "--time-limit") {
@@ -115,7 +119,8 @@ int run(const Options& options, RandomSpace space, std::uint64_t count) {
     const dlo::energy_model::Problem problem = dlo::test::random_problem(number, space);
     const auto complain = [&](const std::string& what) {
       std::printf("  %s %lu: %s\n", kind, number, what.c_str());
-      if (options.folder.empty()) return;
+      // A scene file has one natural curvature, not a series.
+      if (options.folder.empty() || space == RandomSpace::curved) return;
       const std::string name = std::string(kind) + "_" + std::to_string(number);
       std::ofstream(options.folder + "/" + name + ".toml") << dlo::test::scene_text(problem, name);
     };
@@ -174,7 +179,8 @@ int main(int argc, char** argv) {
   }
   const int bad = run(options, RandomSpace::plane, options.plane) +
                   run(options, RandomSpace::space, options.space) +
-                  run(options, RandomSpace::twisted, options.twisted);
+                  run(options, RandomSpace::twisted, options.twisted) +
+                  run(options, RandomSpace::curved, options.curved);
   std::printf("%d scenes contradict, are out of balance or overran the limit\n", bad);
   return bad == 0 ? 0 : 1;
 }

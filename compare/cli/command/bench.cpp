@@ -23,7 +23,7 @@ struct BenchOptions {
 void run(const BenchOptions& options) {
   std::vector<compare::Scene> scenes;
   for (const std::string& path : options.scenes) scenes.push_back(compare::load_scene(path));
-  for (const compare::Scene& scene : scenes) warn_of_twist(scene);
+  for (const compare::Scene& scene : scenes) warn_of_polygons(scene);
   if (scenes.empty()) scenes = compare::benchmark_scenes();
   const compare::BenchmarkReport report = [&] {
     ProgressBar bar("bench");

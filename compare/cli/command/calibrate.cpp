@@ -16,7 +16,7 @@
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
 #include "option/terminal.hpp"
-#include "scene/quantity.hpp"
+#include "toml/quantity.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -111,7 +111,7 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
   const std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   const std::vector<compare::Scene> holdouts = load_all(options.holdouts, options.overrides);
   for (const auto* list : {&scenes, &holdouts}) {
-    for (const compare::Scene& scene : *list) warn_of_twist(scene);
+    for (const compare::Scene& scene : *list) warn_of_polygons(scene);
   }
   compare::ForceModelFitOptions fit_options;
   if (points_are_given) fit_options.points = scenes.front().force_model.points;

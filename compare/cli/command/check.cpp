@@ -15,7 +15,7 @@
 #include "option/scene_options.hpp"
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
-#include "scene/quantity.hpp"
+#include "toml/quantity.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -36,7 +36,7 @@ void run(const CompareOptions& options) {
     ProgressBar bar("compare");
     for (const std::string& path : options.scenes) {
       const compare::Scene scene = options.overrides.load(path);
-      if (options.output.is(Format::csv)) warn_of_twist(scene);
+      if (options.output.is(Format::csv)) warn_of_polygons(scene);
       comparisons.push_back(compare::compare(
           scene, solve, plan,
           options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes));

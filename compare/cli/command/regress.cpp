@@ -36,7 +36,7 @@ struct RegressOptions {
 
 MeasuredCase measure(const RegressOptions& options, const std::string& path) {
   const compare::Scene scene = options.overrides.load(path);
-  warn_of_twist(scene);
+  warn_of_polygons(scene);
   const auto model = compare::from_name<compare::Model>(options.model);
   try {
     return {compare::measure_case(scene, model, options.overrides.solve()), ""};

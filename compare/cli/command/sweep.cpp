@@ -11,6 +11,7 @@
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
+#include "polygon/natural_plane.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -58,13 +59,18 @@ compare::Sweep sweep_of(const SweepOptions& options) {
           options.scene.solve()};
 }
 
-/// By the first scene of the grid; one that cannot be read says so in its row.
-void warn_of_twist_in(const compare::Sweep& sweep, const std::string& model) {
+/// By the first scene of the grid of which polygons leave something out, of its two ends; one that
+/// cannot be read says so in its row.
+void warn_of_polygons_in(const compare::Sweep& sweep, const std::string& model) {
   if (model == "energy" || model == "exact") return;
-  try {
-    warn_of_twist(sweep.scene(0));
-  } catch (const compare::InputError&) {
-    return;
+  for (const std::int64_t row : {std::int64_t{0}, sweep.grid().size() - 1}) {
+    try {
+      const compare::Scene scene = sweep.scene(row);
+      if (compare::left_out_of_polygon(scene, scene.force_model).empty()) continue;
+      return warn_of_polygons(scene);
+    } catch (const compare::InputError&) {
+      continue;
+    }
   }
 }
 
@@ -119,7 +125,7 @@ void run(SweepOptions options, const std::vector<std::string>& inputs) {
         "sweep: no --vary FIELD=VALUES given (allowed: such as --vary gamma=1,10)");
   }
   const compare::Sweep sweep = sweep_of(options);
-  warn_of_twist_in(sweep, options.model);
+  warn_of_polygons_in(sweep, options.model);
   const std::optional<compare::Shard> shard = chosen_shard(options.shard);
   if (options.output.empty()) return print_sweep(sweep, shard, options.threads);
   const std::string path = output_path(options.output, shard);

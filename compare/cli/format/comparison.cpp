@@ -1,5 +1,6 @@
 #include "format/comparison.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -12,6 +13,11 @@ namespace dlo::cli {
 
 namespace {
 
+bool leaves_out(const compare::Comparison& comparison, const char* what) {
+  const std::vector<std::string>& left_out = comparison.force.left_out;
+  return std::find(left_out.begin(), left_out.end(), what) != left_out.end();
+}
+
 void add_budget(std::string& out, const compare::Comparison& comparison) {
   const compare::Budget& b = comparison.budget;
   // A share is a part's projection on the total, so that the shares add up; a part across the total
@@ -20,6 +26,7 @@ void add_budget(std::string& out, const compare::Comparison& comparison) {
          b.total_m * 1e3);
   const std::pair<const char*, const compare::BudgetPart*> parts[] = {
       {"twist", &b.twist},
+      {"natural curvature", &b.natural_curvature},
       {"law", &b.law},
       {"bookkeeping", &b.bookkeeping},
       {"discretisation", &b.discretisation},
@@ -27,8 +34,9 @@ void add_budget(std::string& out, const compare::Comparison& comparison) {
       {"not at rest", &b.not_at_rest},
       {"interaction", &b.interaction}};
   for (const auto& [name, part] : parts) {
-    if (part == &b.twist && comparison.force.left_out.empty()) continue;
-    append(out, "                  {:<16}{:>10.4g} mm {:>9.2f} %\n", name, part->rms_m * 1e3,
+    if (part == &b.twist && !leaves_out(comparison, "twist")) continue;
+    if (part == &b.natural_curvature && !leaves_out(comparison, "natural curvature")) continue;
+    append(out, "                  {:<17}{:>9.4g} mm {:>9.2f} %\n", name, part->rms_m * 1e3,
            part->share * 100 + 0.0);
   }
 }
@@ -54,13 +62,14 @@ void add_state(std::string& out, const compare::ComparedState& state, double len
 }
 
 void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, double movement_m,
-                 double modulus_Pa) {
+                 const compare::NamedValue& of, double value) {
+  const std::string ratio = fmt::format("{0}*/{0}", of.name);
   if (modulus.optimum == compare::Optimum::none) {
-    append(out, "  E*/E            not determined: {}\n", modulus.why_none);
+    append(out, "  {:<15} not determined: {}\n", ratio, modulus.why_none);
     return;
   }
-  append(out, "  E*/E            {:.4f}", modulus.ratio);
-  if (std::isfinite(modulus_Pa)) append(out, " (E* = {:.4g} Pa)", modulus_Pa);
+  append(out, "  {:<15} {:.4f}", ratio, modulus.ratio);
+  if (std::isfinite(value)) append(out, " ({}* = {:.4g} {})", of.name, value, of.unit);
   append(out, ", where the RMS is {:.4g} mm", modulus.rms_m * 1e3);
   if (std::isfinite(movement_m)) {
     append(out, " = {:.4g} % of the movement", modulus.rms_m / movement_m * 100);
@@ -68,7 +77,7 @@ void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, dou
   append(out, " ({} optimum", compare::to_string(modulus.optimum));
   if (std::isfinite(modulus.explained_share)) {
     // Not 100 % where something is left.
-    append(out, ": E* explains {:.4g} % of the mean square",
+    append(out, ": {}* explains {:.4g} % of the mean square", of.name,
            std::floor(modulus.explained_share * 1e4) / 100);
   }
   out += ")\n";
@@ -84,7 +93,7 @@ std::string comparison_text(const compare::Comparison& c) {
   if (p.c_b > 0) append(out, ", c_b = {:.6g} N", p.c_b);
   append(out, "\n");
   if (!c.force.left_out.empty()) {
-    append(out, "  left out        {} that the grippers hold, by the force model: in all below\n",
+    append(out, "  left out        {} that the scene has, by the force model: in all below\n",
            fmt::join(c.force.left_out, ", "));
   }
   if (!c.unresolved.empty()) {
@@ -107,7 +116,7 @@ std::string comparison_text(const compare::Comparison& c) {
   }
   if (c.unresolved.empty()) {
     const double movement_m = c.deviation.rms_m / c.deviation.rms_over_movement;
-    add_modulus(out, c.effective_modulus, movement_m, NAN);
+    add_modulus(out, c.effective_modulus, movement_m, c.stiffness, NAN);
   }
   add_budget(out, c);
   add_state(out, c.state, c.length, "force");
@@ -144,8 +153,14 @@ Json comparison_json(const compare::Comparison& comparison) {
                         {"interaction", budget.interaction.share}}}};
   if (!comparison.force.left_out.empty()) {
     result["left_out"] = comparison.force.left_out;
-    result["budget"]["twist_m"] = budget.twist.rms_m;
-    result["budget"]["shares_of_total"]["twist"] = budget.twist.share;
+    const std::pair<const char*, const compare::BudgetPart*> parts[] = {
+        {"twist", &budget.twist}, {"natural curvature", &budget.natural_curvature}};
+    for (const auto& [what, part] : parts) {
+      if (!leaves_out(comparison, what)) continue;
+      const std::string key = part == &budget.twist ? "twist" : "natural_curvature";
+      result["budget"][key + "_m"] = part->rms_m;
+      result["budget"]["shares_of_total"][key] = part->share;
+    }
   }
   result["reference_resolved"] = comparison.unresolved.empty();
   result["state"] = to_json(comparison.state);
@@ -163,7 +178,8 @@ Json comparison_json(const compare::Comparison& comparison) {
 std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons) {
   std::string text =
       "scene,law,bookkeeping,points,gamma,rms_m,max_m,tip_m,rms_over_length,rms_over_movement,"
-      "effective_modulus_ratio,rms_at_effective_modulus_m,optimum,c_b,c_c,budget_twist_m,"
+      "effective_modulus_ratio,rms_at_effective_modulus_m,optimum,c_b,c_c,budget_twist_m,budget_"
+      "natural_curvature_m,"
       "budget_law_m,budget_bookkeeping_m,budget_discretisation_m,budget_stretch_m,budget_not_at_"
       "rest_m,"
       "budget_interaction_m,budget_parts_share,residual_over_movement,state_rank,states_stable,"
@@ -187,6 +203,7 @@ std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons)
         csv_number(c.force.parameters.c_b),
         csv_number(c.force.parameters.c_c),
         csv_number(c.budget.twist.rms_m),
+        csv_number(c.budget.natural_curvature.rms_m),
         csv_number(c.budget.law.rms_m),
         csv_number(c.budget.bookkeeping.rms_m),
         csv_number(c.budget.discretisation.rms_m),

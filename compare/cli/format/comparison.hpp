@@ -27,9 +27,9 @@ void add_state(std::string& out, const compare::ComparedState& state, double len
 
 /// The lines about E*/E.
 /// @param movement_m  RMS way of the rod from straight [m], NaN without
-/// @param modulus_Pa  E*, to be printed; NaN if not
+/// @param of  what E stands for;  @param value  its E*, to be printed; NaN if not
 void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, double movement_m,
-                 double modulus_Pa);
+                 const compare::NamedValue& of, double value);
 
 using compare::csv_field;
 using compare::csv_number;

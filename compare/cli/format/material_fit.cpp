@@ -47,13 +47,29 @@ std::string correlation_text(const MaterialReport& report) {
 
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
-void add_value(Json& result, const std::string& name, const std::string& unit,
-               const FittedValue& value) {
-  result[name + unit] = json_of(value.value);
-  result[(name == "youngs_modulus" ? "uncertainty" : name + "_uncertainty") + unit] =
-      json_of(half_width(value));
-  result[(name == "youngs_modulus" ? "interval_95" : name + "_interval_95") + unit] = {
-      json_of(value.low), json_of(value.high)};
+/// A fitted number's name and unit in keys.
+struct Key {
+  std::string name;
+  std::string unit;
+
+  [[nodiscard]] std::string text() const { return name + unit; }
+};
+
+Key stiffness_key(const compare::Scene& scene) {
+  return scene.given_bending_stiffness ? Key{"bending_stiffness", "_Nm2"}
+                                       : Key{"youngs_modulus", "_Pa"};
+}
+
+Key heaviness_key(const compare::Scene& scene) {
+  return scene.given_mass_per_length ? Key{"mass_per_length", "_kg_per_m"}
+                                     : Key{"density", "_kg_per_m3"};
+}
+
+/// @param prefix  of the keys of its uncertainty and its interval
+void add_value(Json& result, const Key& key, const std::string& prefix, const FittedValue& value) {
+  result[key.text()] = json_of(value.value);
+  result[prefix + "uncertainty" + key.unit] = json_of(half_width(value));
+  result[prefix + "interval_95" + key.unit] = {json_of(value.low), json_of(value.high)};
 }
 
 }  // namespace
@@ -61,12 +77,12 @@ void add_value(Json& result, const std::string& name, const std::string& unit,
 std::string material_text(const MaterialReport& report) {
   const compare::MaterialFit& fit = report.fit;
   std::string out;
-  append(out, "E           {}   (scene: {:.5g} Pa)\n", value_text(fit.youngs_modulus, "Pa"),
-         report.scenes.front().material.youngs_modulus);
-  if (fit.density) {
-    append(out, "density     {}   (scene: {:.5g} kg/m^3)\n", value_text(*fit.density, "kg/m^3"),
-           report.scenes.front().material.density);
-  }
+  const auto add = [&](const compare::NamedValue& of, const FittedValue& value) {
+    append(out, "{:<11} {}   (scene: {:.5g} {})\n", of.name, value_text(value, of.unit), of.value,
+           of.unit);
+  };
+  add(report.scenes.front().stiffness(), fit.youngs_modulus);
+  if (fit.density) add(report.scenes.front().heaviness(), *fit.density);
   if (!fit.not_told.empty()) append(out, "            {}\n", fit.not_told);
   if (!fit.warning.empty()) append(out, "            {}\n", fit.warning);
   append(out, "noise       {:.4g} mm in each coordinate, {} ({} degrees of freedom)\n",
@@ -93,8 +109,12 @@ std::string material_csv(const MaterialReport& report) {
   const compare::MaterialFit& fit = report.fit;
   const FittedValue& E = fit.youngs_modulus;
   const FittedValue density = fit.density.value_or(FittedValue());
-  std::string out =
-      "youngs_modulus_Pa,low_Pa,high_Pa,density_kg_per_m3,density_low,density_high,noise_m,"
+  const Key stiffness = stiffness_key(report.scenes.front());
+  const Key heaviness = heaviness_key(report.scenes.front());
+  std::string out = fmt::format("{0},low{1},high{1},{2},{3}_low,{3}_high,", stiffness.text(),
+                                stiffness.unit, heaviness.text(), heaviness.name);
+  out +=
+      "noise_m,"
       "degrees_of_freedom,rms_m,not_told,warning,errors_are_correlated,correlation_length_m,"
       "correlation_share,interval_widened_by,effective_degrees_of_freedom\n";
   append_csv(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{},{},", field(E.value), field(E.low),
@@ -114,8 +134,11 @@ std::string material_csv(const MaterialReport& report) {
 Json material_json(const MaterialReport& report) {
   const compare::MaterialFit& fit = report.fit;
   Json result = {{"schema", "dlo/calibrate/1"}};
-  add_value(result, "youngs_modulus", "_Pa", fit.youngs_modulus);
-  if (fit.density) add_value(result, "density", "_kg_per_m3", *fit.density);
+  add_value(result, stiffness_key(report.scenes.front()), "", fit.youngs_modulus);
+  if (fit.density) {
+    const Key key = heaviness_key(report.scenes.front());
+    add_value(result, key, key.name + "_", *fit.density);
+  }
   result["not_told"] = fit.not_told.empty() ? Json(nullptr) : Json(fit.not_told);
   result["warning"] = fit.warning.empty() ? Json(nullptr) : Json(fit.warning);
   result["noise_m"] = fit.noise_m;
@@ -152,17 +175,30 @@ std::string material_toml(const MaterialReport& report) {
   if (!E.value || (fit.density && !fit.density->value)) {
     throw compare::InputError("calibrate: no material to write, " + fit.not_told);
   }
-  const double density = fit.density ? *fit.density->value : report.scenes.front().material.density;
-  std::string out =
-      "# Written by dlo calibrate. For dlo: --materials with this file and material = "
-      "\"calibrated\" in the scene.\n[[material]]\nname = \"calibrated\"\n";
-  append(out, "youngs_modulus = {:.8e}  # Pa, 95 %: {:.4g} to {:.4g}\n", *E.value, *E.low, *E.high);
-  append(out, "density = {:.8e}  # kg/m^3, {}\n", density,
+  const compare::Scene& scene = report.scenes.front();
+  const compare::NamedValue stiffness = scene.stiffness();
+  const compare::NamedValue heaviness = scene.heaviness();
+  if (scene.given_bending_stiffness.has_value() != scene.given_mass_per_length.has_value()) {
+    throw compare::InputError(
+        fmt::format("calibrate: {} and {} are of no one table (allowed: a scene with both "
+                    "bending_stiffness and "
+                    "mass_per_length, or with neither; -o FILE.json)",
+                    stiffness.name, heaviness.name));
+  }
+  const double density = fit.density ? *fit.density->value : heaviness.value;
+  const bool given = scene.given_bending_stiffness.has_value();
+  std::string out = given ? "# Written by dlo calibrate, for the table [rod] of a scene.\n"
+                          : "# Written by dlo calibrate. For dlo: --materials with this file and "
+                            "material = \"calibrated\" in the scene.\n[[material]]\nname = "
+                            "\"calibrated\"\n";
+  append(out, "{} = {:.8e}  # {}, 95 %: {:.4g} to {:.4g}\n", stiffness_key(scene).name, *E.value,
+         stiffness.unit, *E.low, *E.high);
+  append(out, "{} = {:.8e}  # {}, {}\n", heaviness_key(scene).name, density, heaviness.unit,
          fit.density ? fmt::format("95 %: {:.4g} to {:.4g}", *fit.density->low, *fit.density->high)
                      : std::string("of the scene"));
-  append(out, "source = \"least squares of {} measured shape{}, noise {:.3g} m{}\"\n",
-         fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s", fit.noise_m,
-         fit.correlation ? ", correlated along the rod" : "");
+  append(out, "{}least squares of {} measured shape{}, noise {:.3g} m{}{}\n",
+         given ? "# " : "source = \"", fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s",
+         fit.noise_m, fit.correlation ? ", correlated along the rod" : "", given ? "" : "\"");
   return out;
 }
 

@@ -66,6 +66,15 @@ std::string left_out_text(const compare::LeftOut& item, double length) {
 
 }  // namespace
 
+std::string assumption_text(const compare::Scene& scene) {
+  if (!scene.assumes_torsion()) return "";
+  return fmt::format(
+      "torsional stiffness GJ = EI / {:g} = {:.4g} N m^2 (Poisson's ratio {:g}), as "
+      "rod.torsional_stiffness is not given",
+      1 + compare::assumed_poisson_ratio, scene.twisting_stiffness(),
+      compare::assumed_poisson_ratio);
+}
+
 std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
   std::string out;
   append(out, "plan of {}   Gamma = {:.4g}\n", compare::display(scene.name), plan.gamma);
@@ -83,6 +92,7 @@ std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
     }
   }
   out += twist_text(plan);
+  if (scene.assumes_torsion()) append(out, "  assumed         {}\n", assumption_text(scene));
   append(out, "  stretch         {}\n", stretch_text(plan));
   append(out, "  N               ");
   if (plan.points > 0) {

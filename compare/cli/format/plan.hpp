@@ -8,6 +8,9 @@
 
 namespace dlo::cli {
 
+/// What is assumed of a scene's rod, as a sentence; empty if nothing is.
+[[nodiscard]] std::string assumption_text(const compare::Scene& scene);
+
 /// A plan as a person reads it, with a blank line after it.
 [[nodiscard]] std::string plan_text(const compare::Plan& plan, const compare::Scene& scene);
 

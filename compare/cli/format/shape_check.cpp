@@ -84,7 +84,7 @@ std::string shape_check_text(const ShapeCheckReport& report) {
     append(out, "  movement        the rod is {:.4g} mm = {:.4g} % of l away from straight (RMS)\n",
            c.movement_m * 1e3, c.movement_m / scene.length * 100);
   }
-  add_modulus(out, c.effective_modulus, NAN, c.modulus);
+  add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
   add_state(out, c.state, scene.length, "the shape");
   if (verdict) {
     append(out, "  verdict         {}: {}\n",
@@ -121,7 +121,8 @@ Json shape_check_json(const ShapeCheckReport& report) {
   result["deviation"]["worst_position_m"] = to_json(c.worst_position);
   result["movement_m"] = c.movement_m;
   result.update(modulus_json(c.effective_modulus));
-  result["effective_modulus_Pa"] = c.modulus;
+  const bool given_by_EI = report.scene.given_bending_stiffness.has_value();
+  result[given_by_EI ? "effective_bending_stiffness_Nm2" : "effective_modulus_Pa"] = c.modulus;
   if (verdict) {
     result["tolerance"] = {{"measure", verdict->tolerance.largest ? "max" : "rms"},
                            {"allowed_m", verdict->tolerance.allowed_m},

@@ -54,6 +54,7 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   append(out, "scene      {}\n", compare::display(scene.name));
   append(out, "model      {}, {}\n", compare::to_string(solution.model), solution.message);
   append(out, "Gamma      {:.6g}   (w l^3 / EI)\n", scene.gamma());
+  if (scene.assumes_torsion()) append(out, "assumed    {}\n", assumption_text(scene));
   if (solution.steps > 0) {
     append(out, "steps      {}   c_F {:.4g} m/N, c_h {:.6f}\n", solution.steps, solution.c_F,
            solution.c_h);
@@ -138,6 +139,10 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
                    {"terms", solution.terms},
                    {"wall_s", solution.seconds}}},
                  {"plan", plan_json(plan)}};
+  if (scene.assumes_torsion()) {
+    result["assumed"] = {{"torsional_stiffness_Nm2", scene.twisting_stiffness()},
+                         {"poisson_ratio", compare::assumed_poisson_ratio}};
+  }
   if (!solution.twists.empty()) result["twist"] = twist_json(solution.twists);
   if (!solution.left_out.empty()) result["left_out"] = solution.left_out;
   if (!solution.obstacles.empty()) {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "dlo/compare/error.hpp"
-#include "scene/quantity.hpp"
+#include "toml/quantity.hpp"
 
 namespace dlo::cli {
 

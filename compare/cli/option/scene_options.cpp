@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <limits>
 #include <sstream>
@@ -10,7 +11,8 @@
 #include "dlo/compare/scene_file.hpp"
 #include "option/option_values.hpp"
 #include "option/share.hpp"
-#include "scene/quantity.hpp"
+#include "polygon/natural_plane.hpp"
+#include "toml/quantity.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -43,9 +45,15 @@ double option_quantity(const std::string& option, const std::string& text, Dimen
 
 }  // namespace
 
-void warn_of_twist(const compare::Scene& scene) {
-  if (!scene.holds_twist()) return;
-  say("{}: the grippers hold twist, which models chain and force leave out", scene.file);
+void warn_of_polygons(const compare::Scene& scene) {
+  if (scene.holds_twist()) {
+    say("{}: the grippers hold twist, which models chain and force leave out", scene.file);
+  }
+  const std::vector<std::string> left_out = compare::left_out_of_polygon(scene, scene.force_model);
+  if (std::find(left_out.begin(), left_out.end(), "natural curvature") != left_out.end()) {
+    say("{}: the rod is curved by nature, which models chain and force leave out {}", scene.file,
+        scene.planar() ? "with the law paper" : "in space");
+  }
 }
 
 void add_output_options(CLI::App& command, OutputOptions& options,

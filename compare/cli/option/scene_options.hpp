@@ -49,8 +49,9 @@ class PlanOptions {
   compare::PlanOptions plan_;
 };
 
-/// Says on standard error that models chain and force leave the twist out that a scene holds.
-void warn_of_twist(const compare::Scene& scene);
+/// Says on standard error what models chain and force leave out that a scene has: twist that its
+/// grippers hold, natural curvature.
+void warn_of_polygons(const compare::Scene& scene);
 
 /// @param formats  those that the command writes
 void add_output_options(CLI::App& command, OutputOptions& options,

@@ -2,7 +2,7 @@
 
 #include "dlo/compare/shape_file.hpp"
 #include "option/output.hpp"
-#include "scene/quantity.hpp"
+#include "toml/quantity.hpp"
 
 namespace dlo::cli {
 void ShapeOptions::add_to(CLI::App& command, ChordLengths chord) {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
-#include "scene/quantity.hpp"
+#include "toml/quantity.hpp"
 
 namespace dlo::cli {
 namespace {

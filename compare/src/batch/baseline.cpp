@@ -9,7 +9,7 @@
 #include "base/quote.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/solution.hpp"
-#include "scene/strict_table.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 namespace {

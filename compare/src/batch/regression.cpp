@@ -73,9 +73,26 @@ std::string content_of(const Scene& scene) {
   add(scene.diameter);
   add(scene.material.youngs_modulus);
   add(scene.material.density);
-  if (scene.torsional_stiffness) {
-    text += "torsion ";
-    add(*scene.torsional_stiffness);
+  // What few scenes have is named, so that others keep the fingerprints of their baselines.
+  const auto add_named = [&](const char* name, const std::optional<double>& value) {
+    if (!value) return;
+    text += name;
+    add(*value);
+  };
+  add_named("torsion ", scene.torsional_stiffness);
+  add_named("EI ", scene.given_bending_stiffness);
+  add_named("mass ", scene.given_mass_per_length);
+  if (scene.naturally_bent()) {
+    text += "natural ";
+    add_vector(scene.natural_strain);
+  }
+  for (const Section& section : scene.sections) {
+    text += "\nsection ";
+    for (const double value :
+         {section.from, section.to, section.bending_stiffness, section.mass_per_length}) {
+      add(value);
+    }
+    add_named("torsion ", section.torsional_stiffness);
   }
   for (const Gripper& gripper : scene.grippers) {
     text += "\ngripper ";

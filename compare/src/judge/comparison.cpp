@@ -42,6 +42,7 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   result.scene = scene.name;
   result.gamma = scene.gamma();
   result.length = scene.length;
+  result.stiffness = scene.stiffness();
   result.settings = scene.force_model;
   if (plan) result.plan = make_plan(scene, *plan);
   result.force = solve_force(scene, scene.force_model, options);

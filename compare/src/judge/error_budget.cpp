@@ -3,6 +3,7 @@
 #include "dlo/compare/chain.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
+#include "polygon/natural_plane.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -42,12 +43,14 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   const Fields fields(reference, scene.length);
   const ForceModelSettings& own = scene.force_model;
   const double rigid = 100 * scene.axial_stiffness();
+  // The chains are of the scene that the force model has taken.
+  const Scene taken = as_polygons_take_it(scene, own);
   const auto chain = [&](BendingLaw law, Bookkeeping bookkeeping, double c_c) {
     ForceModelSettings settings = own;
     settings.law = law;
     settings.bookkeeping = bookkeeping;
     settings.c_c = c_c;
-    return fields.of(chain_from(scene, settings, force.shape, options));
+    return fields.of(chain_from(taken, settings, force.shape, options));
   };
   const Eigen::Matrix3Xd base = chain(BendingLaw::hooke, Bookkeeping::consistent, rigid);
   const Eigen::Matrix3Xd other_bookkeeping = own.bookkeeping == Bookkeeping::consistent
@@ -63,14 +66,17 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   const Eigen::Matrix3Xd total = fields.of(force.shape);
   const Eigen::Matrix3Xd moving = total - fields.of(rested);
 
-  // The lowest shape without twist, of which the polygon is one.
-  Eigen::Matrix3Xd twist = Eigen::Matrix3Xd::Zero(3, total.cols());
-  if (scene.holds_twist()) {
-    const energy_model::Equilibrium loose =
-        solve_reference(scene.without_twist(), Model::energy, options);
+  // The lowest shapes of the rods without it, of the last of which the polygon is one.
+  const auto rod = [&](const Scene& other) {
+    const energy_model::Equilibrium lowest = solve_reference(other, Model::energy, options);
     const std::vector<double>& s = force.shape.arc_length;
-    twist = fields.of({s, loose.sample(s).points});
-  }
+    return fields.of({s, lowest.sample(s).points});
+  };
+  const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, total.cols());
+  const Eigen::Matrix3Xd twist = scene.holds_twist() ? rod(scene.without_twist()) : none;
+  const bool leaves_curvature_out = scene.naturally_bent() && !taken.naturally_bent() &&
+                                    !scene.natural_strain.head<2>().isZero(0);
+  const Eigen::Matrix3Xd left_out = leaves_curvature_out ? rod(taken) : twist;
 
   Budget budget;
   budget.total_m = fields.part(total, total).rms_m;
@@ -78,7 +84,8 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   const Eigen::Matrix3Xd bookkeeping = other_bookkeeping - base;
   const Eigen::Matrix3Xd stretch = elastic - stiff;
   budget.twist = fields.part(twist, total);
-  budget.discretisation = fields.part(base - twist, total);
+  budget.natural_curvature = fields.part(left_out - twist, total);
+  budget.discretisation = fields.part(base - left_out, total);
   budget.bookkeeping = fields.part(bookkeeping, total);
   budget.law = fields.part(law, total);
   budget.stretch = fields.part(stretch, total);

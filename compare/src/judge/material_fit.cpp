@@ -171,16 +171,18 @@ class MaterialFitter {
           "{}: the energy model has a shape at no modulus that was tried", scenes_.front().file));
     }
     measure_noise(least, best);
-    const Material& material = scenes_.front().material;
+    const NamedValue stiffness = scenes_.front().stiffness();
     const Finding found = finding(*over_modulus, level(least, 0), rival_level(least, 0));
-    result_.youngs_modulus = fitted(found, material.youngs_modulus, options_.told_within);
-    result_.not_told = what_is_not_told(result_.youngs_modulus, found,
-                                        {"E", "Pa", material.youngs_modulus}, options_.told_within);
+    result_.youngs_modulus = fitted(found, stiffness.value, options_.told_within);
+    result_.not_told =
+        what_is_not_told(result_.youngs_modulus, found,
+                         {stiffness.name, stiffness.unit, stiffness.value}, options_.told_within);
     if (both_) fit_density(least);
     if (options_.density && !both_ && result_.not_told.empty()) {
-      result_.not_told =
-          "these shapes do not tell the density: nothing but gravity bends the rod, so only "
-          "density / E shows; E is for the density of the scene (a known load would tell both)";
+      result_.not_told = fmt::format(
+          "these shapes do not tell the {0}: nothing but gravity bends the rod, so only {0} / {1} "
+          "shows; {1} is for the {0} of the scene (a known load would tell both)",
+          scenes_.front().heaviness().name, stiffness.name);
     }
     refuse_unresolved(std::max(level(least, 0), both_ ? level(least, 1) : 0));
     const auto points = static_cast<double>(misfit_.points());
@@ -290,12 +292,14 @@ class MaterialFitter {
           return inner.minimum().value;
         },
         low_ / 2, high_ / 2);
-    const double unit = scenes_.front().material.density;
+    const NamedValue heaviness = scenes_.front().heaviness();
     const Finding found = finding(profile, level(least, 1), rival_level(least, 1));
-    result_.density = fitted(found, unit, options_.told_within);
+    result_.density = fitted(found, heaviness.value, options_.told_within);
     if (result_.not_told.empty()) {
-      result_.not_told = what_is_not_told(*result_.density, found, {"the density", "kg/m^3", unit},
-                                          options_.told_within);
+      const std::string name = fmt::format("the {}", heaviness.name);
+      result_.not_told =
+          what_is_not_told(*result_.density, found, {name.c_str(), heaviness.unit, heaviness.value},
+                           options_.told_within);
     }
   }
 
@@ -303,12 +307,13 @@ class MaterialFitter {
     const ShapeMisfit::Unresolved* unresolved = misfit_.unresolved_below(highest_level);
     if (unresolved == nullptr) return;
     const Scene& scene = scenes_[unresolved->scene];
+    const NamedValue stiffness = scene.stiffness();
     throw ConvergenceError(fmt::format(
-        "{}: at E = {:.4g} Pa, which may fit, the rod is not resolved on its obstacles: it sinks "
+        "{}: at {} = {:.4g} {}, which may fit, the rod is not resolved on its obstacles: it sinks "
         "in "
-        "by {:.3g} m ({}), so the shapes cannot tell E",
-        scene.file, scene.material.youngs_modulus * std::exp(unresolved->material.log_modulus),
-        unresolved->penetration, unresolved->message));
+        "by {:.3g} m ({}), so the shapes cannot tell {}",
+        scene.file, stiffness.name, stiffness.value * std::exp(unresolved->material.log_modulus),
+        stiffness.unit, unresolved->penetration, unresolved->message, stiffness.name));
   }
 
   const std::vector<Scene>& scenes_;

@@ -172,6 +172,7 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
   result.file = shape.file;
   result.gamma = scene.gamma();
   result.length_m = scene.length;
+  result.stiffness = scene.stiffness();
   result.alignment = std::move(alignments[nearest]);
   result.state = describe_state(scene, states, nearest, from_shape);
   const Alignment& alignment = result.alignment;
@@ -214,7 +215,7 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
     return measure(laid, reference.sample, scene.length).rms_m;
   };
   result.effective_modulus = fit_effective_modulus(scene, distance, energy, options.solve);
-  result.modulus = result.effective_modulus.ratio * scene.material.youngs_modulus;
+  result.modulus = result.effective_modulus.ratio * result.stiffness.value;
   return result;
 }
 

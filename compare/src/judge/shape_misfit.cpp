@@ -169,7 +169,7 @@ std::shared_ptr<ShapeMisfit::Solved> ShapeMisfit::solve(std::size_t i,
   }
   Scene scene = scenes_[i];
   scene.scale_modulus(std::exp(material.log_modulus));
-  scene.material.density *= std::exp(material.log_density);
+  scene.scale_density(std::exp(material.log_density));
   ++solves_;
   auto result = std::make_shared<Solved>();
   result->material = material;

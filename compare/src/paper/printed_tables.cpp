@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "scene/builtin_data.hpp"
-#include "scene/strict_table.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 

@@ -9,6 +9,7 @@
 
 #include "dlo/compare/bending_rule.hpp"
 #include "dlo/compare/error.hpp"
+#include "polygon/natural_plane.hpp"
 #include "polygon/point_layout.hpp"
 #include "polygon/start_shape.hpp"
 #include "scene/reach.hpp"
@@ -98,15 +99,65 @@ void derive_bending(const Scene& scene, const ForceModelSettings& settings, cons
   result.rod.bending = {force_model::BendingLaw::paper, parameters.c_b};
 }
 
-/// Of a segment.
-enum class End { first, second };
+/// The part of the rod whose bend a polygon has in one joint, or whose weight it has in one point:
+/// from the middle of the segment before to that of the segment after [m].
+struct Cell {
+  double begin = 0;
+  double end = 0;
+};
 
-/// The part of a segment that weighs on its first or second point [m].
-double weighing_half(const Scene& scene, const Layout& layout, Eigen::Index segment, End end) {
-  const std::size_t at_point = static_cast<std::size_t>(segment) + (end == End::second ? 1 : 0);
-  const double s = layout.arc_length[at_point];
-  const bool beyond_rod = s < 0 || s > scene.length;
-  return beyond_rod ? 0 : layout.rest_lengths[segment] / 2;
+Cell cell_of(const Scene& scene, const Layout& layout, Eigen::Index point) {
+  const std::vector<double>& s = layout.arc_length;
+  const auto i = static_cast<std::size_t>(point);
+  const auto on_rod = [&](double at) { return std::clamp(at, 0.0, scene.length); };
+  return {i > 0 ? on_rod((s[i - 1] + s[i]) / 2) : on_rod(s.front()),
+          i + 1 < s.size() ? on_rod((s[i] + s[i + 1]) / 2) : on_rod(s.back())};
+}
+
+/// Joints of a rod with sections, and of one that is curved by nature.
+void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings,
+                          const Layout& layout, Discretisation& result) {
+  const Eigen::Index joints = settings.points - 2;
+  force_model::Bending& bending = result.rod.bending;
+  if (!scene.sections.empty()) {
+    bending.stiffnesses.resize(joints);
+    for (Eigen::Index i = 0; i < joints; ++i) {
+      const Cell cell = cell_of(scene, layout, i + 1);
+      const double EI = (cell.end - cell.begin) / scene.bending_compliance(cell.begin, cell.end);
+      bending.stiffnesses[i] = EI / scene.bending_stiffness() * bending.stiffness;
+    }
+  }
+  if (!takes_natural_curvature(scene, settings)) return;
+  if (turn_into_plane(scene, settings)) {
+    throw InputError(fmt::format(
+        "{}: rod.natural_curvature: not in the plane z = 0 (allowed here: z = 0 of positions, "
+        "directions, forces and normals; dlo solve and dlo compare turn other planes into it)",
+        scene.file));
+  }
+  const double curvature = scene.natural_curvature().z();
+  bending.natural_turns.resize(joints);
+  for (Eigen::Index i = 0; i < joints; ++i) {
+    const Cell cell = cell_of(scene, layout, i + 1);
+    bending.natural_turns[i] = curvature * (cell.end - cell.begin);
+  }
+  const double largest = bending.natural_turns.cwiseAbs().maxCoeff();
+  if (!(largest < force_model::hooke_fold_angle)) {
+    throw InputError(fmt::format(
+        "{}: force_model.points = {}: at rest a joint would turn by {:.3g} rad, as the rod is "
+        "curved by {:.4g} 1/m (allowed: less than {:g} rad, {} points or more)",
+        scene.file, settings.points, largest, std::abs(curvature), force_model::hooke_fold_angle,
+        static_cast<long>(std::ceil(settings.points * largest / 1.5))));
+  }
+  for (Eigen::Matrix3Xd& start : result.starts) start.row(2).setZero();
+}
+
+/// The halves of a point's segments, but for those inside end grippers [m]: of equal segments the
+/// same to the last digit, which a cell between two arc lengths is not.
+double weighing_length(const Scene& scene, const Layout& layout, Eigen::Index point) {
+  const double s = layout.arc_length[static_cast<std::size_t>(point)];
+  if (s < 0 || s > scene.length) return 0;
+  const Eigen::VectorXd& L = layout.rest_lengths;
+  return ((point > 0 ? L[point - 1] : 0) + (point < L.size() ? L[point] : 0)) / 2;
 }
 
 void add_weights(const Scene& scene, const ForceModelSettings& settings, const Layout& layout,
@@ -114,14 +165,17 @@ void add_weights(const Scene& scene, const ForceModelSettings& settings, const L
   const Eigen::Index N = settings.points;
   result.weights.setZero(3, N);
   for (Eigen::Index i = 0; i < N; ++i) {
-    double share = 0;
-    if (settings.bookkeeping == Bookkeeping::paper) {
-      share = scene.length / static_cast<double>(N);
+    const bool equal = settings.bookkeeping == Bookkeeping::paper;
+    const double share = scene.length / static_cast<double>(N);
+    if (scene.sections.empty()) {
+      const double length = equal ? share : weighing_length(scene, layout, i);
+      result.weights.col(i) = length * scene.weight_per_length();
     } else {
-      if (i > 0) share += weighing_half(scene, layout, i - 1, End::second);
-      if (i < N - 1) share += weighing_half(scene, layout, i, End::first);
+      const auto at = static_cast<double>(i);
+      const Cell cell = equal ? Cell{at * share, i + 1 == N ? scene.length : (at + 1) * share}
+                              : cell_of(scene, layout, i);
+      result.weights.col(i) = scene.weight_between(cell.begin, cell.end);
     }
-    result.weights.col(i) = share * scene.weight_per_length();
     if (settings.bookkeeping == Bookkeeping::paper && settings.point_weight) {
       result.weights.col(i) = *settings.point_weight * scene.gravity.normalized();
     }
@@ -274,6 +328,7 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
     result.starts.push_back(std::move(start));
   }
   derive_bending(scene, settings, layout, result);
+  derive_unlike_joints(scene, settings, layout, result);
   add_weights(scene, settings, layout, result);
   add_loads(scene, layout, result);
   return result;

@@ -5,7 +5,7 @@
 
 #include "dlo/energy_model/plane.hpp"
 #include "polygon/point_layout.hpp"
-#include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 
@@ -30,7 +30,19 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
   problem.segment_lengths = discretisation.rod.rest_lengths;
   problem.law = settings.law == BendingLaw::paper ? energy_model::JointLaw::paper
                                                   : energy_model::JointLaw::hooke;
-  problem.stiffness = discretisation.rod.bending.stiffness;
+  const force_model::Bending& bending = discretisation.rod.bending;
+  problem.stiffness = bending.stiffness;
+  problem.stiffnesses = bending.stiffnesses;
+  problem.natural_turns = bending.natural_turns;
+  if (bending.natural_turns.size() > 0) {
+    // Turns from x to y of space; those of the chain's plane may go round the other way.
+    const double z = plane->x.cross(plane->y).z() > 0 ? 1 : -1;
+    problem.natural_turns *= reversed ? -z : z;
+  }
+  if (reversed) {
+    problem.stiffnesses.reverseInPlace();
+    problem.natural_turns.reverseInPlace();
+  }
   problem.node_forces.resize(2, N);
   for (Eigen::Index i = 0; i < N; ++i) {
     // The chain starts in the gripper, at whichever end of the rod that is.
@@ -54,6 +66,8 @@ energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod) {
   problem.law = rod.bending.law == force_model::BendingLaw::paper ? energy_model::JointLaw::paper
                                                                   : energy_model::JointLaw::hooke;
   problem.stiffness = rod.bending.stiffness;
+  problem.stiffnesses = rod.bending.stiffnesses;
+  problem.natural_turns = rod.bending.natural_turns;
   for (const force_model::Grip& grip : rod.grips) {
     for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
       problem.held.push_back({grip.first_point + k, grip.targets.col(k)});
@@ -67,22 +81,7 @@ energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod) {
 
 energy_model::Problem energy_problem(const Scene& scene) {
   require_slack(scene);
-  energy_model::Problem problem;
-  problem.length = scene.length;
-  problem.bending_stiffness = scene.bending_stiffness();
-  problem.torsional_stiffness = scene.torsional_stiffness.value_or(0);
-  problem.weight_per_length = scene.weight_per_length();
-  for (const Gripper& grip : scene.grippers) {
-    energy_model::Grip held{grip.at, grip.position, grip.direction, std::nullopt};
-    if (grip.frame) held.frame = {grip.frame->d1, grip.frame->roll};
-    problem.grips.push_back(std::move(held));
-  }
-  for (const PointLoad& load : scene.loads) problem.loads.push_back({load.at, load.force});
-  for (const std::size_t i : obstacles_in_reach(scene)) {
-    const Obstacle& obstacle = scene.obstacles[i];
-    problem.walls.push_back({obstacle.point, obstacle.normal, obstacle.stiffness});
-  }
-  return problem;
+  return scene_problem(scene);
 }
 
 }  // namespace dlo::compare

@@ -78,17 +78,18 @@ HtmlTable scene_table(const Report& report) {
                   .columns = {{"scene", HtmlCell::text},
                               {"l [m]"},
                               {"d [mm]"},
-                              {"E [GPa]"},
-                              {"ρ [kg/m³]"},
+                              {"EI [N m²]"},
+                              {"ρA [kg/m]"},
                               {"Γ = w l³/(EI)"},
                               {"held", HtmlCell::text},
                               {"loads"},
                               {"file", HtmlCell::word}}};
   for (const SceneReport& entry : report.scenes) {
     const Scene& scene = entry.file.scene;
-    table.rows.push_back({scene.name, page_number(scene.length), millimetres(scene.diameter),
-                          page_number(scene.material.youngs_modulus / 1e9),
-                          page_number(scene.material.density), page_number(scene.gamma()),
+    table.rows.push_back({scene.name, page_number(scene.length),
+                          scene.diameter > 0 ? millimetres(scene.diameter) : "",
+                          page_number(scene.bending_stiffness()),
+                          page_number(scene.mass_per_length()), page_number(scene.gamma()),
                           hold_of(scene), std::to_string(scene.loads.size()),
                           "scenes/" + entry.file.name});
   }
@@ -143,6 +144,7 @@ HtmlTable budget_table(const Report& report) {
                               {setting_head, HtmlCell::word},
                               {"total"},
                               {"twist"},
+                              {"natural curvature"},
                               {"law"},
                               {"bookkeeping"},
                               {"discretisation"},
@@ -152,8 +154,8 @@ HtmlTable budget_table(const Report& report) {
   for_each_comparison(report, [&](const Comparison& c) {
     const Budget& b = c.budget;
     std::vector<std::string> row = {c.scene, setting_of(c), millimetres(b.total_m)};
-    for (const BudgetPart* part : {&b.twist, &b.law, &b.bookkeeping, &b.discretisation, &b.stretch,
-                                   &b.not_at_rest, &b.interaction}) {
+    for (const BudgetPart* part : {&b.twist, &b.natural_curvature, &b.law, &b.bookkeeping,
+                                   &b.discretisation, &b.stretch, &b.not_at_rest, &b.interaction}) {
       row.push_back(
           fmt::format("{} ({}\u00a0%)", millimetres(part->rms_m), tenths(part->share * 100)));
     }

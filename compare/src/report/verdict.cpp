@@ -64,6 +64,7 @@ std::vector<std::vector<const Comparison*>> groups_of(const Report& report) {
 std::string largest_part(const Budget& b) {
   const std::pair<const char*, const BudgetPart*> parts[] = {
       {"twist", &b.twist},
+      {"natural curvature", &b.natural_curvature},
       {"the law", &b.law},
       {"the bookkeeping", &b.bookkeeping},
       {"discretisation", &b.discretisation},
@@ -108,7 +109,7 @@ void say_shapes(const Report& report, std::vector<std::string>& verdict) {
 void say_left_out(const Report& report, std::vector<std::string>& verdict) {
   for (const SceneReport& scene : report.scenes) {
     if (scene.comparisons.empty() || scene.comparisons.front().force.left_out.empty()) continue;
-    verdict.push_back(fmt::format("{}: the force model leaves out the {} that the grippers hold.",
+    verdict.push_back(fmt::format("{}: the force model leaves out the {} that the scene has.",
                                   scene.file.scene.name,
                                   fmt::join(scene.comparisons.front().force.left_out, ", ")));
   }

@@ -5,7 +5,7 @@
 #include "base/input_file.hpp"
 #include "dlo/compare/error.hpp"
 #include "scene/read_force_model.hpp"
-#include "scene/strict_table.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 

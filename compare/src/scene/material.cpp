@@ -2,7 +2,7 @@
 
 #include "base/input_file.hpp"
 #include "scene/builtin_data.hpp"
-#include "scene/strict_table.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 

@@ -8,7 +8,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "scene/quantity.hpp"
+#include "toml/quantity.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -56,7 +56,12 @@ gravity = [0, -9.81, 0]  # m/s^2; y points up
 [rod]
 length = {length}  # {units}
 diameter = {diameter}  # round, solid; bending stiffness EI = E pi d^4 / 64
-{material}
+{material}# Or what was measured, in place of diameter and material (they may stay, for the axial stiffness):
+#   bending_stiffness = "1.2e-3 N m^2", mass_per_length = "20 g/m"
+# The free rod need not be straight: natural_curvature = "3 1/m" bends it to the left in its plane;
+# [x, y] are about d1 and d2 of the first clamp's frame, natural_twist = "90 deg/m" about the rod.
+# torsional_stiffness (GJ) is then EI / 1.3, if it is not given.
+
 # What holds the rod; one [[gripper]] for each.
 [[gripper]]
 at = 0  # arc length that is held, from 0 to the rod's length
@@ -110,7 +115,15 @@ std::string optional_part(const Scene& scene) {
 #position = [{x:.4g}, {y:.4g}, {z:.4g}]
 #hold = "pin"
 
-# A force at a point of the rod, such as a weight that hangs there; one [[load]] for each.
+# A part of the rod that is another one, such as a connector; one [[section]] for each. What it does
+# not say is the rod's own; torsional_stiffness too, where the rod has one.
+#[[section]]
+#from = {section_from:.4g}  # arc lengths
+#to = {section_to:.4g}
+#bending_stiffness = {section_EI:.3g}  # N m^2, N mm^2
+#mass_per_length = {section_mass:.3g}  # kg/m, g/m, g/cm
+
+# A force at a point of the rod, one [[load]] for each; of a weight that hangs there mass = "10 g".
 #[[load]]
 #at = {middle:.4g}  # arc length
 #force = [0, {force:.3g}, 0]  # N, mN, kN
@@ -141,9 +154,11 @@ std::string optional_part(const Scene& scene) {
 #   l_s              [m]    largest movement per step, not with stepper basic
 )",
       fmt::arg("torsion", scene.bending_stiffness() / 1.3), fmt::arg("length", l),
-      fmt::arg("x", pin.x()), fmt::arg("y", pin.y()), fmt::arg("z", pin.z()),
-      fmt::arg("middle", l / 2), fmt::arg("force", -0.1 * force),
-      fmt::arg("floor", std::min(pin.y(), 0.0) - 0.1 * l),
+      fmt::arg("section_from", 0.4 * l), fmt::arg("section_to", 0.45 * l),
+      fmt::arg("section_EI", 10 * scene.bending_stiffness()),
+      fmt::arg("section_mass", 2 * scene.mass_per_length()), fmt::arg("x", pin.x()),
+      fmt::arg("y", pin.y()), fmt::arg("z", pin.z()), fmt::arg("middle", l / 2),
+      fmt::arg("force", -0.1 * force), fmt::arg("floor", std::min(pin.y(), 0.0) - 0.1 * l),
       fmt::arg("stiffness", 1e3 * force / (l * l)), fmt::arg("c_c", scene.axial_stiffness()),
       fmt::arg("points", defaults.points), fmt::arg("law", to_string(defaults.law)),
       fmt::arg("laws", toml_choices<BendingLaw>(Meaning::said)),

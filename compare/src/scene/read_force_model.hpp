@@ -1,7 +1,7 @@
 #pragma once
 
 #include "dlo/compare/force_model_settings.hpp"
-#include "scene/strict_table.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 

@@ -9,21 +9,19 @@
 #include <numbers>
 
 #include "base/display.hpp"
-#include "base/words.hpp"
 #include "dlo/compare/error.hpp"
 #include "scene/read_force_model.hpp"
-#include "scene/strict_table.hpp"
+#include "scene/read_rod.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 namespace {
-
-/// Beyond it no solver resolves the layer at a clamp, and no rod looks any different.
-constexpr double largest_gamma = 1e12;
 
 /// Solvers of several spans take memory with the square of the number of grippers, some 250 MB for
 /// the most; of the others no scene has any use for more.
 constexpr std::size_t most_grippers = 500;
 constexpr std::size_t most_loads = 10'000;
+constexpr std::size_t most_sections = 1'000;
 constexpr std::size_t most_obstacles = 1'000;
 
 std::vector<StrictTable> bounded_tables(StrictTable& table, const char* key, std::size_t most) {
@@ -32,27 +30,6 @@ std::vector<StrictTable> bounded_tables(StrictTable& table, const char* key, std
     table.fail(key, fmt::format("{} given (allowed: up to {})", tables.size(), most));
   }
   return tables;
-}
-
-Material read_material(StrictTable& rod, const std::vector<Material>& known_materials) {
-  if (rod.is_table("material")) {
-    StrictTable own = rod.table("material");
-    Material material{.name = "own", .source = "scene file"};
-    material.youngs_modulus = own.number("youngs_modulus", Dimension::pressure, Range::positive());
-    material.density = own.number("density", Dimension::density, Range::not_negative());
-    own.finish();
-    return material;
-  }
-  const std::string name = rod.text("material");
-  std::vector<std::string> names;
-  for (const Material& material : known_materials) {
-    if (material.name == name) return material;
-    names.push_back(material.name);
-  }
-  rod.fail("material",
-           fmt::format("unknown material{} (allowed: {}, or a table such as {{ youngs_modulus = "
-                       "\"5 MPa\", density = 1100 }}; dlo materials lists them with values)",
-                       did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 Eigen::Vector3d unit_vector(StrictTable& table, std::string_view key) {
@@ -134,26 +111,6 @@ double read_arc_length(StrictTable& table, double length) {
   return table.number("at", Dimension::length, Range::between(0, length, " m, the rod's length"));
 }
 
-/// Of numbers that are in range each on its own.
-void require_finite_rod(const Scene& scene, const StrictTable& rod) {
-  const auto usable = [](double stiffness) { return stiffness > 0 && std::isfinite(stiffness); };
-  if (!usable(scene.bending_stiffness()) || !usable(scene.axial_stiffness())) {
-    rod.fail("material",
-             fmt::format("E I = {:g} N m^2, E A = {:g} N (allowed: numbers > 0 that are "
-                         "finite), with diameter = {:g} m and E = {:g} Pa",
-                         scene.bending_stiffness(), scene.axial_stiffness(), scene.diameter,
-                         scene.material.youngs_modulus));
-  }
-  // The negation makes a NaN out of range.
-  if (!(scene.gamma() <= largest_gamma)) {
-    rod.fail("length",
-             fmt::format("Gamma = w l^3 / (EI) = {:.4g} (allowed: 0 to {:g}), with w = {:.4g} N/m "
-                         "and E I = {:.4g} N m^2",
-                         scene.gamma(), largest_gamma, scene.weight_per_length().norm(),
-                         scene.bending_stiffness()));
-  }
-}
-
 Gripper read_gripper(StrictTable& table, double length) {
   Gripper gripper;
   gripper.at = read_arc_length(table, length);
@@ -182,11 +139,11 @@ Gripper read_gripper(StrictTable& table, double length) {
 void check_twist(const Scene& scene, const StrictTable& rod,
                  const std::vector<StrictTable>& entries) {
   if (!scene.holds_twist()) return;
-  if (!scene.torsional_stiffness) {
+  if (!scene.torsional_stiffness && !scene.assumes_torsion()) {
     rod.fail("torsional_stiffness",
              fmt::format("missing, it is required where two clamps hold the rod's frame (allowed: "
                          "> 0; of a round rod EI / (1 + nu), here {:.3g} N m^2 with nu = 0.3)",
-                         scene.bending_stiffness() / 1.3));
+                         scene.bending_stiffness() / (1 + assumed_poisson_ratio)));
   }
   std::vector<std::size_t> clamps;  // by arc length
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
@@ -195,22 +152,38 @@ void check_twist(const Scene& scene, const StrictTable& rod,
   std::stable_sort(clamps.begin(), clamps.end(), [&](std::size_t a, std::size_t b) {
     return scene.grippers[a].at < scene.grippers[b].at;
   });
-  const auto refuse_between = [&](const auto& outer, const auto& inner, const char* problem) {
-    const auto is_outer = [&](std::size_t i) { return outer(scene.grippers[i]); };
-    const auto first = std::find_if(clamps.begin(), clamps.end(), is_outer);
-    const auto last = std::find_if(clamps.rbegin(), clamps.rend(), is_outer).base();
-    for (auto i = first; i < last; ++i) {
-      if (inner(scene.grippers[*i])) entries[*i].fail("roll", problem);
-    }
-  };
-  const auto holds = [](const Gripper& clamp) { return clamp.frame.has_value(); };
   const auto has_d1 = [](const Gripper& clamp) { return clamp.frame && clamp.frame->d1; };
-  refuse_between(holds, std::not_fn(holds),
-                 "missing, clamps on both sides hold the rod's frame (allowed: roll, frame or "
-                 "quaternion here too, or hold = \"pin\")");
-  refuse_between(has_d1, std::not_fn(has_d1),
-                 "between clamps whose frame or quaternion says where d1 is (allowed: frame or "
-                 "quaternion here too)");
+  const auto is_outer = [&](std::size_t i) { return has_d1(scene.grippers[i]); };
+  const auto first = std::find_if(clamps.begin(), clamps.end(), is_outer);
+  const auto last = std::find_if(clamps.rbegin(), clamps.rend(), is_outer).base();
+  for (auto i = first; i < last; ++i) {
+    const Gripper& inner = scene.grippers[*i];
+    if (!inner.frame || has_d1(inner)) continue;
+    entries[*i].fail("roll",
+                     "between clamps whose frame or quaternion says where d1 is (allowed: frame or "
+                     "quaternion here too)");
+  }
+  // What is turned on from where the rod has it says too late how the rod goes on from there.
+  for (const std::size_t i : clamps) {
+    const Gripper& clamp = scene.grippers[i];
+    const bool ends = i == clamps.front() || clamp.at == scene.length;
+    if (!scene.naturally_bent() || ends || !clamp.frame || has_d1(clamp)) continue;
+    entries[i].fail("roll",
+                    "of a rod that is curved by nature and goes on behind this clamp (allowed: "
+                    "frame or quaternion)");
+  }
+}
+
+/// Which way a rod is curved by nature has to be said by a clamp.
+void check_natural_strain(const Scene& scene, const StrictTable& rod) {
+  const bool clamped =
+      std::any_of(scene.grippers.begin(), scene.grippers.end(),
+                  [](const Gripper& gripper) { return gripper.direction.has_value(); });
+  for (const char* key : {"natural_curvature", "natural_twist"}) {
+    if (clamped || !rod.has(key)) continue;
+    rod.fail(key, "no gripper holds the rod's frame (allowed: a gripper with hold = \"clamp\")");
+  }
+  (void)scene.natural_curvature();
 }
 
 Obstacle read_obstacle(StrictTable& table) {
@@ -221,6 +194,20 @@ Obstacle read_obstacle(StrictTable& table) {
                            .value_or(obstacle.stiffness);
   table.finish();
   return obstacle;
+}
+
+PointLoad read_load(StrictTable& table, const Scene& scene) {
+  PointLoad load;
+  load.at = read_arc_length(table, scene.length);
+  const std::optional<double> mass =
+      table.optional_number("mass", Dimension::mass, Range::positive());
+  if (mass && table.has("force")) {
+    table.fail("mass", "given besides force (allowed: one of force and mass)");
+  }
+  load.force =
+      mass ? Eigen::Vector3d(*mass * scene.gravity) : table.vector("force", Dimension::force);
+  table.finish();
+  return load;
 }
 
 }  // namespace
@@ -237,13 +224,8 @@ Scene read_scene(const toml::table& root, const std::string& file,
     table.fail("rod", "missing, it is required (dlo init writes a scene to start from)");
   }
   StrictTable rod = table.table("rod");
-  scene.length = rod.number("length", Dimension::length, Range::between(1e-6, 1e6, " m"));
-  scene.diameter = rod.number("diameter", Dimension::length, Range::between(1e-9, 1e3, " m"));
-  scene.material = read_material(rod, known_materials);
-  scene.torsional_stiffness =
-      rod.optional_number("torsional_stiffness", Dimension::section_stiffness, Range::positive());
-  require_finite_rod(scene, rod);
-  rod.finish();
+  std::vector<StrictTable> sections = bounded_tables(table, "section", most_sections);
+  read_rod(rod, sections, known_materials, scene);
 
   for (StrictTable& entry : bounded_tables(table, "obstacle", most_obstacles)) {
     scene.obstacles.push_back(read_obstacle(entry));
@@ -263,12 +245,9 @@ Scene read_scene(const toml::table& root, const std::string& file,
   }
   check_twist(scene, rod, grippers);
   for (StrictTable& entry : bounded_tables(table, "load", most_loads)) {
-    PointLoad load;
-    load.at = read_arc_length(entry, scene.length);
-    load.force = entry.vector("force", Dimension::force);
-    entry.finish();
-    scene.loads.push_back(load);
+    scene.loads.push_back(read_load(entry, scene));
   }
+  check_natural_strain(scene, rod);
   if (auto settings = table.optional_table("force_model")) {
     scene.force_model = read_force_model(*settings);
     check(scene.force_model, settings->where());

@@ -1,63 +1,208 @@
 #include "dlo/compare/scene.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 
+#include "dlo/compare/error.hpp"
+#include "dlo/energy_model/natural_frame.hpp"
 #include "scene/reach.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
+namespace {
+
+/// What a section has more than the rod has elsewhere, of some quantity per length, between two arc
+/// lengths.
+template <typename Density>
+double excess_between(const Scene& scene, double begin, double end, const Density& density,
+                      double elsewhere) {
+  double sum = 0;
+  for (const Section& section : scene.sections) {
+    const double part = std::min(end, section.to) - std::max(begin, section.from);
+    if (part > 0) sum += part * (density(section) - elsewhere);
+  }
+  return sum;
+}
+
+/// Unit normal of the plane that grips, forces and obstacles in reach share.
+std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
+  std::vector<Eigen::Vector3d> vectors = {scene.gravity};
+  for (const Gripper& gripper : scene.grippers) {
+    if (gripper.direction) vectors.push_back(*gripper.direction);
+    vectors.emplace_back(gripper.position - scene.grippers.front().position);
+  }
+  for (const PointLoad& load : scene.loads) vectors.push_back(load.force);
+  for (const std::size_t i : obstacles_in_reach(scene)) {
+    vectors.push_back(scene.obstacles[i].normal);
+  }
+  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
+  for (const Eigen::Vector3d& v : vectors) {
+    if (v.norm() > 0) moments += v.normalized() * v.normalized().transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments);
+  const Eigen::Vector3d normal = axes.eigenvectors().col(0);
+  // Not of the eigenvalue, which is their squares' sum but for a rounding of 1e-16.
+  constexpr double noise = 1e-9;
+  const bool share_it = std::all_of(vectors.begin(), vectors.end(), [&](const auto& v) {
+    return std::abs(v.dot(normal)) <= noise * v.norm();
+  });
+  return share_it ? std::optional(normal) : std::nullopt;
+}
+
+/// Index of the first clamp along the rod.
+std::optional<std::size_t> first_clamp_of(const Scene& scene) {
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    const Gripper& gripper = scene.grippers[i];
+    if (gripper.direction && (!first || gripper.at < scene.grippers[*first].at)) first = i;
+  }
+  return first;
+}
+
+}  // namespace
 
 double Scene::cross_section() const { return std::numbers::pi * diameter * diameter / 4; }
 
 double Scene::bending_stiffness() const {
-  return material.youngs_modulus * cross_section() * diameter * diameter / 16;
+  return given_bending_stiffness.value_or(material.youngs_modulus * cross_section() * diameter *
+                                          diameter / 16);
 }
 
-double Scene::axial_stiffness() const { return material.youngs_modulus * cross_section(); }
+double Scene::mass_per_length() const {
+  return given_mass_per_length.value_or(material.density * cross_section());
+}
 
-double Scene::mass() const { return material.density * cross_section() * length; }
+double Scene::twisting_stiffness() const {
+  if (torsional_stiffness) return *torsional_stiffness;
+  return naturally_bent() ? bending_stiffness() / (1 + assumed_poisson_ratio) : 0;
+}
+
+bool Scene::assumes_torsion() const { return naturally_bent() && !torsional_stiffness; }
+
+double Scene::axial_stiffness() const {
+  const double EA = material.youngs_modulus * cross_section();
+  if (EA > 0) return EA;
+  if (diameter > 0) return 16 * bending_stiffness() / (diameter * diameter);
+  return 1e6 * bending_stiffness() / (length * length);
+}
+
+NamedValue Scene::stiffness() const {
+  if (given_bending_stiffness) return {"EI", "N m^2", *given_bending_stiffness};
+  return {"E", "Pa", material.youngs_modulus};
+}
+
+NamedValue Scene::heaviness() const {
+  if (given_mass_per_length) return {"mass per length", "kg/m", *given_mass_per_length};
+  return {"density", "kg/m^3", material.density};
+}
+
+double Scene::mass() const {
+  const double own = mass_per_length();
+  return own * length +
+         excess_between(
+             *this, 0, length, [](const Section& s) { return s.mass_per_length; }, own);
+}
 
 Eigen::Vector3d Scene::weight_per_length() const {
-  return material.density * cross_section() * gravity;
+  return (sections.empty() ? mass_per_length() : mass() / length) * gravity;
+}
+
+Eigen::Vector3d Scene::weight_between(double begin, double end) const {
+  const double own = mass_per_length();
+  const double mass =
+      own * (end - begin) +
+      excess_between(
+          *this, begin, end, [](const Section& s) { return s.mass_per_length; }, own);
+  return mass * gravity;
+}
+
+double Scene::bending_compliance(double begin, double end) const {
+  const double own = 1 / bending_stiffness();
+  return own * (end - begin) +
+         excess_between(
+             *this, begin, end, [](const Section& s) { return 1 / s.bending_stiffness; }, own);
 }
 
 double Scene::gamma() const {
   return weight_per_length().norm() * length * length * length / bending_stiffness();
 }
 
+Scene Scene::without_natural_strain() const {
+  Scene scene = *this;
+  scene.natural_strain.setZero();
+  return scene;
+}
+
+Eigen::Vector3d Scene::natural_curvature() const {
+  if (natural_strain.head<2>().isZero(0)) return Eigen::Vector3d::Zero();
+  const std::optional<std::size_t> clamp = first_clamp_of(*this);
+  if (!clamp) {
+    throw InputError(fmt::format(
+        "{}: rod.natural_curvature: no gripper says about which axis (allowed: a gripper with hold "
+        "= \"clamp\")",
+        file));
+  }
+  const energy_model::Problem problem = scene_problem(*this);
+  const Gripper& gripper = grippers[*clamp];
+  const bool has_d1 = gripper.frame && gripper.frame->d1;
+  if (!has_d1 && !energy_model::natural_normal(problem)) {
+    throw InputError(fmt::format(
+        "{}: rod.natural_curvature: the scene lies in no plane, and the first clamp does not say "
+        "where d1 is (allowed: frame or quaternion there)",
+        gripper.where.empty() ? file : gripper.where));
+  }
+  const Eigen::Matrix3d frame = energy_model::first_frame(problem);
+  return frame.leftCols<2>() * natural_strain.head<2>();
+}
+
 bool Scene::holds_twist() const {
-  return std::count_if(grippers.begin(), grippers.end(),
-                       [](const Gripper& gripper) { return gripper.frame.has_value(); }) > 1;
+  const std::optional<std::size_t> always = naturally_bent() ? first_clamp_of(*this) : std::nullopt;
+  int holding = 0;
+  for (std::size_t i = 0; i < grippers.size(); ++i) {
+    if (grippers[i].frame || always == i) ++holding;
+  }
+  return holding > 1;
 }
 
 Scene Scene::without_twist() const {
   Scene scene = *this;
-  for (Gripper& gripper : scene.grippers) gripper.frame.reset();
+  const std::optional<std::size_t> always = naturally_bent() ? first_clamp_of(*this) : std::nullopt;
+  for (std::size_t i = 0; i < grippers.size(); ++i) {
+    if (always != i) scene.grippers[i].frame.reset();
+  }
   return scene;
 }
 
 void Scene::scale_modulus(double factor) {
   material.youngs_modulus *= factor;
+  if (given_bending_stiffness) *given_bending_stiffness *= factor;
   if (torsional_stiffness) *torsional_stiffness *= factor;
+  for (Section& section : sections) {
+    section.bending_stiffness *= factor;
+    if (section.torsional_stiffness) *section.torsional_stiffness *= factor;
+  }
+}
+
+void Scene::scale_density(double factor) {
+  material.density *= factor;
+  if (given_mass_per_length) *given_mass_per_length *= factor;
+  for (Section& section : sections) section.mass_per_length *= factor;
 }
 
 std::optional<Eigen::Vector3d> Scene::plane_normal() const {
   if (holds_twist()) return std::nullopt;
-  std::vector<Eigen::Vector3d> vectors = {gravity};
-  for (const Gripper& gripper : grippers) {
-    if (gripper.direction) vectors.push_back(*gripper.direction);
-    vectors.emplace_back(gripper.position - grippers.front().position);
-  }
-  for (const PointLoad& load : loads) vectors.push_back(load.force);
-  for (const std::size_t i : obstacles_in_reach(*this)) vectors.push_back(obstacles[i].normal);
-  Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
-  for (const Eigen::Vector3d& v : vectors) {
-    if (v.norm() > 0) moments += v.normalized() * v.normalized().transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(moments);
-  if (!(axes.eigenvalues()[0] < 1e-18)) return std::nullopt;
-  return Eigen::Vector3d(axes.eigenvectors().col(0));
+  std::optional<Eigen::Vector3d> normal = scene_normal(*this);
+  if (!normal || natural_strain.head<2>().isZero(0)) return normal;
+  normal = energy_model::natural_normal(scene_problem(*this));
+  if (!normal) return std::nullopt;
+  const Eigen::Vector3d curvature = natural_curvature();
+  constexpr double noise = 1e-9;
+  const bool about_normal = normal->cross(curvature).norm() <= noise * curvature.norm();
+  return about_normal && natural_strain.z() == 0 ? normal : std::nullopt;
 }
 
 int Scene::spans() const {

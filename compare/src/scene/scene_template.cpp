@@ -16,7 +16,7 @@
 #include "base/text_limits.hpp"
 #include "dlo/compare/error.hpp"
 #include "scene/read_scene.hpp"
-#include "scene/strict_table.hpp"
+#include "toml/strict_table.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -46,6 +46,10 @@ constexpr std::pair<std::string_view, std::string_view> short_field_names[] = {
     {"length", "rod.length"},
     {"diameter", "rod.diameter"},
     {"material", "rod.material"},
+    {"EI", "rod.bending_stiffness"},
+    {"bending_stiffness", "rod.bending_stiffness"},
+    {"mass_per_length", "rod.mass_per_length"},
+    {"natural_curvature", "rod.natural_curvature"},
     {"points", "force_model.points"},
     {"law", "force_model.law"}};
 

@@ -9,7 +9,9 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/chain.hpp"
 #include "polygon/energy_problems.hpp"
+#include "polygon/natural_plane.hpp"
 #include "solve/polygon_solution.hpp"
+#include "solve/turned_solution.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -79,6 +81,9 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
 
 Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
                      const SolveOptions& options) {
+  if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
+    return turned_back(solve_chain(turn->laid(scene), settings, options), *turn);
+  }
   const Discretisation discretisation = discretise(scene, settings);
   const std::optional<ChainScene> chain = chain_scene(scene, discretisation, settings);
   Solution solution = chain ? solve_rigid_chain(scene, settings, discretisation, *chain, options)
@@ -89,13 +94,22 @@ Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
 
 Shape chain_from(const Scene& scene, const ForceModelSettings& settings, const Shape& start,
                  const SolveOptions& options) {
+  if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
+    Shape laid = start;
+    laid.points = turn->laid_points(start.points);
+    Shape result = chain_from(turn->laid(scene), settings, laid, options);
+    result.points = turn->points_back(result.points);
+    return result;
+  }
   const Discretisation discretisation = discretise(scene, settings);
+  Eigen::Matrix3Xd points = resample(start, discretisation.arc_length).points;
+  // A shape in the plane but for rounding, and its joints are turned in it.
+  if (takes_natural_curvature(scene, settings)) points.row(2).setZero();
   energy_model::PolygonOptions polygon_options;
   polygon_options.max_evaluations = options.max_evaluations;
   polygon_options.time_limit = options.time_limit;
-  const energy_model::PolygonResult result = energy_model::solve_polygon(
-      polygon_problem(discretisation.rod), resample(start, discretisation.arc_length).points,
-      polygon_options);
+  const energy_model::PolygonResult result =
+      energy_model::solve_polygon(polygon_problem(discretisation.rod), points, polygon_options);
   if (!energy_model::succeeded(result.status)) {
     throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
                                        scene.file, result.message, result.evaluations));

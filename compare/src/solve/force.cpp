@@ -12,8 +12,10 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "dlo/force_model/tangent_stiffness.hpp"
+#include "polygon/natural_plane.hpp"
 #include "polygon/step_constants.hpp"
 #include "solve/polygon_solution.hpp"
+#include "solve/turned_solution.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -49,6 +51,9 @@ bool in_another_state(const Scene& scene, const Discretisation& discretisation,
 
 Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
                      const SolveOptions& options) {
+  if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
+    return turned_back(solve_force(turn->laid(scene), settings, options), *turn);
+  }
   const Discretisation discretisation = discretise(scene, settings);
   const SimulationStart start = simulation_start(scene, settings, discretisation, options);
   const auto begin = std::chrono::steady_clock::now();

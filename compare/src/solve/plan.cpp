@@ -15,6 +15,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/force_model/heuristics.hpp"
+#include "polygon/natural_plane.hpp"
 #include "scene/reach.hpp"
 #include "solve/polygon_response.hpp"
 
@@ -168,26 +169,48 @@ LeftOut inertia(const Scene& scene, double speed) {
   return result;
 }
 
-LeftOut twist_left_out(const Plan& plan) {
-  if (plan.twist.empty()) {
+LeftOut twist_left_out(const Scene& scene, const Plan& plan) {
+  if (scene.holds_twist()) return {"twist", "chain, force", unbounded, "the grippers hold it"};
+  if (!scene.naturally_bent()) {
     return {"twist", "all", 0, "none in a round, naturally straight rod free to twist"};
   }
-  return {"twist", "chain, force", unbounded, "the grippers hold it"};
+  if (plan.planar) return {"twist", "chain, force", 0, "none in a plane"};
+  return {"twist", "chain, force", unbounded, "a rod that is curved by nature twists in space"};
 }
 
-/// How much of the turn the rod takes up, and what leaving twist out changes: the rod is solved
-/// without it too.
-void look_at_twist(const Scene& scene, const energy_model::Equilibrium& rod, double time_limit,
-                   Plan& plan, LeftOut& twist) {
-  if (rod.twists.size() != plan.twist.size() || !(time_limit > 0)) return;
-  for (std::size_t i = 0; i < plan.twist.size(); ++i) plan.twist[i].twist = rod.twists[i].angle;
+LeftOut natural_left_out(const Scene& scene) {
+  ForceModelSettings hooke = scene.force_model;
+  hooke.law = BendingLaw::hooke;
+  return {
+      "natural curvature",
+      takes_natural_curvature(scene, hooke) ? "chain, force with the law paper" : "chain, force",
+      unbounded, "the rod is curved without loads"};
+}
+
+/// What leaving something out changes: the rod is solved without it too.
+void look_at(const Scene& without, const energy_model::Equilibrium& rod, double time_limit,
+             LeftOut& item) {
+  if (!(time_limit > 0)) return;
   std::string why;
-  const std::optional<energy_model::Equilibrium> loose =
-      rod_shape(scene.without_twist(), time_limit, why);
-  if (!loose) return;
-  const std::vector<double> s = equal_arc_lengths(scene.length, rod_points);
-  twist.bound_m = rms(s, rod.sample(s).points - loose->sample(s).points);
-  twist.why = "distance from the lowest shape without it";
+  const std::optional<energy_model::Equilibrium> other = rod_shape(without, time_limit, why);
+  if (!other) return;
+  const std::vector<double> s = equal_arc_lengths(without.length, rod_points);
+  item.bound_m = rms(s, rod.sample(s).points - other->sample(s).points);
+  item.why = "distance from the lowest shape without it";
+}
+
+/// How much of the turn the rod takes up.
+void look_at_twist(const energy_model::Equilibrium& rod, Plan& plan) {
+  if (rod.twists.size() != plan.twist.size()) return;
+  for (std::size_t i = 0; i < plan.twist.size(); ++i) plan.twist[i].twist = rod.twists[i].angle;
+}
+
+/// Why no polygon answers for the rod; empty if one does.
+std::string no_polygon(const Scene& scene, const Plan& plan) {
+  if (!plan.twist.empty()) return "the polygon that answers has no twist";
+  if (scene.naturally_bent()) return "the polygon that answers is straight by nature";
+  if (!scene.sections.empty()) return "the polygon that answers is of one section";
+  return {};
 }
 
 }  // namespace
@@ -225,7 +248,8 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   LeftOut stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
   LeftOut shear{.what = "shear", .models = "all"};
   LeftOut polygon{.what = "polygon", .models = "chain, force"};
-  LeftOut twist = twist_left_out(plan);
+  LeftOut twist = twist_left_out(scene, plan);
+  LeftOut natural = natural_left_out(scene);
   const auto no_bound = [&](const std::string& why) {
     for (LeftOut* item : {&stretch, &shear, &polygon}) {
       item->bound_m = unbounded;
@@ -237,14 +261,20 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     std::string why;
     const std::optional<energy_model::Equilibrium> rod = rod_shape(scene, options.time_limit, why);
     plan.contact = !rod || touches(*rod);
-    if (rod && !plan.twist.empty()) look_at_twist(scene, *rod, clock.left(), plan, twist);
+    if (rod && !plan.twist.empty()) {
+      look_at_twist(*rod, plan);
+      look_at(scene.without_twist(), *rod, clock.left(), twist);
+    }
+    if (rod && scene.naturally_bent()) {
+      look_at(scene.without_natural_strain(), *rod, clock.left(), natural);
+    }
     const std::optional<Discretisation> fine = hooke_polygon(scene, rod_points);
     if (!rod) {
       no_bound(why);
     } else if (plan.contact) {
       no_bound("the rod touches an obstacle");
-    } else if (!plan.twist.empty()) {
-      no_bound("the polygon that answers has no twist");
+    } else if (const std::string none = no_polygon(scene, plan); !none.empty()) {
+      no_bound(none);
     } else if (!fine) {
       no_bound("the grips lie closer than any polygon looked at");
     } else {
@@ -265,6 +295,7 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   }
   plan.stretch = stretch.bound_m > options.target * scene.length / 10;
   plan.left_out = {stretch, shear, polygon, inertia(scene, options.gripper_speed), twist};
+  if (scene.naturally_bent()) plan.left_out.push_back(natural);
   plan.moving = plan.bound("inertia") > options.target * scene.length;
   if (in_reach.size() < scene.obstacles.size()) {
     plan.left_out.push_back(

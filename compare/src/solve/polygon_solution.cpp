@@ -9,6 +9,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "polygon/energy_problems.hpp"
+#include "polygon/natural_plane.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {
@@ -55,7 +56,7 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
   Solution solution;
   solution.shape = discretisation.shape(points);
   solution.parameters = discretisation.parameters;
-  if (scene.holds_twist()) solution.left_out = {"twist"};
+  solution.left_out = left_out_of_polygon(scene, settings);
   SceneEnergies& energy = solution.energy;
   energy.bending = inner.bending;
   energy.stretch = inner.stretch;

@@ -21,7 +21,7 @@ namespace {
 Eigen::Vector3d section_force(const Scene& scene, const std::vector<GripperLoad>& grippers,
                               double at) {
   const auto before = [&](double s) { return s < at || (s == at && at < scene.length); };
-  Eigen::Vector3d sum = at * scene.weight_per_length();
+  Eigen::Vector3d sum = scene.weight_between(0, at);
   for (std::size_t i = 0; i < grippers.size(); ++i) {
     if (before(scene.grippers[i].at)) sum += grippers[i].force;
   }

@@ -18,8 +18,8 @@
 #include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/compare/solve.hpp"
-#include "scene/quantity.hpp"
 #include "shape/write_vtk.hpp"
+#include "toml/quantity.hpp"
 
 namespace {
 

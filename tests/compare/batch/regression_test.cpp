@@ -213,6 +213,13 @@ TEST(Regression, AFingerprintStandsForAllThatTheShapeDependsOn) {
   differs([](auto& s) { s.grippers.front().position.x() += 1e-4; });
   differs([](auto& s) { s.grippers.front().direction.reset(); });
   differs([](auto& s) { s.torsional_stiffness = 1; });
+  differs([](auto& s) { s.given_bending_stiffness = s.bending_stiffness(); });
+  differs([](auto& s) { s.given_mass_per_length = s.mass_per_length(); });
+  differs([](auto& s) { s.natural_strain.y() = 1e-3; });
+  differs([](auto& s) { s.natural_strain.z() = 1e-3; });
+  differs([](auto& s) {
+    s.sections = {{.from = 0.1, .to = 0.2, .bending_stiffness = 1, .mass_per_length = 1}};
+  });
   differs([](auto& s) { s.grippers.front().frame.emplace(); });
   dlo::compare::Scene held = scene;
   held.grippers.front().frame.emplace();

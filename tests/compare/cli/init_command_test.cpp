@@ -141,7 +141,7 @@ TEST(SceneText, IsValidWithAnyAndAllOptionalPartsAndSolves) {
         SceneChoices{.youngs_modulus = "1 GPa", .density = "0", .direction = "-90 deg"}}) {
     const std::string text = scene_text(choices);
     const std::vector<std::string> paragraphs = optional_paragraphs(text);
-    ASSERT_EQ(paragraphs.size(), 4U);
+    ASSERT_EQ(paragraphs.size(), 5U);
     std::string all = text;
     for (const std::string& paragraph : paragraphs) {
       const Scene scene = parse_scene(text + paragraph, "scene.toml");
@@ -151,6 +151,7 @@ TEST(SceneText, IsValidWithAnyAndAllOptionalPartsAndSolves) {
     const Scene scene = parse_scene(all, "scene.toml");
     EXPECT_EQ(scene.grippers.size(), 2U);
     EXPECT_EQ(scene.loads.size(), 1U);
+    EXPECT_EQ(scene.sections.size(), 1U);
     EXPECT_EQ(scene.obstacles.size(), 1U);
     EXPECT_NO_THROW((void)solve(scene, dlo::compare::Model::energy)) << all;
   }
@@ -162,8 +163,8 @@ TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
   for (const std::string& paragraph : optional_paragraphs(text)) all += paragraph;
   // An unknown key's message lists those that its table knows.
   int tables = 0;
-  for (const std::string table :
-       {"name", "[rod]", "[[gripper]]", "[[load]]", "[[obstacle]]", "[force_model]"}) {
+  for (const std::string table : {"name", "[rod]", "[[gripper]]", "[[section]]", "[[load]]",
+                                  "[[obstacle]]", "[force_model]"}) {
     std::string wrong = all;
     const std::size_t start = wrong.find("\n" + table) + 1;
     wrong.insert(table == "name" ? start : wrong.find('\n', start) + 1, "bogus = 1\n");
@@ -183,7 +184,7 @@ TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
       ++tables;
     }
   }
-  EXPECT_EQ(tables, 6);
+  EXPECT_EQ(tables, 7);
 }
 
 TEST_F(Command, MaterialsListsEveryMaterialWithValues) {

@@ -156,7 +156,7 @@ TEST_F(TwistCommand, CommandsThatUseThemSaySo) {
 TEST_F(TwistCommand, AComparisonSaysThatTheForceModelHasNone) {
   const Outcome text = run("compare --no-modulus " + wire());
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("left out        twist that the grippers hold, by the force model"),
+  EXPECT_NE(text.out.find("left out        twist that the scene has, by the force model"),
             std::string::npos)
       << text.out;
   const json document = json::parse(run("compare --no-modulus --format json " + wire()).out);

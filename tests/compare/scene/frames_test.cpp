@@ -148,9 +148,10 @@ TEST(Frames, ErrorsNameFileLineKeyAndWhatIsAllowed) {
        {"my.toml:5", "rod.torsional_stiffness", "> 0"}},
       {rod_without_torsion + "torsional_stiffness = \"1 Nm^2\"\n" + first,
        {"my.toml:5", "rod.torsional_stiffness", "N m^2, N mm^2"}},
+      {rod + "natural_curvature = \"1 1/m\"\n" + gripper(0, directors) +
+           gripper(0.2, plain + "roll = 1\n"),
+       {"gripper.roll = 1", "curved by nature", "frame or quaternion"}},
       // By arc length it is between the others.
-      {rod + first + gripper(0.5, plain + "roll = 1\n") + gripper(0.2, plain),
-       {"my.toml:18: gripper.roll: missing", "on both sides", "hold = \"pin\""}},
       {rod + gripper(0, directors) + gripper(0.5, directors) + gripper(0.2, plain + "roll = 1\n"),
        {"my.toml:21: gripper.roll = 1", "frame or quaternion"}},
   };

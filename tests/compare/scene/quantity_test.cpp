@@ -1,4 +1,4 @@
-#include "scene/quantity.hpp"
+#include "toml/quantity.hpp"
 
 #include <gtest/gtest.h>
 

@@ -19,6 +19,7 @@ struct Comparison {
   std::string scene;            ///< its name
   double gamma = 0;             ///< w l^3 / (EI) [-]
   double length = 0;            ///< l [m]
+  NamedValue stiffness;         ///< Scene::stiffness
   ForceModelSettings settings;  ///< of the force model, as used
   std::optional<Plan> plan;     ///< what the scene needs, if that was asked
   Solution force;               ///< the force model at rest

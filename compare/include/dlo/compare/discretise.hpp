@@ -37,12 +37,13 @@ struct Discretisation {
 /// Derives the force model of a scene.
 ///
 /// A clamp holds two points, a pin one. `consistent`: the middle of the held segment is the clamp's
-/// arc length, a segment held at the rod's end reaches L/2 beyond it, and a point weighs w times
-/// half of each of its segments, of which the parts inside end grippers weigh nothing. `paper`: a
+/// arc length, a segment held at the rod's end reaches L/2 beyond it, and a point weighs what the
+/// halves of its segments do, of which the parts inside end grippers weigh nothing. `paper`: a
 /// clamp holds the point at its arc length and the next one (at the rod's end the one before), and
-/// every point weighs m g / N. Loads between two points go to both by the lever rule, which keeps
-/// their force and moment: the rod's own moment differs by no more than F L/4 over one segment,
-/// which is second order like everything else.
+/// every point weighs m g / N (of a rod with sections: what its N-th of the rod weighs). Loads
+/// between two points go to both by the lever rule, which keeps their force and moment: the rod's
+/// own moment differs by no more than F L/4 over one segment, which is second order like everything
+/// else.
 ///
 /// With c clamps of which e are at ends, L = l/(N - 1 - e/2) (`paper`: l/(N-1)). Held segments are
 /// L long. The rod between two of them, or to a pin or a free end, has a whole number of equal
@@ -54,6 +55,11 @@ struct Discretisation {
 /// joints are weaker there by (a - b)^2/(a + b)^2 than their mean length says, and have no
 /// potential; with several grippers or one inside the rod, say so with every number.
 ///
+/// A joint stands for the rod between its segments' middles: its EI, over an end of a section too,
+/// is that of the mean 1/EI (of the law `paper` c_b goes with it), and its turn at rest the natural
+/// curvature times its length. The law `paper`, and a rod that does not lie in its plane, leave the
+/// natural curvature out.
+///
 /// A wall acts on points, each with L times the obstacle's stiffness, as the force model's walls
 /// have one stiffness for all points (the last point of a free end has twice its share). A rigid
 /// obstacle gets c_c / L: as stiff as the rod's own segments, so that points enter it by the weight
@@ -62,7 +68,7 @@ struct Discretisation {
 /// @throws InputError if there are too few points for the grippers (with the number needed), two
 /// grippers hold the same arc length, grippers, or the segments that they hold, are further apart
 /// than the rod between them, or a single segment between two held points does not fit (with the
-/// number of points that do)
+/// number of points that do), or a joint would turn by 3 rad or more at rest
 [[nodiscard]] Discretisation discretise(const Scene& scene, const ForceModelSettings& settings);
 
 /// The walls of all obstacles of a scene, in their order, for segments of length L and with c_c.

@@ -17,7 +17,10 @@ struct BudgetPart {
 /// Where a deviation comes from, each part found by switching one thing. With chain(law,
 /// bookkeeping, c_c) the polygon at rest, and "rigid" standing for c_c = 100 AE,
 ///     twist           rod without the twist that the scene holds - rod
-///     discretisation  chain(hooke, consistent, rigid) - rod without twist
+///     natural curvature
+///                     rod without twist that is straight by nature - rod without twist, where the
+///                     force model leaves the natural curvature out, and its chains with it
+///     discretisation  chain(hooke, consistent, rigid) - rod without what is left out
 ///     bookkeeping     chain(hooke, the scene's, rigid) - chain(hooke, consistent, rigid)
 ///     law             chain(the scene's, consistent, rigid) - chain(hooke, consistent, rigid)
 ///     stretch         chain(the scene's, the scene's, c_c)
@@ -29,9 +32,11 @@ struct BudgetPart {
 /// "not at rest" and the net torque of the paper's law between unequal segments, which no potential
 /// has. All chains start from the force model's shape, so that they are in its state.
 struct Budget {
-  BudgetPart law;             ///< see above
-  BudgetPart bookkeeping;     ///< see above
-  BudgetPart twist;           ///< see above; no model of the polygon has any
+  BudgetPart law;          ///< see above
+  BudgetPart bookkeeping;  ///< see above
+  BudgetPart twist;        ///< see above; no model of the polygon has any
+  /// See above; of a scene whose force model has it, zero.
+  BudgetPart natural_curvature;
   BudgetPart discretisation;  ///< see above
   BudgetPart stretch;         ///< see above
   BudgetPart not_at_rest;     ///< see above

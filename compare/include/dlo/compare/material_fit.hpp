@@ -51,8 +51,11 @@ struct CorrelatedErrors {
 
 /// A material that fits measured shapes.
 struct MaterialFit {
-  FittedValue youngs_modulus;          ///< [Pa]
-  std::optional<FittedValue> density;  ///< [kg/m^3], if it was asked for and could be fitted
+  /// [Pa]; of a rod that is given by EI that [N m^2] (Scene::stiffness of the first scene).
+  FittedValue youngs_modulus;
+  /// [kg/m^3], if it was asked for and could be fitted; of a rod that is given by its mass per
+  /// length that [kg/m] (Scene::heaviness).
+  std::optional<FittedValue> density;
   /// What the shapes do not tell, and why; empty if all is told.
   std::string not_told;
   /// Why the fit is not to be believed: residuals far above the given noise (chance 1e-3), or above

@@ -37,7 +37,7 @@ struct Gripper {
 /// A force that keeps its direction.
 struct PointLoad {
   double at = 0;                                    ///< arc length [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]; of a mass in the file, its weight
 
   /// In every field.
   bool operator==(const PointLoad&) const = default;
@@ -54,40 +54,105 @@ struct Obstacle {
   bool operator==(const Obstacle&) const = default;
 };
 
-/// A physical scene in SI units.
+/// A part of the rod that is another one: a connector, a splice, a sleeve.
+struct Section {
+  double from = 0;               ///< arc length [m]
+  double to = 0;                 ///< arc length [m], > from
+  double bending_stiffness = 0;  ///< EI [N m^2], > 0
+  double mass_per_length = 0;    ///< rho A [kg/m], >= 0
+  /// GJ [N m^2]; none: its share of EI is the rod's own.
+  std::optional<double> torsional_stiffness;
+
+  /// In every field.
+  bool operator==(const Section&) const = default;
+};
+
+/// As what a rod's stiffness or mass is told: Young's modulus and density, or EI and mass per
+/// length of a rod that is given by these.
+struct NamedValue {
+  const char* name = "";  ///< "E" or "EI"; "density" or "mass per length"
+  const char* unit = "";  ///< "Pa" or "N m^2"; "kg/m^3" or "kg/m"
+  double value = 0;       ///< in that unit
+};
+
+/// Poisson's ratio of a rod whose torsional stiffness is needed and not given: GJ = EI / (1 + nu).
+inline constexpr double assumed_poisson_ratio = 0.3;
+
+/// A physical scene in SI units. A rod is round and of one material, or is given by its EI and its
+/// mass per length; where both are given, these count for bending and weight, and material and
+/// diameter for the axial stiffness only.
 struct Scene {
   std::string name;                         ///< for people; regression tests know the scene by it
   std::string file;                         ///< where it was read from, for messages
   Eigen::Vector3d gravity = {0, -9.81, 0};  ///< [m/s^2]
   double length = 0;                        ///< l [m]
-  double diameter = 0;                      ///< d [m]
-  Material material;                        ///< round rod of one material
-  /// GJ [N m^2], > 0; needed where two clamps hold frames, of no effect elsewhere.
+  double diameter = 0;                      ///< d [m]; 0: not known, then there is no material
+  Material material;                        ///< of a round rod; youngs_modulus 0: not known
+  std::optional<double> given_bending_stiffness;  ///< EI [N m^2], > 0; none: of the material
+  std::optional<double> given_mass_per_length;    ///< rho A [kg/m], >= 0; none: of the material
+  /// GJ [N m^2], > 0; needed where two clamps hold frames or the rod is curved by nature, of no
+  /// effect elsewhere.
   std::optional<double> torsional_stiffness;
+  std::vector<Section> sections;  ///< where the rod is another one, by arc length, none overlap
+  /// Curvature of the free rod about d1 and d2 of its frame and its twist, the same all along
+  /// [1/m]; the first clamp along the rod holds that frame (energy_model::first_frame).
+  Eigen::Vector3d natural_strain = Eigen::Vector3d::Zero();
   std::vector<Gripper> grippers;    ///< one or more, in the file's order
   std::vector<PointLoad> loads;     ///< may be empty
   std::vector<Obstacle> obstacles;  ///< may be empty
   ForceModelSettings force_model;   ///< as the file has it
 
-  [[nodiscard]] double cross_section() const;               ///< A [m^2]
-  [[nodiscard]] double bending_stiffness() const;           ///< EI [N m^2]
-  [[nodiscard]] double axial_stiffness() const;             ///< EA [N]
-  [[nodiscard]] Eigen::Vector3d weight_per_length() const;  ///< rho A g [N/m]
-  [[nodiscard]] double mass() const;                        ///< [kg]
-  [[nodiscard]] double gamma() const;                       ///< w l^3 / (EI) [-]
-  /// Whether two clamps or more hold the rod's frame, which twists it or keeps it from twisting.
+  [[nodiscard]] double cross_section() const;      ///< A [m^2]; 0 without a diameter
+  [[nodiscard]] double bending_stiffness() const;  ///< EI [N m^2], outside sections
+  [[nodiscard]] double mass_per_length() const;    ///< rho A [kg/m], outside sections
+  /// GJ [N m^2], outside sections: as given, of a naturally curved rod EI / (1 + 0.3) if not given;
+  /// else 0.
+  [[nodiscard]] double twisting_stiffness() const;
+  /// Whether that GJ is an assumption.
+  [[nodiscard]] bool assumes_torsion() const;
+  /// EA [N], one for all of the rod: of the material; without one of a solid round rod of this EI
+  /// and diameter, 16 EI / d^2; without a diameter 1e6 EI / l^2, a rod 250 times as long as thick.
+  [[nodiscard]] double axial_stiffness() const;
+  /// The stiffness that a fit multiplies.
+  [[nodiscard]] NamedValue stiffness() const;
+  /// The same of the mass.
+  [[nodiscard]] NamedValue heaviness() const;
+  [[nodiscard]] double mass() const;  ///< [kg], with sections
+  /// Mean over the rod [N/m]: its mass with sections times gravity over its length.
+  [[nodiscard]] Eigen::Vector3d weight_per_length() const;
+  /// Of the rod between two arc lengths [N], 0 <= begin <= end <= length.
+  [[nodiscard]] Eigen::Vector3d weight_between(double begin, double end) const;
+  /// int 1/EI ds between two arc lengths [1/(N m)], as above.
+  [[nodiscard]] double bending_compliance(double begin, double end) const;
+  /// w l^3 / (EI) [-], w the mean weight per length and EI that outside sections.
+  [[nodiscard]] double gamma() const;
+  /// Whether the free rod is no straight, untwisted one.
+  [[nodiscard]] bool naturally_bent() const { return !natural_strain.isZero(0); }
+  /// The same rod, straight by nature.
+  [[nodiscard]] Scene without_natural_strain() const;
+  /// Curvature of the free rod where the first clamp holds it, as a vector about which its tangent
+  /// turns [1/m]; zero for a rod that is straight by nature. @throws InputError if no clamp, or no
+  /// plane, says where its frame is
+  [[nodiscard]] Eigen::Vector3d natural_curvature() const;
+  /// Whether two clamps or more hold the rod's frame, which twists it or keeps it from twisting. Of
+  /// a naturally bent rod the first clamp always does.
   [[nodiscard]] bool holds_twist() const;
-  /// The same with clamps that let the rod turn about their directions.
+  /// The same with clamps that let the rod turn about their directions, but for the first clamp of
+  /// a naturally bent rod.
   [[nodiscard]] Scene without_twist() const;
-  /// Unit normal of the plane that grips, forces and obstacles in reach share, if they do and no
-  /// twist is held, which bends a rod out of its plane; of several planes any one.
+  /// Unit normal of the plane that grips, forces and obstacles in reach share, if they do, no twist
+  /// is held, which bends a rod out of its plane, and the rod is not curved about another axis by
+  /// nature; of several planes any one.
   [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
   /// Whether there is one.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }
   [[nodiscard]] int spans() const;  ///< parts that the clamps cut the rod into
 
-  /// Multiplies E, and GJ with it: their ratio is one of Poisson's ratio and the section's shape.
+  /// Multiplies E, and EI and GJ with it, those of sections too: their ratios are those of
+  /// Poisson's ratio and of the sections' shapes.
   void scale_modulus(double factor);
+  /// Multiplies the density, and all given masses per length with it.
+  void scale_density(double factor);
 
   /// In every field.
   bool operator==(const Scene&) const = default;

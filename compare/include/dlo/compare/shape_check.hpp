@@ -55,7 +55,9 @@ struct ShapeCheck {
   /// The points lie so nearly on a line that nothing tells how the shape is turned about it.
   bool turn_is_clear = true;
   EffectiveModulus effective_modulus;  ///< aligned anew for each modulus, in the same state
-  double modulus = std::numeric_limits<double>::quiet_NaN();  ///< E* [Pa]; NaN without one
+  NamedValue stiffness;                ///< Scene::stiffness
+  /// E* [Pa], of a rod that is given by EI that [N m^2]; NaN without one.
+  double modulus = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// Solves the scene with the energy model and compares the shape with the nearest stable state.

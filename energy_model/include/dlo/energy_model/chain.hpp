@@ -23,6 +23,11 @@ struct ChainProblem {
   Eigen::Matrix2Xd node_forces;                     ///< dead force on each point [N], 2 x (n+1)
   JointLaw law = JointLaw::hooke;                   ///< of every joint
   double stiffness = 0;                             ///< c_b [N] or EI [N m^2], > 0
+  /// Of each joint [N] or [N m^2], n-1, each > 0; empty: all have `stiffness`.
+  Eigen::VectorXd stiffnesses = {};
+  /// Turn of each joint at rest, counter-clockwise [rad], n-1, |alpha_0| < 3, law hooke only: its
+  /// potential is P(alpha) - P(alpha_0) - P'(alpha_0) (alpha - alpha_0). Empty: straight.
+  Eigen::VectorXd natural_turns = {};
 };
 
 /// Where and how far to minimise.
@@ -44,7 +49,7 @@ struct [[nodiscard]] ChainResult {
   double residual = -1;                       ///< norm of the gradient by the segment angles [N m]
   Eigen::VectorXd angles;                     ///< of the segments, from +x [rad], n
   Eigen::Matrix2Xd points;                    ///< [m], 2 x (n+1)
-  double bending_energy = 0;                  ///< [J]
+  double bending_energy = 0;                  ///< [J]; zero where every joint is at rest
   double load_energy = 0;  ///< of all forces, zero with every point at `start` [J]
 };
 

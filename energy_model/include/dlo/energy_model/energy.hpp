@@ -29,14 +29,14 @@ struct EnergyOptions {
 
 /// Minimises bending plus gravity plus load energy of an inextensible Hookean rod,
 ///     E = int 1/2 EI |t'|^2 ds - int w . r ds - sum_j F_j . r(s_j),
-/// over its curvature. Clamps cut the rod into independent spans; each lies in a plane if its grips
-/// and forces do. On each piece between loads and grips, and in the layers at the ends of soft and
-/// of taut spans, the curvature in the plane, or in space its two components in a frame that does
-/// not turn about the tangent, is expanded in orthonormal Legendre polynomials, so that bending is
-/// |a|^2 / 2 and the Hessian the identity plus a compact part. NLopt's LD_LBFGS (where grips are
-/// constraints a trust region, where they stretch the rod springs that become stiffer) comes near
-/// the minimum with few terms, Newton steps with all of them finish, and their projected Hessian
-/// proves that it is one.
+/// over its curvature. Clamps that nothing passes through cut the rod into independent spans; each
+/// lies in a plane if its grips and forces do. On each piece between loads, grips and sections, and
+/// in the layers at the ends of soft and of taut spans, the curvature in the plane, or in space its
+/// two components in a frame that does not turn about the tangent, is expanded in orthonormal
+/// Legendre polynomials, so that bending is |a|^2 / 2 and the Hessian the identity plus a compact
+/// part. NLopt's LD_LBFGS (where grips are constraints a trust region, where they stretch the rod
+/// springs that become stiffer) comes near the minimum with few terms, Newton steps with all of
+/// them finish, and their projected Hessian proves that it is one.
 ///
 /// Of several minima the lowest that the search finds is returned: one clamp turns towards the load
 /// by the shorter way, which is the lowest of all under parallel forces; other spans start from the
@@ -47,6 +47,11 @@ struct EnergyOptions {
 /// Twist (Problem) is put in from the lowest shape without it, in small turns of the later clamp;
 /// what loses its stability or comes to the end of its branch is followed downhill. Nothing keeps
 /// the rod from passing through itself. `start` with its `twists` is gone from directly.
+///
+/// A rod that is not straight by nature (Problem) has the energy of its strains less the natural
+/// ones, 1/2 EI |u - u0|^2 about d1 and d2 and 1/2 GJ (u3 - u03)^2, and strains of all three kinds
+/// as unknowns; a planar shape is proven against leaving its plane by bending and twisting. It is
+/// searched from the free rod too, and with its frame turned on.
 ///
 /// Rigid walls are met by an augmented Lagrangian whose multipliers live at the quadrature's nodes,
 /// between which a shape may enter a wall: a tip that just touches one by up to 1e-3 l. Equilibrium

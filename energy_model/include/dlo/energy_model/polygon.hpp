@@ -35,14 +35,20 @@ struct PointWall {
 /// law the force model's forces are this energy's derivative. For the paper's law they are that
 /// between segments of equal length only: elsewhere the paper's joint is a little weaker,
 /// belongs to no potential, and rests in a slightly different shape.
+///
+/// A polygon whose joints are turned at rest lies in the plane z = 0 with all that holds it and
+/// acts on it: turns have a sign there, and its joints' potentials are those of ChainProblem.
+/// Nothing is said of its stability across that plane.
 struct PolygonProblem {
-  Eigen::VectorXd rest_lengths;    ///< L_i [m], n >= 2, each > 0
-  double stretch_stiffness = 0;    ///< c_c [N], > 0
-  Eigen::Matrix3Xd node_forces;    ///< dead force on each point [N], 3 x (n+1)
-  JointLaw law = JointLaw::hooke;  ///< of every joint
-  double stiffness = 0;            ///< c_b [N] or EI [N m^2], > 0
-  std::vector<HeldPoint> held;     ///< one or more, each point once
-  std::vector<PointWall> walls;    ///< may be empty
+  Eigen::VectorXd rest_lengths;        ///< L_i [m], n >= 2, each > 0
+  double stretch_stiffness = 0;        ///< c_c [N], > 0
+  Eigen::Matrix3Xd node_forces;        ///< dead force on each point [N], 3 x (n+1)
+  JointLaw law = JointLaw::hooke;      ///< of every joint
+  double stiffness = 0;                ///< c_b [N] or EI [N m^2], > 0
+  Eigen::VectorXd stiffnesses = {};    ///< as ChainProblem's
+  Eigen::VectorXd natural_turns = {};  ///< as ChainProblem's, from x to y
+  std::vector<HeldPoint> held;         ///< one or more, each point once
+  std::vector<PointWall> walls;        ///< may be empty
 };
 
 /// How far to minimise.
@@ -72,11 +78,11 @@ struct [[nodiscard]] PolygonResult {
 /// stiff rod's steps would be confined to a narrow curved valley.
 ///
 /// `converged` and `roundoff_limited` mean, at the points that are returned, that the Hessian over
-/// all free points, in space, is positive definite (to rounding: a shape that is free to turn is
-/// not called unstable), that Newton's step from there is below 1e-7 polygon lengths, and that no
-/// force above 1e-6 of those that act is left on a free point, but for rounding; else the status is
-/// `not_resolved` and the message has the number. At a saddle the solver leaves along the lowest
-/// curvature and goes on.
+/// all free points, in space (with natural turns: in its plane), is positive definite (to rounding:
+/// a shape that is free to turn is not called unstable), that Newton's step from there is below
+/// 1e-7 polygon lengths, and that no force above 1e-6 of those that act is left on a free point,
+/// but for rounding; else the status is `not_resolved` and the message has the number. At a saddle
+/// the solver leaves along the lowest curvature and goes on.
 /// @param start  positions to start from [m], 3 x (n+1), no segment of zero length; held points
 ///               are put where they are held
 /// @throws std::invalid_argument if the problem, an option or the start is out of range

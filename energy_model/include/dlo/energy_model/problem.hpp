@@ -41,13 +41,30 @@ struct Wall {
   double stiffness = std::numeric_limits<double>::infinity();
 };
 
-/// A round, naturally straight, inextensible rod.
+/// A part of the rod whose section is another one.
+struct Section {
+  double begin = 0;                ///< arc length [m]
+  double end = 0;                  ///< arc length [m], > begin
+  double bending_stiffness = 0;    ///< EI [N m^2], > 0
+  double torsional_stiffness = 0;  ///< GJ [N m^2]; > 0 where Problem's has to be
+  Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
+};
+
+/// A round, inextensible rod.
 ///
 /// Two neighbouring clamps that hold frames twist the rod between them by the difference of their
 /// rolls, the later less the earlier; if both say where d1 is, by the angle in (-pi, pi] more by
 /// which the later one's is turned from the earlier one's as the rod without twist transports it.
 /// That rod is the lowest minimum of the same problem without frames; from there the twist is put
 /// in little by little, and where a shape cannot hold itself any more it falls to the next one.
+///
+/// A rod that is not straight by nature has directors d1 and d2 that are fixed to its material. The
+/// first clamp along it holds them: at its FrameHold::d1, or else d2 is the normal of the plane
+/// that grips and forces share, on the side of +z (of +y, or of +x, where the plane holds those),
+/// so that a strain u2 > 0 bends the rod to the left; its roll turns them on. Where no clamp holds
+/// the rod they are free. A later clamp holds them only if it has a frame; "where the rod without
+/// twist has it" then means where the rod has it without that frame, and its roll counts less the
+/// first one's.
 struct Problem {
   double length = 0;               ///< l [m], > 0
   double bending_stiffness = 0;    ///< EI [N m^2], > 0
@@ -56,6 +73,11 @@ struct Problem {
   std::vector<Grip> grips;                                      ///< one or more
   std::vector<Load> loads;                                      ///< may be empty
   std::vector<Wall> walls;                                      ///< may be empty
+  std::vector<Section> sections;  ///< where it is another one, by arc length, none over another
+  /// Strains u of the free rod about d1, d2 and the tangent t, of which t' = u2 d1 - u1 d2 and u3
+  /// turns d1 towards d2: coefficients of Legendre's polynomials P_j(2 s/l - 1) [1/m]. Empty:
+  /// straight. Not empty: torsional_stiffness > 0.
+  std::vector<Eigen::Vector3d> natural_strains;
 };
 
 /// @throws std::invalid_argument naming the first member that is out of range
@@ -63,8 +85,8 @@ void check(const Problem& problem);
 
 /// Energies [J]; gravity and loads are zero where their points sit at the first grip.
 struct Energies {
-  double bending = 0;   ///< int 1/2 EI |t'|^2 ds
-  double twisting = 0;  ///< int 1/2 GJ tau^2 ds, tau the twist per length
+  double bending = 0;   ///< int 1/2 EI |t'|^2 ds, of the curvature that is not natural
+  double twisting = 0;  ///< int 1/2 GJ tau^2 ds, tau the twist per length that is not natural
   double gravity = 0;   ///< of the rod's weight
   double load = 0;      ///< of point loads
 
@@ -78,12 +100,13 @@ struct Reaction {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
 };
 
-/// Twist of a part of the rod whose ends hold frames; it is the same all along.
+/// Twist of a part of the rod whose ends hold frames. The torque is the same all along where the
+/// rod is straight by nature.
 struct TwistedPart {
   double begin = 0;   ///< arc length [m]
   double end = 0;     ///< arc length [m]
   double angle = 0;   ///< by which the frame at the end is turned ahead of transport [rad]
-  double torque = 0;  ///< GJ angle / (end - begin) [N m]
+  double torque = 0;  ///< about the tangent, at the end [N m]
 };
 
 /// A shape at given arc lengths.
@@ -92,6 +115,8 @@ struct Samples {
   Eigen::Matrix3Xd points;         ///< [m], 3 x M
   Eigen::Matrix3Xd tangents;       ///< unit, along growing arc length [-], 3 x M
   Eigen::Matrix3Xd curvature;      ///< derivative of the tangent by arc length [1/m], 3 x M
+  /// First director of a rod that is not straight by nature, 3 x M; empty of others.
+  Eigen::Matrix3Xd d1;
 };
 
 /// M arc lengths from 0 to `length`, equally spaced [m]. @throws std::invalid_argument unless M >=

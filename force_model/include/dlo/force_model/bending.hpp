@@ -7,10 +7,31 @@
 namespace dlo::force_model {
 
 /// What resists bending.
+///
+/// A joint that is turned by alpha_0 at rest has the moment M(alpha) - M(alpha_0), M that of
+/// joint_moment: the free rod's constant couple M(alpha_0) against the same joint, as a rod's
+/// EI (kappa - kappa_0) is. Turns have a sign in a plane only (in space a rod's frame would have to
+/// say where they point, and points have none), so such a rod lies in the plane z = 0, with all
+/// that holds it and acts on it; nothing is said of its stability across that plane.
 struct Bending {
   BendingLaw law = BendingLaw::hooke;  ///< how the moment grows with the angle
   double stiffness = 0;                ///< c_b [N] for `paper`, EI [N m^2] for `hooke`; >= 0
+  /// Of each joint P_1 .. P_{n-1}, as `stiffness`; empty: all have that.
+  Eigen::VectorXd stiffnesses = {};
+  /// Turn of each joint P_1 .. P_{n-1} at rest, from x to y [rad], |alpha_0| < hooke_fold_angle,
+  /// law hooke only; empty: the rod is straight by nature.
+  Eigen::VectorXd natural_turns = {};
 };
+
+/// Law and stiffness of the joint at P_i, 1 <= i <= n-1, without its natural turn.
+[[nodiscard]] Bending bending_at(const Bending& bending, Eigen::Index i);
+
+/// The couple M(alpha_0) of the joint at P_i [N m], from x to y; zero of a straight one.
+/// @param segment_length  the mean of its two segments' rest lengths [m]
+[[nodiscard]] double natural_moment(const Bending& bending, Eigen::Index i, double segment_length);
+
+/// @throws std::invalid_argument if a number is out of range or there are not as many as joints
+void check(const Bending& bending, Eigen::Index segments);
 
 /// Moment of one joint [N m] at turning angle `alpha` [rad], 0 <= alpha <= pi.
 [[nodiscard]] double joint_moment(const Bending& bending, double segment_length, double alpha);
@@ -33,7 +54,9 @@ struct Bending {
 ///
 /// With k = 2 (EI/L) / (1 + u.v), a and b the two segments:
 ///     hooke:  P_{i+1}: k/|b| (u - (u.v) v)   P_{i-1}: -k/|a| (v - (u.v) u)   P_i: minus the sum
-/// Net force and net torque are zero for any segments.
+/// Net force and net torque are zero for any segments. What a natural turn adds, z the unit
+/// vector along +z:
+///     P_{i+1}: M(alpha_0)/|b| z x v   P_{i-1}: M(alpha_0)/|a| z x u   P_i: minus the sum
 ///
 /// At a full fold (u = -v) the direction of opening is not defined; a fixed one orthogonal to u is
 /// taken. A joint next to a segment of zero length has no angle and exerts no force.
@@ -45,7 +68,10 @@ void add_bending_forces(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                         const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,
                         const Bending& bending, Eigen::Ref<Eigen::Matrix3Xd> forces);
 
-/// Sum of joint_potential over the inner points [J]. Arguments and errors as above.
+/// Sum over the inner points [J]: joint_potential P(alpha), or with a natural turn
+/// P(alpha) - P(alpha_0) - M(alpha_0) (alpha - alpha_0), which is least, and zero, at rest. Its
+/// turn alpha has a sign, and jumps where the joint is folded back on itself. Arguments and errors
+/// as above.
 [[nodiscard]] double bending_energy(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                                     const Eigen::Ref<const Eigen::VectorXd>& rest_lengths,
                                     const Bending& bending);

@@ -26,6 +26,9 @@ struct Rod {
   [[nodiscard]] double length() const { return rest_lengths.sum(); }
 };
 
+/// Whether no force can leave the plane z = 0 if all points lie in it.
+[[nodiscard]] bool is_planar(const Rod& rod);
+
 /// @throws std::invalid_argument naming the first member that is out of range
 void check(const Rod& rod);
 

@@ -32,7 +32,8 @@ struct [[nodiscard]] EquilibriumCheck {
 
 /// Solves K dx = F twice, K minus the derivative of the total forces by the free points' positions,
 /// with what tension and pressure add to it, and F the total forces on them, here and after the
-/// first step. O(N) in time and memory; allocates.
+/// first step. A rod with natural turns is asked about movements in its plane only. O(N) in time
+/// and memory; allocates.
 /// @param points  [m], 3 x rod.points()
 /// @throws std::invalid_argument if a shape or number is out of range
 EquilibriumCheck check_equilibrium(const Rod& rod,

@@ -1,4 +1,4 @@
-#include "scene/quantity.hpp"
+#include "toml/quantity.hpp"
 
 #include <fmt/format.h>
 
@@ -26,6 +26,9 @@ constexpr Unit accelerations[] = {{"m/s^2", 1}};
 constexpr Unit curvatures[] = {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}};
 constexpr Unit foundations[] = {{"N/m^2", 1}, {"N/mm^2", 1e6}};
 constexpr Unit section_stiffnesses[] = {{"N m^2", 1}, {"N mm^2", 1e-6}};
+constexpr Unit masses[] = {{"kg", 1}, {"g", 1e-3}};
+constexpr Unit masses_per_length[] = {{"kg/m", 1}, {"g/m", 1e-3}, {"g/cm", 1e-1}};
+constexpr Unit twists[] = {{"rad/m", 1}, {"deg/m", std::numbers::pi / 180}, {"1/m", 1}};
 
 std::span<const Unit> units(Dimension dimension) {
   switch (dimension) {
@@ -47,6 +50,12 @@ std::span<const Unit> units(Dimension dimension) {
       return foundations;
     case Dimension::section_stiffness:
       return section_stiffnesses;
+    case Dimension::mass:
+      return masses;
+    case Dimension::mass_per_length:
+      return masses_per_length;
+    case Dimension::twist:
+      return twists;
     case Dimension::number:
       break;
   }

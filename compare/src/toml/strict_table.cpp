@@ -1,4 +1,4 @@
-#include "scene/strict_table.hpp"
+#include "toml/strict_table.hpp"
 
 #include <fmt/format.h>
 
@@ -174,6 +174,14 @@ std::optional<Eigen::Vector3d> StrictTable::optional_vector(std::string_view key
                                                             Dimension dimension) {
   if (find(key) == nullptr) return std::nullopt;
   return vector(key, dimension);
+}
+
+std::optional<Eigen::Vector2d> StrictTable::optional_pair(std::string_view key,
+                                                          Dimension dimension) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return std::nullopt;
+  if (!node->is_array()) return Eigen::Vector2d(0, read_number(key, *node, dimension));
+  return read_numbers<2>(key, *node, dimension, "must be one number, or two in brackets [x, y]");
 }
 
 std::optional<Eigen::Matrix3d> StrictTable::optional_rows(std::string_view key) {

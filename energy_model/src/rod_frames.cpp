@@ -1,11 +1,8 @@
-#include "bishop_frames.hpp"
+#include "rod_frames.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <optional>
 
-#include "fit_angle.hpp"
 #include "spin.hpp"
 
 namespace dlo::energy_model {
@@ -19,19 +16,13 @@ constexpr int turn_terms = 1;
 constexpr double finest_defect = 2e-15;
 constexpr int most_corrections = 6;
 
-Eigen::Quaterniond from_rotation_vector(const Eigen::Vector3d& v) {
-  const double angle = v.norm();
-  const double half_sine = angle > 1e-8 ? std::sin(angle / 2) / angle : 0.5;
-  return {std::cos(angle / 2), half_sine * v.x(), half_sine * v.y(), half_sine * v.z()};
-}
-
 using Rows = Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
 using ConstRows = Eigen::Ref<const Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
+using ConstStrains = Eigen::Ref<const Eigen::MatrixX3d, 0, Eigen::OuterStride<>>;
 
 /// product = scale q (0, u1, u2, 0), row by row.
-void multiply_by_strains(const ConstRows& q,
-                         const Eigen::Ref<const Eigen::MatrixX2d, 0, Eigen::OuterStride<>>& u,
-                         double scale, Rows product) {
+void multiply_by_two_strains(const ConstRows& q, const ConstStrains& u, double scale,
+                             Rows product) {
   for (Eigen::Index r = 0; r < q.rows(); ++r) {
     const double a = scale * u(r, 0);
     const double b = scale * u(r, 1);
@@ -40,6 +31,17 @@ void multiply_by_strains(const ConstRows& q,
     product(r, 1) = w * a - z * b;
     product(r, 2) = w * b + z * a;
     product(r, 3) = x * b - y * a;
+  }
+}
+
+/// product = product + scale q (0, 0, 0, u3), row by row.
+void add_product_with_twist(const ConstRows& q, const ConstStrains& u, double scale, Rows product) {
+  for (Eigen::Index r = 0; r < q.rows(); ++r) {
+    const double c = scale * u(r, 2);
+    product(r, 0) -= q(r, 3) * c;
+    product(r, 1) += q(r, 2) * c;
+    product(r, 2) -= q(r, 1) * c;
+    product(r, 3) += q(r, 0) * c;
   }
 }
 
@@ -70,33 +72,49 @@ void add_product(Rows q, const ConstRows& a) {
 
 Eigen::Vector4d as_vector(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
-/// Rotation vector, in body axes and across the tangent, that takes the tangent e3 to v.
-Eigen::Vector2d turn_to(const Eigen::Vector3d& v) {
-  const double sine = std::hypot(v.x(), v.y());
-  const double angle = std::atan2(sine, v.z());
-  if (sine < 1e-12) return {v.z() > 0 ? 0 : std::numbers::pi, 0};
-  return Eigen::Vector2d(-v.y(), v.x()) * (angle / sine);
-}
-
 }  // namespace
 
-void BishopFrames::reset(const std::vector<Piece>& pieces, int terms, const Eigen::Matrix3d& start,
-                         bool free_start) {
+void RodFrames::reset(const std::vector<Piece>& pieces, int terms, const Eigen::Matrix3d& start,
+                      bool free_start, const NaturalStrains& natural) {
   start_ = Eigen::Quaterniond(start).normalized();
+  fields_ = natural.empty() ? 2 : 3;
   panels_.clear();
   columns_ = 0;
   nodes_ = 0;
-  const auto add = [&](double length, int count) {
-    panels_.push_back({length, &director_table(count), count, columns_, nodes_});
+  const auto add = [&](double length, const std::array<double, 3>& strain, int count) {
+    panels_.push_back({length, strain, &director_table(count), count, columns_, nodes_});
     columns_ += count;
     nodes_ += panels_.back().nodes();
   };
-  if (free_start) add(1, turn_terms);
+  if (free_start) add(1, {1, 1, 1}, turn_terms);
   turn_nodes_ = nodes_;
-  for (const Piece& piece : pieces) add(piece.length, terms);
+  pieces_ = pieces.size();
+  for (const Piece& piece : pieces) {
+    const double curvature = piece.curvature();
+    add(piece.length, {curvature, curvature, fields_ == 3 ? piece.twist() : 0}, terms);
+  }
+  natural_.resize(0, 3);
+  if (natural.empty()) return;
+  natural_.setZero(nodes_, 3);
+  for (std::size_t e = 0; e < pieces.size(); ++e) {
+    const Panel& panel = panels_[panels_.size() - pieces.size() + e];
+    for (Eigen::Index r = 0; r < panel.nodes(); ++r) {
+      const double s = pieces[e].begin + pieces[e].length * panel.table->nodes[r];
+      natural_.row(panel.node + r) = natural.at(s).transpose();
+    }
+  }
 }
 
-void BishopFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& state) {
+/// product = length / 2 q (0, u), row by row.
+void RodFrames::multiply_by_strains(
+    const ConstRows& q, const Panel& panel, const State& state,
+    Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>> product) const {
+  const auto u = state.u.middleRows(panel.node, panel.nodes());
+  multiply_by_two_strains(q, u, panel.length / 2, product);
+  if (fields_ == 3) add_product_with_twist(q, u, panel.length / 2, product);
+}
+
+void RodFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& state) const {
   const LegendreTable& table = *panel.table;
   const Eigen::Index Q = panel.nodes();
   const auto u = state.u.middleRows(panel.node, Q);
@@ -105,28 +123,32 @@ void BishopFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& 
   auto defect = state.defect.topRows(Q);
   auto turn = state.turn.topRows(Q);
   // Magnus: the strain's integral, and h^2/12 of the commutator of the strains at both ends.
-  turn.leftCols(2).noalias() = panel.length * (table.integration * u);
+  turn.leftCols(fields_).noalias() = panel.length * (table.integration * u.leftCols(fields_));
   Eigen::Quaterniond along = at;
   for (Eigen::Index r = 0; r < Q; ++r) {
-    Eigen::Vector3d step(turn(r, 0), turn(r, 1), 0);
+    Eigen::Vector3d step(turn(r, 0), turn(r, 1), fields_ == 3 ? turn(r, 2) : 0);
     if (r > 0) {
       const double h = panel.length * (table.nodes[r] - table.nodes[r - 1]);
-      step.head<2>() -= turn.row(r - 1).head<2>().transpose();
-      step.z() = h * h / 12 * (u(r - 1, 0) * u(r, 1) - u(r - 1, 1) * u(r, 0));
+      step.head(fields_) -= turn.row(r - 1).head(fields_).transpose();
+      step.z() += h * h / 12 * (u(r - 1, 0) * u(r, 1) - u(r - 1, 1) * u(r, 0));
+      if (fields_ == 3) {
+        step.x() += h * h / 12 * (u(r - 1, 1) * u(r, 2) - u(r - 1, 2) * u(r, 1));
+        step.y() += h * h / 12 * (u(r - 1, 2) * u(r, 0) - u(r - 1, 0) * u(r, 2));
+      }
     }
     along = along * from_rotation_vector(step);
     q.row(r) = as_vector(along).transpose();
   }
   const Eigen::Vector4d first = as_vector(at);
   for (int i = 0; i < most_corrections; ++i) {
-    multiply_by_strains(q, u, panel.length / 2, product);
+    multiply_by_strains(q, panel, state, product);
     defect.noalias() = table.integration * product;
     defect -= q;
     defect.rowwise() += first.transpose();
     const double size = defect.cwiseAbs().maxCoeff();
     if (!(size > finest_defect) || !(size < 1)) break;
     // eta = d q* + 1/2 int d u q*
-    multiply_by_strains(defect, u, panel.length / 2, product);
+    multiply_by_strains(defect, panel, state, product);
     multiply_by_conjugate(product, q);
     multiply_by_conjugate(defect, q);
     defect.noalias() += table.integration * product;
@@ -134,14 +156,15 @@ void BishopFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& 
     // What is left is its square.
     if (size < 3e-8) break;
   }
-  multiply_by_strains(q, u, panel.length / 2, product);
+  multiply_by_strains(q, panel, state, product);
   const Eigen::Vector4d end = first + product.transpose() * table.weights;
   at = Eigen::Quaterniond(end[0], end[1], end[2], end[3]).normalized();
 }
 
-void BishopFrames::resize(State& state) const {
+void RodFrames::resize(State& state) const {
   state.q.resize(nodes_, 4);
-  state.u.resize(nodes_, 2);
+  state.u.resize(nodes_, 3);
+  state.panel_ends.resize(panels_.size());
   for (Eigen::MatrixX3d* m : {&state.d1, &state.d2, &state.t, &state.tails}) m->resize(nodes_, 3);
   // The last panel is the largest.
   const Eigen::Index Q = panels_.back().nodes();
@@ -149,29 +172,33 @@ void BishopFrames::resize(State& state) const {
   for (Eigen::MatrixX4d* m : {&state.product, &state.defect, &state.turn}) m->resize(Q, 4);
   for (Eigen::MatrixX3d* m : {&state.couples, &state.moments, &state.levers}) m->resize(Q, 3);
   state.along.resize(Q);
-  state.spins.resize(3 * Q, 2 * K);
-  state.weighted.resize(3 * Q, 2 * K);
-  state.scaled.resize(Q, 2 * K);
-  state.own.resize(2 * K, 2 * K);
-  state.beside.resize(3, 2 * K);
+  state.spins.resize(3 * Q, fields_ * K);
+  state.weighted.resize(3 * Q, fields_ * K);
+  state.scaled.resize(std::max(Q, K), fields_ * K);
+  state.own.resize(fields_ * K, fields_ * K);
+  state.beside.resize(3, fields_ * K);
   state.turned.resize(3, K);
   state.before.resize(columns_, K);
-  state.ends.resize(3, 2 * columns_);
+  state.ends.resize(3, fields_ * columns_);
 }
 
-void BishopFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& state) const {
+void RodFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& state) const {
   Eigen::Quaterniond at = start_;
+  std::size_t done = 0;
   for (const Panel& panel : panels_) {
-    const double root = std::sqrt(panel.length);
-    for (Eigen::Index f = 0; f < 2; ++f) {
+    for (Eigen::Index f = 0; f < fields_; ++f) {
       auto strains = state.u.col(f).segment(panel.node, panel.nodes());
       strains.noalias() = panel.table->values.leftCols(panel.terms) *
                           x.segment(f * columns_ + panel.column, panel.terms);
-      strains /= root;
+      strains *= panel.strain[static_cast<std::size_t>(f)];
+    }
+    if (fields_ == 3) {
+      state.u.middleRows(panel.node, panel.nodes()) +=
+          natural_.middleRows(panel.node, panel.nodes());
     }
     integrate(panel, at, state);
+    state.panel_ends[done++] = at;
   }
-  state.end = at;
   for (Eigen::Index r = 0; r < nodes_; ++r) {
     const double w = state.q(r, 0), x1 = state.q(r, 1), y = state.q(r, 2), z = state.q(r, 3);
     state.d1.row(r) << 1 - 2 * (y * y + z * z), 2 * (x1 * y + w * z), 2 * (x1 * z - w * y);
@@ -193,8 +220,8 @@ void BishopFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& s
 /// Into state.couples and state.moments (rows of a panel): t x g of the nodes, and the moment
 ///     M(s) = int_s^end t x dg
 /// that the discrete spins give them; `later` is the sum of t x g beyond the panel.
-void BishopFrames::moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
-                           State& state) const {
+void RodFrames::moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
+                        State& state) const {
   const Eigen::Index Q = panel.nodes();
   auto couples = state.couples.topRows(Q);
   auto moments = state.moments.topRows(Q);
@@ -212,17 +239,19 @@ void BishopFrames::moments(const Panel& panel, const FrameGradient& f, const Eig
   moments.noalias() += panel.length * (panel.table->integration.transpose() * couples);
 }
 
-void BishopFrames::pull(const FrameGradient& f, double sense, State& state,
-                        Eigen::Ref<Eigen::VectorXd> gradient) const {
-  Eigen::Vector3d later = f.end_couple;
+void RodFrames::pull(const FrameGradient& f, double sense, State& state,
+                     Eigen::Ref<Eigen::VectorXd> gradient) const {
+  Eigen::Vector3d later = Eigen::Vector3d::Zero();
+  std::size_t piece = pieces_;
   for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
+    if (piece > 0 && !f.couples.empty()) later += f.couples[--piece];
     moments(*panel, f, later, state);
     const Eigen::Index Q = panel->nodes();
-    const double scale = sense / std::sqrt(panel->length);
     auto along = state.along.head(Q);
-    for (Eigen::Index field = 0; field < 2; ++field) {
-      const auto director = (field == 0 ? state.d1 : state.d2).middleRows(panel->node, Q);
-      along = director.cwiseProduct(state.moments.topRows(Q)).rowwise().sum();
+    for (Eigen::Index field = 0; field < fields_; ++field) {
+      const double scale = sense * panel->strain[static_cast<std::size_t>(field)];
+      const auto d = director(state, field).middleRows(panel->node, Q);
+      along = d.cwiseProduct(state.moments.topRows(Q)).rowwise().sum();
       gradient.segment(field * columns_ + panel->column, panel->terms).noalias() +=
           scale * (panel->table->values.leftCols(panel->terms).transpose() * along);
     }
@@ -230,8 +259,8 @@ void BishopFrames::pull(const FrameGradient& f, double sense, State& state,
   }
 }
 
-void BishopFrames::pull_position(const std::vector<double>& signs, State& state,
-                                 Eigen::Ref<Eigen::MatrixXd> jacobian) const {
+void RodFrames::pull_position(const std::vector<double>& signs, State& state,
+                              Eigen::Ref<Eigen::MatrixXd> jacobian) const {
   // The moment of a force along an axis a is v x a, v what lies beyond; d.(v x a) = a.(d x v).
   Eigen::Vector3d beyond = Eigen::Vector3d::Zero();
   std::size_t piece = signs.size();
@@ -243,16 +272,16 @@ void BishopFrames::pull_position(const std::vector<double>& signs, State& state,
     v.noalias() = length * panel->table->weights * beyond.transpose();
     v += sign * length * length * state.tails.middleRows(panel->node, Q);
     auto levers = state.levers.topRows(Q);
-    for (Eigen::Index field = 0; field < 2; ++field) {
-      const auto& director = field == 0 ? state.d1 : state.d2;
+    for (Eigen::Index field = 0; field < fields_; ++field) {
+      const Eigen::MatrixX3d& directors = director(state, field);
       for (Eigen::Index r = 0; r < Q; ++r) {
-        const Eigen::Vector3d d = director.row(panel->node + r);
+        const Eigen::Vector3d d = directors.row(panel->node + r);
         const Eigen::Vector3d own = v.row(r);
         levers.row(r) = d.cross(own);
       }
       auto rows = jacobian.middleCols(field * columns_ + panel->column, panel->terms);
       rows.noalias() = levers.transpose() * panel->table->values.leftCols(panel->terms);
-      rows /= std::sqrt(length);
+      rows *= panel->strain[static_cast<std::size_t>(field)];
     }
     const auto t = state.t.middleRows(panel->node, Q);
     beyond += sign * length * (t.transpose() * panel->table->weights);
@@ -260,15 +289,14 @@ void BishopFrames::pull_position(const std::vector<double>& signs, State& state,
 }
 
 /// Into state.spins: spins of the panel's nodes by its own unknowns, axis by axis.
-void BishopFrames::own_spins(const Panel& panel, State& state) {
+void RodFrames::own_spins(const Panel& panel, State& state) const {
   const Eigen::Index Q = panel.nodes();
-  const double scale = std::sqrt(panel.length);
-  for (Eigen::Index field = 0; field < 2; ++field) {
-    const auto director = (field == 0 ? state.d1 : state.d2).middleRows(panel.node, Q);
+  for (Eigen::Index field = 0; field < fields_; ++field) {
+    const double scale = panel.length * panel.strain[static_cast<std::size_t>(field)];
+    const auto d = director(state, field).middleRows(panel.node, Q);
     auto scaled = state.scaled.topLeftCorner(Q, panel.terms);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      scaled.noalias() =
-          director.col(axis).asDiagonal() * panel.table->values.leftCols(panel.terms);
+      scaled.noalias() = d.col(axis).asDiagonal() * panel.table->values.leftCols(panel.terms);
       state.spins.block(axis * Q, field * panel.terms, Q, panel.terms).noalias() =
           scale * (panel.table->integration * scaled);
     }
@@ -276,33 +304,38 @@ void BishopFrames::own_spins(const Panel& panel, State& state) {
 }
 
 /// Into state.ends: spin of the panel's end by its own unknowns.
-void BishopFrames::end_spins(const Panel& panel, State& state) const {
+void RodFrames::end_spins(const Panel& panel, State& state) const {
   const Eigen::Index Q = panel.nodes();
   auto weighted = state.levers.topRows(Q);
-  for (Eigen::Index field = 0; field < 2; ++field) {
-    const auto director = (field == 0 ? state.d1 : state.d2).middleRows(panel.node, Q);
-    weighted.noalias() = panel.table->weights.asDiagonal() * director;
+  for (Eigen::Index field = 0; field < fields_; ++field) {
+    const auto d = director(state, field).middleRows(panel.node, Q);
+    weighted.noalias() = panel.table->weights.asDiagonal() * d;
     auto ends = state.ends.middleCols(field * columns_ + panel.column, panel.terms);
     ends.noalias() = weighted.transpose() * panel.table->values.leftCols(panel.terms);
-    ends *= std::sqrt(panel.length);
+    ends *= panel.length * panel.strain[static_cast<std::size_t>(field)];
   }
 }
 
-void BishopFrames::add_hessian(const FrameGradient& f, const Eigen::Matrix3d& end_curvature,
-                               State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
+void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matrix3d> curvatures,
+                            State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
   for (const Panel& panel : panels_) end_spins(panel, state);
-  Eigen::Matrix3d later_curvature = end_curvature;
-  Eigen::Vector3d later = f.end_couple;
+  Eigen::Matrix3d later_curvature = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d later = Eigen::Vector3d::Zero();
+  std::size_t piece = pieces_;
   for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
+    if (piece > 0 && !f.couples.empty()) {
+      later += f.couples[--piece];
+      later_curvature += curvatures[piece];
+    }
     moments(*panel, f, later, state);
     const Eigen::Index Q = panel->nodes();
     const Eigen::Index K = panel->terms;
-    const double root = std::sqrt(panel->length);
+    const Eigen::Index all = fields_ * K;
     own_spins(*panel, state);
-    const auto spins = state.spins.topLeftCorner(3 * Q, 2 * K);
-    auto weighted = state.weighted.topLeftCorner(3 * Q, 2 * K);
-    auto own = state.own.topLeftCorner(2 * K, 2 * K);
-    auto beside = state.beside.leftCols(2 * K);
+    const auto spins = state.spins.topLeftCorner(3 * Q, all);
+    auto weighted = state.weighted.topLeftCorner(3 * Q, all);
+    auto own = state.own.topLeftCorner(all, all);
+    auto beside = state.beside.leftCols(all);
     const auto values = panel->table->values.leftCols(K);
 
     // Spins squared: (g.theta)(t.theta) - (g.t) theta.theta
@@ -327,25 +360,26 @@ void BishopFrames::add_hessian(const FrameGradient& f, const Eigen::Matrix3d& en
       }
     }
     // Spins of spins: theta'.(M x theta), half of it to either side.
-    for (Eigen::Index field = 0; field < 2; ++field) {
-      const auto& director = field == 0 ? state.d1 : state.d2;
+    for (Eigen::Index field = 0; field < fields_; ++field) {
+      const double half = panel->strain[static_cast<std::size_t>(field)] / 2;
+      const Eigen::MatrixX3d& directors = director(state, field);
       auto lever = state.levers.topRows(Q);
       for (Eigen::Index r = 0; r < Q; ++r) {
-        const Eigen::Vector3d d = director.row(panel->node + r);
+        const Eigen::Vector3d d = directors.row(panel->node + r);
         const Eigen::Vector3d m = state.moments.row(r);
         lever.row(r) = d.cross(m);
       }
-      auto by_node = state.weighted.topLeftCorner(Q, 2 * K);
+      auto by_node = state.weighted.topLeftCorner(Q, all);
       by_node.noalias() = lever.col(0).asDiagonal() * spins.topRows(Q);
       by_node.noalias() += lever.col(1).asDiagonal() * spins.middleRows(Q, Q);
       by_node.noalias() += lever.col(2).asDiagonal() * spins.bottomRows(Q);
-      auto product = state.scaled.topLeftCorner(K, 2 * K);
-      product.noalias() = 0.5 / root * (values.transpose() * by_node);
+      auto product = state.scaled.topLeftCorner(K, all);
+      product.noalias() = half * (values.transpose() * by_node);
       own.middleRows(field * K, K) += product;
       own.middleCols(field * K, K) += product.transpose();
-      beside.middleCols(field * K, K).noalias() += 0.5 / root * (lever.transpose() * values);
+      beside.middleCols(field * K, K).noalias() += half * (lever.transpose() * values);
     }
-    for (Eigen::Index field = 0; field < 2; ++field) {
+    for (Eigen::Index field = 0; field < fields_; ++field) {
       const auto ends = state.ends.middleCols(field * columns_ + panel->column, K);
       beside.middleCols(field * K, K).noalias() += later_curvature * ends;
     }
@@ -357,12 +391,12 @@ void BishopFrames::add_hessian(const FrameGradient& f, const Eigen::Matrix3d& en
 
 /// Adds state.own, with what turns all that is beyond the panel, and beside it the columns of the
 /// panels before.
-void BishopFrames::add_panel(const Panel& panel, const Eigen::Matrix3d& later_curvature,
-                             State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
+void RodFrames::add_panel(const Panel& panel, const Eigen::Matrix3d& later_curvature, State& state,
+                          Eigen::Ref<Eigen::MatrixXd> hessian) const {
   const Eigen::Index K = panel.terms;
-  for (Eigen::Index row = 0; row < 2; ++row) {
+  for (Eigen::Index row = 0; row < fields_; ++row) {
     const Eigen::Index at_row = row * columns_ + panel.column;
-    for (Eigen::Index column = 0; column < 2; ++column) {
+    for (Eigen::Index column = 0; column < fields_; ++column) {
       const Eigen::Index at_column = column * columns_ + panel.column;
       auto block = hessian.block(at_row, at_column, K, K);
       block += state.own.block(row * K, column * K, K, K);
@@ -380,10 +414,10 @@ void BishopFrames::add_panel(const Panel& panel, const Eigen::Matrix3d& later_cu
   }
 }
 
-std::array<Eigen::MatrixXd, 3> BishopFrames::tangent_jacobian(State& state) const {
+std::array<Eigen::MatrixXd, 3> RodFrames::tangent_jacobian(State& state) const {
   const Eigen::Index nodes = nodes_ - turn_nodes_;
   std::array<Eigen::MatrixXd, 3> jacobian;
-  Eigen::MatrixXd spins = Eigen::MatrixXd::Zero(3 * nodes, 2 * columns_);
+  Eigen::MatrixXd spins = Eigen::MatrixXd::Zero(3 * nodes, fields_ * columns_);
   for (const Panel& panel : panels_) {
     const Eigen::Index Q = panel.nodes();
     const Eigen::Index K = panel.terms;
@@ -392,7 +426,7 @@ std::array<Eigen::MatrixXd, 3> BishopFrames::tangent_jacobian(State& state) cons
     const Eigen::Index first = panel.node - turn_nodes_;
     const Eigen::Index beyond = std::max<Eigen::Index>(0, first + Q);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      for (Eigen::Index field = 0; field < 2; ++field) {
+      for (Eigen::Index field = 0; field < fields_; ++field) {
         const Eigen::Index column = field * columns_ + panel.column;
         if (first >= 0) {
           spins.block(axis * nodes + first, column, Q, K) =
@@ -413,86 +447,6 @@ std::array<Eigen::MatrixXd, 3> BishopFrames::tangent_jacobian(State& state) cons
         t.col(a).asDiagonal() * spins.middleRows(b * nodes, nodes);
   }
   return jacobian;
-}
-
-/// Coefficients with int u nearest to these angles (real nodes x 2), and the turn of a free start.
-Eigen::VectorXd BishopFrames::from_angles(const Eigen::MatrixX2d& angles) const {
-  Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * columns_);
-  const Eigen::Index first = turn_nodes_ > 0 ? 1 : 0;
-  const std::vector<double> lengths = piece_lengths();
-  const LegendreTable& table = *panels_.back().table;
-  for (Eigen::Index field = 0; field < 2; ++field) {
-    const FittedAngle fitted = fit_angle(table, lengths, angles.col(field),
-                                         first == 0 ? std::optional<double>(0) : std::nullopt);
-    if (first == 1) x[field * columns_] = fitted.start;
-    x.segment(field * columns_ + first, columns_ - first) = fitted.coefficients;
-  }
-  return x;
-}
-
-Eigen::VectorXd BishopFrames::fit(const Eigen::Matrix3Xd& tangents) const {
-  const Eigen::Index nodes = nodes_ - turn_nodes_;
-  Eigen::MatrixX2d angles(nodes, 2);
-  Eigen::Quaterniond frame = start_;
-  Eigen::Vector2d total = Eigen::Vector2d::Zero();
-  for (Eigen::Index q = 0; q < nodes; ++q) {
-    const Eigen::Vector2d turn = turn_to(frame.conjugate() * tangents.col(q));
-    frame = frame * from_rotation_vector({turn.x(), turn.y(), 0});
-    total += turn;
-    angles.row(q) = total.transpose();
-  }
-  Eigen::VectorXd x = from_angles(angles);
-  // Newton's steps towards the tangents: a small turn R omega of the frames, none of them about the
-  // tangent's axis at the start, comes from strains omega' + u x omega.
-  State state;
-  resize(state);
-  constexpr int most_steps = 3;
-  for (int step = 0; step < most_steps; ++step) {
-    evaluate(x, state);
-    Eigen::MatrixX2d turns(nodes, 2);
-    Eigen::VectorXd twisting(nodes);
-    for (Eigen::Index q = 0; q < nodes; ++q) {
-      const Eigen::Index node = turn_nodes_ + q;
-      const Eigen::Vector3d v(state.d1.row(node) * tangents.col(q),
-                              state.d2.row(node) * tangents.col(q),
-                              state.t.row(node) * tangents.col(q));
-      turns.row(q) = turn_to(v).transpose();
-      twisting[q] = state.u(node, 1) * turns(q, 0) - state.u(node, 0) * turns(q, 1);
-    }
-    if (!(turns.cwiseAbs().maxCoeff() < 1)) break;
-    const Eigen::VectorXd twist = cumulated(twisting);
-    const auto strains = state.u.bottomRows(nodes);
-    turns.col(0) += cumulated(strains.col(1).cwiseProduct(twist));
-    turns.col(1) -= cumulated(strains.col(0).cwiseProduct(twist));
-    x += from_angles(turns);
-    // What is left is about its square, which is near enough for a start.
-    if (turns.cwiseAbs().maxCoeff() < 1e-3) break;
-  }
-  return x;
-}
-
-/// Integral from the start to the nodes, of values at the real nodes.
-Eigen::VectorXd BishopFrames::cumulated(const Eigen::VectorXd& values) const {
-  Eigen::VectorXd integral(values.size());
-  double before = 0;
-  for (const Panel& panel : panels_) {
-    if (panel.node < turn_nodes_) continue;
-    const Eigen::Index Q = panel.nodes();
-    const auto own = values.segment(panel.node - turn_nodes_, Q);
-    auto result = integral.segment(panel.node - turn_nodes_, Q);
-    result.noalias() = panel.length * (panel.table->integration * own);
-    result.array() += before;
-    before += panel.length * panel.table->weights.dot(own);
-  }
-  return integral;
-}
-
-std::vector<double> BishopFrames::piece_lengths() const {
-  std::vector<double> lengths;
-  for (const Panel& panel : panels_) {
-    if (panel.node >= turn_nodes_) lengths.push_back(panel.length);
-  }
-  return lengths;
 }
 
 }  // namespace dlo::energy_model

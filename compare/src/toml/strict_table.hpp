@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "dlo/compare/choice.hpp"
-#include "scene/quantity.hpp"
+#include "toml/quantity.hpp"
 
 namespace dlo::compare {
 
@@ -61,6 +61,8 @@ class StrictTable {
   }
   Eigen::Vector3d vector(std::string_view key, Dimension dimension);
   std::optional<Eigen::Vector3d> optional_vector(std::string_view key, Dimension dimension);
+  /// One number y, which is [0, y], or [x, y].
+  std::optional<Eigen::Vector2d> optional_pair(std::string_view key, Dimension dimension);
   /// Rows of three numbers each.
   std::optional<Eigen::Matrix3d> optional_rows(std::string_view key);
   /// As it is written, of any norm.

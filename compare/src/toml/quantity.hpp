@@ -18,6 +18,9 @@ enum class Dimension {
   curvature,
   foundation,         ///< force per depth and per length of rod
   section_stiffness,  ///< moment per curvature (EI), torque per twist (GJ)
+  mass,
+  mass_per_length,
+  twist,  ///< angle per length
 };
 
 /// The names of the units that `dimension` knows, SI first.

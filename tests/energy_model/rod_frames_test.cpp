@@ -1,7 +1,7 @@
 // The directors of a rod in space from its strains, against closed forms and another integrator;
 // their derivatives are looked at with the energy's (span_energy_test.cpp).
 
-#include "bishop_frames.hpp"
+#include "rod_frames.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,8 @@
 namespace dlo::energy_model {
 namespace {
 
-BishopFrames::State evaluated(const BishopFrames& frames, const Eigen::VectorXd& x) {
-  BishopFrames::State state;
+RodFrames::State evaluated(const RodFrames& frames, const Eigen::VectorXd& x) {
+  RodFrames::State state;
   frames.resize(state);
   frames.evaluate(x, state);
   return state;
@@ -25,16 +25,16 @@ Eigen::VectorXd random_strains(Eigen::Index size, double largest) {
   return Eigen::VectorXd::NullaryExpr(size, [&] { return uniform(random); });
 }
 
-TEST(BishopFrames, OfAConstantStrainGoRoundACircle) {
+TEST(RodFrames, OfAConstantStrainGoRoundACircle) {
   const std::vector<Piece> pieces = {{0, 0.4}, {0.4, 0.6}};
   constexpr int terms = 3;
-  const BishopFrames frames(pieces, terms, Eigen::Matrix3d::Identity(), false);
+  const RodFrames frames(pieces, terms, Eigen::Matrix3d::Identity(), false);
   const double curvature = 7;
   Eigen::VectorXd x = Eigen::VectorXd::Zero(2 * frames.columns());
   // u2, which turns about d2 = y; p_0 is 1 / sqrt(length).
   x[frames.columns()] = curvature * std::sqrt(0.4);
   x[frames.columns() + terms] = curvature * std::sqrt(0.6);
-  const BishopFrames::State state = evaluated(frames, x);
+  const RodFrames::State state = evaluated(frames, x);
   const Eigen::Vector3d end = state.end_frame().col(2);
   EXPECT_NEAR(end.x(), std::sin(curvature), 1e-14);
   EXPECT_NEAR(end.y(), 0, 1e-14);
@@ -65,46 +65,46 @@ Eigen::Quaterniond integrated(const Eigen::VectorXd& x, int steps) {
   return Eigen::Quaterniond(q).normalized();
 }
 
-TEST(BishopFrames, AgreeWithAnotherIntegratorWhereTheRodWindsThirtyTimes) {
+TEST(RodFrames, AgreeWithAnotherIntegratorWhereTheRodWindsThirtyTimes) {
   constexpr int terms = 24;
-  const BishopFrames frames({{0, 1}}, terms, Eigen::Matrix3d::Identity(), false);
+  const RodFrames frames({{0, 1}}, terms, Eigen::Matrix3d::Identity(), false);
   Eigen::VectorXd x = random_strains(2 * frames.columns(), 1);
   // Smooth, and of |u| l = 30 in the mean.
   for (Eigen::Index k = 0; k < x.size(); ++k)
     x[k] *= std::exp(-0.5 * static_cast<double>(k % terms));
   x *= 30 / x.norm();
-  const BishopFrames::State state = evaluated(frames, x);
+  const RodFrames::State state = evaluated(frames, x);
   const Eigen::Quaterniond exact = integrated(x, 40000);
-  EXPECT_LT(exact.angularDistance(state.end), 1e-9);
+  EXPECT_LT(exact.angularDistance(state.panel_ends.back()), 1e-9);
   EXPECT_LT((state.q.rowwise().norm().array() - 1).abs().maxCoeff(), 1e-14);
 }
 
-TEST(BishopFrames, FreeStartTurnsTheRodAsAWhole) {
-  const BishopFrames held({{0, 1}}, 6, Eigen::Matrix3d::Identity(), false);
-  const BishopFrames loose({{0, 1}}, 6, Eigen::Matrix3d::Identity(), true);
+TEST(RodFrames, FreeStartTurnsTheRodAsAWhole) {
+  const RodFrames held({{0, 1}}, 6, Eigen::Matrix3d::Identity(), false);
+  const RodFrames loose({{0, 1}}, 6, Eigen::Matrix3d::Identity(), true);
   const Eigen::VectorXd x = random_strains(12, 1);
   Eigen::VectorXd turned(14);
   const Eigen::Vector3d turn(1.1, -0.7, 0);
   turned << turn.x(), x.head(6), turn.y(), x.tail(6);
   const Eigen::Matrix3d R = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
-  const BishopFrames::State a = evaluated(held, x);
-  const BishopFrames::State b = evaluated(loose, turned);
+  const RodFrames::State a = evaluated(held, x);
+  const RodFrames::State b = evaluated(loose, turned);
   const Eigen::MatrixX3d expected = a.t * R.transpose();
   EXPECT_LT((b.t.bottomRows(a.t.rows()) - expected).cwiseAbs().maxCoeff(), 1e-13);
 }
 
-TEST(BishopFrames, AreFittedToTheirOwnTangents) {
+TEST(RodFrames, AreFittedToTheirOwnTangents) {
   for (const bool free_start : {false, true}) {
     const std::vector<Piece> pieces = {{0, 0.3}, {0.3, 0.7}};
-    const BishopFrames frames(pieces, 10, Eigen::Matrix3d::Identity(), free_start);
+    const RodFrames frames(pieces, 10, Eigen::Matrix3d::Identity(), free_start);
     Eigen::VectorXd x = random_strains(2 * frames.columns(), 2);
     for (Eigen::Index k = 0; k < x.size(); ++k) {
       x[k] *= std::exp(-0.8 * static_cast<double>((k % frames.columns()) % 10));
     }
-    const BishopFrames::State state = evaluated(frames, x);
+    const RodFrames::State state = evaluated(frames, x);
     const Eigen::Matrix3Xd tangents =
         state.t.bottomRows(state.t.rows() - frames.turn_nodes()).transpose();
-    const BishopFrames::State fitted = evaluated(frames, frames.fit(tangents));
+    const RodFrames::State fitted = evaluated(frames, frames.fit(tangents));
     EXPECT_LT((fitted.t.bottomRows(tangents.cols()) - tangents.transpose()).cwiseAbs().maxCoeff(),
               free_start ? 1e-3 : 1e-5)
         << "free start " << free_start;

@@ -1,0 +1,92 @@
+#include "polygon/natural_plane.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <utility>
+
+#include "scene/reach.hpp"
+
+namespace dlo::compare {
+namespace {
+
+bool is_curved_by_nature(const Scene& scene) { return !scene.natural_strain.head<2>().isZero(0); }
+
+/// Whether all that holds a rod and acts on it lies in the plane z = 0, to the last digit.
+bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
+  const auto flat = [](const Eigen::Vector3d& vector) { return vector.z() == 0; };
+  const auto held_flat = [&](const Gripper& gripper) {
+    return flat(gripper.position) && (!gripper.direction || flat(*gripper.direction));
+  };
+  const auto in_reach = obstacles_in_reach(scene, settings);
+  return flat(scene.gravity) &&
+         std::all_of(scene.grippers.begin(), scene.grippers.end(), held_flat) &&
+         std::all_of(scene.loads.begin(), scene.loads.end(),
+                     [&](const PointLoad& load) { return flat(load.force); }) &&
+         std::all_of(in_reach.begin(), in_reach.end(),
+                     [&](std::size_t i) { return flat(scene.obstacles[i].normal); });
+}
+
+}  // namespace
+
+bool takes_natural_curvature(const Scene& scene, const ForceModelSettings& settings) {
+  return is_curved_by_nature(scene) && settings.law == BendingLaw::hooke && scene.planar();
+}
+
+std::vector<std::string> left_out_of_polygon(const Scene& scene,
+                                             const ForceModelSettings& settings) {
+  std::vector<std::string> left_out;
+  if (scene.holds_twist()) left_out.emplace_back("twist");
+  if (is_curved_by_nature(scene) && !takes_natural_curvature(scene, settings)) {
+    left_out.emplace_back("natural curvature");
+  }
+  return left_out;
+}
+
+Scene as_polygons_take_it(const Scene& scene, const ForceModelSettings& settings) {
+  const bool curved = takes_natural_curvature(scene, settings);
+  return (curved ? scene : scene.without_natural_strain()).without_twist();
+}
+
+PlaneTurn::PlaneTurn(const Eigen::Vector3d& normal, Eigen::Vector3d origin)
+    : turn_(Eigen::Quaterniond::FromTwoVectors(normal, Eigen::Vector3d::UnitZ())),
+      origin_(std::move(origin)) {}
+
+Eigen::Vector3d PlaneTurn::flat(const Eigen::Vector3d& vector) const {
+  Eigen::Vector3d result = turn_ * vector;
+  result.z() = 0;
+  return result;
+}
+
+Scene PlaneTurn::laid(const Scene& scene) const {
+  Scene result = scene;
+  result.gravity = flat(scene.gravity);
+  for (Gripper& gripper : result.grippers) {
+    gripper.position = flat(gripper.position - origin_);
+    if (gripper.direction) gripper.direction = flat(*gripper.direction).normalized();
+    if (gripper.frame && gripper.frame->d1) gripper.frame->d1 = turn_ * *gripper.frame->d1;
+  }
+  for (PointLoad& load : result.loads) load.force = flat(load.force);
+  for (Obstacle& obstacle : result.obstacles) {
+    obstacle.point = turn_ * (obstacle.point - origin_);
+    obstacle.normal = turn_ * obstacle.normal;
+  }
+  for (const std::size_t i : obstacles_in_reach(scene)) {
+    result.obstacles[i].normal = flat(scene.obstacles[i].normal).normalized();
+  }
+  return result;
+}
+
+Eigen::Matrix3Xd PlaneTurn::laid_points(const Eigen::Matrix3Xd& points) const {
+  Eigen::Matrix3Xd result = turn_ * (points.colwise() - origin_);
+  result.row(2).setZero();
+  return result;
+}
+
+std::optional<PlaneTurn> turn_into_plane(const Scene& scene, const ForceModelSettings& settings) {
+  if (!takes_natural_curvature(scene, settings) || lies_in_plane(scene, settings)) {
+    return std::nullopt;
+  }
+  return PlaneTurn(scene.plane_normal().value(), scene.grippers.front().position);
+}
+
+}  // namespace dlo::compare

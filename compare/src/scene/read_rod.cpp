@@ -1,0 +1,165 @@
+#include "scene/read_rod.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/words.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Beyond it no solver resolves the layer at a clamp, and no rod looks any different.
+constexpr double largest_gamma = 1e12;
+/// Arc lengths of two sections that meet may differ by what rounding of units makes [-].
+constexpr double same_place_share = 1e-12;
+
+Material read_material(StrictTable& rod, const std::vector<Material>& known_materials) {
+  if (rod.is_table("material")) {
+    StrictTable own = rod.table("material");
+    Material material{.name = "own", .source = "scene file"};
+    material.youngs_modulus = own.number("youngs_modulus", Dimension::pressure, Range::positive());
+    material.density = own.number("density", Dimension::density, Range::not_negative());
+    own.finish();
+    return material;
+  }
+  const std::string name = rod.text("material");
+  std::vector<std::string> names;
+  for (const Material& material : known_materials) {
+    if (material.name == name) return material;
+    names.push_back(material.name);
+  }
+  rod.fail("material",
+           fmt::format("unknown material{} (allowed: {}, or a table such as {{ youngs_modulus = "
+                       "\"5 MPa\", density = 1100 }}; dlo materials lists them with values)",
+                       did_you_mean(name, names), fmt::join(names, ", ")));
+}
+
+/// Bending stiffness and mass, given as they are or by material and diameter.
+void read_stiffness(StrictTable& rod, const std::vector<Material>& known_materials, Scene& scene) {
+  scene.given_bending_stiffness =
+      rod.optional_number("bending_stiffness", Dimension::section_stiffness, Range::positive());
+  scene.given_mass_per_length =
+      rod.optional_number("mass_per_length", Dimension::mass_per_length, Range::not_negative());
+  const bool has_bending = scene.given_bending_stiffness.has_value();
+  const bool has_mass = scene.given_mass_per_length.has_value();
+  const bool has_material = rod.has("material");
+  if (!has_material && has_bending != has_mass) {
+    rod.fail(has_bending ? "mass_per_length" : "bending_stiffness",
+             fmt::format("missing, it is required beside {} (allowed: both, or material and "
+                         "diameter too)",
+                         has_bending ? "bending_stiffness" : "mass_per_length"));
+  }
+  const bool complete = has_bending && has_mass && !has_material;
+  if (has_bending && has_mass && has_material && !rod.has("diameter")) {
+    rod.fail("diameter",
+             "missing, the material says nothing without it (allowed: a diameter, or no material)");
+  }
+  if (!complete || rod.has("diameter")) {
+    scene.diameter = rod.number("diameter", Dimension::length, Range::between(1e-9, 1e3, " m"));
+  }
+  if (!complete) scene.material = read_material(rod, known_materials);
+}
+
+/// Of numbers that are in range each on its own.
+void require_finite_rod(const Scene& scene, const StrictTable& rod) {
+  const auto usable = [](double stiffness) { return stiffness > 0 && std::isfinite(stiffness); };
+  if (!usable(scene.bending_stiffness()) || !usable(scene.axial_stiffness())) {
+    if (rod.has("material")) {
+      rod.fail("material",
+               fmt::format("E I = {:g} N m^2, E A = {:g} N (allowed: numbers > 0 that are "
+                           "finite), with diameter = {:g} m and E = {:g} Pa",
+                           scene.bending_stiffness(), scene.axial_stiffness(), scene.diameter,
+                           scene.material.youngs_modulus));
+    }
+    rod.fail("bending_stiffness",
+             fmt::format("E A = {:g} N of such a rod (allowed: a number > 0 that is finite), with "
+                         "diameter = {:g} m and length = {:g} m",
+                         scene.axial_stiffness(), scene.diameter, scene.length));
+  }
+  // The negation makes a NaN out of range.
+  if (!(scene.gamma() <= largest_gamma)) {
+    rod.fail("length",
+             fmt::format("Gamma = w l^3 / (EI) = {:.4g} (allowed: 0 to {:g}), with w = {:.4g} N/m "
+                         "and E I = {:.4g} N m^2",
+                         scene.gamma(), largest_gamma, scene.weight_per_length().norm(),
+                         scene.bending_stiffness()));
+  }
+}
+
+Section read_section(StrictTable& table, const Scene& scene) {
+  const Range on_rod = Range::between(0, scene.length, " m, the rod's length");
+  Section section;
+  section.from = table.number("from", Dimension::length, on_rod);
+  section.to = table.number("to", Dimension::length, on_rod);
+  if (!(section.to > section.from)) {
+    table.fail("to", fmt::format("not behind from = {:g} m (allowed: more, up to {:g} m)",
+                                 section.from, scene.length));
+  }
+  if (!table.has("bending_stiffness") && !table.has("mass_per_length") &&
+      !table.has("torsional_stiffness")) {
+    table.fail("bending_stiffness",
+               "missing, and so are mass_per_length and torsional_stiffness (allowed: one of the "
+               "three or more; the others are the rod's own)");
+  }
+  section.bending_stiffness =
+      table.optional_number("bending_stiffness", Dimension::section_stiffness, Range::positive())
+          .value_or(scene.bending_stiffness());
+  section.mass_per_length =
+      table.optional_number("mass_per_length", Dimension::mass_per_length, Range::not_negative())
+          .value_or(scene.mass_per_length());
+  section.torsional_stiffness =
+      table.optional_number("torsional_stiffness", Dimension::section_stiffness, Range::positive());
+  if (section.torsional_stiffness && !scene.torsional_stiffness) {
+    table.fail("torsional_stiffness",
+               "the rod has none (allowed: rod.torsional_stiffness too, or none here)");
+  }
+  table.finish();
+  return section;
+}
+
+void read_sections(std::vector<StrictTable>& tables, Scene& scene) {
+  std::vector<std::size_t> along;
+  std::vector<Section> sections;
+  for (StrictTable& table : tables) {
+    along.push_back(sections.size());
+    sections.push_back(read_section(table, scene));
+  }
+  std::stable_sort(along.begin(), along.end(), [&](std::size_t a, std::size_t b) {
+    return sections[a].from < sections[b].from;
+  });
+  for (const std::size_t i : along) {
+    if (!scene.sections.empty()) {
+      const double before = scene.sections.back().to;
+      if (std::abs(sections[i].from - before) <= same_place_share * scene.length) {
+        sections[i].from = before;
+      }
+      if (sections[i].from < before) {
+        tables[i].fail("from", fmt::format("inside the section from {:g} to {:g} m (allowed: "
+                                           "sections that do not overlap)",
+                                           scene.sections.back().from, before));
+      }
+    }
+    scene.sections.push_back(sections[i]);
+  }
+}
+
+}  // namespace
+
+void read_rod(StrictTable& rod, std::vector<StrictTable>& sections,
+              const std::vector<Material>& known_materials, Scene& scene) {
+  scene.length = rod.number("length", Dimension::length, Range::between(1e-6, 1e6, " m"));
+  read_stiffness(rod, known_materials, scene);
+  scene.torsional_stiffness =
+      rod.optional_number("torsional_stiffness", Dimension::section_stiffness, Range::positive());
+  scene.natural_strain.head<2>() = rod.optional_pair("natural_curvature", Dimension::curvature)
+                                       .value_or(Eigen::Vector2d::Zero());
+  scene.natural_strain.z() =
+      rod.optional_number("natural_twist", Dimension::twist, Range::any()).value_or(0);
+  read_sections(sections, scene);
+  require_finite_rod(scene, rod);
+  rod.finish();
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,39 @@
+#include "scene/scene_problem.hpp"
+
+#include <utility>
+
+#include "scene/reach.hpp"
+
+namespace dlo::compare {
+
+energy_model::Problem scene_problem(const Scene& scene) {
+  energy_model::Problem problem;
+  problem.length = scene.length;
+  problem.bending_stiffness = scene.bending_stiffness();
+  problem.torsional_stiffness = scene.twisting_stiffness();
+  problem.weight_per_length = scene.mass_per_length() * scene.gravity;
+  for (const Section& section : scene.sections) {
+    // Dividing first leaves GJ as it is where EI is.
+    const double like_the_rod = section.bending_stiffness / problem.bending_stiffness;
+    problem.sections.push_back({.begin = section.from,
+                                .end = section.to,
+                                .bending_stiffness = section.bending_stiffness,
+                                .torsional_stiffness = section.torsional_stiffness.value_or(
+                                    like_the_rod * problem.torsional_stiffness),
+                                .weight_per_length = section.mass_per_length * scene.gravity});
+  }
+  if (scene.naturally_bent()) problem.natural_strains = {scene.natural_strain};
+  for (const Gripper& grip : scene.grippers) {
+    energy_model::Grip held{grip.at, grip.position, grip.direction, std::nullopt};
+    if (grip.frame) held.frame = {grip.frame->d1, grip.frame->roll};
+    problem.grips.push_back(std::move(held));
+  }
+  for (const PointLoad& load : scene.loads) problem.loads.push_back({load.at, load.force});
+  for (const std::size_t i : obstacles_in_reach(scene)) {
+    const Obstacle& obstacle = scene.obstacles[i];
+    problem.walls.push_back({obstacle.point, obstacle.normal, obstacle.stiffness});
+  }
+  return problem;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <optional>
+
+#include "dlo/energy_model/problem.hpp"
+
+namespace dlo::energy_model {
+
+/// The plane's normal that d2 is where a naturally curved rod's first clamp does not say otherwise:
+/// that of grips, forces and walls, on the side of +z (+y, +x). None: they share no plane.
+[[nodiscard]] std::optional<Eigen::Vector3d> natural_normal(const Problem& problem);
+
+/// Index of the first clamp along the rod in Problem::grips. None: there are but pins.
+[[nodiscard]] std::optional<std::size_t> first_clamp(const Problem& problem);
+
+/// Frame (columns d1, d2, t) that the first clamp holds a naturally curved rod in.
+/// @throws std::invalid_argument if it does not say where d1 is and there is no plane that does
+[[nodiscard]] Eigen::Matrix3d first_frame(const Problem& problem);
+
+}  // namespace dlo::energy_model

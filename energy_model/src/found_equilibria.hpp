@@ -1,0 +1,47 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace dlo::energy_model {
+
+/// Of what searches find by shooting (SpanEquilibrium, CurvedEquilibrium).
+template <typename Shape>
+[[nodiscard]] double lowest_stable_energy(const std::vector<Shape>& found) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Shape& shape : found) {
+    if (shape.stable()) lowest = std::min(lowest, shape.energy.total());
+  }
+  return lowest;
+}
+
+/// The lowest one that is unstable and yet below all stable ones, which shows that a minimum has
+/// been missed; null: none.
+/// @param left  energies of those that are not asked for
+template <typename Shape>
+[[nodiscard]] const Shape* missed_minimum(const std::vector<Shape>& found,
+                                          const std::vector<double>& left) {
+  const double bound = lowest_stable_energy(found);
+  const Shape* lowest = nullptr;
+  for (const Shape& shape : found) {
+    const double energy = shape.energy.total();
+    const bool known = std::find(left.begin(), left.end(), energy) != left.end();
+    if (shape.stable() || known || energy > bound) continue;
+    if (lowest == nullptr || energy < lowest->energy.total()) lowest = &shape;
+  }
+  return lowest;
+}
+
+/// Stable ones first, by energy. Mirror images have the same up to rounding and keep their order.
+template <typename Shape>
+void sort_by_stability(std::vector<Shape>& found) {
+  std::stable_sort(found.begin(), found.end(), [](const Shape& a, const Shape& b) {
+    if (a.stable() != b.stable()) return a.stable();
+    const double rounding = 1e-11 * (1 + std::abs(a.energy.total()));
+    return a.energy.total() < b.energy.total() - rounding;
+  });
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace dlo::energy_model {
+
+/// Strains of a free rod along it, as series in Legendre's polynomials P_j(from + rate s).
+struct NaturalStrains {
+  std::vector<Eigen::Vector3d> coefficients;  ///< none: straight
+  double from = -1;
+  double rate = 2;
+
+  [[nodiscard]] bool empty() const { return coefficients.empty(); }
+  [[nodiscard]] Eigen::Vector3d at(double s) const;
+  /// From 0 to s.
+  [[nodiscard]] Eigen::Vector3d integral(double s) const;
+  /// A bound on the norm.
+  [[nodiscard]] double largest() const;
+};
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,122 @@
+// What the command says of rods as they are: given by EI, curved by nature.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command_fixture.hpp"
+#include "dlo/compare/scene_file.hpp"
+
+namespace {
+
+using dlo::test::Outcome;
+using nlohmann::json;
+
+class RodCommand : public dlo::test::Command {
+ protected:
+  static std::string hose() { return std::string(DLO_DATA) + "/scenes/spring_hose.toml"; }
+
+  /// A rod that is given by EI and mass per length.
+  std::string by_stiffness(const std::string& EI) {
+    std::ofstream(path("rod.toml")) << "[rod]\nlength = 1\nbending_stiffness = " << EI
+                                    << "\nmass_per_length = \"45 g/m\"\n[[gripper]]\nat = 0\n"
+                                       "position = [0, 0, 0]\ndirection = \"20 deg\"\n";
+    return path("rod.toml");
+  }
+};
+
+TEST_F(RodCommand, SolveSaysThatTheTorsionalStiffnessIsAssumed) {
+  for (const std::string model : {"energy", "chain"}) {
+    const Outcome text = run("solve --explain --model " + model + " " + hose());
+    ASSERT_EQ(text.status, 0) << text.err;
+    for (const char* line : {"\nassumed    torsional stiffness GJ = EI / 1.3 = 0.06154 N m^2",
+                             "  assumed         torsional stiffness"}) {
+      EXPECT_NE(text.out.find(line), std::string::npos) << text.out;
+    }
+    const json document =
+        json::parse(run("solve --format json --model " + model + " " + hose()).out);
+    const json& assumed = document.at("assumed");
+    EXPECT_NEAR(assumed.at("torsional_stiffness_Nm2").get<double>(), 0.08 / 1.3, 1e-15);
+    EXPECT_EQ(assumed.at("poisson_ratio"), 0.3);
+  }
+  const json straight = json::parse(run("solve --format json " + by_stiffness("0.08")).out);
+  EXPECT_FALSE(straight.contains("assumed"));
+}
+
+TEST_F(RodCommand, ComparesByTheStiffnessThatIsGiven) {
+  const std::string rod = by_stiffness("0.08");
+  const Outcome text = run("compare " + rod);
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("  EI*/EI          1.0"), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find("  E*/E"), std::string::npos);
+  ASSERT_EQ(run("solve " + rod + " --format csv -o " + path("shape.csv")).status, 0);
+  const json check =
+      json::parse(run("check " + rod + " --shape " + path("shape.csv") + " --format json").out);
+  EXPECT_NEAR(check.at("effective_bending_stiffness_Nm2").get<double>(), 0.08, 1e-6);
+  EXPECT_FALSE(check.contains("effective_modulus_Pa"));
+}
+
+TEST_F(RodCommand, CalibrateFindsTheStiffnessThatIsGiven) {
+  ASSERT_EQ(run("solve " + by_stiffness("0.08") + " --format csv -o " + path("shape.csv")).status,
+            0);
+  const std::string calibrate =
+      "calibrate " + by_stiffness("0.03") + " --shape " + path("shape.csv");
+  const Outcome text = run(calibrate);
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_EQ(text.out.rfind("EI          0.08 N m^2, 95 %", 0), 0U) << text.out;
+  const json document = json::parse(run(calibrate + " --format json").out);
+  EXPECT_NEAR(document.at("bending_stiffness_Nm2").get<double>(), 0.08, 1e-6);
+  EXPECT_LE(document.at("interval_95_Nm2")[0].get<double>(), 0.0800001);
+  EXPECT_FALSE(document.contains("youngs_modulus_Pa"));
+  EXPECT_EQ(run(calibrate + " --format csv").out.rfind("bending_stiffness_Nm2,low_Nm2,", 0), 0U);
+  ASSERT_EQ(run(calibrate + " -o " + path("fit.toml")).status, 0);
+  // They are lines of a scene's [rod].
+  const dlo::compare::Scene fitted =
+      dlo::compare::parse_scene("[rod]\nlength = 1\n" + read(path("fit.toml")) +
+                                    "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = 0\n",
+                                "fitted.toml");
+  EXPECT_NEAR(fitted.bending_stiffness(), 0.08, 1e-6);
+  EXPECT_DOUBLE_EQ(fitted.mass_per_length(), 0.045);
+}
+
+TEST_F(RodCommand, AModelWithoutNaturalCurvatureSaysSoAndWhatItCosts) {
+  const std::string paper = hose() + " --law paper";
+  const Outcome chain = run("solve --model chain " + paper);
+  EXPECT_NE(chain.out.find("left out   natural curvature: the scene has it, model chain"),
+            std::string::npos)
+      << chain.out;
+  EXPECT_NE(run("compare --no-modulus --format csv " + paper)
+                .err.find("curved by nature, which models chain and force leave out with the law"),
+            std::string::npos);
+  EXPECT_NE(
+      run("sweep --model chain --vary force_model.law=paper --vary rod.natural_curvature=0,1 " +
+          hose())
+          .err.find("curved by nature"),
+      std::string::npos);
+  EXPECT_EQ(run("sweep --model chain --vary rod.natural_curvature=0,1 " + hose()).err, "");
+  EXPECT_EQ(run("stability --map cF-cc --columns 2 --rows 2 --map-steps 100 " + hose()).status, 0);
+  const Outcome text = run("compare --no-modulus " + paper);
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("left out        natural curvature"), std::string::npos) << text.out;
+  const json entry =
+      json::parse(run("compare --no-modulus --format json " + paper).out).at("cases")[0];
+  EXPECT_EQ(entry.at("left_out"), json({"natural curvature"}));
+  // The free hose is a circle: without its curvature the end is decimetres off.
+  const json& budget = entry.at("budget");
+  EXPECT_GT(budget.at("natural_curvature_m").get<double>(), 0.1);
+  EXPECT_FALSE(budget.contains("twist_m"));
+  double sum = 0;
+  for (const auto& [name, share] : budget.at("shares_of_total").items()) sum += share.get<double>();
+  EXPECT_NEAR(sum, 1, 1e-9);
+  const json hooke =
+      json::parse(run("compare --no-modulus --format json " + hose()).out).at("cases")[0];
+  EXPECT_FALSE(hooke.contains("left_out"));
+  EXPECT_FALSE(hooke.at("budget").contains("natural_curvature_m"));
+  // With it the force model is the rod but for its segments.
+  EXPECT_LT(hooke.at("deviation").at("rms_over_length").get<double>(), 2e-3);
+}
+
+}  // namespace

@@ -1,0 +1,282 @@
+// Rods as scene files give them: by EI and mass per length, with sections, curved by nature.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "polygon/energy_problems.hpp"
+#include "scene/scene_template.hpp"
+
+namespace dlo::compare {
+namespace {
+
+const std::string by_stiffness = R"([rod]
+length = "2 m"
+bending_stiffness = "1.2e-3 N m^2"
+mass_per_length = "20 g/m"
+)";
+const std::string by_material = R"([rod]
+length = "2 m"
+diameter = "2 mm"
+material = "spring_steel"
+)";
+const std::string clamp = R"([[gripper]]
+at = 0
+position = [0, 0, 0]
+direction = "0 deg"
+)";
+
+Scene scene_of(const std::string& text) { return parse_scene(text, "my.toml"); }
+
+std::string refusal_of(const std::string& text) {
+  try {
+    (void)scene_of(text);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void expect_message(const std::string& text, const std::vector<std::string>& parts) {
+  const std::string said = refusal_of(text);
+  for (const std::string& part : parts) EXPECT_NE(said.find(part), std::string::npos) << said;
+}
+
+TEST(ScenesRod, IsGivenByItsStiffnessAndItsMass) {
+  const Scene scene = scene_of(by_stiffness + clamp);
+  EXPECT_DOUBLE_EQ(scene.bending_stiffness(), 1.2e-3);
+  EXPECT_DOUBLE_EQ(scene.mass_per_length(), 0.02);
+  EXPECT_DOUBLE_EQ(scene.mass(), 0.04);
+  EXPECT_DOUBLE_EQ(scene.gamma(), 0.02 * 9.81 * 8 / 1.2e-3);
+  EXPECT_EQ(scene.diameter, 0);
+  EXPECT_DOUBLE_EQ(scene.axial_stiffness(), 1e6 * 1.2e-3 / 4);
+  EXPECT_EQ(scene.stiffness().name, std::string("EI"));
+  EXPECT_DOUBLE_EQ(scene.stiffness().value, 1.2e-3);
+  const energy_model::Problem problem = energy_problem(scene);
+  EXPECT_DOUBLE_EQ(problem.bending_stiffness, 1.2e-3);
+  EXPECT_DOUBLE_EQ(problem.weight_per_length.y(), -0.02 * 9.81);
+  EXPECT_EQ(problem.torsional_stiffness, 0);
+}
+
+TEST(ScenesRod, WithADiameterHasTheAxialStiffnessOfARoundRod) {
+  const Scene thick = scene_of(by_stiffness + "diameter = \"8 mm\"\n" + clamp);
+  EXPECT_DOUBLE_EQ(thick.axial_stiffness(), 16 * 1.2e-3 / 64e-6);
+  // Of a solid rod of one material that is E A.
+  const Scene steel = scene_of(by_material + clamp);
+  EXPECT_NEAR(16 * steel.bending_stiffness() / std::pow(steel.diameter, 2), steel.axial_stiffness(),
+              1e-9 * steel.axial_stiffness());
+}
+
+TEST(ScenesRod, WhatIsGivenOverridesTheMaterialButForTheAxialStiffness) {
+  const Scene steel = scene_of(by_material + clamp);
+  const Scene soft =
+      scene_of(by_material + "bending_stiffness = 0.01\nmass_per_length = \"1 g/cm\"\n" + clamp);
+  EXPECT_DOUBLE_EQ(soft.bending_stiffness(), 0.01);
+  EXPECT_DOUBLE_EQ(soft.mass_per_length(), 0.1);
+  EXPECT_EQ(soft.axial_stiffness(), steel.axial_stiffness());
+  const Scene heavy = scene_of(by_material + "mass_per_length = 3\n" + clamp);
+  EXPECT_EQ(heavy.bending_stiffness(), steel.bending_stiffness());
+  EXPECT_EQ(heavy.mass(), 6);
+  EXPECT_EQ(heavy.stiffness().name, std::string("E"));
+  EXPECT_EQ(heavy.heaviness().name, std::string("mass per length"));
+}
+
+TEST(ScenesRod, SaysWhatIsMissingOrTooMuch) {
+  const std::string only_EI = "[rod]\nlength = 2\nbending_stiffness = 1\n" + clamp;
+  expect_message(only_EI, {"my.toml", "rod.mass_per_length: missing", "beside bending_stiffness",
+                           "material and diameter"});
+  expect_message("[rod]\nlength = 2\nmass_per_length = 1\n" + clamp,
+                 {"rod.bending_stiffness: missing", "beside mass_per_length"});
+  expect_message(by_stiffness + "material = \"silicone\"\n" + clamp,
+                 {"rod.diameter: missing", "no material"});
+  expect_message("[rod]\nlength = 2\nbending_stiffnes = 1\nmass_per_length = 1\n" + clamp,
+                 {"rod.bending_stiffness: missing"});
+  expect_message("[rod]\nlength = 2\nbending_stiffness = \"3 N\"\nmass_per_length = 1\n" + clamp,
+                 {"my.toml:3: rod.bending_stiffness", "3 N", "N m^2, N mm^2"});
+  expect_message("[rod]\nlength = 2\nbending_stiffness = 0\nmass_per_length = 1\n" + clamp,
+                 {"rod.bending_stiffness = 0", "> 0"});
+  expect_message("[rod]\nlength = 2\nbending_stiffness = 1\nmass_per_length = -1\n" + clamp,
+                 {"rod.mass_per_length = -1", ">= 0"});
+  expect_message(
+      "[rod]\nlength = 2\nbending_stiffness = 1e308\nmass_per_length = 1\ndiameter = "
+      "\"1 um\"\n" +
+          clamp,
+      {"rod.bending_stiffness", "E A = inf"});
+}
+
+const std::string sections_text = R"([[section]]
+from = "120 cm"
+to = 2
+mass_per_length = "80 g/m"
+[[section]]
+from = 0.5
+to = "1200 mm"
+bending_stiffness = "4.8e-3 N m^2"
+)";
+
+TEST(ScenesSections, ChangeMassAndComplianceWhereTheyAre) {
+  const Scene scene = scene_of(by_stiffness + clamp + sections_text);
+  ASSERT_EQ(scene.sections.size(), 2U);
+  EXPECT_EQ(scene.sections[0].from, 0.5);
+  EXPECT_EQ(scene.sections[1].from, scene.sections[0].to);
+  EXPECT_EQ(scene.sections[0].mass_per_length, 0.02);
+  EXPECT_EQ(scene.sections[1].bending_stiffness, 1.2e-3);
+  EXPECT_DOUBLE_EQ(scene.mass(), 0.02 * 1.2 + 0.08 * 0.8);
+  EXPECT_DOUBLE_EQ(scene.gamma(), scene.mass() / 2 * 9.81 * 8 / 1.2e-3);
+  EXPECT_NEAR(scene.weight_between(1, 1.5).y(), -9.81 * (0.02 * 0.2 + 0.08 * 0.3), 1e-15);
+  EXPECT_NEAR(scene.bending_compliance(0.4, 0.7), 0.1 / 1.2e-3 + 0.2 / 4.8e-3, 1e-11);
+  const energy_model::Problem problem = energy_problem(scene);
+  EXPECT_NO_THROW(energy_model::check(problem));
+  ASSERT_EQ(problem.sections.size(), 2U);
+  EXPECT_EQ(problem.sections[0].bending_stiffness, 4.8e-3);
+  EXPECT_DOUBLE_EQ(problem.sections[1].weight_per_length.y(), -0.08 * 9.81);
+}
+
+TEST(ScenesSections, KeepTheRodsShareOfTorsionUnlessTheySayAnother) {
+  const Scene scene =
+      scene_of(by_stiffness + "torsional_stiffness = 1e-3\n" + clamp + sections_text +
+               "[[section]]\nfrom = 0\nto = 0.1\n"
+               "torsional_stiffness = 7e-3\n");
+  const energy_model::Problem problem = energy_problem(scene);
+  EXPECT_EQ(problem.sections[0].torsional_stiffness, 7e-3);
+  EXPECT_DOUBLE_EQ(problem.sections[1].torsional_stiffness, 4e-3);
+  EXPECT_EQ(problem.sections[2].torsional_stiffness, 1e-3);
+}
+
+TEST(ScenesSections, AreRefusedWhereTheyAreNone) {
+  const std::string rod = by_stiffness + clamp + "[[section]]\n";
+  expect_message(rod + "from = 1\nto = 1\nmass_per_length = 1\n",
+                 {"my.toml:11: section.to = 1", "not behind from"});
+  expect_message(rod + "from = 1\nto = 3\nmass_per_length = 1\n", {"section.to = 3", "0 to 2 m"});
+  expect_message(rod + "from = 1\nto = 2\n", {"section.bending_stiffness: missing"});
+  expect_message(rod + "from = 1\nto = 2\ndiameter = 1\nmass_per_length = 1\n",
+                 {"section.diameter", "unknown key"});
+  expect_message(rod + "from = 1\nto = 2\ntorsional_stiffness = 1\n",
+                 {"section.torsional_stiffness", "rod.torsional_stiffness too"});
+  expect_message(by_stiffness + clamp + sections_text +
+                     "[[section]]\nfrom = 1\nto = 1.5\nmass_per_length = 1\n",
+                 {"section.from = 1", "inside the section from 0.5 to 1.2 m", "overlap"});
+}
+
+TEST(ScenesNaturalCurvature, IsToTheLeftInThePlane) {
+  const std::string curved = by_stiffness + "natural_curvature = \"3 1/m\"\n";
+  const Scene scene = scene_of(curved + clamp);
+  EXPECT_EQ(scene.natural_strain, Eigen::Vector3d(0, 3, 0));
+  EXPECT_TRUE(scene.planar());
+  EXPECT_FALSE(scene.holds_twist());
+  // The tangent turns from +x to +y, about +z.
+  EXPECT_NEAR((scene.natural_curvature() - Eigen::Vector3d(0, 0, 3)).norm(), 0, 1e-12);
+  EXPECT_TRUE(scene.assumes_torsion());
+  EXPECT_DOUBLE_EQ(scene.twisting_stiffness(), 1.2e-3 / 1.3);
+  const energy_model::Problem problem = energy_problem(scene);
+  ASSERT_EQ(problem.natural_strains.size(), 1U);
+  EXPECT_EQ(problem.natural_strains[0], Eigen::Vector3d(0, 3, 0));
+  EXPECT_DOUBLE_EQ(problem.torsional_stiffness, 1.2e-3 / 1.3);
+  EXPECT_NO_THROW(energy_model::check(problem));
+  EXPECT_FALSE(scene.without_natural_strain().assumes_torsion());
+  const Scene given = scene_of(curved + "torsional_stiffness = 2e-3\n" + clamp);
+  EXPECT_FALSE(given.assumes_torsion());
+  EXPECT_EQ(given.twisting_stiffness(), 2e-3);
+}
+
+TEST(ScenesNaturalCurvature, AboutAnotherAxisThanThePlanesIsSpatial) {
+  const auto curved = [](const std::string& curvature, const std::string& more) {
+    return scene_of(by_stiffness + curvature + clamp + more);
+  };
+  EXPECT_FALSE(curved("natural_curvature = [1, 2]\n", "").planar());
+  EXPECT_TRUE(curved("natural_curvature = [0, -2]\n", "").planar());
+  EXPECT_FALSE(curved("natural_curvature = 2\nnatural_twist = \"90 deg/m\"\n", "").planar());
+  // Of a straight rod that is free to turn, twist shows nowhere.
+  EXPECT_TRUE(curved("natural_twist = \"90 deg/m\"\n", "").planar());
+  const Scene rolled = curved("natural_curvature = 2\n", "roll = \"30 deg\"\n");
+  EXPECT_FALSE(rolled.planar());
+  // d2 is turned about +x from +z towards -y.
+  EXPECT_NEAR((rolled.natural_curvature() - Eigen::Vector3d(0, -1, std::sqrt(3))).norm(), 0, 1e-12);
+  const Scene half = curved("natural_curvature = 2\n", "roll = \"180 deg\"\n");
+  EXPECT_TRUE(half.planar());
+  EXPECT_NEAR((half.natural_curvature() - Eigen::Vector3d(0, 0, -2)).norm(), 0, 1e-12);
+}
+
+TEST(ScenesNaturalCurvature, NeedsAClampThatSaysAboutWhichAxis) {
+  const std::string curved = by_stiffness + "natural_curvature = 2\n";
+  const std::string pin = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";
+  expect_message(curved + pin, {"my.toml:5: rod.natural_curvature", "hold = \"clamp\""});
+  const std::string sideways = "[[load]]\nat = 2\nforce = [0, 0, 1]\n";
+  expect_message(curved + clamp + sideways,
+                 {"my.toml:6", "natural_curvature", "no plane", "frame or quaternion"});
+  const std::string framed = "frame = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]\n";
+  const Scene scene = scene_of(curved + clamp + framed + sideways);
+  EXPECT_FALSE(scene.planar());
+  EXPECT_NEAR((scene.natural_curvature() - Eigen::Vector3d(0, 0, 2)).norm(), 0, 1e-12);
+  expect_message(by_stiffness + "natural_curvature = [1, 2, 3]\n" + clamp,
+                 {"rod.natural_curvature", "[x, y]"});
+  expect_message(by_stiffness + "natural_curvature = \"3 m\"\n" + clamp,
+                 {"rod.natural_curvature", "1/m, 1/cm"});
+}
+
+TEST(ScenesNaturalCurvature, MakesTheFirstClampHoldItsFrame) {
+  const std::string far = "[[gripper]]\nat = 2\nposition = [1, 0, 0]\ndirection = \"0 deg\"\n";
+  const std::string held = far + "roll = \"90 deg\"\n";
+  EXPECT_FALSE(scene_of(by_stiffness + clamp + held).holds_twist());
+  const std::string curved = by_stiffness + "natural_curvature = 2\n";
+  EXPECT_FALSE(scene_of(curved + clamp + far).holds_twist());
+  const Scene scene = scene_of(curved + clamp + held);
+  EXPECT_TRUE(scene.holds_twist());
+  EXPECT_FALSE(scene.without_twist().holds_twist());
+}
+
+TEST(ScenesLoad, MayBeAMassThatHangsThere) {
+  const std::string rod = by_stiffness + clamp + "[[load]]\nat = 1\n";
+  EXPECT_NEAR(
+      (scene_of(rod + "mass = \"10 g\"\n").loads.at(0).force - Eigen::Vector3d(0, -0.0981, 0))
+          .norm(),
+      0, 1e-15);
+  EXPECT_EQ(scene_of("gravity = [0, 0, -2]\n" + rod + "mass = 3\n").loads.at(0).force,
+            Eigen::Vector3d(0, 0, -6));
+  expect_message(rod + "mass = 1\nforce = [0, 1, 0]\n", {"load.mass", "one of force and mass"});
+  expect_message(rod + "mass = -1\n", {"load.mass = -1", "> 0"});
+  expect_message(rod + "mass = \"1 lb\"\n", {"load.mass", "kg, g"});
+  expect_message(rod, {"load.force: missing"});
+  // Where Gamma is varied its weight follows gravity.
+  const SceneTemplate base(rod + "mass = 1\n", "my.toml");
+  const Scene light = base.with({{"gamma", "1"}});
+  EXPECT_NEAR(light.loads.at(0).force.norm(), light.gravity.norm(), 1e-15);
+}
+
+TEST(ScenesRod, IsScaledInAllThatItIsMadeOf) {
+  const std::string text = by_stiffness + "torsional_stiffness = 1e-3\n" + clamp + sections_text +
+                           "[[section]]\nfrom = 0\nto = 0.1\ntorsional_stiffness = 7e-3\n";
+  const Scene scene = scene_of(text);
+  Scene scaled = scene;
+  scaled.scale_modulus(3);
+  EXPECT_DOUBLE_EQ(scaled.bending_stiffness(), 3 * scene.bending_stiffness());
+  EXPECT_DOUBLE_EQ(scaled.axial_stiffness(), 3 * scene.axial_stiffness());
+  EXPECT_DOUBLE_EQ(scaled.bending_compliance(0, 2), scene.bending_compliance(0, 2) / 3);
+  EXPECT_DOUBLE_EQ(*scaled.torsional_stiffness, 3e-3);
+  EXPECT_DOUBLE_EQ(*scaled.sections[0].torsional_stiffness, 21e-3);
+  EXPECT_EQ(scaled.mass(), scene.mass());
+  scaled = scene;
+  scaled.scale_density(3);
+  EXPECT_DOUBLE_EQ(scaled.mass(), 3 * scene.mass());
+  EXPECT_EQ(scaled.bending_compliance(0, 2), scene.bending_compliance(0, 2));
+}
+
+TEST(ScenesRod, IsVariedByItsOwnKeys) {
+  const SceneTemplate base(by_stiffness + clamp + sections_text, "my.toml");
+  EXPECT_EQ(base.with({{"rod.bending_stiffness", "2 N m^2"}}).bending_stiffness(), 2);
+  EXPECT_EQ(base.with({{"section.0.mass_per_length", "1"}}).sections[1].mass_per_length, 1);
+  EXPECT_EQ(base.with({{"rod.natural_curvature", "-2"}}).natural_strain.y(), -2);
+  EXPECT_EQ(base.with({{"rod.natural_curvature", "[1, 2]"}}).natural_strain.x(), 1);
+  const SceneTemplate twisted(by_stiffness + "torsional_stiffness = 1e-3\n" + clamp, "my.toml");
+  EXPECT_DOUBLE_EQ(*twisted.with({{"rod.bending_stiffness", "2.4e-3"}}).torsional_stiffness, 2e-3);
+  EXPECT_THROW((void)base.with({{"EI", "2"}}), InputError);
+}
+
+}  // namespace
+}  // namespace dlo::compare

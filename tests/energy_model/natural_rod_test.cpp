@@ -1,0 +1,411 @@
+// Rods of sections and rods that are not straight by nature: against closed forms, references and
+// Kirchhoff's equations, integrated from a solution's own reactions.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <random>
+
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "equilibrium_balance.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+Problem clamped_rod() {
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.torsional_stiffness = 2.0 / 3;
+  problem.grips = {{0, {0, 0, 0}, Vector3d::UnitX(), std::nullopt}};
+  return problem;
+}
+
+Equilibrium solved_rod(const Problem& problem) {
+  Equilibrium result = solve_energy(problem);
+  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
+  return result;
+}
+
+Vector3d point_at(const Equilibrium& equilibrium, double s) {
+  return equilibrium.sample(std::vector<double>{s}).points.col(0);
+}
+
+/// Section and strains of the free rod at an arc length.
+struct Local {
+  double bending, torsion;
+  Vector3d weight, natural;
+};
+
+Local local(const Problem& problem, double s) {
+  Local here{problem.bending_stiffness, problem.torsional_stiffness, problem.weight_per_length,
+             Vector3d::Zero()};
+  for (const Section& section : problem.sections) {
+    if (s < section.begin || s > section.end) continue;
+    here.bending = section.bending_stiffness;
+    here.torsion = section.torsional_stiffness;
+    here.weight = section.weight_per_length;
+  }
+  for (std::size_t j = 0; j < problem.natural_strains.size(); ++j) {
+    here.natural += std::legendre(static_cast<unsigned>(j), 2 * s / problem.length - 1) *
+                    problem.natural_strains[j];
+  }
+  return here;
+}
+
+/// Where a rod ends up that leaves its first grip, at s = 0, with these directors, and carries on
+/// what the grips exert: position, directors, and what is left of force and moment at its end.
+struct Shot {
+  Vector3d point;
+  Matrix3d frame;
+  Vector3d force, moment;
+};
+
+Shot shoot(const Problem& problem, const Equilibrium& solution, const Matrix3d& frame) {
+  Shot shot{problem.grips[0].position, frame, -solution.grips[0].force, -solution.grips[0].torque};
+  std::vector<double> stops = {0, problem.length};
+  for (const Section& section : problem.sections) {
+    stops.insert(stops.end(), {section.begin, section.end});
+  }
+  for (const Grip& grip : problem.grips) stops.push_back(grip.at);
+  std::sort(stops.begin(), stops.end());
+  const auto jump = [&](double at) {
+    for (std::size_t g = 1; g < problem.grips.size(); ++g) {
+      if (problem.grips[g].at != at) continue;
+      shot.force -= solution.grips[g].force;
+      shot.moment -= solution.grips[g].torque;
+    }
+  };
+  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+    if (!(stops[i + 1] > stops[i])) continue;
+    constexpr int steps = 400;
+    const double h = (stops[i + 1] - stops[i]) / steps;
+    for (int k = 0; k < steps; ++k) {
+      const double s = stops[i] + k * h;
+      const auto rate = [&](const Shot& at, double where) {
+        // Not on a section's border, where the section is the next one's.
+        const double inside = std::clamp(where, stops[i] + h / 1e3, stops[i + 1] - h / 1e3);
+        const Local here = local(problem, inside);
+        Vector3d u = at.frame.transpose() * at.moment;
+        u = here.natural + u.cwiseQuotient(Vector3d(here.bending, here.bending, here.torsion));
+        Matrix3d turn;
+        turn << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
+        const Vector3d t = at.frame.col(2);
+        return Shot{t, at.frame * turn, -here.weight, -t.cross(at.force)};
+      };
+      const auto moved = [&](const Shot& by, double step) {
+        return Shot{shot.point + step * by.point, shot.frame + step * by.frame,
+                    shot.force + step * by.force, shot.moment + step * by.moment};
+      };
+      const Shot a = rate(shot, s);
+      const Shot b = rate(moved(a, h / 2), s + h / 2);
+      const Shot c = rate(moved(b, h / 2), s + h / 2);
+      const Shot d = rate(moved(c, h), s + h);
+      shot = moved({a.point + 2 * b.point + 2 * c.point + d.point,
+                    a.frame + 2 * b.frame + 2 * c.frame + d.frame,
+                    a.force + 2 * b.force + 2 * c.force + d.force,
+                    a.moment + 2 * b.moment + 2 * c.moment + d.moment},
+                   h / 6);
+    }
+    jump(stops[i + 1]);
+  }
+  return shot;
+}
+
+/// Directors of a clamp along x whose d1 is y.
+Matrix3d along_x() {
+  Matrix3d frame;
+  frame << Vector3d::UnitY(), Vector3d::UnitZ(), Vector3d::UnitX();
+  return frame;
+}
+
+/// @param tolerance  of what is left at the end, over EI/l and EI/l^2
+void expect_kirchhoff(const Problem& problem, const Equilibrium& solution, const Matrix3d& frame,
+                      double tolerance) {
+  const Shot shot = shoot(problem, solution, frame);
+  EXPECT_LT((shot.point - point_at(solution, problem.length)).norm(), tolerance);
+  EXPECT_LT(shot.force.norm(), 100 * tolerance);
+  EXPECT_LT(shot.moment.norm(), 100 * tolerance);
+}
+
+TEST(NaturalRod, IsItsOwnShapeWithoutForces) {
+  Problem problem = clamped_rod();
+  problem.natural_strains = {{0, 3, 0}};
+  Equilibrium circle = solved_rod(problem);
+  // To the left of x, seen from +z.
+  EXPECT_LT((point_at(circle, 1) - Vector3d(std::sin(3) / 3, (1 - std::cos(3)) / 3, 0)).norm(),
+            1e-12);
+  EXPECT_LT(circle.energy.total(), 1e-20);
+  // About d1 it bends to -d2.
+  problem.natural_strains = {{3, 0, 0}};
+  circle = solved_rod(problem);
+  EXPECT_LT((point_at(circle, 1) - Vector3d(std::sin(3) / 3, 0, -(1 - std::cos(3)) / 3)).norm(),
+            1e-12);
+  // A curvature of 1 + 4 (2 s - 1) turns the tangent by s + 4 (s^2 - s).
+  problem.natural_strains = {{0, 1, 0}, {0, 4, 0}};
+  const Equilibrium clothoid = solved_rod(problem);
+  Vector3d tip = Vector3d::Zero();
+  constexpr int intervals = 2000;
+  for (int i = 0; i < intervals; ++i) {
+    for (const double gauss : {-1 / std::sqrt(3.0), 1 / std::sqrt(3.0)}) {
+      const double s = (i + (1 + gauss) / 2) / intervals;
+      const double angle = s + 4 * (s * s - s);
+      tip += Vector3d(std::cos(angle), std::sin(angle), 0) / (2.0 * intervals);
+    }
+  }
+  EXPECT_LT((point_at(clothoid, 1) - tip).norm(), 1e-12);
+}
+
+TEST(NaturalRod, IsAHelixWithTwistToo) {
+  Problem problem = clamped_rod();
+  const Vector3d u(0, 3, 4);
+  problem.natural_strains = {u};
+  const Equilibrium helix = solved_rod(problem);
+  // The frame turns about u, which stays where it is in the frame.
+  const Vector3d axis = along_x() * u.normalized();
+  const Vector3d t = Vector3d::UnitX();
+  for (const double s : {0.25, 0.6, 1.0}) {
+    const double angle = u.norm() * s;
+    const Vector3d along = axis.dot(t) * axis;
+    const Vector3d expected =
+        s * along +
+        (std::sin(angle) * (t - along) + (1 - std::cos(angle)) * axis.cross(t)) / u.norm();
+    EXPECT_LT((point_at(helix, s) - expected).norm(), 1e-12);
+  }
+  EXPECT_LT(helix.energy.total(), 1e-20);
+}
+
+TEST(NaturalRod, StaysAHelixUnderItsWrench) {
+  Problem problem = clamped_rod();
+  const Vector3d natural(0, 2, 1);
+  const Vector3d u(0, 2.5, 1.8);
+  problem.natural_strains = {natural};
+  problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
+  Problem free = problem;
+  free.natural_strains = {u};
+  const Equilibrium helix = solved_rod(free);
+  const Samples end = helix.sample(std::vector<double>{1.0});
+  // t' = u2 d1
+  const Vector3d d1 = end.curvature.col(0).normalized();
+  problem.grips.push_back({1, end.points.col(0), end.tangents.col(0), FrameHold{d1, 0}});
+  const Equilibrium held = solved_rod(problem);
+  for (const double s : {0.2, 0.5, 0.9}) {
+    EXPECT_LT((point_at(held, s) - point_at(helix, s)).norm(), 1e-9);
+  }
+  // m = (0, B (u2 - k), C (u3 - tau)) stays in the frame, and with it the force lambda u, by which
+  // u x m + t x lambda u = 0.
+  const double B = problem.bending_stiffness;
+  const double C = problem.torsional_stiffness;
+  const double moment = B * (u.y() - natural.y());
+  const double torque = C * (u.z() - natural.z());
+  const double lambda = torque - u.z() * moment / u.y();
+  const Vector3d in_space = along_x() * u;
+  EXPECT_LT((held.grips[1].force - lambda * in_space).norm(), 1e-8);
+  EXPECT_LT((held.grips[0].torque + along_x() * Vector3d(0, moment, torque)).norm(), 1e-8);
+  ASSERT_EQ(held.twists.size(), 1U);
+  EXPECT_NEAR(held.twists[0].torque, torque, 1e-8);
+}
+
+/// Smallest eigenvalue of the planar shape of a rod that hangs from a clamp, bent by nature.
+double hanging_curvature(double natural, double gamma) {
+  Problem problem = clamped_rod();
+  problem.grips[0].direction = -Vector3d::UnitY();
+  problem.weight_per_length = {0, -gamma, 0};
+  problem.natural_strains = {{0, natural, 0}};
+  const Equilibrium result = solved_rod(problem);
+  EXPECT_LT(std::abs(point_at(result, 1).z()), 1e-9) << natural << " " << gamma;
+  return result.smallest_curvature;
+}
+
+/// Where a parabola through the eigenvalue at three weights on the stable side of `gamma` vanishes.
+double extrapolated_loss(double natural, double gamma, double side) {
+  const double h = side * 2e-3 * gamma;
+  const double a = hanging_curvature(natural, gamma + h);
+  const double b = hanging_curvature(natural, gamma + 2 * h);
+  const double c = hanging_curvature(natural, gamma + 3 * h);
+  // In x = (weight - gamma) / h: Newton's form at 1, 2, 3.
+  const double second = (c - 2 * b + a) / 2;
+  double x = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double value = a + (b - a) * (x - 1) + second * (x - 1) * (x - 2);
+    x -= value / ((b - a) + second * (2 * x - 3));
+  }
+  return gamma + x * h;
+}
+
+TEST(NaturalRod, HangingLeavesItsPlaneWhereItShould) {
+  // C/B = 2/3; the references are known to these digits.
+  EXPECT_NEAR(extrapolated_loss(10, 28.769705, -1), 28.769705, 1e-5);
+  EXPECT_NEAR(extrapolated_loss(10, 238.935595, 1), 238.935595, 1e-4);
+  EXPECT_NEAR(extrapolated_loss(8, 19.248423, -1), 19.248423, 1e-5);
+  EXPECT_NEAR(extrapolated_loss(8, 119.902772, 1), 119.902772, 1e-4);
+  EXPECT_NEAR(extrapolated_loss(6, 11.868751, -1), 11.868751, 1e-5);
+  EXPECT_NEAR(extrapolated_loss(6, 37.763909, 1), 37.763909, 1e-4);
+  for (const double gamma : {2.0, 8.0, 12.0, 20.0, 40.0, 100.0}) {
+    EXPECT_GT(hanging_curvature(5, gamma), 0) << gamma;
+  }
+}
+
+TEST(NaturalRod, OfAllKindsObeysKirchhoffsEquations) {
+  std::mt19937_64 random(20261122);  // NOLINT(cert-msc51-cpp): the same rods each time
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto vector = [&](double size) {
+    return Vector3d(uniform(-size, size), uniform(-size, size), uniform(-size, size));
+  };
+  for (int i = 0; i < 12; ++i) {
+    Problem problem = clamped_rod();
+    problem.weight_per_length = vector(6);
+    problem.natural_strains = {vector(4), vector(2), vector(1)};
+    problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
+    if (i % 2 == 1) {
+      problem.sections = {{0.2, 0.45, uniform(0.3, 4), uniform(0.2, 3), vector(9)},
+                          {0.45, 0.7, uniform(0.3, 4), uniform(0.2, 3), vector(9)}};
+    }
+    if (i % 3 > 0) {
+      problem.grips.push_back(
+          {1, {uniform(0.3, 0.8), uniform(-0.3, 0.3), uniform(-0.3, 0.3)}, vector(1), {}});
+      if (i % 3 == 2) problem.grips.back().frame = FrameHold{std::nullopt, uniform(-3, 3)};
+    }
+    SCOPED_TRACE(i);
+    const Equilibrium result = solved_rod(problem);
+    expect_kirchhoff(problem, result, along_x(), 1e-8);
+  }
+}
+
+TEST(Sections, OfTheRodsOwnKindChangeNothing) {
+  Problem problem = clamped_rod();
+  problem.weight_per_length = {0, -8, 0};
+  const Equilibrium plain = solved_rod(problem);
+  problem.sections = {{0.3, 0.55, 1, 2.0 / 3, {0, -8, 0}}};
+  const Equilibrium cut = solved_rod(problem);
+  EXPECT_LT((point_at(plain, 1) - point_at(cut, 1)).norm(), 1e-11);
+  EXPECT_NEAR(plain.energy.total(), cut.energy.total(), 1e-12);
+}
+
+TEST(Sections, ObeyKirchhoffsEquationsInThePlaneAndInSpace) {
+  for (const double aside : {0.0, 2.0}) {
+    Problem problem = clamped_rod();
+    problem.weight_per_length = {0, -5, aside};
+    problem.sections = {{0.2, 0.5, 4, 2, {0, -20, 0}}, {0.7, 0.8, 0.2, 0.1, {0, -1, aside}}};
+    expect_kirchhoff(problem, solved_rod(problem), along_x(), 1e-8);
+    problem.grips.push_back({1, {0.7, 0, 0}, Vector3d::UnitX(), {}});
+    expect_kirchhoff(problem, solved_rod(problem), along_x(), 1e-8);
+  }
+}
+
+TEST(Sections, OfAStiffSleeveStaysStraightAndCarriesTwistOnly) {
+  // What is a thousand times as stiff bends a thousand times less.
+  Problem problem = clamped_rod();
+  problem.weight_per_length = {0, -10, 0};
+  problem.sections = {{0.4, 0.6, 1e3, 1e3, {0, -10, 0}}};
+  const Equilibrium result = solved_rod(problem);
+  const Samples shape = result.sample(std::vector<double>{0.39999, 0.40001, 0.5});
+  EXPECT_NEAR(shape.curvature.col(1).norm() / shape.curvature.col(0).norm(), 1e-3, 1e-6);
+}
+
+TEST(Clamp, ThatLetsTheRodTurnPassesItsTorqueOn) {
+  Problem problem = clamped_rod();
+  problem.weight_per_length = {0, -4, 1};
+  problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
+  problem.grips.push_back(
+      {1, {0.8, 0.1, 0}, Vector3d(1, 0.3, 0.1), FrameHold{Vector3d(0.3, -0.4, 0.9), 0}});
+  const Equilibrium whole = solved_rod(problem);
+  // Where the rod is anyway a clamp has nothing to do, if it does not hold the twist.
+  const Samples there = whole.sample(std::vector<double>{0.4});
+  Problem passed = problem;
+  passed.grips.insert(passed.grips.begin() + 1,
+                      {0.4, there.points.col(0), there.tangents.col(0), std::nullopt});
+  const Equilibrium same = solved_rod(passed);
+  EXPECT_LT(same.grips[1].force.norm(), 1e-6);
+  EXPECT_LT(same.grips[1].torque.norm(), 1e-6);
+  EXPECT_NEAR(same.energy.total(), whole.energy.total(), 1e-9);
+  EXPECT_NEAR(same.twists.at(0).torque, whole.twists.at(0).torque, 1e-7);
+  for (const double s : {0.2, 0.7}) {
+    EXPECT_LT((point_at(same, s) - point_at(whole, s)).norm(), 1e-8);
+  }
+  // Elsewhere it pushes, and all is in balance.
+  passed.grips[1].position += Vector3d(0, 0.02, 0.01);
+  const Equilibrium pushed = solved_rod(passed);
+  EXPECT_GT(pushed.grips[1].force.norm(), 1);
+  EXPECT_NEAR(pushed.grips[1].torque.dot(there.tangents.col(0)), 0, 1e-9);
+  expect_kirchhoff(passed, pushed, along_x(), 1e-8);
+}
+
+TEST(NaturalRod, TurnsInAClampThatDoesNotHoldItsFrame) {
+  Problem problem = clamped_rod();
+  problem.weight_per_length = {0, -6, 1};
+  problem.natural_strains = {{0, 3, 1}};
+  problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
+  problem.grips.push_back({0.6, {0.5, -0.05, 0.02}, Vector3d(1, -0.2, 0), std::nullopt});
+  const Equilibrium result = solved_rod(problem);
+  EXPECT_NEAR(result.grips[1].torque.dot(Vector3d(1, -0.2, 0)), 0, 1e-9);
+  expect_kirchhoff(problem, result, along_x(), 1e-8);
+}
+
+TEST(NaturalRod, HasTheSameDirectorsInBothModels) {
+  // On both sides of a clamp that is rolled, whose d1 is where it says, turned on.
+  Problem problem = clamped_rod();
+  problem.weight_per_length = {0, -5, 2};
+  problem.natural_strains = {{1, 2, 0.5}};
+  problem.grips[0].at = 0.4;
+  problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0.7};
+  const std::vector<double> s = {0, 0.2, 0.4, 0.7, 1};
+  const Samples energy = solved_rod(problem).sample(s);
+  const Equilibrium shot = solve_exact(problem);
+  ASSERT_EQ(shot.status, SolveStatus::converged) << shot.message;
+  const Samples exact = shot.sample(s);
+  ASSERT_EQ(energy.d1.cols(), 5);
+  ASSERT_EQ(exact.d1.cols(), 5);
+  EXPECT_LT((energy.points - exact.points).norm(), 1e-9);
+  EXPECT_LT((energy.d1 - exact.d1).norm(), 1e-8);
+  EXPECT_LT((exact.d1.col(2) - Vector3d(0, std::cos(0.7), std::sin(0.7))).norm(), 1e-12);
+}
+
+TEST(NaturalRod, BehindItsFirstClampIsTheSameRod) {
+  // A rod clamped in its middle, and the half of it that lies before, as a rod of its own.
+  Problem whole = clamped_rod();
+  whole.weight_per_length = {0, -5, 2};
+  whole.natural_strains = {{1, 2, 0.5}, {0.5, -1, 1}};
+  whole.grips[0].at = 0.5;
+  whole.grips[0].frame = FrameHold{Vector3d::UnitY(), 0.3};
+  const Equilibrium both = solved_rod(whole);
+  // Seen from the clamp s runs back: t and d2 turn round, and with them the strains.
+  Problem half = whole;
+  half.length = 0.5;
+  half.grips[0] = {0, Vector3d::Zero(), -Vector3d::UnitX(), FrameHold{Vector3d::UnitY(), -0.3}};
+  // P_1 on the first half, from its end: -x/2 - 1/2.
+  const Vector3d back(-1, 1, 1);
+  const std::vector<Vector3d>& u = whole.natural_strains;
+  half.natural_strains = {back.cwiseProduct(u[0] - u[1] / 2), back.cwiseProduct(-u[1] / 2)};
+  const Equilibrium one = solved_rod(half);
+  EXPECT_LT((point_at(one, 0.5) - point_at(both, 0)).norm(), 1e-9);
+}
+
+TEST(NaturalRod, SaysWhatItNeeds) {
+  Problem problem = clamped_rod();
+  problem.natural_strains = {{0, 1, 0}};
+  problem.torsional_stiffness = 0;
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  problem = clamped_rod();
+  problem.natural_strains = {{0, 1, 0}};
+  problem.weight_per_length = {0, -1, 1};
+  problem.grips.push_back({1, {0.5, 0.3, 0}, Vector3d::UnitX(), {}});
+  // In no plane, and no d1.
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  problem = clamped_rod();
+  problem.sections = {{0.2, 0.6, 1, 1, {}}, {0.5, 0.8, 1, 1, {}}};
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+  problem.sections = {{0.2, 0.6, 0, 1, {}}};
+  EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
