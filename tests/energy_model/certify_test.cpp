@@ -1,8 +1,8 @@
-#include "certify.hpp"
+#include "certify/certify.hpp"
 
 #include <gtest/gtest.h>
 
-#include "span_solver.hpp"
+#include "search/span_solver.hpp"
 
 namespace dlo::energy_model {
 namespace {

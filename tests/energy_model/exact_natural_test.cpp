@@ -10,12 +10,12 @@
 #include <limits>
 #include <stdexcept>
 
-#include "curved_variation.hpp"
+#include "curved/curved_variation.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
+#include "problem/rod_law.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
-#include "rod_law.hpp"
 
 namespace dlo::energy_model {
 namespace {

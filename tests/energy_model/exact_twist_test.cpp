@@ -14,9 +14,9 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
+#include "kirchhoff/rod_span.hpp"
 #include "problems.hpp"
-#include "rod_span.hpp"
-#include "second_variation.hpp"
+#include "shooting/second_variation.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -1,4 +1,4 @@
-#include "lowest_combinations.hpp"
+#include "base/lowest_combinations.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "minimise.hpp"
+#include "base/minimise.hpp"
 
 #include <gtest/gtest.h>
 #include <nlopt.h>

@@ -1,7 +1,7 @@
 // The directors of a rod in space from its strains, against closed forms and another integrator;
 // their derivatives are looked at with the energy's (span_energy_test.cpp).
 
-#include "rod_frames.hpp"
+#include "strain/rod_frames.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // The objective of the energy model: its derivatives, and that it never waits for the allocator.
 
-#include "span_energy.hpp"
+#include "strain/span_energy.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
-#include "penalty_descent.hpp"
-#include "segments.hpp"
-#include "span_starts.hpp"
+#include "newton/penalty_descent.hpp"
+#include "problem/segments.hpp"
+#include "search/span_starts.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -8,11 +8,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "base/free_directions.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
-#include "free_directions.hpp"
-#include "span_energy.hpp"
+#include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {
 namespace {

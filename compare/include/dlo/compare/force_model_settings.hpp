@@ -41,7 +41,7 @@ template <>
 struct Choices<Stepper> {
   /// In the enumeration's order.
   static constexpr Choice<Stepper> all[] = {
-      {Stepper::basic, "basic", "c_F F"},
+      {Stepper::basic, "basic", "moves by c_F F"},
       {Stepper::limited, "limited", "no point further than l_s"},
       {Stepper::relative, "relative", "or than l_s against its neighbour"},
       {Stepper::dynamic, "dynamic", "relative, plus c_h of the last movement"},

@@ -1,0 +1,113 @@
+#include "base/legendre.hpp"
+
+#include <Eigen/QR>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+
+#include "base/require.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// P_n(x) and its derivative.
+struct Polynomial {
+  double value, slope;
+};
+
+Polynomial legendre_polynomial(Eigen::Index n, double x) {
+  double previous = 1;
+  double current = x;
+  for (Eigen::Index k = 1; k < n; ++k) {
+    const auto order = static_cast<double>(k);
+    const double next = ((2 * order + 1) * x * current - order * previous) / (order + 1);
+    previous = current;
+    current = next;
+  }
+  return {current, static_cast<double>(n) * (x * current - previous) / (x * x - 1)};
+}
+
+/// Gauss-Legendre rule on [0, 1] by Newton's method. GSL's tables stop at 1e-10 for most sizes.
+void gauss_legendre(Eigen::VectorXd& nodes, Eigen::VectorXd& weights) {
+  const Eigen::Index n = nodes.size();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    double x = -std::cos(std::numbers::pi * (static_cast<double>(i) + 0.75) /
+                         (static_cast<double>(n) + 0.5));
+    for (int step = 0; step < 6; ++step) {
+      const Polynomial p = legendre_polynomial(n, x);
+      x -= p.value / p.slope;
+    }
+    const double slope = legendre_polynomial(n, x).slope;
+    nodes[i] = (1 + x) / 2;
+    weights[i] = 1 / ((1 - x * x) * slope * slope);
+  }
+}
+
+LegendreTable make_table(int terms, Eigen::Index Q) {
+  LegendreTable table;
+  table.nodes.resize(Q);
+  table.weights.resize(Q);
+  gauss_legendre(table.nodes, table.weights);
+  table.values.resize(Q, Q);
+  table.integrals.resize(Q, Q);
+  Eigen::VectorXd values(Q);
+  Eigen::VectorXd integrals(Q);
+  for (Eigen::Index q = 0; q < Q; ++q) {
+    legendre(table.nodes[q], values, integrals);
+    table.values.row(q) = values;
+    table.integrals.row(q) = integrals;
+  }
+  table.integration = table.integrals * table.values.transpose() * table.weights.asDiagonal();
+  const Eigen::VectorXd root = table.weights.cwiseSqrt();
+  Eigen::MatrixXd basis(Q, terms + 1);
+  basis << root, root.asDiagonal() * table.integrals.leftCols(terms);
+  table.fit = basis.householderQr().solve(Eigen::MatrixXd(root.asDiagonal()));
+  return table;
+}
+
+/// One table for each number of terms, made when it is first asked for.
+class Tables {
+ public:
+  const LegendreTable& of(int terms, int nodes) {
+    require(terms >= 1 && terms <= max_terms, "LegendreTable", "terms", terms, "1 to 128");
+    const auto index = static_cast<std::size_t>(terms);
+    std::call_once(made_[index], [&] { tables_[index] = make_table(terms, nodes); });
+    return tables_[index];
+  }
+
+ private:
+  std::array<LegendreTable, max_terms + 1> tables_;
+  std::array<std::once_flag, max_terms + 1> made_;
+};
+
+}  // namespace
+
+void legendre(double xi, Eigen::Ref<Eigen::VectorXd> values,
+              Eigen::Ref<Eigen::VectorXd> integrals) {
+  // P_{k+1} = ((2k+1) x P_k - k P_{k-1}) / (k+1); int P_k = (P_{k+1} - P_{k-1}) / (2k+1)
+  const double x = 2 * xi - 1;
+  double previous = 0;
+  double current = 1;
+  for (Eigen::Index k = 0; k < values.size(); ++k) {
+    const auto order = static_cast<double>(k);
+    const double next = ((2 * order + 1) * x * current - order * previous) / (order + 1);
+    const double scale = std::sqrt(2 * order + 1);
+    values[k] = scale * current;
+    integrals[k] = k == 0 ? xi : (next - previous) / (2 * scale);
+    previous = current;
+    current = next;
+  }
+}
+
+const LegendreTable& legendre_table(int terms) {
+  static Tables tables;
+  return tables.of(terms, terms + 6);
+}
+
+const LegendreTable& director_table(int terms) {
+  static Tables tables;
+  return tables.of(terms, 3 * terms / 2 + 8);
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,104 @@
+#include "base/minimise.hpp"
+
+#include <nlopt.h>
+
+#include <cmath>
+#include <exception>
+#include <memory>
+#include <string>
+
+namespace dlo::energy_model {
+namespace {
+
+struct Call {
+  const Objective* objective;
+  nlopt_opt optimiser;
+  double gradient_tolerance;
+  Eigen::VectorXd gradient;
+  Eigen::VectorXd best;  // x where the gradient was small enough
+  bool small_gradient = false;
+  int evaluations = 0;
+  std::exception_ptr thrown;  // by the objective
+};
+
+/// Exceptions may not cross NLopt, which is C: what the objective throws is kept, and stops it.
+double evaluate(unsigned n, const double* x, double* gradient, void* data) {
+  auto& call = *static_cast<Call*>(data);
+  if (call.thrown) return NAN;
+  try {
+    ++call.evaluations;
+    const Eigen::Map<const Eigen::VectorXd> point(x, n);
+    const double value = (*call.objective)(point, call.gradient);
+    if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n) = call.gradient;
+    if (call.gradient.norm() <= call.gradient_tolerance) {
+      call.small_gradient = true;
+      call.best = point;
+      nlopt_force_stop(call.optimiser);
+    }
+    return value;
+  } catch (...) {
+    call.thrown = std::current_exception();
+    nlopt_force_stop(call.optimiser);
+    return NAN;
+  }
+}
+
+}  // namespace
+
+MinimiseResult translate_nlopt(int code) {
+  switch (code) {
+    case NLOPT_SUCCESS:
+    case NLOPT_FTOL_REACHED:
+    case NLOPT_XTOL_REACHED:
+    case NLOPT_STOPVAL_REACHED:
+    case NLOPT_ROUNDOFF_LIMITED:
+      return {SolveStatus::roundoff_limited, "NLopt made no further progress"};
+    case NLOPT_MAXEVAL_REACHED:
+      return {SolveStatus::evaluation_limit, "NLopt reached its evaluation limit"};
+    case NLOPT_MAXTIME_REACHED:
+      return {SolveStatus::time_limit, "NLopt reached its time limit"};
+    case NLOPT_FORCED_STOP:
+      return {SolveStatus::failed, "NLopt was stopped"};
+    case NLOPT_FAILURE:
+      // Also said by its line search when rounding leaves it no descent: that the point is good
+      // then, a residual has to prove.
+      return {SolveStatus::not_resolved, "NLopt's line search failed"};
+    case NLOPT_INVALID_ARGS:
+      return {SolveStatus::failed, "NLopt refused its arguments"};
+    case NLOPT_OUT_OF_MEMORY:
+      return {SolveStatus::failed, "NLopt ran out of memory"};
+    default:
+      return {SolveStatus::failed, "NLopt returned an unknown code, " + std::to_string(code)};
+  }
+}
+
+MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
+                              const MinimiseOptions& options) {
+  const auto n = static_cast<unsigned>(x.size());
+  const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimiser(
+      nlopt_create(NLOPT_LD_LBFGS, n), nlopt_destroy);
+  Call call{&objective,
+            optimiser.get(),
+            options.gradient_tolerance,
+            Eigen::VectorXd(x.size()),
+            Eigen::VectorXd(x.size()),
+            false,
+            0,
+            nullptr};
+  nlopt_set_min_objective(optimiser.get(), evaluate, &call);
+  nlopt_set_maxeval(optimiser.get(), options.max_evaluations);
+  const int remembered = options.remembered_steps;
+  nlopt_set_vector_storage(optimiser.get(), remembered > 0 ? static_cast<unsigned>(remembered) : n);
+  double minimum = 0;
+  const nlopt_result code = nlopt_optimize(optimiser.get(), x.data(), &minimum);
+  if (call.thrown) std::rethrow_exception(call.thrown);
+  MinimiseResult result = translate_nlopt(code);
+  if (call.small_gradient) {
+    x = call.best;
+    result = {SolveStatus::converged, "converged"};
+  }
+  result.evaluations = call.evaluations;
+  return result;
+}
+
+}  // namespace dlo::energy_model

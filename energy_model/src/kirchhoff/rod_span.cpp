@@ -1,0 +1,254 @@
+#include "kirchhoff/rod_span.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/require.hpp"
+#include "problem/ordered_grips.hpp"
+#include "problem/rod_law.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr double same_place = 1e-9;  // in l
+
+/// In units of l; what is nearly at an end of the rod is there.
+double own_arc_length(double at, double length) {
+  const double s = at / length;
+  if (s < same_place) return 0;
+  return s > 1 - same_place ? 1 : s;
+}
+
+std::optional<Plane> plane_of(const RodSpan& span) {
+  std::vector<Eigen::Vector3d> directions;
+  if (span.start_direction) directions.push_back(*span.start_direction);
+  if (span.end_direction) directions.push_back(*span.end_direction);
+  for (const RodSpan::Hold& hold : span.holds) {
+    const Eigen::Vector3d chord = hold.position - span.holds.front().position;
+    if (chord.norm() > same_place) directions.emplace_back(chord.normalized());
+  }
+  const double largest = total_load(span);
+  if (largest > 0) {
+    for (const RodSpan::Part& part : span.parts) {
+      directions.emplace_back(part.section.weight / largest);
+    }
+    for (const RodSpan::Load& load : span.loads) directions.emplace_back(load.force / largest);
+  }
+  if (directions.empty()) directions.emplace_back(Eigen::Vector3d::UnitX());
+  // A pinned rod without a direction of its own starts with its weight, which may be zero.
+  const auto first = std::max_element(
+      directions.begin(), directions.end(),
+      [](const auto& a, const auto& b) { return a.norm() < b.norm() * (1 - same_place); });
+  if (first->norm() == 0) *first = Eigen::Vector3d::UnitX();
+  return find_plane(span.holds.front().position, *first, directions);
+}
+
+/// What the clamps at the ends of a span hold; nothing unless both hold the rod's frame.
+std::optional<RodSpan::Twist> twist_between(const std::vector<RodSpan::Part>& parts,
+                                            const Grip* start, const Grip* end) {
+  if (start == nullptr || end == nullptr || !start->frame || !end->frame) return std::nullopt;
+  RodSpan::Twist twist;
+  for (const RodSpan::Part& part : parts) {
+    twist.compliance += (part.end - part.begin) / part.section.torsion;
+  }
+  twist.roll = end->frame->roll - start->frame->roll;
+  if (!start->frame->d1 || !end->frame->d1) return twist;
+  const auto across = [](const Grip& grip) {
+    const Eigen::Vector3d t = grip.direction->normalized();
+    return Eigen::Vector3d((*grip.frame->d1 - grip.frame->d1->dot(t) * t).normalized());
+  };
+  twist.start_d1 = across(*start);
+  twist.end_d1 = across(*end);
+  return twist;
+}
+
+/// Of the rod from `begin` to `end`, both in units of l.
+std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, double end) {
+  const double l = problem.length;
+  const double bending = problem.bending_stiffness;
+  std::vector<RodSpan::Part> parts;
+  for (const Section& section : rod_parts(problem)) {
+    const double from = std::max(own_arc_length(section.begin, l), begin);
+    const double to = std::min(own_arc_length(section.end, l), end);
+    // What is shorter than the distance of two places is none.
+    if (to - from < same_place) continue;
+    parts.push_back({from - begin,
+                     to - begin,
+                     {section.bending_stiffness / bending, section.torsional_stiffness / bending,
+                      section.weight_per_length * l * l * l / bending}});
+  }
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i) parts[i].end = parts[i + 1].begin;
+  parts.front().begin = 0;
+  parts.back().end = end - begin;
+  return parts;
+}
+
+RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
+                  double end) {
+  const double l = problem.length;
+  const double force_unit = problem.bending_stiffness / (l * l);
+  const Eigen::Vector3d origin = problem.grips.front().position;
+  RodSpan span;
+  span.begin = begin;
+  span.length = end - begin;
+  span.parts = parts_between(problem, begin, end);
+  const Grip* start_clamp = nullptr;
+  const Grip* end_clamp = nullptr;
+  for (const OrderedGrip& grip : grips) {
+    const double at = own_arc_length(grip.grip->at, l);
+    if (at < begin || at > end) continue;
+    span.holds.push_back({at - begin, (grip.grip->position - origin) / l, grip.index});
+    if (!grip.grip->direction) continue;
+    (at == begin ? span.start_direction : span.end_direction) = grip.grip->direction->normalized();
+    (at == begin ? start_clamp : end_clamp) = grip.grip;
+  }
+  for (const Load& load : problem.loads) {
+    const double at = own_arc_length(load.at, l);
+    if (at < begin || at > end || clamp_under(problem, load)) continue;
+    span.loads.push_back({at - begin, load.force / force_unit});
+  }
+  std::stable_sort(span.loads.begin(), span.loads.end(),
+                   [](const auto& a, const auto& b) { return a.at < b.at; });
+  span.plane = plane_of(span);
+  span.twist = twist_between(span.parts, start_clamp, end_clamp);
+  return span;
+}
+
+std::vector<OrderedGrip> checked_grips(const Problem& problem) {
+  check(problem);
+  require(problem.walls.empty(), "solve_exact", "number of walls",
+          static_cast<double>(problem.walls.size()), "0");
+  return ordered_grips(problem);
+}
+
+}  // namespace
+
+RodSpan uncut(const Problem& problem) {
+  const double l = problem.length;
+  const double force_unit = problem.bending_stiffness / (l * l);
+  const Eigen::Vector3d& origin = problem.grips.front().position;
+  RodSpan span;
+  for (const OrderedGrip& grip : checked_grips(problem)) {
+    span.holds.push_back(
+        {own_arc_length(grip.grip->at, l), (grip.grip->position - origin) / l, grip.index});
+  }
+  for (const Load& load : problem.loads) {
+    double at = own_arc_length(load.at, l);
+    for (const RodSpan::Hold& hold : span.holds) {
+      if (std::abs(at - hold.at) < same_place) at = hold.at;
+    }
+    span.loads.push_back({at, load.force / force_unit});
+  }
+  std::stable_sort(span.loads.begin(), span.loads.end(),
+                   [](const auto& a, const auto& b) { return a.at < b.at; });
+  span.parts = parts_between(problem, 0, 1);
+  return span;
+}
+
+std::vector<RodSpan> cut_at_clamps(const Problem& problem) {
+  const std::vector<OrderedGrip> grips = checked_grips(problem);
+  std::vector<double> cuts = {0, 1};
+  for (const OrderedGrip& grip : grips) {
+    if (grip.grip->direction) cuts.push_back(own_arc_length(grip.grip->at, problem.length));
+  }
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  std::vector<RodSpan> spans;
+  for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+    spans.push_back(make_span(problem, grips, cuts[i], cuts[i + 1]));
+  }
+  return spans;
+}
+
+RodMesh make_mesh(const RodSpan& span, double longest) {
+  std::vector<double> fixed = {0, span.length};
+  for (const RodSpan::Hold& hold : span.holds) fixed.push_back(hold.at);
+  for (const RodSpan::Load& load : span.loads) fixed.push_back(load.at);
+  for (const RodSpan::Part& part : span.parts) fixed.push_back(part.begin);
+  std::sort(fixed.begin(), fixed.end());
+  fixed.erase(std::unique(fixed.begin(), fixed.end()), fixed.end());
+  std::vector<double> nodes = {0};
+  for (std::size_t i = 0; i + 1 < fixed.size(); ++i) {
+    const double width = fixed[i + 1] - fixed[i];
+    // Rod to spare between two grips has to bend: one interval could not.
+    constexpr int least_parts = 8;
+    const auto next =
+        std::upper_bound(span.holds.begin(), span.holds.end(), fixed[i],
+                         [](double at, const RodSpan::Hold& hold) { return at < hold.at; });
+    double own = longest;
+    if (next != span.holds.begin() && next != span.holds.end()) {
+      own = std::min(own, (next->at - (next - 1)->at) / least_parts);
+    }
+    const int parts = static_cast<int>(std::ceil(width / own));
+    for (int k = 1; k < parts; ++k) nodes.push_back(fixed[i] + width * k / parts);
+    nodes.push_back(fixed[i + 1]);
+  }
+  return mesh_at(span, Eigen::Map<const Eigen::VectorXd>(nodes.data(),
+                                                         static_cast<Eigen::Index>(nodes.size())));
+}
+
+RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
+  RodMesh mesh;
+  mesh.s = nodes;
+  mesh.load = Eigen::Matrix3Xd::Zero(3, nodes.size());
+  mesh.pull = mesh.load;
+  mesh.hold.assign(static_cast<std::size_t>(nodes.size()), nullptr);
+  const auto node_at = [&](double s) {
+    return std::lower_bound(nodes.begin(), nodes.end(), s) - nodes.begin();
+  };
+  for (const RodSpan::Load& load : span.loads) mesh.load.col(node_at(load.at)) += load.force;
+  for (const RodSpan::Hold& hold : span.holds) {
+    mesh.hold[static_cast<std::size_t>(node_at(hold.at))] = &hold;
+  }
+  for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
+    mesh.section.push_back(&section_at(span, (nodes[i] + nodes[i + 1]) / 2));
+  }
+  return mesh;
+}
+
+ForceField carried_force(const RodSpan& span, const RodMesh& mesh) {
+  const Eigen::Index last = mesh.intervals();
+  ForceField field;
+  field.on_interval.resize(3, last);
+  field.after_node.resize(3, last + 1);
+  // The first grip carries what nothing else does.
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();
+  Eigen::Vector3d all = mesh.load.rowwise().sum();
+  for (const RodSpan::Part& part : span.parts) {
+    all += (part.end - part.begin) * part.section.weight;
+  }
+  for (Eigen::Index i = 0; i <= last; ++i) {
+    n -= mesh.load.col(i);
+    if (mesh.hold[static_cast<std::size_t>(i)] == &span.holds.front()) n += all;
+    field.after_node.col(i) = n;
+    if (i == last) break;
+    const Eigen::Vector3d weight = mesh.width(i) * mesh.section_of(i).weight;
+    field.on_interval.col(i) = n - weight / 2;
+    n -= weight;
+  }
+  return field;
+}
+
+const RodSection& section_at(const RodSpan& span, double s) {
+  const auto after =
+      std::upper_bound(span.parts.begin(), span.parts.end(), s,
+                       [](double at, const RodSpan::Part& part) { return at < part.begin; });
+  return (after == span.parts.begin() ? after : after - 1)->section;
+}
+
+double softest(const RodSpan& span) {
+  double least = INFINITY;
+  for (const RodSpan::Part& part : span.parts) least = std::min(least, part.section.bending);
+  return least;
+}
+
+double total_load(const RodSpan& span) {
+  double load = 0;
+  for (const RodSpan::Part& part : span.parts) {
+    load += (part.end - part.begin) * part.section.weight.norm();
+  }
+  for (const RodSpan::Load& l : span.loads) load += l.force.norm();
+  return load;
+}
+
+}  // namespace dlo::energy_model

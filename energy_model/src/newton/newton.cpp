@@ -1,0 +1,291 @@
+#include "newton/newton.hpp"
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "base/free_directions.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Relative residual at which rounding may be what is left of it.
+constexpr double last_residual = 1e-8;
+
+/// Newton's step, of which the shape's error is a part, at which it need not go on, and above which
+/// a residual that does not fall any more is not taken for a solution [rad].
+constexpr double finest_step = 1e-11;
+constexpr double coarsest_step = 1e-8;
+
+/// Steps that become shorter by this with a factor of another point's need no new one.
+constexpr double fast_contraction = 0.1;
+
+/// Directions in which the rod moves for next to nothing.
+constexpr Eigen::Index most_neutral = 3;
+
+/// A factor is used again for a last step as long as x has moved less than this since: the residual
+/// still falls by that much.
+constexpr double factor_reach = 1e-3;
+
+}  // namespace
+
+void Newton::begin(SpanSolution& solution) {
+  const SpanEnergy& model = *solution.model;
+  gradient_.resize(model.size());
+  residual_.resize(model.constraints());
+  jacobian_.resize(model.constraints(), model.size());
+  if (solution.multipliers.size() == model.constraints()) return;
+  solution.multipliers.setZero(model.constraints());
+  if (model.constraints() == 0) return;
+  // The multipliers that balance the gradient best.
+  (void)evaluate(solution);
+  solution.multipliers = jacobian_.transpose().householderQr().solve(gradient_);
+}
+
+double Newton::evaluate(SpanSolution& solution) {
+  SpanEnergy& model = *solution.model;
+  solution.energy = model.value(solution.x, gradient_);
+  ++solution.evaluations;
+  if (model.constraints() == 0) return gradient_.norm();
+  model.constraint(residual_, jacobian_);
+  gradient_.noalias() -= jacobian_.transpose() * solution.multipliers;
+  return std::hypot(gradient_.norm(), (1 + load_) * residual_.norm());
+}
+
+void Newton::factor(SpanSolution& solution) {
+  solution.model->hessian(solution.multipliers, hessian_);
+  const Eigen::Index n = hessian_.rows();
+  const Eigen::Index m = jacobian_.rows();
+  definite_ = false;
+  if (m == 0) {
+    llt_.compute(hessian_);
+    definite_ = llt_.info() == Eigen::Success;
+    if (definite_) return;
+  }
+  system_.resize(n + m, n + m);
+  system_.topLeftCorner(n, n) = hessian_;
+  system_.topRightCorner(n, m) = -jacobian_.transpose();
+  system_.bottomLeftCorner(m, n) = jacobian_;
+  system_.bottomRightCorner(m, m).setZero();
+  lu_.compute(system_);
+  if (!stands_still_) return;
+  pull_ = 1 + load_ + solution.multipliers.norm();
+  find_neutral();
+}
+
+/// Into neutral_: orthonormal vectors that the system makes shorter than `neutral`, by inverse
+/// iteration; a step along them would be any. Multipliers count by their own size, or a gap that
+/// grips hardly close would pass for neutral.
+void Newton::find_neutral() {
+  const Eigen::Index size = system_.rows();
+  neutral_.resize(size, 0);
+  const Eigen::VectorXd seed = Eigen::VectorXd::LinSpaced(size, 1, 2).normalized();
+  for (Eigen::Index found = 0; found < most_neutral; ++found) {
+    Eigen::VectorXd v = seed;
+    double shrinks = 1;
+    for (int i = 0; i < 2; ++i) {
+      v.tail(residual_.size()) /= pull_;
+      v = lu_.solve(v);
+      v.tail(residual_.size()) /= pull_;
+      v -= neutral_ * (neutral_.transpose() * v);
+      shrinks = 1 / v.norm();
+      v *= shrinks;
+    }
+    if (!(shrinks < neutral)) return;
+    neutral_.conservativeResize(Eigen::NoChange, found + 1);
+    neutral_.col(found) = v;
+  }
+}
+
+void Newton::stand_still() {
+  auto multipliers = step_.tail(residual_.size());
+  multipliers /= pull_;
+  step_ -= neutral_ * (neutral_.transpose() * step_);
+  multipliers *= pull_;
+}
+
+/// Into step_, from gradient_ and residual_.
+void Newton::solve() {
+  if (definite_) {
+    step_ = -gradient_;
+    llt_.solveInPlace(step_);
+    return;
+  }
+  right_.resize(gradient_.size() + residual_.size());
+  right_ << -gradient_, -residual_;
+  step_ = lu_.solve(right_);
+  if (stands_still_) stand_still();
+  // A neutral direction leaves the system singular; least squares stands still along it.
+  const double moved = step_.head(gradient_.size()).norm();
+  if (!((system_ * step_ - right_).norm() <= 1e-6 * right_.norm()) || moved > 1e3) {
+    step_ = newton_step_across_neutral(system_, right_);
+  }
+}
+
+void Newton::stand_still_where_neutral() {
+  right_ << -gradient_, -residual_;
+  step_ = newton_step_across_neutral(system_, right_);
+}
+
+void Newton::move(SpanSolution& solution, double length) {
+  solution.x += length * step_.head(gradient_.size());
+  if (residual_.size() > 0) solution.multipliers += length * step_.tail(residual_.size());
+}
+
+double Newton::step_length_by_energy(SpanSolution& solution) {
+  const double slope = gradient_.dot(step_);
+  const double rounding = 1e-14 * (1 + std::abs(solution.energy));
+  trial_gradient_.resize(gradient_.size());
+  for (double length = 1; length > 1e-4; length /= 2) {
+    ++solution.evaluations;
+    trial_x_ = solution.x + length * step_;
+    const double energy = solution.model->value(trial_x_, trial_gradient_);
+    if (energy <= solution.energy + 1e-4 * length * slope + rounding) return length;
+  }
+  return 1e-4;
+}
+
+/// Walls make the energy's second derivative jump: Newton's step is halved until the energy falls,
+/// or between grips the residual.
+double Newton::step_length(SpanSolution& solution, double size) {
+  if (!solution.model->has_walls()) return 1;
+  if (definite_) return step_length_by_energy(solution);
+  trial_x_ = solution.x;
+  trial_multipliers_ = solution.multipliers;
+  double best = 1e-3;
+  for (double length = 1; length > 1e-3; length /= 2) {
+    move(solution, length);
+    const double trial = evaluate(solution);
+    solution.x = trial_x_;
+    solution.multipliers = trial_multipliers_;
+    if (trial < (1 - 1e-4 * length) * size) {
+      best = length;
+      break;
+    }
+  }
+  return best;
+}
+
+/// Length of a step, multipliers by their own size.
+double Newton::length_of(const SpanSolution& solution) const {
+  const Eigen::Index n = gradient_.size();
+  const double shape = step_.head(n).norm();
+  if (residual_.size() == 0) return shape;
+  const double scale = 1 + load_ + solution.multipliers.norm();
+  return std::hypot(shape, step_.tail(residual_.size()).norm() / scale);
+}
+
+/// Moves along the step, by a quarter as much as long as the next step with the same factor is not
+/// shorter: Deuflhard's natural monotonicity, which does not depend on how gradients and gaps are
+/// weighed against each other. That step is left in step_, the residual in `size`.
+/// @return whether there is such a part; the solution is where it was if not
+bool Newton::natural_move(SpanSolution& solution, double& size) {
+  constexpr double longest = 2;        // of a step; angles of this size have left the path
+  constexpr double least_part = 1e-5;  // of a step
+  trial_x_ = solution.x;
+  trial_multipliers_ = solution.multipliers;
+  first_step_ = step_;
+  const double length = length_of(solution);
+  const double first = std::min(1.0, longest / step_.head(gradient_.size()).norm());
+  for (double part = first; part > least_part; part /= 4) {
+    step_ = first_step_;
+    move(solution, part);
+    size = evaluate(solution);
+    if (std::isfinite(size)) {
+      solve();
+      if (length_of(solution) < (1 - part / 4) * length) return true;
+    }
+    solution.x = trial_x_;
+    solution.multipliers = trial_multipliers_;
+  }
+  step_ = first_step_;
+  size = evaluate(solution);
+  return false;
+}
+
+void Newton::polish_along_branch(SpanSolution& solution, double load) {
+  stands_still_ = true;
+  run(solution, load);
+  stands_still_ = false;
+}
+
+void Newton::polish(SpanSolution& solution, double load) {
+  const SpanEnergy& model = *solution.model;
+  if (model.constraints() == 0 || model.has_walls()) return run(solution, load);
+  const Eigen::VectorXd x = solution.x;
+  const Eigen::VectorXd multipliers = solution.multipliers;
+  run(solution, load);
+  if (solution.is_equilibrium()) return;
+  solution.x = x;
+  solution.multipliers = multipliers;
+  polish_along_branch(solution, load);
+}
+
+void Newton::run(SpanSolution& solution, double load) {
+  load_ = load;
+  begin(solution);
+  const bool walls = solution.model->has_walls();
+  const int most_steps = walls ? 60 : 30;
+  double size = evaluate(solution);
+  bool factored = false;
+  bool shrinks = false;  // the steps, with the factor of an earlier point
+  const auto finish = [&] {
+    solution.residual = size;
+    if (!(solution.multipliers.norm() <= largest_pull * (1 + load))) {
+      return solution.fail("Newton's method left for forces without bound");
+    }
+    const bool minimum = definite_ || jacobian_.rows() > 0;
+    solution.finish(minimum ? SolveStatus::converged : SolveStatus::saddle);
+  };
+  for (int step = 0; step < most_steps; ++step) {
+    if (!std::isfinite(size)) break;
+    if (!factored) factor(solution);
+    solve();
+    const double moved = step_.head(gradient_.size()).norm();
+    solution.next_step = moved;
+    const bool small = size <= last_residual * (1 + load + solution.multipliers.norm());
+    // Where the shape is right the forces need not be.
+    if (moved <= finest_step && (small || walls)) return finish();
+    if (walls && small) {
+      // One more step for the multipliers of the walls, which are updated from what it leaves.
+      move(solution, 1);
+      size = evaluate(solution);
+      return finish();
+    }
+    if (walls) {
+      const double before = size;
+      move(solution, step_length(solution, size));
+      size = evaluate(solution);
+      solution.next_step = moved * size / before;
+    } else if (natural_move(solution, size)) {
+      solution.next_step = step_.head(gradient_.size()).norm();
+      shrinks = solution.next_step < fast_contraction * moved;
+    } else {
+      // Rounding is all that is left; what it moves a neutral direction by means nothing.
+      if (small && moved > coarsest_step && !definite_ && !factored) {
+        stand_still_where_neutral();
+        solution.next_step = step_.head(gradient_.size()).norm();
+      }
+      if (small && solution.next_step <= coarsest_step) return finish();
+      if (factored) {
+        // The factor was another point's.
+        factored = false;
+        continue;
+      }
+      solution.residual = size;
+      if (!small) break;
+      return solution.finish(SolveStatus::near_singular);
+    }
+    const double scale = 1 + load + solution.multipliers.norm();
+    if (!walls && size <= last_residual * scale && solution.next_step <= finest_step) {
+      return finish();
+    }
+    // Between grips the caller looks at the second variation; without, the factor has to tell it.
+    const bool near = moved * (1 + load) <= factor_reach;
+    factored = !walls && (near || (shrinks && jacobian_.rows() > 0));
+  }
+  solution.residual = size;
+  solution.fail("Newton's method did not reduce the residual to rounding");
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "strain/span_solution.hpp"
+
+namespace dlo::energy_model {
+
+/// Forces of grips over 1 + weight and loads beyond which nothing is taken for a shape: residuals
+/// are measured against them.
+inline constexpr double largest_pull = 1e10;
+
+/// Newton's method on the gradient of E - mu . c and on the constraints, with its buffers. Without
+/// constraints and walls it allocates nothing once they have their size.
+class Newton {
+ public:
+  /// From solution.x to where the residual is at rounding and Newton's next step, evaluated there,
+  /// is below 1e-8; steps are cut while the next one, with the same factor, is no shorter. Without
+  /// constraints the Hessian then tells a minimum (`converged`) from a `saddle`; with them the
+  /// caller has to look. Ends as `near_singular` where the residual is at rounding and the step is
+  /// not, and as `failed` where the residual does not fall; between grips it tries once more as
+  /// polish_along_branch().
+  /// @param load  sum of weight and loads, the scale of the residuals
+  void polish(SpanSolution& solution, double load);
+  /// The same, standing still in directions in which the rod moves for next to nothing, where
+  /// rounding would make any step: for one of many steps along a branch.
+  void polish_along_branch(SpanSolution& solution, double load);
+
+ private:
+  void run(SpanSolution& solution, double load);
+  void begin(SpanSolution& solution);
+  [[nodiscard]] double evaluate(SpanSolution& solution);
+  void factor(SpanSolution& solution);
+  void find_neutral();
+  void stand_still();
+  void solve();
+  void stand_still_where_neutral();
+  void move(SpanSolution& solution, double length);
+  [[nodiscard]] double step_length(SpanSolution& solution, double size);
+  [[nodiscard]] double step_length_by_energy(SpanSolution& solution);
+  [[nodiscard]] double length_of(const SpanSolution& solution) const;
+  [[nodiscard]] bool natural_move(SpanSolution& solution, double& size);
+
+  double load_ = 0;
+  bool stands_still_ = false;
+  double pull_ = 1;  // scale of forces
+  Eigen::VectorXd gradient_, residual_, right_, step_, first_step_;
+  Eigen::MatrixXd jacobian_, hessian_, system_, neutral_;
+  Eigen::LLT<Eigen::MatrixXd> llt_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  bool definite_ = false;  // llt_ is what the system is solved with
+  Eigen::VectorXd trial_x_, trial_multipliers_, trial_gradient_;
+};
+
+}  // namespace dlo::energy_model

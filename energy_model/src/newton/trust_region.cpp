@@ -1,0 +1,247 @@
+#include "newton/trust_region.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+#include "base/free_directions.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// A region this small moves the shape by less than rounding does.
+constexpr double smallest_radius = 1e-10;
+/// Gap at the grips from which a start is taken.
+constexpr double loosest_gap = 1e-5;
+/// A start with a larger gap may be bent to close it; closer to the end that would lead away.
+constexpr double largest_bent_gap = 1e-3;
+
+/// Energy, its derivatives and the constraints at a point.
+struct PointOnSpan {
+  Eigen::VectorXd x, gradient, residual;
+  Eigen::MatrixXd jacobian;
+  double energy = 0;
+};
+
+/// Solution of min g.p + p.diag(d) p / 2 in |p| <= radius for the eigenvalues d, growing.
+Eigen::VectorXd step_in_region(const Eigen::VectorXd& d, const Eigen::VectorXd& g, double radius) {
+  const auto step = [&](double shift) {
+    return Eigen::VectorXd(-g.array() / (d.array() + shift).max(1e-300));
+  };
+  const double scale = std::max(1.0, d.cwiseAbs().maxCoeff());
+  if (d[0] > 1e-12 * scale) {
+    Eigen::VectorXd newton = step(0);
+    if (newton.norm() <= radius) return newton;
+  }
+  // |p(shift)| falls from beyond the radius to zero as the shift grows above -d_0.
+  double low = std::max(0.0, -d[0]);
+  const double least = low + 1e-12 * scale;
+  if (step(least).norm() < radius) {
+    // Hard case: no pull along the lowest curvature; it is followed to the edge.
+    Eigen::VectorXd p = step(least);
+    const double rest = std::sqrt(std::max(0.0, radius * radius - p.squaredNorm()));
+    if (d[0] < -neutral) p[0] += p[0] < 0 ? -rest : rest;
+    return p;
+  }
+  double high = low + g.norm() / radius + 1e-12 * scale;
+  for (int i = 0; i < 60 && high - low > 1e-3 * high; ++i) {
+    const double middle = (low + high) / 2;
+    (step(middle).norm() > radius ? low : high) = middle;
+  }
+  return step(high);
+}
+
+class TrustRegionDescent {
+ public:
+  TrustRegionDescent(SpanSolution& solution, const TrustRegionOptions& options)
+      : solution_(solution),
+        model_(*solution.model),
+        options_(options),
+        // What is kept before the first step has as many of them, too.
+        multipliers_(Eigen::VectorXd::Zero(model_.constraints())) {}
+
+  void run() {
+    PointOnSpan here;
+    here.x = solution_.x;
+    evaluate(here);
+    if (!restore(here, loosest_gap)) {
+      solution_.multipliers = multipliers_;
+      return solution_.fail("the grips' positions could not be met from this start");
+    }
+    double radius = first_radius;
+    for (int i = 0; i < options_.max_iterations; ++i) {
+      if (options_.deadline != nullptr && options_.deadline->passed()) {
+        keep(here);
+        return solution_.finish(SolveStatus::time_limit);
+      }
+      linearise(here);
+      const double slope = projected_gradient_.norm();
+      const bool flat = slope <= options_.gradient_tolerance * (1 + options_.load);
+      const std::optional<Eigen::VectorXd> step = best_step(radius, flat);
+      if (!step) {
+        keep(here);
+        return solution_.finish(SolveStatus::converged);
+      }
+      radius = try_step(here, *step, radius);
+      if (radius < smallest_radius) break;
+    }
+    keep(here);
+    // Newton's method may still find it.
+    solution_.finish(SolveStatus::roundoff_limited);
+  }
+
+ private:
+  void evaluate(PointOnSpan& point) {
+    point.gradient.resize(model_.size());
+    point.residual.resize(model_.constraints());
+    point.jacobian.resize(model_.constraints(), model_.size());
+    point.energy = model_.value(point.x, point.gradient);
+    model_.constraint(point.residual, point.jacobian);
+    ++solution_.evaluations;
+  }
+
+  /// Steps to |c| <= gap, each of which has to make it smaller: Levenberg and Marquardt's, which
+  /// are Gauss-Newton's near the end,
+  ///     -J^T (J J^T + mu)^-1 c.
+  /// Where the Jacobian loses rank (a straight rod that has to become shorter) they stop short; a
+  /// small bend in all unknowns then leads on.
+  [[nodiscard]] bool restore(PointOnSpan& point, double gap) {
+    if (model_.constraints() == 0) return std::isfinite(point.energy);
+    constexpr int most_steps = 60;
+    constexpr double longest = 1;  // of a step
+    constexpr int most_bends = 3;
+    const Eigen::Index m = model_.constraints();
+    PointOnSpan trial;
+    int bends = 0;
+    double mu = 1e-12;
+    for (int i = 0; i < most_steps; ++i) {
+      const double size = point.residual.norm();
+      if (!std::isfinite(size)) return false;
+      if (size <= gap) return true;
+      Eigen::MatrixXd normal = point.jacobian * point.jacobian.transpose();
+      const double scale = normal.diagonal().maxCoeff();
+      bool shorter = false;
+      for (; mu < 1e3 && !shorter; mu *= 10) {
+        normal = point.jacobian * point.jacobian.transpose();
+        normal += mu * scale * Eigen::MatrixXd::Identity(m, m);
+        const Eigen::VectorXd step =
+            -point.jacobian.transpose() * normal.ldlt().solve(point.residual);
+        if (!(step.norm() <= longest)) continue;
+        trial.x = point.x + step;
+        evaluate(trial);
+        shorter = trial.residual.norm() < 0.99 * size;
+      }
+      if (shorter) {
+        std::swap(point, trial);
+        mu = std::max(1e-15, mu * 1e-3);
+        continue;
+      }
+      if (size < largest_bent_gap || bends++ == most_bends) return false;
+      bend(point, bends);
+      mu = 1e-3;
+    }
+    return point.residual.norm() <= gap;
+  }
+
+  /// Anything without a symmetry, in the lower coefficients of every piece.
+  void bend(PointOnSpan& point, int which) {
+    for (Eigen::Index k = 0; k < point.x.size(); ++k) {
+      const auto order = static_cast<double>(k % model_.terms());
+      point.x[k] += 0.3 * std::sin(which + 1.7 * static_cast<double>(k)) / (1 + order * order);
+    }
+    evaluate(point);
+  }
+
+  /// Multipliers, null space, projected gradient and Hessian at a point.
+  void linearise(const PointOnSpan& here) {
+    const Eigen::Index n = model_.size();
+    const Eigen::Index m = model_.constraints();
+    if (m > 0) {
+      qr_.compute(here.jacobian.transpose());
+      qr_.setThreshold(1e-10);
+      multipliers_ = qr_.solve(here.gradient);
+      const Eigen::MatrixXd Q = qr_.householderQ();
+      free_ = Q.rightCols(n - qr_.rank());
+      // The model's Hessian is that of its last value().
+      Eigen::VectorXd gradient(n);
+      (void)model_.value(here.x, gradient);
+      model_.hessian(multipliers_, hessian_);
+      projected_gradient_ = free_.transpose() * here.gradient;
+      projected_hessian_.noalias() = free_.transpose() * (hessian_ * free_);
+    } else {
+      multipliers_.resize(0);
+      Eigen::VectorXd gradient(n);
+      (void)model_.value(here.x, gradient);
+      model_.hessian(multipliers_, projected_hessian_);
+      projected_gradient_ = here.gradient;
+    }
+  }
+
+  /// Step in the unknowns; nothing where the point is near a minimum already.
+  [[nodiscard]] std::optional<Eigen::VectorXd> best_step(double radius, bool flat) {
+    predicted_ = 0;
+    if (projected_gradient_.size() == 0) return std::nullopt;
+    llt_.compute(projected_hessian_);
+    Eigen::VectorXd p;
+    if (llt_.info() == Eigen::Success) {
+      if (flat) return std::nullopt;
+      p = -llt_.solve(projected_gradient_);
+    }
+    if (p.size() == 0 || !(p.norm() <= radius)) {
+      eigen_.compute(projected_hessian_);
+      if (flat && eigen_.eigenvalues()[0] > -neutral) return std::nullopt;
+      p = eigen_.eigenvectors() *
+          step_in_region(eigen_.eigenvalues(),
+                         eigen_.eigenvectors().transpose() * projected_gradient_, radius);
+    }
+    predicted_ = -(projected_gradient_.dot(p) + p.dot(projected_hessian_ * p) / 2);
+    length_ = p.norm();
+    return model_.constraints() > 0 ? Eigen::VectorXd(free_ * p) : p;
+  }
+
+  /// @return the next radius
+  [[nodiscard]] double try_step(PointOnSpan& here, const Eigen::VectorXd& step, double radius) {
+    PointOnSpan trial;
+    trial.x = here.x + step;
+    evaluate(trial);
+    const double gap = std::min(loosest_gap, std::max(1e-13, 1e-2 * length_ * length_));
+    if (!restore(trial, gap)) return std::min(radius, length_) / 4;
+    const double before = here.energy - multipliers_.dot(here.residual);
+    const double after = trial.energy - multipliers_.dot(trial.residual);
+    const double rounding = 1e-14 * (1 + std::abs(before) + multipliers_.norm());
+    const double ratio = (before - after + rounding) / (predicted_ + rounding);
+    if (!(ratio > 0.1)) return std::min(radius, length_) / 4;
+    here = std::move(trial);
+    if (ratio > 0.75 && length_ > 0.9 * radius) return std::min(largest_radius, 2 * radius);
+    return ratio < 0.25 ? radius / 2 : radius;
+  }
+
+  void keep(const PointOnSpan& here) {
+    solution_.x = here.x;
+    solution_.energy = here.energy;
+    solution_.multipliers = multipliers_;
+    solution_.residual = projected_gradient_.norm();
+  }
+
+  SpanSolution& solution_;
+  SpanEnergy& model_;
+  const TrustRegionOptions& options_;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  Eigen::LLT<Eigen::MatrixXd> llt_;
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
+  Eigen::VectorXd multipliers_, projected_gradient_;
+  Eigen::MatrixXd free_, hessian_, projected_hessian_;
+  double predicted_ = 0;  // fall of E - lambda.c
+  double length_ = 0;     // of the step
+};
+
+}  // namespace
+
+void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& options) {
+  TrustRegionDescent(solution, options).run();
+}
+
+}  // namespace dlo::energy_model

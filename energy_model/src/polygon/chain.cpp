@@ -1,0 +1,334 @@
+#include "dlo/energy_model/chain.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "base/deadline.hpp"
+#include "base/minimise.hpp"
+#include "base/require.hpp"
+#include "polygon/fold_angle.hpp"
+#include "polygon/unlike_joints.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Potential of a joint and its first two derivatives by the turning angle.
+struct AngleJoint {
+  double energy, moment, stiffness;
+};
+
+AngleJoint joint_by_angle(JointLaw law, double stiffness, double L, double alpha) {
+  if (law == JointLaw::paper) {
+    const double s = std::sin(alpha / 2);
+    const double c = std::cos(alpha / 2);
+    const double quarter = std::sin(alpha / 4);
+    const double m = 2 * quarter * quarter;  // 1 - cos(alpha/2), without cancellation
+    const double scale = stiffness * L;
+    return {scale * 4 * m * m * (1 - m / 3), scale * 2 * s * s * s, scale * 3 * s * s * c};
+  }
+  const double k = stiffness / L;
+  const double followed = std::clamp(alpha, -fold_angle, fold_angle);
+  const double c = std::cos(followed / 2);
+  const double quarter = std::sin(followed / 4);
+  const double moment = 2 * k * std::tan(followed / 2);
+  // ln cos(alpha/2) without cancellation for small angles
+  return {-4 * k * std::log1p(-2 * quarter * quarter) + moment * (alpha - followed), moment,
+          followed == alpha ? k / (c * c) : 0};
+}
+
+double joint_length(const ChainProblem& problem, Eigen::Index i) {
+  return (problem.segment_lengths[i - 1] + problem.segment_lengths[i]) / 2;
+}
+
+/// The joint between segments i-1 and i as it is turned by alpha, its natural turn counted.
+AngleJoint joint_at(const ChainProblem& problem, Eigen::Index i, double alpha) {
+  const double stiffness =
+      problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
+  const double L = joint_length(problem, i);
+  AngleJoint joint = joint_by_angle(problem.law, stiffness, L, alpha);
+  if (problem.natural_turns.size() == 0) return joint;
+  const double natural = problem.natural_turns[i - 1];
+  const AngleJoint free = joint_by_angle(problem.law, stiffness, L, natural);
+  joint.energy -= free.energy + free.moment * (alpha - natural);
+  joint.moment -= free.moment;
+  return joint;
+}
+
+/// Force in each segment: the sum of the node forces beyond it.
+Eigen::Matrix2Xd segment_forces(const ChainProblem& problem) {
+  const Eigen::Index n = problem.segment_lengths.size();
+  Eigen::Matrix2Xd forces(2, n);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (Eigen::Index j = n - 1; j >= 0; --j) {
+    sum += problem.node_forces.col(j + 1);
+    forces.col(j) = sum;
+  }
+  return forces;
+}
+
+void check(const ChainProblem& problem, const ChainOptions& options) {
+  const Eigen::Index n = problem.segment_lengths.size();
+  require(n >= 2, "ChainProblem", "number of segments", static_cast<double>(n), ">= 2");
+  require(problem.segment_lengths.minCoeff() > 0 && problem.segment_lengths.allFinite(),
+          "ChainProblem", "smallest segment length", problem.segment_lengths.minCoeff(),
+          "finite and > 0");
+  require(problem.node_forces.cols() == n + 1, "ChainProblem", "columns of node_forces",
+          static_cast<double>(problem.node_forces.cols()), "one more than segments");
+  require(problem.node_forces.allFinite() && problem.start.allFinite(), "ChainProblem",
+          "node_forces", problem.node_forces.norm(), "finite");
+  require(std::isfinite(problem.held_angle), "ChainProblem", "held_angle", problem.held_angle,
+          "finite");
+  require_positive("ChainProblem", "stiffness", problem.stiffness);
+  require_unlike_joints("ChainProblem", problem.law, problem.stiffnesses, problem.natural_turns, n);
+  require_positive("ChainOptions", "tolerance", options.tolerance);
+  require(options.max_evaluations >= 1, "ChainOptions", "max_evaluations", options.max_evaluations,
+          ">= 1");
+  require(options.time_limit > 0, "ChainOptions", "time_limit", options.time_limit, "> 0");
+  require(options.start_angles.size() == 0 || options.start_angles.size() == n, "ChainOptions",
+          "size of start_angles", static_cast<double>(options.start_angles.size()),
+          "0 or the number of segments");
+  require(options.start_angles.allFinite(), "ChainOptions", "start_angles",
+          options.start_angles.norm(), "finite");
+}
+
+/// Joints as the law would bend them under the moments of the straight chain, kept below a turn
+/// that the whole chain can make.
+Eigen::VectorXd start_from_moments(const ChainProblem& problem) {
+  const Eigen::Index n = problem.segment_lengths.size();
+  const Eigen::Matrix2Xd forces = segment_forces(problem);
+  const Eigen::Vector2d normal(-std::sin(problem.held_angle), std::cos(problem.held_angle));
+  const Eigen::Vector2d tangent(std::cos(problem.held_angle), std::sin(problem.held_angle));
+  Eigen::VectorXd turns = Eigen::VectorXd::Zero(n);
+  double moment = 0;
+  for (Eigen::Index i = n - 1; i >= 1; --i) {
+    moment += forces.col(i).dot(normal) * problem.segment_lengths[i];
+    const double L = joint_length(problem, i);
+    const double stiffness =
+        problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
+    const double size = problem.law == JointLaw::paper
+                            ? std::cbrt(4 * std::abs(moment) / (stiffness * L))
+                            : std::abs(moment) * L / stiffness;
+    turns[i] = std::copysign(std::min(size, 1.0), moment);
+  }
+  const Eigen::Vector2d total = forces.col(0);
+  const double limit = std::abs(std::atan2(total.dot(normal), total.dot(tangent)));
+  const double turned = std::abs(turns.sum());
+  if (turned > limit) turns *= limit / turned;
+  // An upright chain has no moment at all; a hair's turn lets it find its buckled shape.
+  if (turned < 1e-6 && total.dot(tangent) < 0) turns[1] = 1e-3;
+  if (problem.natural_turns.size() > 0) turns.tail(n - 1) += problem.natural_turns;
+  Eigen::VectorXd angles(n);
+  double angle = problem.held_angle;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    angle += turns[i];
+    angles[i] = angle;
+  }
+  return angles;
+}
+
+/// Tridiagonal second derivative by the angles of the free segments 1 .. n-1.
+struct Tridiagonal {
+  Eigen::VectorXd diagonal;
+  Eigen::VectorXd below;
+
+  /// L D L^T in place. @return whether every pivot is positive
+  bool factor() {
+    for (Eigen::Index i = 0; i < diagonal.size(); ++i) {
+      if (i > 0) {
+        const double ratio = below[i - 1] / diagonal[i - 1];
+        diagonal[i] -= ratio * below[i - 1];
+        below[i - 1] = ratio;
+      }
+      if (!(diagonal[i] > 0)) return false;
+    }
+    return true;
+  }
+
+  void solve(Eigen::VectorXd& b) const {
+    for (Eigen::Index i = 1; i < b.size(); ++i) b[i] -= below[i - 1] * b[i - 1];
+    b.array() /= diagonal.array();
+    for (Eigen::Index i = b.size() - 2; i >= 0; --i) b[i] -= below[i] * b[i + 1];
+  }
+};
+
+Tridiagonal second_derivative(const ChainProblem& problem, const Eigen::Matrix2Xd& forces,
+                              const Eigen::VectorXd& angles) {
+  const Eigen::Index free = angles.size() - 1;
+  Tridiagonal matrix{Eigen::VectorXd::Zero(free), Eigen::VectorXd::Zero(free - 1)};
+  for (Eigen::Index i = 1; i <= free; ++i) {
+    const double stiffness = joint_at(problem, i, angles[i] - angles[i - 1]).stiffness;
+    matrix.diagonal[i - 1] +=
+        stiffness + problem.segment_lengths[i] *
+                        (forces(0, i) * std::cos(angles[i]) + forces(1, i) * std::sin(angles[i]));
+    if (i >= 2) {
+      matrix.diagonal[i - 2] += stiffness;
+      matrix.below[i - 2] -= stiffness;
+    }
+  }
+  return matrix;
+}
+
+Eigen::Matrix2Xd chain_points(const ChainProblem& problem, const Eigen::VectorXd& angles) {
+  Eigen::Matrix2Xd points(2, angles.size() + 1);
+  points.col(0) = problem.start;
+  for (Eigen::Index i = 0; i < angles.size(); ++i) {
+    points.col(i + 1) =
+        points.col(i) +
+        problem.segment_lengths[i] * Eigen::Vector2d(std::cos(angles[i]), std::sin(angles[i]));
+  }
+  return points;
+}
+
+/// Of the joints' couples that turn them at rest [N m].
+double largest_natural_moment(const ChainProblem& problem) {
+  double largest = 0;
+  for (Eigen::Index i = 1; i <= problem.natural_turns.size(); ++i) {
+    largest = std::max(largest, std::abs(joint_at(problem, i, 0).moment));
+  }
+  return largest;
+}
+
+/// Damped Newton steps; each must lower the energy or the gradient.
+void polish(const ChainProblem& problem, const ChainOptions& options, const Deadline& deadline,
+            double moment_scale, ChainResult& result) {
+  const Eigen::Matrix2Xd forces = segment_forces(problem);
+  const Eigen::Index free = result.angles.size() - 1;
+  Eigen::VectorXd gradient(result.angles.size());
+  double energy = chain_energy(problem, result.angles, gradient);
+  ++result.evaluations;
+  // Angles near pi carry a rounding error that the stiff joints turn into moments.
+  const double rounding_moment =
+      4 * std::numeric_limits<double>::epsilon() * std::numbers::pi *
+      std::sqrt(static_cast<double>(free)) *
+      second_derivative(problem, forces, result.angles).diagonal.cwiseAbs().maxCoeff();
+  const double tolerance =
+      std::max(options.tolerance * moment_scale, std::min(rounding_moment, 1e-6 * moment_scale));
+  double damping = 0;
+  while (result.evaluations < options.max_evaluations) {
+    if (deadline.passed()) {
+      result.status = SolveStatus::time_limit;
+      return;
+    }
+    result.residual = gradient.norm();
+    Tridiagonal matrix = second_derivative(problem, forces, result.angles);
+    const double scale = matrix.diagonal.cwiseAbs().maxCoeff();
+    const bool small = result.residual <= tolerance;
+    matrix.diagonal.array() += damping * scale;
+    const bool positive = matrix.factor();
+    if (small && damping == 0) {
+      result.status = positive ? SolveStatus::converged : SolveStatus::saddle;
+      return;
+    }
+    if (small) {
+      damping = 0;
+      continue;
+    }
+    if (!positive) {
+      if (damping > 1e6) break;
+      damping = std::max(4 * damping, 1e-8);
+      continue;
+    }
+    Eigen::VectorXd step = gradient.tail(free);
+    matrix.solve(step);
+    Eigen::VectorXd trial = result.angles;
+    trial.tail(free) -= step;
+    Eigen::VectorXd trial_gradient(gradient.size());
+    const double trial_energy = chain_energy(problem, trial, trial_gradient);
+    ++result.evaluations;
+    const double rounding = 1e-14 * (std::abs(energy) + moment_scale);
+    if (trial_energy < energy + rounding && trial_gradient.norm() < 2 * result.residual) {
+      result.angles = trial;
+      gradient = trial_gradient;
+      energy = trial_energy;
+      damping = damping < 1e-7 ? 0 : damping / 8;
+    } else {
+      if (damping > 1e6) break;
+      damping = std::max(4 * damping, 1e-8);
+    }
+  }
+  result.status = result.evaluations >= options.max_evaluations ? SolveStatus::evaluation_limit
+                                                                : SolveStatus::failed;
+}
+
+}  // namespace
+
+double chain_energy(const ChainProblem& problem, const Eigen::Ref<const Eigen::VectorXd>& angles,
+                    Eigen::Ref<Eigen::VectorXd> gradient) {
+  const Eigen::Index n = angles.size();
+  gradient.setZero();
+  double energy = 0;
+  Eigen::Vector2d force = Eigen::Vector2d::Zero();
+  for (Eigen::Index i = n - 1; i >= 0; --i) {
+    force += problem.node_forces.col(i + 1);
+    const double L = problem.segment_lengths[i];
+    const double c = std::cos(angles[i]);
+    const double s = std::sin(angles[i]);
+    energy -= L * (force.x() * c + force.y() * s);
+    if (i == 0) break;
+    gradient[i] += L * (force.x() * s - force.y() * c);
+    const AngleJoint j = joint_at(problem, i, angles[i] - angles[i - 1]);
+    energy += j.energy;
+    gradient[i] += j.moment;
+    gradient[i - 1] -= j.moment;
+  }
+  gradient[0] = 0;
+  return energy;
+}
+
+ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  check(problem, options);
+  const Deadline deadline(options.time_limit);
+  const Eigen::Index n = problem.segment_lengths.size();
+  ChainResult result;
+  result.angles =
+      options.start_angles.size() > 0 ? options.start_angles : start_from_moments(problem);
+  result.angles[0] = problem.held_angle;
+
+  // Over the joint angles the Hessian of a Hookean chain is a multiple of the identity plus a
+  // compact part, whatever N is; over the segment angles it would be a Laplacian.
+  Eigen::VectorXd turns = result.angles.tail(n - 1) - result.angles.head(n - 1);
+  Eigen::VectorXd gradient(n);
+  const Objective objective = [&](const Eigen::Ref<const Eigen::VectorXd>& x,
+                                  Eigen::Ref<Eigen::VectorXd> by_turn) {
+    double angle = problem.held_angle;
+    for (Eigen::Index i = 1; i < n; ++i) {
+      angle += x[i - 1];
+      result.angles[i] = angle;
+    }
+    const double energy = chain_energy(problem, result.angles, gradient);
+    double sum = 0;
+    for (Eigen::Index i = n - 1; i >= 1; --i) {
+      sum += gradient[i];
+      by_turn[i - 1] = sum;
+    }
+    // What the minimiser stops at; the status says what it was.
+    if (deadline.passed()) by_turn.setZero();
+    return energy;
+  };
+  const double moment_scale =
+      problem.node_forces.colwise().norm().sum() * problem.segment_lengths.sum() +
+      largest_natural_moment(problem) + 1e-300;  // a chain without forces is straight at once
+  const MinimiseResult first =
+      minimise_lbfgs(objective, turns, {1e-6 * moment_scale, options.max_evaluations});
+  result.evaluations = first.evaluations;
+  Eigen::VectorXd by_turn(n - 1);
+  (void)objective(turns, by_turn);
+  result.status = first.status;
+  if (first.is_a_start()) polish(problem, options, deadline, moment_scale, result);
+  result.message = to_string(result.status);
+
+  const double total = chain_energy(problem, result.angles, gradient);
+  result.points = chain_points(problem, result.angles);
+  for (Eigen::Index i = 1; i < n; ++i) {
+    result.bending_energy += joint_at(problem, i, result.angles[i] - result.angles[i - 1]).energy;
+  }
+  result.load_energy = total - result.bending_energy;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace dlo::energy_model

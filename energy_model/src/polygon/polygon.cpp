@@ -1,0 +1,380 @@
+#include "dlo/energy_model/polygon.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "base/deadline.hpp"
+#include "base/require.hpp"
+#include "polygon/polygon_energy.hpp"
+#include "polygon/unlike_joints.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
+using Sparse = Eigen::SparseMatrix<double>;
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+/// Stretch that the softest stage may have [-].
+constexpr double soft_strain = 0.01;
+/// How near a stage has to come before the next stiffer one begins, in polygon lengths.
+constexpr double stage_tolerance = 1e-6;
+/// Newton's step below which no further progress means rounding, in polygon lengths.
+constexpr double rounding_step = 1e-7;
+/// No point moves further in one step, in polygon lengths.
+constexpr double largest_step = 0.2;
+constexpr int most_escapes = 10;
+/// Force on a free point that may be left, over the forces that act [-]; above what rounding of the
+/// positions makes of the stiffest segment (proof()). A polygon whose Newton step is rounding is
+/// far below it, one that is pressed between two constraints far above.
+constexpr double force_left = 1e-6;
+
+/// Of polygons whose joints are turned at rest.
+void require_in_plane(const char* problem, const char* what, const Points& vectors) {
+  const double across = vectors.row(2).cwiseAbs().maxCoeff();
+  require(across == 0, problem, (std::string("z of ") + what).c_str(), across,
+          "0 with natural turns");
+}
+
+void check(const PolygonProblem& problem, const Points& start, const PolygonOptions& options) {
+  constexpr const char* name = "PolygonProblem";
+  const Eigen::Index n = problem.rest_lengths.size();
+  require(n >= 2, name, "number of segments", static_cast<double>(n), ">= 2");
+  const double shortest = problem.rest_lengths.minCoeff();
+  require(shortest > 0 && problem.rest_lengths.allFinite(), name, "smallest rest length", shortest,
+          "finite and > 0");
+  require_positive(name, "stretch_stiffness", problem.stretch_stiffness);
+  require_positive(name, "stiffness", problem.stiffness);
+  require_unlike_joints(name, problem.law, problem.stiffnesses, problem.natural_turns, n);
+  require(problem.node_forces.cols() == n + 1, name, "columns of node_forces",
+          static_cast<double>(problem.node_forces.cols()), "one more than segments");
+  require(problem.node_forces.allFinite(), name, "node_forces", problem.node_forces.norm(),
+          "finite");
+  require(!problem.held.empty(), name, "number of held points", 0, ">= 1");
+  std::vector<bool> taken(static_cast<std::size_t>(n + 1), false);
+  for (const HeldPoint& held : problem.held) {
+    const bool exists = held.point >= 0 && held.point <= n;
+    require(exists && !taken[static_cast<std::size_t>(held.point)], name, "a held point",
+            static_cast<double>(held.point), "a point of the polygon, held once");
+    taken[static_cast<std::size_t>(held.point)] = true;
+    require(held.position.allFinite(), name, "position of a held point", held.position.norm(),
+            "finite");
+  }
+  for (const PointWall& wall : problem.walls) {
+    require(wall.stiffness >= 0 && std::isfinite(wall.stiffness), name, "stiffness of a wall",
+            wall.stiffness, "finite and >= 0");
+    require(std::abs(wall.normal.norm() - 1) < 1e-9, name, "length of a wall's normal",
+            wall.normal.norm(), "1");
+    require(wall.point.allFinite(), name, "point of a wall", wall.point.norm(), "finite");
+  }
+  require_positive("PolygonOptions", "tolerance", options.tolerance);
+  require(options.max_evaluations >= 1, "PolygonOptions", "max_evaluations",
+          options.max_evaluations, ">= 1");
+  require(options.time_limit > 0, "PolygonOptions", "time_limit", options.time_limit, "> 0");
+  require(start.cols() == n + 1, "solve_polygon", "columns of start",
+          static_cast<double>(start.cols()), "one more than segments");
+  const double closest = (start.rightCols(n) - start.leftCols(n)).colwise().norm().minCoeff();
+  if (problem.natural_turns.size() > 0) {
+    require_in_plane(name, "a node force", problem.node_forces);
+    require_in_plane("solve_polygon", "a point of start", start);
+    for (const HeldPoint& held : problem.held) {
+      require_in_plane(name, "a held point", held.position);
+    }
+    for (const PointWall& wall : problem.walls) {
+      require_in_plane(name, "a wall's normal", wall.normal);
+    }
+  }
+  require(start.allFinite() && closest > 0, "solve_polygon", "shortest segment of start", closest,
+          "finite and > 0");
+}
+
+/// Descends on one problem; holds what all steps need.
+class PolygonDescent {
+ public:
+  PolygonDescent(const PolygonProblem& problem, const PolygonOptions& options,
+                 const Deadline& deadline, PolygonResult& result)
+      : problem_(problem),
+        options_(options),
+        deadline_(deadline),
+        result_(result),
+        length_(problem.rest_lengths.sum()),
+        planar_(problem.natural_turns.size() > 0),
+        index_(static_cast<std::size_t>(problem.node_forces.cols()), 0),
+        gradient_(3, problem.node_forces.cols()),
+        trial_gradient_(3, problem.node_forces.cols()) {
+    for (const HeldPoint& held : problem.held) index_[static_cast<std::size_t>(held.point)] = -1;
+    for (Eigen::Index& index : index_) {
+      if (index == 0) index = free_++;
+    }
+  }
+
+  /// Newton steps until they are below `tolerance` polygon lengths.
+  SolveStatus run(double tolerance) {
+    tolerance_ = tolerance;
+    energy_ = polygon_energy(problem_, result_.points, gradient_);
+    ++result_.evaluations;
+    if (free_ == 0) return SolveStatus::converged;
+    double damping = 0;
+    double last_step = std::numeric_limits<double>::infinity();
+    int escapes = 0;
+    assemble();
+    while (result_.evaluations < options_.max_evaluations) {
+      if (deadline_.passed()) return SolveStatus::time_limit;
+      if (!factor(damping)) {
+        damping = std::max(4 * damping, first_damping);
+        if (damping > most_damping) return SolveStatus::failed;
+        continue;
+      }
+      const Eigen::VectorXd force = free_part(-gradient_);
+      Eigen::VectorXd step = solver_.solve(force);
+      const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
+      if (!std::isfinite(size)) return SolveStatus::failed;
+      if (damping == 0) {
+        if (size <= tolerance_) return SolveStatus::converged;
+        if (size < rounding_step && size > last_step / 2) return SolveStatus::roundoff_limited;
+        last_step = size;
+      } else if (force.dot(step) <= rounding_energy()) {
+        // At rest, but only damping made the Hessian positive.
+        if (factor(0)) {
+          damping = 0;
+          continue;
+        }
+        if (escapes++ == most_escapes) return SolveStatus::saddle;
+        (void)factor(damping);
+        escape();
+        assemble();
+        continue;
+      }
+      step *= std::min(1.0, largest_step * length_ / step.cwiseAbs().maxCoeff());
+      const Eigen::Matrix3Xd trial = moved(step);
+      const double trial_energy = polygon_energy(problem_, trial, trial_gradient_);
+      ++result_.evaluations;
+      const bool lower = trial_energy < energy_ + rounding_energy() && trial_gradient_.allFinite();
+      if (lower) {
+        result_.points = trial;
+        gradient_ = trial_gradient_;
+        energy_ = trial_energy;
+        assemble();
+        damping = damping < 4 * first_damping ? 0 : damping / 8;
+      } else {
+        damping = std::max(4 * damping, first_damping);
+        if (damping > most_damping) return SolveStatus::failed;
+      }
+    }
+    return SolveStatus::evaluation_limit;
+  }
+
+  /// Evaluates the returned points anew, whatever run() has left, and takes back a success that
+  /// they do not prove: the Hessian there is positive definite, Newton's step from there is
+  /// rounding, and no force that is left on a free point counts among those that act. (A step below
+  /// the tolerance may leave one, since segments are stiff: then it is taken.)
+  void prove() {
+    constexpr int most_steps = 3;
+    for (int taken = 0;; ++taken) {
+      const double acting = evaluate();
+      if (!succeeded(result_.status) || free_ == 0) return;
+      assemble();
+      if (!factor(0)) return refuse("the second derivative is not positive");
+      const Eigen::VectorXd step = solver_.solve(free_part(-gradient_));
+      const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
+      const double rounding = 16 * epsilon * largest_ * result_.points.cwiseAbs().maxCoeff();
+      std::ostringstream why;
+      if (!(size <= rounding_step)) {
+        why << "Newton's step is " << size << " lengths";
+        return refuse(why.str());
+      }
+      if (result_.residual <= std::max(rounding, force_left * acting)) return;
+      if (taken == most_steps) {
+        why << result_.residual << " N are left on a point among forces of " << acting << " N";
+        return refuse(why.str());
+      }
+      result_.points = moved(step);
+    }
+  }
+
+  [[nodiscard]] const Eigen::Matrix3Xd& gradient() const { return gradient_; }
+
+ private:
+  // Shares of the largest diagonal element.
+  static constexpr double first_damping = 1e-12;
+  static constexpr double most_damping = 1e3;
+
+  /// Energy, gradient and residual of the points. @return the largest force that acts on them [N]
+  double evaluate() {
+    result_.energy = energy_ = polygon_energy(problem_, result_.points, gradient_);
+    ++result_.evaluations;
+    result_.residual = 0;
+    double acting = problem_.node_forces.colwise().norm().sum();
+    for (Eigen::Index i = 0; i < gradient_.cols(); ++i) {
+      const bool held = index_[static_cast<std::size_t>(i)] < 0;
+      double& largest = held ? acting : result_.residual;
+      largest = std::max(largest, gradient_.col(i).norm());
+    }
+    return acting;
+  }
+
+  void refuse(const std::string& why) {
+    result_.status = SolveStatus::not_resolved;
+    result_.message = std::string(to_string(result_.status)) + ": " + why;
+  }
+
+  [[nodiscard]] double rounding_energy() const {
+    const Eigen::Vector3d first = problem_.held.front().position;
+    const Eigen::Matrix3Xd arms = result_.points.colwise() - first;
+    const double work = problem_.node_forces.cwiseAbs().cwiseProduct(arms.cwiseAbs()).sum();
+    return 16 * epsilon * (std::abs(energy_) + work + first.norm() * forces_norm());
+  }
+  [[nodiscard]] double forces_norm() const { return problem_.node_forces.colwise().norm().sum(); }
+
+  void assemble() {
+    entries_.clear();
+    polygon_hessian(problem_, result_.points,
+                    [&](Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
+                      const Eigen::Index r = index_[static_cast<std::size_t>(row)];
+                      const Eigen::Index c = index_[static_cast<std::size_t>(column)];
+                      if (r < 0 || c < 0 || r < c) return;
+                      // Of a polygon that stays in its plane nothing else is asked.
+                      const int axes = planar_ ? 2 : 3;
+                      for (int i = 0; i < axes; ++i) {
+                        for (int j = 0; j < axes; ++j) {
+                          entries_.emplace_back(static_cast<int>(3 * r + i),
+                                                static_cast<int>(3 * c + j), block(i, j));
+                        }
+                      }
+                    });
+    if (planar_) {
+      const double stiff = problem_.stretch_stiffness / problem_.rest_lengths.minCoeff();
+      for (Eigen::Index i = 0; i < free_; ++i) {
+        const auto z = static_cast<int>(3 * i + 2);
+        entries_.emplace_back(z, z, stiff);
+      }
+    }
+    hessian_.resize(3 * free_, 3 * free_);
+    hessian_.setFromTriplets(entries_.begin(), entries_.end());
+    largest_ = hessian_.diagonal().cwiseAbs().maxCoeff();
+  }
+
+  /// @return whether the Hessian plus damping is positive definite to rounding
+  bool factor(double damping) {
+    solver_.setShift((damping + 64 * epsilon) * largest_);
+    solver_.compute(hessian_);
+    return solver_.info() == Eigen::Success && solver_.vectorD().minCoeff() > 0;
+  }
+
+  [[nodiscard]] Eigen::VectorXd free_part(const Eigen::Matrix3Xd& vectors) const {
+    Eigen::VectorXd result(3 * free_);
+    for (Eigen::Index i = 0; i < vectors.cols(); ++i) {
+      const Eigen::Index k = index_[static_cast<std::size_t>(i)];
+      if (k >= 0) result.segment<3>(3 * k) = vectors.col(i);
+    }
+    return result;
+  }
+
+  [[nodiscard]] Eigen::Matrix3Xd moved(const Eigen::VectorXd& step) const {
+    Eigen::Matrix3Xd points = result_.points;
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const Eigen::Index k = index_[static_cast<std::size_t>(i)];
+      if (k >= 0) points.col(i) += step.segment<3>(3 * k);
+    }
+    return points;
+  }
+
+  /// Leaves a saddle along its lowest curvature, found by inverse iteration with the damped factor.
+  void escape() {
+    constexpr int iterations = 20;
+    constexpr double size = 1e-3;
+    Eigen::VectorXd direction(3 * free_);
+    for (Eigen::Index i = 0; i < direction.size(); ++i) {
+      direction[i] = 1 + std::sin(static_cast<double>(i));  // anything without a symmetry
+    }
+    for (int i = 0; i < iterations; ++i) direction = solver_.solve(direction).normalized();
+    if (planar_) {
+      for (Eigen::Index i = 0; i < free_; ++i) direction[3 * i + 2] = 0;
+    }
+    direction *= size * length_ / direction.cwiseAbs().maxCoeff();
+    const Eigen::Matrix3Xd ahead = moved(direction);
+    const Eigen::Matrix3Xd back = moved(-direction);
+    const double ahead_energy = polygon_energy(problem_, ahead, trial_gradient_);
+    const bool better = ahead_energy <= polygon_energy(problem_, back, gradient_);
+    result_.points = better ? ahead : back;
+    energy_ = polygon_energy(problem_, result_.points, gradient_);
+    result_.evaluations += 3;
+  }
+
+  const PolygonProblem& problem_;
+  const PolygonOptions& options_;
+  const Deadline& deadline_;
+  PolygonResult& result_;
+  double length_;
+  bool planar_;  // free points keep z = 0
+  double tolerance_ = 0;
+  std::vector<Eigen::Index> index_;  // of each point among the free ones, -1 for held points
+  Eigen::Index free_ = 0;
+  double energy_ = 0;
+  double largest_ = 0;
+  Eigen::Matrix3Xd gradient_;
+  Eigen::Matrix3Xd trial_gradient_;
+  std::vector<Eigen::Triplet<double>> entries_;
+  Sparse hessian_;
+  Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> solver_;
+};
+
+/// The stretch stiffness of the first stage.
+double softest(const PolygonProblem& problem, const Eigen::Matrix3Xd& start) {
+  PolygonProblem bending = problem;
+  bending.node_forces.setZero();
+  bending.walls.clear();
+  // No stretch: what is left is the bending of the start.
+  bending.stretch_stiffness = 0;
+  Eigen::Matrix3Xd unused(3, start.cols());
+  const double force = polygon_energy(bending, start, unused) / problem.rest_lengths.sum() +
+                       problem.node_forces.colwise().norm().sum();
+  return std::clamp(force / soft_strain, 1e-9 * problem.stretch_stiffness,
+                    problem.stretch_stiffness);
+}
+
+}  // namespace
+
+PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
+                            const PolygonOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  check(problem, start, options);
+  const Deadline deadline(options.time_limit);
+  PolygonResult result;
+  result.points = start;
+  for (const HeldPoint& held : problem.held) result.points.col(held.point) = held.position;
+
+  PolygonProblem stage = problem;
+  constexpr double growth = 10;
+  const double shortest = problem.rest_lengths.minCoeff();
+  for (double c_c = softest(problem, result.points);; c_c *= growth) {
+    const bool last = c_c >= problem.stretch_stiffness;
+    stage.stretch_stiffness = last ? problem.stretch_stiffness : c_c;
+    for (std::size_t i = 0; i < problem.walls.size(); ++i) {
+      const double stiffness = problem.walls[i].stiffness;
+      stage.walls[i].stiffness = last ? stiffness : std::min(stiffness, c_c / shortest);
+    }
+    PolygonDescent descent(stage, options, deadline, result);
+    result.status = descent.run(last ? options.tolerance : stage_tolerance);
+    result.message = to_string(result.status);
+    const bool go_on = succeeded(result.status) || result.status == SolveStatus::saddle;
+    if (!last && go_on) continue;
+    // A softer stage may have failed; what is returned belongs to the problem that was asked.
+    PolygonDescent asked(problem, options, deadline, result);
+    asked.prove();
+    result.grip_forces.resize(3, static_cast<Eigen::Index>(problem.held.size()));
+    for (std::size_t i = 0; i < problem.held.size(); ++i) {
+      result.grip_forces.col(static_cast<Eigen::Index>(i)) =
+          asked.gradient().col(problem.held[i].point);
+    }
+    break;
+  }
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return result;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,216 @@
+#include "polygon/polygon_energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "polygon/fold_angle.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
+
+/// Potential of a joint and its first two derivatives by h = sin^2(alpha/2) = |u - v|^2 / 4, u and
+/// v the segments' directions. Unlike alpha, h is smooth where the segments are in line.
+struct Joint {
+  double energy, first, second;
+};
+
+Joint joint(JointLaw law, double stiffness, double L, double h) {
+  const double rest = 1 - h;  // cos^2(alpha/2)
+  if (law == JointLaw::paper) {
+    const double q = std::sqrt(rest);
+    const double m = h / (1 + q);  // 1 - cos(alpha/2), without cancellation
+    const double scale = stiffness * L;
+    return {scale * 4 * m * m * (1 - m / 3), scale * 2 * h / q, scale * (2 / q + h / (rest * q))};
+  }
+  const double k = stiffness / L;
+  static const double fold = std::pow(std::sin(fold_angle / 2), 2);
+  if (h <= fold) return {-2 * k * std::log1p(-h), 2 * k / rest, 2 * k / (rest * rest)};
+  const double moment = 2 * k * std::tan(fold_angle / 2);
+  const double root = std::sqrt(h * rest);  // d alpha / d h = 1 / root
+  const double alpha = 2 * std::atan2(std::sqrt(h), std::sqrt(rest));
+  return {-2 * k * std::log1p(-fold) + moment * (alpha - fold_angle), moment / root,
+          -moment * (1 - 2 * h) / (2 * root * root * root)};
+}
+
+/// The two segments that meet at a joint.
+struct Corner {
+  Eigen::Vector3d u, v;  // directions
+  double a, b;           // lengths
+  double h;
+  Eigen::Vector3d by_a, by_b;  // derivative of cos alpha = u.v by either segment
+
+  Corner(const Points& points, Eigen::Index i)
+      : u(points.col(i) - points.col(i - 1)),
+        v(points.col(i + 1) - points.col(i)),
+        a(u.norm()),
+        b(v.norm()) {
+    u /= a;
+    v /= b;
+    const Eigen::Vector3d turn = v - u;
+    // Rounding may carry a full fold beyond one.
+    h = std::min(turn.squaredNorm() / 4, 1.0);
+    by_a = (turn - turn.dot(u) * u) / a;
+    by_b = -(turn - turn.dot(v) * v) / b;
+  }
+};
+
+double joint_length(const PolygonProblem& problem, Eigen::Index i) {
+  return (problem.rest_lengths[i - 1] + problem.rest_lengths[i]) / 2;
+}
+
+double joint_stiffness(const PolygonProblem& problem, Eigen::Index i) {
+  return problem.stiffnesses.size() > 0 ? problem.stiffnesses[i - 1] : problem.stiffness;
+}
+
+/// What a natural turn alpha_0 adds to the potential P of a joint: -P(alpha_0) - C (alpha -
+/// alpha_0), C = P'(alpha_0), alpha from a to b in the plane z = 0.
+struct NaturalTurn {
+  double couple = 0;    // C [N m]
+  double constant = 0;  // P(alpha_0) - C alpha_0 [J]
+};
+
+NaturalTurn natural_turn(const PolygonProblem& problem, Eigen::Index i) {
+  const double turn = problem.natural_turns[i - 1];
+  const double L = joint_length(problem, i);
+  const double stiffness = joint_stiffness(problem, i);
+  const double s = std::sin(turn / 2);
+  NaturalTurn result;
+  result.couple = 2 * stiffness / L * std::tan(turn / 2);
+  result.constant = joint(problem.law, stiffness, L, s * s).energy - result.couple * turn;
+  return result;
+}
+
+/// Second derivative by d = length u of the angle of d in the plane z = 0.
+Eigen::Matrix3d second_of_angle(const Eigen::Vector3d& u, double length) {
+  const double xy = 2 * u.x() * u.y();
+  const double difference = u.y() * u.y() - u.x() * u.x();
+  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
+  result.topLeftCorner<2, 2>() << xy, difference, difference, -xy;
+  return result / (length * length);
+}
+
+Eigen::Vector3d left_of(const Eigen::Vector3d& u) { return {-u.y(), u.x(), 0}; }
+
+/// Whether a point is held, for each; a held one does not feel walls.
+std::vector<bool> held_points(const PolygonProblem& problem) {
+  std::vector<bool> held(static_cast<std::size_t>(problem.node_forces.cols()), false);
+  for (const HeldPoint& point : problem.held) held[static_cast<std::size_t>(point.point)] = true;
+  return held;
+}
+
+/// How far a point is behind a wall [m].
+double depth(const PointWall& wall, const Points& points, Eigen::Index i) {
+  return std::max(0.0, (wall.point - points.col(i)).dot(wall.normal));
+}
+
+/// Adds the Hessian H of a function of the differences d_p = P_(p+1) - P_p, d_q likewise.
+void add_difference_block(Eigen::Index p, Eigen::Index q, const Eigen::Matrix3d& H,
+                          const AddBlock& add) {
+  add(p + 1, q + 1, H);
+  add(p + 1, q, -H);
+  add(p, q + 1, -H);
+  add(p, q, H);
+}
+
+}  // namespace
+
+double polygon_energy(const PolygonProblem& problem, const Points& points,
+                      Eigen::Ref<Eigen::Matrix3Xd> gradient) {
+  const Eigen::Index n = problem.rest_lengths.size();
+  gradient = -problem.node_forces;
+  double energy = -problem.node_forces.cwiseProduct(points).sum();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Vector3d d = points.col(i + 1) - points.col(i);
+    const double L = problem.rest_lengths[i];
+    const double longer = d.norm() - L;
+    energy += problem.stretch_stiffness * longer * longer / (2 * L);
+    const Eigen::Vector3d pull = problem.stretch_stiffness * longer / L * d.normalized();
+    gradient.col(i + 1) += pull;
+    gradient.col(i) -= pull;
+  }
+  for (Eigen::Index i = 1; i < n; ++i) {
+    const Corner corner(points, i);
+    const Joint j =
+        joint(problem.law, joint_stiffness(problem, i), joint_length(problem, i), corner.h);
+    energy += j.energy;
+    // h = (1 - cos alpha) / 2
+    Eigen::Vector3d by_a = -j.first / 2 * corner.by_a;
+    Eigen::Vector3d by_b = -j.first / 2 * corner.by_b;
+    if (problem.natural_turns.size() > 0) {
+      const NaturalTurn natural = natural_turn(problem, i);
+      const double alpha = std::atan2(corner.u.x() * corner.v.y() - corner.u.y() * corner.v.x(),
+                                      corner.u.dot(corner.v));
+      energy -= natural.constant + natural.couple * alpha;
+      by_a += natural.couple / corner.a * left_of(corner.u);
+      by_b -= natural.couple / corner.b * left_of(corner.v);
+    }
+    gradient.col(i - 1) -= by_a;
+    gradient.col(i) += by_a - by_b;
+    gradient.col(i + 1) += by_b;
+  }
+  if (problem.walls.empty()) return energy;
+  const std::vector<bool> held = held_points(problem);
+  for (const PointWall& wall : problem.walls) {
+    for (Eigen::Index i = 0; i <= n; ++i) {
+      if (held[static_cast<std::size_t>(i)]) continue;
+      const double d = depth(wall, points, i);
+      energy += wall.stiffness * d * d / 2;
+      gradient.col(i) -= wall.stiffness * d * wall.normal;
+    }
+  }
+  return energy;
+}
+
+void polygon_hessian(const PolygonProblem& problem, const Points& points, const AddBlock& add) {
+  const Eigen::Index n = problem.rest_lengths.size();
+  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const Eigen::Vector3d d = points.col(i + 1) - points.col(i);
+    const double L = problem.rest_lengths[i];
+    const double length = d.norm();
+    const Eigen::Vector3d u = d / length;
+    const double along = problem.stretch_stiffness / L;
+    const double across = along * (length - L) / length;
+    add_difference_block(i, i, across * one + (along - across) * u * u.transpose(), add);
+  }
+  for (Eigen::Index i = 1; i < n; ++i) {
+    const Corner c(points, i);
+    const Joint j = joint(problem.law, joint_stiffness(problem, i), joint_length(problem, i), c.h);
+    const double curved = j.second / 4;
+    const double slope = -j.first / 2;  // by cos alpha
+    const double cosine = 1 - 2 * c.h;
+    const Eigen::Matrix3d beside_u = one - c.u * c.u.transpose();
+    const Eigen::Matrix3d beside_v = one - c.v * c.v.transpose();
+    Eigen::Matrix3d aa =
+        curved * c.by_a * c.by_a.transpose() -
+        slope / c.a *
+            (c.u * c.by_a.transpose() + c.by_a * c.u.transpose() + cosine / c.a * beside_u);
+    Eigen::Matrix3d bb =
+        curved * c.by_b * c.by_b.transpose() -
+        slope / c.b *
+            (c.v * c.by_b.transpose() + c.by_b * c.v.transpose() + cosine / c.b * beside_v);
+    const Eigen::Matrix3d ab =
+        curved * c.by_a * c.by_b.transpose() + slope / (c.a * c.b) * beside_u * beside_v;
+    if (problem.natural_turns.size() > 0) {
+      const double couple = natural_turn(problem, i).couple;
+      aa += couple * second_of_angle(c.u, c.a);
+      bb -= couple * second_of_angle(c.v, c.b);
+    }
+    add_difference_block(i - 1, i - 1, aa, add);
+    add_difference_block(i, i, bb, add);
+    add_difference_block(i - 1, i, ab, add);
+    add_difference_block(i, i - 1, ab.transpose(), add);
+  }
+  if (problem.walls.empty()) return;
+  const std::vector<bool> held = held_points(problem);
+  for (const PointWall& wall : problem.walls) {
+    for (Eigen::Index i = 0; i <= n; ++i) {
+      if (held[static_cast<std::size_t>(i)] || depth(wall, points, i) <= 0) continue;
+      add(i, i, wall.stiffness * wall.normal * wall.normal.transpose());
+    }
+  }
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,110 @@
+#include "dlo/energy_model/problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/require.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+void require_on_rod(const char* argument, double at, double length) {
+  // Asked first, because the text costs more than a solve's other checks together.
+  if (at >= 0 && at <= length) return;
+  require(false, "Problem", argument, at, "in [0, " + std::to_string(length) + "]");
+}
+
+void check_frame(const Grip& grip) {
+  constexpr double least_across = 1e-6;
+  require(grip.direction.has_value(), "Problem", "frame of a grip without direction", grip.at,
+          "that of a clamp");
+  require(std::isfinite(grip.frame->roll), "Problem", "roll of a clamp", grip.frame->roll,
+          "finite");
+  if (!grip.frame->d1) return;
+  const double across = grip.frame->d1->cross(*grip.direction).norm();
+  require(across > least_across * grip.frame->d1->norm() * grip.direction->norm(), "Problem",
+          "d1 of a clamp's frame, across its direction", across, "> 0");
+}
+
+void check_twist(const Problem& problem) {
+  const auto held = std::count_if(problem.grips.begin(), problem.grips.end(),
+                                  [](const Grip& grip) { return grip.frame.has_value(); });
+  if (held < 2) return;
+  require(problem.torsional_stiffness > 0, "Problem", "torsional_stiffness",
+          problem.torsional_stiffness, "> 0 where two clamps hold the rod's frame");
+}
+
+void check_sections(const Problem& problem) {
+  double before = 0;
+  for (const Section& section : problem.sections) {
+    require_on_rod("begin of a section", section.begin, problem.length);
+    require_on_rod("end of a section", section.end, problem.length);
+    require(section.end > section.begin, "Problem", "end of a section", section.end,
+            "> its begin, " + std::to_string(section.begin));
+    require(section.begin >= before, "Problem", "begin of a section", section.begin,
+            ">= " + std::to_string(before) + ", where the one before it ends");
+    before = section.end;
+    require_positive("Problem", "bending_stiffness of a section", section.bending_stiffness);
+    require(section.torsional_stiffness >= 0 && std::isfinite(section.torsional_stiffness) &&
+                (section.torsional_stiffness > 0 || !(problem.torsional_stiffness > 0)),
+            "Problem", "torsional_stiffness of a section", section.torsional_stiffness,
+            "finite, and > 0 where the rod's is");
+    require(section.weight_per_length.allFinite(), "Problem", "weight_per_length of a section",
+            section.weight_per_length.norm(), "finite");
+  }
+}
+
+void check_natural_strains(const Problem& problem) {
+  for (const Eigen::Vector3d& strain : problem.natural_strains) {
+    require(strain.allFinite(), "Problem", "natural strain", strain.norm(), "finite");
+  }
+  if (problem.natural_strains.empty()) return;
+  require_positive("Problem", "torsional_stiffness, of a rod that is not straight by nature",
+                   problem.torsional_stiffness);
+}
+
+}  // namespace
+
+void check(const Problem& problem) {
+  require_positive("Problem", "length", problem.length);
+  require_positive("Problem", "bending_stiffness", problem.bending_stiffness);
+  require(problem.weight_per_length.allFinite(), "Problem", "weight_per_length",
+          problem.weight_per_length.norm(), "finite");
+  require(!problem.grips.empty(), "Problem", "number of grips", 0, ">= 1");
+  for (const Grip& grip : problem.grips) {
+    require_on_rod("arc length of a grip", grip.at, problem.length);
+    require(grip.position.allFinite(), "Problem", "position of a grip", grip.position.norm(),
+            "finite");
+    if (grip.direction) {
+      require_positive("Problem", "|direction| of a clamp", grip.direction->norm());
+    }
+    if (grip.frame) check_frame(grip);
+  }
+  check_twist(problem);
+  check_sections(problem);
+  check_natural_strains(problem);
+  for (const Wall& wall : problem.walls) {
+    require(wall.point.allFinite(), "Problem", "point of a wall", wall.point.norm(), "finite");
+    require_positive("Problem", "|normal| of a wall", wall.normal.norm());
+    require(wall.stiffness > 0, "Problem", "stiffness of a wall", wall.stiffness, "> 0");
+  }
+  for (const Load& load : problem.loads) {
+    require_on_rod("arc length of a load", load.at, problem.length);
+    require(load.force.allFinite(), "Problem", "force of a load", load.force.norm(), "finite");
+  }
+}
+
+std::vector<double> equal_arc_lengths(double length, Eigen::Index count) {
+  require_positive("equal_arc_lengths", "length", length);
+  require(count >= 2, "equal_arc_lengths", "count", static_cast<double>(count), ">= 2");
+  std::vector<double> arc_lengths(static_cast<std::size_t>(count));
+  for (Eigen::Index i = 0; i < count; ++i) {
+    arc_lengths[static_cast<std::size_t>(i)] =
+        length * static_cast<double>(i) / static_cast<double>(count - 1);
+  }
+  return arc_lengths;
+}
+
+}  // namespace dlo::energy_model

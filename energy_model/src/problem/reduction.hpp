@@ -1,0 +1,52 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "dlo/energy_model/equilibrium.hpp"
+#include "dlo/energy_model/plane.hpp"
+#include "dlo/energy_model/problem.hpp"
+#include "problem/planar_cantilever.hpp"
+
+namespace dlo::energy_model {
+
+/// A problem with one clamp at either end, reduced to its plane and its own units. Only geometry
+/// and units live here.
+struct ReducedCantilever {
+  PlanarCantilever rod;
+  Plane plane;            ///< origin at the clamp, x along the rod as it leaves the clamp
+  bool reversed = false;  ///< the clamp is at the end: s = 1 - arc length / l
+};
+
+/// @return nothing if the problem is not planar or not held by one clamp at an end
+/// @throws std::invalid_argument if the problem is out of range
+[[nodiscard]] std::optional<ReducedCantilever> reduce_cantilever(const Problem& problem);
+
+/// Distances from the clamp in units of l.
+[[nodiscard]] std::vector<double> distances_from_clamp(const Problem& problem, bool reversed,
+                                                       std::span<const double> arc_lengths);
+
+/// A planar shape in the rod's own units, as a solver leaves it.
+struct PlanarSamples {
+  Eigen::Matrix2Xd points;
+  Eigen::VectorXd angle;  ///< of the tangent that points away from the clamp [rad]
+  Eigen::VectorXd curvature;
+
+  explicit PlanarSamples(Eigen::Index count) : points(2, count), angle(count), curvature(count) {}
+};
+
+/// Back to space and SI units.
+[[nodiscard]] Samples restore(const Problem& problem, const ReducedCantilever& reduced,
+                              std::span<const double> arc_lengths, const PlanarSamples& planar);
+
+/// What the clamp exerts on the rod: the force that holds weight and loads, the torque that bends
+/// the rod to the curvature it has there.
+/// @param clamp_curvature  in 1/l, in the plane's frame
+[[nodiscard]] Reaction clamp_reaction(const Problem& problem, const ReducedCantilever& reduced,
+                                      double clamp_curvature);
+
+/// From EI/l to [J].
+[[nodiscard]] Energies restore(const Problem& problem, const Energies& own_units);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,85 @@
+#include "problem/rod_law.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "base/require.hpp"
+#include "base/spin.hpp"
+#include "dlo/energy_model/plane.hpp"
+#include "problem/natural_strains.hpp"
+
+namespace dlo::energy_model {
+
+std::vector<Section> rod_parts(const Problem& problem) {
+  std::vector<Section> parts;
+  double at = 0;
+  const auto fill_to = [&](double end) {
+    if (end > at) {
+      parts.push_back({at, end, problem.bending_stiffness, problem.torsional_stiffness,
+                       problem.weight_per_length});
+    }
+  };
+  for (const Section& section : problem.sections) {
+    fill_to(section.begin);
+    parts.push_back(section);
+    at = section.end;
+  }
+  fill_to(problem.length);
+  return parts;
+}
+
+Eigen::Vector3d natural_strain(const Problem& problem, double arc_length) {
+  return NaturalStrains{problem.natural_strains, -1, 2 / problem.length}.at(arc_length);
+}
+
+std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
+  // find_plane() wants a direction and all else at one scale.
+  std::vector<Eigen::Vector3d> directions;
+  const auto add = [&](const Eigen::Vector3d& v, double unit) {
+    if (v.norm() > 1e-9 * unit) directions.push_back(v.normalized());
+  };
+  for (const Grip& grip : problem.grips) {
+    if (grip.direction) add(*grip.direction, 0);
+    add(grip.position - problem.grips.front().position, problem.length);
+  }
+  add(problem.weight_per_length, 0);
+  for (const Section& section : problem.sections) add(section.weight_per_length, 0);
+  for (const Load& load : problem.loads) add(load.force, 0);
+  for (const Wall& wall : problem.walls) add(wall.normal, 0);
+  // A line alone lies in the plane that holds x, or y.
+  const Eigen::Vector3d first = directions.empty() ? Eigen::Vector3d::UnitX() : directions.front();
+  const std::optional<Plane> plane = find_plane(Eigen::Vector3d::Zero(), first, directions);
+  if (!plane) return std::nullopt;
+  const Eigen::Vector3d normal = plane->x.cross(plane->y);
+  for (const Eigen::Index axis : {2, 1, 0}) {
+    constexpr double noise = 1e-9;
+    if (std::abs(normal[axis]) > noise) return normal[axis] > 0 ? normal : Eigen::Vector3d(-normal);
+  }
+  return normal;
+}
+
+std::optional<std::size_t> first_clamp(const Problem& problem) {
+  std::optional<std::size_t> first;
+  for (std::size_t g = 0; g < problem.grips.size(); ++g) {
+    const Grip& grip = problem.grips[g];
+    if (grip.direction && (!first || grip.at < problem.grips[*first].at)) first = g;
+  }
+  return first;
+}
+
+Eigen::Matrix3d held_frame(const Grip& clamp, const Eigen::Vector3d& d1) {
+  const Eigen::Vector3d t = clamp.direction->normalized();
+  const double roll = clamp.frame ? clamp.frame->roll : 0;
+  return frame_along(t, d1) * Eigen::AngleAxisd(roll, Eigen::Vector3d::UnitZ());
+}
+
+Eigen::Matrix3d first_frame(const Problem& problem) {
+  const Grip& clamp = problem.grips.at(first_clamp(problem).value());
+  if (clamp.frame && clamp.frame->d1) return held_frame(clamp, *clamp.frame->d1);
+  const std::optional<Eigen::Vector3d> normal = natural_normal(problem);
+  require(normal.has_value(), "Problem", "arc length of the first clamp, whose frame lacks d1",
+          clamp.at, "that of a clamp with d1: the rod is curved by nature and lies in no plane");
+  return held_frame(clamp, normal->cross(*clamp.direction));
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,132 @@
+#include "problem/segments.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dlo::energy_model {
+namespace {
+
+/// Share of its length by which a segment that is stretched may be longer than its chord: with more
+/// it hangs or arches.
+constexpr double largest_slack = 0.05;
+
+/// No rod is pulled harder without being stretched to its length.
+constexpr double largest_tension = 1e9;
+
+double sine_of_half(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return (a - b).norm() / 2;
+}
+
+/// 1 - cos(phi / 2) of the angle between two unit vectors.
+double turn_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const double sine = sine_of_half(a, b);
+  return 1 - std::sqrt(std::max(0.0, 1 - sine * sine));
+}
+
+/// Across the pull and to the side of a tangent, as long as sin(phi / 2).
+Eigen::Vector3d side_of(const Eigen::Vector3d& tangent, const Eigen::Vector3d& pull) {
+  const Eigen::Vector3d side = tangent - tangent.dot(pull) * pull;
+  const double size = side.norm();
+  if (!(size > 1e-12)) return Eigen::Vector3d::Zero();
+  return sine_of_half(tangent, pull) / size * side;
+}
+
+/// Tension under which a segment reaches this far; 0 for one that has slack enough.
+double tension_for(const Span& span, const Segment& segment, double distance) {
+  const double length = segment.length();
+  const double slack = length - distance;
+  if (!(slack < largest_slack * length)) return 0;
+  const auto across = [&](const Eigen::Vector3d& force) {
+    return (force - force.dot(segment.pull) * segment.pull).squaredNorm();
+  };
+  const double layers = 2 * (turn_of(segment.begin_tangent, segment.pull) +
+                             turn_of(segment.end_tangent, segment.pull));
+  double sag = across(span.weight) * std::pow(length, 3) / 24;
+  for (const Span::Load& load : span.loads) {
+    const double x = load.at - segment.begin;
+    if (x > 0 && x < length) sag += across(load.force) * x * (length - x) / (2 * length);
+  }
+  // What both take falls as the tension grows.
+  double low = 0;
+  double high = largest_tension;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (layers / std::sqrt(middle) + sag / (middle * middle) > slack ? low : high) = middle;
+  }
+  return low;
+}
+
+/// Direction of the pull and tension: the layers carry the rod aside, and what is between them
+/// points at what is left of the chord.
+/// @return by how much the tension has changed, of itself
+double pull(const Span& span, Segment& segment) {
+  const Eigen::Vector3d aside =
+      2 / std::sqrt(segment.tension) *
+      (side_of(segment.begin_tangent, segment.pull) + side_of(segment.end_tangent, segment.pull));
+  const Eigen::Vector3d rest = segment.chord - aside;
+  segment.pull = rest.normalized();
+  // Half way, where aside and tension chase each other.
+  const double before = segment.tension;
+  segment.tension = std::sqrt(before * tension_for(span, segment, rest.dot(segment.pull)));
+  return std::abs(segment.tension / before - 1);
+}
+
+/// The tangent at a pin between two segments, where both bend the rod as much: their angles to it
+/// are as the other's stiffness, the square root of its tension.
+Eigen::Vector3d tangent_between(const Segment& before, const Segment& after) {
+  const auto stiffness = [](const Segment& segment) {
+    return std::max(std::sqrt(segment.tension), 2 / segment.length());
+  };
+  const double share = stiffness(before) / (stiffness(before) + stiffness(after));
+  const Eigen::Vector3d sum = share * before.pull + (1 - share) * after.pull;
+  return sum.norm() > 1e-3 ? sum.normalized() : before.pull;
+}
+
+void set_tangents(const Span& span, std::vector<Segment>& segments) {
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    Segment& own = segments[i];
+    own.begin_tangent = own.begin_direction.value_or(
+        i > 0 ? tangent_between(segments[i - 1], own) : span.start_direction.value_or(own.pull));
+    own.end_tangent =
+        own.end_direction.value_or(i + 1 < segments.size() ? tangent_between(own, segments[i + 1])
+                                                           : span.end_direction.value_or(own.pull));
+  }
+}
+
+}  // namespace
+
+std::vector<Segment> segments_of(const Span& span) {
+  std::vector<Span::Hold> points = {{span.anchor, Eigen::Vector3d::Zero()}};
+  points.insert(points.end(), span.holds.begin(), span.holds.end());
+  std::stable_sort(points.begin(), points.end(),
+                   [](const Span::Hold& a, const Span::Hold& b) { return a.at < b.at; });
+  std::vector<Segment> segments;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    Segment segment;
+    segment.begin = points[i].at;
+    segment.end = points[i + 1].at;
+    segment.begin_direction = points[i].direction;
+    segment.end_direction = points[i + 1].direction;
+    segment.chord = points[i + 1].offset - points[i].offset;
+    if (segment.chord.norm() > 0) segment.pull = segment.chord.normalized();
+    segments.push_back(segment);
+  }
+  set_tangents(span, segments);
+  for (Segment& segment : segments) {
+    segment.tension = tension_for(span, segment, segment.chord.norm());
+  }
+  const std::vector<Segment> along_chords = segments;
+  constexpr int most_rounds = 25;
+  constexpr double settled = 1e-2;
+  double change = 1;
+  for (int round = 0; round < most_rounds && change > settled * settled; ++round) {
+    change = 0;
+    set_tangents(span, segments);
+    for (Segment& segment : segments) {
+      if (segment.taut()) change = std::max(change, pull(span, segment));
+    }
+  }
+  return change < settled ? segments : along_chords;
+}
+
+}  // namespace dlo::energy_model

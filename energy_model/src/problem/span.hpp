@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "problem/natural_strains.hpp"
+
+namespace dlo::energy_model {
+
+/// The part of a rod between two clamps, or between a clamp and a free end, or a rod without
+/// clamps. Clamps that a torque passes through, because they do not hold the rod's frame, do not
+/// end it where there is one. Own units (lengths in l, forces in EI/l^2), own frame, in which a
+/// planar span lies in x-y. s runs from the span's start.
+struct Span {
+  struct Hold {
+    double at = 0;
+    Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< from the anchor
+    /// Of a clamp inside the span, which lets the rod turn about it.
+    std::optional<Eigen::Vector3d> direction = std::nullopt;
+  };
+  struct Load {
+    double at = 0;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  };
+  /// A half-space's wall: one-sided springs along the rod, or rigid.
+  struct Wall {
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitY();
+    double offset = 0;  ///< normal . (anchor - point): clearance of the anchor
+    double stiffness = std::numeric_limits<double>::infinity();  ///< per length
+  };
+
+  /// A part with a section of its own.
+  struct Part {
+    double begin = 0, end = 0;
+    double bending = 1;                                ///< EI over the unit
+    double torsion = 0;                                ///< GJ over the same unit
+    Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< more than elsewhere
+  };
+
+  /// Both clamps hold the rod's frame; whole turns are in SpanEnergy's unknowns.
+  struct Twist {
+    /// Mean GJ over EI: what the span resists twist with, times its length.
+    double stiffness = 0;
+    Eigen::Vector3d end_d1 = Eigen::Vector3d::UnitX();  ///< of a rod whose d1 at the start is d1()
+  };
+
+  double length = 1;
+  bool planar = true;
+  std::optional<Eigen::Vector3d> start_direction;  ///< a clamp holds the start, which is the anchor
+  std::optional<Eigen::Vector3d> end_direction;    ///< a clamp holds the end, the last of `holds`
+  double anchor = 0;                               ///< s of the first grip
+  std::vector<Hold> holds;                         ///< the other grips, by growing s
+  Eigen::Vector3d weight = Eigen::Vector3d::Zero();
+  std::vector<Load> loads;  ///< by growing s
+  std::vector<Wall> walls;
+  std::optional<Twist> twist;  ///< where both ends are clamped, not planar
+  std::vector<Part> parts;     ///< where the section is another one, by growing s
+  /// About d1, d2 and the tangent of a frame that has d1() at the start; about d1 alone if planar.
+  NaturalStrains natural;
+  double torsion = 0;  ///< GJ / EI where `parts` do not say so; of a rod with natural strains
+
+  /// d1 of the frame that a clamp's direction has here: z, if that is not nearly the direction.
+  [[nodiscard]] static Eigen::Vector3d d1(const Eigen::Vector3d& direction);
+
+  /// Of the rod between two arc lengths; negative where `to` comes first.
+  [[nodiscard]] Eigen::Vector3d weight_between(double from, double to) const;
+  /// Sum of weight and loads, for scales.
+  [[nodiscard]] double total_load() const;
+  /// Of weight and loads on what lies before s.
+  [[nodiscard]] Eigen::Vector3d force_before(double s) const;
+  /// Weight and loads all point the same way.
+  [[nodiscard]] bool pulled_one_way() const;
+  /// A uniform straight rod with one clamp and nothing but weight and loads, in a plane.
+  [[nodiscard]] bool is_plain_cantilever() const {
+    return planar && start_direction && holds.empty() && walls.empty() && parts.empty() &&
+           natural.empty();
+  }
+};
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,275 @@
+#include "problem/split.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "base/require.hpp"
+#include "base/spin.hpp"
+#include "dlo/energy_model/plane.hpp"
+#include "problem/ordered_grips.hpp"
+#include "problem/rod_law.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// What a span's frame has to reckon with: directions of grips, chords and forces, in space.
+struct Directions {
+  std::vector<Eigen::Vector3d> grips;
+  std::vector<Eigen::Vector3d> forces;
+};
+
+void choose_frame(PlacedSpan& placed, const Directions& directions) {
+  // find_plane wants the first direction and everything else; a direction and a force count alike.
+  Eigen::Vector3d first = Eigen::Vector3d::UnitX();
+  std::vector<Eigen::Vector3d> others;
+  double largest = 0;
+  for (const Eigen::Vector3d& force : directions.forces) {
+    if (!(force.norm() > largest)) continue;
+    largest = force.norm();
+    first = force / largest;
+  }
+  for (const Eigen::Vector3d& force : directions.forces) {
+    if (largest > 0) others.emplace_back(force / largest);
+  }
+  others.insert(others.end(), directions.grips.begin(), directions.grips.end());
+  if (!directions.grips.empty()) first = directions.grips.front();
+  const std::optional<Plane> plane = find_plane(Eigen::Vector3d::Zero(), first, others);
+  placed.span.planar = plane.has_value();
+  if (plane) {
+    placed.frame << plane->x.transpose(), plane->y.transpose(),
+        plane->x.cross(plane->y).transpose();
+  } else {
+    // Any will do; a rod that nothing clamps starts near to this x.
+    const Eigen::Vector3d across = first.unitOrthogonal();
+    placed.frame << first.transpose(), across.transpose(), first.cross(across).transpose();
+  }
+}
+
+void turn_vectors(Span& span, const Eigen::Matrix3d& rotation) {
+  const auto turn = [&](Eigen::Vector3d& v) { v = (rotation * v).eval(); };
+  if (span.start_direction) turn(*span.start_direction);
+  if (span.end_direction) turn(*span.end_direction);
+  for (Span::Hold& hold : span.holds) {
+    turn(hold.offset);
+    if (hold.direction) turn(*hold.direction);
+  }
+  for (Span::Load& load : span.loads) turn(load.force);
+  for (Span::Wall& wall : span.walls) turn(wall.normal);
+  for (Span::Part& part : span.parts) turn(part.weight);
+  turn(span.weight);
+}
+
+/// The parts of the rod that have another section, between two arc lengths of a span that runs from
+/// placed.start on.
+void place_sections(const Problem& problem, PlacedSpan& placed, double begin, double end) {
+  const double l = problem.length;
+  const double force_unit = problem.bending_stiffness / (l * l);
+  for (const Section& section : problem.sections) {
+    const double from = std::max(begin, section.begin);
+    const double to = std::min(end, section.end);
+    if (!(to > from)) continue;
+    const double a = placed.s_of(from, l);
+    const double b = placed.s_of(to, l);
+    const Eigen::Vector3d more = section.weight_per_length - problem.weight_per_length;
+    placed.span.parts.push_back(
+        {std::min(a, b), std::max(a, b), section.bending_stiffness / problem.bending_stiffness,
+         section.torsional_stiffness / problem.bending_stiffness, more * l / force_unit});
+  }
+  if (placed.reversed) std::reverse(placed.span.parts.begin(), placed.span.parts.end());
+}
+
+/// GJ over EI with which the rod between two arc lengths resists a torque, as if it were uniform.
+double mean_torsion(const Problem& problem, double begin, double end) {
+  double compliance = 0;
+  for (const Section& part : rod_parts(problem)) {
+    const double length = std::min(end, part.end) - std::max(begin, part.begin);
+    if (length > 0) compliance += length / part.torsional_stiffness;
+  }
+  return (end - begin) / compliance / problem.bending_stiffness;
+}
+
+/// The frame that a clamp holds the rod in, whose strains are not zero by nature; it is the first
+/// one, or says where d1 is.
+Eigen::Matrix3d material_frame(const Problem& problem, const OrderedGrip& clamp) {
+  if (clamp.index == first_clamp(problem)) return first_frame(problem);
+  const FrameHold* const frame = clamp.grip->frame ? &*clamp.grip->frame : nullptr;
+  require(frame != nullptr && frame->d1.has_value(), "Problem",
+          "arc length of a clamp after the first one, whose frame lacks d1", clamp.grip->at,
+          "the rod's end, where the rod is not straight by nature");
+  return held_frame(*clamp.grip, *frame->d1);
+}
+
+/// Natural strains as the span sees them: about the axes of the frame with Span::d1() at its start.
+void place_natural_strains(const Problem& problem, PlacedSpan& placed, const OrderedGrip& anchor) {
+  Span& span = placed.span;
+  const double l = problem.length;
+  span.torsion = problem.torsional_stiffness / problem.bending_stiffness;
+  Eigen::Matrix3d own = Eigen::Matrix3d::Identity();  // directors at the start
+  if (span.start_direction) {
+    own = placed.frame * material_frame(problem, anchor);
+  } else if (span.planar) {
+    const Eigen::Vector3d normal = placed.frame * natural_normal(problem).value();
+    const Eigen::Vector3d t = Eigen::Vector3d::UnitX();
+    own << normal.cross(t), normal, t;
+  }
+  const Eigen::Vector3d along =
+      span.start_direction.value_or(Eigen::Vector3d(Eigen::Vector3d::UnitX()));
+  if (placed.reversed) own.rightCols<2>() *= -1;
+  const Eigen::Matrix3d to_own = frame_along(along, Span::d1(along)).transpose() * own;
+  if (span.start_direction || span.planar) placed.ahead = std::atan2(to_own(1, 0), to_own(0, 0));
+  for (Eigen::Vector3d strain : problem.natural_strains) {
+    if (placed.reversed) strain.x() *= -1;
+    if (span.start_direction || span.planar) strain = (to_own * strain).eval();
+    span.natural.coefficients.emplace_back(l * strain);
+  }
+  const double sense = placed.reversed ? -1 : 1;
+  span.natural.rate = 2 * sense;
+  span.natural.from = 2 * placed.start / l - 1;
+  // What a wall keeps from leaving the plane is looked at in space.
+  if (!span.walls.empty()) span.planar = false;
+  constexpr double rounding = 1e-12;
+  const double largest = span.natural.largest();
+  for (Eigen::Vector3d& strain : span.natural.coefficients) {
+    if (!span.planar) break;
+    span.planar = strain.tail<2>().norm() <= rounding * largest;
+    if (span.planar) strain.tail<2>().setZero();
+  }
+}
+
+/// What two clamps do with the rod's frame between them, seen in a span's own axes.
+std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& start,
+                                    const Grip& end, const Eigen::Matrix3d& axes) {
+  const bool fixed = !problem.natural_strains.empty();
+  if (!end.frame || !(fixed || start.grip->frame)) return std::nullopt;
+  const double start_roll = start.grip->frame ? start.grip->frame->roll : 0;
+  HeldFrames frames;
+  frames.stiffness = mean_torsion(problem, start.grip->at, end.at);
+  frames.roll = end.frame->roll - start_roll;
+  if (fixed) {
+    const Eigen::Matrix3d held = material_frame(problem, start);
+    frames.start_d1 = axes * (Eigen::AngleAxisd(-start_roll, held.col(2)) * held.col(0));
+  } else if (start.grip->frame->d1) {
+    frames.start_d1 = axes * *start.grip->frame->d1;
+  }
+  if (end.frame->d1) frames.end_d1 = axes * *end.frame->d1;
+  return frames;
+}
+
+/// The span between arc lengths `begin` and `end`; it runs backwards from a clamp at `end` if there
+/// is none at `begin`.
+PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
+                 double end, bool clamped_begin, bool clamped_end) {
+  const double l = problem.length;
+  const double force_unit = problem.bending_stiffness / (l * l);
+  PlacedSpan placed;
+  placed.reversed = clamped_end && !clamped_begin;
+  placed.start = placed.reversed ? end : begin;
+  Span& span = placed.span;
+  span.length = (end - begin) / l;
+  span.weight = problem.weight_per_length * l / force_unit;
+  place_sections(problem, placed, begin, end);
+  const double sense = placed.reversed ? -1 : 1;
+
+  std::vector<OrderedGrip> held;
+  for (const OrderedGrip& g : grips) {
+    if (g.grip->at >= begin && g.grip->at <= end) held.push_back(g);
+  }
+  if (placed.reversed) std::reverse(held.begin(), held.end());
+  const OrderedGrip& anchor = held.front();
+  placed.anchor_grip = anchor.index;
+  placed.anchor_position = anchor.grip->position;
+  span.anchor = placed.s_of(anchor.grip->at, l);
+  Directions directions;
+  if (clamped_begin || clamped_end) {
+    span.start_direction = sense * anchor.grip->direction->normalized();
+    directions.grips.push_back(*span.start_direction);
+  }
+  for (std::size_t i = 1; i < held.size(); ++i) {
+    const Eigen::Vector3d offset = (held[i].grip->position - placed.anchor_position) / l;
+    span.holds.push_back({placed.s_of(held[i].grip->at, l), offset});
+    placed.hold_grips.push_back(held[i].index);
+    const bool at_end = clamped_begin && clamped_end && i + 1 == held.size();
+    if (held[i].grip->direction && !at_end) {
+      span.holds.back().direction = sense * held[i].grip->direction->normalized();
+      directions.grips.push_back(*span.holds.back().direction);
+    }
+    if (offset.norm() > 1e-9) directions.grips.push_back(offset.normalized());
+  }
+  if (clamped_begin && clamped_end) {
+    span.holds.back().at = span.length;
+    span.end_direction = held.back().grip->direction->normalized();
+    directions.grips.push_back(*span.end_direction);
+  }
+  directions.forces.push_back(span.weight);
+  for (const Span::Part& part : span.parts) directions.forces.push_back(part.weight);
+  for (const Load& load : problem.loads) {
+    const bool inside = load.at >= begin && load.at <= end;
+    // A load on a clamp is the gripper's alone.
+    if (!inside || clamp_under(problem, load)) continue;
+    span.loads.push_back({placed.s_of(load.at, l), load.force / force_unit});
+    directions.forces.push_back(span.loads.back().force);
+  }
+  std::sort(span.loads.begin(), span.loads.end(),
+            [](const Span::Load& a, const Span::Load& b) { return a.at < b.at; });
+  for (const Wall& wall : problem.walls) {
+    const Eigen::Vector3d normal = wall.normal.normalized();
+    span.walls.push_back({normal, normal.dot(placed.anchor_position - wall.point) / l,
+                          wall.stiffness * l * l / force_unit});
+    directions.grips.push_back(normal);
+  }
+  choose_frame(placed, directions);
+  turn_vectors(span, placed.frame);
+  if (!problem.natural_strains.empty()) place_natural_strains(problem, placed, anchor);
+  if (clamped_begin && clamped_end) {
+    placed.frames = frames_of(problem, held.front(), *held.back().grip, placed.frame);
+  }
+  return placed;
+}
+
+/// Arc lengths of the clamps that nothing passes through: one that lets the rod turn about its
+/// direction passes a torque on, which there is between clamps that hold frames, and all along a
+/// rod that is not straight by nature.
+std::vector<double> cuts_at_clamps(const Problem& problem, const std::vector<OrderedGrip>& grips) {
+  std::vector<OrderedGrip> clamps;
+  for (const OrderedGrip& g : grips) {
+    if (g.grip->direction) clamps.push_back(g);
+  }
+  const bool natural = !problem.natural_strains.empty();
+  const auto holds = [](const OrderedGrip& g) { return g.grip->frame.has_value(); };
+  const auto first = std::find_if(clamps.begin(), clamps.end(), holds);
+  const auto last = std::find_if(clamps.rbegin(), clamps.rend(), holds).base();
+  std::vector<double> cuts;
+  for (auto clamp = clamps.begin(); clamp != clamps.end(); ++clamp) {
+    const bool between = clamp > first && clamp < last;
+    const bool at_end = clamp + 1 == clamps.end() && clamp->grip->at == problem.length;
+    const bool passes = natural ? clamp != clamps.begin() && !at_end : between;
+    if (holds(*clamp) || !passes) cuts.push_back(clamp->grip->at);
+  }
+  return cuts;
+}
+
+}  // namespace
+
+std::vector<PlacedSpan> split(const Problem& problem) {
+  check(problem);
+  const std::vector<OrderedGrip> grips = ordered_grips(problem);
+  const std::vector<double> clamps = cuts_at_clamps(problem, grips);
+  std::vector<PlacedSpan> spans;
+  if (clamps.empty()) {
+    return {place(problem, grips, 0, problem.length, false, false)};
+  }
+  const double shortest = 1e-9 * problem.length;
+  if (clamps.front() > shortest) {
+    spans.push_back(place(problem, grips, 0, clamps.front(), false, true));
+  }
+  for (std::size_t i = 0; i + 1 < clamps.size(); ++i) {
+    spans.push_back(place(problem, grips, clamps[i], clamps[i + 1], true, true));
+  }
+  if (problem.length - clamps.back() > shortest) {
+    spans.push_back(place(problem, grips, clamps.back(), problem.length, true, false));
+  }
+  return spans;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,148 @@
+#include "search/assemble.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/sized_samples.hpp"
+#include "problem/ordered_grips.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// A span's shape and where it lies.
+struct PlacedShape {
+  SpanShape shape;
+  bool reversed;
+  double start, end;            // arc lengths of s = 0 and of the last point in the rod's order [m]
+  Eigen::Matrix3d to_space;     // from the span's frame
+  Eigen::Vector3d anchor;       // [m]
+  std::optional<double> ahead;  // by which the rod's own frame is turned on from the span's [rad]
+};
+
+Samples sample(const std::vector<PlacedShape>& shapes, double length,
+               std::span<const double> arc_lengths) {
+  const auto count = static_cast<Eigen::Index>(arc_lengths.size());
+  Samples samples = sized_samples(arc_lengths, length);
+  if (!shapes.empty() && shapes.front().ahead) samples.d1.resize(3, count);
+  std::vector<std::vector<Eigen::Index>> columns(shapes.size());
+  std::vector<std::vector<double>> own_s(shapes.size());
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double at = arc_lengths[static_cast<std::size_t>(i)];
+    std::size_t p = 0;
+    while (p + 1 < shapes.size() && at > shapes[p].end) ++p;
+    columns[p].push_back(i);
+    own_s[p].push_back((shapes[p].reversed ? shapes[p].start - at : at - shapes[p].start) / length);
+  }
+  for (std::size_t p = 0; p < shapes.size(); ++p) {
+    const PlacedShape& placed = shapes[p];
+    const SpanSamples own = placed.shape.sample(own_s[p]);
+    const double sense = placed.reversed ? -1 : 1;
+    for (std::size_t k = 0; k < columns[p].size(); ++k) {
+      const Eigen::Index i = columns[p][k];
+      const auto from = static_cast<Eigen::Index>(k);
+      samples.points.col(i) = placed.anchor + length * (placed.to_space * own.points.col(from));
+      samples.tangents.col(i) = sense * (placed.to_space * own.tangents.col(from));
+      samples.curvature.col(i) = placed.to_space * own.curvature.col(from) / length;
+      if (!placed.ahead) continue;
+      const Eigen::AngleAxisd about(*placed.ahead, own.tangents.col(from));
+      samples.d1.col(i) = placed.to_space * (about * own.d1.col(from));
+    }
+  }
+  return samples;
+}
+
+}  // namespace
+
+Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*>& placed,
+                     const std::vector<const SpanSolution*>& solutions) {
+  const double l = problem.length;
+  const double energy_unit = problem.bending_stiffness / l;
+  const double force_unit = energy_unit / l;
+  const Eigen::Vector3d origin = problem.grips.front().position;
+  Equilibrium result;
+  result.status = SolveStatus::converged;
+  result.message = to_string(result.status);
+  result.residual = 0;
+  result.grips.resize(problem.grips.size());
+  result.walls.assign(problem.walls.size(), Eigen::Vector3d::Zero());
+  result.smallest_curvature = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    const PlacedSpan& place = *placed[i];
+    const SpanSolution& solution = *solutions[i];
+    result.evaluations += solution.evaluations;
+    result.terms = std::max(result.terms, solution.terms);
+    result.residual = std::max(result.residual, solution.residual);
+    // NaN, where one was not looked at, stays.
+    if (std::isnan(solution.smallest_curvature) ||
+        solution.smallest_curvature < result.smallest_curvature) {
+      result.smallest_curvature = solution.smallest_curvature;
+    }
+    if (solution.status != SolveStatus::converged && succeeded(result.status)) {
+      result.status = solution.status;
+      result.message = solution.message;
+    }
+    if (solution.x.size() == 0) continue;
+    const Energies own = solution.model->energies(solution.x);
+    result.energy.bending += own.bending * energy_unit;
+    result.energy.twisting += own.twisting * energy_unit;
+    if (solution.model->span().twist) {
+      result.twists.push_back(
+          {place.start, place.start + place.span.length * l, solution.model->twist(solution.x),
+           energy_unit * solution.model->twisting_torque(solution.x, solution.multipliers)});
+    }
+    const Eigen::Vector3d lift = place.anchor_position - origin;
+    Eigen::Vector3d carried = place.span.weight_between(0, place.span.length);
+    const Eigen::Vector3d weight = force_unit * (place.frame.transpose() * carried);
+    result.energy.gravity += own.gravity * energy_unit - weight.dot(lift);
+    result.energy.load += own.load * energy_unit;
+    for (const Span::Load& load : place.span.loads) {
+      carried += load.force;
+      result.energy.load -= force_unit * (place.frame.transpose() * load.force).dot(lift);
+    }
+    const std::vector<Eigen::Vector3d> walls = solution.model->walls().forces();
+    for (std::size_t w = 0; w < walls.size(); ++w) {
+      carried += walls[w];
+      result.walls[w] += force_unit * (place.frame.transpose() * walls[w]);
+    }
+    const Eigen::Index axes = solution.model->span().planar ? 2 : 3;
+    for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
+      Eigen::Vector3d force = Eigen::Vector3d::Zero();
+      force.head(axes) = solution.multipliers.segment(static_cast<Eigen::Index>(j) * axes, axes);
+      carried += force;
+      result.grips[place.hold_grips[j]].force += force_unit * (place.frame.transpose() * force);
+    }
+    result.grips[place.anchor_grip].force -= force_unit * (place.frame.transpose() * carried);
+    const auto to_space = [&](const Eigen::Vector3d& torque) {
+      return Eigen::Vector3d(energy_unit * (place.frame.transpose() * torque));
+    };
+    result.grips[place.anchor_grip].torque +=
+        to_space(solution.model->start_torque(solution.multipliers));
+    for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
+      result.grips[place.hold_grips[j]].torque +=
+          to_space(solution.model->hold_torque(static_cast<Eigen::Index>(j), solution.multipliers));
+    }
+  }
+  for (const Load& load : problem.loads) {
+    const std::optional<std::size_t> clamp = clamp_under(problem, load);
+    if (!clamp) continue;
+    result.grips[*clamp].force -= load.force;
+    result.energy.load -= load.force.dot(problem.grips[*clamp].position - origin);
+  }
+  std::vector<PlacedShape> shapes;
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (solutions[i]->x.size() == 0) continue;
+    const PlacedSpan& place = *placed[i];
+    const double end = place.reversed ? place.start : place.start + place.span.length * l;
+    shapes.push_back({solutions[i]->model->shape(solutions[i]->x), place.reversed, place.start, end,
+                      place.frame.transpose(), place.anchor_position,
+                      place.span.natural.empty() ? std::nullopt : std::optional(place.ahead)});
+  }
+  result.sample = [l, shapes = std::move(shapes)](std::span<const double> arc_lengths) {
+    return sample(shapes, l, arc_lengths);
+  };
+  return result;
+}
+
+}  // namespace dlo::energy_model

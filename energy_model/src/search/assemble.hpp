@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "dlo/energy_model/equilibrium.hpp"
+#include "problem/split.hpp"
+#include "strain/span_solution.hpp"
+
+namespace dlo::energy_model {
+
+/// One solution of each span, put together in space and SI units.
+[[nodiscard]] Equilibrium assemble(const Problem& problem,
+                                   const std::vector<const PlacedSpan*>& placed,
+                                   const std::vector<const SpanSolution*>& solutions);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,397 @@
+#include "dlo/energy_model/energy.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "base/legendre.hpp"
+#include "base/lowest_combinations.hpp"
+#include "base/require.hpp"
+#include "problem/split.hpp"
+#include "search/assemble.hpp"
+#include "search/polygon_fields.hpp"
+#include "search/span_solver.hpp"
+#include "search/twist_path.hpp"
+#include "strain/penetration.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Most combinations of the spans' equilibria that are put together.
+constexpr std::size_t most_combinations = 64;
+
+/// Turn of a clamp at once that may be followed on the same branch [rad].
+constexpr double largest_followed_turn = 1;
+
+void check(const EnergyOptions& options) {
+  require(options.terms >= 0 && options.terms <= max_terms, "solve_energy", "terms", options.terms,
+          "0 to " + std::to_string(max_terms));
+  require_positive("solve_energy", "tolerance", options.tolerance);
+  require(options.time_limit > 0, "solve_energy", "time_limit", options.time_limit, "> 0");
+  require(options.max_evaluations >= 1, "solve_energy", "max_evaluations", options.max_evaluations,
+          ">= 1");
+}
+
+/// Tangents of an equilibrium as a span sees them.
+TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double length) {
+  return [&start, &placed, length](const Eigen::VectorXd& s) {
+    std::vector<double> arc_lengths;
+    arc_lengths.reserve(static_cast<std::size_t>(s.size()));
+    for (const double at : s) {
+      const double arc = placed.start + (placed.reversed ? -at : at) * length;
+      arc_lengths.push_back(std::clamp(arc, 0.0, length));
+    }
+    const Samples samples = start.sample(arc_lengths);
+    StartShape shape((placed.reversed ? -1.0 : 1.0) * (placed.frame * samples.tangents));
+    if (!placed.span.natural.empty() && samples.d1.cols() > 0) {
+      shape.roll = roll_of(shape.tangents, placed.frame * samples.d1);
+    }
+    return shape;
+  };
+}
+
+/// An equilibrium of a span, and the frame that it is found in.
+struct PlacedSolution {
+  PlacedSpan placed;
+  SpanSolution solution;
+};
+
+std::vector<Equilibrium> combine(const Problem& problem,
+                                 const std::vector<std::vector<PlacedSolution>>& solutions) {
+  if (solutions.size() == 1 && solutions.front().size() == 1) {
+    const PlacedSolution& only = solutions.front().front();
+    std::vector<Equilibrium> result;
+    result.push_back(assemble(problem, {&only.placed}, {&only.solution}));
+    judge_contact(problem, {&only.solution}, result.back());
+    return result;
+  }
+  std::vector<std::vector<SpanCandidate>> candidates;
+  for (const std::vector<PlacedSolution>& of_span : solutions) {
+    std::vector<SpanCandidate> own;
+    own.reserve(of_span.size());
+    for (const PlacedSolution& found : of_span) {
+      own.push_back({succeeded(found.solution.status), found.solution.energy});
+    }
+    candidates.push_back(std::move(own));
+  }
+  const Combinations lowest = lowest_combinations(candidates, most_combinations);
+  std::vector<Equilibrium> result;
+  for (const std::vector<std::size_t>& choice : lowest.choices) {
+    std::vector<const PlacedSpan*> placed;
+    std::vector<const SpanSolution*> chosen;
+    for (std::size_t i = 0; i < solutions.size(); ++i) {
+      placed.push_back(&solutions[i][choice[i]].placed);
+      chosen.push_back(&solutions[i][choice[i]].solution);
+    }
+    result.push_back(assemble(problem, placed, chosen));
+    judge_contact(problem, chosen, result.back());
+  }
+  std::stable_sort(result.begin(), result.end(), [](const Equilibrium& a, const Equilibrium& b) {
+    if (succeeded(a.status) != succeeded(b.status)) return succeeded(a.status);
+    return a.energy.total() < b.energy.total();
+  });
+  if (lowest.truncated) {
+    result.back().message += "; the " + std::to_string(most_combinations) +
+                             " lowest combinations of the spans' equilibria, there are more";
+  }
+  return result;
+}
+
+}  // namespace
+
+class EnergySolver::State {
+ public:
+  explicit State(const EnergyOptions& options) : options_(options) { check(options); }
+
+  std::vector<Equilibrium> solve(const Problem& problem, bool all, bool follow) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Deadline deadline(options_.time_limit);
+    const std::vector<PlacedSpan> placed = split(problem);
+    const bool warm = follow && remembered_.size() == placed.size();
+    remembered_.resize(placed.size());
+    twists_.resize(placed.size());
+    std::vector<std::vector<PlacedSolution>> solutions;
+    solutions.reserve(placed.size());
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+      const Remembered* last = warm ? &remembered_[i] : nullptr;
+      SpanOptions options;
+      options.terms = options_.terms;
+      options.tolerance = options_.tolerance;
+      options.max_evaluations = options_.max_evaluations;
+      options.all = all;
+      options.deadline = deadline;
+      if (placed[i].frames) {
+        RememberedTwist& memory = twists_[i];
+        solutions.push_back(twisted(placed[i], problem, options, warm, memory));
+        const PlacedSolution& found = solutions.back().front();
+        remember(found, memory.twisted);
+        memory.twist = found.solution.model->twist(found.solution.x);
+        continue;
+      }
+      solutions.push_back(solve_placed(placed[i], problem, options, options_.start, last));
+      remember(solutions.back().front(), remembered_[i]);
+    }
+    std::vector<Equilibrium> result = combine(problem, solutions);
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
+    return result;
+  }
+
+ private:
+  /// A span's last solution, to go on from.
+  struct Remembered {
+    std::shared_ptr<const SpanEnergy> model;  // none after a failure
+    Eigen::Matrix3d frame;
+
+    [[nodiscard]] bool planar() const { return !model || model->span().planar; }
+  };
+
+  /// The same of a span that is twisted, which is followed without twist too.
+  struct RememberedTwist {
+    Remembered untwisted, twisted;
+    double twist = 0;   // of `twisted`
+    double turned = 0;  // of the end's frame from where the untwisted rod has it
+  };
+
+  /// From a shape whose twist is known, if there is one. Else searches without twist: where the
+  /// clamp has the frame starts there; then turns what is stable there.
+  [[nodiscard]] std::vector<PlacedSolution> twisted(const PlacedSpan& placed,
+                                                    const Problem& problem,
+                                                    const SpanOptions& options, bool warm,
+                                                    RememberedTwist& memory) {
+    const HeldFrames& held = *placed.frames;
+    const auto from_shape = [&](const TangentField& field, double twist,
+                                const std::optional<Eigen::Vector3d>& end_d1) {
+      PlacedSolution to{placed, twist_from(field, twist, end_d1, placed.span, held.stiffness,
+                                           options, workspace_)};
+      to.placed.span.planar = false;
+      return to;
+    };
+    if (const TwistedPart* part = known_part(placed, problem.length); part && !options.all) {
+      PlacedSolution to = from_shape(field_of(*options_.start, placed, problem.length), part->angle,
+                                     known_end_d1(held, placed.span));
+      if (to.solution.is_equilibrium()) return one(std::move(to));
+    }
+    const Remembered* last = warm && memory.untwisted.model ? &memory.untwisted : nullptr;
+    std::vector<PlacedSolution> untwisted = solve_placed(placed, problem, options, nullptr, last);
+    remember(untwisted.front(), memory.untwisted);
+    if (!succeeded(untwisted.front().solution.status)) return untwisted;
+    const EndFrame frame = end_frame(held, untwisted_shape(untwisted.front().solution, workspace_));
+    const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
+    if (warm && memory.twisted.model && std::abs(turned) < largest_followed_turn && !options.all) {
+      const auto field = [&placed, &memory](const Eigen::VectorXd& s) {
+        return follow_field(placed, memory.twisted, s);
+      };
+      PlacedSolution to = from_shape(field, memory.twist + turned, frame.d1);
+      to.solution.evaluations += untwisted.front().solution.evaluations;
+      if (to.solution.is_equilibrium()) return one(std::move(to));
+    }
+    std::vector<PlacedSolution> found;
+    int spent = 0;
+    for (const PlacedSolution& from : untwisted) {
+      if (!succeeded(from.solution.status)) continue;
+      PlacedSolution to = from;
+      to.solution = twist_to(frame, placed.span, held.stiffness,
+                             untwisted_shape(from.solution, workspace_), options, workspace_);
+      to.placed.span.planar = false;
+      spent += from.solution.evaluations + to.solution.evaluations;
+      const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
+        return other.solution.is_equilibrium() && is_same(to, other);
+      });
+      if (!known) found.push_back(std::move(to));
+    }
+    sort(found);
+    found.front().solution.evaluations = spent;
+    return found;
+  }
+
+  /// What the shape to start from says of the twist of a span; null: nothing.
+  [[nodiscard]] const TwistedPart* known_part(const PlacedSpan& placed, double length) const {
+    if (options_.start == nullptr) return nullptr;
+    for (const TwistedPart& part : options_.start->twists) {
+      if (std::abs(part.begin - placed.start) < 1e-9 * length) return &part;
+    }
+    return nullptr;
+  }
+
+  /// @param shape, last  to start from, the first of them that is there, or neither
+  [[nodiscard]] std::vector<PlacedSolution> solve_placed(const PlacedSpan& placed,
+                                                         const Problem& problem,
+                                                         SpanOptions options,
+                                                         const Equilibrium* shape,
+                                                         const Remembered* last) {
+    TangentField start;
+    if (shape != nullptr) {
+      start = field_of(*shape, placed, problem.length);
+    } else if (last != nullptr && last->model) {
+      options.least_terms = last->model->terms();
+      start = [&placed, last = *last](const Eigen::VectorXd& s) {
+        return follow_field(placed, last, s);
+      };
+    }
+    int spent = 0;
+    if (start && !options.all) {
+      PlacedSolution followed =
+          from_field(placed, start, options, shape != nullptr || (last && !last->planar()));
+      if (followed.solution.is_equilibrium()) return one(std::move(followed));
+      // The branch has ended, or the step was too large for it.
+      spent = followed.solution.evaluations;
+      options.least_terms = 0;
+    }
+    std::vector<PlacedSolution> found = search(placed, options);
+    spent += found.front().solution.evaluations;
+    const SolveStatus status = found.front().solution.status;
+    const bool at_limit =
+        status == SolveStatus::evaluation_limit || status == SolveStatus::time_limit;
+    if (options.all || !(succeeded(status) || at_limit))
+      add_polygon_minima(placed, problem, options, found, spent);
+    sort(found);
+    found.front().solution.evaluations = spent;
+    if (!options.all) found.resize(1, found.front());
+    return found;
+  }
+
+  [[nodiscard]] static std::vector<PlacedSolution> one(PlacedSolution solution) {
+    std::vector<PlacedSolution> result;
+    result.push_back(std::move(solution));
+    return result;
+  }
+
+  static void sort(std::vector<PlacedSolution>& found) {
+    const auto rank = [](const SpanSolution& solution) {
+      if (succeeded(solution.status)) return 0;
+      return solution.is_equilibrium() ? 1 : 2;
+    };
+    std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) {
+      const int of_a = rank(a.solution);
+      const int of_b = rank(b.solution);
+      return of_a != of_b ? of_a < of_b : a.solution.energy < b.solution.energy;
+    });
+  }
+
+  /// What the minima of a coarse polygon lead to, in the plane and out of it.
+  void add_polygon_minima(const PlacedSpan& placed, const Problem& problem,
+                          const SpanOptions& options, std::vector<PlacedSolution>& found,
+                          int& spent) {
+    if (!placed.span.walls.empty()) return;
+    for (const TangentField& field : polygon_fields(problem, placed, options.deadline)) {
+      if (options.deadline.passed()) return;
+      SpanOptions own = options;
+      own.approach = Approach::descend;
+      PlacedSolution solution = from_field(placed, field, own, true);
+      spent += solution.solution.evaluations;
+      if (!solution.solution.is_equilibrium()) continue;
+      const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
+        return other.solution.is_equilibrium() && is_same(solution, other);
+      });
+      if (known) continue;
+      if (!found.front().solution.is_equilibrium()) found.clear();
+      found.push_back(std::move(solution));
+      if (!options.all && succeeded(found.back().solution.status)) return;
+    }
+  }
+
+  [[nodiscard]] static bool is_same(const PlacedSolution& a, const PlacedSolution& b) {
+    const double scale = 1 + std::abs(a.solution.energy);
+    if (std::abs(a.solution.energy - b.solution.energy) > 1e-8 * scale) return false;
+    const double length = a.placed.span.length;
+    const std::vector<double> s = {0.3 * length, 0.6 * length, length};
+    const auto points = [&](const PlacedSolution& p) {
+      const SpanSamples samples = p.solution.model->shape(p.solution.x).sample(s);
+      return Eigen::Matrix3Xd(p.placed.frame.transpose() * samples.points);
+    };
+    return (points(a) - points(b)).norm() < 1e-6 * length;
+  }
+
+  /// From tangents in the span's frame; out of its plane if they are and may be.
+  [[nodiscard]] PlacedSolution from_field(const PlacedSpan& placed, const TangentField& field,
+                                          SpanOptions options, bool may_leave_plane) {
+    PlacedSpan own = placed;
+    options.start = field;
+    options.all = false;
+    if (placed.span.planar && may_leave_plane) leave_plane(own, field);
+    return std::move(search(own, options).front());
+  }
+
+  [[nodiscard]] std::vector<PlacedSolution> search(const PlacedSpan& placed,
+                                                   const SpanOptions& options) {
+    std::vector<PlacedSolution> found;
+    for (SpanSolution& solution : solve_span(placed.span, options, workspace_)) {
+      found.push_back({placed, std::move(solution)});
+      PlacedSolution& last = found.back();
+      // The search may have left the plane.
+      last.placed.span.planar = last.solution.model->span().planar;
+    }
+    return found;
+  }
+
+  /// A span that could lie in its plane is spatial if its start has left it.
+  static void leave_plane(PlacedSpan& placed, const TangentField& start) {
+    const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(17, 0, placed.span.length);
+    const Eigen::Matrix3Xd tangents = start(s).tangents;
+    constexpr double flat = 1e-6;
+    if (tangents.row(2).cwiseAbs().maxCoeff() < flat) return;
+    placed.span.planar = false;
+  }
+
+  /// The nodes are where they were, unless grips or loads have moved along the rod.
+  static StartShape follow_field(const PlacedSpan& placed, const Remembered& last,
+                                 const Eigen::VectorXd& s) {
+    StartShape shape(placed.frame * last.frame.transpose() * last.model->tangents());
+    if (!placed.span.natural.empty() && !last.planar()) {
+      shape.roll = roll_of(last.model->tangents(), last.model->d1());
+    }
+    const Eigen::VectorXd& nodes = last.model->nodes();
+    if (s.size() == nodes.size() && s == nodes) return shape;
+    StartShape nearest(Eigen::Matrix3Xd(3, s.size()),
+                       Eigen::VectorXd(shape.roll.size() > 0 ? s.size() : 0));
+    for (Eigen::Index q = 0; q < s.size(); ++q) {
+      Eigen::Index at = 0;
+      (nodes.array() - s[q]).abs().minCoeff(&at);
+      nearest.tangents.col(q) = shape.tangents.col(at);
+      if (shape.roll.size() > 0) nearest.roll[q] = shape.roll[at];
+    }
+    return nearest;
+  }
+
+  static void remember(const PlacedSolution& found, Remembered& last) {
+    last.model = succeeded(found.solution.status) ? found.solution.model : nullptr;
+    last.frame = found.placed.frame;
+  }
+
+  EnergyOptions options_;
+  SpanWorkspace workspace_;
+  std::vector<Remembered> remembered_;
+  std::vector<RememberedTwist> twists_;
+};
+
+EnergySolver::EnergySolver(const EnergyOptions& options)
+    : state_(std::make_unique<State>(options)) {}
+EnergySolver::~EnergySolver() = default;
+EnergySolver::EnergySolver(EnergySolver&& other) noexcept = default;
+EnergySolver& EnergySolver::operator=(EnergySolver&& other) noexcept = default;
+
+Equilibrium EnergySolver::solve(const Problem& problem) {
+  return std::move(state_->solve(problem, false, false).front());
+}
+
+Equilibrium EnergySolver::follow(const Problem& problem) {
+  return std::move(state_->solve(problem, false, true).front());
+}
+
+std::vector<Equilibrium> EnergySolver::solve_all(const Problem& problem) {
+  return state_->solve(problem, true, false);
+}
+
+Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options) {
+  return EnergySolver(options).solve(problem);
+}
+
+std::vector<Equilibrium> all_energy(const Problem& problem, const EnergyOptions& options) {
+  return EnergySolver(options).solve_all(problem);
+}
+
+}  // namespace dlo::energy_model

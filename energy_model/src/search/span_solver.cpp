@@ -1,0 +1,510 @@
+#include "search/span_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/free_directions.hpp"
+#include "base/legendre.hpp"
+#include "base/minimise.hpp"
+#include "certify/certify.hpp"
+#include "certify/enough_terms.hpp"
+#include "newton/penalty_descent.hpp"
+#include "newton/trust_region.hpp"
+#include "problem/segments.hpp"
+#include "search/span_starts.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Above this sum of weight and loads (in EI/l^2) a rod is nearer to its soft limit than to
+/// straight.
+constexpr double soft_load = 12;
+
+/// Coefficients up to which a coarser start is not worth its set-up, and the fewest of one.
+constexpr int few_terms = 10;
+constexpr int least_terms = 7;
+
+/// Unknowns with which a minimum between grips is looked for.
+constexpr int coarse_unknowns = 100;
+
+/// Gradient over the load that a shape may have in more terms than its own.
+constexpr double largest_residual = 1e-5;
+
+/// A step of the trust region works with the cube of the unknowns.
+constexpr Eigen::Index most_descended = 160;
+
+/// Unstable equilibria that are left for what lies below them.
+constexpr std::size_t most_saddles = 8;
+
+/// Coefficients that resolve a layer over six of its lengths.
+constexpr int layer_terms = 20;
+
+/// Whether the lowest of the equilibria found can hold itself.
+bool has_stable_lowest(const std::vector<SpanSolution>& found) {
+  const SpanSolution* lowest = nullptr;
+  for (const SpanSolution& solution : found) {
+    if (!solution.is_equilibrium()) continue;
+    if (lowest == nullptr || solution.energy < lowest->energy) lowest = &solution;
+  }
+  return lowest != nullptr && succeeded(lowest->status);
+}
+
+/// A braced list would copy it.
+std::vector<SpanSolution> list_of(SpanSolution solution) {
+  std::vector<SpanSolution> result;
+  result.push_back(std::move(solution));
+  return result;
+}
+
+class Search {
+ public:
+  Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
+      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
+    for (const Segment& segment : segments_of(span)) {
+      if (!segment.taut()) continue;
+      taut_ = true;
+      stiffness_ = std::max(stiffness_, segment.tension / std::max(1e-12, segment.slack()));
+    }
+    // Where contact begins inside a piece it takes more terms than the piece's length tells.
+    if (!span.walls.empty() || span.is_plain_cantilever()) {
+      longest_piece_ = span.length;
+      return;
+    }
+    for (const Piece& piece : pieces_of(span)) {
+      longest_piece_ = std::max(longest_piece_, piece.length);
+    }
+    if (span.natural.empty()) return;
+    // What the free rod turns by has to be resolved as well.
+    const double curvature = span.natural.largest();
+    natural_terms_ = first_terms(curvature * curvature, longest_piece_);
+  }
+
+  [[nodiscard]] SpanSolution finish(SpanSolution solution) {
+    solution = refined(std::move(solution));
+    certify(solution, load_);
+    return solution;
+  }
+
+  [[nodiscard]] std::vector<SpanSolution> run() {
+    if (options_.start) return list_of(finish(from_start()));
+    std::vector<SpanSolution> found;
+    if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
+      SpanSolution solution = plain_cantilever();
+      certify_sideways(solution);
+      if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
+      add(std::move(solution), found);
+    }
+    const std::vector<TangentField> fields = ranked_fields();
+    const std::size_t tried = span_.natural.empty() ? followed_starts : followed_natural_starts;
+    const std::size_t followed = options_.all ? fields.size() : std::min(tried, fields.size());
+    std::vector<SpanSolution> coarse;
+    for (std::size_t i = 0; i < fields.size() && !out_of_time(); ++i) {
+      // The other starts only where the first ones and what they lead to do not hold.
+      if (i >= followed && has_stable_lowest(found)) break;
+      SpanSolution solution = from_field(fields[i]);
+      spent_ += solution.evaluations;
+      solution.evaluations = 0;
+      if (!is_known(solution, coarse)) {
+        coarse.push_back(solution);
+        add(refined(std::move(solution)), found);
+      }
+      // Descending leaves unstable equilibria; Newton's method alone stays near them.
+      if (options_.all) add(refined(near_field(fields[i])), found);
+      if (i + 1 >= followed) leave_saddles(found);
+    }
+    if (span_.planar && !span_.natural.empty()) look_in_space(found);
+    return sorted(std::move(found));
+  }
+
+ private:
+  [[nodiscard]] int terms() const {
+    if (options_.terms > 0) return options_.terms;
+    const int layers = taut_ ? layer_terms : 0;
+    return std::max(
+        {first_terms(load_, longest_piece_), options_.least_terms, layers, natural_terms_});
+  }
+
+  [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
+
+  /// NLopt comes near with few terms; Newton's method adds the others.
+  [[nodiscard]] int coarse_terms() const {
+    if (options_.terms > 0) return options_.terms;
+    if (terms() <= few_terms) return terms();
+    const int fields = span_.planar ? 1 : span_.natural.empty() ? 2 : 3;
+    int coarse = terms() / 2;
+    if (!span_.holds.empty()) {
+      const int pieces = static_cast<int>(pieces_of(span_).size());
+      coarse = std::min(coarse, coarse_unknowns / (fields * pieces));
+    }
+    return std::max(least_terms, coarse);
+  }
+
+  [[nodiscard]] SpanSolution empty_solution(int terms) {
+    SpanSolution solution;
+    solution.model = workspace_.model(span_, terms);
+    solution.terms = terms;
+    return solution;
+  }
+
+  /// The straight rod for a stiff one, the soft limit for a soft one or where straight is a saddle.
+  [[nodiscard]] SpanSolution plain_cantilever() {
+    int spent = 0;
+    if (load_ < soft_load) {
+      SpanSolution straight = empty_solution(coarse_terms());
+      straight.x.setZero(straight.model->size());
+      descend(straight);
+      SpanSolution solution = refined(std::move(straight));
+      if (solution.status != SolveStatus::saddle) return solution;
+      spent = solution.evaluations;
+    }
+    SpanSolution solution = refined(from_field(soft_field(span_)));
+    solution.evaluations += spent;
+    return solution;
+  }
+
+  [[nodiscard]] std::vector<TangentField> ranked_fields() {
+    std::vector<TangentField> fields =
+        span_.natural.empty() ? start_fields(span_) : natural_fields(span_);
+    if (options_.all) return fields;
+    const std::shared_ptr<SpanEnergy> model =
+        workspace_.model(span_, std::max(8, std::min(natural_terms_, coarse_terms())));
+    std::vector<std::pair<double, std::size_t>> ranks;
+    Eigen::VectorXd gradient(model->size());
+    Eigen::VectorXd missed(model->constraints());
+    Eigen::MatrixXd jacobian(model->constraints(), model->size());
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const Eigen::VectorXd x = model->fit(fields[i](model->nodes()));
+      const double energy = model->value(x, gradient);
+      model->constraint(missed, jacobian);
+      // Where the rod is taut, springs at the grips as stiff as it is between them.
+      ranks.emplace_back(energy + stiffness_ / 2 * missed.squaredNorm(), i);
+    }
+    std::stable_sort(ranks.begin(), ranks.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<TangentField> ordered;
+    ordered.reserve(ranks.size());
+    for (const auto& rank : ranks) ordered.push_back(fields[rank.second]);
+    return ordered;
+  }
+
+  /// A curved rod that gives way out of its plane twists far: it has shapes of its own there.
+  void look_in_space(std::vector<SpanSolution>& found) {
+    const auto is_saddle = [](const auto& solution) {
+      return solution.status == SolveStatus::saddle;
+    };
+    if (!options_.all && std::none_of(found.begin(), found.end(), is_saddle)) return;
+    Span space = span_;
+    space.planar = false;
+    for (SpanSolution& solution : Search(space, options_, workspace_).run()) {
+      add(std::move(solution), found);
+    }
+  }
+
+  /// From a field to an equilibrium, with as many terms as it takes to meet the grips.
+  [[nodiscard]] SpanSolution from_field(const TangentField& field) {
+    SpanSolution solution;
+    int spent = 0;
+    for (int count = coarse_terms();; count *= 2) {
+      solution = empty_solution(std::min(count, max_terms));
+      solution.x = solution.model->fit(field(solution.model->nodes()));
+      const Eigen::VectorXd start = solution.x;
+      // Where the rod is taut such a start is near to the shape already.
+      if (taut_ && !solution.model->has_walls()) {
+        workspace_.newton().polish(solution, load_);
+      } else {
+        descend(solution);
+      }
+      if (solution.model->constraints() > 0 && !solution.is_equilibrium() &&
+          !solution.model->has_walls()) {
+        solution.x = start;
+        solution.multipliers.resize(0);
+        pull_to_grips(solution);
+      }
+      spent += solution.evaluations;
+      solution.evaluations = spent;
+      const bool plain = solution.model->constraints() == 0 && !solution.model->has_walls();
+      if (solution.is_equilibrium() || plain) return solution;
+      const bool more = 2 * solution.model->size() <= most_descended && options_.terms == 0;
+      if (!more || out_of_time()) return solution;
+    }
+  }
+
+  /// By springs at the grips that become stiffer, then Newton's method.
+  void pull_to_grips(SpanSolution& solution) {
+    descend_by_penalty(solution,
+                       {.load = load_, .deadline = &options_.deadline, .stiffness = stiffness_});
+    if (succeeded(solution.status)) workspace_.newton().polish(solution, load_);
+  }
+
+  /// From the caller's own start.
+  [[nodiscard]] SpanSolution from_start() {
+    if (!span_.walls.empty()) {
+      SpanSolution solution = empty_solution(terms());
+      solution.x = solution.model->fit(options_.start(solution.model->nodes()));
+      descend(solution);
+      return solution;
+    }
+    const bool follow = options_.approach == Approach::follow;
+    SpanSolution solution = follow ? near_field(options_.start) : from_field(options_.start);
+    if (succeeded(solution.status)) return solution;
+    const int spent = solution.evaluations;
+    solution = follow ? from_field(options_.start) : near_field(options_.start);
+    solution.evaluations += spent;
+    return solution;
+  }
+
+  [[nodiscard]] SpanSolution near_field(const TangentField& field) {
+    SpanSolution solution = empty_solution(terms());
+    solution.x = solution.model->fit(field(solution.model->nodes()));
+    workspace_.newton().polish(solution, load_);
+    return solution;
+  }
+
+  /// NLopt from solution.x, then Newton; with walls until their multipliers settle.
+  void descend(SpanSolution& solution) {
+    minimise(solution);
+    if (!succeeded(solution.status)) return;
+    // A cantilever is polished once it has all its terms.
+    if (span_.is_plain_cantilever() && solution.terms < terms()) return;
+    workspace_.newton().polish(solution, load_);
+    SpanEnergy& model = *solution.model;
+    Eigen::VectorXd gradient(model.size());
+    for (int round = 0; model.has_walls() && succeeded(solution.status); ++round) {
+      solution.energy = model.value(solution.x, gradient);
+      ++solution.evaluations;
+      if (model.walls().update() < 1e-9 * span_.length) return;
+      if (round == 200) return solution.fail("the contact forces of the walls did not settle");
+      const Eigen::VectorXd before = solution.x;
+      workspace_.newton().polish(solution, load_);
+      if (succeeded(solution.status)) continue;
+      solution.x = before;
+      minimise(solution);
+      if (succeeded(solution.status)) workspace_.newton().polish(solution, load_);
+    }
+  }
+
+  void minimise(SpanSolution& solution) const {
+    SpanEnergy& model = *solution.model;
+    if (model.constraints() > 0) {
+      descend_in_trust_region(
+          solution,
+          {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
+      return;
+    }
+    const Objective objective = [&model](const Eigen::Ref<const Eigen::VectorXd>& x,
+                                         Eigen::Ref<Eigen::VectorXd> gradient) {
+      return model.value(x, gradient);
+    };
+    const MinimiseResult result = minimise_lbfgs(
+        objective, solution.x, {handover_gradient * (1 + load_), options_.max_evaluations});
+    solution.evaluations += result.evaluations;
+    // Newton's method has to prove the shape anyway.
+    solution.status = result.is_a_start() ? SolveStatus::roundoff_limited : result.status;
+    solution.message = result.message;
+  }
+
+  /// Raises the number of terms until the last ones do not matter any more.
+  [[nodiscard]] SpanSolution refined(SpanSolution solution) {
+    const int fields = span_.planar ? 1 : span_.natural.empty() ? 2 : 3;
+    const int affordable = std::max(32, most_unknowns / (fields * solution.model->pieces()));
+    // With walls the curvature has kinks where contact begins; more terms help only so far, where
+    // the walls yield somewhat farther.
+    const bool yields = std::all_of(span_.walls.begin(), span_.walls.end(),
+                                    [](const auto& wall) { return std::isfinite(wall.stiffness); });
+    const int most_with_walls = yields ? 64 : 32;
+    const int most_terms = std::min(affordable, span_.walls.empty() ? max_terms : most_with_walls);
+    while (solution.is_equilibrium()) {
+      solution.resolved = options_.terms > 0 || resolved(solution);
+      if (solution.resolved) break;
+      if (out_of_time()) {
+        solution.finish(SolveStatus::time_limit);
+        break;
+      }
+      if (solution.terms >= most_terms) {
+        solution.resolved = !span_.walls.empty();
+        if (solution.resolved) break;
+        solution.fail(solution.too_few_terms());
+        break;
+      }
+      int more =
+          solution.terms < terms() ? terms() : solution.terms + std::max(2, solution.terms / 4);
+      // Grips may pull harder than weight and loads do.
+      if (solution.multipliers.size() > 0 && !taut_) {
+        more =
+            std::max(more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), longest_piece_));
+      }
+      solution = with_terms(solution, std::min(most_terms, more));
+    }
+    return solution;
+  }
+
+  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) {
+    SpanSolution finer = empty_solution(terms);
+    finer.x = finer.model->adopt(*solution.model, solution.x);
+    finer.multipliers = solution.multipliers;
+    workspace_.newton().polish(finer, load_);
+    const bool descends = finer.model->size() <= most_descended;
+    if (descends && (!finer.is_equilibrium() || finer.model->has_walls())) descend(finer);
+    if (!finer.is_equilibrium() && !finer.model->has_walls()) {
+      finer.x = finer.model->adopt(*solution.model, solution.x);
+      finer.multipliers = solution.multipliers;
+      pull_to_grips(finer);
+    }
+    finer.evaluations += solution.evaluations;
+    return finer;
+  }
+
+  [[nodiscard]] bool resolved(const SpanSolution& solution) {
+    if (span_.is_plain_cantilever() && solution.terms < terms()) return false;
+    if (span_.twist && solution.terms < terms_under_twist(solution)) return false;
+    const double K = solution.terms;
+    // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
+    if (solution.model->tail(solution.x) > options_.tolerance * 4 * K * K) return false;
+    if (span_.is_plain_cantilever() || !span_.walls.empty()) return true;
+    return residual_with_more_terms(solution) < largest_residual * (1 + load_);
+  }
+
+  /// Gradient of the shape in twice as many terms, with the quadrature of these.
+  [[nodiscard]] double residual_with_more_terms(const SpanSolution& solution) {
+    const std::shared_ptr<SpanEnergy> model =
+        workspace_.model(span_, std::min(max_terms, 2 * solution.terms));
+    const Eigen::VectorXd x = model->adopt(*solution.model, solution.x);
+    Eigen::VectorXd gradient(model->size());
+    (void)model->value(x, gradient);
+    Eigen::VectorXd residual(model->constraints());
+    Eigen::MatrixXd jacobian(model->constraints(), model->size());
+    model->constraint(residual, jacobian);
+    return (gradient - jacobian.transpose() * solution.multipliers).norm();
+  }
+
+  /// Keeps an equilibrium that is not known yet, or the first failure until there is one.
+  void add(SpanSolution solution, std::vector<SpanSolution>& found) {
+    spent_ += solution.evaluations;
+    certify(solution, load_);
+    if (!solution.is_equilibrium()) {
+      if (found.empty()) found.push_back(std::move(solution));
+      return;
+    }
+    if (!found.empty() && !found.front().is_equilibrium()) found.clear();
+    if (!is_known(solution, found)) found.push_back(std::move(solution));
+  }
+
+  [[nodiscard]] bool is_known(const SpanSolution& solution,
+                              const std::vector<SpanSolution>& found) const {
+    return std::any_of(found.begin(), found.end(), [&](const SpanSolution& other) {
+      return other.is_equilibrium() && is_same(solution, other);
+    });
+  }
+
+  [[nodiscard]] bool is_same(const SpanSolution& a, const SpanSolution& b) const {
+    if (std::abs(a.energy - b.energy) > 1e-8 * (1 + load_)) return false;
+    const std::vector<double> s = {0.3 * span_.length, 0.6 * span_.length, span_.length};
+    const Eigen::Matrix3Xd difference =
+        a.model->shape(a.x).sample(s).points - b.model->shape(b.x).sample(s).points;
+    return difference.norm() < 1e-6 * span_.length;
+  }
+
+  /// Descends from the unstable equilibria, once more from those that it leads to.
+  void leave_saddles(std::vector<SpanSolution>& found) {
+    for (; left_ < found.size() && left_ < most_saddles && !out_of_time(); ++left_) {
+      if (!options_.all && has_stable_lowest(found)) return;
+      if (found[left_].status != SolveStatus::saddle) continue;
+      std::optional<SpanSolution> lower = leave_saddle(found[left_]);
+      if (lower) add(std::move(*lower), found);
+    }
+  }
+
+  /// Where an equilibrium that cannot hold itself comes to rest; out of its plane if that is the
+  /// only way in which it gives way.
+  [[nodiscard]] std::optional<SpanSolution> leave_saddle(const SpanSolution& solution) {
+    SpanEnergy& model = *solution.model;
+    Eigen::VectorXd gradient(model.size());
+    (void)model.value(solution.x, gradient);
+    Eigen::MatrixXd hessian;
+    Eigen::MatrixXd jacobian(model.constraints(), model.size());
+    Eigen::VectorXd residual(model.constraints());
+    model.constraint(residual, jacobian);
+    model.hessian(solution.multipliers, hessian);
+    const std::optional<Eigen::VectorXd> within = falling_direction(hessian, jacobian);
+    constexpr double push = 0.5;
+    if (within) return pushed_from(model.span(), solution, push * *within);
+    if (!model.span().planar) return std::nullopt;
+    model.sideways(solution.multipliers, hessian, jacobian);
+    const std::optional<Eigen::VectorXd> sideways = falling_direction(hessian, jacobian);
+    if (!sideways) return std::nullopt;
+    Span space = model.span();
+    space.planar = false;
+    // Out of the plane a planar rod bends by u2, the rate of its tangent's tilt, and twists.
+    Eigen::VectorXd lift = Eigen::VectorXd::Zero(model.size() + sideways->size());
+    lift.tail(sideways->size()) = push * *sideways;
+    return pushed_from(space, solution, lift);
+  }
+
+  [[nodiscard]] SpanSolution pushed_from(const Span& span, const SpanSolution& solution,
+                                         const Eigen::VectorXd& disturbance) {
+    Search search(span, options_, workspace_);
+    const std::shared_ptr<SpanEnergy> model = workspace_.model(span, solution.terms);
+    const Eigen::VectorXd pushed = model->adopt(*solution.model, solution.x) + disturbance;
+    SpanSolution lower = search.empty_solution(std::min(solution.terms, search.coarse_terms()));
+    lower.x = lower.model->adopt(*model, pushed);
+    search.descend(lower);
+    return search.refined(std::move(lower));
+  }
+
+  [[nodiscard]] std::vector<SpanSolution> sorted(std::vector<SpanSolution> found) {
+    std::stable_sort(found.begin(), found.end(), [](const SpanSolution& a, const SpanSolution& b) {
+      const bool a_stable = succeeded(a.status);
+      const bool b_stable = succeeded(b.status);
+      if (a_stable != b_stable) return a_stable;
+      return a.energy < b.energy;
+    });
+    if (found.empty()) {
+      found.push_back(empty_solution(terms()));
+      found.back().x.setZero(found.back().model->size());
+      found.back().multipliers.setZero(found.back().model->constraints());
+      found.back().finish(SolveStatus::time_limit);
+    }
+    found.front().evaluations = spent_;
+    if (!options_.all) found.resize(1);
+    return found;
+  }
+
+  const Span& span_;
+  const SpanOptions& options_;
+  SpanWorkspace& workspace_;
+  double load_;
+  double longest_piece_ = 0;
+  int natural_terms_ = 0;  // that the free rod's own strains take
+  bool taut_ = false;      // pieces end where the layers at taut segments' ends have decayed
+  double stiffness_ = 0;   // of the tautest segment along its chord
+  int spent_ = 0;          // evaluations of everything that was looked at
+  std::size_t left_ = 0;   // how many of the equilibria found have been looked at for a way down
+};
+
+}  // namespace
+
+std::shared_ptr<SpanEnergy> SpanWorkspace::model(const Span& span, int terms) {
+  const auto unused = std::find_if(models_.begin(), models_.end(),
+                                   [](const auto& model) { return model.use_count() == 1; });
+  if (unused != models_.end()) {
+    (*unused)->reset(span, terms);
+    return *unused;
+  }
+  models_.push_back(std::make_shared<SpanEnergy>(span, terms));
+  return models_.back();
+}
+
+std::vector<SpanSolution> solve_span(const Span& span, const SpanOptions& options,
+                                     SpanWorkspace& workspace) {
+  return Search(span, options, workspace).run();
+}
+
+SpanSolution finish_span(const Span& span, const SpanOptions& options, SpanWorkspace& workspace,
+                         SpanSolution solution) {
+  return Search(span, options, workspace).finish(std::move(solution));
+}
+
+}  // namespace dlo::energy_model

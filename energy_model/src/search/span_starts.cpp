@@ -1,0 +1,260 @@
+#include "search/span_starts.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "problem/segments.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using std::numbers::pi;
+
+Eigen::Vector3d total_force(const Span& span, double beyond) {
+  Eigen::Vector3d n = span.weight_between(beyond, span.length);
+  for (const Span::Load& load : span.loads) {
+    if (load.at > beyond) n += load.force;
+  }
+  return n;
+}
+
+/// A unit vector across `direction`, in the plane of a planar span.
+Eigen::Vector3d across(const Span& span, const Eigen::Vector3d& direction) {
+  if (span.planar) return Eigen::Vector3d(-direction.y(), direction.x(), 0).normalized();
+  return direction.unitOrthogonal();
+}
+
+/// Turns from `from` to the force as a soft rod does; `turns` whole turns more than the shorter
+/// way.
+Eigen::Vector3d pendulum(const Span& span, const Eigen::Vector3d& from,
+                         const Eigen::Vector3d& force, double distance, int turns) {
+  const double size = force.norm();
+  if (!(size > 0)) return from;
+  const Eigen::Vector3d axis = force / size;
+  Eigen::Vector3d side = from - from.dot(axis) * axis;
+  // Against the force both ways are as short; in a plane the rod falls towards its +y.
+  if (side.norm() < 1e-9) side = -across(span, axis);
+  side.normalize();
+  const double turn = std::atan2(from.dot(side), from.dot(axis)) - 2 * pi * turns;
+  const double psi = 4 * std::atan(std::tan(turn / 4) * std::exp(-std::sqrt(size) * distance));
+  return std::cos(psi) * axis + std::sin(psi) * side;
+}
+
+/// A with J_0(A) = chord over arc length: the amplitude of a sine in angle that has this slack.
+double slack_amplitude(double ratio) {
+  double low = 0;
+  double high = 2.404825557695773;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = (low + high) / 2;
+    (std::cyl_bessel_j(0, middle) > ratio ? low : high) = middle;
+  }
+  return low;
+}
+
+/// Terms that the shape of the free rod is looked at with.
+constexpr int natural_shape_terms = 32;
+
+struct Pattern {
+  bool s_shape = false;
+  double sign = 1;
+  int loops = 0;
+  bool out_of_plane = false;
+};
+
+/// Tangents between grips: chords with arches on them, bent into the clamps.
+class GrippedField {
+ public:
+  GrippedField(const Span& span, const Pattern& pattern)
+      : span_(span), pattern_(pattern), segments_(segments_of(span)) {
+    for (const Segment& segment : segments_) {
+      const double ratio = segment.chord.norm() / segment.length();
+      Eigen::Vector3d along = Eigen::Vector3d::UnitX();
+      if (ratio > 1e-6) {
+        along = segment.chord.normalized();
+      } else if (span.start_direction) {
+        along = *span.start_direction;
+      }
+      Eigen::Vector3d down = span.weight - span.weight.dot(along) * along;
+      if (down.norm() < 1e-9 * (1 + span.weight.norm())) down = across(span, along);
+      down.normalize();
+      if (pattern.out_of_plane) down = along.cross(down);
+      chords_.push_back({along, down, slack_amplitude(std::min(1.0, ratio))});
+    }
+  }
+
+  [[nodiscard]] Eigen::Vector3d operator()(double s) const {
+    if (chords_.empty()) return free_end(s, Eigen::Vector3d::UnitX());
+    if (s < segments_.front().begin) return free_end(s, bent(0, 0));
+    if (s > segments_.back().end) return free_end(s, bent(chords_.size() - 1, 1));
+    std::size_t i = 0;
+    while (i + 1 < chords_.size() && s > segments_[i].end) ++i;
+    return bent(i, (s - segments_[i].begin) / segments_[i].length());
+  }
+
+ private:
+  struct Chord {
+    Eigen::Vector3d along, down;
+    double amplitude;
+  };
+
+  [[nodiscard]] Eigen::Vector3d arch(std::size_t i, double u) const {
+    const Chord& chord = chords_[i];
+    // An arch leaves the chord's line towards `down` and comes back; an S crosses it.
+    const double wave = pattern_.s_shape ? std::cos(2 * pi * u) : std::sin(2 * pi * u);
+    double angle = pattern_.sign * chord.amplitude * wave;
+    angle += 2 * pi * pattern_.loops * u;
+    return std::cos(angle) * chord.along + std::sin(angle) * chord.down;
+  }
+
+  /// The chord with layers at its ends, in which a rod under this tension turns to it.
+  [[nodiscard]] Eigen::Vector3d stretched(std::size_t i, double u) const {
+    const Segment& segment = segments_[i];
+    const Eigen::Vector3d pull = segment.tension * segment.pull;
+    const double from_begin = u * segment.length();
+    const Eigen::Vector3d at_begin = pendulum(span_, segment.begin_tangent, pull, from_begin, 0);
+    const Eigen::Vector3d at_end =
+        pendulum(span_, segment.end_tangent, pull, segment.length() - from_begin, 0);
+    return (at_begin + at_end - segment.pull).normalized();
+  }
+
+  /// Whether a clamp or a taut neighbour says what tangent an end of a segment has.
+  [[nodiscard]] bool is_held(bool outermost, bool clamped, std::size_t i, int neighbour) const {
+    if (outermost) return clamped;
+    return segments_[neighbour < 0 ? i - 1 : i + 1].taut();
+  }
+
+  [[nodiscard]] Eigen::Vector3d bent(std::size_t i, double u) const {
+    if (segments_[i].taut() && pattern_.loops == 0) return stretched(i, u);
+    Eigen::Vector3d t = arch(i, u);
+    if (pattern_.loops == 0) {
+      if (segments_[i].begin_direction ||
+          is_held(i == 0, span_.start_direction.has_value(), i, -1)) {
+        t += std::pow(1 - u, 4) * (segments_[i].begin_tangent - arch(i, 0));
+      }
+      if (segments_[i].end_direction ||
+          is_held(i + 1 == chords_.size(), span_.end_direction.has_value(), i, 1)) {
+        t += std::pow(u, 4) * (segments_[i].end_tangent - arch(i, 1));
+      }
+    }
+    // Through zero the direction would jump.
+    if (t.norm() < 0.2) t += 0.4 * chords_[i].down;
+    return t.normalized();
+  }
+
+  [[nodiscard]] Eigen::Vector3d free_end(double s, const Eigen::Vector3d& from) const {
+    const double last = segments_.empty() ? span_.anchor : segments_.back().end;
+    if (s >= last) return pendulum(span_, from, total_force(span_, last), s - last, 0);
+    const double first = segments_.empty() ? span_.anchor : segments_.front().begin;
+    return -pendulum(span_, -from, span_.force_before(first), first - s, 0);
+  }
+
+  const Span& span_;
+  Pattern pattern_;
+  std::vector<Segment> segments_;
+  std::vector<Chord> chords_;
+};
+
+template <typename Tangent>
+TangentField field(Tangent tangent) {
+  return [tangent](const Eigen::VectorXd& s) {
+    Eigen::Matrix3Xd tangents(3, s.size());
+    for (Eigen::Index q = 0; q < s.size(); ++q) tangents.col(q) = tangent(s[q]);
+    return tangents;
+  };
+}
+
+/// From a clamp down onto a wall and along it: over (72 EI h / w)^(1/4), as a rod of small slopes
+/// under its weight w comes to lie from the height h. Nothing where it does not come to lie.
+std::optional<TangentField> lying_field(const Span& span, const Span::Wall& wall) {
+  const double pressed = -span.weight.dot(wall.normal);
+  const double height = wall.offset;
+  const Eigen::Vector3d& start = *span.start_direction;
+  const Eigen::Vector3d along = start - start.dot(wall.normal) * wall.normal;
+  if (!(pressed > 0 && height >= 0 && height < span.length / 2 && along.norm() > 0.1)) return {};
+  const double reach = std::max(2 * height, std::pow(72 * height / pressed, 0.25));
+  if (!(reach < span.length)) return {};
+  return field([start, flat = along.normalized(), normal = wall.normal, height, reach](double s) {
+    const double u = s / reach;
+    if (!(u < 1)) return flat;
+    const double slope = -6 * height / reach * u * (1 - u);
+    return Eigen::Vector3d(
+        (flat + slope * normal + std::pow(1 - u, 4) * (start - flat)).normalized());
+  });
+}
+
+}  // namespace
+
+TangentField soft_field(const Span& span) {
+  return field([&span](double s) {
+    return pendulum(span, *span.start_direction, total_force(span, 0), s, 0);
+  });
+}
+
+std::vector<TangentField> start_fields(const Span& span) {
+  std::vector<TangentField> fields;
+  if (span.holds.empty() && span.start_direction) {
+    for (const Span::Wall& wall : span.walls) {
+      if (std::optional<TangentField> lying = lying_field(span, wall)) fields.push_back(*lying);
+    }
+    fields.push_back(soft_field(span));
+    fields.push_back(field([&span](double) { return *span.start_direction; }));
+    fields.push_back(field([&span](double s) {
+      return pendulum(span, *span.start_direction, total_force(span, 0), s, 1);
+    }));
+    return fields;
+  }
+  for (const bool s_shape : {false, true}) {
+    for (const double sign : {1.0, -1.0}) {
+      fields.push_back(field(GrippedField(span, {.s_shape = s_shape, .sign = sign})));
+    }
+  }
+  if (!span.planar) {
+    for (const double sign : {1.0, -1.0}) {
+      fields.push_back(field(GrippedField(span, {.sign = sign, .out_of_plane = true})));
+    }
+  }
+  const std::vector<Segment> segments = segments_of(span);
+  if (segments.size() == 1 && !segments.front().taut()) {
+    for (const int loops : {1, -1}) {
+      fields.push_back(field(GrippedField(span, {.loops = loops})));
+    }
+  }
+  return fields;
+}
+
+std::vector<TangentField> natural_fields(const Span& span) {
+  std::vector<TangentField> fields;
+  const SpanEnergy model(span, natural_shape_terms);
+  const SpanShape free = model.shape(Eigen::VectorXd::Zero(model.size()));
+  fields.emplace_back([free](const Eigen::VectorXd& s) {
+    const SpanSamples samples = free.sample({s.data(), static_cast<std::size_t>(s.size())});
+    return StartShape(samples.tangents, roll_of(samples.tangents, samples.d1));
+  });
+  if (span.planar && span.start_direction && span.end_direction) {
+    const auto angle_of = [](const Eigen::Vector3d& t) { return std::atan2(t.y(), t.x()); };
+    const double start = angle_of(*span.start_direction);
+    const double end = start + span.natural.integral(span.length).x();
+    const double least = std::remainder(angle_of(*span.end_direction) - end, 2 * pi);
+    for (const int turns : {0, 1, -1}) {
+      fields.push_back(field([&span, start, more = (least + 2 * pi * turns)](double s) {
+        const double angle = start + span.natural.integral(s).x() + more * s / span.length;
+        return Eigen::Vector3d(std::cos(angle), std::sin(angle), 0);
+      }));
+    }
+  }
+  for (const TangentField& plain : start_fields(span)) {
+    fields.push_back(plain);
+    if (span.planar) continue;
+    for (const double turn : {pi / 2, -pi / 2, pi, -pi}) {
+      fields.emplace_back([plain, turn, length = span.length](const Eigen::VectorXd& s) {
+        return StartShape(plain(s).tangents, turn / length * s);
+      });
+    }
+  }
+  return fields;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <vector>
+
+#include "problem/span.hpp"
+#include "search/span_solver.hpp"
+
+namespace dlo::energy_model {
+
+/// Shapes that a span's equilibria are searched from, physically chosen: without further grips the
+/// pendulum's profile that turns from the clamp to the load, either way round, and down onto a wall
+/// and along it; between grips arches
+/// and S-shapes of the right slack to either side, and loops. Of each pair the one that the load
+/// favours comes first.
+[[nodiscard]] std::vector<TangentField> start_fields(const Span& span);
+
+/// The pendulum's profile 4 atan(tan(psi/4) exp(-sqrt(n) s)) from a clamp towards the sum n of
+/// weight and loads by the shorter way: the limit shape of a soft rod.
+[[nodiscard]] TangentField soft_field(const Span& span);
+
+/// Of a rod that is not straight by nature: the free rod, and in the plane bent evenly to the
+/// directions of its end's clamp next to where it points; and the shapes of start_fields(), in
+/// space each with the rod's frame turned on evenly from the start to several angles.
+[[nodiscard]] std::vector<TangentField> natural_fields(const Span& span);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,329 @@
+#include "search/twist_path.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "base/free_directions.hpp"
+#include "base/legendre.hpp"
+#include "certify/enough_terms.hpp"
+#include "newton/penalty_descent.hpp"
+#include "newton/trust_region.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using std::numbers::pi;
+
+/// Turns of the end in one step [rad].
+constexpr double first_turn = 0.25;
+constexpr double longest_turn = 1.5;
+constexpr double least_turn = 1e-4;
+/// A shape that has lost its stability is left from this near to where it did.
+constexpr double turn_at_loss = 0.02;
+
+/// By how much, of a rod's own twisting energy over such a turn, a step's energy may differ from
+/// the torque's work on the same branch.
+constexpr double branch_share = 0.05;
+/// The same for a step after which the next one may be longer.
+constexpr double smooth_share = 0.005;
+
+/// Curvature over the forces below which rounding alone would move a shape visibly.
+constexpr double rounded_curvature = 1e-9;
+
+/// Leaps to other branches, which would go on without an end where each leads to the next.
+constexpr int most_leaps = 60;
+
+/// Push along the direction in which a shape gives way, and how often it is made larger.
+constexpr double first_push = 0.1;
+constexpr int most_pushes = 4;
+
+/// Coefficients up to this of the angle that they turn are left for the end of the path.
+constexpr double coarse_tolerance = 1e-6;
+
+/// Coefficients that a twisted shape of which nothing else is known is first given.
+constexpr int unknown_terms = 24;
+
+/// Angle about `axis` from a to the part of b across it, in (-pi, pi].
+double angle_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& a,
+                   const Eigen::Vector3d& b) {
+  const double angle = std::atan2(axis.dot(a.cross(b)), a.dot(b) - axis.dot(a) * axis.dot(b));
+  // Half a turn is half a turn, whatever rounding says.
+  constexpr double rounding = 1e-9;
+  return angle < -pi + rounding ? pi : angle;
+}
+
+class TwistPath {
+ public:
+  TwistPath(const Span& span, double stiffness, const UntwistedShape& untwisted,
+            const SpanOptions& options, SpanWorkspace& workspace)
+      : span_(span),
+        options_(options),
+        workspace_(workspace),
+        load_(span.total_load()),
+        first_d1_(untwisted.end_d1) {
+    span_.planar = false;
+    span_.twist = Span::Twist{stiffness, first_d1_};
+    here_ = with_terms(untwisted.solution, untwisted.solution.terms);
+    here_.multipliers.resize(0);
+    turn_clamp(here_, 0);
+  }
+
+  [[nodiscard]] SpanSolution run(double whole) {
+    workspace_.newton().polish_along_branch(here_, load_);
+    double turn = std::copysign(first_turn, whole);
+    while (here_.is_equilibrium() && angle_ != whole) {
+      if (options_.deadline.passed()) {
+        here_.finish(SolveStatus::time_limit);
+        break;
+      }
+      const bool last = std::abs(whole - angle_) < 1.001 * std::abs(turn);
+      const double angle = last ? whole : angle_ + turn;
+      turn = angle - angle_;
+      std::optional<SpanSolution> next = stepped(turn);
+      const bool stable = next && is_stable(*next);
+      if (next && (stable || std::abs(turn) <= turn_at_loss)) {
+        accept(std::move(*next), angle);
+        const bool finer = resolve();
+        if (!(finer ? is_stable(here_) : stable)) leave();
+        if (smooth_) turn *= 1.5;
+        turn = std::clamp(turn, -longest_turn, longest_turn);
+      } else if (std::abs(turn) > least_turn) {
+        turn /= 3;
+      } else {
+        // The branch ends.
+        angle_ += turn;
+        turn_clamp(here_, angle_);
+        leave();
+        turn = std::copysign(turn_at_loss, whole);
+      }
+    }
+    here_.evaluations = spent_;
+    if (here_.status != SolveStatus::time_limit && angle_ != whole) {
+      here_.fail("the rod could not be followed beyond a twist of " + std::to_string(angle_) +
+                 " rad");
+    }
+    return std::move(here_);
+  }
+
+ private:
+  /// Turns the end's clamp from where the untwisted rod has it.
+  void turn_clamp(SpanSolution& solution, double angle) const {
+    const Eigen::AngleAxisd about(angle, *span_.end_direction);
+    solution.model->turn_end_clamp(about * first_d1_);
+  }
+
+  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) const {
+    SpanSolution other;
+    other.model = workspace_.model(span_, terms);
+    other.terms = terms;
+    other.x = other.model->adopt(*solution.model, solution.x);
+    other.multipliers = solution.multipliers;
+    turn_clamp(other, angle_);
+    return other;
+  }
+
+  /// The equilibrium next to where the last two point at.
+  [[nodiscard]] std::optional<SpanSolution> stepped(double turn) {
+    SpanSolution next = here_;
+    turn_clamp(next, angle_ + turn);
+    next.evaluations = 0;
+    if (slope_x_.size() == here_.x.size()) {
+      next.x += turn * slope_x_;
+      next.multipliers += turn * slope_multipliers_;
+    } else {
+      next.x = next.model->with_twist(next.x, next.model->twist(next.x) + turn);
+    }
+    const Eigen::VectorXd predicted = next.x;
+    workspace_.newton().polish_along_branch(next, load_);
+    spent_ += next.evaluations;
+    if (!next.is_equilibrium()) return std::nullopt;
+    // On the same branch the energy has risen by the torque's work. The shape tells less: it may
+    // turn about a line for nothing.
+    const double work = (torque(here_) + torque(next)) / 2 * turn;
+    const double unit = span_.twist->stiffness / span_.length * turn * turn;
+    const double rounding = 1e-9 * (1 + load_ + std::abs(next.energy));
+    const double leap = std::abs(next.energy - here_.energy - work);
+    if (!(leap <= branch_share * unit + rounding)) return std::nullopt;
+    smooth_ = leap <= smooth_share * unit + rounding;
+    aside_ = (next.x - predicted).norm() > (predicted - here_.x).norm();
+    return next;
+  }
+
+  [[nodiscard]] static double torque(const SpanSolution& solution) {
+    return solution.model->twisting_torque(solution.x, solution.multipliers);
+  }
+
+  void accept(SpanSolution next, double angle) {
+    const double turn = angle - angle_;
+    slope_x_.resize(0);
+    last_step_ = next.x - here_.x;
+    if (!aside_) {
+      slope_x_ = last_step_ / turn;
+      slope_multipliers_ = (next.multipliers - here_.multipliers) / turn;
+    }
+    here_ = std::move(next);
+    angle_ = angle;
+  }
+
+  /// More terms, where the shape needs them. @return whether it has got some
+  bool resolve() {
+    const double K = here_.terms;
+    const bool affordable = here_.model->size() * 5 / 4 < most_unknowns;
+    const bool resolved = here_.model->tail(here_.x) < coarse_tolerance * 4 * K * K &&
+                          here_.terms >= terms_under_twist(here_);
+    if (resolved || !affordable) return false;
+    here_ = with_terms(here_, std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
+    workspace_.newton().polish_along_branch(here_, load_);
+    spent_ += here_.evaluations;
+    here_.evaluations = 0;
+    slope_x_.resize(0);
+    last_step_.resize(0);
+    return true;
+  }
+
+  [[nodiscard]] bool is_stable(const SpanSolution& solution) {
+    derive(solution);
+    const Eigen::MatrixXd Z = free_directions(jacobian_, hessian_.rows());
+    Eigen::MatrixXd projected = Z.transpose() * hessian_ * Z;
+    // Under large forces what is next to neutral is lost in rounding, whichever sign it has.
+    projected.diagonal().array() += rounded_curvature * solution.multipliers.norm();
+    return is_minimum(projected);
+  }
+
+  /// Into hessian_ and jacobian_.
+  void derive(const SpanSolution& solution) {
+    SpanEnergy& model = *solution.model;
+    gradient_.resize(model.size());
+    residual_.resize(model.constraints());
+    jacobian_.resize(model.constraints(), model.size());
+    (void)model.value(solution.x, gradient_);
+    model.constraint(residual_, jacobian_);
+    model.hessian(solution.multipliers, hessian_);
+  }
+
+  /// Downhill to what is stable, from beside here.
+  void leave() {
+    if (++leaps_ > most_leaps) return here_.fail("the rod leaps from branch to branch");
+    derive(here_);
+    std::optional<Eigen::VectorXd> way = falling_direction(hessian_, jacobian_);
+    // Next to a fold the branch goes where the rod gives way.
+    if (!way && last_step_.norm() > 0) way = last_step_.normalized();
+    if (!way) way = softest_direction(hessian_, jacobian_);
+    slope_x_.resize(0);
+    double push = first_push;
+    for (int i = 0; i < 2 * most_pushes; ++i) {
+      SpanSolution next = here_;
+      next.evaluations = 0;
+      if (way) next.x += push * *way;
+      if (i % 2 == 0) {
+        descend_by_penalty(next, {.load = load_, .deadline = &options_.deadline});
+      } else {
+        descend_in_trust_region(next, {.load = load_,
+                                       .gradient_tolerance = handover_gradient,
+                                       .deadline = &options_.deadline});
+        push *= 3;
+      }
+      if (succeeded(next.status)) workspace_.newton().polish(next, load_);
+      spent_ += next.evaluations;
+      next.evaluations = 0;
+      if (!next.is_equilibrium() || !is_stable(next)) continue;
+      here_ = std::move(next);
+      last_step_.resize(0);
+      return;
+    }
+    here_.fail("nothing stable was found below a twist of " + std::to_string(angle_) + " rad");
+  }
+
+  Span span_;
+  const SpanOptions& options_;
+  SpanWorkspace& workspace_;
+  double load_;
+  Eigen::Vector3d first_d1_;  // of the end, untwisted
+  SpanSolution here_;
+  double angle_ = 0;
+  int spent_ = 0;
+  int leaps_ = 0;
+  bool smooth_ = false;  // the last step was shorter than it need be
+  bool aside_ = false;   // the last step has gone aside from where it pointed at
+  Eigen::VectorXd last_step_;
+  Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a leap
+  Eigen::VectorXd gradient_, residual_;
+  Eigen::MatrixXd jacobian_, hessian_;
+};
+
+}  // namespace
+
+std::optional<Eigen::Vector3d> known_end_d1(const HeldFrames& held, const Span& span) {
+  if (!held.start_d1 || !held.end_d1) return std::nullopt;
+  const Eigen::Vector3d& start = *span.start_direction;
+  const double ahead = angle_about(start, Span::d1(start), *held.start_d1);
+  return Eigen::AngleAxisd(held.roll - ahead, *span.end_direction) * *held.end_d1;
+}
+
+UntwistedShape untwisted_shape(const SpanSolution& solution, SpanWorkspace& workspace) {
+  Span span = solution.model->span();
+  span.planar = false;
+  const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);
+  Eigen::VectorXd gradient(model->size());
+  (void)model->value(model->adopt(*solution.model, solution.x), gradient);
+  return {solution, model->transported_d1()};
+}
+
+EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted) {
+  const Span& span = untwisted.solution.model->span();
+  const Eigen::Vector3d& axis = *span.end_direction;
+  const Eigen::Vector3d& d1 = untwisted.end_d1;
+  const std::optional<Eigen::Vector3d> known = known_end_d1(held, span);
+  if (!known) return {Eigen::AngleAxisd(held.roll, axis) * d1, held.roll};
+  const double least = angle_about(axis, d1, Eigen::AngleAxisd(-held.roll, axis) * *known);
+  return {*known, least + held.roll};
+}
+
+SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
+                      const UntwistedShape& untwisted, const SpanOptions& options,
+                      SpanWorkspace& workspace) {
+  const double least = angle_about(*span.end_direction, untwisted.end_d1, frame.d1);
+  const double angle = least + 2 * pi * std::round((frame.twist - least) / (2 * pi));
+  SpanSolution solution = TwistPath(span, stiffness, untwisted, options, workspace).run(angle);
+  if (!solution.is_equilibrium()) return solution;
+  const Span twisted = solution.model->span();
+  return finish_span(twisted, options, workspace, std::move(solution));
+}
+
+SpanSolution twist_from(const TangentField& field, double twist,
+                        const std::optional<Eigen::Vector3d>& end_d1, const Span& span,
+                        double stiffness, const SpanOptions& options, SpanWorkspace& workspace) {
+  Span twisted = span;
+  twisted.planar = false;
+  twisted.twist = Span::Twist{stiffness, end_d1.value_or(Span::d1(*span.end_direction))};
+  SpanSolution solution;
+  // The shape does not say how many terms it takes.
+  for (int terms = std::max(unknown_terms, options.least_terms);;
+       terms = std::min(max_terms, 3 * terms / 2)) {
+    solution = SpanSolution();
+    solution.model = workspace.model(twisted, terms);
+    SpanEnergy& model = *solution.model;
+    solution.terms = terms;
+    solution.x = model.with_twist(model.fit(field(model.nodes())), twist);
+    if (!end_d1) {
+      Eigen::VectorXd gradient(model.size());
+      (void)model.value(solution.x, gradient);
+      const Eigen::AngleAxisd about(twist, *span.end_direction);
+      twisted.twist->end_d1 = about * model.transported_d1();
+      model.turn_end_clamp(twisted.twist->end_d1);
+    }
+    workspace.newton().polish(solution, span.total_load());
+    const bool more = terms < max_terms && 3 * model.size() / 2 < most_unknowns;
+    if (solution.is_equilibrium()) break;
+    if (!more || options.deadline.passed()) return solution;
+  }
+  return finish_span(twisted, options, workspace, std::move(solution));
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,460 @@
+#include "shooting/planar_shooting.hpp"
+
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_odeiv2.h>
+#include <gsl/gsl_roots.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <exception>
+#include <limits>
+#include <memory>
+#include <numbers>
+
+#include "base/silence_gsl.hpp"
+#include "shooting/second_variation.hpp"
+#include "shooting/span_shooting.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using std::numbers::pi;
+
+/// State along sigma = 1 - s, from the tip to the clamp, in the frame of the last force: angle psi
+/// of the tangent against that force, curvature by sigma, position relative to the tip, bending
+/// energy, and the potential of the weight relative to the clamp; then, if asked for, the
+/// derivatives of psi and its rate by psi at the tip.
+enum Component : std::size_t {
+  psi,
+  psi_rate,
+  x,
+  y,
+  bending,
+  gravity,
+  components,
+  psi_change = components,
+  psi_rate_change,
+  components_and_changes
+};
+using State = std::array<double, components_and_changes>;
+
+constexpr int most_shot_steps = 100000;  // of the integrator, in a shot
+constexpr int most_shots = 20000;        // of a scan
+constexpr int deepest_cell = 6;          // halvings of a cell of the scan
+constexpr double cell_resolved = 0.02;   // a cubic's error in a cell over the miss there
+constexpr double double_root = 1e-11;    // of the miss: rounding of a shot
+
+/// Forces in the frame whose x axis is the last force.
+struct Frame {
+  double axis_angle = 0;  // of the last force against the clamp's tangent
+  Eigen::Vector2d weight = Eigen::Vector2d::Zero();
+  std::vector<PlanarCantilever::Load> loads;  // by growing sigma; `at` is sigma here
+
+  [[nodiscard]] bool parallel() const {
+    return weight.y() == 0 && std::all_of(loads.begin(), loads.end(),
+                                          [](const auto& load) { return load.force.y() == 0; });
+  }
+};
+
+struct TipSection {
+  Eigen::Vector2d weight;
+  Eigen::Vector2d loads;  // sum of those that have been passed
+  bool changes = false;   // by psi at the tip
+};
+
+Eigen::Vector2d into_frame(const Eigen::Vector2d& force, double axis_angle) {
+  const Eigen::Vector2d axis(std::cos(axis_angle), std::sin(axis_angle));
+  Eigen::Vector2d turned(axis.dot(force), axis.x() * force.y() - axis.y() * force.x());
+  // What is parallel up to rounding is parallel: it may not disturb an exponentially small psi.
+  if (std::abs(turned.y()) < 1e-14 * turned.norm()) turned.y() = 0;
+  return turned;
+}
+
+Frame make_frame(const PlanarCantilever& rod) {
+  const bool tip_load = !rod.loads.empty() && rod.loads.back().at == 1;
+  Eigen::Vector2d last = rod.weight;
+  if (tip_load) {
+    last.setZero();
+    for (const auto& load : rod.loads) {
+      if (load.at == 1) last += load.force;
+    }
+  } else if (last.norm() == 0 && !rod.loads.empty()) {
+    last = rod.loads.back().force;
+  }
+  Frame frame;
+  frame.axis_angle = std::atan2(last.y(), last.x());
+  frame.weight = into_frame(rod.weight, frame.axis_angle);
+  for (auto load = rod.loads.rbegin(); load != rod.loads.rend(); ++load) {
+    frame.loads.push_back({1 - load->at, into_frame(load->force, frame.axis_angle)});
+  }
+  return frame;
+}
+
+int section_rates(double sigma, const double* state, double* rate, void* data) {
+  const auto& section = *static_cast<const TipSection*>(data);
+  const Eigen::Vector2d n = sigma * section.weight + section.loads;
+  const double sine = std::sin(state[psi]);
+  const double cosine = std::cos(state[psi]);
+  rate[psi] = state[psi_rate];
+  rate[psi_rate] = n.x() * sine - n.y() * cosine;
+  rate[x] = -cosine;
+  rate[y] = -sine;
+  rate[bending] = state[psi_rate] * state[psi_rate] / 2;
+  rate[gravity] = -sigma * (section.weight.x() * cosine + section.weight.y() * sine);
+  if (section.changes) {
+    rate[psi_change] = state[psi_rate_change];
+    rate[psi_rate_change] = (n.x() * cosine + n.y() * sine) * state[psi_change];
+  }
+  return GSL_SUCCESS;
+}
+
+/// Integrates from the tip, psi = start there, through every sigma of `stops` (growing).
+/// @param changes  the derivatives by `start` too
+/// @return false if the integrator failed; `states` are then incomplete
+bool shoot(const Frame& frame, double start, double tolerance, const std::vector<double>& stops,
+           std::vector<State>& states, bool changes = false) {
+  const std::size_t n = changes ? components_and_changes : components;
+  TipSection section{frame.weight, Eigen::Vector2d::Zero(), changes};
+  gsl_odeiv2_system system{section_rates, nullptr, n, &section};
+  const std::unique_ptr<gsl_odeiv2_step, decltype(&gsl_odeiv2_step_free)> step(
+      gsl_odeiv2_step_alloc(gsl_odeiv2_step_rk8pd, n), gsl_odeiv2_step_free);
+  const std::unique_ptr<gsl_odeiv2_evolve, decltype(&gsl_odeiv2_evolve_free)> evolve(
+      gsl_odeiv2_evolve_alloc(n), gsl_odeiv2_evolve_free);
+  // psi may start exponentially small, and its relative error is what counts then.
+  const double small = std::max(std::min(std::abs(start), 1.0), 1e-300);
+  const double angle_scale = frame.parallel() ? small : 1.0;
+  const std::array<double, components_and_changes> scale = {angle_scale, angle_scale, 1, 1,
+                                                            1,           1,           1, 1};
+  const std::unique_ptr<gsl_odeiv2_control, decltype(&gsl_odeiv2_control_free)> control(
+      gsl_odeiv2_control_scaled_new(tolerance, tolerance, 1, 0, scale.data(), n),
+      gsl_odeiv2_control_free);
+
+  State state{};
+  state[psi] = start;
+  state[psi_change] = 1;
+  int steps = 0;
+  double sigma = 0;
+  double h = 1e-3;
+  std::size_t next_load = 0;
+  states.clear();
+  for (const double stop : stops) {
+    for (;;) {
+      while (next_load < frame.loads.size() && frame.loads[next_load].at <= sigma) {
+        section.loads += frame.loads[next_load++].force;
+        gsl_odeiv2_evolve_reset(evolve.get());
+        gsl_odeiv2_step_reset(step.get());
+      }
+      if (sigma >= stop) break;
+      const double until =
+          next_load < frame.loads.size() ? std::min(stop, frame.loads[next_load].at) : stop;
+      while (sigma < until) {
+        if (gsl_odeiv2_evolve_apply(evolve.get(), control.get(), step.get(), &system, &sigma, until,
+                                    &h, state.data()) != GSL_SUCCESS ||
+            ++steps > most_shot_steps) {
+          return false;
+        }
+      }
+    }
+    states.push_back(state);
+  }
+  return std::isfinite(states.back()[psi]);
+}
+
+/// A tip's angle, how far it misses the clamp's angle, and the derivative of that.
+struct ScanPoint {
+  double start = 0;
+  double miss = 0;
+  double slope = 0;
+};
+
+struct Shooter {
+  Frame frame;
+  double tolerance;
+  Deadline deadline;
+  int shots = 0;
+  int failures = 0;  // shots and searches for a root that came to nothing
+  bool out_of_time = false;
+  std::exception_ptr thrown;  // within GSL, which is C
+  std::vector<State> states;
+
+  /// How far the clamp's angle is missed; zero at every winding number. NaN if the shot fails.
+  double miss(double start) { return point(start, false).miss; }
+
+  ScanPoint point(double start, bool with_slope) {
+    ++shots;
+    out_of_time = out_of_time || deadline.passed();
+    if (out_of_time || !shoot(frame, start, tolerance, {1.0}, states, with_slope)) {
+      ++failures;
+      return {start, NAN, NAN};
+    }
+    const double half = (states.back()[psi] + frame.axis_angle) / 2;
+    return {start, std::sin(half), std::cos(half) / 2 * states.back()[psi_change]};
+  }
+};
+
+double miss_of(double start, void* data) {
+  auto& shooter = *static_cast<Shooter*>(data);
+  try {
+    return shooter.miss(start);
+  } catch (...) {
+    shooter.thrown = std::current_exception();
+    return NAN;
+  }
+}
+
+double slope_of(double start, void* data) {
+  auto& shooter = *static_cast<Shooter*>(data);
+  try {
+    return shooter.point(start, true).slope;
+  } catch (...) {
+    shooter.thrown = std::current_exception();
+    return NAN;
+  }
+}
+
+/// Root of the miss or of its slope between two starts of different sign; NaN if there is none.
+double refine_root(Shooter& shooter, double (*function_of)(double, void*), double low,
+                   double high) {
+  gsl_function function{function_of, &shooter};
+  const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
+      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+  bool good = gsl_root_fsolver_set(solver.get(), &function, low, high) == GSL_SUCCESS;
+  for (int i = 0; i < 200 && good; ++i) {
+    good = gsl_root_fsolver_iterate(solver.get()) == GSL_SUCCESS;
+    if (gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()),
+                               gsl_root_fsolver_x_upper(solver.get()), 0, 4e-16) == GSL_SUCCESS) {
+      break;
+    }
+  }
+  if (shooter.thrown) std::rethrow_exception(shooter.thrown);
+  return good ? gsl_root_fsolver_root(solver.get()) : NAN;
+}
+
+double total_load(const PlanarCantilever& rod) {
+  double load = rod.weight.norm();
+  for (const auto& l : rod.loads) load += l.force.norm();
+  return load;
+}
+
+/// Starts psi at the tip, growing from -pi to pi. Where all forces are parallel the tip's angle
+/// against them is exponentially small and the grid goes down to it. Where they are not, the tip's
+/// angle has no known limit and is found to rounding only, so the rod must not magnify it too much.
+std::vector<double> scan_grid(const PlanarCantilever& rod, bool parallel) {
+  const double load = total_load(rod);
+  std::vector<double> positive;
+  const double smallest = std::exp(-std::sqrt(load) - 6);
+  for (double start = smallest; start < 0.1; start *= 1.5) positive.push_back(start);
+  const int uniform = parallel ? 120 : 600;
+  for (int i = 0; i <= uniform; ++i) positive.push_back(0.1 + (pi - 0.1) * i / uniform);
+  std::vector<double> grid;
+  for (auto start = positive.rbegin(); start != positive.rend(); ++start) grid.push_back(-*start);
+  grid.push_back(0);
+  grid.insert(grid.end(), positive.begin(), positive.end());
+  return grid;
+}
+
+/// Looks for the roots of the miss, cell by cell.
+class TipScan {
+ public:
+  explicit TipScan(Shooter& shooter) : shooter_(shooter) {}
+
+  std::vector<double> run(const std::vector<double>& grid) {
+    ScanPoint previous{};
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      const ScanPoint next = shooter_.point(grid[i], true);
+      if (i > 0) look_into(previous, next, 0);
+      // Only a tip that keeps its angle all along the rod is a root without a change of sign.
+      const bool straight = next.start == 0 || std::abs(next.start) == pi;
+      if (straight && is_zero(next)) roots_.push_back(next.start);
+      previous = next;
+    }
+    // -pi and pi are the same tip.
+    if (roots_.size() > 1 && roots_.front() == -pi && roots_.back() == pi) roots_.pop_back();
+    return roots_;
+  }
+
+ private:
+  static bool is_zero(const ScanPoint& point) { return std::abs(point.miss) < 1e-15; }
+
+  /// Halves a cell until a cubic through its ends tells what the miss is in its middle.
+  void look_into(const ScanPoint& low, const ScanPoint& high, int depth) {
+    if (!std::isfinite(low.miss) || !std::isfinite(high.miss)) return;
+    const ScanPoint middle = shooter_.point((low.start + high.start) / 2, true);
+    if (!std::isfinite(middle.miss)) return;
+    const double cubic =
+        (low.miss + high.miss) / 2 + (high.start - low.start) / 8 * (low.slope - high.slope);
+    const double size =
+        std::max({std::abs(low.miss), std::abs(middle.miss), std::abs(high.miss), 1e-12});
+    const bool resolved = std::abs(middle.miss - cubic) <= cell_resolved * size;
+    if (resolved || depth == deepest_cell || shooter_.shots > most_shots) {
+      find_roots(low, middle);
+      find_roots(middle, high);
+    } else {
+      look_into(low, middle, depth + 1);
+      look_into(middle, high, depth + 1);
+    }
+  }
+
+  void find_roots(const ScanPoint& low, const ScanPoint& high) {
+    if (is_zero(low) || is_zero(high)) return;
+    if (low.miss * high.miss < 0) {
+      add(refine_root(shooter_, miss_of, low.start, high.start));
+      return;
+    }
+    // Two roots, or none, where the miss comes nearer to zero from both sides.
+    if (low.miss * low.slope >= 0 || high.miss * high.slope <= 0) return;
+    const double extremum = refine_root(shooter_, slope_of, low.start, high.start);
+    if (!std::isfinite(extremum)) {
+      ++shooter_.failures;
+      return;
+    }
+    const double miss = shooter_.miss(extremum);
+    if (std::abs(miss) < double_root) {
+      add(extremum);
+    } else if (miss * low.miss < 0) {
+      add(refine_root(shooter_, miss_of, low.start, extremum));
+      add(refine_root(shooter_, miss_of, extremum, high.start));
+    }
+  }
+
+  void add(double root) {
+    if (std::isfinite(root)) {
+      roots_.push_back(root);
+    } else {
+      ++shooter_.failures;
+    }
+  }
+
+  Shooter& shooter_;
+  std::vector<double> roots_;
+};
+
+PlanarSamples sample(const Frame& frame, double start, double tolerance,
+                     const std::vector<double>& distances) {
+  std::vector<double> stops;
+  stops.reserve(distances.size() + 1);
+  for (const double s : distances) stops.push_back(1 - s);
+  stops.push_back(1);
+  std::sort(stops.begin(), stops.end());
+  std::vector<State> states;
+  PlanarSamples samples(static_cast<Eigen::Index>(distances.size()));
+  if (!shoot(frame, start, tolerance, stops, states)) {
+    samples.points.setConstant(NAN);
+    samples.angle.setConstant(NAN);
+    samples.curvature.setConstant(NAN);
+    return samples;
+  }
+  const State& clamp = states.back();
+  const double cosine = std::cos(frame.axis_angle);
+  const double sine = std::sin(frame.axis_angle);
+  // The clamp's tangent is 0 up to whole turns that the rod makes on its way.
+  const double turns = 2 * pi * std::round((clamp[psi] + frame.axis_angle) / (2 * pi));
+  for (std::size_t i = 0; i < distances.size(); ++i) {
+    const auto at = std::lower_bound(stops.begin(), stops.end(), 1 - distances[i]);
+    const State& state = states[static_cast<std::size_t>(at - stops.begin())];
+    const double dx = state[x] - clamp[x];
+    const double dy = state[y] - clamp[y];
+    const auto column = static_cast<Eigen::Index>(i);
+    samples.points.col(column) << cosine * dx - sine * dy, sine * dx + cosine * dy;
+    samples.angle[column] = state[psi] + frame.axis_angle - turns;
+    samples.curvature[column] = -state[psi_rate];
+  }
+  return samples;
+}
+
+Energies energies(const PlanarCantilever& rod, const Frame& frame, double start, double tolerance) {
+  std::vector<State> states;
+  if (!shoot(frame, start, tolerance, {1.0}, states)) return {NAN, NAN, NAN};
+  Energies energies;
+  energies.bending = states.back()[bending];
+  energies.gravity = states.back()[gravity];
+  std::vector<double> load_points;
+  for (const auto& load : rod.loads) load_points.push_back(load.at);
+  const PlanarSamples at_loads = sample(frame, start, tolerance, load_points);
+  for (std::size_t j = 0; j < rod.loads.size(); ++j) {
+    energies.load -= rod.loads[j].force.dot(at_loads.points.col(static_cast<Eigen::Index>(j)));
+  }
+  return energies;
+}
+
+/// Stability of a shape that holds, from its samples and its clamp's force.
+SecondVariation stability_of(const Problem& problem, const RodSpan& span,
+                             const Equilibrium& shape) {
+  return second_variation(span, [&](const std::vector<double>& s) {
+    std::vector<double> arc_lengths;
+    arc_lengths.reserve(s.size());
+    for (const double at : s) arc_lengths.push_back(std::min(at * problem.length, problem.length));
+    const Samples samples = shape.sample(arc_lengths);
+    std::vector<RodState> states(s.size());
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const auto column = static_cast<Eigen::Index>(i);
+      states[i].t = samples.tangents.col(column);
+      states[i].v = samples.curvature.col(column) * problem.length;
+      states[i].n = implied_force(problem, shape, s[i]);
+    }
+    return states;
+  });
+}
+
+}  // namespace
+
+bool planar_shots_are_well_posed(const PlanarCantilever& rod) {
+  constexpr double largest_parallel = 4e5;
+  constexpr double largest = 60;
+  return total_load(rod) <= (make_frame(rod).parallel() ? largest_parallel : largest);
+}
+
+TipShots shoot_from_tip(const Problem& problem, const ReducedCantilever& reduced, double tolerance,
+                        const Deadline& deadline) {
+  silence_gsl();
+  Shooter shooter{make_frame(reduced.rod), tolerance, deadline, 0, 0, false, nullptr, {}};
+  const std::vector<double> starts =
+      TipScan(shooter).run(scan_grid(reduced.rod, shooter.frame.parallel()));
+  const RodSpan span = cut_at_clamps(problem).front();
+
+  TipShots found;
+  std::vector<Equilibrium>& equilibria = found.equilibria;
+  for (const double start : starts) {
+    Equilibrium result;
+    result.residual = std::abs(shooter.miss(start)) * 2;
+    if (!(result.residual < 1e-8)) continue;  // a jump of the winding, not a root
+    const auto own = [frame = shooter.frame, start, tolerance](const std::vector<double>& s) {
+      return sample(frame, start, tolerance, s);
+    };
+    result.energy = restore(problem, energies(reduced.rod, shooter.frame, start, tolerance));
+    result.grips = {clamp_reaction(problem, reduced, own({0.0}).curvature[0])};
+    result.sample = [problem, reduced, own](std::span<const double> arc_lengths) {
+      return restore(problem, reduced, arc_lengths,
+                     own(distances_from_clamp(problem, reduced.reversed, arc_lengths)));
+    };
+    const SecondVariation stability = stability_of(problem, span, result);
+    if (stability.negative < 0 || !std::isfinite(result.energy.total())) {
+      ++shooter.failures;
+      continue;
+    }
+    judge(stability, result);
+    equilibria.push_back(std::move(result));
+  }
+  found.complete = shooter.failures == 0 && shooter.shots <= most_shots;
+  found.out_of_time = shooter.out_of_time;
+  found.shots = shooter.shots;
+  for (Equilibrium& result : equilibria) result.evaluations = shooter.shots;
+  // Mirror images have the same energy up to rounding; the one that bends towards the plane's y
+  // comes first.
+  const double unit = problem.bending_stiffness / problem.length;
+  const auto tip_height = [&](const Equilibrium& e) {
+    const std::vector<double> tip = {reduced.reversed ? 0.0 : problem.length};
+    return reduced.plane.y.dot(e.sample(tip).points.col(0));
+  };
+  std::stable_sort(equilibria.begin(), equilibria.end(), [&](const auto& a, const auto& b) {
+    if (succeeded(a.status) != succeeded(b.status)) return succeeded(a.status);
+    const double difference = a.energy.total() - b.energy.total();
+    const double rounding = 1e-11 * (unit + std::abs(a.energy.total()));
+    if (std::abs(difference) > rounding) return difference < 0;
+    return tip_height(a) > tip_height(b);
+  });
+  return found;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,234 @@
+#include "shooting/span_twist.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "shooting/gradient_flow.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr double first_step = 0.5;          // of the roll [rad]
+constexpr double longest_step = 3;          // [rad]
+constexpr double shortest_step = 1.0 / 64;  // [rad]
+constexpr int few_shots = 12;               // Newton's method takes two an iteration
+constexpr int step_iterations = 12;       // of Newton's method: more are slower than a shorter step
+constexpr double most_turn = 0.5;         // of a tangent in a step [rad]
+constexpr double most_correction = 0.15;  // of a predicted tangent [rad]
+
+double largest_change(const std::vector<RodState>& a, const std::vector<RodState>& b) {
+  return (tangents_of(a) - tangents_of(b)).colwise().norm().maxCoeff();
+}
+
+/// Lets a director come along from node to node, by the flow and the shortest turn to the next
+/// tangent. @return false if the integrator gave up
+bool carry_director(const RodMesh& mesh, double tolerance, const Eigen::Vector3d& first,
+                    std::vector<RodState>& nodes) {
+  nodes.front().d = first;
+  for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
+    RodState state = nodes[static_cast<std::size_t>(i)];
+    RodState& next = nodes[static_cast<std::size_t>(i + 1)];
+    RodIntegrals integrals;
+    if (!follow_rod(mesh.section_of(i), mesh.width(i), tolerance, state, integrals)) {
+      return false;
+    }
+    next.d = Eigen::Quaterniond::FromTwoVectors(state.t, next.t) * state.d;
+    next.d = (next.d - next.d.dot(next.t) * next.t).normalized();
+  }
+  return true;
+}
+
+/// The director at the beginning.
+Eigen::Vector3d first_director(const RodSpan& span) {
+  return span.twist->start_d1 ? *span.twist->start_d1
+                              : Eigen::Vector3d(span.start_direction->unitOrthogonal());
+}
+
+/// Directors are of no use in a result, and would have to be followed wherever it is sampled.
+SpanEquilibrium without_directors(SpanEquilibrium equilibrium) {
+  for (RodState& node : equilibrium.nodes) node.d.setZero();
+  return equilibrium;
+}
+
+/// A span on its way from no roll to all of it.
+class Continuation {
+ public:
+  Continuation(const RodSpan& span, double tolerance, const Deadline& deadline)
+      : span_(span), tolerance_(tolerance), deadline_(deadline) {}
+
+  SpanEquilibrium run(const SpanEquilibrium& without) {
+    now_ = without;
+    shots_ = without.shots;
+    if (!carry_director(mesh_at(span_, now_.s), tolerance_, first_director(span_), now_.nodes)) {
+      return failure("the integrator gave up on the frame");
+    }
+    untwisted_end_ = now_.nodes.back().d;
+    find_target();
+    // The frames are held: what turns them costs twist.
+    judge_stability(span_, tolerance_, now_);
+    if (now_.converged && !now_.stable()) now_ = leave_saddle(span_, now_, options(0));
+    if (!now_.converged) return failure(now_.message);
+    double step = first_step;
+    while (reached_ != target_) {
+      if (deadline_.passed()) return failure(to_string(SolveStatus::time_limit));
+      const double way = target_ - reached_;
+      const double next = std::abs(way) <= step ? target_ : reached_ + std::copysign(step, way);
+      const double factor = advance(next);
+      if (factor > 0) {
+        step = std::min(longest_step, step * factor);
+        continue;
+      }
+      if (!before_.nodes.empty()) {
+        before_ = {};  // a shape that has slid for nearly nothing spoils the secant
+        continue;
+      }
+      if (step > shortest_step) {
+        step /= 2;
+        continue;
+      }
+      if (!fall(next)) return failure("no stable shape was found beyond it: " + problem_);
+      step = first_step / 4;
+    }
+    now_.shots = shots_;
+    return without_directors(std::move(now_));
+  }
+
+ private:
+  void find_target() {
+    target_ = span_.twist->roll;
+    if (!span_.twist->end_d1) return;
+    const Eigen::Vector3d& d = *span_.twist->end_d1;
+    const Eigen::Vector3d ahead = span_.end_direction->cross(untwisted_end_);
+    const double angle = std::atan2(ahead.dot(d), untwisted_end_.dot(d));
+    // In (-pi, pi]: half a turn is half a turn, whatever rounding says.
+    constexpr double rounding = 1e-9;
+    target_ += angle < rounding - std::numbers::pi ? std::numbers::pi : angle;
+  }
+
+  [[nodiscard]] ShootingOptions options(double roll) const {
+    return {.tolerance = tolerance_,
+            .max_iterations = step_iterations,
+            .deadline = deadline_,
+            .frames = ShotFrames{first_director(span_),
+                                 turned(untwisted_end_, *span_.end_direction, roll)}};
+  }
+
+  [[nodiscard]] SpanEquilibrium failure(const std::string& message) const {
+    SpanEquilibrium failed;
+    failed.shots = shots_;
+    failed.message = "twisted by a roll of " + std::to_string(reached_) + " of " +
+                     std::to_string(target_) + " rad: " + message;
+    return failed;
+  }
+
+  /// The secant through the last two shapes, or the last one.
+  [[nodiscard]] std::vector<RodState> predicted(double next) const {
+    std::vector<RodState> nodes = now_.nodes;
+    if (before_.nodes.empty()) return nodes;
+    const double part = (next - reached_) / (reached_ - reached_before_);
+    const std::vector<RodState> before =
+        states_at(before_, span_, {now_.s.begin(), now_.s.end()}, tolerance_);
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      RodState& node = nodes[i];
+      node.r += part * (node.r - before[i].r);
+      node.t = (node.t + part * (node.t - before[i].t)).normalized();
+      node.v += part * (node.v - before[i].v);
+      node.n += part * (node.n - before[i].n);
+      // The director turns by many times what tangents turn, on a circle.
+      const Eigen::Vector3d old = before[i].d;
+      const Eigen::Vector3d ahead = now_.nodes[i].t.cross(old);
+      const double turn = std::atan2(ahead.dot(node.d), old.dot(node.d));
+      node.d = turned(node.d, now_.nodes[i].t, part * turn);
+      node.torque += part * (node.torque - before[i].torque);
+    }
+    return nodes;
+  }
+
+  /// One step by Newton's method.
+  /// @return by how much the next one may be longer; 0 if this one has to be shorter
+  double advance(double next) {
+    const std::vector<RodState> start = predicted(next);
+    const RodMesh mesh = mesh_at(span_, now_.s);
+    SpanEquilibrium found = shoot_span(span_, mesh, start, options(next));
+    shots_ += found.shots;
+    problem_ = found.message;
+    if (!found.converged) return 0;
+    const std::vector<RodState> at_nodes =
+        states_at(found, span_, {now_.s.begin(), now_.s.end()}, tolerance_);
+    if (largest_change(at_nodes, now_.nodes) > most_turn) return 0;
+    if (!before_.nodes.empty() && largest_change(at_nodes, start) > most_correction) return 0;
+    const double factor = found.shots <= few_shots ? 1.6 : 1;
+    if (found.stable()) {
+      accept(next, std::move(found));
+      return factor;
+    }
+    SpanEquilibrium left = leave_saddle(span_, found, options(next));
+    shots_ += left.shots;
+    problem_ = left.message;
+    if (!left.converged) return 0;
+    accept(next, std::move(left));
+    before_ = {};  // a secant across a jump leads nowhere
+    return 1;
+  }
+
+  /// The gradient flow at a roll beyond the end of the branch.
+  bool fall(double next) {
+    const RodMesh mesh = mesh_at(span_, now_.s);
+    SpanEquilibrium found =
+        follow_gradient(span_, mesh, now_.nodes, tangents_of(now_.nodes), options(next));
+    shots_ += found.shots;
+    problem_ = found.message;
+    if (!found.converged) return false;
+    accept(next, std::move(found));
+    before_ = {};
+    return true;
+  }
+
+  void accept(double roll, SpanEquilibrium found) {
+    before_ = std::exchange(now_, std::move(found));
+    reached_before_ = std::exchange(reached_, roll);
+  }
+
+  const RodSpan& span_;
+  double tolerance_;
+  Deadline deadline_;
+  Eigen::Vector3d untwisted_end_ = Eigen::Vector3d::Zero();  // director
+  double target_ = 0;                                        // roll [rad]
+  double reached_ = 0;
+  double reached_before_ = 0;
+  SpanEquilibrium now_;
+  SpanEquilibrium before_;  // without nodes: no secant
+  std::string problem_;
+  int shots_ = 0;
+};
+
+}  // namespace
+
+SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without, double tolerance,
+                           const Deadline& deadline) {
+  if (!without.converged) return without;
+  return Continuation(span, tolerance, deadline).run(without);
+}
+
+SpanEquilibrium refine_twisted(const RodSpan& span, const RodMesh& mesh,
+                               std::vector<RodState> start, double tolerance,
+                               const Deadline& deadline) {
+  if (!carry_director(mesh, tolerance, first_director(span), start)) {
+    SpanEquilibrium failed;
+    failed.message = "the integrator gave up on the frame";
+    return failed;
+  }
+  const Eigen::Vector3d end =
+      span.twist->end_d1 ? turned(*span.twist->end_d1, *span.end_direction, span.twist->roll)
+                         : start.back().d;
+  return without_directors(shoot_span(span, mesh, std::move(start),
+                                      {.tolerance = tolerance,
+                                       .deadline = deadline,
+                                       .frames = ShotFrames{first_director(span), end}}));
+}
+
+}  // namespace dlo::energy_model

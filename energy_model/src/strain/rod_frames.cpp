@@ -1,0 +1,452 @@
+#include "strain/rod_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/spin.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Terms of the turn of a free start: a constant strain over a length of 1.
+constexpr int turn_terms = 1;
+
+/// Largest defect of the collocation that is left, and corrections that it may take. From Magnus'
+/// steps two do for all strains that a rod's own nodes resolve.
+constexpr double finest_defect = 2e-15;
+constexpr int most_corrections = 6;
+
+using Rows = Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
+using ConstRows = Eigen::Ref<const Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
+using ConstStrains = Eigen::Ref<const Eigen::MatrixX3d, 0, Eigen::OuterStride<>>;
+
+/// product = scale q (0, u1, u2, 0), row by row.
+void multiply_by_two_strains(const ConstRows& q, const ConstStrains& u, double scale,
+                             Rows product) {
+  for (Eigen::Index r = 0; r < q.rows(); ++r) {
+    const double a = scale * u(r, 0);
+    const double b = scale * u(r, 1);
+    const double w = q(r, 0), x = q(r, 1), y = q(r, 2), z = q(r, 3);
+    product(r, 0) = -x * a - y * b;
+    product(r, 1) = w * a - z * b;
+    product(r, 2) = w * b + z * a;
+    product(r, 3) = x * b - y * a;
+  }
+}
+
+/// product = product + scale q (0, 0, 0, u3), row by row.
+void add_product_with_twist(const ConstRows& q, const ConstStrains& u, double scale, Rows product) {
+  for (Eigen::Index r = 0; r < q.rows(); ++r) {
+    const double c = scale * u(r, 2);
+    product(r, 0) -= q(r, 3) * c;
+    product(r, 1) += q(r, 2) * c;
+    product(r, 2) -= q(r, 1) * c;
+    product(r, 3) += q(r, 0) * c;
+  }
+}
+
+/// a = a conj(b), row by row.
+void multiply_by_conjugate(Rows a, const ConstRows& b) {
+  for (Eigen::Index r = 0; r < a.rows(); ++r) {
+    const double w = a(r, 0), x = a(r, 1), y = a(r, 2), z = a(r, 3);
+    const double bw = b(r, 0), bx = b(r, 1), by = b(r, 2), bz = b(r, 3);
+    a(r, 0) = w * bw + x * bx + y * by + z * bz;
+    a(r, 1) = -w * bx + x * bw - y * bz + z * by;
+    a(r, 2) = -w * by + y * bw - z * bx + x * bz;
+    a(r, 3) = -w * bz + z * bw - x * by + y * bx;
+  }
+}
+
+/// q = q + a q, row by row, of length 1 again.
+void add_product(Rows q, const ConstRows& a) {
+  for (Eigen::Index r = 0; r < q.rows(); ++r) {
+    const double w = q(r, 0), x = q(r, 1), y = q(r, 2), z = q(r, 3);
+    const double aw = 1 + a(r, 0), ax = a(r, 1), ay = a(r, 2), az = a(r, 3);
+    q(r, 0) = aw * w - ax * x - ay * y - az * z;
+    q(r, 1) = aw * x + ax * w + ay * z - az * y;
+    q(r, 2) = aw * y + ay * w + az * x - ax * z;
+    q(r, 3) = aw * z + az * w + ax * y - ay * x;
+  }
+  for (Eigen::Index r = 0; r < q.rows(); ++r) q.row(r) /= q.row(r).norm();
+}
+
+Eigen::Vector4d as_vector(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
+
+}  // namespace
+
+void RodFrames::reset(const std::vector<Piece>& pieces, int terms, const Eigen::Matrix3d& start,
+                      bool free_start, const NaturalStrains& natural) {
+  start_ = Eigen::Quaterniond(start).normalized();
+  fields_ = natural.empty() ? 2 : 3;
+  panels_.clear();
+  columns_ = 0;
+  nodes_ = 0;
+  const auto add = [&](double length, const std::array<double, 3>& strain, int count) {
+    panels_.push_back({length, strain, &director_table(count), count, columns_, nodes_});
+    columns_ += count;
+    nodes_ += panels_.back().nodes();
+  };
+  if (free_start) add(1, {1, 1, 1}, turn_terms);
+  turn_nodes_ = nodes_;
+  pieces_ = pieces.size();
+  for (const Piece& piece : pieces) {
+    const double curvature = piece.curvature();
+    add(piece.length, {curvature, curvature, fields_ == 3 ? piece.twist() : 0}, terms);
+  }
+  natural_.resize(0, 3);
+  if (natural.empty()) return;
+  natural_.setZero(nodes_, 3);
+  for (std::size_t e = 0; e < pieces.size(); ++e) {
+    const Panel& panel = panels_[panels_.size() - pieces.size() + e];
+    for (Eigen::Index r = 0; r < panel.nodes(); ++r) {
+      const double s = pieces[e].begin + pieces[e].length * panel.table->nodes[r];
+      natural_.row(panel.node + r) = natural.at(s).transpose();
+    }
+  }
+}
+
+/// product = length / 2 q (0, u), row by row.
+void RodFrames::multiply_by_strains(
+    const ConstRows& q, const Panel& panel, const State& state,
+    Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>> product) const {
+  const auto u = state.u.middleRows(panel.node, panel.nodes());
+  multiply_by_two_strains(q, u, panel.length / 2, product);
+  if (fields_ == 3) add_product_with_twist(q, u, panel.length / 2, product);
+}
+
+void RodFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& state) const {
+  const LegendreTable& table = *panel.table;
+  const Eigen::Index Q = panel.nodes();
+  const auto u = state.u.middleRows(panel.node, Q);
+  auto q = state.q.middleRows(panel.node, Q);
+  auto product = state.product.topRows(Q);
+  auto defect = state.defect.topRows(Q);
+  auto turn = state.turn.topRows(Q);
+  // Magnus: the strain's integral, and h^2/12 of the commutator of the strains at both ends.
+  turn.leftCols(fields_).noalias() = panel.length * (table.integration * u.leftCols(fields_));
+  Eigen::Quaterniond along = at;
+  for (Eigen::Index r = 0; r < Q; ++r) {
+    Eigen::Vector3d step(turn(r, 0), turn(r, 1), fields_ == 3 ? turn(r, 2) : 0);
+    if (r > 0) {
+      const double h = panel.length * (table.nodes[r] - table.nodes[r - 1]);
+      step.head(fields_) -= turn.row(r - 1).head(fields_).transpose();
+      step.z() += h * h / 12 * (u(r - 1, 0) * u(r, 1) - u(r - 1, 1) * u(r, 0));
+      if (fields_ == 3) {
+        step.x() += h * h / 12 * (u(r - 1, 1) * u(r, 2) - u(r - 1, 2) * u(r, 1));
+        step.y() += h * h / 12 * (u(r - 1, 2) * u(r, 0) - u(r - 1, 0) * u(r, 2));
+      }
+    }
+    along = along * from_rotation_vector(step);
+    q.row(r) = as_vector(along).transpose();
+  }
+  const Eigen::Vector4d first = as_vector(at);
+  for (int i = 0; i < most_corrections; ++i) {
+    multiply_by_strains(q, panel, state, product);
+    defect.noalias() = table.integration * product;
+    defect -= q;
+    defect.rowwise() += first.transpose();
+    const double size = defect.cwiseAbs().maxCoeff();
+    if (!(size > finest_defect) || !(size < 1)) break;
+    // eta = d q* + 1/2 int d u q*
+    multiply_by_strains(defect, panel, state, product);
+    multiply_by_conjugate(product, q);
+    multiply_by_conjugate(defect, q);
+    defect.noalias() += table.integration * product;
+    add_product(q, defect);
+    // What is left is its square.
+    if (size < 3e-8) break;
+  }
+  multiply_by_strains(q, panel, state, product);
+  const Eigen::Vector4d end = first + product.transpose() * table.weights;
+  at = Eigen::Quaterniond(end[0], end[1], end[2], end[3]).normalized();
+}
+
+void RodFrames::resize(State& state) const {
+  state.q.resize(nodes_, 4);
+  state.u.resize(nodes_, 3);
+  state.panel_ends.resize(panels_.size());
+  for (Eigen::MatrixX3d* m : {&state.d1, &state.d2, &state.t, &state.tails}) m->resize(nodes_, 3);
+  // The last panel is the largest.
+  const Eigen::Index Q = panels_.back().nodes();
+  const Eigen::Index K = std::max(panels_.back().terms, panels_.front().terms);
+  for (Eigen::MatrixX4d* m : {&state.product, &state.defect, &state.turn}) m->resize(Q, 4);
+  for (Eigen::MatrixX3d* m : {&state.couples, &state.moments, &state.levers}) m->resize(Q, 3);
+  state.along.resize(Q);
+  state.spins.resize(3 * Q, fields_ * K);
+  state.weighted.resize(3 * Q, fields_ * K);
+  state.scaled.resize(std::max(Q, K), fields_ * K);
+  state.own.resize(fields_ * K, fields_ * K);
+  state.beside.resize(3, fields_ * K);
+  state.turned.resize(3, K);
+  state.before.resize(columns_, K);
+  state.ends.resize(3, fields_ * columns_);
+}
+
+void RodFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& state) const {
+  Eigen::Quaterniond at = start_;
+  std::size_t done = 0;
+  for (const Panel& panel : panels_) {
+    for (Eigen::Index f = 0; f < fields_; ++f) {
+      auto strains = state.u.col(f).segment(panel.node, panel.nodes());
+      strains.noalias() = panel.table->values.leftCols(panel.terms) *
+                          x.segment(f * columns_ + panel.column, panel.terms);
+      strains *= panel.strain[static_cast<std::size_t>(f)];
+    }
+    if (fields_ == 3) {
+      state.u.middleRows(panel.node, panel.nodes()) +=
+          natural_.middleRows(panel.node, panel.nodes());
+    }
+    integrate(panel, at, state);
+    state.panel_ends[done++] = at;
+  }
+  for (Eigen::Index r = 0; r < nodes_; ++r) {
+    const double w = state.q(r, 0), x1 = state.q(r, 1), y = state.q(r, 2), z = state.q(r, 3);
+    state.d1.row(r) << 1 - 2 * (y * y + z * z), 2 * (x1 * y + w * z), 2 * (x1 * z - w * y);
+    state.d2.row(r) << 2 * (x1 * y - w * z), 1 - 2 * (x1 * x1 + z * z), 2 * (y * z + w * x1);
+    state.t.row(r) << 2 * (x1 * z + w * y), 2 * (y * z - w * x1), 1 - 2 * (x1 * x1 + y * y);
+  }
+  for (const Panel& panel : panels_) {
+    // Gauss' rule integrates by parts: S^T W = w w^T - W S.
+    const Eigen::Index Q = panel.nodes();
+    const auto t = state.t.middleRows(panel.node, Q);
+    auto tails = state.tails.middleRows(panel.node, Q);
+    const Eigen::Vector3d whole = t.transpose() * panel.table->weights;
+    tails.noalias() = -(panel.table->integration * t);
+    tails.rowwise() += whole.transpose();
+    tails.array().colwise() *= panel.table->weights.array();
+  }
+}
+
+/// Into state.couples and state.moments (rows of a panel): t x g of the nodes, and the moment
+///     M(s) = int_s^end t x dg
+/// that the discrete spins give them; `later` is the sum of t x g beyond the panel.
+void RodFrames::moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
+                        State& state) const {
+  const Eigen::Index Q = panel.nodes();
+  auto couples = state.couples.topRows(Q);
+  auto moments = state.moments.topRows(Q);
+  moments.noalias() = panel.length * (panel.table->weights * later.transpose());
+  if (panel.node < turn_nodes_ || f.nodes == nullptr) {
+    couples.setZero();
+    return;
+  }
+  for (Eigen::Index r = 0; r < Q; ++r) {
+    const Eigen::Index node = panel.node + r;
+    const Eigen::Vector3d t = state.t.row(node);
+    const Eigen::Vector3d g = f.nodes->row(node - turn_nodes_);
+    couples.row(r) = t.cross(g);
+  }
+  moments.noalias() += panel.length * (panel.table->integration.transpose() * couples);
+}
+
+void RodFrames::pull(const FrameGradient& f, double sense, State& state,
+                     Eigen::Ref<Eigen::VectorXd> gradient) const {
+  Eigen::Vector3d later = Eigen::Vector3d::Zero();
+  std::size_t piece = pieces_;
+  for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
+    if (piece > 0 && !f.couples.empty()) later += f.couples[--piece];
+    moments(*panel, f, later, state);
+    const Eigen::Index Q = panel->nodes();
+    auto along = state.along.head(Q);
+    for (Eigen::Index field = 0; field < fields_; ++field) {
+      const double scale = sense * panel->strain[static_cast<std::size_t>(field)];
+      const auto d = director(state, field).middleRows(panel->node, Q);
+      along = d.cwiseProduct(state.moments.topRows(Q)).rowwise().sum();
+      gradient.segment(field * columns_ + panel->column, panel->terms).noalias() +=
+          scale * (panel->table->values.leftCols(panel->terms).transpose() * along);
+    }
+    later += state.couples.topRows(Q).colwise().sum().transpose();
+  }
+}
+
+void RodFrames::pull_position(const std::vector<double>& signs, State& state,
+                              Eigen::Ref<Eigen::MatrixXd> jacobian) const {
+  // The moment of a force along an axis a is v x a, v what lies beyond; d.(v x a) = a.(d x v).
+  Eigen::Vector3d beyond = Eigen::Vector3d::Zero();
+  std::size_t piece = signs.size();
+  for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
+    const Eigen::Index Q = panel->nodes();
+    const double length = panel->length;
+    const double sign = panel->node < turn_nodes_ ? 0 : signs[--piece];
+    auto v = state.moments.topRows(Q);
+    v.noalias() = length * panel->table->weights * beyond.transpose();
+    v += sign * length * length * state.tails.middleRows(panel->node, Q);
+    auto levers = state.levers.topRows(Q);
+    for (Eigen::Index field = 0; field < fields_; ++field) {
+      const Eigen::MatrixX3d& directors = director(state, field);
+      for (Eigen::Index r = 0; r < Q; ++r) {
+        const Eigen::Vector3d d = directors.row(panel->node + r);
+        const Eigen::Vector3d own = v.row(r);
+        levers.row(r) = d.cross(own);
+      }
+      auto rows = jacobian.middleCols(field * columns_ + panel->column, panel->terms);
+      rows.noalias() = levers.transpose() * panel->table->values.leftCols(panel->terms);
+      rows *= panel->strain[static_cast<std::size_t>(field)];
+    }
+    const auto t = state.t.middleRows(panel->node, Q);
+    beyond += sign * length * (t.transpose() * panel->table->weights);
+  }
+}
+
+/// Into state.spins: spins of the panel's nodes by its own unknowns, axis by axis.
+void RodFrames::own_spins(const Panel& panel, State& state) const {
+  const Eigen::Index Q = panel.nodes();
+  for (Eigen::Index field = 0; field < fields_; ++field) {
+    const double scale = panel.length * panel.strain[static_cast<std::size_t>(field)];
+    const auto d = director(state, field).middleRows(panel.node, Q);
+    auto scaled = state.scaled.topLeftCorner(Q, panel.terms);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      scaled.noalias() = d.col(axis).asDiagonal() * panel.table->values.leftCols(panel.terms);
+      state.spins.block(axis * Q, field * panel.terms, Q, panel.terms).noalias() =
+          scale * (panel.table->integration * scaled);
+    }
+  }
+}
+
+/// Into state.ends: spin of the panel's end by its own unknowns.
+void RodFrames::end_spins(const Panel& panel, State& state) const {
+  const Eigen::Index Q = panel.nodes();
+  auto weighted = state.levers.topRows(Q);
+  for (Eigen::Index field = 0; field < fields_; ++field) {
+    const auto d = director(state, field).middleRows(panel.node, Q);
+    weighted.noalias() = panel.table->weights.asDiagonal() * d;
+    auto ends = state.ends.middleCols(field * columns_ + panel.column, panel.terms);
+    ends.noalias() = weighted.transpose() * panel.table->values.leftCols(panel.terms);
+    ends *= panel.length * panel.strain[static_cast<std::size_t>(field)];
+  }
+}
+
+void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matrix3d> curvatures,
+                            State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
+  for (const Panel& panel : panels_) end_spins(panel, state);
+  Eigen::Matrix3d later_curvature = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d later = Eigen::Vector3d::Zero();
+  std::size_t piece = pieces_;
+  for (auto panel = panels_.rbegin(); panel != panels_.rend(); ++panel) {
+    if (piece > 0 && !f.couples.empty()) {
+      later += f.couples[--piece];
+      later_curvature += curvatures[piece];
+    }
+    moments(*panel, f, later, state);
+    const Eigen::Index Q = panel->nodes();
+    const Eigen::Index K = panel->terms;
+    const Eigen::Index all = fields_ * K;
+    own_spins(*panel, state);
+    const auto spins = state.spins.topLeftCorner(3 * Q, all);
+    auto weighted = state.weighted.topLeftCorner(3 * Q, all);
+    auto own = state.own.topLeftCorner(all, all);
+    auto beside = state.beside.leftCols(all);
+    const auto values = panel->table->values.leftCols(K);
+
+    // Spins squared: (g.theta)(t.theta) - (g.t) theta.theta
+    Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
+    if (panel->node < turn_nodes_) {
+      own.setZero();
+      beside.setZero();
+    } else {
+      for (Eigen::Index r = 0; r < Q; ++r) {
+        const Eigen::Index node = panel->node + r;
+        const Eigen::Matrix3d a =
+            spin_curvature(state.t.row(node), f.nodes->row(node - turn_nodes_));
+        curvature += a;
+        for (Eigen::Index axis = 0; axis < 3; ++axis) {
+          weighted.row(axis * Q + r) = a(axis, 0) * spins.row(r) + a(axis, 1) * spins.row(Q + r) +
+                                       a(axis, 2) * spins.row(2 * Q + r);
+        }
+      }
+      own.noalias() = spins.transpose() * weighted;
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        beside.row(axis) = weighted.middleRows(axis * Q, Q).colwise().sum();
+      }
+    }
+    // Spins of spins: theta'.(M x theta), half of it to either side.
+    for (Eigen::Index field = 0; field < fields_; ++field) {
+      const double half = panel->strain[static_cast<std::size_t>(field)] / 2;
+      const Eigen::MatrixX3d& directors = director(state, field);
+      auto lever = state.levers.topRows(Q);
+      for (Eigen::Index r = 0; r < Q; ++r) {
+        const Eigen::Vector3d d = directors.row(panel->node + r);
+        const Eigen::Vector3d m = state.moments.row(r);
+        lever.row(r) = d.cross(m);
+      }
+      auto by_node = state.weighted.topLeftCorner(Q, all);
+      by_node.noalias() = lever.col(0).asDiagonal() * spins.topRows(Q);
+      by_node.noalias() += lever.col(1).asDiagonal() * spins.middleRows(Q, Q);
+      by_node.noalias() += lever.col(2).asDiagonal() * spins.bottomRows(Q);
+      auto product = state.scaled.topLeftCorner(K, all);
+      product.noalias() = half * (values.transpose() * by_node);
+      own.middleRows(field * K, K) += product;
+      own.middleCols(field * K, K) += product.transpose();
+      beside.middleCols(field * K, K).noalias() += half * (lever.transpose() * values);
+    }
+    for (Eigen::Index field = 0; field < fields_; ++field) {
+      const auto ends = state.ends.middleCols(field * columns_ + panel->column, K);
+      beside.middleCols(field * K, K).noalias() += later_curvature * ends;
+    }
+    add_panel(*panel, later_curvature, state, hessian);
+    later_curvature += curvature;
+    later += state.couples.topRows(Q).colwise().sum().transpose();
+  }
+}
+
+/// Adds state.own, with what turns all that is beyond the panel, and beside it the columns of the
+/// panels before.
+void RodFrames::add_panel(const Panel& panel, const Eigen::Matrix3d& later_curvature, State& state,
+                          Eigen::Ref<Eigen::MatrixXd> hessian) const {
+  const Eigen::Index K = panel.terms;
+  for (Eigen::Index row = 0; row < fields_; ++row) {
+    const Eigen::Index at_row = row * columns_ + panel.column;
+    for (Eigen::Index column = 0; column < fields_; ++column) {
+      const Eigen::Index at_column = column * columns_ + panel.column;
+      auto block = hessian.block(at_row, at_column, K, K);
+      block += state.own.block(row * K, column * K, K, K);
+      const auto ends = state.ends.middleCols(at_column, K);
+      auto turned = state.turned.leftCols(K);
+      turned.noalias() = later_curvature * ends;
+      block.noalias() += state.ends.middleCols(at_row, K).transpose() * turned;
+      if (panel.column == 0) continue;
+      auto before = state.before.topLeftCorner(panel.column, K);
+      before.noalias() = state.ends.middleCols(row * columns_, panel.column).transpose() *
+                         state.beside.middleCols(column * K, K);
+      hessian.block(row * columns_, at_column, panel.column, K) += before;
+      hessian.block(at_column, row * columns_, K, panel.column) += before.transpose();
+    }
+  }
+}
+
+std::array<Eigen::MatrixXd, 3> RodFrames::tangent_jacobian(State& state) const {
+  const Eigen::Index nodes = nodes_ - turn_nodes_;
+  std::array<Eigen::MatrixXd, 3> jacobian;
+  Eigen::MatrixXd spins = Eigen::MatrixXd::Zero(3 * nodes, fields_ * columns_);
+  for (const Panel& panel : panels_) {
+    const Eigen::Index Q = panel.nodes();
+    const Eigen::Index K = panel.terms;
+    own_spins(panel, state);
+    end_spins(panel, state);
+    const Eigen::Index first = panel.node - turn_nodes_;
+    const Eigen::Index beyond = std::max<Eigen::Index>(0, first + Q);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      for (Eigen::Index field = 0; field < fields_; ++field) {
+        const Eigen::Index column = field * columns_ + panel.column;
+        if (first >= 0) {
+          spins.block(axis * nodes + first, column, Q, K) =
+              state.spins.block(axis * Q, field * K, Q, K);
+        }
+        spins.block(axis * nodes + beyond, column, nodes - beyond, K).rowwise() =
+            state.ends.row(axis).segment(column, K);
+      }
+    }
+  }
+  const auto t = state.t.bottomRows(nodes);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Eigen::Index a = (axis + 1) % 3;
+    const Eigen::Index b = (axis + 2) % 3;
+    jacobian[static_cast<std::size_t>(axis)] =
+        t.col(b).asDiagonal() * spins.middleRows(a * nodes, nodes);
+    jacobian[static_cast<std::size_t>(axis)] -=
+        t.col(a).asDiagonal() * spins.middleRows(b * nodes, nodes);
+  }
+  return jacobian;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,621 @@
+#include "strain/span_energy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "base/fit_angle.hpp"
+#include "base/free_directions.hpp"
+#include "base/legendre.hpp"
+#include "base/spin.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using std::numbers::pi;
+
+/// Up to these sizes dot products, and products with vectors, are faster than one of matrices,
+/// which packs its operands first.
+constexpr Eigen::Index most_for_dots = 12;
+constexpr Eigen::Index most_for_vectors = 20;
+
+double angle_of(const Eigen::Vector3d& direction) {
+  return std::atan2(direction.y(), direction.x());
+}
+
+/// A frame whose third column is this tangent; a planar shape then bends by u1 alone.
+Eigen::Matrix3d default_frame(const Eigen::Vector3d& tangent) {
+  return frame_along(tangent, Span::d1(tangent));
+}
+
+/// Where a rod that nothing clamps may point at its start: what hangs there pulls it. Two
+/// components of a turn lead from there to every direction but the opposite one, where they become
+/// one.
+Eigen::Vector3d first_tangent(const Span& span) {
+  if (span.start_direction) return *span.start_direction;
+  const Eigen::Vector3d before = span.force_before(span.anchor);
+  return before.norm() > 0 ? Eigen::Vector3d(-before.normalized()) : Eigen::Vector3d::UnitX();
+}
+
+/// The angle that differs from `angle` by whole turns and is nearest to `target`.
+double nearest_turn(double angle, double target) {
+  return angle + 2 * pi * std::round((target - angle) / (2 * pi));
+}
+
+/// Adds basis^T diag(by_node) basis to a symmetric matrix.
+void add_weighted_gram(const Eigen::Ref<const Eigen::VectorXd>& by_node,
+                       const Eigen::Ref<const Eigen::MatrixXd>& basis, Eigen::MatrixXd& scaled,
+                       Eigen::Ref<Eigen::MatrixXd> result) {
+  scaled.noalias() = by_node.asDiagonal() * basis;
+  const Eigen::Index columns = basis.cols();
+  if (columns > most_for_vectors) {
+    result.noalias() += basis.transpose() * scaled;
+    return;
+  }
+  for (Eigen::Index j = 0; j < columns; ++j) {
+    const Eigen::Index rows = columns - j;
+    if (columns > most_for_dots) {
+      result.col(j).tail(rows).noalias() += basis.rightCols(rows).transpose() * scaled.col(j);
+    } else {
+      for (Eigen::Index i = j; i < columns; ++i) result(i, j) += basis.col(i).dot(scaled.col(j));
+    }
+    result.row(j).tail(rows - 1) = result.col(j).tail(rows - 1).transpose();
+  }
+}
+
+}  // namespace
+
+void SpanEnergy::tabulate_nodes() {
+  table_ = span_.planar ? &legendre_table(terms_) : &director_table(terms_);
+  const Eigen::Index Q = table_->nodes.size();
+  const auto count = static_cast<Eigen::Index>(pieces_.size());
+  columns_ = free_start_ + count * terms_;
+  s_.resize(count * Q);
+  weights_.resize(count * Q);
+  for (Eigen::Index e = 0; e < count; ++e) {
+    const Piece& piece = pieces_[static_cast<std::size_t>(e)];
+    s_.segment(e * Q, Q) = piece.begin + piece.length * table_->nodes.array();
+    weights_.segment(e * Q, Q) = piece.length * table_->weights;
+  }
+}
+
+void SpanEnergy::tabulate_angles() {
+  const Eigen::Index Q = table_->nodes.size();
+  const Eigen::Index K = terms_;
+  const auto count = static_cast<Eigen::Index>(pieces_.size());
+  angle_.setZero(s_.size(), columns_);
+  held_angle_.setZero(static_cast<Eigen::Index>(director_rows_.size()), columns_);
+  if (free_start_ == 1) {
+    angle_.col(0).setOnes();
+    held_angle_.col(0).setOnes();
+  }
+  for (Eigen::Index e = 0; e < count; ++e) {
+    const double turn = pieces_[static_cast<std::size_t>(e)].angle();
+    const Eigen::Index column = free_start_ + e * K;
+    angle_.block(e * Q, column, Q, K) = turn * table_->integrals.leftCols(K);
+    // Only p_0 turns the tangent over a whole piece.
+    angle_.col(column).tail((count - e - 1) * Q).setConstant(turn);
+    for (std::size_t i = 0; i < director_rows_.size(); ++i) {
+      if (e <= director_rows_[i].piece) held_angle_(static_cast<Eigen::Index>(i), column) = turn;
+    }
+  }
+}
+
+/// Of the nodes of a free rod.
+void SpanEnergy::tabulate_natural_angles() {
+  natural_angle_.resize(0);
+  if (span_.natural.empty()) return;
+  natural_angle_.resize(s_.size());
+  for (Eigen::Index q = 0; q < s_.size(); ++q) {
+    natural_angle_[q] = span_.natural.integral(s_[q]).x();
+  }
+}
+
+void SpanEnergy::tabulate_forces() {
+  const Eigen::Index nodes = s_.size();
+  force_.resize(nodes, 3);
+  for (Eigen::Index q = 0; q < nodes; ++q) {
+    // What hangs beyond a node, seen from the anchor.
+    const bool after = s_[q] > span_.anchor;
+    Eigen::Vector3d n = span_.weight_between(s_[q], after ? span_.length : 0);
+    for (const Span::Load& load : span_.loads) {
+      if (after && load.at > s_[q]) n += load.force;
+      if (!after && load.at < s_[q]) n -= load.force;
+    }
+    force_.row(q) = weights_[q] * n.transpose();
+  }
+  reach_.setZero(nodes, static_cast<Eigen::Index>(span_.holds.size()));
+  const Eigen::Index Q = table_->nodes.size();
+  reach_signs_.assign(span_.holds.size(), std::vector<double>(pieces_.size(), 0));
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    const double at = span_.holds[static_cast<std::size_t>(j)].at;
+    for (Eigen::Index q = 0; q < nodes; ++q) {
+      if (s_[q] > span_.anchor && s_[q] < at) reach_(q, j) = weights_[q];
+      if (s_[q] < span_.anchor && s_[q] > at) reach_(q, j) = -weights_[q];
+    }
+    for (std::size_t e = 0; e < pieces_.size(); ++e) {
+      // All nodes of a piece are on one side of the grips.
+      const Eigen::Index q = static_cast<Eigen::Index>(e) * Q;
+      reach_signs_[static_cast<std::size_t>(j)][e] = reach_(q, j) / weights_[q];
+    }
+  }
+}
+
+void SpanEnergy::reset(const Span& span, int terms) {
+  span_ = span;
+  terms_ = terms;
+  axes_ = span.planar ? 2 : 3;
+  free_start_ = span.start_direction ? 0 : 1;
+  pieces_ = pieces_of(span);
+  tabulate_nodes();
+  tabulate_forces();
+  if (span.twist) twist_root_ = std::sqrt(span.twist->stiffness / span.length);
+  list_director_rows();
+  constraints_ = first_director_row() + static_cast<Eigen::Index>(director_rows_.size());
+  const Eigen::Index nodes = s_.size();
+  for (Eigen::MatrixX3d* m : {&t_, &t_theta_, &total_, &carried_}) m->setZero(nodes, 3);
+  if (span.planar) {
+    tabulate_angles();
+    tabulate_natural_angles();
+    start_theta_ = span.start_direction ? angle_of(*span.start_direction) : 0;
+    for (DirectorRow& row : director_rows_) {
+      row.angle = nearest_turn(angle_of(row.to), start_theta_);
+    }
+    for (Eigen::VectorXd* v : {&theta_, &kappa_, &along_, &turning_}) v->setZero(nodes);
+    scaled_.resize(table_->nodes.size(), terms_);
+    beside_.resize(terms_);
+  } else {
+    start_frame_ = default_frame(first_tangent(span));
+    frames_.reset(pieces_, terms, start_frame_, free_start_ == 1, span_.natural);
+    frames_.resize(state_);
+    pulled_.resize(size());
+    couples_.assign(pieces_.size(), Eigen::Vector3d::Zero());
+    curvatures_.assign(pieces_.size(), Eigen::Matrix3d::Zero());
+  }
+  x_.setZero(size());
+  gradient_.setZero(size());
+  evaluated_ = false;
+  walls_.reset(span_, pieces_, *table_, s_, weights_);
+}
+
+/// The directions of the clamps inside the span and at its end; there of d1 too if it is held.
+void SpanEnergy::list_director_rows() {
+  director_rows_.clear();
+  const auto add = [&](Eigen::Index hold, Eigen::Index piece, const Eigen::Vector3d& to) {
+    const Eigen::Matrix3d frame = default_frame(to);
+    director_rows_.push_back({hold, piece, to, frame.col(0)});
+    if (!span_.planar) director_rows_.push_back({hold, piece, to, frame.col(1)});
+  };
+  const auto holds = static_cast<Eigen::Index>(span_.holds.size());
+  for (Eigen::Index j = 0; j < holds; ++j) {
+    const Span::Hold& hold = span_.holds[static_cast<std::size_t>(j)];
+    if (!hold.direction) continue;
+    const auto ends_there = [&](const Piece& piece) {
+      return std::abs(piece.end() - hold.at) < closest_cuts;
+    };
+    const auto piece = std::find_if(pieces_.begin(), pieces_.end(), ends_there);
+    add(j, piece - pieces_.begin(), *hold.direction);
+  }
+  if (!span_.end_direction) return;
+  add(holds - 1, pieces() - 1, *span_.end_direction);
+  if (!span_.twist) return;
+  director_rows_.push_back(
+      {holds - 1, pieces() - 1, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), true});
+  turn_end_clamp(span_.twist->end_d1);
+}
+
+void SpanEnergy::turn_end_clamp(const Eigen::Vector3d& end_d1) {
+  span_.twist->end_d1 = end_d1;
+  const Eigen::Matrix3d held = frame_along(*span_.end_direction, end_d1);
+  director_rows_.back().to = held.col(0);
+  director_rows_.back().across = held.col(1);
+}
+
+/// Into t_ (and t_theta_ in the plane), at x_.
+void SpanEnergy::place_tangents() {
+  if (!span_.planar) {
+    frames_.evaluate(x_, state_);
+    t_ = state_.t.bottomRows(s_.size());
+    return;
+  }
+  theta_.noalias() = angle_ * x_;
+  theta_.array() += start_theta_;
+  if (natural_angle_.size() > 0) theta_ += natural_angle_;
+  for (Eigen::Index q = 0; q < theta_.size(); ++q) {
+    const double c = std::cos(theta_[q]);
+    const double s = std::sin(theta_[q]);
+    t_(q, 0) = c;
+    t_(q, 1) = s;
+    t_theta_(q, 0) = -s;
+    t_theta_(q, 1) = c;
+  }
+}
+
+double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
+                         Eigen::Ref<Eigen::VectorXd> gradient) {
+  if (evaluated_ && !has_walls() && x == x_) {
+    gradient = gradient_;
+    return energy_;
+  }
+  x_ = x;
+  place_tangents();
+  gradient = x;
+  // A free start turns for nothing.
+  for (Eigen::Index f = 0; f < fields() && free_start_ == 1; ++f) gradient[f * columns_] = 0;
+  double energy = gradient.dot(x) / 2 - force_.cwiseProduct(t_).sum();
+  total_ = force_;
+  if (has_walls()) energy += walls_.add(t_, total_);
+  if (span_.planar) {
+    turning_ = total_.cwiseProduct(t_theta_).rowwise().sum();
+    gradient.noalias() -= angle_.transpose() * turning_;
+  } else {
+    frames_.pull({&total_}, -1, state_, gradient);
+  }
+  gradient_ = gradient;
+  energy_ = energy;
+  evaluated_ = true;
+  return energy;
+}
+
+DirectorMiss SpanEnergy::miss_of(const DirectorRow& row) const {
+  const Eigen::Matrix3d frame = frames_.frame_after(state_, row.piece);
+  if (!row.of_d1) return director_miss(frame.col(2), row.to, row.across);
+  const double psi = has_psi() ? twist(x_) : 0;
+  const Eigen::Vector3d d1 = std::cos(psi) * frame.col(0) + std::sin(psi) * frame.col(1);
+  return director_miss(d1, row.to, row.across);
+}
+
+double SpanEnergy::twist(const Eigen::VectorXd& x) const {
+  if (has_psi()) return x[x.size() - 1] / twist_root_;
+  if (span_.planar || span_.natural.empty()) return 0;
+  double angle = span_.natural.integral(span_.length).z();
+  for (Eigen::Index e = 0; e < pieces(); ++e) {
+    angle += pieces_[static_cast<std::size_t>(e)].twist_angle() * x[first_twist(e)];
+  }
+  return angle;
+}
+
+double SpanEnergy::twisting_torque(const Eigen::VectorXd& x,
+                                   const Eigen::VectorXd& multipliers) const {
+  if (!span_.twist) return 0;
+  // A turn of the clamp's d1 is all that its multiplier works on.
+  return has_psi() ? twist(x) * twist_root_ * twist_root_ : multipliers[constraints_ - 1];
+}
+
+Eigen::VectorXd SpanEnergy::with_twist(Eigen::VectorXd x, double angle) const {
+  if (has_psi()) {
+    x[x.size() - 1] = angle * twist_root_;
+    return x;
+  }
+  // A torque is the same everywhere.
+  double compliance = 0;
+  for (const Piece& piece : pieces_) compliance += piece.length / piece.torsion;
+  const double torque = (angle - twist(x)) / compliance;
+  for (Eigen::Index e = 0; e < pieces(); ++e) {
+    x[first_twist(e)] += torque * pieces_[static_cast<std::size_t>(e)].twist_angle();
+  }
+  return x;
+}
+
+void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
+                            Eigen::Ref<Eigen::MatrixXd> jacobian) {
+  Eigen::Index row = 0;
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    for (Eigen::Index axis = 0; axis < axes_; ++axis) {
+      residual[row + axis] =
+          t_.col(axis).dot(reach_.col(j)) - span_.holds[static_cast<std::size_t>(j)].offset[axis];
+      if (!span_.planar) continue;
+      turning_ = t_theta_.col(axis).cwiseProduct(reach_.col(j));
+      jacobian.row(row + axis).noalias() = turning_.transpose() * angle_;
+    }
+    if (!span_.planar) {
+      frames_.pull_position(reach_signs_[static_cast<std::size_t>(j)], state_,
+                            jacobian.middleRows(row, 3));
+      if (has_psi()) jacobian.col(strains()).segment<3>(row).setZero();
+    }
+    row += axes_;
+  }
+  if (span_.planar) {
+    if (director_rows_.empty()) return;
+    jacobian.bottomRows(held_angle_.rows()) = held_angle_;
+    residual.tail(held_angle_.rows()).noalias() = held_angle_ * x_;
+    for (const DirectorRow& held : director_rows_) {
+      residual[row++] += start_theta_ + natural_turn(held.piece) - held.angle;
+    }
+    return;
+  }
+  for (const DirectorRow& held : director_rows_) {
+    const DirectorMiss miss = miss_of(held);
+    residual[row] = miss.value;
+    pulled_.setZero();
+    Eigen::Vector3d& couple = couples_[static_cast<std::size_t>(held.piece)];
+    couple = miss.couple;
+    frames_.pull({nullptr, couples_}, 1, state_, pulled_);
+    couple.setZero();
+    // Twist turns d1 about the tangent.
+    if (held.of_d1 && has_psi()) {
+      pulled_[strains()] = miss.couple.dot(state_.end_frame().col(2)) / twist_root_;
+    }
+    jacobian.row(row++) = pulled_.transpose();
+  }
+}
+
+double SpanEnergy::natural_turn(Eigen::Index piece) const {
+  if (span_.natural.empty()) return 0;
+  return span_.natural.integral(pieces_[static_cast<std::size_t>(piece)].end()).x();
+}
+
+/// Adds the second derivatives of sum along_ angle^2 / 2. Beyond its own piece an unknown turns the
+/// rod as a whole, if it is the first of its piece or the start's angle, or not at all.
+void SpanEnergy::add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result) {
+  const Eigen::Index Q = table_->nodes.size();
+  const Eigen::Index K = terms_;
+  double later = 0;
+  for (Eigen::Index e = pieces(); e-- > 0;) {
+    const auto along = along_.segment(e * Q, Q);
+    const double own_turn = pieces_[static_cast<std::size_t>(e)].angle();
+    const Eigen::Index column = free_start_ + e * K;
+    const auto angle = angle_.block(e * Q, column, Q, K);
+    auto own = result.block(column, column, K, K);
+    add_weighted_gram(along, angle, scaled_, own);
+    own(0, 0) += own_turn * own_turn * later;
+    auto beside = beside_.head(K);
+    beside.noalias() = angle.transpose() * along;
+    beside[0] += own_turn * later;
+    for (Eigen::Index before = -free_start_; before < e; ++before) {
+      const bool start = before < 0;
+      const double turn = start ? 1 : pieces_[static_cast<std::size_t>(before)].angle();
+      const Eigen::Index row = start ? 0 : free_start_ + before * K;
+      result.row(row).segment(column, K) += turn * beside.transpose();
+      result.col(row).segment(column, K) += turn * beside;
+    }
+    later += along.sum();
+  }
+  if (free_start_ == 1) result(0, 0) += later;
+}
+
+/// Into carried_: weight of the node times the force that the rod carries there with the grips'.
+void SpanEnergy::carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
+  carried_ = total_;
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    for (Eigen::Index axis = 0; axis < axes_; ++axis) {
+      carried_.col(axis) += multipliers[j * axes_ + axis] * reach_.col(j);
+    }
+  }
+}
+
+void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                         Eigen::MatrixXd& result) {
+  carry(multipliers);
+  result.setIdentity(size(), size());
+  for (Eigen::Index f = 0; f < fields() && free_start_ == 1; ++f) {
+    result(f * columns_, f * columns_) = 0;
+  }
+  if (span_.planar) {
+    along_ = carried_.cwiseProduct(t_).rowwise().sum();
+    add_angles_squared(result);
+  } else {
+    carried_ = -carried_;
+    Eigen::Index row = first_director_row();
+    for (const DirectorRow& held : director_rows_) {
+      const double mu = multipliers[row++];
+      const DirectorMiss miss = miss_of(held);
+      couples_[static_cast<std::size_t>(held.piece)] -= mu * miss.couple;
+      curvatures_[static_cast<std::size_t>(held.piece)] -= mu * miss.curvature;
+    }
+    frames_.add_hessian({&carried_, couples_}, curvatures_, state_, result);
+    for (const DirectorRow& held : director_rows_) {
+      couples_[static_cast<std::size_t>(held.piece)].setZero();
+      curvatures_[static_cast<std::size_t>(held.piece)].setZero();
+    }
+    if (has_psi()) add_twist_hessian(-multipliers[constraints_ - 1], result);
+  }
+  if (!has_walls()) return;
+  walls_.add_hessian(tangent_jacobian(), result.topLeftCorner(strains(), strains()));
+}
+
+/// Second derivatives with the twist psi of what the end's d1 misses, times a factor: psi turns it
+/// about the tangent t, after which the strains turn it, which is the sum of both turns and half
+/// their cross product. frames_.add_hessian() has left the turns of the end.
+void SpanEnergy::add_twist_hessian(double factor, Eigen::MatrixXd& result) {
+  const Eigen::Vector3d t = state_.end_frame().col(2);
+  const DirectorMiss miss = miss_of(director_rows_.back());
+  const Eigen::Vector3d turned = miss.curvature * t;
+  const Eigen::Vector3d mixed = factor / twist_root_ * (turned + t.cross(miss.couple) / 2);
+  pulled_.head(strains()).noalias() = state_.ends.transpose() * mixed;
+  result.col(strains()).head(strains()) += pulled_.head(strains());
+  result.row(strains()).head(strains()) += pulled_.head(strains()).transpose();
+  result(strains(), strains()) += factor * t.dot(turned) / (twist_root_ * twist_root_);
+}
+
+std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian() {
+  if (!span_.planar) return frames_.tangent_jacobian(state_);
+  return {t_theta_.col(0).asDiagonal() * angle_, t_theta_.col(1).asDiagonal() * angle_,
+          Eigen::MatrixXd::Zero(angle_.rows(), angle_.cols())};
+}
+
+/// Into along_: weight of the node times n.t - kappa^2, which is what the square of an elevation
+/// costs there.
+void SpanEnergy::carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
+  carry(multipliers);
+  along_ = carried_.cwiseProduct(t_).rowwise().sum();
+  const Eigen::Index Q = table_->nodes.size();
+  for (Eigen::Index e = 0; e < pieces(); ++e) {
+    const double scale = pieces_[static_cast<std::size_t>(e)].curvature();
+    kappa_.segment(e * Q, Q).noalias() =
+        scale * (table_->values.leftCols(terms_) * x_.segment(free_start_ + e * terms_, terms_));
+    const double stiffness = pieces_[static_cast<std::size_t>(e)].bending;
+    along_.segment(e * Q, Q).array() -=
+        stiffness * weights_.segment(e * Q, Q).array() * kappa_.segment(e * Q, Q).array().square();
+  }
+}
+
+bool SpanEnergy::resists_sideways() {
+  carry_sideways(Eigen::VectorXd());
+  // int beta'^2 >= (pi / 2L)^2 int beta^2 for what a clamp holds at one end.
+  const double bending = pi * pi / (4 * span_.length * span_.length);
+  if (((along_.array() + bending * weights_.array()) > 0).all()) return true;
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Identity(columns_, columns_);
+  add_angles_squared(hessian);
+  return is_minimum(hessian);
+}
+
+void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                          Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
+  if (!span_.natural.empty()) return sideways_with_twist(hessian, jacobian);
+  carry_sideways(multipliers);
+  hessian.setIdentity(columns_, columns_);
+  if (free_start_ == 1) hessian(0, 0) = 0;
+  add_angles_squared(hessian);
+  jacobian.resize(reach_.cols() + held_angle_.rows(), columns_);
+  jacobian.topRows(reach_.cols()).noalias() = reach_.transpose() * angle_;
+  jacobian.bottomRows(held_angle_.rows()) = held_angle_;
+}
+
+/// A curved rod that leaves its plane twists: what the same span in space says.
+void SpanEnergy::sideways_with_twist(Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
+  Span space = span_;
+  space.planar = false;
+  SpanEnergy twin(space, terms_);
+  Eigen::VectorXd gradient(twin.size());
+  (void)twin.value(twin.adopt(*this, x_), gradient);
+  Eigen::VectorXd residual(twin.constraints());
+  Eigen::MatrixXd all(twin.constraints(), twin.size());
+  twin.constraint(residual, all);
+  // The forces are the plane's, seen in the twin's constraints.
+  const Eigen::VectorXd multipliers =
+      twin.constraints() == 0
+          ? Eigen::VectorXd()
+          : Eigen::VectorXd(all.transpose().completeOrthogonalDecomposition().solve(gradient));
+  Eigen::MatrixXd curvature;
+  twin.hessian(multipliers, curvature);
+  const Eigen::Index out = twin.size() - size();
+  hessian = curvature.bottomRightCorner(out, out);
+  // Of a position its z, of a direction what is across it along z.
+  std::vector<Eigen::Index> rows;
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) rows.push_back(3 * j + 2);
+  for (Eigen::Index row = twin.first_director_row(); row < twin.constraints(); row += 2) {
+    rows.push_back(row);
+  }
+  jacobian.resize(static_cast<Eigen::Index>(rows.size()), out);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    jacobian.row(static_cast<Eigen::Index>(i)) = all.row(rows[i]).tail(out);
+  }
+}
+
+Eigen::VectorXd SpanEnergy::fit(const StartShape& shape) {
+  const Eigen::Matrix3Xd& tangents = shape.tangents;
+  if (!span_.planar) {
+    Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
+    x.head(strains()) = frames_.fit(tangents);
+    if (fields() == 3 && shape.roll.size() > 0) x = frames_.rolled(x, shape.roll);
+    return x;
+  }
+  const Eigen::Index nodes = s_.size();
+  Eigen::VectorXd angles(nodes);
+  double previous = free_start_ == 1 ? angle_of(tangents.col(0)) : start_theta_;
+  for (Eigen::Index q = 0; q < nodes; ++q) {
+    angles[q] = previous = nearest_turn(angle_of(tangents.col(q)), previous);
+  }
+  for (DirectorRow& row : director_rows_) {
+    const Eigen::Index last = (row.piece + 1) * table_->nodes.size() - 1;
+    row.angle = nearest_turn(row.angle, angles[last]);
+  }
+  std::vector<double> turns;
+  for (const Piece& piece : pieces_) turns.push_back(piece.angle());
+  std::optional<double> start;
+  if (free_start_ == 0) start = start_theta_;
+  if (natural_angle_.size() > 0) angles -= natural_angle_;
+  const FittedAngle fitted = fit_angle(*table_, turns, angles, start);
+  Eigen::VectorXd x(columns_);
+  if (free_start_ == 1) x[0] = fitted.start;
+  x.tail(columns_ - free_start_) = fitted.coefficients;
+  return x;
+}
+
+Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd& x) {
+  for (std::size_t i = 0; i < director_rows_.size() && other.span_.planar && span_.planar; ++i) {
+    director_rows_[i].angle = other.director_rows_[i].angle;
+  }
+  const Eigen::Index shared = std::min(terms_, other.terms_);
+  Eigen::VectorXd adopted = Eigen::VectorXd::Zero(size());
+  // A planar shape's curvature is u1.
+  const Eigen::Index known = std::min(fields(), other.fields());
+  for (Eigen::Index field = 0; field < known; ++field) {
+    const Eigen::Index to = field * columns_;
+    const Eigen::Index from = field * other.columns_;
+    if (free_start_ == 1) adopted[to] = x[from];
+    if (free_start_ == 1 && other.span_.planar && !span_.planar) {
+      adopted[to] = nearest_turn(x[from] - angle_of(start_frame_.col(2)), 0);
+    }
+    for (Eigen::Index e = 0; e < pieces(); ++e) {
+      adopted.segment(to + free_start_ + e * terms_, shared) =
+          x.segment(from + free_start_ + e * other.terms_, shared);
+    }
+  }
+  if (has_psi() && other.has_psi()) adopted[strains()] = x[other.strains()];
+  return adopted;
+}
+
+double SpanEnergy::longest_piece() const {
+  double longest = 0;
+  for (const Piece& piece : pieces_) longest = std::max(longest, piece.length);
+  return longest;
+}
+
+double SpanEnergy::tail(const Eigen::VectorXd& x) const {
+  const Eigen::Index last = std::min(terms_, 2);
+  double tail = 0;
+  for (Eigen::Index field = 0; field < fields(); ++field) {
+    for (std::size_t e = 0; e < pieces_.size(); ++e) {
+      const Eigen::Index end =
+          field * columns_ + free_start_ + (static_cast<Eigen::Index>(e) + 1) * terms_;
+      const double turn = field == 2 ? pieces_[e].twist_angle() : pieces_[e].angle();
+      tail = std::max(tail, turn * x.segment(end - last, last).cwiseAbs().maxCoeff());
+    }
+  }
+  return tail;
+}
+
+SpanShape SpanEnergy::shape(const Eigen::VectorXd& x) const {
+  SpanShape shape;
+  shape.terms = terms_;
+  shape.planar = span_.planar;
+  shape.anchor = span_.anchor;
+  shape.pieces = pieces_;
+  if (span_.planar) {
+    shape.start_theta = start_theta_ + (free_start_ == 1 ? x[0] : 0);
+    shape.theta = x.tail(columns_ - free_start_);
+  } else {
+    shape.start_frame = start_frame_;
+    shape.free_start = free_start_ == 1;
+    shape.strains = x.head(strains());
+  }
+  shape.natural = span_.natural;
+  return shape;
+}
+
+Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
+  Eigen::VectorXd gradient(x.size());
+  (void)value(x, gradient);
+  Energies energies;
+  Eigen::VectorXd stored = x;
+  for (Eigen::Index f = 0; f < fields() && free_start_ == 1; ++f) stored[f * columns_] = 0;
+  const Eigen::Index bends = std::min<Eigen::Index>(fields(), 2) * columns_;
+  energies.bending = stored.head(bends).squaredNorm() / 2;
+  energies.twisting = stored.tail(stored.size() - bends).squaredNorm() / 2;
+  // A load's point is the sum of the tangents between it and the anchor.
+  for (const Span::Load& load : span_.loads) {
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    for (Eigen::Index q = 0; q < s_.size(); ++q) {
+      if (s_[q] > span_.anchor && s_[q] < load.at) point += weights_[q] * t_.row(q).transpose();
+      if (s_[q] < span_.anchor && s_[q] > load.at) point -= weights_[q] * t_.row(q).transpose();
+    }
+    energies.load -= load.force.dot(point);
+  }
+  energies.gravity = -force_.cwiseProduct(t_).sum() - energies.load;
+  return energies;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,176 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "dlo/energy_model/problem.hpp"
+#include "strain/director_miss.hpp"
+#include "strain/rod_frames.hpp"
+#include "strain/span_shape.hpp"
+#include "strain/wall_contact.hpp"
+
+namespace dlo::energy_model {
+
+/// Bending plus load energy of a span over its unknowns, with constraints. Unknowns x in the plane:
+/// the tangent's angle at the start (if no clamp fixes it) and the curvature coefficients of every
+/// piece; in space those of RodFrames. Bending is half the square of the coefficients in both.
+/// Where the ends' frames of a rod that is straight by nature are held, the last unknown is the
+/// angle psi by which the rod's frame is turned ahead of Bishop's at the end, whole turns counted,
+/// times (GJ / EI / length)^(1/2): its square is twice the energy of twist. psi makes the end's
+/// frame meet its clamp's. With natural strains the frames are the rod's own.
+///
+/// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of end angles)
+/// that the grips exert on the rod. value(), constraint() and hessian() allocate nothing, but for
+/// walls.
+class SpanEnergy {
+ public:
+  SpanEnergy() = default;
+  SpanEnergy(const Span& span, int terms) { reset(span, terms); }
+  /// Takes on another span; buffers of the same size are kept.
+  void reset(const Span& span, int terms);
+
+  [[nodiscard]] const Span& span() const { return span_; }
+  [[nodiscard]] Eigen::Index size() const { return strains() + (has_psi() ? 1 : 0); }
+  [[nodiscard]] Eigen::Index constraints() const { return constraints_; }
+  [[nodiscard]] int terms() const { return terms_; }
+  [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
+  [[nodiscard]] double longest_piece() const;
+
+  /// Energy in EI/l and its gradient; known already where the last value() was, unless walls'
+  /// multipliers may have moved on.
+  [[nodiscard]] double value(const Eigen::Ref<const Eigen::VectorXd>& x,
+                             Eigen::Ref<Eigen::VectorXd> gradient);
+  /// Residuals of the constraints at the point of the last value(), and their Jacobian.
+  void constraint(Eigen::Ref<Eigen::VectorXd> residual, Eigen::Ref<Eigen::MatrixXd> jacobian);
+  /// Second derivatives of E - mu . c at the point of the last value().
+  void hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& result);
+  /// For a planar span: the same for bending (and twisting, with natural strains) out of the plane,
+  /// with its constraints' Jacobian; the last unknowns of the same span in space.
+  void sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& hessian,
+                Eigen::MatrixXd& jacobian);
+  /// For a planar span held by one clamp and nothing else: whether bending out of the plane stores
+  /// energy, at the point of the last value().
+  [[nodiscard]] bool resists_sideways();
+
+  /// Arc lengths of the nodes, and tangents there at the point of the last value(), 3 x nodes.
+  [[nodiscard]] const Eigen::VectorXd& nodes() const { return s_; }
+  [[nodiscard]] Eigen::Matrix3Xd tangents() const { return t_.transpose(); }
+  /// d1 of the rod's own frame there, of a span in space with natural strains.
+  [[nodiscard]] Eigen::Matrix3Xd d1() const { return state_.d1.bottomRows(s_.size()).transpose(); }
+  /// Unknowns whose tangents, and with natural strains frames, at the nodes come nearest to the
+  /// given ones; a planar span drops what leaves its plane. Also turns the clamps' angles to the
+  /// winding of these tangents.
+  [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape);
+
+  /// Unknowns of a shape that was found with another number of terms, or in the plane.
+  [[nodiscard]] Eigen::VectorXd adopt(const SpanEnergy& other, const Eigen::VectorXd& x);
+
+  /// Size of the last coefficients, which tells whether the curvature is resolved.
+  [[nodiscard]] double tail(const Eigen::VectorXd& x) const;
+  /// The rod's twist, end ahead of start [rad]; 0 where nothing holds it.
+  [[nodiscard]] double twist(const Eigen::VectorXd& x) const;
+  /// What the clamp at the end turns it with, about the tangent.
+  [[nodiscard]] double twisting_torque(const Eigen::VectorXd& x,
+                                       const Eigen::VectorXd& multipliers) const;
+  /// Unknowns with this twist.
+  [[nodiscard]] Eigen::VectorXd with_twist(Eigen::VectorXd x, double angle) const;
+  /// d1 at the end, at the point of the last value(), of the Bishop frame with Span::d1() at the
+  /// start.
+  [[nodiscard]] Eigen::Vector3d transported_d1() const { return state_.end_frame().col(0); }
+  /// Turns the clamp at the end of a span whose frames are held.
+  void turn_end_clamp(const Eigen::Vector3d& end_d1);
+
+  [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
+  [[nodiscard]] Energies energies(const Eigen::VectorXd& x);
+
+  [[nodiscard]] bool has_walls() const { return walls_.any(); }
+  [[nodiscard]] WallContact& walls() { return walls_; }
+  [[nodiscard]] const WallContact& walls() const { return walls_; }
+
+  /// Torque of one of the span's holds and of the clamp at its start, at the point of the last
+  /// value(): the weak forms, from the directors' multipliers and from the balance about the start.
+  /// They converge with the energy, the curvature at the very end only with its last coefficients.
+  [[nodiscard]] Eigen::Vector3d hold_torque(Eigen::Index hold,
+                                            const Eigen::VectorXd& multipliers) const;
+  [[nodiscard]] Eigen::Vector3d start_torque(const Eigen::VectorXd& multipliers) const;
+
+ private:
+  /// A constraint on a director that a clamp holds, in one component.
+  struct DirectorRow {
+    Eigen::Index hold;   // in span_.holds
+    Eigen::Index piece;  // at whose end it is
+    Eigen::Vector3d to = Eigen::Vector3d::Zero();
+    Eigen::Vector3d across = Eigen::Vector3d::Zero();
+    bool of_d1 = false;  // not of the tangent
+    double angle = 0;    // in the plane, whole turns counted
+  };
+  /// Strains of the rod, or turns of it as a whole.
+  [[nodiscard]] Eigen::Index fields() const { return span_.planar ? 1 : frames_.fields(); }
+  [[nodiscard]] Eigen::Index strains() const { return fields() * columns_; }
+  /// By which the free rod turns its tangent in the plane up to a piece's end.
+  [[nodiscard]] double natural_turn(Eigen::Index piece) const;
+  /// Where the constraints on directors begin.
+  [[nodiscard]] Eigen::Index first_director_row() const { return axes_ * reach_.cols(); }
+  /// Unknown of the mean twist of a piece of a rod with natural strains.
+  [[nodiscard]] Eigen::Index first_twist(Eigen::Index piece) const {
+    return 2 * columns_ + free_start_ + piece * terms_;
+  }
+  [[nodiscard]] bool has_psi() const { return span_.twist && span_.natural.empty(); }
+  void tabulate_nodes();
+  void tabulate_angles();
+  void tabulate_natural_angles();
+  void tabulate_forces();
+  void carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
+  void add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result);
+  void carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
+  void place_tangents();
+  void sideways_with_twist(Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian);
+  void list_director_rows();
+  [[nodiscard]] DirectorMiss miss_of(const DirectorRow& row) const;
+  void add_twist_hessian(double factor, Eigen::MatrixXd& result);
+  [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian();
+
+  Span span_;
+  int terms_ = 0;
+  Eigen::Index columns_ = 0;  // unknowns of one field: the angle, or each of two strains
+  Eigen::Index free_start_ = 0;
+  Eigen::Index constraints_ = 0;
+  std::vector<DirectorRow> director_rows_;  // of the last constraints
+  double twist_root_ = 0;                   // unknown by twist
+  Eigen::Index axes_ = 2;                   // position components that are constrained, 2 or 3
+  std::vector<Piece> pieces_;
+  const LegendreTable* table_ = nullptr;
+  Eigen::VectorXd s_, weights_;
+
+  // In the plane
+  double start_theta_ = 0;
+  Eigen::MatrixXd angle_;          // of the nodes by unknown
+  Eigen::MatrixXd held_angle_;     // of the director rows by unknown
+  Eigen::VectorXd natural_angle_;  // of the nodes, from the start's; empty: zero
+  // In space
+  Eigen::Matrix3d start_frame_ = Eigen::Matrix3d::Identity();
+  RodFrames frames_;
+  RodFrames::State state_;
+
+  Eigen::MatrixX3d force_;  // weight of the node times the sum of weight and loads beyond it
+  Eigen::MatrixXd reach_;   // per hold, weight of the node times -1, 0, 1
+  std::vector<std::vector<double>> reach_signs_;  // the same by hold and piece, without weights
+  WallContact walls_;
+
+  // At the point of the last value(), nodes x 3
+  Eigen::VectorXd theta_, kappa_;
+  Eigen::MatrixX3d t_, t_theta_, total_;
+  Eigen::VectorXd x_, gradient_;
+  double energy_ = 0;
+  bool evaluated_ = false;  // x_ is a point that value() has seen since reset()
+
+  // Scratch
+  Eigen::MatrixX3d carried_;
+  std::vector<Eigen::Vector3d> couples_;     // by piece
+  std::vector<Eigen::Matrix3d> curvatures_;  // by piece
+  Eigen::VectorXd along_, turning_, pulled_, beside_;
+  Eigen::MatrixXd scaled_;
+};
+
+}  // namespace dlo::energy_model

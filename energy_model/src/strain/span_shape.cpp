@@ -1,0 +1,225 @@
+#include "strain/span_shape.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "base/legendre.hpp"
+#include "problem/segments.hpp"
+#include "strain/rod_frames.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// A piece with what is needed to look at any point of it, as series in Legendre polynomials.
+struct PlacedPiece {
+  Piece piece;
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();  // of its begin
+  Eigen::Matrix3Xd tangent;                         // 3 x Q
+  double theta = 0;                                 // planar: the angle at its begin
+  Eigen::Matrix4Xd frame;                           // in space: quaternions w, x, y, z, 4 x Q
+};
+
+class Sampler {
+ public:
+  explicit Sampler(const SpanShape& shape)
+      : shape_(shape),
+        table_(shape.planar ? legendre_table(shape.terms) : director_table(shape.terms)),
+        values_(table_.nodes.size()),
+        integrals_(table_.nodes.size()) {
+    if (shape.planar) {
+      place_planar();
+    } else {
+      place_spatial();
+    }
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    for (PlacedPiece& placed : pieces_) {
+      placed.point = point;
+      // Over a whole piece only p_0 adds up.
+      point += placed.piece.length * placed.tangent.col(0);
+      if (std::abs(placed.piece.end() - shape.anchor) < closest_cuts) anchor_ = point;
+    }
+  }
+
+  void look(double at, Eigen::Ref<Eigen::Vector3d> point, Eigen::Ref<Eigen::Vector3d> tangent,
+            Eigen::Ref<Eigen::Vector3d> curvature, Eigen::Matrix3d& frame) {
+    std::size_t e = 0;
+    while (e + 1 < pieces_.size() && at > pieces_[e].piece.end()) ++e;
+    const PlacedPiece& placed = pieces_[e];
+    const double length = placed.piece.length;
+    legendre(std::clamp((at - placed.piece.begin) / length, 0.0, 1.0), values_, integrals_);
+    point = placed.point + length * (placed.tangent * integrals_) - anchor_;
+    const auto values = values_.head(shape_.terms);
+    if (shape_.planar) {
+      const auto theta = coefficients(shape_.theta, 0, e);
+      double angle = placed.theta + placed.piece.angle() * integrals_.head(shape_.terms).dot(theta);
+      double rate = placed.piece.curvature() * values.dot(theta);
+      if (!shape_.natural.empty()) {
+        angle += shape_.natural.integral(at).x();
+        rate += shape_.natural.at(at).x();
+      }
+      tangent << std::cos(angle), std::sin(angle), 0;
+      curvature << -rate * std::sin(angle), rate * std::cos(angle), 0;
+      return;
+    }
+    const Eigen::Vector4d q = placed.frame * values_;
+    frame = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
+    tangent = frame.col(2);
+    const Eigen::Index second = shape_.strains.size() / (shape_.natural.empty() ? 2 : 3);
+    const double scale = placed.piece.curvature();
+    double u1 = scale * values.dot(coefficients(shape_.strains, first_strain(), e));
+    double u2 = scale * values.dot(coefficients(shape_.strains, second + first_strain(), e));
+    if (!shape_.natural.empty()) {
+      const Eigen::Vector3d natural = shape_.natural.at(at);
+      u1 += natural.x();
+      u2 += natural.y();
+    }
+    curvature = u2 * frame.col(0) - u1 * frame.col(1);
+  }
+
+ private:
+  [[nodiscard]] Eigen::Index first_strain() const { return shape_.free_start ? 1 : 0; }
+
+  [[nodiscard]] Eigen::VectorXd coefficients(const Eigen::VectorXd& field, Eigen::Index first,
+                                             std::size_t e) const {
+    return field.segment(first + static_cast<Eigen::Index>(e) * shape_.terms, shape_.terms);
+  }
+
+  void place_planar() {
+    PlacedPiece placed;
+    placed.theta = shape_.start_theta;
+    for (std::size_t e = 0; e < shape_.pieces.size(); ++e) {
+      placed.piece = shape_.pieces[e];
+      const double turn = placed.piece.angle();
+      const Eigen::VectorXd theta = coefficients(shape_.theta, 0, e);
+      Eigen::ArrayXd angle =
+          placed.theta + turn * (table_.integrals.leftCols(shape_.terms) * theta).array();
+      for (Eigen::Index q = 0; q < angle.size() && !shape_.natural.empty(); ++q) {
+        const double s = placed.piece.begin + placed.piece.length * table_.nodes[q];
+        angle[q] += shape_.natural.integral(s).x();
+      }
+      Eigen::Matrix3Xd weighted = Eigen::Matrix3Xd::Zero(3, table_.nodes.size());
+      weighted.row(0) = (table_.weights.array() * angle.cos()).matrix().transpose();
+      weighted.row(1) = (table_.weights.array() * angle.sin()).matrix().transpose();
+      placed.tangent = weighted * table_.values;
+      pieces_.push_back(placed);
+      placed.theta += turn * theta[0];
+    }
+  }
+
+  void place_spatial() {
+    const RodFrames frames(shape_.pieces, shape_.terms, shape_.start_frame, shape_.free_start,
+                           shape_.natural);
+    RodFrames::State state;
+    frames.resize(state);
+    frames.evaluate(shape_.strains, state);
+    const Eigen::Index Q = table_.nodes.size();
+    for (std::size_t e = 0; e < shape_.pieces.size(); ++e) {
+      const Eigen::Index node = frames.turn_nodes() + static_cast<Eigen::Index>(e) * Q;
+      PlacedPiece placed;
+      placed.piece = shape_.pieces[e];
+      const Eigen::MatrixXd weighted = table_.weights.asDiagonal() * table_.values;
+      placed.tangent = state.t.middleRows(node, Q).transpose() * weighted;
+      placed.frame = state.q.middleRows(node, Q).transpose() * weighted;
+      pieces_.push_back(std::move(placed));
+    }
+  }
+
+  const SpanShape& shape_;
+  const LegendreTable& table_;
+  Eigen::VectorXd values_, integrals_;
+  std::vector<PlacedPiece> pieces_;
+  Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
+};
+
+/// Lengths of a layer, (EI / force)^(1/2), at which pieces end: what is left has decayed by exp(-6)
+/// and exp(-24).
+constexpr std::array<double, 2> layer_depths = {6, 24};
+
+/// Cuts where the layers at the grips and the loads of a taut segment have decayed.
+void cut_taut(const Segment& segment, const Span& span, std::vector<double>& cuts) {
+  const double layer = 1 / std::sqrt(segment.tension);
+  std::vector<double> kinks = {segment.begin};
+  for (const Span::Load& load : span.loads) {
+    if (load.at > segment.begin && load.at < segment.end) kinks.push_back(load.at);
+  }
+  kinks.push_back(segment.end);
+  for (std::size_t i = 0; i + 1 < kinks.size(); ++i) {
+    for (const double depth : layer_depths) {
+      if (!(2.5 * depth * layer < kinks[i + 1] - kinks[i])) continue;
+      cuts.push_back(kinks[i] + depth * layer);
+      cuts.push_back(kinks[i + 1] - depth * layer);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Piece> pieces_of(const Span& span) {
+  std::vector<double> cuts;
+  cuts.reserve(8 + span.holds.size() + span.loads.size() + 2 * span.parts.size());
+  cuts.insert(cuts.end(), {0, span.length, span.anchor});
+  for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
+  for (const Span::Load& load : span.loads) cuts.push_back(load.at);
+  for (const Span::Part& part : span.parts) cuts.insert(cuts.end(), {part.begin, part.end});
+  const double layer = 1 / std::sqrt(std::max(1.0, span.total_load()));
+  const double room = span.end_direction ? 0.4 : 0.7;
+  if (layer_depths[1] * layer < room * span.length) {
+    for (const double depth : layer_depths) {
+      cuts.push_back(depth * layer);
+      if (span.end_direction) cuts.push_back(span.length - depth * layer);
+    }
+  }
+  for (const Segment& segment : segments_of(span)) {
+    if (segment.taut()) cut_taut(segment, span, cuts);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  std::vector<Piece> pieces;
+  double begin = 0;
+  for (const double c : cuts) {
+    if (c - begin < closest_cuts) continue;
+    const double end = span.length - c < closest_cuts ? span.length : c;
+    pieces.push_back({begin, end - begin, 1, span.torsion});
+    begin = end;
+  }
+  for (Piece& piece : pieces) {
+    const double middle = piece.begin + piece.length / 2;
+    for (const Span::Part& part : span.parts) {
+      if (middle < part.begin || middle > part.end) continue;
+      piece.bending = part.bending;
+      piece.torsion = part.torsion;
+    }
+  }
+  return pieces;
+}
+
+Eigen::VectorXd roll_of(const Eigen::Matrix3Xd& tangents, const Eigen::Matrix3Xd& d1) {
+  Eigen::VectorXd roll = Eigen::VectorXd::Zero(tangents.cols());
+  for (Eigen::Index q = 1; q < tangents.cols(); ++q) {
+    const Eigen::Vector3d t = tangents.col(q);
+    const Eigen::Vector3d carried =
+        Eigen::Quaterniond::FromTwoVectors(tangents.col(q - 1), t) * d1.col(q - 1);
+    const Eigen::Vector3d own = d1.col(q);
+    roll[q] = roll[q - 1] + std::atan2(t.dot(carried.cross(own)), carried.dot(own));
+  }
+  return roll;
+}
+
+SpanSamples SpanShape::sample(std::span<const double> s) const {
+  const auto count = static_cast<Eigen::Index>(s.size());
+  SpanSamples samples{Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count),
+                      Eigen::Matrix3Xd(3, count), Eigen::Matrix3Xd(3, count)};
+  Sampler sampler(*this);
+  // In the plane the frame has its normal for d1 (Span::d1()).
+  Eigen::Matrix3d frame = Eigen::Matrix3d::Zero();
+  frame(2, 0) = 1;
+  for (Eigen::Index i = 0; i < count; ++i) {
+    sampler.look(s[static_cast<std::size_t>(i)], samples.points.col(i), samples.tangents.col(i),
+                 samples.curvature.col(i), frame);
+    samples.d1.col(i) = frame.col(0);
+  }
+  return samples;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include "dlo/energy_model/status.hpp"
+#include "strain/span_energy.hpp"
+
+namespace dlo::energy_model {
+
+struct [[nodiscard]] SpanSolution {
+  SolveStatus status = SolveStatus::not_run;
+  std::string message = "never ran";
+  int evaluations = 0;
+  int terms = 0;
+  double residual = -1;  ///< of the gradient and the constraints
+  /// Norm of Newton's step from x, which would be the next one: what x may still be wrong by.
+  double next_step = std::numeric_limits<double>::infinity();
+  double energy = 0;      ///< in EI/l
+  bool resolved = false;  ///< more terms would not change the shape, or the caller chose them
+  /// Eigenvalue of the projected second variation, sideways included; NaN: not looked at.
+  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
+  std::shared_ptr<SpanEnergy> model;
+  Eigen::VectorXd x;
+  Eigen::VectorXd multipliers;
+
+  void finish(SolveStatus how) {
+    status = how;
+    message = to_string(how);
+  }
+  void fail(std::string why) {
+    status = SolveStatus::failed;
+    message = std::move(why);
+  }
+  /// Why a shape that is not `resolved` is no result.
+  [[nodiscard]] std::string too_few_terms() const {
+    return "the curvature is not resolved by " + std::to_string(terms) + " terms";
+  }
+  [[nodiscard]] bool is_equilibrium() const {
+    return succeeded(status) || status == SolveStatus::saddle;
+  }
+};
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,42 @@
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "strain/span_energy.hpp"
+
+namespace dlo::energy_model {
+
+Eigen::Vector3d SpanEnergy::hold_torque(Eigen::Index hold,
+                                        const Eigen::VectorXd& multipliers) const {
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  Eigen::Index row = first_director_row();
+  for (const DirectorRow& held : director_rows_) {
+    const double mu = multipliers[row++];
+    if (held.hold != hold) continue;
+    torque += span_.planar ? Eigen::Vector3d(0, 0, mu) : Eigen::Vector3d(mu * miss_of(held).couple);
+  }
+  return torque;
+}
+
+Eigen::Vector3d SpanEnergy::start_torque(const Eigen::VectorXd& multipliers) const {
+  if (!span_.start_direction) return Eigen::Vector3d::Zero();
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) moment += hold_torque(j, multipliers);
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+    force.head(axes_) = multipliers.segment(j * axes_, axes_);
+    moment += span_.holds[static_cast<std::size_t>(j)].offset.cross(force);
+  }
+  for (Eigen::Index q = 0; q < s_.size(); ++q) {
+    const Eigen::Vector3d t = t_.row(q);
+    moment += weights_[q] * t.cross(span_.weight_between(s_[q], span_.length));
+  }
+  for (const Span::Load& load : span_.loads) {
+    const Eigen::VectorXd before =
+        (s_.array() < load.at).select(weights_, Eigen::VectorXd::Zero(weights_.size()));
+    const Eigen::Vector3d point = t_.transpose() * before;
+    moment += point.cross(load.force);
+  }
+  return -(moment + walls_.moment(t_));
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "base/legendre.hpp"
+#include "strain/span_shape.hpp"
+
+namespace dlo::energy_model {
+
+/// Contact of a span's quadrature nodes with its walls. Soft walls are one-sided springs; rigid
+/// ones are met by an augmented Lagrangian whose multipliers live at the nodes.
+class WallContact {
+ public:
+  /// @param nodes, weights  of the span's quadrature
+  void reset(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table,
+             const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights);
+
+  [[nodiscard]] bool any() const { return !walls_.empty(); }
+
+  /// Energy of the springs at these tangents (nodes x 3); adds what they push with, carried from
+  /// beyond each node, to `force` (nodes x 3). Keeps the pressures.
+  double add(const Eigen::MatrixX3d& tangents, Eigen::MatrixX3d& force);
+  /// Adds the springs' second derivatives but for what bends the tangents twice, which is in the
+  /// force that add() adds.
+  /// @param tangents  derivatives of the tangents by the unknowns, an axis each, nodes x unknowns
+  void add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
+                   Eigen::Ref<Eigen::MatrixXd> hessian) const;
+
+  /// What update() would return after the last add().
+  [[nodiscard]] double violation() const;
+  /// Moves the multipliers of rigid walls towards complementarity. @return largest violation, in l
+  double update();
+  /// Force of each wall on the span.
+  [[nodiscard]] std::vector<Eigen::Vector3d> forces() const;
+  /// Their moment about the anchor.
+  [[nodiscard]] Eigen::Vector3d moment(const Eigen::MatrixX3d& tangents) const;
+
+ private:
+  [[nodiscard]] double stiffness(std::size_t wall) const;
+
+  std::vector<Span::Wall> walls_;
+  double rigid_stiffness_ = 0;
+  Eigen::VectorXd weights_;
+  Eigen::MatrixXd position_;            // of the nodes by tangent of the nodes
+  Eigen::MatrixXd contact_, pressure_;  // nodes x walls
+  Eigen::MatrixX3d points_;             // of the last add()
+};
+
+}  // namespace dlo::energy_model
