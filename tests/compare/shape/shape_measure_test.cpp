@@ -30,7 +30,8 @@ struct Right {
   explicit Right(std::mt19937& random) {
     std::uniform_real_distribution<double> degrees(-170, 170);
     std::uniform_real_distribution<double> exponent(-0.3, 1.3);
-    scene = heavy_scene(std::pow(10, exponent(random)), degrees(random));
+    const double pitch = degrees(random);
+    scene = heavy_scene(std::pow(10, exponent(random)), pitch);
     rod = solve_reference(scene, Model::energy);
     s = equal_arc_lengths(1, 21);
   }
