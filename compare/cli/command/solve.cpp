@@ -86,8 +86,11 @@ void run(const SolveOptions& options) {
   const compare::Solution& solution = solutions.front();
   warn_of_left_out(options, solution, scene);
   if (options.output.format == "vtk") {
-    write_output(options.output, compare::vtk_polyline(solution.shape, solution.curvature,
-                                                       solution.tension, scene.name));
+    write_output(options.output, compare::vtk_polyline(solution.shape,
+                                                       {.curvature = solution.curvature,
+                                                        .tension = solution.tension,
+                                                        .d1 = solution.d1},
+                                                       scene.name));
     return require_resolved(solution, scene);
   }
   const auto plan = [&] {

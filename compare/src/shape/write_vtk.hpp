@@ -7,12 +7,17 @@
 
 namespace dlo::compare {
 
+/// What is known at a shape's points; empty: nothing.
+struct PointFields {
+  std::vector<double> curvature;  ///< [1/m], M
+  std::vector<double> tension;    ///< [N], M
+  Eigen::Matrix3Xd d1;            ///< first director of the rod's frame, unit, 3 x M
+};
+
 /// A shape as a legacy ASCII VTK file of one polyline, for ParaView and load_shape: points [m], and
-/// as point data arc_length_m, curvature_per_m, and tension_N where there is one.
-/// @param curvature  [1/m], M;  @param tension  [N], M or none
-/// @param title      second line of the file, cut to what the format allows
-[[nodiscard]] std::string vtk_polyline(const Shape& shape, const std::vector<double>& curvature,
-                                       const std::vector<double>& tension,
+/// as point data arc_length_m and, where they are known, curvature_per_m, tension_N and d1.
+/// @param title  second line of the file, cut to what the format allows
+[[nodiscard]] std::string vtk_polyline(const Shape& shape, const PointFields& fields,
                                        const std::string& title);
 
 }  // namespace dlo::compare

@@ -43,6 +43,7 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   solution.penetration = equilibrium.penetration;
   const energy_model::Samples shape = equilibrium.sample(samples);
   solution.shape = {samples, shape.points};
+  solution.d1 = shape.d1;
   solution.energy = {.bending = equilibrium.energy.bending,
                      .twisting = equilibrium.energy.twisting,
                      .gravity = equilibrium.energy.gravity,

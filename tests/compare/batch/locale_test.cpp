@@ -100,7 +100,8 @@ TEST_F(DecimalComma, ChangesNoFileThatIsRead) {
 TEST_F(DecimalComma, ChangesNothingThatIsWritten) {
   const Scene scene = parse_scene(comma_scene, "s.toml");
   const Solution solution = solve(scene, Model::energy, {}, equal_arc_lengths(0.5, 3));
-  const std::string vtk = vtk_polyline(solution.shape, solution.curvature, solution.tension, "rod");
+  const std::string vtk = vtk_polyline(
+      solution.shape, {.curvature = solution.curvature, .tension = solution.tension}, "rod");
   EXPECT_EQ(vtk.find(','), std::string::npos) << vtk;
   const MeasuredShape back = parse_shape(vtk, "shape.vtk", 1);
   EXPECT_TRUE(back.points.isApprox(solution.shape.points, 1e-12));

@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
 
 #include "command_fixture.hpp"
 #include "dlo/compare/force_model_settings.hpp"
@@ -40,26 +42,55 @@ force = [0, -0.05, 0.02]
                      "arch.toml");
 }
 
+PointFields fields_of(const Solution& solution) {
+  return {.curvature = solution.curvature, .tension = solution.tension, .d1 = solution.d1};
+}
+
 TEST(VtkPolyline, IsReadBackExactly) {
   for (const Model model : {Model::energy, Model::chain}) {
     const Solution solution = solve(loaded_arch(), model);
-    const MeasuredShape shape = parse_shape(
-        vtk_polyline(solution.shape, solution.curvature, solution.tension, "arch"), "arch.vtk");
+    const MeasuredShape shape =
+        parse_shape(vtk_polyline(solution.shape, fields_of(solution), "arch"), "arch.vtk");
     EXPECT_EQ(shape.points, solution.shape.points);
     EXPECT_EQ(shape.arc_length, solution.shape.arc_length);
     // Its numbers are metres, whatever unit other files are in.
     EXPECT_EQ(
-        parse_shape(vtk_polyline(solution.shape, solution.curvature, solution.tension, "arch"),
-                    "arch.vtk", 1e-3)
+        parse_shape(vtk_polyline(solution.shape, fields_of(solution), "arch"), "arch.vtk", 1e-3)
             .points,
         shape.points);
   }
 }
 
+// A spring that hangs in space shows how it is turned; a straight rod has no frame to show.
+TEST(VtkPolyline, HasTheFrameOfACurvedRod) {
+  Scene scene = loaded_arch();
+  const Solution straight = solve(scene, Model::energy);
+  EXPECT_EQ(vtk_polyline(straight.shape, fields_of(straight), "arch").find("d1 "),
+            std::string::npos);
+  scene.natural_strain = {0, 2, 0};
+  scene.grippers[0].frame = energy_model::FrameHold{.d1 = Eigen::Vector3d::UnitZ()};
+  for (const Model model : {Model::energy, Model::exact}) {
+    const Solution curved = solve(scene, model);
+    const std::string text = vtk_polyline(curved.shape, fields_of(curved), "arch");
+    std::istringstream lines(text.substr(text.find("d1 3 101 double\n")));
+    std::string header;
+    std::getline(lines, header);
+    for (Eigen::Index i = 0; i < 101; ++i) {
+      Eigen::Vector3d d1;
+      lines >> d1.x() >> d1.y() >> d1.z();
+      EXPECT_NEAR(d1.norm(), 1, 1e-12);
+      if (i == 0) EXPECT_NEAR(d1.dot(*scene.grippers[0].direction), 0, 1e-8);
+      EXPECT_EQ(d1, curved.d1.col(i));
+    }
+    EXPECT_FALSE(lines.fail());
+    EXPECT_EQ(parse_shape(text, "arch.vtk").arc_length, curved.shape.arc_length);
+  }
+}
+
 TEST(VtkPolyline, TitleIsOneLineOfPrintableCharacters) {
   const Solution solution = solve(loaded_arch(), Model::chain);
-  const std::string text = vtk_polyline(solution.shape, solution.curvature, solution.tension,
-                                        "a\nb\xc3\xa4" + std::string(1000, 'c'));
+  const std::string text =
+      vtk_polyline(solution.shape, fields_of(solution), "a\nb\xc3\xa4" + std::string(1000, 'c'));
   EXPECT_TRUE(text.starts_with("# vtk DataFile Version 3.0\na?b??ccc"));
   EXPECT_LT(text.find("\nASCII"), 256U);
 }

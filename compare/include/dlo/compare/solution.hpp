@@ -80,6 +80,7 @@ struct Solution {
   /// Of energy and exact: tension [N] there, positive where the rod is pulled; at a gripper or load
   /// inside the rod that of the side towards l. None where an obstacle is touched.
   std::vector<double> tension;
+  Eigen::Matrix3Xd d1;                            ///< there, of energy and exact: Samples::d1
   SceneEnergies energy;                           ///< of that shape
   std::vector<GripperLoad> grippers;              ///< in the scene's order
   std::vector<Eigen::Vector3d> obstacles;         ///< force of each on the rod [N]
