@@ -14,12 +14,13 @@
 namespace dlo::test {
 
 /// Where a random rod, its grips and its forces lie: in the x-y plane or anywhere; there it may be
-/// twisted too, or curved by nature.
-enum class RandomSpace { plane, space, twisted, curved };
+/// twisted too, or curved by nature. Mixed: everything that a straight rod may be held by.
+enum class RandomSpace { plane, space, twisted, curved, mixed };
 
 inline const char* name_of(RandomSpace space) {
   if (space == RandomSpace::twisted) return "twisted";
   if (space == RandomSpace::curved) return "curved";
+  if (space == RandomSpace::mixed) return "mixed";
   return space == RandomSpace::plane ? "plane" : "space";
 }
 
@@ -127,33 +128,27 @@ inline std::vector<double> random_grip_places(RandomNumbers& random, int count) 
 
 inline energy_model::Problem twisted_problem(std::uint64_t number);
 inline energy_model::Problem curved_problem(std::uint64_t number);
+inline energy_model::Problem mixed_problem(std::uint64_t number);
 
-/// A rod of unit length and stiffness under a weight along -y with Gamma = w l^3 / (EI) between
-/// 1e-2 and 1e4, 1 to 3 clamps and pins and 0 to 3 loads of up to 0.6 (1 + Gamma) EI/l^2 each.
-/// Grips can be reached: they are read off a random curve, and then in one of three problems turned
-/// at random, in one of three moved towards each other. The same number always gives the same
-/// problem.
-///
-/// What is twisted is one of those in space with two grips or more, all of them clamps that hold
-/// frames, turned by up to three turns, with GJ of 0.4 to 1.2 EI.
-///
-/// What is curved by nature has strains of up to 5/l about each axis, in one of two cases a section
-/// of another kind, a clamp at its begin and in three of four cases a clamp or a pin besides; Gamma
-/// is between 0.1 and 300. Every other one lies in the x-y plane.
-inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace space) {
-  if (space == RandomSpace::twisted) return twisted_problem(number);
-  if (space == RandomSpace::curved) return curved_problem(number);
-  RandomNumbers random(2 * number + (space == RandomSpace::space ? 1 : 0));
+/// How much a random problem may have.
+struct RandomLimits {
+  int grips = 3;
+  double gamma_exponent = 4;
+};
+
+/// A rod of unit length and stiffness, as random_problem() says.
+inline energy_model::Problem random_rod_held(RandomNumbers& random, RandomSpace space,
+                                             const RandomLimits& limits = {}) {
   energy_model::Problem problem;
   problem.length = 1;
   problem.bending_stiffness = 1;
-  const double gamma = std::pow(10, random.uniform(-2, 4));
+  const double gamma = std::pow(10, random.uniform(-2, limits.gamma_exponent));
   problem.weight_per_length = {0, -gamma, 0};
   const RandomCurve curve(random, space);
   const int kind = random.below(3);
   const bool turned = kind == 1;
   const double nearer = kind == 2 ? random.uniform(0.05, 1) : 0.999;
-  const int grips = 1 + random.below(3);
+  const int grips = 1 + random.below(limits.grips);
   for (const double at : random_grip_places(random, grips)) {
     energy_model::Grip& grip = problem.grips.emplace_back();
     grip.at = at;
@@ -171,6 +166,29 @@ inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace sp
   return problem;
 }
 
+/// A rod of unit length and stiffness under a weight along -y with Gamma = w l^3 / (EI) between
+/// 1e-2 and 1e4, 1 to 3 clamps and pins and 0 to 3 loads of up to 0.6 (1 + Gamma) EI/l^2 each.
+/// Grips can be reached: they are read off a random curve, and then in one of three problems turned
+/// at random, in one of three moved towards each other. The same number always gives the same
+/// problem.
+///
+/// What is twisted is one of those in space with two grips or more, all of them clamps that hold
+/// frames, turned by up to three turns, with GJ of 0.4 to 1.2 EI.
+///
+/// What is curved by nature has strains of up to 5/l about each axis, in one of two cases a section
+/// of another kind, a clamp at its begin and in three of four cases a clamp or a pin besides; Gamma
+/// is between 0.1 and 300. Every other one lies in the x-y plane.
+///
+/// What is mixed is straight, has 1 to 4 grips and Gamma up to 1e5; every other one lies in the x-y
+/// plane, and of the others' clamps every other one holds a frame, turned by up to three turns.
+inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace space) {
+  if (space == RandomSpace::twisted) return twisted_problem(number);
+  if (space == RandomSpace::curved) return curved_problem(number);
+  if (space == RandomSpace::mixed) return mixed_problem(number);
+  RandomNumbers random(2 * number + (space == RandomSpace::space ? 1 : 0));
+  return random_rod_held(random, space);
+}
+
 inline energy_model::Problem twisted_problem(std::uint64_t number) {
   constexpr double most_turns = 3;
   constexpr std::uint64_t of_their_own = 1U << 20U;
@@ -185,6 +203,22 @@ inline energy_model::Problem twisted_problem(std::uint64_t number) {
     grip.frame = energy_model::FrameHold{};
     // Two of them are turned against each other by as much again.
     grip.frame->roll = std::numbers::pi * random.uniform(-most_turns, most_turns);
+  }
+  return problem;
+}
+
+inline energy_model::Problem mixed_problem(std::uint64_t number) {
+  constexpr std::uint64_t of_their_own = 1U << 28U;
+  constexpr double most_turns = 3;
+  RandomNumbers random(of_their_own + number);
+  const bool planar = number % 2 == 0;
+  energy_model::Problem problem = random_rod_held(
+      random, planar ? RandomSpace::plane : RandomSpace::space, {.grips = 4, .gamma_exponent = 5});
+  if (planar) return problem;
+  problem.torsional_stiffness = random.uniform(0.4, 1.2);
+  for (energy_model::Grip& grip : problem.grips) {
+    if (!grip.direction || random.chance(0.5)) continue;
+    grip.frame.emplace().roll = std::numbers::pi * random.uniform(-most_turns, most_turns);
   }
   return problem;
 }

@@ -1,8 +1,8 @@
 // Random scenes, the minimiser against multiple shooting, each shape against force and torque
 // balance. Prints what converged, what was refused and why, the slowest, and how both agree.
-//   dlo_random_scenes [--plane N] [--space N] [--twisted N] [--curved N] [--first K] [--time-limit
-//   SECONDS]
-//   [--write FOLDER]
+//   dlo_random_scenes [--plane N] [--space N] [--twisted N] [--curved N] [--mixed N] [--first K]
+//   [--time-limit SECONDS] [--exact search|energy] [--write FOLDER]
+// With `--exact energy` multiple shooting confirms the minimiser's shapes without a search.
 // Ends with 0 if no two converged shapes contradict each other, no equilibrium is out of balance
 // and no solve overran the limit; 1 if not; 2 for bad usage.
 
@@ -30,8 +30,10 @@ struct Options {
   std::uint64_t space = 200;
   std::uint64_t twisted = 100;
   std::uint64_t curved = 100;
+  std::uint64_t mixed = 100;
   std::uint64_t first = 0;
   double time_limit = 20;
+  dlo::test::ExactFrom exact = dlo::test::ExactFrom::search;
   std::string folder;
 };
 
@@ -50,6 +52,14 @@ Options read_options(int argc, char** argv) {
       options.twisted = std::stoul(value, &used);
     } else if (name == "--curved") {
       options.curved = std::stoul(value, &used);
+    } else if (name == "--mixed") {
+      options.mixed = std::stoul(value, &used);
+    } else if (name == "--exact") {
+      if (value != "search" && value != "energy") {
+        throw std::invalid_argument("--exact " + value + " (allowed: search, energy)");
+      }
+      if (value == "energy") options.exact = dlo::test::ExactFrom::energy;
+      used = value.size();
     } else if (name == "--first") {
       options.first = std::stoul(value, &used);
     } else if (name == "--time-limit") {
@@ -124,7 +134,8 @@ int run(const Options& options, RandomSpace space, std::uint64_t count) {
       const std::string name = std::string(kind) + "_" + std::to_string(number);
       std::ofstream(options.folder + "/" + name + ".toml") << dlo::test::scene_text(problem, name);
     };
-    const ComparedScene scene = dlo::test::compare_models(number, problem, options.time_limit);
+    const ComparedScene scene =
+        dlo::test::compare_models(number, problem, options.time_limit, options.exact);
     energy.add(number, scene.energy, scene.energy_defects.worst(), scene.energy.seconds);
     exact.add(number, scene.exact, scene.exact_defects.worst(), scene.exact.seconds);
     ++agreements[scene.agreement];
@@ -180,7 +191,8 @@ int main(int argc, char** argv) {
   const int bad = run(options, RandomSpace::plane, options.plane) +
                   run(options, RandomSpace::space, options.space) +
                   run(options, RandomSpace::twisted, options.twisted) +
-                  run(options, RandomSpace::curved, options.curved);
+                  run(options, RandomSpace::curved, options.curved) +
+                  run(options, RandomSpace::mixed, options.mixed);
   std::printf("%d scenes contradict, are out of balance or overran the limit\n", bad);
   return bad == 0 ? 0 : 1;
 }
