@@ -108,7 +108,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   solution.steps = result.steps;
   solution.c_F = simulation.options().c_F;
   solution.c_h = simulation.options().c_h;
-  solution.remaining_error = result.remaining_error;
+  solution.error_estimate = result.remaining_error;
   solution.to_rest = force_model::check_equilibrium(simulation.rod(), simulation.points()).step;
   solution.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

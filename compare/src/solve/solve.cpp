@@ -41,6 +41,7 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   solution.status = equilibrium.status;
   solution.message = equilibrium.message;
   solution.penetration = equilibrium.penetration;
+  solution.error_estimate = equilibrium.error_estimate * scene.length;
   const energy_model::Samples shape = equilibrium.sample(samples);
   solution.shape = {samples, shape.points};
   solution.d1 = shape.d1;

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/free_directions.hpp"
 #include "newton/newton.hpp"
@@ -33,6 +34,25 @@ double newton_step(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobi
 
 }  // namespace
 
+double error_estimate(const SpanSolution& solution, double load) {
+  const SpanEnergy& model = *solution.model;
+  if (model.has_walls()) return std::numeric_limits<double>::quiet_NaN();
+  const double scale = 1 + load + solution.multipliers.norm();
+  const double rounding = 8 * std::numeric_limits<double>::epsilon() * scale;
+  // The angle that the last coefficient adds is a_K / (2K); forces feel it as little again.
+  const double K = solution.terms;
+  const double angle = model.tail(solution.x) / (2 * K);
+  // Closer to zero than this is a direction that the rod moves in for nothing.
+  const double softest = std::clamp(solution.softest, 1e-12, 1.0);
+  double softest_section = 1;
+  for (const Span::Part& part : model.span().parts) {
+    softest_section = std::min(softest_section, part.bending);
+  }
+  return (solution.next_step + (rounding + scale * angle / (2 * K)) / softest) /
+             std::sqrt(softest_section) +
+         angle;
+}
+
 void certify(SpanSolution& solution, double load) {
   if (!solution.is_equilibrium()) return;
   SpanEnergy& model = *solution.model;
@@ -57,10 +77,17 @@ void certify(SpanSolution& solution, double load) {
   }
   if (!model.has_walls()) {
     solution.next_step = newton_step(hessian, jacobian, gradient, residual);
-    if (!(solution.next_step <= largest_next_step))
-      return solution.finish(SolveStatus::near_singular);
   }
   solution.smallest_curvature = smallest_eigenvalue(hessian, jacobian);
+  solution.softest = std::abs(solution.smallest_curvature);
+  // Of a direction in which the rod moves for nothing the shape does not depend.
+  if (solution.softest < neutral && solution.next_step <= largest_next_step) {
+    solution.softest = neutral;
+  }
+  solution.error = error_estimate(solution, load);
+  if (!model.has_walls() && !(solution.next_step <= largest_next_step)) {
+    return solution.finish(SolveStatus::near_singular);
+  }
   if (model.span().planar) {
     model.sideways(solution.multipliers, hessian, jacobian);
     solution.smallest_curvature =
@@ -70,7 +97,9 @@ void certify(SpanSolution& solution, double load) {
                                                          : SolveStatus::converged);
 }
 
-void certify_sideways(SpanSolution& solution) {
+void certify_sideways(SpanSolution& solution, double load) {
+  if (!solution.is_equilibrium() && solution.status != SolveStatus::near_singular) return;
+  solution.error = error_estimate(solution, load);
   if (solution.status != SolveStatus::converged) return;
   if (!solution.model->resists_sideways()) solution.finish(SolveStatus::saddle);
 }

@@ -4,17 +4,23 @@
 
 namespace dlo::energy_model {
 
+/// What the points of a shape may be away from those of an equilibrium, of the length: what
+/// Newton's method would still move them by, and what rounding and the modes that are left out push
+/// along the softest direction. The coefficients of strains bound what positions move by. NaN with
+/// walls.
+[[nodiscard]] double error_estimate(const SpanSolution& solution, double load);
+
 /// Looks at what a search returns, at its own x, before it may be called `converged`: the residual
 /// of the gradient of E - mu.c and of the constraints, Newton's step from there, and the
 /// eigenvalues of the second variation in all directions that the constraints leave, those out of a
 /// span's plane included. A negative one makes it a `saddle`; a step that is no small one
-/// `near_singular`. What had failed before stays as it is.
+/// `near_singular`. Either way it gets its error. What had failed before stays as it is.
 /// @param load  sum of weight and loads, the scale of the residuals
 void certify(SpanSolution& solution, double load);
 
 /// The same for a plain cantilever that Newton's method has just polished, and thereby looked at
 /// its step and its second variation in the plane: only that out of the plane is left, and only its
 /// sign is told. The model's last value() was at solution.x.
-void certify_sideways(SpanSolution& solution);
+void certify_sideways(SpanSolution& solution, double load);
 
 }  // namespace dlo::energy_model

@@ -3,6 +3,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/free_directions.hpp"
 
@@ -203,6 +204,22 @@ bool Newton::natural_move(SpanSolution& solution, double& size) {
   return false;
 }
 
+/// Of the Hessian that is factored, by inverse iteration from a vector that low modes share: not
+/// below the smallest eigenvalue, and next to it where that is far below the others.
+double Newton::softest_of_factor() {
+  constexpr int iterations = 2;
+  const Eigen::Index n = gradient_.size();
+  soft_.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) soft_[i] = 1 / static_cast<double>(1 + i);
+  double grows = 1;
+  for (int i = 0; i < iterations; ++i) {
+    soft_ /= soft_.norm();
+    llt_.solveInPlace(soft_);
+    grows = soft_.norm();
+  }
+  return 1 / grows;
+}
+
 void Newton::polish_along_branch(SpanSolution& solution, double load) {
   stands_still_ = true;
   run(solution, load);
@@ -231,6 +248,7 @@ void Newton::run(SpanSolution& solution, double load) {
   bool shrinks = false;  // the steps, with the factor of an earlier point
   const auto finish = [&] {
     solution.residual = size;
+    solution.softest = definite_ ? softest_of_factor() : std::numeric_limits<double>::quiet_NaN();
     if (!(solution.multipliers.norm() <= largest_pull * (1 + load))) {
       return solution.fail("Newton's method left for forces without bound");
     }
@@ -274,6 +292,7 @@ void Newton::run(SpanSolution& solution, double load) {
       }
       solution.residual = size;
       if (!small) break;
+      if (definite_) solution.softest = softest_of_factor();
       return solution.finish(SolveStatus::near_singular);
     }
     const double scale = 1 + load + solution.multipliers.norm();

@@ -41,6 +41,7 @@ class Newton {
   [[nodiscard]] double step_length(SpanSolution& solution, double size);
   [[nodiscard]] double step_length_by_energy(SpanSolution& solution);
   [[nodiscard]] double length_of(const SpanSolution& solution) const;
+  [[nodiscard]] double softest_of_factor();
   [[nodiscard]] bool natural_move(SpanSolution& solution, double& size);
 
   double load_ = 0;
@@ -51,7 +52,7 @@ class Newton {
   Eigen::LLT<Eigen::MatrixXd> llt_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   bool definite_ = false;  // llt_ is what the system is solved with
-  Eigen::VectorXd trial_x_, trial_multipliers_, trial_gradient_;
+  Eigen::VectorXd trial_x_, trial_multipliers_, trial_gradient_, soft_;
 };
 
 }  // namespace dlo::energy_model

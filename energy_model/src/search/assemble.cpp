@@ -65,6 +65,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
   result.status = SolveStatus::converged;
   result.message = to_string(result.status);
   result.residual = 0;
+  result.error_estimate = 0;
   result.grips.resize(problem.grips.size());
   result.walls.assign(problem.walls.size(), Eigen::Vector3d::Zero());
   result.smallest_curvature = std::numeric_limits<double>::infinity();
@@ -74,6 +75,10 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     result.evaluations += solution.evaluations;
     result.terms = std::max(result.terms, solution.terms);
     result.residual = std::max(result.residual, solution.residual);
+    // NaN, where one is not known, stays.
+    if (std::isnan(solution.error) || solution.error > result.error_estimate) {
+      result.error_estimate = solution.error;
+    }
     // NaN, where one was not looked at, stays.
     if (std::isnan(solution.smallest_curvature) ||
         solution.smallest_curvature < result.smallest_curvature) {

@@ -18,6 +18,11 @@ struct [[nodiscard]] SpanSolution {
   double residual = -1;  ///< of the gradient and the constraints
   /// Norm of Newton's step from x, which would be the next one: what x may still be wrong by.
   double next_step = std::numeric_limits<double>::infinity();
+  /// Eigenvalue of the factor of Newton's last steps that is nearest to zero, or a little more: by
+  /// it rounding and what the terms leave out are divided. NaN: not looked at.
+  double softest = std::numeric_limits<double>::quiet_NaN();
+  /// What the shape may be away from an equilibrium, of the length; NaN: not known.
+  double error = std::numeric_limits<double>::quiet_NaN();
   double energy = 0;      ///< in EI/l
   bool resolved = false;  ///< more terms would not change the shape, or the caller chose them
   /// Eigenvalue of the projected second variation, sideways included; NaN: not looked at.

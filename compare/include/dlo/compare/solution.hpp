@@ -89,15 +89,17 @@ struct Solution {
   std::vector<std::string> left_out;
   /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
-  long evaluations = 0;        ///< of minimisers; shots of exact
-  long steps = 0;              ///< of force
-  int terms = 0;               ///< curvature coefficients of energy
-  double seconds = 0;          ///< wall time of the solver
-  Parameters parameters;       ///< of chain and force
-  double c_F = 0;              ///< of force, at its last step
-  double c_h = 0;              ///< of force, at its last step [-]
-  double remaining_error = 0;  ///< of force: estimated distance to rest [m]
-  Eigen::Matrix3Xd to_rest;    ///< of force: Newton's step to rest from each point [m]
+  long evaluations = 0;   ///< of minimisers; shots of exact
+  long steps = 0;         ///< of force
+  int terms = 0;          ///< curvature coefficients of energy
+  double seconds = 0;     ///< wall time of the solver
+  Parameters parameters;  ///< of chain and force
+  double c_F = 0;         ///< of force, at its last step
+  double c_h = 0;         ///< of force, at its last step [-]
+  /// What the points may be away from those of an equilibrium of the model [m]: of energy the
+  /// estimate of Equilibrium, of force that to rest. NaN: not known.
+  double error_estimate = std::numeric_limits<double>::quiet_NaN();
+  Eigen::Matrix3Xd to_rest;  ///< of force: Newton's step to rest from each point [m]
 };
 
 }  // namespace dlo::compare

@@ -20,6 +20,10 @@ struct [[nodiscard]] Equilibrium {
   double seconds = 0;   ///< wall time of the solver
   /// Norm of the gradient over EI/l; for `exact` the largest gap that a shot leaves [-].
   double residual = -1;
+  /// Of solve_energy(): what points of the shape may be away from those of an equilibrium, over the
+  /// rod's length: an estimate from what the solver, rounding and the terms leave out, divided by
+  /// the smallest eigenvalue. `near_singular` shapes have one too. NaN: not known (walls, `exact`).
+  double error_estimate = std::numeric_limits<double>::quiet_NaN();
   /// Smallest eigenvalue of the second variation over EI/l, with the constraints and, for planar
   /// shapes, with bending out of the plane; NaN where a solver did not look. Negative: unstable.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
