@@ -227,8 +227,8 @@ TEST(Energy, NextToBucklingTheErrorStatedCoversTheTrueOne) {
       EXPECT_TRUE(off < 1e-6 || !succeeded(found.status)) << off << " l, " << found.message;
     }
   }
-  // Far from there it is the tolerance.
-  EXPECT_LT(solve_energy(heavy_cantilever(1, 0)).error_estimate, 1e-11);
+  // Far from there it is below the tolerance.
+  EXPECT_LT(solve_energy(heavy_cantilever(1, 0)).error_estimate, 1e-10);
 }
 
 TEST(Energy, StoppedEarlyIsAFailureThatSaysSo) {
