@@ -8,11 +8,10 @@
 
 namespace dlo::energy_model {
 
-Eigen::VectorXd newton_step_across_neutral(const Eigen::MatrixXd& system,
-                                           const Eigen::VectorXd& right) {
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver(system.rows(), system.cols());
-  solver.setThreshold(neutral / std::max(1.0, system.cwiseAbs().maxCoeff()));
-  return solver.compute(system).solve(right);
+AcrossNeutral::AcrossNeutral(const Eigen::MatrixXd& system)
+    : factor_(system.rows(), system.cols()) {
+  factor_.setThreshold(neutral / std::max(1.0, system.cwiseAbs().maxCoeff()));
+  factor_.compute(system);
 }
 
 Eigen::MatrixXd free_directions(const Eigen::MatrixXd& jacobian, Eigen::Index size) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/QR>
 #include <optional>
 
 namespace dlo::energy_model {
@@ -8,10 +9,19 @@ namespace dlo::energy_model {
 /// Eigenvalues closer to zero than this are neutral: a rod that may turn about an axis for nothing.
 inline constexpr double neutral = 1e-7;
 
-/// Solution of a singular system of Newton's method by least squares: it stands still in neutral
-/// directions, in which a gradient of rounding would move it anywhere.
-[[nodiscard]] Eigen::VectorXd newton_step_across_neutral(const Eigen::MatrixXd& system,
-                                                         const Eigen::VectorXd& right);
+/// Solutions of a singular system of Newton's method by least squares: they stand still in neutral
+/// directions, in which a gradient of rounding would move anywhere.
+class AcrossNeutral {
+ public:
+  explicit AcrossNeutral(const Eigen::MatrixXd& system);
+
+  [[nodiscard]] Eigen::VectorXd step(const Eigen::VectorXd& right) const {
+    return factor_.solve(right);
+  }
+
+ private:
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor_;
+};
 
 /// Orthonormal basis of what the constraints leave free.
 [[nodiscard]] Eigen::MatrixXd free_directions(const Eigen::MatrixXd& jacobian, Eigen::Index size);

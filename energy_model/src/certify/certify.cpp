@@ -27,7 +27,7 @@ double newton_step(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobi
   Eigen::VectorXd step = system.partialPivLu().solve(right);
   if (!((system * step - right).norm() <= 1e-6 * right.norm()) ||
       !(step.head(n).norm() <= largest_next_step)) {
-    step = newton_step_across_neutral(system, right);
+    step = AcrossNeutral(system).step(right);
   }
   return step.head(n).norm();
 }

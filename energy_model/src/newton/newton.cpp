@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "base/free_directions.hpp"
-
 namespace dlo::energy_model {
 namespace {
 
@@ -69,6 +67,7 @@ void Newton::factor(SpanSolution& solution) {
   system_.bottomLeftCorner(m, n) = jacobian_;
   system_.bottomRightCorner(m, m).setZero();
   lu_.compute(system_);
+  across_.reset();
   if (!stands_still_) return;
   pull_ = 1 + load_ + solution.multipliers.norm();
   find_neutral();
@@ -119,13 +118,18 @@ void Newton::solve() {
   // A neutral direction leaves the system singular; least squares stands still along it.
   const double moved = step_.head(gradient_.size()).norm();
   if (!((system_ * step_ - right_).norm() <= 1e-6 * right_.norm()) || moved > 1e3) {
-    step_ = newton_step_across_neutral(system_, right_);
+    step_across_neutral();
   }
+}
+
+void Newton::step_across_neutral() {
+  if (!across_) across_.emplace(system_);
+  step_ = across_->step(right_);
 }
 
 void Newton::stand_still_where_neutral() {
   right_ << -gradient_, -residual_;
-  step_ = newton_step_across_neutral(system_, right_);
+  step_across_neutral();
 }
 
 void Newton::move(SpanSolution& solution, double length) {
@@ -188,7 +192,7 @@ bool Newton::natural_move(SpanSolution& solution, double& size) {
   first_step_ = step_;
   const double length = length_of(solution);
   const double first = std::min(1.0, longest / step_.head(gradient_.size()).norm());
-  for (double part = first; part > least_part; part /= 4) {
+  for (double part = first; part > least_part && !deadline_.passed(); part /= 4) {
     step_ = first_step_;
     move(solution, part);
     size = evaluate(solution);
@@ -232,7 +236,7 @@ void Newton::polish(SpanSolution& solution, double load) {
   const Eigen::VectorXd x = solution.x;
   const Eigen::VectorXd multipliers = solution.multipliers;
   run(solution, load);
-  if (solution.is_equilibrium()) return;
+  if (solution.is_equilibrium() || solution.status == SolveStatus::time_limit) return;
   solution.x = x;
   solution.multipliers = multipliers;
   polish_along_branch(solution, load);
@@ -257,6 +261,10 @@ void Newton::run(SpanSolution& solution, double load) {
   };
   for (int step = 0; step < most_steps; ++step) {
     if (!std::isfinite(size)) break;
+    if (deadline_.passed()) {
+      solution.residual = size;
+      return solution.finish(SolveStatus::time_limit);
+    }
     if (!factored) factor(solution);
     solve();
     const double moved = step_.head(gradient_.size()).norm();

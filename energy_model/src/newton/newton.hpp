@@ -3,7 +3,10 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <optional>
 
+#include "base/deadline.hpp"
+#include "base/free_directions.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
@@ -16,6 +19,8 @@ inline constexpr double largest_pull = 1e10;
 /// constraints and walls it allocates nothing once they have their size.
 class Newton {
  public:
+  /// From now on: what has not come to its end by then ends as `time_limit`.
+  void limit(const Deadline& deadline) { deadline_ = deadline; }
   /// From solution.x to where the residual is at rounding and Newton's next step, evaluated there,
   /// is below 1e-8; steps are cut while the next one, with the same factor, is no shorter. Without
   /// constraints the Hessian then tells a minimum (`converged`) from a `saddle`; with them the
@@ -37,6 +42,7 @@ class Newton {
   void stand_still();
   void solve();
   void stand_still_where_neutral();
+  void step_across_neutral();
   void move(SpanSolution& solution, double length);
   [[nodiscard]] double step_length(SpanSolution& solution, double size);
   [[nodiscard]] double step_length_by_energy(SpanSolution& solution);
@@ -44,6 +50,7 @@ class Newton {
   [[nodiscard]] double softest_of_factor();
   [[nodiscard]] bool natural_move(SpanSolution& solution, double& size);
 
+  Deadline deadline_;
   double load_ = 0;
   bool stands_still_ = false;
   double pull_ = 1;  // scale of forces
@@ -51,7 +58,8 @@ class Newton {
   Eigen::MatrixXd jacobian_, hessian_, system_, neutral_;
   Eigen::LLT<Eigen::MatrixXd> llt_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
-  bool definite_ = false;  // llt_ is what the system is solved with
+  std::optional<AcrossNeutral> across_;  // of system_, once it was asked for
+  bool definite_ = false;                // llt_ is what the system is solved with
   Eigen::VectorXd trial_x_, trial_multipliers_, trial_gradient_, soft_;
 };
 

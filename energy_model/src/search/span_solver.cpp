@@ -63,6 +63,7 @@ class Search {
  public:
   Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
       : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
+    workspace_.newton().limit(options.deadline);
     for (const Segment& segment : segments_of(span)) {
       if (!segment.taut()) continue;
       taut_ = true;

@@ -67,6 +67,7 @@ class TwistPath {
         workspace_(workspace),
         load_(span.total_load()),
         first_d1_(untwisted.end_d1) {
+    workspace_.newton().limit(options.deadline);
     span_.planar = false;
     span_.twist = Span::Twist{stiffness, first_d1_};
     here_ = with_terms(untwisted.solution, untwisted.solution.terms);
@@ -299,6 +300,7 @@ SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
 SpanSolution twist_from(const TangentField& field, double twist,
                         const std::optional<Eigen::Vector3d>& end_d1, const Span& span,
                         double stiffness, const SpanOptions& options, SpanWorkspace& workspace) {
+  workspace.newton().limit(options.deadline);
   Span twisted = span;
   twisted.planar = false;
   twisted.twist = Span::Twist{stiffness, end_d1.value_or(Span::d1(*span.end_direction))};
