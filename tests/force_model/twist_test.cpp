@@ -17,7 +17,6 @@
 #include "dlo/force_model/tangent_stiffness.hpp"
 #include "plain_simulation.hpp"
 #include "polygons.hpp"
-#include "rods.hpp"
 #include "twisted_rods.hpp"
 
 namespace dlo::force_model {
@@ -27,7 +26,6 @@ using std::numbers::pi;
 using test::difference_forces;
 using test::net_torque;
 using test::random_polygon;
-using test::SteelRod;
 using test::TwistedRod;
 
 TwistedSpan random_span(Eigen::Index segments) {
@@ -169,7 +167,7 @@ TEST(Twist, StepsCountItsStiffness) {
     twisted.c_c = 10;
     const Rod rod = twisted.rod();
     const Eigen::Matrix3Xd points = twisted.arch();
-    const Eigen::Index free = 3 * (twisted.points - 4);
+    const Eigen::Index free = 3 * (rod.points() - 4);
     Eigen::MatrixXd K(free, free);
     Eigen::Matrix3Xd ahead(3, twisted.points);
     Eigen::Matrix3Xd back = ahead;
