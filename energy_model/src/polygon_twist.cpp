@@ -1,6 +1,7 @@
 #include "polygon_twist.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -82,10 +83,8 @@ void require_twists(const PolygonProblem& problem) {
   require(problem.twists.empty() || problem.natural_turns.size() == 0, name, "number of twists",
           count, "0 with natural turns");
   const auto is_held = [&](Eigen::Index point) {
-    for (const HeldPoint& held : problem.held) {
-      if (held.point == point) return true;
-    }
-    return false;
+    return std::any_of(problem.held.begin(), problem.held.end(),
+                       [point](const HeldPoint& held) { return held.point == point; });
   };
   for (const PolygonTwist& twist : problem.twists) {
     for (const Eigen::Index segment : {twist.first_segment, twist.last_segment}) {

@@ -25,7 +25,7 @@ constexpr double least_turning = 1e-4;
 /// Problems on the way from no twist to all of it.
 class TwistedWay {
  public:
-  TwistedWay(const PolygonProblem& problem, const Eigen::Matrix3Xd& start) : last_(problem) {
+  TwistedWay(PolygonProblem problem, const Eigen::Matrix3Xd& start) : last_(std::move(problem)) {
     for (PolygonTwist& twist : last_.twists) {
       twist.angle = polygon_twist_angle(twist, start);
       angles_.push_back(twist.angle);
@@ -36,20 +36,19 @@ class TwistedWay {
   /// The largest twist of the start, all of it on [rad].
   [[nodiscard]] double length() const { return longest_; }
 
-  /// @param part   of the way, 0 .. 1
-  /// @param now    twists that a shape at `before` has;  @param before  another part
-  [[nodiscard]] PolygonProblem at(double part, const std::vector<double>& now,
-                                  double before) const {
+  /// @param to    part of the way, 0 .. 1
+  /// @param now   twists that a shape has at the part `from`
+  [[nodiscard]] PolygonProblem at(double to, const std::vector<double>& now, double from) const {
     PolygonProblem problem = last_;
     double turned = 0;  // of the first frame of a twist, which may be the last of another
     for (std::size_t k = 0; k < problem.twists.size(); ++k) {
       PolygonTwist& twist = problem.twists[k];
       const bool follows = k > 0 && problem.twists[k - 1].last_segment == twist.first_segment;
       if (!follows) turned = 0;
-      twist.first_d1 = turned_back(twist.first_segment, (1 - part) * turned) * twist.first_d1;
+      twist.first_d1 = turned_back(twist.first_segment, (1 - to) * turned) * twist.first_d1;
       turned += angles_[k];
-      twist.last_d1 = turned_back(twist.last_segment, (1 - part) * turned) * twist.last_d1;
-      twist.angle = now[k] + (part - before) * angles_[k];
+      twist.last_d1 = turned_back(twist.last_segment, (1 - to) * turned) * twist.last_d1;
+      twist.angle = now[k] + (to - from) * angles_[k];
     }
     return problem;
   }
@@ -62,7 +61,7 @@ class TwistedWay {
       if (held.point == segment) along -= held.position;
       if (held.point == segment + 1) along += held.position;
     }
-    return Eigen::AngleAxisd(-angle, along.normalized());
+    return {-angle, along.normalized()};
   }
 
   PolygonProblem last_;

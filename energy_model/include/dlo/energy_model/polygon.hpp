@@ -25,7 +25,8 @@ struct PointWall {
 
 /// Twist of a round rod between two held segments that hold its material frame. The angle theta is
 /// that about the last segment from the first d1, brought along the polygon by the shortest turn
-/// from segment to segment, to the last d1; its energy is theta^2 / (2 C).
+/// from segment to segment, to the last d1; its energy is theta^2 / (2 C) (Bergou et al., Discrete
+/// elastic rods, SIGGRAPH 2008).
 struct PolygonTwist {
   Eigen::Index first_segment = 0;                       ///< from point k to k+1
   Eigen::Index last_segment = 0;                        ///< > first_segment
