@@ -1,11 +1,13 @@
 #include "lockstep.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "require.hpp"
+#include "twisted_spans.hpp"
 
 namespace dlo::force_model {
 namespace {
@@ -16,15 +18,26 @@ constexpr double rounding_share = 1024 * std::numeric_limits<double>::epsilon();
 /// Natural turns have a sign in the plane z = 0 only.
 bool is_bound_to_plane(const Rod& rod) { return rod.bending.natural_turns.size() > 0; }
 
-std::vector<Rod> checked_rods(std::span<const BatchRod> start) {
+Eigen::Index count_twisted(const Rod& rod) {
+  Eigen::Index count = 0;
+  for_each_twisted_span(rod, [&count](const TwistedSpan& /*span*/, const Grip& /*first*/,
+                                      const Grip& /*last*/) { ++count; });
+  return count;
+}
+
+std::vector<Rod> checked_rods(std::span<const BatchRod> start, bool together) {
   std::vector<Rod> rods;
   for (const BatchRod& one : start) {
     check(one.rod);
+    const Eigen::Index twisted = count_twisted(one.rod);
+    require(!together || twisted == 0, "Batch", "number of grips with d1",
+            static_cast<double>(twisted + 1), "0 or 1: rods in lockstep have no twist");
     require_polygon("Simulation", one.points, one.rod.rest_lengths);
     const double across = one.points.row(2).cwiseAbs().maxCoeff();
     require(!is_bound_to_plane(one.rod) || across == 0, "Simulation", "largest z of a point",
             across, "0 of a rod with natural turns, which have no sign in space");
     rods.push_back(one.rod);
+    if (one.rod.twist.angles.size() == 0) rods.back().twist.angles.setZero(twisted);
   }
   return rods;
 }
@@ -41,7 +54,8 @@ Eigen::Matrix3Xd with_held_points(const BatchRod& start) {
 }  // namespace
 
 Lockstep::Lockstep(std::span<const BatchRod> start, bool together)
-    : rods_(checked_rods(start)), block_(rods_, together, start.front().options.instruction_set) {
+    : rods_(checked_rods(start, together)),
+      block_(rods_, together, start.front().options.instruction_set) {
   for (std::size_t lane = 0; lane < block_lanes; ++lane) {
     const std::size_t rod = lane < start.size() ? lane : 0;
     if (!together && rod != lane) break;
@@ -71,6 +85,11 @@ bool Lockstep::any_active() const {
                      [](double lane) { return lane != 0; });
 }
 
+void Lockstep::compute_forces() {
+  if (block_.twisted()) block_.follow_twist(rods_.front().twist.angles);
+  block_.compute_forces(rods_, active_);
+}
+
 void Lockstep::look_at_modes() {
   bool due = false;
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
@@ -78,6 +97,10 @@ void Lockstep::look_at_modes() {
   }
   if (!due) return;
   block_.look_at_modes(look_);
+  if (block_.twisted()) {
+    copy_points(0, points_);
+    look_.bending.lane[0] += fastest_twist_mode(rods_.front(), points_);
+  }
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
     if (!active(rod)) continue;
     controls_[rod].update_modes(look_.contraction.lane[rod] + look_.bending.lane[rod],
@@ -87,7 +110,7 @@ void Lockstep::look_at_modes() {
 }
 
 void Lockstep::step(std::span<StepResult> results) {
-  block_.compute_forces(rods_, active_);
+  compute_forces();
   look_at_modes();
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
     kept_.lane[rod] = controls_[rod].kept() * c_m_.lane[rod];
@@ -144,7 +167,7 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
       due[rod] = active(rod) && searches[rod].count(results[rod]);
     }
     if (std::find(due.begin(), due.end(), true) != due.end()) {
-      block_.compute_forces(rods_, active_);
+      compute_forces();
       for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
         if (!due[rod]) continue;
         // An equilibrium that does not hold, as an upright rod's: whatever disturbs it lets it
@@ -159,7 +182,7 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
     for (std::size_t rod = 0; rod < rods_.size(); ++rod) stop_if_done(rod);
   }
   active_ = active_before;
-  block_.compute_forces(rods_, active_);
+  compute_forces();
   std::vector<RelaxResult> outcomes;
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
     outcomes.push_back(searches[rod].finish(shape(rod)));
@@ -169,7 +192,7 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
 
 void Lockstep::move_grip(std::size_t rod, std::size_t grip,
                          const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
-                         const Eigen::Vector3d& reference) {
+                         const Eigen::Vector3d& reference, const Eigen::Vector3d* d1) {
   Rod& held = rods_[rod];
   require(grip < held.grips.size(), "Simulation::move_grip", "grip", static_cast<double>(grip),
           "smaller than the number of grips");
@@ -180,6 +203,22 @@ void Lockstep::move_grip(std::size_t rod, std::size_t grip,
           targets.norm(), "finite");
   require(!is_bound_to_plane(held) || targets.row(2).isZero(0), "Simulation::move_grip",
           "z of targets", targets.row(2).cwiseAbs().maxCoeff(), "0 of a rod with natural turns");
+  const auto direction_of =
+      [](const Eigen::Ref<const Eigen::Matrix3Xd>& of_grip) -> Eigen::Vector3d {
+    return (of_grip.col(1) - of_grip.col(0)).normalized();
+  };
+  if (d1 != nullptr) {
+    require(moved.d1.has_value(), "Simulation::move_grip", "grip", static_cast<double>(grip),
+            "one that holds the rod's frame");
+    const Eigen::Vector3d across = direction_of(targets).cross(*d1);
+    require(across.norm() > 0 && across.allFinite(), "Simulation::move_grip",
+            "part of d1 across the segment", across.norm(), "finite and > 0");
+    moved.d1 = *d1;
+  } else if (moved.d1) {
+    moved.d1 =
+        Eigen::Quaterniond::FromTwoVectors(direction_of(moved.targets), direction_of(targets)) *
+        *moved.d1;
+  }
   moved.targets = targets;
   moved.reference = reference;
   if (moved.hold == GripHold::rigid) {
@@ -187,6 +226,7 @@ void Lockstep::move_grip(std::size_t rod, std::size_t grip,
     points_.middleCols(moved.first_point, targets.cols()) = targets;
     block_.set(positions, rod, points_);
   }
+  if (block_.twisted()) block_.set_twist(held);
   update_rounding(rod);
   block_.update_dimension(rods_);
 }

@@ -26,10 +26,10 @@ class Lockstep {
   /// Steps until each active rod rests, see Simulation::relax. Allocates.
   std::vector<RelaxResult> relax(const RelaxOptions& options);
 
-  /// As Simulation::move_grip.
+  /// As Simulation::move_grip. @param d1  null: the frame, if there is one, comes along
   void move_grip(std::size_t rod, std::size_t grip,
                  const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
-                 const Eigen::Vector3d& reference);
+                 const Eigen::Vector3d& reference, const Eigen::Vector3d* d1 = nullptr);
 
   /// As Simulation::move_wall.
   void move_wall(std::size_t rod, std::size_t wall, const Wall& moved);
@@ -51,6 +51,7 @@ class Lockstep {
   [[nodiscard]] bool any_active() const;
 
  private:
+  void compute_forces();
   void look_at_modes();
   void update_rounding(std::size_t rod);
   MovingShape shape(std::size_t rod);

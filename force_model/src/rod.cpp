@@ -5,6 +5,7 @@
 
 #include "dlo/force_model/contraction.hpp"
 #include "require.hpp"
+#include "twisted_spans.hpp"
 
 namespace dlo::force_model {
 namespace {
@@ -19,6 +20,52 @@ void check_grip(const Grip& grip, Eigen::Index points) {
           "so that the grip's points exist");
   require(grip.targets.allFinite(), "Rod", "targets of a grip", grip.targets.norm(), "finite");
   if (grip.hold == GripHold::spring) require_positive("Rod", "grip stiffness", grip.stiffness);
+  if (!grip.d1) return;
+  require(held == 2 && grip.hold == GripHold::rigid, "Rod", "points held by a grip with d1", held,
+          "2, rigidly: the frame of a point or of a segment on springs is not held");
+  require(grip.d1->allFinite(), "Rod", "|d1| of a grip", grip.d1->norm(), "finite");
+  // Below this share of its length rounding decides where the part across points.
+  constexpr double least_across = 1e-6;
+  const Eigen::Vector3d along = (grip.targets.col(1) - grip.targets.col(0)).normalized();
+  const double across = along.cross(*grip.d1).norm();
+  require(across > least_across * grip.d1->norm(), "Rod", "part of d1 across its segment", across,
+          "> 0");
+}
+
+/// Of rods with two grips or more that hold the frame.
+void check_twist(const Rod& rod) {
+  const Twist& twist = rod.twist;
+  require_not_negative("Rod", "torsional stiffness", twist.stiffness);
+  const auto joints = twist.stiffnesses.size();
+  require(joints == 0 || joints == rod.rest_lengths.size() - 1, "Rod",
+          "size of torsional stiffnesses", static_cast<double>(joints),
+          "0 or the number of joints");
+  Eigen::Index spans = 0;
+  const Grip* first = next_framed_grip(rod, nullptr);
+  const Grip* last = first;
+  while (last != nullptr) {
+    const Grip* next = next_framed_grip(rod, last);
+    if (next != nullptr) {
+      ++spans;
+      for (Eigen::Index i = last->first_point + 1; i <= next->first_point; ++i) {
+        require_positive("Rod", "torsional stiffness of a joint between two grips with d1",
+                         joints > 0 ? twist.stiffnesses[i - 1] : twist.stiffness);
+        require_positive("Rod", "bending stiffness of a joint between two grips with d1",
+                         bending_at(rod.bending, i).stiffness);
+      }
+    }
+    last = next;
+  }
+  const auto angles = twist.angles.size();
+  require(angles == 0 || angles == spans, "Rod", "size of twist angles",
+          static_cast<double>(angles), "0 or the number of parts between grips with d1");
+  require(twist.angles.allFinite(), "Rod", "twist angles", twist.angles.norm(), "finite");
+  if (spans == 0) return;
+  const auto framed = static_cast<double>(spans + 1);
+  require(rod.bending.law == BendingLaw::hooke, "Rod", "number of grips with d1", framed,
+          "0 or 1 with the paper's bending law, which has no twist");
+  require(rod.bending.natural_turns.size() == 0, "Rod", "number of grips with d1", framed,
+          "0 or 1 of a rod with natural turns, which is bound to a plane");
 }
 
 /// A rigid grip exerts all that acts on its points, so no two may hold the same one.
@@ -45,7 +92,44 @@ Eigen::Vector3d on_held_point(const Grip& grip, Eigen::Index k, const Points& po
 
 }  // namespace
 
+const Grip* next_framed_grip(const Rod& rod, const Grip* after) {
+  const Grip* next = nullptr;
+  for (const Grip& grip : rod.grips) {
+    if (!grip.d1 || (after != nullptr && grip.first_point <= after->first_point)) continue;
+    if (next == nullptr || grip.first_point < next->first_point) next = &grip;
+  }
+  return next;
+}
+
+TwistedSpan span_between(const Rod& rod, const Grip& first, const Grip& last, Eigen::Index number) {
+  TwistedSpan span;
+  span.first_segment = first.first_point;
+  span.last_segment = last.first_point;
+  span.first_d1 = *first.d1;
+  span.last_d1 = *last.d1;
+  const Twist& twist = rod.twist;
+  for (Eigen::Index i = span.first_segment + 1; i <= span.last_segment; ++i) {
+    const double length = (rod.rest_lengths[i - 1] + rod.rest_lengths[i]) / 2;
+    span.compliance +=
+        length / (twist.stiffnesses.size() > 0 ? twist.stiffnesses[i - 1] : twist.stiffness);
+  }
+  if (number < twist.angles.size()) span.angle = twist.angles[number];
+  return span;
+}
+
+std::vector<TwistedSpan> twisted_spans(const Rod& rod) {
+  check(rod);
+  std::vector<TwistedSpan> spans;
+  for_each_twisted_span(rod, [&spans](const TwistedSpan& span, const Grip& /*first*/,
+                                      const Grip& /*last*/) { spans.push_back(span); });
+  return spans;
+}
+
 bool is_planar(const Rod& rod) {
+  if (std::count_if(rod.grips.begin(), rod.grips.end(),
+                    [](const Grip& grip) { return grip.d1.has_value(); }) > 1) {
+    return false;
+  }
   const auto in_plane = [](const Grip& grip) { return (grip.targets.row(2).array() == 0).all(); };
   const auto upright = [](const Wall& wall) { return wall.normal.z() == 0; };
   return (rod.loads.row(2).array() == 0).all() &&
@@ -67,6 +151,7 @@ void check(const Rod& rod) {
   for (const Wall& wall : rod.walls) check(wall);
   for (const Grip& grip : rod.grips) check_grip(grip, rod.points());
   require_own_points("Rod", rod.grips);
+  check_twist(rod);
   if (rod.bending.natural_turns.size() > 0) {
     require(is_planar(rod), "Rod", "number of natural turns",
             static_cast<double>(rod.bending.natural_turns.size()),
@@ -80,6 +165,8 @@ void total_forces(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matrix
   forces = rod.loads;  // (6)
   add_contraction_forces(points, rod.rest_lengths, rod.c_c, forces);
   add_bending_forces(points, rod.rest_lengths, rod.bending, forces);
+  for_each_twisted_span(rod, [&](const TwistedSpan& span, const Grip& /*first*/,
+                                 const Grip& /*last*/) { add_twist_forces(span, points, forces); });
   for (const Wall& wall : rod.walls) {
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       forces.col(i) += wall_force(wall, points.col(i));
@@ -111,6 +198,18 @@ void grip_reactions(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matr
     }
     reactions[g] = reaction;
   }
+  // A held frame bears the twisting moment, about the segment that it belongs to.
+  const auto direction = [&points](Eigen::Index k) -> Eigen::Vector3d {
+    return (points.col(k + 1) - points.col(k)).normalized();
+  };
+  for_each_twisted_span(rod, [&](const TwistedSpan& span, const Grip& first, const Grip& last) {
+    const double moment = twist_angle(span, points) / span.compliance;
+    const auto reaction_of = [&](const Grip& grip) -> GripReaction& {
+      return reactions[static_cast<std::size_t>(&grip - rod.grips.data())];
+    };
+    reaction_of(first).torque -= moment * direction(span.first_segment);
+    reaction_of(last).torque += moment * direction(span.last_segment);
+  });
 }
 
 std::vector<GripReaction> grip_reactions(const Rod& rod, const Points& points) {
@@ -137,6 +236,10 @@ RodEnergy energy(const Rod& rod, const Points& points) {
       energy.contact += grip.stiffness * offset.squaredNorm() / 2;
     }
   }
+  for_each_twisted_span(rod,
+                        [&](const TwistedSpan& span, const Grip& /*first*/, const Grip& /*last*/) {
+                          energy.twist += twist_energy(span, points);
+                        });
   return energy;
 }
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "twisted_spans.hpp"
+
 namespace dlo::force_model {
 namespace {
 
@@ -39,6 +41,7 @@ RodBlock::RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set)
     set_rod(lane, rods[lane < rods.size() ? lane : 0]);
   }
   set_walls(rods);
+  if (!lockstep) set_twist(rods.front());
   kernel_ = &step_kernel(set_, {.law = law_}, stride_);
 }
 
@@ -120,6 +123,27 @@ void RodBlock::set_walls(std::span<const Rod> rods) {
   }
 }
 
+void RodBlock::set_twist(const Rod& rod) {
+  twisted_spans_.clear();
+  for_each_twisted_span(rod, [this](const TwistedSpan& span, const Grip& /*first*/,
+                                    const Grip& /*last*/) { twisted_spans_.push_back(span); });
+}
+
+void RodBlock::follow_twist(Eigen::VectorXd& angles) {
+  const View points = view(positions, 0);
+  for (std::size_t number = 0; number < twisted_spans_.size(); ++number) {
+    TwistedSpan& span = twisted_spans_[number];
+    const double angle = followed_twist(span, points);
+    // A rod that diverges goes on from where it was.
+    if (!std::isfinite(angle)) continue;
+    span.angle = angles[static_cast<Eigen::Index>(number)] = angle;
+    const double moment = angle / span.compliance;
+    for (Eigen::Index i = span.first_segment + 1; i <= span.last_segment; ++i) {
+      at(twist_share, i) = moment / at(bend, i);
+    }
+  }
+}
+
 void RodBlock::update_dimension(std::span<const Rod> rods) {
   const auto flat = [this](int array) {
     const auto zero = [&](std::ptrdiff_t k) { return at(array + 2, k) == 0; };
@@ -131,8 +155,12 @@ void RodBlock::update_dimension(std::span<const Rod> rods) {
   const bool planar = std::all_of(rods.begin(), rods.end(), is_planar) && flat(positions) &&
                       flat(proposals) && flat(proposals + axes);
   // In space there is no kernel with natural turns; Lockstep lets no such rod leave the plane.
-  kernel_ = &step_kernel(
-      set_, {.law = law_, .dimension = planar ? 2 : 3, .natural = natural_ && planar}, stride_);
+  kernel_ = &step_kernel(set_,
+                         {.law = law_,
+                          .dimension = planar ? 2 : 3,
+                          .natural = natural_ && planar,
+                          .twisted = twisted()},
+                         stride_);
 }
 
 void RodBlock::add_spring_grips(std::span<const Rod> rods) {

@@ -33,6 +33,13 @@ class RodBlock {
   /// Takes over the rods' walls; as many as the constructor saw, lest it allocate.
   void set_walls(std::span<const Rod> rods);
 
+  /// Takes over what the grips of a single rod twist, and where it has been counted to; as many
+  /// parts as the constructor saw, lest it allocate.
+  void set_twist(const Rod& rod);
+  [[nodiscard]] bool twisted() const { return !twisted_spans_.empty(); }
+  /// Counts the twist of the present shape on, into `angles` too, and the joints' moments with it.
+  void follow_twist(Eigen::VectorXd& angles);
+
   /// Finds out whether all rods stay in the plane z = 0 that they lie in. To be called when
   /// positions, loads, targets or walls have changed.
   void update_dimension(std::span<const Rod> rods);
@@ -75,6 +82,7 @@ class RodBlock {
   InstructionSet set_ = InstructionSet::baseline;
   BendingLaw law_ = BendingLaw::hooke;
   bool natural_ = false;  // some rod is not straight by nature
+  std::vector<TwistedSpan> twisted_spans_;
   const StepKernel* kernel_ = nullptr;
   std::vector<Line> memory_;
   std::vector<WallLanes> walls_;

@@ -61,6 +61,11 @@ void Simulation::move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matri
   lockstep_->move_grip(0, grip, targets, reference);
 }
 
+void Simulation::move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
+                           const Eigen::Vector3d& reference, const Eigen::Vector3d& d1) {
+  lockstep_->move_grip(0, grip, targets, reference, &d1);
+}
+
 void Simulation::move_wall(std::size_t wall, const Wall& moved) {
   lockstep_->move_wall(0, wall, moved);
 }

@@ -20,6 +20,10 @@
 // turned at rest (hooke, in the plane z = 0) have constant couples C_k besides, against which a
 // segment bears, with s turned to the left by a right angle,
 //     T_k += (C_{k+1} - C_k) left(s_k) / |s_k|^2                  (d)
+// and joints that bear a twisting moment M (hooke, in space) forces along their binormals
+// (twist.hpp)
+//     T_k += (w_k + w_{k+1}) / |s_k|                              (e)
+//     w_k = M s_{k-1} x s_k / (a b (1 + c)) = M / (2 EI/L) m_k s_{k-1} x s_k
 
 namespace dlo::force_model::DLO_KERNEL {
 namespace {
@@ -39,10 +43,19 @@ struct Segments {
   Lanes m = {};
 };
 
+/// What joints have besides their bending law.
+enum class JointExtra { nothing, couples, twist };
+
+inline LaneVector<3> cross(const LaneVector<3>& a, const LaneVector<3>& b) {
+  return {{a.axis[1] * b.axis[2] - a.axis[2] * b.axis[1],
+           a.axis[2] * b.axis[0] - a.axis[0] * b.axis[2],
+           a.axis[0] * b.axis[1] - a.axis[1] * b.axis[0]}};
+}
+
 /// Of vectors in the plane z = 0.
 inline LaneVector<2> left(const LaneVector<2>& s) { return {{-s.axis[1], s.axis[0]}}; }
 
-template <BendingLaw law, int dimension, std::ptrdiff_t stride, bool with_couples>
+template <BendingLaw law, int dimension, std::ptrdiff_t stride, JointExtra extra>
 void compute_forces(const PointBlock& block, PointArray applied, PerLane& regular) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
@@ -89,9 +102,15 @@ void compute_forces(const PointBlock& block, PointArray applied, PerLane& regula
                        All::after(here.m, following.m) * All::after(here.s, following.s);
       const Lanes along = (tension + dot(h, here.s) * inverse) * inverse;
       Vector T = along * here.s - h;  // (c)
-      if constexpr (with_couples) {
+      if constexpr (extra == JointExtra::couples) {
         const Lanes couple = all.load(natural, k + stride) - all.load(natural, k);
         T = T + (couple * inverse * inverse) * left(here.s);  // (d)
+      }
+      if constexpr (extra == JointExtra::twist) {
+        const Lanes M_here = all.load(twist_share, k) * here.m;
+        const Lanes M_after = all.load(twist_share, k + stride) * All::after(here.m, following.m);
+        T = T + inverse * (M_here * cross(here.s_before, here.s) +
+                           M_after * cross(here.s, All::after(here.s, following.s)));  // (e)
       }
       const Vector inner = T - All::before(T_previous, T);   // (2), (4)
       const Vector F = inner + all.load_vector(applied, k);  // (6)
@@ -125,7 +144,7 @@ Lanes joint_mode(Lanes stiffness, Lanes ab, Lanes product, Lanes L, Lanes lever)
   }
 }
 
-template <BendingLaw law, int dimension, std::ptrdiff_t stride, bool with_couples>
+template <BendingLaw law, int dimension, std::ptrdiff_t stride, JointExtra extra>
 void look_at_modes(const PointBlock& block, ModeLook& look) {
   using All = Registers<dimension, stride>;
   using Vector = LaneVector<dimension>;
@@ -153,7 +172,7 @@ void look_at_modes(const PointBlock& block, ModeLook& look) {
       const Lanes lever = min(All::before(bounded_previous, bounded), bounded);
       Lanes joint = joint_mode<law>(
           all.load(bend, k), All::before(length_previous, length) * length, product, mean, lever);
-      if constexpr (with_couples) {
+      if constexpr (extra == JointExtra::couples) {
         const Lanes couple = all.load(natural, k);
         joint += 4 * max(couple, -couple) / (lever * lever);
       }
@@ -264,20 +283,20 @@ void move(const PointBlock& block, int turn, const PerLane& c_m) {
   }
 }
 
-template <BendingLaw law, int dimension, std::ptrdiff_t stride, bool with_couples>
+template <BendingLaw law, int dimension, std::ptrdiff_t stride, JointExtra extra>
 constexpr StepKernel kernel = {
     .add_walls = add_walls<dimension, stride>,
-    .compute_forces = compute_forces<law, dimension, stride, with_couples>,
-    .look_at_modes = look_at_modes<law, dimension, stride, with_couples>,
+    .compute_forces = compute_forces<law, dimension, stride, extra>,
+    .look_at_modes = look_at_modes<law, dimension, stride, extra>,
     .propose_relative = propose<true, dimension, stride>,
     .propose_absolute = propose<false, dimension, stride>,
     .move = move<dimension, stride>,
 };
 
-template <BendingLaw law, int dimension, bool with_couples = false>
+template <BendingLaw law, int dimension, JointExtra extra = JointExtra::nothing>
 const StepKernel& with_stride(std::ptrdiff_t stride) {
-  return stride == 1 ? kernel<law, dimension, 1, with_couples>
-                     : kernel<law, dimension, block_lanes, with_couples>;
+  return stride == 1 ? kernel<law, dimension, 1, extra>
+                     : kernel<law, dimension, block_lanes, extra>;
 }
 
 template <BendingLaw law>
@@ -290,7 +309,8 @@ const StepKernel& with_dimension(int dimension, std::ptrdiff_t stride) {
 const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride);
 
 const StepKernel& step_kernel(const KernelChoice& choice, std::ptrdiff_t stride) {
-  if (choice.natural) return with_stride<BendingLaw::hooke, 2, true>(stride);
+  if (choice.natural) return with_stride<BendingLaw::hooke, 2, JointExtra::couples>(stride);
+  if (choice.twisted) return kernel<BendingLaw::hooke, 3, 1, JointExtra::twist>;
   return choice.law == BendingLaw::hooke
              ? with_dimension<BendingLaw::hooke>(choice.dimension, stride)
              : with_dimension<BendingLaw::paper>(choice.dimension, stride);

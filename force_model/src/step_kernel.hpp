@@ -34,7 +34,8 @@ enum PointArray : int {
   last_positions = 26,   ///< when the modes were last looked at [m], 3 axes
   last_forces = 29,      ///< then [N], 3 axes
   natural = 32,          ///< couple of a joint that is turned at rest [N m], from x to y
-  point_array_count = 33
+  twist_share = 33,      ///< twisting moment at a joint over its `bend` [-]; 0 where there is none
+  point_array_count = 34
 };
 
 /// Structure of arrays. Element k of a single rod is point k (`stride` 1); of eight rods in
@@ -73,6 +74,7 @@ struct KernelChoice {
   BendingLaw law = BendingLaw::hooke;  ///< of all joints
   int dimension = 3;                   ///< 2 (z stays 0) or 3
   bool natural = false;                ///< joints have couples; law hooke and dimension 2 only
+  bool twisted = false;                ///< joints bear twist; law hooke, dimension 3, stride 1 only
 };
 
 /// The parts of a step for one choice, stride and instruction set.

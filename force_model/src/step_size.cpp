@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "require.hpp"
+#include "twisted_spans.hpp"
 
 namespace dlo::force_model {
 namespace {
@@ -64,7 +65,8 @@ double equivalent_rigidity(const Rod& rod) {
 ModeBounds mode_bounds(const Rod& rod, const Points& points) {
   require_polygon("mode_bounds", points, rod.rest_lengths);
   ModeBounds modes;
-  modes.fastest = fastest_inner_mode(rod, points) + constraint_stiffness(rod);
+  modes.fastest =
+      fastest_inner_mode(rod, points) + fastest_twist_mode(rod, points) + constraint_stiffness(rod);
   const double per_length = clamped_free_root / rod.length();
   const double square = per_length * per_length;
   modes.slowest = square * square * equivalent_rigidity(rod) * rod.rest_lengths.mean();

@@ -1,13 +1,14 @@
 #include "dlo/force_model/tangent_stiffness.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "require.hpp"
+#include "stiffness_factor.hpp"
+#include "twisted_spans.hpp"
 
 namespace dlo::force_model {
 namespace {
@@ -31,32 +32,6 @@ std::vector<Eigen::Index> free_indices(const Rod& rod, Eigen::Index& count) {
   return indices;
 }
 
-using Factor =
-    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::NaturalOrdering<int>>;
-
-/// With K = L D L^T and D_j < 0, the d with L^T d = e_j has d^T K d = D_j.
-Eigen::Matrix3Xd falling_direction(const Factor& factor, const std::vector<Eigen::Index>& index) {
-  const Eigen::VectorXd pivots = factor.vectorD();
-  // The first of equals, as an upright rod has: it falls in the plane of x.
-  const double lowest = pivots.minCoeff();
-  Eigen::Index pivot = 0;
-  while (!(pivots[pivot] <= 0.999 * lowest)) ++pivot;
-  Eigen::VectorXd movement = factor.matrixU().solve(Eigen::VectorXd::Unit(pivots.size(), pivot));
-  Eigen::Matrix3Xd direction = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(index.size()));
-  for (std::size_t i = 0; i < index.size(); ++i) {
-    if (index[i] < 0) continue;
-    direction.col(static_cast<Eigen::Index>(i)) = movement.segment<3>(3 * index[i]);
-  }
-  direction /= std::sqrt(direction.colwise().squaredNorm().maxCoeff());
-  const Eigen::Vector3d whole = direction.rowwise().sum();
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    if (std::abs(whole[axis]) < 1e-6) continue;
-    if (whole[axis] < 0) direction = -direction;
-    break;
-  }
-  return direction;
-}
-
 /// Minus the derivative of the total forces by the positions of the free points, symmetric: the
 /// paper's law between unequal segments has no potential, half of what is off goes to either side.
 /// With x the points that a term depends on and f its force on them, each adds -df/dx.
@@ -70,7 +45,6 @@ class TangentStiffness {
   }
 
   [[nodiscard]] Eigen::Index free_points() const { return count_; }
-  [[nodiscard]] const std::vector<Eigen::Index>& index() const { return index_; }
 
   /// @param block  -df_i/dx_j, with its transpose when i != j
   void add(Eigen::Index i, Eigen::Index j, const Eigen::Matrix3d& block) {
@@ -86,11 +60,28 @@ class TangentStiffness {
     }
   }
 
-  [[nodiscard]] Eigen::SparseMatrix<double> matrix() const {
-    Eigen::SparseMatrix<double> result(3 * count_, 3 * count_);
-    result.setFromTriplets(entries_.begin(), entries_.end());
+  /// A joint's second derivatives by its segments a = P_i - P_{i-1} and b = P_{i+1} - P_i.
+  void add_joint(Eigen::Index i, const Eigen::Matrix3d& A, const Eigen::Matrix3d& AB,
+                 const Eigen::Matrix3d& B) {
+    add(i - 1, i - 1, A);
+    add(i, i, A + B - AB - AB.transpose());
+    add(i + 1, i + 1, B);
+    add(i - 1, i, AB - A);
+    add(i - 1, i + 1, -AB);
+    add(i, i + 1, AB - B);
+  }
+
+  /// Adds g g^T. @param g  of all points
+  void add_column(const Eigen::Matrix3Xd& g) {
+    columns_.conservativeResize(3 * count_, columns_.cols() + 1);
+    columns_.rightCols<1>() = gathered(g);
+  }
+
+  [[nodiscard]] BorderedMatrix matrix() const {
+    BorderedMatrix result{Eigen::SparseMatrix<double>(3 * count_, 3 * count_), columns_};
+    result.A.setFromTriplets(entries_.begin(), entries_.end());
     if (across_plane_ > 0) {
-      for (Eigen::Index i = 2; i < 3 * count_; i += 3) result.insert(i, i) = across_plane_;
+      for (Eigen::Index i = 2; i < 3 * count_; i += 3) result.A.insert(i, i) = across_plane_;
     }
     return result;
   }
@@ -118,7 +109,22 @@ class TangentStiffness {
   std::vector<Eigen::Index> index_;
   double across_plane_ = 0;  // of points that stay in the plane z = 0, else 0 [N/m]
   std::vector<Eigen::Triplet<double>> entries_;
+  Eigen::MatrixXd columns_;
 };
+
+/// Of all points, the furthest by 1, and on the whole towards +x, else +y, else +z.
+Eigen::Matrix3Xd falling_direction(const Eigen::VectorXd& movement,
+                                   const TangentStiffness& stiffness) {
+  Eigen::Matrix3Xd direction = stiffness.scattered(movement);
+  direction /= std::sqrt(direction.colwise().squaredNorm().maxCoeff());
+  const Eigen::Vector3d whole = direction.rowwise().sum();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (std::abs(whole[axis]) < 1e-6) continue;
+    if (whole[axis] < 0) direction = -direction;
+    break;
+  }
+  return direction;
+}
 
 /// Contraction: c_c/L along the segment, and across it what its tension resists.
 void add_segments(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
@@ -228,14 +234,46 @@ void add_joints(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points
       B -= couple * second_of_direction_angle(b);
     }
     const Eigen::Matrix3d AB = by_segments.topRightCorner<3, 3>();
-    // a = P_i - P_{i-1}, b = P_{i+1} - P_i
-    stiffness.add(i - 1, i - 1, A);
-    stiffness.add(i, i, A + B - AB - AB.transpose());
-    stiffness.add(i + 1, i + 1, B);
-    stiffness.add(i - 1, i, AB - A);
-    stiffness.add(i - 1, i + 1, -AB);
-    stiffness.add(i, i + 1, AB - B);
+    stiffness.add_joint(i, A, AB, B);
   }
+}
+
+/// Second derivative of E = theta^2 / (2 C) by the points: with g that of theta, g g^T / C and M
+/// times that of theta, whose first one (TwistedSpan) is of neighbours only. Of a joint's part of
+/// it
+///     aa: -(kb (t + u)^T + (t + u) kb^T) / (4 a^2),   t = (u + v) / (1 + u.v)
+///     ab: (2 [u]x / (1 + u.v) - kb t^T) / (2 a b)
+/// and bb as aa (Bergou et al., Discrete viscous threads, SIGGRAPH 2010). The skew parts of aa and
+/// bb that these leave out cancel with the neighbours'.
+void add_twist(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+               TangentStiffness& stiffness) {
+  const auto of_span = [&](const TwistedSpan& span, const Grip& /*first*/, const Grip& /*last*/) {
+    Eigen::Matrix3Xd gradient(3, points.cols());
+    twist_gradient(span, points, gradient);
+    stiffness.add_column(gradient / std::sqrt(span.compliance));
+    const double moment = twist_angle(span, points) / span.compliance;
+    for (Eigen::Index i = span.first_segment + 1; i <= span.last_segment; ++i) {
+      Eigen::Vector3d u = points.col(i) - points.col(i - 1);
+      Eigen::Vector3d v = points.col(i + 1) - points.col(i);
+      const double a = u.norm();
+      const double b = v.norm();
+      if (!(a > 0 && b > 0)) continue;
+      u /= a;
+      v /= b;
+      const double opening = 1 + u.dot(v);
+      if (!(opening > no_opening)) continue;
+      const Eigen::Vector3d kb = 2 / opening * u.cross(v);
+      const Eigen::Vector3d t = (u + v) / opening;
+      const Eigen::Matrix3d aa = -kb * (t + u).transpose() / (4 * a * a);
+      const Eigen::Matrix3d bb = -kb * (t + v).transpose() / (4 * b * b);
+      Eigen::Matrix3d across;  // [u]x
+      across << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
+      const Eigen::Matrix3d ab = (2 / opening * across - kb * t.transpose()) / (2 * a * b);
+      stiffness.add_joint(i, moment * (aa + aa.transpose()), moment * ab,
+                          moment * (bb + bb.transpose()));
+    }
+  };
+  for_each_twisted_span(rod, of_span);
 }
 
 void add_springs(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
@@ -255,49 +293,6 @@ void add_springs(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& point
   }
 }
 
-/// The smallest eigenvalues of K and their modes, by subspace iteration with a factor of K, or of K
-/// plus a shift of rounding size: from above, and within some percent.
-struct SlowModes {
-  static constexpr Eigen::Index most = 3;
-  Eigen::Vector3d eigenvalues = Eigen::Vector3d::Zero();  // ascending
-  Eigen::MatrixX3d modes;                                 // orthonormal, one a column
-};
-
-/// Gram and Schmidt's, twice for nearly parallel columns.
-void orthonormalise(Eigen::MatrixX3d& block) {
-  for (Eigen::Index i = 0; i < SlowModes::most; ++i) {
-    block.col(i).normalize();
-    for (int turn = 0; turn < 2; ++turn) {
-      for (Eigen::Index j = 0; j < i; ++j) {
-        block.col(i) -= block.col(j).dot(block.col(i)) * block.col(j);
-      }
-      block.col(i).normalize();
-    }
-  }
-}
-
-SlowModes slow_modes(const Eigen::SparseMatrix<double>& K, const Factor& factor) {
-  constexpr int iterations = 8;
-  Eigen::MatrixX3d block(K.rows(), 3);  // of no symmetry that a mode could be orthogonal to
-  for (Eigen::Index i = 0; i < block.size(); ++i) {
-    block.reshaped()[i] = std::sin(1 + 2.3999632 * static_cast<double>(i));
-  }
-  for (int i = 0; i < iterations; ++i) {
-    orthonormalise(block);
-    block = factor.solve(block).eval();
-  }
-  orthonormalise(block);
-  const Eigen::MatrixX3d K_block = K * block;
-  const Eigen::Matrix3d projected = block.transpose() * K_block;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> ritz(projected);
-  return {ritz.eigenvalues(), block * ritz.eigenvectors()};
-}
-
-/// Bound of the largest eigenvalue (Gershgorin).
-double fastest_mode(const Eigen::SparseMatrix<double>& K) {
-  return (Eigen::RowVectorXd::Ones(K.rows()) * K.cwiseAbs()).maxCoeff();
-}
-
 }  // namespace
 
 EquilibriumCheck check_equilibrium(const Rod& rod,
@@ -315,21 +310,22 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
   add_segments(rod, points, stiffness);
   add_joints(rod, points, stiffness);
   add_springs(rod, points, stiffness);
-  const Eigen::SparseMatrix<double> K = stiffness.matrix();
+  add_twist(rod, points, stiffness);
+  const BorderedMatrix K = stiffness.matrix();
   // Rounding of K, which is banded, leaves no sign to a mode below this.
-  const double rounding = 64 * std::numeric_limits<double>::epsilon() * fastest_mode(K);
-  Factor factor(K);
-  if (factor.info() != Eigen::Success) return result;
+  const double rounding = 64 * std::numeric_limits<double>::epsilon() * K.largest_eigenvalue();
+  StiffnessFactor factor(K);
+  if (!factor.succeeded()) return result;
   SlowModes slow;
-  if (factor.vectorD().minCoeff() > 0) slow = slow_modes(K, factor);
+  const bool positive = factor.is_positive();
+  if (positive) slow = slow_modes(K, factor);
   if (!(slow.eigenvalues[0] > rounding)) {
     // A rod that turns freely about its grips has modes without stiffness: they are left out.
     Eigen::Matrix3Xd falling;
-    if (factor.vectorD().minCoeff() < 0) falling = falling_direction(factor, stiffness.index());
-    Eigen::SparseMatrix<double> shifted = K;
-    for (Eigen::Index i = 0; i < K.rows(); ++i) shifted.coeffRef(i, i) += rounding;
-    factor.compute(shifted);
-    if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 0)) {
+    const Eigen::VectorXd movement = positive ? Eigen::VectorXd() : factor.falling(K);
+    if (movement.size() > 0) falling = falling_direction(movement, stiffness);
+    factor.compute(K.shifted(rounding));
+    if (!factor.is_positive()) {
       result.falling_direction = std::move(falling);
       return result;
     }

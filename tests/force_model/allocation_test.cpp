@@ -8,6 +8,7 @@
 #include "../sanitized.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "rods.hpp"
+#include "twisted_rods.hpp"
 
 // The sanitizers bring an allocator of their own.
 #if !defined(DLO_SANITIZED)
@@ -53,6 +54,27 @@ TEST(Simulation, StepsDoNotAllocate) {
   const Eigen::VectorXd vector = Eigen::VectorXd::Zero(steel.points);
   EXPECT_EQ(vector.size(), steel.points);
   EXPECT_GT(allocations, before);
+}
+
+TEST(Simulation, StepsAndTurnsOfATwistedRodDoNotAllocate) {
+  test::TwistedRod twisted;
+  twisted.turn = 1;
+  const Rod rod = twisted.rod();
+  const Grip& last = rod.grips[1];
+  Simulation simulation(rod, twisted.arch(), StepOptions{});
+  Eigen::Matrix3Xd forces(3, twisted.points);
+  Eigen::Matrix3Xd points = twisted.arch();
+  std::vector<GripReaction> reactions(2);
+  const long before = allocations;
+  bool good = true;
+  for (int i = 0; i < 100; ++i) good = good && simulation.step().status == StepStatus::good;
+  simulation.move_grip(1, last.targets, last.reference, Eigen::Vector3d::UnitZ());
+  simulation.move_grip(1, last.targets, last.reference);
+  good = good && simulation.step().status == StepStatus::good;
+  simulation.copy_points(points);
+  grip_reactions(simulation.rod(), points, forces, reactions);
+  EXPECT_EQ(allocations, before);
+  EXPECT_TRUE(good);
 }
 
 TEST(Simulation, AHapticFrameDoesNotAllocate) {

@@ -23,7 +23,10 @@ struct BenchOptions {
 void run(const BenchOptions& options) {
   std::vector<compare::Scene> scenes;
   for (const std::string& path : options.scenes) scenes.push_back(compare::load_scene(path));
-  for (const compare::Scene& scene : scenes) warn_of_polygons(scene);
+  for (const compare::Scene& scene : scenes) {
+    warn_of_polygons(scene);
+    warn_of_no_twist(scene, "tracking by the force model");
+  }
   if (scenes.empty()) scenes = compare::benchmark_scenes();
   const compare::BenchmarkReport report = [&] {
     ProgressBar bar("bench");

@@ -46,6 +46,7 @@ void run_map(StabilityOptions& options) {
   const compare::Scene scene =
       options.scene.empty() ? compare::hard_case_scene() : compare::load_scene(options.scene);
   warn_of_polygons(scene);
+  warn_of_no_twist(scene, "the map");
   const compare::StabilityMap map = [&] {
     ProgressBar bar("map");
     options.grid.progress = [&](std::int64_t done, std::int64_t total) { bar.show(done, total); };

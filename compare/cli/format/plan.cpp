@@ -47,7 +47,7 @@ std::string twist_text(const compare::Plan& plan) {
 std::string stretch_text(const compare::Plan& plan) {
   if (!plan.stretch) return "none";
   return plan.twist.empty() ? "needed: use force, or chain with c_c = AE"
-                            : "no bound; chain and force, which have it, leave the twist out";
+                            : "no bound; with the law hooke chain and force have it and the twist";
 }
 
 std::string left_out_text(const compare::LeftOut& item, double length) {

@@ -45,12 +45,21 @@ double option_quantity(const std::string& option, const std::string& text, Dimen
 
 }  // namespace
 
+void warn_of_no_twist(const compare::Scene& scene, const std::string& study) {
+  if (!compare::takes_twist(scene, scene.force_model)) return;
+  say("{}: the grippers hold twist, which {} leaves out", scene.file, study);
+}
+
 void warn_of_polygons(const compare::Scene& scene) {
-  if (scene.holds_twist()) {
-    say("{}: the grippers hold twist, which models chain and force leave out", scene.file);
-  }
   const std::vector<std::string> left_out = compare::left_out_of_polygon(scene, scene.force_model);
-  if (std::find(left_out.begin(), left_out.end(), "natural curvature") != left_out.end()) {
+  const auto leaves_out = [&left_out](const char* what) {
+    return std::find(left_out.begin(), left_out.end(), what) != left_out.end();
+  };
+  if (leaves_out("twist")) {
+    say("{}: the grippers hold twist, which models chain and force leave out {}", scene.file,
+        scene.naturally_bent() ? "of a rod that is curved by nature" : "with the law paper");
+  }
+  if (leaves_out("natural curvature")) {
     say("{}: the rod is curved by nature, which models chain and force leave out {}", scene.file,
         scene.planar() ? "with the law paper" : "in space");
   }

@@ -53,6 +53,9 @@ class PlanOptions {
 /// grippers hold, natural curvature.
 void warn_of_polygons(const compare::Scene& scene);
 
+/// The same of a study that has no twist where models chain and force have it.
+void warn_of_no_twist(const compare::Scene& scene, const std::string& study);
+
 /// @param formats  those that the command writes
 void add_output_options(CLI::App& command, OutputOptions& options,
                         const std::vector<std::string>& formats = compare::names<Format>());

@@ -9,6 +9,7 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
+#include "polygon/natural_plane.hpp"
 #include "solve/states.hpp"
 
 namespace dlo::compare {
@@ -21,7 +22,10 @@ std::size_t state_of(const Scene& scene, const Shape& force,
   if (states.size() == 1) return 0;
   ForceModelSettings settings = scene.force_model;
   settings.law = BendingLaw::hooke;
-  const Shape fallen = chain_from(scene, settings, force, options);
+  // A force model that leaves twist out is in a state without it.
+  const bool twisted = takes_twist(scene, scene.force_model);
+  const Shape fallen =
+      chain_from(twisted ? scene : scene.without_twist(), settings, force, options);
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < states.size(); ++i) {

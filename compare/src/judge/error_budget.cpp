@@ -73,7 +73,8 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
     return fields.of({s, lowest.sample(s).points});
   };
   const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, total.cols());
-  const Eigen::Matrix3Xd twist = scene.holds_twist() ? rod(scene.without_twist()) : none;
+  const bool leaves_twist_out = scene.holds_twist() && !takes_twist(scene, own);
+  const Eigen::Matrix3Xd twist = leaves_twist_out ? rod(scene.without_twist()) : none;
   const bool leaves_curvature_out = scene.naturally_bent() && !taken.naturally_bent() &&
                                     !scene.natural_strain.head<2>().isZero(0);
   const Eigen::Matrix3Xd left_out = leaves_curvature_out ? rod(taken) : twist;

@@ -16,6 +16,8 @@
 #include "dlo/force_model/step_size.hpp"
 #include "judge/force_model_shortfall.hpp"
 #include "judge/scalar_search.hpp"
+#include "polygon/natural_plane.hpp"
+#include "solve/polygon_solution.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -258,8 +260,12 @@ class ForceModelFitter {
       const Discretisation discretisation = discretise(entry.scene, settings_);
       std::vector<Eigen::Matrix3Xd> shapes = discretisation.starts;
       shapes.push_back(solve_chain(entry.scene, settings_, options_.solve).shape.points);
+      const force_model::Rod rod =
+          takes_twist(entry.scene, settings_)
+              ? lowest_polygon(entry.scene, settings_, discretisation, options_.solve).rod
+              : discretisation.rod;
       for (const Eigen::Matrix3Xd& points : shapes) {
-        const force_model::ModeBounds bounds = force_model::mode_bounds(discretisation.rod, points);
+        const force_model::ModeBounds bounds = force_model::mode_bounds(rod, points);
         result.fastest = std::max(result.fastest, bounds.fastest);
         result.slowest = std::min(result.slowest, bounds.slowest);
       }

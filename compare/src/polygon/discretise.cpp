@@ -114,7 +114,7 @@ Cell cell_of(const Scene& scene, const Layout& layout, Eigen::Index point) {
           i + 1 < s.size() ? on_rod((s[i] + s[i + 1]) / 2) : on_rod(s.back())};
 }
 
-/// Joints of a rod with sections, and of one that is curved by nature.
+/// Joints of a rod with sections, of one that grips twist, and of one that is curved by nature.
 void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings,
                           const Layout& layout, Discretisation& result) {
   const Eigen::Index joints = settings.points - 2;
@@ -125,6 +125,16 @@ void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings
       const Cell cell = cell_of(scene, layout, i + 1);
       const double EI = (cell.end - cell.begin) / scene.bending_compliance(cell.begin, cell.end);
       bending.stiffnesses[i] = EI / scene.bending_stiffness() * bending.stiffness;
+    }
+  }
+  if (takes_twist(scene, settings)) {
+    force_model::Twist& twist = result.rod.twist;
+    twist.stiffness = scene.twisting_stiffness();
+    if (!scene.sections.empty()) twist.stiffnesses.resize(joints);
+    for (Eigen::Index i = 0; i < twist.stiffnesses.size(); ++i) {
+      const Cell cell = cell_of(scene, layout, i + 1);
+      twist.stiffnesses[i] =
+          (cell.end - cell.begin) / scene.twisting_compliance(cell.begin, cell.end);
     }
   }
   if (!takes_natural_curvature(scene, settings)) return;

@@ -73,6 +73,10 @@ energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod) {
       problem.held.push_back({grip.first_point + k, grip.targets.col(k)});
     }
   }
+  for (const force_model::TwistedSpan& span : force_model::twisted_spans(rod)) {
+    problem.twists.push_back({span.first_segment, span.last_segment, span.first_d1, span.last_d1,
+                              span.compliance, span.angle});
+  }
   for (const force_model::Wall& wall : rod.walls) {
     problem.walls.push_back({wall.point, wall.normal, wall.stiffness});
   }

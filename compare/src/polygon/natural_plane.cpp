@@ -32,10 +32,14 @@ bool takes_natural_curvature(const Scene& scene, const ForceModelSettings& setti
   return is_curved_by_nature(scene) && settings.law == BendingLaw::hooke && scene.planar();
 }
 
+bool takes_twist(const Scene& scene, const ForceModelSettings& settings) {
+  return scene.holds_twist() && settings.law == BendingLaw::hooke && !scene.naturally_bent();
+}
+
 std::vector<std::string> left_out_of_polygon(const Scene& scene,
                                              const ForceModelSettings& settings) {
   std::vector<std::string> left_out;
-  if (scene.holds_twist()) left_out.emplace_back("twist");
+  if (scene.holds_twist() && !takes_twist(scene, settings)) left_out.emplace_back("twist");
   if (is_curved_by_nature(scene) && !takes_natural_curvature(scene, settings)) {
     left_out.emplace_back("natural curvature");
   }
@@ -43,6 +47,7 @@ std::vector<std::string> left_out_of_polygon(const Scene& scene,
 }
 
 Scene as_polygons_take_it(const Scene& scene, const ForceModelSettings& settings) {
+  if (takes_twist(scene, settings)) return scene;
   const bool curved = takes_natural_curvature(scene, settings);
   return (curved ? scene : scene.without_natural_strain()).without_twist();
 }

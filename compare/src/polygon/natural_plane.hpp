@@ -14,6 +14,10 @@ namespace dlo::compare {
 /// law hooke and in a plane. In space they would need the rod's frame, which points have not.
 [[nodiscard]] bool takes_natural_curvature(const Scene& scene, const ForceModelSettings& settings);
 
+/// Whether a polygon has the twist that the scene's clamps hold: with the law hooke, of a rod that
+/// is straight by nature.
+[[nodiscard]] bool takes_twist(const Scene& scene, const ForceModelSettings& settings);
+
 /// What polygons leave out of what the scene has: "twist", "natural curvature", or nothing.
 [[nodiscard]] std::vector<std::string> left_out_of_polygon(const Scene& scene,
                                                            const ForceModelSettings& settings);

@@ -127,6 +127,14 @@ double Scene::bending_compliance(double begin, double end) const {
              *this, begin, end, [](const Section& s) { return 1 / s.bending_stiffness; }, own);
 }
 
+double Scene::twisting_compliance(double begin, double end) const {
+  const double GJ = twisting_stiffness();
+  const auto of_section = [&](const Section& s) {
+    return 1 / s.torsional_stiffness.value_or(s.bending_stiffness / bending_stiffness() * GJ);
+  };
+  return (end - begin) / GJ + excess_between(*this, begin, end, of_section, 1 / GJ);
+}
+
 double Scene::gamma() const {
   return weight_per_length().norm() * length * length * length / bending_stiffness();
 }

@@ -10,6 +10,7 @@
 #include "dlo/energy_model/chain.hpp"
 #include "polygon/energy_problems.hpp"
 #include "polygon/natural_plane.hpp"
+#include "solve/held_frames.hpp"
 #include "solve/polygon_solution.hpp"
 #include "solve/turned_solution.hpp"
 
@@ -45,7 +46,7 @@ Solution solve_rigid_chain(const Scene& scene, const ForceModelSettings& setting
   if (discretisation.rod.grips.front().first_point != 0) {
     points = points.rowwise().reverse().eval();
   }
-  Solution solution = polygon_solution(scene, settings, discretisation, points);
+  Solution solution = polygon_solution(scene, settings, discretisation, discretisation.rod, points);
   solution.status = result.status;
   solution.message = result.message;
   solution.grippers = {balancing_load(discretisation, points)};
@@ -58,7 +59,7 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
                              const Discretisation& discretisation, const SolveOptions& options) {
   const LowestPolygon lowest = lowest_polygon(scene, settings, discretisation, options);
   const Eigen::Matrix3Xd& points = lowest.result.points;
-  Solution solution = polygon_solution(scene, settings, discretisation, points);
+  Solution solution = polygon_solution(scene, settings, discretisation, lowest.rod, points);
   solution.status = lowest.result.status;
   solution.message = lowest.result.message;
   Eigen::Index next = 0;  // grip_forces are in the order of the grips' points
@@ -72,6 +73,7 @@ Solution solve_elastic_chain(const Scene& scene, const ForceModelSettings& setti
     }
     solution.grippers.push_back(load);
   }
+  add_twisting_torques(lowest.rod, points, solution.grippers);
   solution.evaluations = lowest.evaluations;
   solution.seconds = lowest.seconds;
   return solution;
@@ -105,11 +107,15 @@ Shape chain_from(const Scene& scene, const ForceModelSettings& settings, const S
   Eigen::Matrix3Xd points = resample(start, discretisation.arc_length).points;
   // A shape in the plane but for rounding, and its joints are turned in it.
   if (takes_natural_curvature(scene, settings)) points.row(2).setZero();
+  // The frames are those of the lowest shape's way, and whole turns are nearest to its twist.
+  const force_model::Rod rod = takes_twist(scene, settings)
+                                   ? lowest_polygon(scene, settings, discretisation, options).rod
+                                   : discretisation.rod;
   energy_model::PolygonOptions polygon_options;
   polygon_options.max_evaluations = options.max_evaluations;
   polygon_options.time_limit = options.time_limit;
   const energy_model::PolygonResult result =
-      energy_model::solve_polygon(polygon_problem(discretisation.rod), points, polygon_options);
+      energy_model::solve_polygon(polygon_problem(rod), points, polygon_options);
   if (!energy_model::succeeded(result.status)) {
     throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
                                        scene.file, result.message, result.evaluations));

@@ -34,12 +34,13 @@ Directions directions_of(const Shape& shape) {
 }
 
 /// The chain's rest shape as a rod: its tangent turns evenly from one segment's middle to the next.
+/// Without twist, which the energy model puts in from there by the scene's own rolls.
 energy_model::Equilibrium chain_start(const Scene& scene, const SolveOptions& options) {
   ForceModelSettings settings = scene.force_model;
   settings.law = BendingLaw::hooke;
   settings.bookkeeping = Bookkeeping::consistent;
   settings.points = start_points;
-  const Shape shape = solve_chain(scene, settings, options).shape;
+  const Shape shape = solve_chain(scene.without_twist(), settings, options).shape;
   energy_model::Equilibrium start;
   start.message = "the chain's rest shape";
   start.sample = [shape, directions = directions_of(shape)](std::span<const double> arc_lengths) {

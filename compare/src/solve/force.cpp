@@ -20,8 +20,12 @@
 namespace dlo::compare {
 namespace {
 
+/// Of the way to the chain's shape, from where a simulation cannot swing past it.
+constexpr double nearly_there = 0.9;
+
 /// Where a simulation starts, and where it should come to rest.
 struct SimulationStart {
+  force_model::Rod rod;
   Eigen::Matrix3Xd points;
   std::optional<Eigen::Matrix3Xd> rest;  // of the chain, where there are several states
 };
@@ -29,15 +33,25 @@ struct SimulationStart {
 /// Of several starts it is the one from which the chain comes lowest, since the two are to be
 /// compared in the same state; and it is moved by a thousandth of the way to the chain's shape, for
 /// starts are as symmetric as their scene and may lead to a saddle, on which a simulation would
-/// balance.
+/// balance. A rod that clamps twist starts near the chain's shape: it has been twisted there little
+/// by little, and all at once could lead elsewhere.
 SimulationStart simulation_start(const Scene& scene, const ForceModelSettings& settings,
                                  const Discretisation& discretisation,
                                  const SolveOptions& options) {
-  if (discretisation.starts.size() == 1) return {discretisation.starts.front(), std::nullopt};
+  if (discretisation.starts.size() == 1) {
+    return {discretisation.rod, discretisation.starts.front(), std::nullopt};
+  }
   constexpr double nudge = 1e-3;
   LowestPolygon lowest = lowest_polygon(scene, settings, discretisation, options);
-  const Eigen::Matrix3Xd& start = discretisation.starts[lowest.start];
-  return {start + nudge * (lowest.result.points - start), std::move(lowest.result.points)};
+  const Eigen::Matrix3Xd& rest = lowest.result.points;
+  Eigen::Matrix3Xd points;
+  if (takes_twist(scene, settings)) {
+    points = lowest.untwisted + nearly_there * (rest - lowest.untwisted);
+  } else {
+    const Eigen::Matrix3Xd& start = discretisation.starts[lowest.start];
+    points = start + nudge * (rest - start);
+  }
+  return {std::move(lowest.rod), std::move(points), std::move(lowest.result.points)};
 }
 
 /// Whether a simulation has come to rest elsewhere than the chain, by more than the laws differ.
@@ -59,8 +73,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   const auto begin = std::chrono::steady_clock::now();
   const auto simulation_from = [&](const Eigen::Matrix3Xd& points) {
     try {
-      return force_model::Simulation(discretisation.rod, points,
-                                     step_options(settings, discretisation));
+      return force_model::Simulation(start.rod, points, step_options(settings, discretisation));
     } catch (const std::invalid_argument& error) {
       throw InputError(fmt::format("{}: the force model: {}", scene.file, error.what()));
     }
@@ -76,9 +89,8 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   };
   if (strayed()) {
     // It has swung past the chain's state; from a tenth of the way before it it cannot.
-    constexpr double near = 0.9;
     const long steps = result.steps;
-    simulation = simulation_from(start.points + near * (*start.rest - start.points));
+    simulation = simulation_from(start.points + nearly_there * (*start.rest - start.points));
     result = simulation.relax(limits);
     result.steps += steps;
   }
@@ -94,7 +106,8 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
               "steps"));
   }
   require_unstrained(scene, settings, discretisation, simulation.points(), "force");
-  Solution solution = polygon_solution(scene, settings, discretisation, simulation.points());
+  Solution solution =
+      polygon_solution(scene, settings, discretisation, simulation.rod(), simulation.points());
   solution.model = Model::force;
   solution.message = result.message;
   if (strayed()) solution.message += ", in another state than the chain";

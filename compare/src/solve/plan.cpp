@@ -170,7 +170,12 @@ LeftOut inertia(const Scene& scene, double speed) {
 }
 
 LeftOut twist_left_out(const Scene& scene, const Plan& plan) {
-  if (scene.holds_twist()) return {"twist", "chain, force", unbounded, "the grippers hold it"};
+  if (scene.holds_twist()) {
+    ForceModelSettings hooke = scene.force_model;
+    hooke.law = BendingLaw::hooke;
+    return {"twist", takes_twist(scene, hooke) ? "chain, force with the law paper" : "chain, force",
+            unbounded, "the grippers hold it"};
+  }
   if (!scene.naturally_bent()) {
     return {"twist", "all", 0, "none in a round, naturally straight rod free to twist"};
   }

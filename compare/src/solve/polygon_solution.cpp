@@ -11,6 +11,7 @@
 #include "polygon/energy_problems.hpp"
 #include "polygon/natural_plane.hpp"
 #include "scene/reach.hpp"
+#include "solve/held_frames.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -49,8 +50,8 @@ class TimeLeft {
 }  // namespace
 
 Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings,
-                          const Discretisation& discretisation, const Eigen::Matrix3Xd& points) {
-  const force_model::Rod& rod = discretisation.rod;
+                          const Discretisation& discretisation, const force_model::Rod& rod,
+                          const Eigen::Matrix3Xd& points) {
   const force_model::RodEnergy inner = force_model::energy(rod, points);
   const Eigen::Matrix3Xd offset = points.colwise() - rod.grips.front().reference;
   Solution solution;
@@ -59,6 +60,8 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
   solution.left_out = left_out_of_polygon(scene, settings);
   SceneEnergies& energy = solution.energy;
   energy.bending = inner.bending;
+  energy.twisting = inner.twist;
+  solution.twists = twisted_parts(scene, rod, points);
   energy.stretch = inner.stretch;
   energy.gravity = -discretisation.weights.cwiseProduct(offset).sum();
   energy.load = -(rod.loads - discretisation.weights).cwiseProduct(offset).sum();
@@ -130,6 +133,23 @@ LowestPolygon lowest_polygon(const Scene& scene, const ForceModelSettings& setti
                                        scene.file, lowest.result.message, lowest.evaluations));
   }
   require_unstrained(scene, settings, discretisation, lowest.result.points, "chain");
+  lowest.rod = discretisation.rod;
+  if (!takes_twist(scene, settings)) return lowest;
+  lowest.untwisted = lowest.result.points;
+  lowest.rod = with_frames(scene, discretisation, lowest.untwisted);
+  polygon_options.time_limit = std::max(left.now(), options.time_limit / 4);
+  lowest.result =
+      energy_model::twist_polygon(polygon_problem(lowest.rod), lowest.untwisted, polygon_options);
+  lowest.evaluations += lowest.result.evaluations;
+  lowest.seconds += lowest.result.seconds;
+  if (!energy_model::succeeded(lowest.result.status)) {
+    throw ConvergenceError(
+        fmt::format("{}: the chain model did not converge: {} ({} evaluations, all with twist)",
+                    scene.file, lowest.result.message, lowest.evaluations));
+  }
+  require_unstrained(scene, settings, discretisation, lowest.result.points, "chain");
+  lowest.rod.twist.angles = Eigen::Map<const Eigen::VectorXd>(
+      lowest.result.twists.data(), static_cast<Eigen::Index>(lowest.result.twists.size()));
   return lowest;
 }
 

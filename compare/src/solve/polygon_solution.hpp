@@ -12,8 +12,10 @@ namespace dlo::compare {
 
 /// Shape and energies of a polygon, and what obstacles do to it. Points that a gripper holds do not
 /// touch them: a clamp near an obstacle may hold its inner point behind it.
+/// @param rod  the discretisation's, with frames where there is twist
 [[nodiscard]] Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings,
                                         const Discretisation& discretisation,
+                                        const force_model::Rod& rod,
                                         const Eigen::Matrix3Xd& points);
 
 /// A polygon that had to stretch or to shrink is no shape of the rod, however well it balances.
@@ -22,11 +24,15 @@ void require_unstrained(const Scene& scene, const ForceModelSettings& settings,
                         const Discretisation& discretisation, const Eigen::Matrix3Xd& points,
                         const char* model);
 
-/// The lowest of the shapes that a polygon's starts lead to.
+/// The lowest of the shapes that a polygon's starts lead to, and of one that clamps twist the shape
+/// to which the twist leads from there.
 struct LowestPolygon {
   std::size_t start = 0;  ///< of Discretisation::starts
   energy_model::PolygonResult result;
-  int evaluations = 0;  ///< of all starts
+  /// The discretisation's; where the scene's clamps twist it with their frames and its twist.
+  force_model::Rod rod;
+  Eigen::Matrix3Xd untwisted;  ///< where it rests without twist [m]; of others 3 x 0
+  int evaluations = 0;         ///< of all starts
   double seconds = 0;
 };
 

@@ -1,6 +1,5 @@
 #include "dlo/energy_model/polygon.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -8,9 +7,10 @@
 #include <sstream>
 
 #include "base/deadline.hpp"
-#include "base/require.hpp"
 #include "polygon/polygon_energy.hpp"
-#include "polygon/unlike_joints.hpp"
+#include "polygon/polygon_factor.hpp"
+#include "polygon/polygon_twist.hpp"
+#include "polygon/require_polygon.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -33,70 +33,12 @@ constexpr int most_escapes = 10;
 /// far below it, one that is pressed between two constraints far above.
 constexpr double force_left = 1e-6;
 
-/// Of polygons whose joints are turned at rest.
-void require_in_plane(const char* problem, const char* what, const Points& vectors) {
-  const double across = vectors.row(2).cwiseAbs().maxCoeff();
-  require(across == 0, problem, (std::string("z of ") + what).c_str(), across,
-          "0 with natural turns");
-}
-
-void check(const PolygonProblem& problem, const Points& start, const PolygonOptions& options) {
-  constexpr const char* name = "PolygonProblem";
-  const Eigen::Index n = problem.rest_lengths.size();
-  require(n >= 2, name, "number of segments", static_cast<double>(n), ">= 2");
-  const double shortest = problem.rest_lengths.minCoeff();
-  require(shortest > 0 && problem.rest_lengths.allFinite(), name, "smallest rest length", shortest,
-          "finite and > 0");
-  require_positive(name, "stretch_stiffness", problem.stretch_stiffness);
-  require_positive(name, "stiffness", problem.stiffness);
-  require_unlike_joints(name, problem.law, problem.stiffnesses, problem.natural_turns, n);
-  require(problem.node_forces.cols() == n + 1, name, "columns of node_forces",
-          static_cast<double>(problem.node_forces.cols()), "one more than segments");
-  require(problem.node_forces.allFinite(), name, "node_forces", problem.node_forces.norm(),
-          "finite");
-  require(!problem.held.empty(), name, "number of held points", 0, ">= 1");
-  std::vector<bool> taken(static_cast<std::size_t>(n + 1), false);
-  for (const HeldPoint& held : problem.held) {
-    const bool exists = held.point >= 0 && held.point <= n;
-    require(exists && !taken[static_cast<std::size_t>(held.point)], name, "a held point",
-            static_cast<double>(held.point), "a point of the polygon, held once");
-    taken[static_cast<std::size_t>(held.point)] = true;
-    require(held.position.allFinite(), name, "position of a held point", held.position.norm(),
-            "finite");
-  }
-  for (const PointWall& wall : problem.walls) {
-    require(wall.stiffness >= 0 && std::isfinite(wall.stiffness), name, "stiffness of a wall",
-            wall.stiffness, "finite and >= 0");
-    require(std::abs(wall.normal.norm() - 1) < 1e-9, name, "length of a wall's normal",
-            wall.normal.norm(), "1");
-    require(wall.point.allFinite(), name, "point of a wall", wall.point.norm(), "finite");
-  }
-  require_positive("PolygonOptions", "tolerance", options.tolerance);
-  require(options.max_evaluations >= 1, "PolygonOptions", "max_evaluations",
-          options.max_evaluations, ">= 1");
-  require(options.time_limit > 0, "PolygonOptions", "time_limit", options.time_limit, "> 0");
-  require(start.cols() == n + 1, "solve_polygon", "columns of start",
-          static_cast<double>(start.cols()), "one more than segments");
-  const double closest = (start.rightCols(n) - start.leftCols(n)).colwise().norm().minCoeff();
-  if (problem.natural_turns.size() > 0) {
-    require_in_plane(name, "a node force", problem.node_forces);
-    require_in_plane("solve_polygon", "a point of start", start);
-    for (const HeldPoint& held : problem.held) {
-      require_in_plane(name, "a held point", held.position);
-    }
-    for (const PointWall& wall : problem.walls) {
-      require_in_plane(name, "a wall's normal", wall.normal);
-    }
-  }
-  require(start.allFinite() && closest > 0, "solve_polygon", "shortest segment of start", closest,
-          "finite and > 0");
-}
-
 /// Descends on one problem; holds what all steps need.
 class PolygonDescent {
  public:
-  PolygonDescent(const PolygonProblem& problem, const PolygonOptions& options,
-                 const Deadline& deadline, PolygonResult& result)
+  /// @param problem  its twists are counted on, with the points of the result
+  PolygonDescent(PolygonProblem& problem, const PolygonOptions& options, const Deadline& deadline,
+                 PolygonResult& result)
       : problem_(problem),
         options_(options),
         deadline_(deadline),
@@ -156,6 +98,7 @@ class PolygonDescent {
       const bool lower = trial_energy < energy_ + rounding_energy() && trial_gradient_.allFinite();
       if (lower) {
         result_.points = trial;
+        count_twists();
         gradient_ = trial_gradient_;
         energy_ = trial_energy;
         assemble();
@@ -193,6 +136,7 @@ class PolygonDescent {
         return refuse(why.str());
       }
       result_.points = moved(step);
+      count_twists();
     }
   }
 
@@ -230,6 +174,12 @@ class PolygonDescent {
   }
   [[nodiscard]] double forces_norm() const { return problem_.node_forces.colwise().norm().sum(); }
 
+  void count_twists() {
+    for (PolygonTwist& twist : problem_.twists) {
+      twist.angle = polygon_twist_angle(twist, result_.points);
+    }
+  }
+
   void assemble() {
     entries_.clear();
     polygon_hessian(problem_, result_.points,
@@ -256,13 +206,20 @@ class PolygonDescent {
     hessian_.resize(3 * free_, 3 * free_);
     hessian_.setFromTriplets(entries_.begin(), entries_.end());
     largest_ = hessian_.diagonal().cwiseAbs().maxCoeff();
+    columns_.resize(3 * free_, static_cast<Eigen::Index>(problem_.twists.size()));
+    if (columns_.cols() == 0) return;
+    const Eigen::MatrixXd of_all = twist_columns(problem_, result_.points);
+    for (std::size_t i = 0; i < index_.size(); ++i) {
+      if (index_[i] < 0) continue;
+      columns_.middleRows(3 * index_[i], 3) =
+          of_all.middleRows(3 * static_cast<Eigen::Index>(i), 3);
+    }
+    largest_ = std::max(largest_, columns_.colwise().squaredNorm().maxCoeff());
   }
 
   /// @return whether the Hessian plus damping is positive definite to rounding
   bool factor(double damping) {
-    solver_.setShift((damping + 64 * epsilon) * largest_);
-    solver_.compute(hessian_);
-    return solver_.info() == Eigen::Success && solver_.vectorD().minCoeff() > 0;
+    return solver_.compute(hessian_, columns_, (damping + 64 * epsilon) * largest_);
   }
 
   [[nodiscard]] Eigen::VectorXd free_part(const Eigen::Matrix3Xd& vectors) const {
@@ -301,11 +258,12 @@ class PolygonDescent {
     const double ahead_energy = polygon_energy(problem_, ahead, trial_gradient_);
     const bool better = ahead_energy <= polygon_energy(problem_, back, gradient_);
     result_.points = better ? ahead : back;
+    count_twists();
     energy_ = polygon_energy(problem_, result_.points, gradient_);
     result_.evaluations += 3;
   }
 
-  const PolygonProblem& problem_;
+  PolygonProblem& problem_;
   const PolygonOptions& options_;
   const Deadline& deadline_;
   PolygonResult& result_;
@@ -320,7 +278,8 @@ class PolygonDescent {
   Eigen::Matrix3Xd trial_gradient_;
   std::vector<Eigen::Triplet<double>> entries_;
   Sparse hessian_;
-  Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> solver_;
+  Eigen::MatrixXd columns_;  // of the free points, see PolygonFactor
+  PolygonFactor solver_;
 };
 
 /// The stretch stiffness of the first stage.
@@ -342,7 +301,7 @@ double softest(const PolygonProblem& problem, const Eigen::Matrix3Xd& start) {
 PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
                             const PolygonOptions& options) {
   const auto begin = std::chrono::steady_clock::now();
-  check(problem, start, options);
+  require_polygon(problem, start, options);
   const Deadline deadline(options.time_limit);
   PolygonResult result;
   result.points = start;
@@ -351,7 +310,9 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
   PolygonProblem stage = problem;
   constexpr double growth = 10;
   const double shortest = problem.rest_lengths.minCoeff();
-  for (double c_c = softest(problem, result.points);; c_c *= growth) {
+  const double first =
+      options.in_stages ? softest(problem, result.points) : problem.stretch_stiffness;
+  for (double c_c = first;; c_c *= growth) {
     const bool last = c_c >= problem.stretch_stiffness;
     stage.stretch_stiffness = last ? problem.stretch_stiffness : c_c;
     for (std::size_t i = 0; i < problem.walls.size(); ++i) {
@@ -364,8 +325,13 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
     const bool go_on = succeeded(result.status) || result.status == SolveStatus::saddle;
     if (!last && go_on) continue;
     // A softer stage may have failed; what is returned belongs to the problem that was asked.
-    PolygonDescent asked(problem, options, deadline, result);
+    stage.stretch_stiffness = problem.stretch_stiffness;
+    stage.walls = problem.walls;
+    PolygonDescent asked(stage, options, deadline, result);
     asked.prove();
+    for (const PolygonTwist& twist : stage.twists) {
+      result.twists.push_back(polygon_twist_angle(twist, result.points));
+    }
     result.grip_forces.resize(3, static_cast<Eigen::Index>(problem.held.size()));
     for (std::size_t i = 0; i < problem.held.size(); ++i) {
       result.grip_forces.col(static_cast<Eigen::Index>(i)) =

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "polygon/fold_angle.hpp"
+#include "polygon/polygon_twist.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -105,7 +106,8 @@ double depth(const PointWall& wall, const Points& points, Eigen::Index i) {
   return std::max(0.0, (wall.point - points.col(i)).dot(wall.normal));
 }
 
-/// Adds the Hessian H of a function of the differences d_p = P_(p+1) - P_p, d_q likewise.
+}  // namespace
+
 void add_difference_block(Eigen::Index p, Eigen::Index q, const Eigen::Matrix3d& H,
                           const AddBlock& add) {
   add(p + 1, q + 1, H);
@@ -113,8 +115,6 @@ void add_difference_block(Eigen::Index p, Eigen::Index q, const Eigen::Matrix3d&
   add(p, q + 1, -H);
   add(p, q, H);
 }
-
-}  // namespace
 
 double polygon_energy(const PolygonProblem& problem, const Points& points,
                       Eigen::Ref<Eigen::Matrix3Xd> gradient) {
@@ -150,6 +150,7 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
     gradient.col(i) += by_a - by_b;
     gradient.col(i + 1) += by_b;
   }
+  energy += add_twist_energy(problem, points, gradient);
   if (problem.walls.empty()) return energy;
   const std::vector<bool> held = held_points(problem);
   for (const PointWall& wall : problem.walls) {
@@ -203,6 +204,7 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, const 
     add_difference_block(i - 1, i, ab, add);
     add_difference_block(i, i - 1, ab.transpose(), add);
   }
+  add_twist_hessian(problem, points, add);
   if (problem.walls.empty()) return;
   const std::vector<bool> held = held_points(problem);
   for (const PointWall& wall : problem.walls) {

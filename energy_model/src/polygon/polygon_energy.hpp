@@ -12,7 +12,11 @@ namespace dlo::energy_model {
 using AddBlock =
     std::function<void(Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block)>;
 
-/// Hessian of polygon_energy.
+/// Adds the Hessian H of a function of the differences d_p = P_(p+1) - P_p, d_q likewise.
+void add_difference_block(Eigen::Index p, Eigen::Index q, const Eigen::Matrix3d& H,
+                          const AddBlock& add);
+
+/// Hessian of polygon_energy, but for twist_columns.
 void polygon_hessian(const PolygonProblem& problem,
                      const Eigen::Ref<const Eigen::Matrix3Xd>& points, const AddBlock& add);
 

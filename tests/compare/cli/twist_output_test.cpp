@@ -1,5 +1,4 @@
-// What is said of a rod that grippers twist: by the models that have twist and by those that have
-// not.
+// What is said of a rod that grippers twist: by models that have twist and by those that have not.
 
 #include <gtest/gtest.h>
 
@@ -127,7 +126,7 @@ class TwistCommand : public dlo::test::Command {
 
 TEST_F(TwistCommand, ModelsThatHaveNoTwistSaySo) {
   for (const std::string model : {"chain", "force"}) {
-    const std::string solve = "solve " + wire() + " --model " + model;
+    const std::string solve = "solve " + wire() + " --law paper --model " + model;
     const Outcome text = run(solve);
     ASSERT_EQ(text.status, 0) << text.err;
     EXPECT_NE(text.out.find("left out   twist: the scene has it, model " + model),
@@ -140,27 +139,59 @@ TEST_F(TwistCommand, ModelsThatHaveNoTwistSaySo) {
   }
 }
 
+TEST_F(TwistCommand, ModelsOfThePolygonHaveItWithTheLawHooke) {
+  const json rod = json::parse(run("solve --format json " + wire()).out);
+  const double torque = rod.at("twist").at("parts")[0].at("torque_Nm").get<double>();
+  for (const std::string model : {"chain", "force"}) {
+    const std::string solve = "solve --points 60 --model " + model + " " + wire();
+    const Outcome text = run(solve);
+    ASSERT_EQ(text.status, 0) << text.err;
+    EXPECT_EQ(text.out.find("left out"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("\ntwist      "), std::string::npos) << text.out;
+    const json document = json::parse(run(solve + " --format json").out);
+    EXPECT_FALSE(document.contains("left_out"));
+    const json& part = document.at("twist").at("parts")[0];
+    EXPECT_NEAR(part.at("torque_Nm").get<double>(), torque, 0.01 * torque);
+    EXPECT_NEAR(document.at("grippers")[1].at("axial_torque_Nm").get<double>(), torque,
+                0.01 * torque);
+    EXPECT_EQ(run(solve + " --format csv").err, "");
+  }
+  EXPECT_EQ(run("sweep --model chain --vary gamma=1 " + wire()).err, "");
+}
+
 TEST_F(TwistCommand, CommandsThatUseThemSaySo) {
-  const std::string note = "the grippers hold twist, which models chain and force leave out";
+  const std::string note =
+      "the grippers hold twist, which models chain and force leave out with the law paper";
   const std::vector<std::string> commands = {
-      "compare --no-modulus --format csv ",
-      "stability --map cF-cc --columns 2 --rows 4 --map-steps 500 ",
-      "bench --seconds 0.1 --repeats 1 ", "sweep --model chain --vary gamma=1 ",
-      "regress --update --baseline " + path("b.toml") + " "};
+      "compare --no-modulus --law paper --format csv ",
+      "regress --update --law paper --baseline " + path("b.toml") + " "};
   for (const std::string& command : commands) {
     EXPECT_NE(run(command + wire()).err.find(note), std::string::npos) << command;
   }
   EXPECT_EQ(run("sweep --vary rod.torsional_stiffness=0.01 " + wire()).err, "");
+  // These have none with any law.
+  const std::string map = "stability --map cF-cc --columns 2 --rows 4 --map-steps 500 ";
+  EXPECT_NE(run(map + wire()).err.find("the grippers hold twist, which the map leaves out"),
+            std::string::npos);
+  EXPECT_NE(run("bench --seconds 0.1 --repeats 1 " + wire())
+                .err.find("the grippers hold twist, which tracking by the force model leaves out"),
+            std::string::npos);
 }
 
 TEST_F(TwistCommand, AComparisonSaysThatTheForceModelHasNone) {
-  const Outcome text = run("compare --no-modulus " + wire());
+  const Outcome text = run("compare --no-modulus --law paper " + wire());
   ASSERT_EQ(text.status, 0) << text.err;
   EXPECT_NE(text.out.find("left out        twist that the scene has, by the force model"),
             std::string::npos)
       << text.out;
-  const json document = json::parse(run("compare --no-modulus --format json " + wire()).out);
+  EXPECT_NE(text.out.find("\n                  twist            "), std::string::npos) << text.out;
+  const json document =
+      json::parse(run("compare --no-modulus --law paper --format json " + wire()).out);
   EXPECT_EQ(document.at("cases")[0].at("left_out"), json({"twist"}));
+  EXPECT_GT(document.at("cases")[0].at("budget").at("twist_m").get<double>(), 0.01);
+  const json hooke = json::parse(run("compare --no-modulus --format json " + wire()).out);
+  EXPECT_FALSE(hooke.at("cases")[0].contains("left_out"));
+  EXPECT_FALSE(hooke.at("cases")[0].at("budget").contains("twist_m"));
 }
 
 TEST_F(TwistCommand, ExplainTellsTheAngle) {

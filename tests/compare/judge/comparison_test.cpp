@@ -366,27 +366,6 @@ TEST(Comparison, SaysWhichOfSeveralStatesItCompared) {
   EXPECT_EQ(compare(heavy_scene(0.2, 0)).state.others.size(), 0U);
 }
 
-TEST(Budget, TellsWhatTwistThatIsLeftOutCosts) {
-  Scene scene = heavy_scene(1, 0);
-  scene.grippers.push_back(
-      {.at = 1, .position = {0.8, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
-  for (Gripper& gripper : scene.grippers) gripper.frame = FrameHold{};
-  scene.grippers.back().frame->roll = 3;
-  scene.torsional_stiffness = scene.bending_stiffness() / 1.3;
-  scene.force_model.c_c = scene.axial_stiffness() / 100;
-  const Comparison c = compare(scene, {}, {}, ModulusSearch::no);
-  EXPECT_EQ(c.force.left_out, std::vector<std::string>{"twist"});
-  const Budget& b = c.budget;
-  EXPECT_GT(b.twist.share, 0.9);
-  // What is the polygon's fault is what it is without twist.
-  const double alone =
-      compare(scene.without_twist(), {}, {}, ModulusSearch::no).budget.discretisation.rms_m;
-  EXPECT_NEAR(b.discretisation.rms_m, alone, 1e-3 * alone);
-  const double parts = b.twist.share + b.law.share + b.bookkeeping.share + b.discretisation.share +
-                       b.stretch.share + b.not_at_rest.share;
-  EXPECT_NEAR(parts + b.interaction.share, 1, 1e-9);
-}
-
 TEST(Comparison, TheBudgetBetweenTwoClampsAddsUp) {
   Scene scene = heavy_scene(20, 0);
   scene.grippers.push_back(

@@ -276,7 +276,7 @@ TEST(Plan, IsMadeInTimeAndNeverFails) {
   EXPECT_THROW((void)make_plan(scene, {.time_limit = 0}), std::invalid_argument);
 }
 
-TEST(Plan, SaysWhatGrippersTwistAndThatNoPolygonKnowsOfIt) {
+TEST(Plan, SaysWhatGrippersTwistAndThatNoPolygonAnswersForIt) {
   Scene scene = clamps_apart(5, {0.8, 0, 0}, {1, 0, 0});
   EXPECT_FALSE(make_plan(scene).frame_held);
   scene.grippers[1].frame = FrameHold{.d1 = std::nullopt, .roll = 3};
@@ -299,6 +299,8 @@ TEST(Plan, SaysWhatGrippersTwistAndThatNoPolygonKnowsOfIt) {
   for (const char* what : {"stretch", "shear", "polygon"}) {
     EXPECT_TRUE(std::isinf(plan.bound(what))) << what;
   }
+  EXPECT_EQ(plan.left_out[4].what, "twist");
+  EXPECT_EQ(plan.left_out[4].models, "chain, force with the law paper");
 }
 
 TEST(Plan, NoBoundIsGivenWhereTheRodTouches) {

@@ -58,7 +58,8 @@ struct Discretisation {
 /// A joint stands for the rod between its segments' middles: its EI, over an end of a section too,
 /// is that of the mean 1/EI (of the law `paper` c_b goes with it), and its turn at rest the natural
 /// curvature times its length. The law `paper`, and a rod that does not lie in its plane, leave the
-/// natural curvature out.
+/// natural curvature out. GJ goes with EI where the clamps twist the rod and the law is hooke;
+/// their frames are no part of this, as a roll counts from where the rod rests without twist.
 ///
 /// A wall acts on points, each with L times the obstacle's stiffness, as the force model's walls
 /// have one stiffness for all points (the last point of a free end has twice its share). A rigid

@@ -16,7 +16,8 @@ struct BudgetPart {
 
 /// Where a deviation comes from, each part found by switching one thing. With chain(law,
 /// bookkeeping, c_c) the polygon at rest, and "rigid" standing for c_c = 100 AE,
-///     twist           rod without the twist that the scene holds - rod
+///     twist           rod without the twist that the scene holds - rod, where the force model
+///                     leaves it out, and its chains with it
 ///     natural curvature
 ///                     rod without twist that is straight by nature - rod without twist, where the
 ///                     force model leaves the natural curvature out, and its chains with it
@@ -34,7 +35,7 @@ struct BudgetPart {
 struct Budget {
   BudgetPart law;          ///< see above
   BudgetPart bookkeeping;  ///< see above
-  BudgetPart twist;        ///< see above; no model of the polygon has any
+  BudgetPart twist;        ///< see above; of a scene whose force model has it, zero
   /// See above; of a scene whose force model has it, zero.
   BudgetPart natural_curvature;
   BudgetPart discretisation;  ///< see above

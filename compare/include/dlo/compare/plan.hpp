@@ -99,8 +99,9 @@ inline constexpr int most_planned_points = 4000;
 ///   d, so the rod leaves its static shape by d <= v l^2 sqrt(rho A / (3 EI)) (small deflections).
 ///   A single pin lets the rod swing: no bound.
 /// - Twist: a round, naturally straight rod whose grips leave the twist free has none: nothing.
-///   Where two clamps hold frames, chain and force leave it out, and no polygon says what stretch,
-///   shear and itself change; nor does one of a rod with sections or that is curved by nature.
+///   Where two clamps hold frames, chain and force leave it out with the law paper, or of a rod
+///   that is curved by nature, and no polygon says what stretch, shear and itself change (the one
+///   that answers has no twist); nor does one of a rod with sections or that is curved by nature.
 /// - Natural curvature: what chain and force leave out, in space or with the law paper.
 /// A scene that cannot be planned in time or at all has a plan without bounds, and why.
 /// @throws std::invalid_argument if an option is out of range

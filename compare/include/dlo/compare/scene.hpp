@@ -122,6 +122,8 @@ struct Scene {
   [[nodiscard]] Eigen::Vector3d weight_per_length() const;
   /// Of the rod between two arc lengths [N], 0 <= begin <= end <= length.
   [[nodiscard]] Eigen::Vector3d weight_between(double begin, double end) const;
+  /// int 1/GJ ds between two arc lengths [1/(N m)], as above; of a rod with a GJ.
+  [[nodiscard]] double twisting_compliance(double begin, double end) const;
   /// int 1/EI ds between two arc lengths [1/(N m)], as above.
   [[nodiscard]] double bending_compliance(double begin, double end) const;
   /// w l^3 / (EI) [-], w the mean weight per length and EI that outside sections.

@@ -47,7 +47,7 @@ struct SolveOptions {
 /// Energies [J]; gravity and loads are zero at the first gripper.
 struct SceneEnergies {
   double bending = 0;   ///< of the joints or the curvature
-  double twisting = 0;  ///< of energy and exact, where the scene holds twist
+  double twisting = 0;  ///< where the scene holds twist, but for Solution::left_out
   double gravity = 0;   ///< of the rod's weight
   double load = 0;      ///< of point loads
   double stretch = 0;   ///< of elastic segments
@@ -84,8 +84,8 @@ struct Solution {
   SceneEnergies energy;                           ///< of that shape
   std::vector<GripperLoad> grippers;              ///< in the scene's order
   std::vector<Eigen::Vector3d> obstacles;         ///< force of each on the rod [N]
-  std::vector<energy_model::TwistedPart> twists;  ///< of energy and exact: Equilibrium::twists
-  /// Of what the scene asks for, what the model left out: "twist", or nothing.
+  std::vector<energy_model::TwistedPart> twists;  ///< as Equilibrium::twists
+  /// Of what the scene asks for, what the model left out: "twist", "natural curvature" or nothing.
   std::vector<std::string> left_out;
   /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();

@@ -23,6 +23,23 @@ struct PointWall {
   double stiffness = 0;                               ///< force on a point per depth [N/m], >= 0
 };
 
+/// Twist of a round rod between two held segments that hold its material frame. The angle theta is
+/// that about the last segment from the first d1, brought along the polygon by the shortest turn
+/// from segment to segment, to the last d1; its energy is theta^2 / (2 C) (Bergou et al., Discrete
+/// elastic rods, SIGGRAPH 2008).
+struct PolygonTwist {
+  Eigen::Index first_segment = 0;                       ///< from point k to k+1
+  Eigen::Index last_segment = 0;                        ///< > first_segment
+  Eigen::Vector3d first_d1 = Eigen::Vector3d::UnitX();  ///< its part across the segment counts
+  Eigen::Vector3d last_d1 = Eigen::Vector3d::UnitX();   ///< as `first_d1`
+  double compliance = 0;                                ///< C = int ds / GJ [1/(N m)], > 0
+  double angle = 0;  ///< theta is the branch nearest to this, whole turns counted [rad]
+};
+
+/// theta [rad]. @param points  of the whole polygon [m], 3 x (n+1)
+[[nodiscard]] double polygon_twist_angle(const PolygonTwist& twist,
+                                         const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+
 /// A polygon of elastic segments in space, held at any of its points: the force model's rod with
 /// the force model's own stretch stiffness, so that its minimum is where the force model comes to
 /// rest. (ChainProblem is its limit of rigid segments for one clamp in a plane. Between several
@@ -30,6 +47,7 @@ struct PointWall {
 /// which hide the tension; a physical stretch stiffness is stiff enough to change nothing else.)
 ///
 ///     E = sum c_c (|d_i| - L_i)^2 / (2 L_i) + sum joints - sum F_i . P_i + sum c_e depth_i^2 / 2
+///         + sum theta_k^2 / (2 C_k)
 ///
 /// The joints' potentials are those of JointLaw, L the mean of the two rest lengths. For the hooke
 /// law the force model's forces are this energy's derivative. For the paper's law they are that
@@ -49,6 +67,7 @@ struct PolygonProblem {
   Eigen::VectorXd natural_turns = {};  ///< as ChainProblem's, from x to y
   std::vector<HeldPoint> held;         ///< one or more, each point once
   std::vector<PointWall> walls;        ///< may be empty
+  std::vector<PolygonTwist> twists;    ///< law hooke, without natural turns; may be empty
 };
 
 /// How far to minimise.
@@ -57,6 +76,8 @@ struct PolygonOptions {
   int max_evaluations = 20000;  ///< of the energy
   /// Of the whole call [s], > 0; the status is then `time_limit`.
   double time_limit = std::numeric_limits<double>::infinity();
+  /// Begin with a soft stretch stiffness; false: for a start that is nearly at rest.
+  bool in_stages = true;
 };
 
 /// A shape of a polygon, and how it was found.
@@ -69,6 +90,7 @@ struct [[nodiscard]] PolygonResult {
   Eigen::Matrix3Xd points;                    ///< [m], 3 x (n+1)
   Eigen::Matrix3Xd grip_forces;  ///< what holds each of PolygonProblem::held exerts [N]
   double energy = 0;             ///< E [J]
+  std::vector<double> twists;    ///< theta of each of PolygonProblem::twists [rad]
 };
 
 /// Minimises E by damped Newton steps over the free points (a banded matrix, sparse LDL^T), each of
@@ -87,6 +109,16 @@ struct [[nodiscard]] PolygonResult {
 ///               are put where they are held
 /// @throws std::invalid_argument if the problem, an option or the start is out of range
 PolygonResult solve_polygon(const PolygonProblem& problem,
+                            const Eigen::Ref<const Eigen::Matrix3Xd>& start,
+                            const PolygonOptions& options = {});
+
+/// The shape to which twist leads: the ends' frames are turned from where the polygon has them
+/// without twist, little by little, each step from the shape before it and downhill where that has
+/// lost its stability.
+/// @param problem  with the twists that it is to have; `angle` is theta of `start`
+/// @param start    at rest without twist [m], 3 x (n+1)
+/// @throws std::invalid_argument as solve_polygon
+PolygonResult twist_polygon(const PolygonProblem& problem,
                             const Eigen::Ref<const Eigen::Matrix3Xd>& start,
                             const PolygonOptions& options = {});
 

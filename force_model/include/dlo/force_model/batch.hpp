@@ -22,7 +22,8 @@ struct BatchRod {
 /// Many rods of the same number of points, bending law and step policy, eight to a block and the
 /// eight in lockstep: one instruction moves the same point of all. For sweeps, calibration and
 /// stability maps; lengths, stiffnesses, loads, walls, grips, starts and step constants may differ
-/// from rod to rod. Each rod does what its own Simulation would do, up to rounding.
+/// from rod to rod. Each rod does what its own Simulation would do, up to rounding. Rods between
+/// grips that hold their frame are refused: their twist is counted by a Simulation only.
 ///
 /// Blocks share nothing. Different threads may work on different blocks at the same time:
 ///     tbb::parallel_for(std::size_t{0}, batch.blocks(), [&](auto b) { batch.step_block(b, 1000);

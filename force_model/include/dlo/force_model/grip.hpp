@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace dlo::force_model {
 
@@ -17,12 +18,17 @@ struct Grip {
   Eigen::Vector3d reference = Eigen::Vector3d::Zero();  ///< torques are taken about this point [m]
   GripHold hold = GripHold::rigid;                      ///< rigid, or springs
   double stiffness = 0;                                 ///< c_e of a `spring` hold [N/m], > 0
+  /// First director of the rod's material frame at the segment held, of which the part across the
+  /// segment counts: keeps a round rod from turning about itself there, see TwistedSpan. Two points
+  /// and hold `rigid` only. None: the twist is free.
+  std::optional<Eigen::Vector3d> d1 = {};
 };
 
 /// What a gripper exerts on the rod; a hand that holds it feels the opposite.
 struct GripReaction {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();   ///< [N]
-  Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< about Grip::reference [N m]
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
+  /// About Grip::reference, with the twisting moment of a grip that holds the frame [N m].
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
 };
 
 /// Targets of a two-point grip: the points at distances `behind` and `behind + segment_length`

@@ -7,6 +7,7 @@
 #include "dlo/force_model/bending.hpp"
 #include "dlo/force_model/environment.hpp"
 #include "dlo/force_model/grip.hpp"
+#include "dlo/force_model/twist.hpp"
 
 namespace dlo::force_model {
 
@@ -19,6 +20,7 @@ struct Rod {
                                  ///< constraint 1) [N], 3 x (n+1)
   std::vector<Wall> walls;       ///< each acts on every point
   std::vector<Grip> grips;       ///< rigid ones hold points of their own
+  Twist twist = {};              ///< of use between grips that hold frames
 
   /// N = n + 1.
   [[nodiscard]] Eigen::Index points() const { return rest_lengths.size() + 1; }
@@ -26,11 +28,18 @@ struct Rod {
   [[nodiscard]] double length() const { return rest_lengths.sum(); }
 };
 
-/// Whether no force can leave the plane z = 0 if all points lie in it.
+/// Whether no force can leave the plane z = 0 if all points lie in it; a rod between grips that
+/// hold its frame can, by twist.
 [[nodiscard]] bool is_planar(const Rod& rod);
 
+/// Two grips that hold frames ask for law hooke, stiffnesses > 0 (also of bending, between them)
+/// and no natural turns.
 /// @throws std::invalid_argument naming the first member that is out of range
 void check(const Rod& rod);
+
+/// What grips that hold frames twist, along the rod; empty if there are fewer than two.
+/// @throws std::invalid_argument as check
+[[nodiscard]] std::vector<TwistedSpan> twisted_spans(const Rod& rod);
 
 /// Sum of all forces on each point (paper, Formula 6), those of spring grips included, those of
 /// rigid grips not: on rigidly held points the result is minus what the gripper has to exert.
@@ -58,9 +67,10 @@ struct RodEnergy {
   double stretch = 0;  ///< of the segments
   double load = 0;     ///< of gravity and loads
   double contact = 0;  ///< walls and spring grips
+  double twist = 0;    ///< between grips that hold frames
 
   /// Of all [J].
-  [[nodiscard]] double total() const { return bending + stretch + load + contact; }
+  [[nodiscard]] double total() const { return bending + stretch + load + contact + twist; }
 };
 
 /// @param points  [m], 3 x (n+1). @throws std::invalid_argument if a shape or number is out of

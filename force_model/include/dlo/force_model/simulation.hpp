@@ -49,16 +49,23 @@ class Simulation {
   /// Allocates.
   RelaxResult relax(const RelaxOptions& options = {});
 
-  /// Moves a gripper. @throws std::invalid_argument if the grip or the shape does not exist
+  /// Moves a gripper; a frame that it holds comes along by the shortest turn of its segment.
+  /// @throws std::invalid_argument if the grip or the shape does not exist
   void move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
                  const Eigen::Vector3d& reference);
+  /// Moves and turns a gripper that holds the rod's frame. Whole turns are counted from call to
+  /// call where a step lies between them and each turns it by less than half a turn.
+  /// @param d1  Grip::d1
+  /// @throws std::invalid_argument as above, or if the grip holds no frame or d1 points along it
+  void move_grip(std::size_t grip, const Eigen::Ref<const Eigen::Matrix3Xd>& targets,
+                 const Eigen::Vector3d& reference, const Eigen::Vector3d& d1);
 
   /// Replaces a wall, whatever it does to the rod: a wall that is not there yet has stiffness 0.
   /// Automatic steps suit it from the next step on.
   /// @throws std::invalid_argument if there is no such wall or the new one is out of range
   void move_wall(std::size_t wall, const Wall& moved);
 
-  /// As moved.
+  /// As moved, with the twist of the last step in Twist::angles.
   [[nodiscard]] const Rod& rod() const;
   [[nodiscard]] Eigen::Matrix3Xd points() const;  ///< positions now [m], a copy
   /// The same without an allocation. @param[out] points  3 x rod().points(), as it is

@@ -1,0 +1,90 @@
+#include "solve/held_frames.hpp"
+
+#include <Eigen/Geometry>
+#include <numbers>
+
+#include "scene/reach.hpp"
+
+namespace dlo::compare {
+namespace {
+
+Eigen::Vector3d direction_of(const Eigen::Matrix3Xd& points, Eigen::Index segment) {
+  return (points.col(segment + 1) - points.col(segment)).normalized();
+}
+
+/// A scene's clamps that hold frames, along the rod, by their place in the scene.
+std::vector<std::size_t> framed_grippers(const Scene& scene) {
+  std::vector<std::size_t> framed;
+  for (const Gripper* gripper : grippers_along(scene)) {
+    if (!gripper->frame) continue;
+    framed.push_back(static_cast<std::size_t>(gripper - scene.grippers.data()));
+  }
+  return framed;
+}
+
+}  // namespace
+
+force_model::Rod with_frames(const Scene& scene, const Discretisation& discretisation,
+                             const Eigen::Matrix3Xd& untwisted) {
+  force_model::Rod rod = discretisation.rod;
+  const std::vector<std::size_t> framed = framed_grippers(scene);
+  rod.twist.angles.resize(static_cast<Eigen::Index>(framed.size()) - 1);
+  for (std::size_t k = 0; k < framed.size(); ++k) {
+    const FrameHold& frame = *scene.grippers[framed[k]].frame;
+    force_model::Grip& grip = rod.grips[framed[k]];
+    const Eigen::Vector3d axis = direction_of(grip.targets, 0);
+    if (k == 0) {
+      grip.d1 = frame.d1.value_or(axis.unitOrthogonal());
+      continue;
+    }
+    const FrameHold& before = *scene.grippers[framed[k - 1]].frame;
+    const force_model::Grip& first = rod.grips[framed[k - 1]];
+    force_model::TwistedSpan span;
+    span.first_segment = first.first_point;
+    span.last_segment = grip.first_point;
+    span.first_d1 = *first.d1;
+    span.last_d1 = frame.d1.value_or(axis.unitOrthogonal());
+    span.compliance = 1;
+    const double ahead = force_model::twist_angle(span, untwisted);
+    double& angle = rod.twist.angles[static_cast<Eigen::Index>(k) - 1];
+    angle = frame.roll - before.roll;
+    if (before.d1 && frame.d1) {
+      // Half a turn is half a turn, whatever rounding says.
+      constexpr double rounding = 1e-9;
+      angle += ahead < rounding - std::numbers::pi ? std::numbers::pi : ahead;
+    }
+    grip.d1 = Eigen::AngleAxisd(angle - ahead, axis) * span.last_d1;
+  }
+  return rod;
+}
+
+std::vector<energy_model::TwistedPart> twisted_parts(const Scene& scene,
+                                                     const force_model::Rod& rod,
+                                                     const Eigen::Matrix3Xd& points) {
+  std::vector<energy_model::TwistedPart> parts;
+  const std::vector<std::size_t> framed = framed_grippers(scene);
+  for (const force_model::TwistedSpan& span : force_model::twisted_spans(rod)) {
+    const std::size_t k = parts.size();
+    const double angle = force_model::twist_angle(span, points);
+    parts.push_back({.begin = scene.grippers[framed[k]].at,
+                     .end = scene.grippers[framed[k + 1]].at,
+                     .angle = angle,
+                     .torque = angle / span.compliance});
+  }
+  return parts;
+}
+
+void add_twisting_torques(const force_model::Rod& rod, const Eigen::Matrix3Xd& points,
+                          std::vector<GripperLoad>& grippers) {
+  for (const force_model::TwistedSpan& span : force_model::twisted_spans(rod)) {
+    const double moment = force_model::twist_angle(span, points) / span.compliance;
+    for (std::size_t i = 0; i < rod.grips.size(); ++i) {
+      const Eigen::Index held = rod.grips[i].first_point;
+      if (!rod.grips[i].d1) continue;
+      if (held == span.first_segment) grippers[i].torque -= moment * direction_of(points, held);
+      if (held == span.last_segment) grippers[i].torque += moment * direction_of(points, held);
+    }
+  }
+}
+
+}  // namespace dlo::compare

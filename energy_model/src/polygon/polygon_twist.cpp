@@ -1,0 +1,149 @@
+#include "polygon/polygon_twist.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/require.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
+
+Eigen::Vector3d unit_segment(const Points& points, Eigen::Index k) {
+  return (points.col(k + 1) - points.col(k)).normalized();
+}
+
+/// Two segments that meet, with the vector q = tan(alpha/2) b, b the joint's binormal, along which
+/// either direction has to be moved for the frame behind it to turn.
+struct TurningCorner {
+  Eigen::Vector3d u, v;  // directions
+  double a, b;           // lengths
+  double sum;            // 1 + u.v
+  Eigen::Vector3d q;
+
+  TurningCorner(const Points& points, Eigen::Index i)
+      : u(points.col(i) - points.col(i - 1)),
+        v(points.col(i + 1) - points.col(i)),
+        a(u.norm()),
+        b(v.norm()) {
+    u /= a;
+    v /= b;
+    sum = 1 + u.dot(v);
+    // A joint folded back on itself has no binormal.
+    constexpr double folded = 1e-12;
+    q = sum > folded ? Eigen::Vector3d(u.cross(v) / sum) : Eigen::Vector3d::Zero();
+  }
+};
+
+template <typename Action>
+void for_each_corner(const PolygonTwist& twist, const Points& points, const Action& action) {
+  for (Eigen::Index i = twist.first_segment + 1; i <= twist.last_segment; ++i) {
+    action(i, TurningCorner(points, i));
+  }
+}
+
+/// A unit tangent that moves by dt sweeps an area q.dt on the sphere with the arcs to its
+/// neighbours, and a frame brought along those is turned back by as much (Gauss and Bonnet).
+void add_angle_gradient(const PolygonTwist& twist, double factor, const Points& points,
+                        Eigen::Ref<Eigen::Matrix3Xd> gradient) {
+  for_each_corner(twist, points, [&](Eigen::Index i, const TurningCorner& corner) {
+    const Eigen::Vector3d by_a = factor / corner.a * corner.q;
+    const Eigen::Vector3d by_b = factor / corner.b * corner.q;
+    gradient.col(i - 1) -= by_a;
+    gradient.col(i) += by_a - by_b;
+    gradient.col(i + 1) += by_b;
+  });
+}
+
+}  // namespace
+
+double polygon_twist_angle(const PolygonTwist& twist, const Points& points) {
+  Eigen::Quaterniond brought = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d t = unit_segment(points, twist.first_segment);
+  const Eigen::Vector3d first = twist.first_d1 - twist.first_d1.dot(t) * t;
+  for (Eigen::Index k = twist.first_segment + 1; k <= twist.last_segment; ++k) {
+    const Eigen::Vector3d next = unit_segment(points, k);
+    brought = Eigen::Quaterniond::FromTwoVectors(t, next) * brought;
+    t = next;
+  }
+  const Eigen::Vector3d d = brought.normalized() * first;
+  const double angle = std::atan2(t.cross(d).dot(twist.last_d1), d.dot(twist.last_d1));
+  return angle + 2 * std::numbers::pi * std::round((twist.angle - angle) / (2 * std::numbers::pi));
+}
+
+void require_twists(const PolygonProblem& problem) {
+  constexpr const char* name = "PolygonProblem";
+  const Eigen::Index n = problem.rest_lengths.size();
+  const auto count = static_cast<double>(problem.twists.size());
+  require(problem.twists.empty() || problem.law == JointLaw::hooke, name, "number of twists", count,
+          "0 for the paper's law");
+  require(problem.twists.empty() || problem.natural_turns.size() == 0, name, "number of twists",
+          count, "0 with natural turns");
+  const auto is_held = [&](Eigen::Index point) {
+    return std::any_of(problem.held.begin(), problem.held.end(),
+                       [point](const HeldPoint& held) { return held.point == point; });
+  };
+  for (const PolygonTwist& twist : problem.twists) {
+    for (const Eigen::Index segment : {twist.first_segment, twist.last_segment}) {
+      const bool held = segment >= 0 && segment < n && is_held(segment) && is_held(segment + 1);
+      require(held, name, "segment of a twist", static_cast<double>(segment),
+              "one whose points are held");
+    }
+    require(twist.first_segment < twist.last_segment, name, "first_segment of a twist",
+            static_cast<double>(twist.first_segment), "less than its last_segment");
+    require_positive(name, "compliance of a twist", twist.compliance);
+    require(std::isfinite(twist.angle), name, "angle of a twist", twist.angle, "finite");
+    for (const Eigen::Vector3d& d1 : {twist.first_d1, twist.last_d1}) {
+      require_positive(name, "|d1| of a twist", d1.norm());
+    }
+  }
+}
+
+double add_twist_energy(const PolygonProblem& problem, const Points& points,
+                        Eigen::Ref<Eigen::Matrix3Xd> gradient) {
+  double energy = 0;
+  for (const PolygonTwist& twist : problem.twists) {
+    const double angle = polygon_twist_angle(twist, points);
+    energy += angle * angle / (2 * twist.compliance);
+    add_angle_gradient(twist, angle / twist.compliance, points, gradient);
+  }
+  return energy;
+}
+
+void add_twist_hessian(const PolygonProblem& problem, const Points& points, const AddBlock& add) {
+  for (const PolygonTwist& twist : problem.twists) {
+    const double moment = polygon_twist_angle(twist, points) / twist.compliance;
+    for_each_corner(twist, points, [&](Eigen::Index i, const TurningCorner& corner) {
+      const auto& [u, v, a, b, sum, q] = corner;
+      // Derivatives of q / a and q / b by the segments. What of the diagonal blocks is skew cancels
+      // between the corners of a segment, since the angle is a function of the points.
+      const Eigen::Vector3d t = (u + v) / sum;
+      const Eigen::Matrix3d aa = -moment / (2 * a * a) * q * (t + u).transpose();
+      const Eigen::Matrix3d bb = -moment / (2 * b * b) * q * (t + v).transpose();
+      Eigen::Matrix3d u_cross;
+      u_cross << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
+      const Eigen::Matrix3d ab = moment / (a * b) * (u_cross / sum - q * t.transpose());
+      add_difference_block(i - 1, i - 1, aa + aa.transpose(), add);
+      add_difference_block(i, i, bb + bb.transpose(), add);
+      add_difference_block(i - 1, i, ab, add);
+      add_difference_block(i, i - 1, ab.transpose(), add);
+    });
+  }
+}
+
+Eigen::MatrixXd twist_columns(const PolygonProblem& problem, const Points& points) {
+  const auto count = static_cast<Eigen::Index>(problem.twists.size());
+  Eigen::MatrixXd columns(points.size(), count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const PolygonTwist& twist = problem.twists[static_cast<std::size_t>(k)];
+    Eigen::Matrix3Xd gradient = Eigen::Matrix3Xd::Zero(3, points.cols());
+    add_angle_gradient(twist, 1 / std::sqrt(twist.compliance), points, gradient);
+    columns.col(k) = gradient.reshaped();
+  }
+  return columns;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,79 @@
+#include "polygon/require_polygon.hpp"
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "base/require.hpp"
+#include "polygon/polygon_twist.hpp"
+#include "polygon/unlike_joints.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
+
+/// Of polygons whose joints are turned at rest.
+void require_in_plane(const char* problem, const char* what, const Points& vectors) {
+  const double across = vectors.row(2).cwiseAbs().maxCoeff();
+  require(across == 0, problem, (std::string("z of ") + what).c_str(), across,
+          "0 with natural turns");
+}
+
+}  // namespace
+
+void require_polygon(const PolygonProblem& problem, const Points& start,
+                     const PolygonOptions& options) {
+  constexpr const char* name = "PolygonProblem";
+  const Eigen::Index n = problem.rest_lengths.size();
+  require(n >= 2, name, "number of segments", static_cast<double>(n), ">= 2");
+  const double shortest = problem.rest_lengths.minCoeff();
+  require(shortest > 0 && problem.rest_lengths.allFinite(), name, "smallest rest length", shortest,
+          "finite and > 0");
+  require_positive(name, "stretch_stiffness", problem.stretch_stiffness);
+  require_positive(name, "stiffness", problem.stiffness);
+  require_unlike_joints(name, problem.law, problem.stiffnesses, problem.natural_turns, n);
+  require_twists(problem);
+  require(problem.node_forces.cols() == n + 1, name, "columns of node_forces",
+          static_cast<double>(problem.node_forces.cols()), "one more than segments");
+  require(problem.node_forces.allFinite(), name, "node_forces", problem.node_forces.norm(),
+          "finite");
+  require(!problem.held.empty(), name, "number of held points", 0, ">= 1");
+  std::vector<bool> taken(static_cast<std::size_t>(n + 1), false);
+  for (const HeldPoint& held : problem.held) {
+    const bool exists = held.point >= 0 && held.point <= n;
+    require(exists && !taken[static_cast<std::size_t>(held.point)], name, "a held point",
+            static_cast<double>(held.point), "a point of the polygon, held once");
+    taken[static_cast<std::size_t>(held.point)] = true;
+    require(held.position.allFinite(), name, "position of a held point", held.position.norm(),
+            "finite");
+  }
+  for (const PointWall& wall : problem.walls) {
+    require(wall.stiffness >= 0 && std::isfinite(wall.stiffness), name, "stiffness of a wall",
+            wall.stiffness, "finite and >= 0");
+    require(std::abs(wall.normal.norm() - 1) < 1e-9, name, "length of a wall's normal",
+            wall.normal.norm(), "1");
+    require(wall.point.allFinite(), name, "point of a wall", wall.point.norm(), "finite");
+  }
+  require_positive("PolygonOptions", "tolerance", options.tolerance);
+  require(options.max_evaluations >= 1, "PolygonOptions", "max_evaluations",
+          options.max_evaluations, ">= 1");
+  require(options.time_limit > 0, "PolygonOptions", "time_limit", options.time_limit, "> 0");
+  require(start.cols() == n + 1, "solve_polygon", "columns of start",
+          static_cast<double>(start.cols()), "one more than segments");
+  const double closest = (start.rightCols(n) - start.leftCols(n)).colwise().norm().minCoeff();
+  if (problem.natural_turns.size() > 0) {
+    require_in_plane(name, "a node force", problem.node_forces);
+    require_in_plane("solve_polygon", "a point of start", start);
+    for (const HeldPoint& held : problem.held) {
+      require_in_plane(name, "a held point", held.position);
+    }
+    for (const PointWall& wall : problem.walls) {
+      require_in_plane(name, "a wall's normal", wall.normal);
+    }
+  }
+  require(start.allFinite() && closest > 0, "solve_polygon", "shortest segment of start", closest,
+          "finite and > 0");
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,127 @@
+#include "stiffness_factor.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+namespace dlo::force_model {
+namespace {
+
+/// The matrix with its border below and to the right; only the lower half of the latter.
+Eigen::SparseMatrix<double> with_border(const BorderedMatrix& K) {
+  const Eigen::Index rows = K.A.rows();
+  const Eigen::Index columns = K.B.cols();
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(static_cast<std::size_t>(K.A.nonZeros() + (rows + 1) * columns));
+  for (Eigen::Index j = 0; j < rows; ++j) {
+    for (Eigen::SparseMatrix<double>::InnerIterator entry(K.A, j); entry; ++entry) {
+      entries.emplace_back(entry.row(), entry.col(), entry.value());
+    }
+  }
+  for (Eigen::Index k = 0; k < columns; ++k) {
+    for (Eigen::Index i = 0; i < rows; ++i) entries.emplace_back(rows + k, i, K.B(i, k));
+    entries.emplace_back(rows + k, rows + k, -1);
+  }
+  Eigen::SparseMatrix<double> result(rows + columns, rows + columns);
+  result.setFromTriplets(entries.begin(), entries.end());
+  return result;
+}
+
+/// Gram and Schmidt's, twice for nearly parallel columns.
+void orthonormalise(Eigen::MatrixX3d& block) {
+  for (Eigen::Index i = 0; i < SlowModes::most; ++i) {
+    block.col(i).normalize();
+    for (int turn = 0; turn < 2; ++turn) {
+      for (Eigen::Index j = 0; j < i; ++j) {
+        block.col(i) -= block.col(j).dot(block.col(i)) * block.col(j);
+      }
+      block.col(i).normalize();
+    }
+  }
+}
+
+}  // namespace
+
+Eigen::MatrixXd BorderedMatrix::times(const Eigen::MatrixXd& vectors) const {
+  Eigen::MatrixXd result = A * vectors;
+  if (B.cols() > 0) result += B * (B.transpose() * vectors);
+  return result;
+}
+
+BorderedMatrix BorderedMatrix::shifted(double shift) const {
+  BorderedMatrix result = *this;
+  for (Eigen::Index i = 0; i < A.rows(); ++i) result.A.coeffRef(i, i) += shift;
+  return result;
+}
+
+double BorderedMatrix::largest_eigenvalue() const {
+  return (Eigen::RowVectorXd::Ones(A.rows()) * A.cwiseAbs()).maxCoeff() + B.squaredNorm();
+}
+
+StiffnessFactor::StiffnessFactor(const BorderedMatrix& K) { compute(K); }
+
+void StiffnessFactor::compute(const BorderedMatrix& K) {
+  columns_ = K.B.cols();
+  if (columns_ == 0) {
+    factor_.compute(K.A);
+  } else {
+    factor_.compute(with_border(K));
+  }
+}
+
+bool StiffnessFactor::is_positive() const {
+  if (!succeeded()) return false;
+  const Eigen::VectorXd pivots = factor_.vectorD();
+  if (columns_ == 0) return pivots.minCoeff() > 0;
+  return pivots.allFinite() && (pivots.array() > 0).count() == pivots.size() - columns_;
+}
+
+Eigen::MatrixXd StiffnessFactor::solve(const Eigen::MatrixXd& right) const {
+  if (columns_ == 0) return factor_.solve(right);
+  Eigen::MatrixXd bordered = Eigen::MatrixXd::Zero(right.rows() + columns_, right.cols());
+  bordered.topRows(right.rows()) = right;
+  return factor_.solve(bordered).topRows(right.rows());
+}
+
+Eigen::VectorXd StiffnessFactor::falling(const BorderedMatrix& K) const {
+  if (columns_ == 0) {
+    // With K = L D L^T and D_j < 0, the d with L^T d = e_j has d^T K d = D_j. The first of equals,
+    // as an upright rod has: it falls in the plane of x.
+    const Eigen::VectorXd pivots = factor_.vectorD();
+    const double lowest = pivots.minCoeff();
+    if (!(lowest < 0)) return {};
+    Eigen::Index pivot = 0;
+    while (!(pivots[pivot] <= 0.999 * lowest)) ++pivot;
+    return factor_.matrixU().solve(Eigen::VectorXd::Unit(pivots.size(), pivot));
+  }
+  // A pivot of the bordered matrix says nothing of K. The lowest mode, by inverse iteration with
+  // the least power of four as a shift that makes K positive.
+  const double largest = K.largest_eigenvalue();
+  for (double share = std::numeric_limits<double>::epsilon(); share < 2; share *= 4) {
+    const BorderedMatrix shifted = K.shifted(share * largest);
+    const StiffnessFactor factor(shifted);
+    if (factor.is_positive()) return slow_modes(shifted, factor).modes.col(0);
+  }
+  return {};
+}
+
+SlowModes slow_modes(const BorderedMatrix& K, const StiffnessFactor& factor) {
+  constexpr int iterations = 8;
+  Eigen::MatrixX3d block(K.A.rows(), 3);  // of no symmetry that a mode could be orthogonal to
+  for (Eigen::Index i = 0; i < block.size(); ++i) {
+    block.reshaped()[i] = std::sin(1 + 2.3999632 * static_cast<double>(i));
+  }
+  for (int i = 0; i < iterations; ++i) {
+    orthonormalise(block);
+    block = factor.solve(block);
+  }
+  orthonormalise(block);
+  const Eigen::MatrixX3d K_block = K.times(block);
+  const Eigen::Matrix3d projected = block.transpose() * K_block;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> ritz(projected);
+  return {ritz.eigenvalues(), block * ritz.eigenvectors()};
+}
+
+}  // namespace dlo::force_model
