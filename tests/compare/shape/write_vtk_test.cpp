@@ -68,7 +68,7 @@ TEST(VtkPolyline, HasTheFrameOfACurvedRod) {
   EXPECT_EQ(vtk_polyline(straight.shape, fields_of(straight), "arch").find("d1 "),
             std::string::npos);
   scene.natural_strain = {0, 2, 0};
-  scene.grippers[0].frame = dlo::energy_model::FrameHold{.d1 = Eigen::Vector3d::UnitZ()};
+  scene.grippers[0].frame = FrameHold{.d1 = scene.grippers[0].direction->unitOrthogonal()};
   for (const Model model : {Model::energy, Model::exact}) {
     const Solution curved = solve(scene, model);
     const std::string text = vtk_polyline(curved.shape, fields_of(curved), "arch");
