@@ -92,7 +92,11 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
   }
   // The chord of a contact that opens and closes proves nothing; calm it all the same.
   const double nearly = rod_.walls.empty() ? 1 : 100;
-  bounces_ = due && check.stable && check.remaining_error < nearly * target_;
+  // What only creeps without momentum needs it back: the next descent has to wait for the next look.
+  constexpr double helps = 0.5;
+  bounces_ = due && check.stable && check.remaining_error < nearly * target_ &&
+             check.remaining_error < helps * descended_from_;
+  descended_from_ = bounces_ ? check.remaining_error : std::numeric_limits<double>::infinity();
   if (bounces_) next_measurement_ = result_.steps + descent_steps;
   if (!seems_at_rest) return {};
   next_check_ = result_.steps + std::max(block_steps, result_.steps / 10);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <chrono>
+#include <limits>
 
 #include "dlo/force_model/relax.hpp"
 #include "dlo/force_model/tangent_stiffness.hpp"
@@ -53,6 +54,8 @@ class RestSearch {
   long next_check_ = 2 * block_steps;
   long next_measurement_ = 0;  // at the latest
   bool bounces_ = false;
+  /// Distance to rest before the last descent; infinite if the last look led to none.
+  double descended_from_ = std::numeric_limits<double>::infinity();
   bool looked_without_force_ = false;
   int neutral_modes_ = 0;
   RelaxResult result_;
