@@ -92,7 +92,8 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
   }
   // The chord of a contact that opens and closes proves nothing; calm it all the same.
   const double nearly = rod_.walls.empty() ? 1 : 100;
-  // What only creeps without momentum needs it back: the next descent has to wait for the next look.
+  // What only creeps without momentum needs it back: no descent after one that did not halve the
+  // distance.
   constexpr double helps = 0.5;
   bounces_ = due && check.stable && check.remaining_error < nearly * target_ &&
              check.remaining_error < helps * descended_from_;

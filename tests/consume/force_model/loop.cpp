@@ -61,5 +61,5 @@ int main() {
   }
   // Chosen anew every 16 steps; other steppers take the ones they are given.
   const StepOptions& steps = simulation.options();
-  std::printf("in use: c_F = %.3g m/N, c_h = %.5f\n", steps.c_F, steps.c_h);
+  std::printf("in use: c_F = %.3g m/N, c_h = %.3f\n", steps.c_F, steps.c_h);
 }
