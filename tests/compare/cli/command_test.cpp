@@ -37,6 +37,9 @@ TEST_F(Command, SolveWritesTheContractsJsonForEveryModel) {
     EXPECT_EQ(document.at("schema"), "dlo/solve/1");
     EXPECT_EQ(document.at("model"), model);
     EXPECT_EQ(document.at("converged"), true);
+    const json& error = document.at("error_estimate_over_length");
+    EXPECT_EQ(error.is_null(), model == "chain" || model == "exact") << error;
+    EXPECT_LT(error.is_null() ? 0 : error.get<double>(), 1.01e-7);
     ASSERT_EQ(document.at("arc_length_m").size(), 11U);
     ASSERT_EQ(document.at("points_m").size(), 11U);
     EXPECT_EQ(document.at("arc_length_m").back(), 0.5);
