@@ -32,26 +32,36 @@ double newton_step(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobi
   return step.head(n).norm();
 }
 
-}  // namespace
+/// Of forces.
+double scale_of(const SpanSolution& solution, double load) {
+  return 1 + load + solution.multipliers.norm();
+}
 
+/// Rounding of forces, whose scale is this.
+double rounding_of(double scale) { return 8 * std::numeric_limits<double>::epsilon() * scale; }
+
+/// What the points of a shape may be away from those of an equilibrium, of the length: what
+/// Newton's method would still move them by, and what rounding and the modes that are left out push
+/// along the softest direction. The coefficients of strains bound what positions move by. NaN with
+/// walls.
 double error_estimate(const SpanSolution& solution, double load) {
   const SpanEnergy& model = *solution.model;
   if (model.has_walls()) return std::numeric_limits<double>::quiet_NaN();
-  const double scale = 1 + load + solution.multipliers.norm();
-  const double rounding = 8 * std::numeric_limits<double>::epsilon() * scale;
+  const double scale = scale_of(solution, load);
   // The angle that the last coefficient adds is a_K / (2K); forces feel it as little again.
   const double K = solution.terms;
   const double angle = model.tail(solution.x) / (2 * K);
-  // Closer to zero than this is a direction that the rod moves in for nothing.
-  const double softest = std::clamp(solution.softest, 1e-12, 1.0);
+  const double softest = std::min(solution.softest, 1.0);
   double softest_section = 1;
   for (const Span::Part& part : model.span().parts) {
     softest_section = std::min(softest_section, part.bending);
   }
-  return (solution.next_step + (rounding + scale * angle / (2 * K)) / softest) /
+  return (solution.next_step + (rounding_of(scale) + scale * angle / (2 * K)) / softest) /
              std::sqrt(softest_section) +
          angle;
 }
+
+}  // namespace
 
 void certify(SpanSolution& solution, double load) {
   if (!solution.is_equilibrium()) return;
@@ -68,7 +78,7 @@ void certify(SpanSolution& solution, double load) {
   if (!(solution.multipliers.norm() <= largest_pull * (1 + load))) {
     return solution.fail("the grips would have to pull without bound");
   }
-  const double scale = 1 + load + solution.multipliers.norm();
+  const double scale = scale_of(solution, load);
   solution.residual = std::hypot(gradient.norm(), scale * residual.norm());
   // With rigid walls the multipliers have moved on since; how far the shape is behind them is told
   // apart.
@@ -80,10 +90,8 @@ void certify(SpanSolution& solution, double load) {
   }
   solution.smallest_curvature = smallest_eigenvalue(hessian, jacobian);
   solution.softest = std::abs(solution.smallest_curvature);
-  // Of a direction in which the rod moves for nothing the shape does not depend.
-  if (solution.softest < neutral && solution.next_step <= largest_next_step) {
-    solution.softest = neutral;
-  }
+  // What is zero but for rounding is a direction that the rod moves in for nothing: no error.
+  if (solution.softest <= 128 * rounding_of(scale)) solution.softest = neutral;
   solution.error = error_estimate(solution, load);
   if (!model.has_walls() && !(solution.next_step <= largest_next_step)) {
     return solution.finish(SolveStatus::near_singular);

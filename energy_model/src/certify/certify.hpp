@@ -4,12 +4,6 @@
 
 namespace dlo::energy_model {
 
-/// What the points of a shape may be away from those of an equilibrium, of the length: what
-/// Newton's method would still move them by, and what rounding and the modes that are left out push
-/// along the softest direction. The coefficients of strains bound what positions move by. NaN with
-/// walls.
-[[nodiscard]] double error_estimate(const SpanSolution& solution, double load);
-
 /// Looks at what a search returns, at its own x, before it may be called `converged`: the residual
 /// of the gradient of E - mu.c and of the constraints, Newton's step from there, and the
 /// eigenvalues of the second variation in all directions that the constraints leave, those out of a

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "shooting/between_nodes.hpp"
 #include "shooting/close_gaps.hpp"
 #include "shooting/span_equilibrium.hpp"
 
@@ -324,33 +325,17 @@ CurvedEquilibrium shoot_curved(const CurvedRod& rod, RodMesh mesh, std::vector<C
 std::vector<CurvedState> curved_states_at(const CurvedEquilibrium& equilibrium,
                                           const CurvedRod& rod, const std::vector<double>& s,
                                           double tolerance) {
-  const auto last = static_cast<std::ptrdiff_t>(equilibrium.nodes.size()) - 2;
-  std::vector<CurvedState> states;
-  states.reserve(s.size());
-  CurvedState state;
-  std::ptrdiff_t interval = -1;
-  double reached = 0;
-  for (const double at : s) {
-    const auto after =
-        std::upper_bound(equilibrium.s.begin(), equilibrium.s.end(), at) - equilibrium.s.begin();
-    const std::ptrdiff_t i = std::clamp<std::ptrdiff_t>(after - 1, 0, last);
-    if (i != interval) {
-      state = equilibrium.nodes[static_cast<std::size_t>(i)];
-      interval = i;
-      reached = equilibrium.s[i];
-    }
+  const auto follow = [&](Eigen::Index i, double from, double to, CurvedState& state) {
     const RodSection& section = section_at(rod.span, (equilibrium.s[i] + equilibrium.s[i + 1]) / 2);
     CurvedVariation none;
     CurvedIntegrals integrals;
-    if (at > reached && !follow_curved(section, rod.natural, reached, at - reached, tolerance,
-                                       state, none, integrals)) {
-      state.r.setConstant(std::numeric_limits<double>::quiet_NaN());
-      state.R.setConstant(std::numeric_limits<double>::quiet_NaN());
+    if (follow_curved(section, rod.natural, from, to - from, tolerance, state, none, integrals)) {
+      return;
     }
-    reached = at;
-    states.push_back(state);
-  }
-  return states;
+    state.r.setConstant(std::numeric_limits<double>::quiet_NaN());
+    state.R.setConstant(std::numeric_limits<double>::quiet_NaN());
+  };
+  return states_between(equilibrium.s, equilibrium.nodes, s, follow);
 }
 
 }  // namespace dlo::energy_model

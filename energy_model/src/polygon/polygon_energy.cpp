@@ -5,6 +5,7 @@
 
 #include "polygon/fold_angle.hpp"
 #include "polygon/polygon_twist.hpp"
+#include "polygon/segment_pair.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -35,20 +36,12 @@ Joint joint(JointLaw law, double stiffness, double L, double h) {
           -moment * (1 - 2 * h) / (2 * root * root * root)};
 }
 
-/// The two segments that meet at a joint.
-struct Corner {
-  Eigen::Vector3d u, v;  // directions
-  double a, b;           // lengths
+/// A joint that bends.
+struct Corner : SegmentPair {
   double h;
   Eigen::Vector3d by_a, by_b;  // derivative of cos alpha = u.v by either segment
 
-  Corner(const Points& points, Eigen::Index i)
-      : u(points.col(i) - points.col(i - 1)),
-        v(points.col(i + 1) - points.col(i)),
-        a(u.norm()),
-        b(v.norm()) {
-    u /= a;
-    v /= b;
+  Corner(const Points& points, Eigen::Index i) : SegmentPair(points, i) {
     const Eigen::Vector3d turn = v - u;
     // Rounding may carry a full fold beyond one.
     h = std::min(turn.squaredNorm() / 4, 1.0);

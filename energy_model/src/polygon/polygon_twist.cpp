@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "base/require.hpp"
+#include "polygon/segment_pair.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -16,22 +17,13 @@ Eigen::Vector3d unit_segment(const Points& points, Eigen::Index k) {
   return (points.col(k + 1) - points.col(k)).normalized();
 }
 
-/// Two segments that meet, with the vector q = tan(alpha/2) b, b the joint's binormal, along which
+/// A joint with the vector q = tan(alpha/2) b, b the joint's binormal, along which
 /// either direction has to be moved for the frame behind it to turn.
-struct TurningCorner {
-  Eigen::Vector3d u, v;  // directions
-  double a, b;           // lengths
-  double sum;            // 1 + u.v
+struct TurningCorner : SegmentPair {
+  double sum;  // 1 + u.v
   Eigen::Vector3d q;
 
-  TurningCorner(const Points& points, Eigen::Index i)
-      : u(points.col(i) - points.col(i - 1)),
-        v(points.col(i + 1) - points.col(i)),
-        a(u.norm()),
-        b(v.norm()) {
-    u /= a;
-    v /= b;
-    sum = 1 + u.dot(v);
+  TurningCorner(const Points& points, Eigen::Index i) : SegmentPair(points, i), sum(1 + u.dot(v)) {
     // A joint folded back on itself has no binormal.
     constexpr double folded = 1e-12;
     q = sum > folded ? Eigen::Vector3d(u.cross(v) / sum) : Eigen::Vector3d::Zero();
@@ -117,15 +109,16 @@ void add_twist_hessian(const PolygonProblem& problem, const Points& points, cons
   for (const PolygonTwist& twist : problem.twists) {
     const double moment = polygon_twist_angle(twist, points) / twist.compliance;
     for_each_corner(twist, points, [&](Eigen::Index i, const TurningCorner& corner) {
-      const auto& [u, v, a, b, sum, q] = corner;
+      const auto& [u, v, a, b] = static_cast<const SegmentPair&>(corner);
+      const Eigen::Vector3d& q = corner.q;
       // Derivatives of q / a and q / b by the segments. What of the diagonal blocks is skew cancels
       // between the corners of a segment, since the angle is a function of the points.
-      const Eigen::Vector3d t = (u + v) / sum;
+      const Eigen::Vector3d t = (u + v) / corner.sum;
       const Eigen::Matrix3d aa = -moment / (2 * a * a) * q * (t + u).transpose();
       const Eigen::Matrix3d bb = -moment / (2 * b * b) * q * (t + v).transpose();
       Eigen::Matrix3d u_cross;
       u_cross << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
-      const Eigen::Matrix3d ab = moment / (a * b) * (u_cross / sum - q * t.transpose());
+      const Eigen::Matrix3d ab = moment / (a * b) * (u_cross / corner.sum - q * t.transpose());
       add_difference_block(i - 1, i - 1, aa + aa.transpose(), add);
       add_difference_block(i, i, bb + bb.transpose(), add);
       add_difference_block(i - 1, i, ab, add);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shooting/between_nodes.hpp"
+
 namespace dlo::energy_model {
 namespace {
 
@@ -85,36 +87,15 @@ RodState state_at(const SpanEquilibrium& equilibrium, const RodSpan& span, doubl
 
 std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpan& span,
                                 const std::vector<double>& s, double tolerance) {
-  const auto last = static_cast<std::ptrdiff_t>(equilibrium.nodes.size()) - 2;
-  std::vector<RodState> states;
-  states.reserve(s.size());
-  RodState state;
-  std::ptrdiff_t interval = -1;
-  double reached = 0;
-  for (const double at : s) {
-    const auto after =
-        std::upper_bound(equilibrium.s.begin(), equilibrium.s.end(), at) - equilibrium.s.begin();
-    const std::ptrdiff_t i = std::clamp<std::ptrdiff_t>(after - 1, 0, last);
-    if (at >= equilibrium.s[i + 1]) {
-      states.push_back(equilibrium.nodes.back());
-      continue;
-    }
-    if (i != interval) {
-      state = equilibrium.nodes[static_cast<std::size_t>(i)];
-      interval = i;
-      reached = equilibrium.s[i];
-    }
-    RodIntegrals integrals;
+  const auto follow = [&](Eigen::Index i, double from, double to, RodState& state) {
     const RodSection& section = section_at(span, (equilibrium.s[i] + equilibrium.s[i + 1]) / 2);
-    if (at > reached && !follow_rod(section, at - reached, tolerance, state, integrals)) {
-      state.r.setConstant(NAN);
-      state.t.setConstant(NAN);
-      state.v.setConstant(NAN);
-    }
-    reached = at;
-    states.push_back(state);
-  }
-  return states;
+    RodIntegrals integrals;
+    if (follow_rod(section, to - from, tolerance, state, integrals)) return;
+    state.r.setConstant(NAN);
+    state.t.setConstant(NAN);
+    state.v.setConstant(NAN);
+  };
+  return states_between(equilibrium.s, equilibrium.nodes, s, follow);
 }
 
 }  // namespace dlo::energy_model
