@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "base/sized_samples.hpp"
 #include "curved/curved_variation.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
@@ -187,12 +188,8 @@ struct KirchhoffHelix {
     shape.grips = {{-force(), -own_moment()}, {force(), helix.frame(1) * own_moment()}};
     shape.grips[0].force.x() += error;
     shape.sample = [*this, error](std::span<const double> arc_lengths) {
-      Samples samples;
+      Samples samples = sized_samples(arc_lengths, 1);
       const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-      samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
-      samples.points.resize(3, count);
-      samples.tangents.resize(3, count);
-      samples.curvature.resize(3, count);
       for (Eigen::Index i = 0; i < count; ++i) {
         const double s = arc_lengths[static_cast<std::size_t>(i)];
         samples.points.col(i) = helix.point(s) + error * Eigen::Vector3d(0, std::sin(5 * s), 0);

@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "base/sized_samples.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
@@ -237,12 +238,8 @@ TEST(ExactTwist, ZeroIsWhatTheRodWithoutFramesHas) {
 Equilibrium shape_of(const std::function<RodState(double)>& state, double c) {
   Equilibrium shape;
   shape.sample = [state](std::span<const double> arc_lengths) {
-    Samples samples;
+    Samples samples = sized_samples(arc_lengths, 1);
     const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-    samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
-    samples.points.resize(3, count);
-    samples.tangents.resize(3, count);
-    samples.curvature.resize(3, count);
     for (Eigen::Index i = 0; i < count; ++i) {
       const RodState at = state(arc_lengths[static_cast<std::size_t>(i)]);
       samples.points.col(i) = at.r;

@@ -164,7 +164,7 @@ TEST(NaturalRod, IsItsOwnShapeWithoutForces) {
 
 TEST(NaturalRod, IsAHelixWithTwistToo) {
   Problem problem = clamped_rod();
-  const Vector3d u(0, 3, 4);
+  const Vector3d u(2, 3, 4);  // about all three: with one of them zero a wrong sign can hide
   problem.natural_strains = {u};
   const Equilibrium helix = solved_rod(problem);
   // The frame turns about u, which stays where it is in the frame.
@@ -179,6 +179,21 @@ TEST(NaturalRod, IsAHelixWithTwistToo) {
     EXPECT_LT((point_at(helix, s) - expected).norm(), 1e-12);
   }
   EXPECT_LT(helix.energy.total(), 1e-20);
+}
+
+// However far the free rod turns: whole turns are counted with it.
+TEST(NaturalRod, IsFreeBetweenClampsWhereTheFreeRodEnds) {
+  for (const double k : {2.0, 6.0, -9.0, 14.0}) {
+    SCOPED_TRACE(k);
+    Problem problem = clamped_rod();
+    problem.natural_strains = {{0, k, 0}};
+    const Samples free = solved_rod(problem).sample(std::vector<double>{0.6, 1.0});
+    problem.grips.push_back({0.6, free.points.col(0), free.tangents.col(0)});
+    problem.grips.push_back({1, free.points.col(1), free.tangents.col(1)});
+    const Equilibrium held = solved_rod(problem);
+    EXPECT_LT(held.energy.bending, 1e-16);
+    EXPECT_LT((point_at(held, 1) - free.points.col(1)).norm(), 1e-12);
+  }
 }
 
 TEST(NaturalRod, StaysAHelixUnderItsWrench) {

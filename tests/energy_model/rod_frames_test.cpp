@@ -41,14 +41,20 @@ TEST(RodFrames, OfAConstantStrainGoRoundACircle) {
   EXPECT_NEAR(end.z(), std::cos(curvature), 1e-14);
 }
 
-/// The quaternion at the end of one piece of length 1, by Runge-Kutta's fourth-order method.
-Eigen::Quaterniond integrated(const Eigen::VectorXd& x, int steps) {
-  const Eigen::Index K = x.size() / 2;
+/// The quaternion at the end of one piece of length 1 with these strains more than those of x, by
+/// Runge-Kutta's fourth-order method.
+/// @param x  coefficients of two fields or of three
+Eigen::Quaterniond integrated(const Eigen::VectorXd& x, int fields, int steps,
+                              const Eigen::Vector3d& natural = Eigen::Vector3d::Zero()) {
+  const Eigen::Index K = x.size() / fields;
   Eigen::VectorXd values(K);
   Eigen::VectorXd integrals(K);
   const auto rate = [&](double s, const Eigen::Vector4d& q) {
     legendre(s, values, integrals);
-    const Eigen::Quaterniond u(0, values.dot(x.head(K)), values.dot(x.tail(K)), 0);
+    Eigen::Quaterniond u(0, natural.x(), natural.y(), natural.z());
+    for (int field = 0; field < fields; ++field) {
+      u.vec()[field] += values.dot(x.segment(field * K, K));
+    }
     const Eigen::Quaterniond r = Eigen::Quaterniond(q[3], q[0], q[1], q[2]) * u;
     return Eigen::Vector4d(r.coeffs() / 2);
   };
@@ -74,7 +80,23 @@ TEST(RodFrames, AgreeWithAnotherIntegratorWhereTheRodWindsThirtyTimes) {
     x[k] *= std::exp(-0.5 * static_cast<double>(k % terms));
   x *= 30 / x.norm();
   const RodFrames::State state = evaluated(frames, x);
-  const Eigen::Quaterniond exact = integrated(x, 40000);
+  const Eigen::Quaterniond exact = integrated(x, 2, 40000);
+  EXPECT_LT(exact.angularDistance(state.panel_ends.back()), 1e-9);
+  EXPECT_LT((state.q.rowwise().norm().array() - 1).abs().maxCoeff(), 1e-14);
+}
+
+TEST(RodFrames, OfARodThatIsCurvedAndTwistedByNatureAgreeWithItToo) {
+  constexpr int terms = 24;
+  const Eigen::Vector3d natural(2, -3, 4);
+  const RodFrames frames({{0, 1}}, terms, Eigen::Matrix3d::Identity(), false,
+                         {.coefficients = {natural}});
+  ASSERT_EQ(frames.fields(), 3);
+  Eigen::VectorXd x = random_strains(3 * frames.columns(), 1);
+  for (Eigen::Index k = 0; k < x.size(); ++k)
+    x[k] *= std::exp(-0.5 * static_cast<double>(k % terms));
+  x *= 10 / x.norm();
+  const RodFrames::State state = evaluated(frames, x);
+  const Eigen::Quaterniond exact = integrated(x, 3, 40000, natural);
   EXPECT_LT(exact.angularDistance(state.panel_ends.back()), 1e-9);
   EXPECT_LT((state.q.rowwise().norm().array() - 1).abs().maxCoeff(), 1e-14);
 }

@@ -65,6 +65,28 @@ Span twisted_span(bool planar) {
   return span;
 }
 
+/// A rod as it is: curved and, in space, twisted by nature, with a section and a clamp inside the
+/// span that passes torque on.
+Span natural_span(bool planar) {
+  const double z = planar ? 0 : 1;
+  Span span = gripped_span(planar);
+  span.torsion = 0.7;
+  span.parts = {{0.25, 0.5, 2, 1.1, {0, -4, z}}};
+  span.natural = {.coefficients = {{2, z, 1.5 * z}, {-0.7, 0.4 * z, -0.6 * z}}};
+  span.holds[0].direction = Eigen::Vector3d(1, 0.1, 0.2 * z).normalized();
+  if (!planar) span.twist = Span::Twist{0.7, {0.1, 0.9, 0.8}};
+  return span;
+}
+
+Span free_natural_span(bool planar) {
+  Span span = natural_span(planar);
+  span.start_direction.reset();
+  span.end_direction.reset();
+  span.twist.reset();
+  span.anchor = 0.2;
+  return span;
+}
+
 /// Makes a span, planar or not.
 struct Case {
   Span (*make)(bool planar);
@@ -165,14 +187,18 @@ TEST_P(ObjectiveWithoutWalls, DoesNotAllocate) {
 INSTANTIATE_TEST_SUITE_P(Spans, ObjectiveWithoutWalls,
                          testing::Values(Case{gripped_span, true}, Case{gripped_span, false},
                                          Case{free_span, true}, Case{free_span, false},
-                                         Case{twisted_span, false}));
+                                         Case{twisted_span, false}, Case{natural_span, true},
+                                         Case{natural_span, false},
+                                         Case{free_natural_span, false}));
 #endif
 
 INSTANTIATE_TEST_SUITE_P(Spans, Objective,
                          testing::Values(Case{gripped_span, true}, Case{gripped_span, false},
                                          Case{free_span, true}, Case{free_span, false},
                                          Case{span_on_wall, true}, Case{span_on_wall, false},
-                                         Case{twisted_span, false}));
+                                         Case{twisted_span, false}, Case{natural_span, true},
+                                         Case{natural_span, false}, Case{free_natural_span, true},
+                                         Case{free_natural_span, false}));
 
 }  // namespace
 }  // namespace dlo::energy_model

@@ -75,6 +75,7 @@ std::string foreign_file(const fs::path& folder) {
 class TemporaryFolder {
  public:
   explicit TemporaryFolder(const fs::path& target) {
+    // What mkdtemp replaces by letters that are not taken.
     std::string name = target.string() + ".XXXXXX";
     if (::mkdtemp(name.data()) == nullptr) fail_to_write(target, std::strerror(errno));
     path_ = name;

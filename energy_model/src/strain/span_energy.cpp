@@ -160,7 +160,7 @@ void SpanEnergy::reset(const Span& span, int terms) {
     tabulate_natural_angles();
     start_theta_ = span.start_direction ? angle_of(*span.start_direction) : 0;
     for (DirectorRow& row : director_rows_) {
-      row.angle = nearest_turn(angle_of(row.to), start_theta_);
+      row.angle = nearest_turn(angle_of(row.to), start_theta_) - natural_turn(row.piece);
     }
     for (Eigen::VectorXd* v : {&theta_, &kappa_, &along_, &turning_}) v->setZero(nodes);
     scaled_.resize(table_->nodes.size(), terms_);
@@ -321,7 +321,7 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
     jacobian.bottomRows(held_angle_.rows()) = held_angle_;
     residual.tail(held_angle_.rows()).noalias() = held_angle_ * x_;
     for (const DirectorRow& held : director_rows_) {
-      residual[row++] += start_theta_ + natural_turn(held.piece) - held.angle;
+      residual[row++] += start_theta_ - held.angle;
     }
     return;
   }
@@ -518,6 +518,7 @@ Eigen::VectorXd SpanEnergy::fit(const StartShape& shape) {
   for (Eigen::Index q = 0; q < nodes; ++q) {
     angles[q] = previous = nearest_turn(angle_of(tangents.col(q)), previous);
   }
+  if (natural_angle_.size() > 0) angles -= natural_angle_;
   for (DirectorRow& row : director_rows_) {
     const Eigen::Index last = (row.piece + 1) * table_->nodes.size() - 1;
     row.angle = nearest_turn(row.angle, angles[last]);
@@ -526,7 +527,6 @@ Eigen::VectorXd SpanEnergy::fit(const StartShape& shape) {
   for (const Piece& piece : pieces_) turns.push_back(piece.angle());
   std::optional<double> start;
   if (free_start_ == 0) start = start_theta_;
-  if (natural_angle_.size() > 0) angles -= natural_angle_;
   const FittedAngle fitted = fit_angle(*table_, turns, angles, start);
   Eigen::VectorXd x(columns_);
   if (free_start_ == 1) x[0] = fitted.start;

@@ -103,7 +103,7 @@ class SpanEnergy {
     Eigen::Vector3d to = Eigen::Vector3d::Zero();
     Eigen::Vector3d across = Eigen::Vector3d::Zero();
     bool of_d1 = false;  // not of the tangent
-    double angle = 0;    // in the plane, whole turns counted
+    double angle = 0;    // in the plane, whole turns counted, less what the free rod turns by
   };
   /// Strains of the rod, or turns of it as a whole.
   [[nodiscard]] Eigen::Index fields() const { return span_.planar ? 1 : frames_.fields(); }
