@@ -31,6 +31,16 @@ struct Span {
     double stiffness = std::numeric_limits<double>::infinity();  ///< per length
   };
 
+  /// Where the rod is held on a rigid half-space: at one point, or along a part, which lies on it.
+  struct Contact {
+    std::size_t wall = 0;  ///< of the problem
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitY();
+    double offset = 0;          ///< as Wall's
+    double begin = 0, end = 0;  ///< s; equal where it touches at one point
+
+    [[nodiscard]] bool lies() const { return end > begin; }
+  };
+
   /// A part with a section of its own.
   struct Part {
     double begin = 0, end = 0;
@@ -55,6 +65,7 @@ struct Span {
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();
   std::vector<Load> loads;  ///< by growing s
   std::vector<Wall> walls;
+  std::vector<Contact> contacts;  ///< by growing s, none over another
   std::optional<Twist> twist;  ///< where both ends are clamped, not planar
   std::vector<Part> parts;     ///< where the section is another one, by growing s
   /// About d1, d2 and the tangent of a frame that has d1() at the start; about d1 alone if planar.
@@ -74,8 +85,8 @@ struct Span {
   [[nodiscard]] bool pulled_one_way() const;
   /// A uniform straight rod with one clamp and nothing but weight and loads, in a plane.
   [[nodiscard]] bool is_plain_cantilever() const {
-    return planar && start_direction && holds.empty() && walls.empty() && parts.empty() &&
-           natural.empty();
+    return planar && start_direction && holds.empty() && walls.empty() && contacts.empty() &&
+           parts.empty() && natural.empty();
   }
 };
 

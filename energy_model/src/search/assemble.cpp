@@ -1,9 +1,11 @@
 #include "search/assemble.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "base/sized_samples.hpp"
 #include "problem/ordered_grips.hpp"
@@ -51,6 +53,45 @@ Samples sample(const std::vector<PlacedShape>& shapes, double length,
     }
   }
   return samples;
+}
+
+/// With arc lengths in m, forces in the span's unit.
+std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution& solution,
+                                     double length) {
+  std::vector<ContactPart> parts;
+  const Span& span = solution.model->span();
+  if (span.contacts.empty()) return parts;
+  const std::vector<ContactForce> forces = solution.model->contact_forces(solution.multipliers);
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    const Span::Contact& contact = span.contacts[i];
+    const double sense = place.reversed ? -length : length;
+    ContactPart part;
+    part.wall = contact.wall;
+    const bool at_tip = contact.end == span.length && !span.end_direction;
+    part.kind = contact.lies() ? ContactKind::lying
+                : at_tip || contact.begin == 0 ? ContactKind::tip
+                                               : ContactKind::touching;
+    part.begin = place.start + sense * contact.begin;
+    part.end = place.start + sense * contact.end;
+    part.force = forces[i].total * (place.frame.transpose() * contact.normal);
+    part.begin_force = forces[i].begin;
+    part.end_force = forces[i].end;
+    part.largest_pressure = forces[i].largest_pressure;
+    if (place.reversed) {
+      std::swap(part.begin, part.end);
+      std::swap(part.begin_force, part.end_force);
+    }
+    parts.push_back(part);
+  }
+  return parts;
+}
+
+ContactPart in_newtons(ContactPart part, double force_unit, double length) {
+  part.force *= force_unit;
+  part.begin_force *= force_unit;
+  part.end_force *= force_unit;
+  part.largest_pressure *= force_unit / length;
+  return part;
 }
 
 }  // namespace
@@ -111,6 +152,11 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
       carried += walls[w];
       result.walls[w] += force_unit * (place.frame.transpose() * walls[w]);
     }
+    for (const ContactPart& contact : contacts_of(place, solution, l)) {
+      carried += place.frame * contact.force;
+      result.walls[contact.wall] += force_unit * contact.force;
+      result.contacts.push_back(in_newtons(contact, force_unit, l));
+    }
     const Eigen::Index axes = solution.model->span().planar ? 2 : 3;
     for (std::size_t j = 0; j < place.hold_grips.size(); ++j) {
       Eigen::Vector3d force = Eigen::Vector3d::Zero();
@@ -129,6 +175,8 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
           to_space(solution.model->hold_torque(static_cast<Eigen::Index>(j), solution.multipliers));
     }
   }
+  std::sort(result.contacts.begin(), result.contacts.end(),
+            [](const ContactPart& a, const ContactPart& b) { return a.begin < b.begin; });
   for (const Load& load : problem.loads) {
     const std::optional<std::size_t> clamp = clamp_under(problem, load);
     if (!clamp) continue;

@@ -11,6 +11,7 @@
 #include "base/require.hpp"
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
+#include "search/contact_search.hpp"
 #include "search/polygon_fields.hpp"
 #include "search/span_solver.hpp"
 #include "search/twist_path.hpp"
@@ -319,7 +320,11 @@ class EnergySolver::State {
   [[nodiscard]] std::vector<PlacedSolution> search(const PlacedSpan& placed,
                                                    const SpanOptions& options) {
     std::vector<PlacedSolution> found;
-    for (SpanSolution& solution : solve_span(placed.span, options, workspace_)) {
+    const auto is_rigid = [](const Span::Wall& wall) { return std::isinf(wall.stiffness); };
+    const bool touching =
+        std::any_of(placed.span.walls.begin(), placed.span.walls.end(), is_rigid);
+    const auto solver = touching ? solve_touching_span : solve_span;
+    for (SpanSolution& solution : solver(placed.span, options, workspace_)) {
       found.push_back({placed, std::move(solution)});
       PlacedSolution& last = found.back();
       // The search may have left the plane.

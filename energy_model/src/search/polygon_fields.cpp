@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/tangent_between.hpp"
 #include "kirchhoff/relaxed_polygon.hpp"
 #include "kirchhoff/rod_span.hpp"
 
@@ -12,18 +13,6 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr std::size_t most_fields = 12;
-
-/// Tangents between the middles of a polygon's intervals by their weighted sum.
-Eigen::Vector3d tangent_at(const Eigen::VectorXd& middles, const Eigen::Matrix3Xd& tangents,
-                           double s) {
-  const Eigen::Index last = middles.size() - 1;
-  const double* const after = std::lower_bound(middles.data(), middles.data() + last, s);
-  const Eigen::Index i = std::max<Eigen::Index>(1, after - middles.data());
-  if (last == 0) return tangents.col(0);
-  const double share = std::clamp((s - middles[i - 1]) / (middles[i] - middles[i - 1]), 0.0, 1.0);
-  const Eigen::Vector3d t = (1 - share) * tangents.col(i - 1) + share * tangents.col(i);
-  return t.norm() > 1e-3 ? t.normalized() : Eigen::Vector3d(tangents.col(i));
-}
 
 }  // namespace
 
@@ -62,7 +51,7 @@ std::vector<TangentField> polygon_fields(const Problem& problem, const PlacedSpa
       Eigen::Matrix3Xd result(3, s.size());
       for (Eigen::Index q = 0; q < s.size(); ++q) {
         const double at = reversed ? length - s[q] : s[q];
-        const Eigen::Vector3d t = frame * tangent_at(middles, tangents, at);
+        const Eigen::Vector3d t = frame * tangent_between(middles, tangents, at);
         result.col(q) = reversed ? Eigen::Vector3d(-t) : t;
       }
       return result;

@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "base/free_directions.hpp"
 #include "base/legendre.hpp"
 #include "base/minimise.hpp"
 #include "certify/certify.hpp"
@@ -15,6 +14,7 @@
 #include "newton/trust_region.hpp"
 #include "problem/segments.hpp"
 #include "search/span_starts.hpp"
+#include "search/way_down.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -345,13 +345,13 @@ class Search {
   [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) {
     SpanSolution finer = empty_solution(terms);
     finer.x = finer.model->adopt(*solution.model, solution.x);
-    finer.multipliers = solution.multipliers;
+    finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
     workspace_.newton().polish(finer, load_);
     const bool descends = finer.model->size() <= most_descended;
     if (descends && (!finer.is_equilibrium() || finer.model->has_walls())) descend(finer);
     if (!finer.is_equilibrium() && !finer.model->has_walls()) {
       finer.x = finer.model->adopt(*solution.model, solution.x);
-      finer.multipliers = solution.multipliers;
+      finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
       pull_to_grips(finer);
     }
     finer.evaluations += solution.evaluations;
@@ -378,7 +378,9 @@ class Search {
     Eigen::VectorXd residual(model->constraints());
     Eigen::MatrixXd jacobian(model->constraints(), model->size());
     model->constraint(residual, jacobian);
-    return (gradient - jacobian.transpose() * solution.multipliers).norm();
+    return (gradient - jacobian.transpose() *
+                           model->adopt_multipliers(*solution.model, solution.multipliers))
+        .norm();
   }
 
   /// Keeps an equilibrium that is not known yet, or the first failure until there is one.
@@ -421,27 +423,10 @@ class Search {
   /// Where an equilibrium that cannot hold itself comes to rest; out of its plane if that is the
   /// only way in which it gives way.
   [[nodiscard]] std::optional<SpanSolution> leave_saddle(const SpanSolution& solution) {
-    SpanEnergy& model = *solution.model;
-    Eigen::VectorXd gradient(model.size());
-    (void)model.value(solution.x, gradient);
-    Eigen::MatrixXd hessian;
-    Eigen::MatrixXd jacobian(model.constraints(), model.size());
-    Eigen::VectorXd residual(model.constraints());
-    model.constraint(residual, jacobian);
-    model.hessian(solution.multipliers, hessian);
-    const std::optional<Eigen::VectorXd> within = falling_direction(hessian, jacobian);
     constexpr double push = 0.5;
-    if (within) return pushed_from(model.span(), solution, push * *within);
-    if (!model.span().planar) return std::nullopt;
-    model.sideways(solution.multipliers, hessian, jacobian);
-    const std::optional<Eigen::VectorXd> sideways = falling_direction(hessian, jacobian);
-    if (!sideways) return std::nullopt;
-    Span space = model.span();
-    space.planar = false;
-    // Out of the plane a planar rod bends by u2, the rate of its tangent's tilt, and twists.
-    Eigen::VectorXd lift = Eigen::VectorXd::Zero(model.size() + sideways->size());
-    lift.tail(sideways->size()) = push * *sideways;
-    return pushed_from(space, solution, lift);
+    const std::optional<WayDown> way = way_down(solution);
+    if (!way) return std::nullopt;
+    return pushed_from(way->span, solution, push * way->along);
   }
 
   [[nodiscard]] SpanSolution pushed_from(const Span& span, const SpanSolution& solution,

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,9 +12,6 @@
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
-
-/// Tangents at arc lengths of a span, as a start, 3 x M.
-using TangentField = std::function<StartShape(const Eigen::VectorXd&)>;
 
 /// Starts, in the order of their energy, that the search for the lowest minimum follows.
 inline constexpr std::size_t followed_starts = 2;

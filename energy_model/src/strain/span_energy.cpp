@@ -151,6 +151,7 @@ void SpanEnergy::reset(const Span& span, int terms) {
   tabulate_nodes();
   tabulate_forces();
   if (span.twist) twist_root_ = std::sqrt(span.twist->stiffness / span.length);
+  contacts_.reset(span, pieces_, terms, *table_, s_, weights_);
   list_director_rows();
   constraints_ = first_director_row() + static_cast<Eigen::Index>(director_rows_.size());
   const Eigen::Index nodes = s_.size();
@@ -316,6 +317,19 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
     }
     row += axes_;
   }
+  for (Eigen::Index i = 0; i < contacts_.count(); ++i) {
+    residual[row] = contacts_.residual(i, t_);
+    if (span_.planar) {
+      turning_ = contacts_.along(i, t_theta_);
+      jacobian.row(row).noalias() = turning_.transpose() * angle_;
+    } else {
+      carried_ = contacts_.by_node(i);
+      pulled_.setZero();
+      frames_.pull({&carried_}, 1, state_, pulled_);
+      jacobian.row(row) = pulled_.transpose();
+    }
+    ++row;
+  }
   if (span_.planar) {
     if (director_rows_.empty()) return;
     jacobian.bottomRows(held_angle_.rows()) = held_angle_;
@@ -382,6 +396,9 @@ void SpanEnergy::carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
     for (Eigen::Index axis = 0; axis < axes_; ++axis) {
       carried_.col(axis) += multipliers[j * axes_ + axis] * reach_.col(j);
     }
+  }
+  for (Eigen::Index i = 0; i < contacts_.count(); ++i) {
+    contacts_.add(i, multipliers[first_contact_row() + i], carried_);
   }
 }
 
@@ -555,6 +572,18 @@ Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd
     }
   }
   if (has_psi() && other.has_psi()) adopted[strains()] = x[other.strains()];
+  return adopted;
+}
+
+Eigen::VectorXd SpanEnergy::adopt_multipliers(const SpanEnergy& other,
+                                              const Eigen::VectorXd& multipliers) const {
+  if (contacts_.count() == other.contacts_.count()) return multipliers;
+  Eigen::VectorXd adopted(constraints_);
+  adopted.head(first_contact_row()) = multipliers.head(first_contact_row());
+  adopted.segment(first_contact_row(), contacts_.count()) = contacts_.adopt(
+      other.contacts_, multipliers.segment(first_contact_row(), other.contacts_.count()));
+  const Eigen::Index rest = constraints_ - first_director_row();
+  adopted.tail(rest) = multipliers.tail(rest);
   return adopted;
 }
 

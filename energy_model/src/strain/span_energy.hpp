@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dlo/energy_model/problem.hpp"
+#include "strain/contact_rows.hpp"
 #include "strain/director_miss.hpp"
 #include "strain/rod_frames.hpp"
 #include "strain/span_shape.hpp"
@@ -66,6 +67,10 @@ class SpanEnergy {
   /// Unknowns of a shape that was found with another number of terms, or in the plane.
   [[nodiscard]] Eigen::VectorXd adopt(const SpanEnergy& other, const Eigen::VectorXd& x);
 
+  /// Multipliers of the same span's constraints, found with another number of terms.
+  [[nodiscard]] Eigen::VectorXd adopt_multipliers(const SpanEnergy& other,
+                                                  const Eigen::VectorXd& multipliers) const;
+
   /// Size of the last coefficients, which tells whether the curvature is resolved.
   [[nodiscard]] double tail(const Eigen::VectorXd& x) const;
   /// The rod's twist, end ahead of start [rad]; 0 where nothing holds it.
@@ -87,6 +92,10 @@ class SpanEnergy {
   [[nodiscard]] bool has_walls() const { return walls_.any(); }
   [[nodiscard]] WallContact& walls() { return walls_; }
   [[nodiscard]] const WallContact& walls() const { return walls_; }
+  /// What holds the rod on rigid walls by these multipliers.
+  [[nodiscard]] std::vector<ContactForce> contact_forces(const Eigen::VectorXd& multipliers) const {
+    return contacts_.forces(multipliers.segment(first_contact_row(), contacts_.count()));
+  }
 
   /// Torque of one of the span's holds and of the clamp at its start, at the point of the last
   /// value(): the weak forms, from the directors' multipliers and from the balance about the start.
@@ -111,7 +120,10 @@ class SpanEnergy {
   /// By which the free rod turns its tangent in the plane up to a piece's end.
   [[nodiscard]] double natural_turn(Eigen::Index piece) const;
   /// Where the constraints on directors begin.
-  [[nodiscard]] Eigen::Index first_director_row() const { return axes_ * reach_.cols(); }
+  [[nodiscard]] Eigen::Index first_director_row() const {
+    return first_contact_row() + contacts_.count();
+  }
+  [[nodiscard]] Eigen::Index first_contact_row() const { return axes_ * reach_.cols(); }
   /// Unknown of the mean twist of a piece of a rod with natural strains.
   [[nodiscard]] Eigen::Index first_twist(Eigen::Index piece) const {
     return 2 * columns_ + free_start_ + piece * terms_;
@@ -156,6 +168,7 @@ class SpanEnergy {
   Eigen::MatrixX3d force_;  // weight of the node times the sum of weight and loads beyond it
   Eigen::MatrixXd reach_;   // per hold, weight of the node times -1, 0, 1
   std::vector<std::vector<double>> reach_signs_;  // the same by hold and piece, without weights
+  ContactRows contacts_;
   WallContact walls_;
 
   // At the point of the last value(), nodes x 3

@@ -163,6 +163,9 @@ std::vector<Piece> pieces_of(const Span& span) {
   for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
   for (const Span::Load& load : span.loads) cuts.push_back(load.at);
   for (const Span::Part& part : span.parts) cuts.insert(cuts.end(), {part.begin, part.end});
+  for (const Span::Contact& contact : span.contacts) {
+    cuts.insert(cuts.end(), {contact.begin, contact.end});
+  }
   const double layer = 1 / std::sqrt(std::max(1.0, span.total_load()));
   const double room = span.end_direction ? 0.4 : 0.7;
   if (layer_depths[1] * layer < room * span.length) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -38,6 +39,9 @@ struct StartShape {
   StartShape(Eigen::Matrix3Xd along, Eigen::VectorXd ahead = {})
       : tangents(std::move(along)), roll(std::move(ahead)) {}
 };
+
+/// Tangents at arc lengths of a span, as a start, 3 x M.
+using TangentField = std::function<StartShape(const Eigen::VectorXd&)>;
 
 /// By which d1 is turned ahead of a frame that does not turn about the tangents, from the first
 /// point on [rad]; no step may turn the tangent by pi.

@@ -36,6 +36,9 @@ Eigen::Vector3d SpanEnergy::start_torque(const Eigen::VectorXd& multipliers) con
     const Eigen::Vector3d point = t_.transpose() * before;
     moment += point.cross(load.force);
   }
+  for (Eigen::Index i = 0; i < contacts_.count(); ++i) {
+    moment += contacts_.moment(i, multipliers[first_contact_row() + i], t_);
+  }
   return -(moment + walls_.moment(t_));
 }
 

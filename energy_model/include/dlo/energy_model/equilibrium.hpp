@@ -11,6 +11,37 @@
 
 namespace dlo::energy_model {
 
+/// How a rod touches an obstacle.
+enum class ContactKind {
+  lying,     ///< along a part
+  touching,  ///< at a point inside the rod
+  tip,       ///< at an end of the rod
+};
+
+/// In words, for files.
+[[nodiscard]] constexpr const char* to_string(ContactKind kind) {
+  switch (kind) {
+    case ContactKind::lying:
+      return "lying";
+    case ContactKind::touching:
+      return "touching";
+    case ContactKind::tip:
+      break;
+  }
+  return "tip";
+}
+
+/// Where the rod touches a rigid wall.
+struct ContactPart {
+  std::size_t wall = 0;  ///< of Problem::walls
+  ContactKind kind = ContactKind::lying;
+  double begin = 0, end = 0;                        ///< arc lengths [m]; equal but for `lying`
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< of the wall on the rod, of all of it [N]
+  /// What of it is concentrated at the begin and at the end of what lies [N].
+  double begin_force = 0, end_force = 0;
+  double largest_pressure = 0;  ///< per length of what lies, between them [N/m]
+};
+
 /// Outcome of a solver for a continuous rod.
 struct [[nodiscard]] Equilibrium {
   SolveStatus status = SolveStatus::not_run;  ///< how it ended
@@ -32,6 +63,7 @@ struct [[nodiscard]] Equilibrium {
   double penetration = 0;
   Energies energy;                     ///< of the shape [J]
   std::vector<Eigen::Vector3d> walls;  ///< force of each wall on the rod [N]
+  std::vector<ContactPart> contacts;   ///< with rigid walls, by arc length
   std::vector<Reaction> grips;         ///< in the order of Problem::grips
   std::vector<TwistedPart> twists;     ///< of what clamps that hold frames twist; by arc length
 

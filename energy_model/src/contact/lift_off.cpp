@@ -1,0 +1,89 @@
+#include "contact/lift_off.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dlo::energy_model {
+namespace {
+
+bool is_held(const Span& span, double at) {
+  const auto near = [at](double other) { return std::abs(at - other) < closest_cuts; };
+  return near(span.anchor) || std::any_of(span.holds.begin(), span.holds.end(),
+                                          [&](const Span::Hold& hold) { return near(hold.at); });
+}
+
+bool is_free(const Span& span, double at) {
+  return at > closest_cuts && at < span.length - closest_cuts && !is_held(span, at);
+}
+
+}  // namespace
+
+double LiftOff::at(const Span& span) const {
+  const Span::Contact& own = span.contacts[contact];
+  return begins ? own.begin : own.end;
+}
+
+void LiftOff::move(Span& span, double way) const {
+  Span::Contact& own = span.contacts[contact];
+  const bool lies = own.lies();
+  if (begins || !lies) own.begin += way;
+  if (!begins || !lies) own.end += way;
+  if (!lies) own.end = own.begin;
+}
+
+std::vector<LiftOff> lift_offs(const Span& span) {
+  std::vector<LiftOff> ends;
+  for (std::size_t i = 0; i < span.contacts.size(); ++i) {
+    const Span::Contact& contact = span.contacts[i];
+    if (is_free(span, contact.begin)) ends.push_back({i, true});
+    if (contact.lies() && is_free(span, contact.end)) ends.push_back({i, false});
+  }
+  return ends;
+}
+
+Room room_of(const Span& span, const LiftOff& end) {
+  const double at = end.at(span);
+  const Span::Contact& own = span.contacts[end.contact];
+  Room room{at, span.length - at};
+  const auto beside = [&](double other) {
+    if (other < at) room.down = std::min(room.down, at - other);
+    if (other > at) room.up = std::min(room.up, other - at);
+  };
+  beside(span.anchor);
+  for (const Span::Hold& hold : span.holds) beside(hold.at);
+  for (const Span::Contact& contact : span.contacts) {
+    if (&contact == &own) continue;
+    beside(contact.begin);
+    beside(contact.end);
+  }
+  if (own.lies()) beside(end.begins ? own.end : own.begin);
+  return room;
+}
+
+Eigen::VectorXd missed(const Span& span, const std::vector<LiftOff>& ends,
+                       const SpanShape& shape) {
+  constexpr double aside = 1e-12;
+  std::vector<double> s;
+  for (const LiftOff& end : ends) {
+    // Of two pieces that meet there the free one.
+    const double at = end.at(span);
+    const bool after = span.contacts[end.contact].lies() && !end.begins;
+    s.push_back(after ? at + aside : at - aside);
+  }
+  const SpanSamples samples = shape.sample(s);
+  Eigen::VectorXd result(static_cast<Eigen::Index>(ends.size()));
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    const Span::Contact& contact = span.contacts[ends[i].contact];
+    if (contact.lies()) {
+      const Room room = room_of(span, ends[i]);
+      result[column] = contact.normal.dot(samples.curvature.col(column)) *
+                       (ends[i].begins ? room.down : room.up);
+    } else {
+      result[column] = contact.normal.dot(samples.tangents.col(column));
+    }
+  }
+  return result;
+}
+
+}  // namespace dlo::energy_model

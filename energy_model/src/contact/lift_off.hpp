@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "problem/span.hpp"
+#include "strain/span_shape.hpp"
+
+namespace dlo::energy_model {
+
+/// An arc length at which a contact begins or ends and which is not given: where a rod that
+/// touches at one point is parallel to the wall, and where a lying part lifts off without a moment,
+/// that is with no curvature towards the wall.
+struct LiftOff {
+  std::size_t contact = 0;  ///< of Span::contacts
+  bool begins = true;       ///< the part that lies; or, of one that touches, where it does
+
+  [[nodiscard]] double at(const Span& span) const;
+  void move(Span& span, double way) const;
+};
+
+/// All of a span's, by growing s.
+[[nodiscard]] std::vector<LiftOff> lift_offs(const Span& span);
+
+/// What is missed there: the slope towards the wall, or the curvature times the length of the
+/// shorter of the neighbouring free pieces.
+[[nodiscard]] Eigen::VectorXd missed(const Span& span, const std::vector<LiftOff>& ends,
+                                     const SpanShape& shape);
+
+/// How far a lift-off may be moved down and up without passing what is beside it.
+struct Room {
+  double down = 0, up = 0;
+};
+[[nodiscard]] Room room_of(const Span& span, const LiftOff& end);
+
+}  // namespace dlo::energy_model

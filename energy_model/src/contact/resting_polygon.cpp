@@ -1,0 +1,229 @@
+#include "contact/resting_polygon.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/tangent_between.hpp"
+#include "dlo/energy_model/polygon.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Segments of a stiff and of a soft rod; lift-off lengths fall with the root of the load's root.
+constexpr double fewest_segments = 64;
+constexpr double most_segments = 256;
+/// Stretch and penetration that the loads and what bends a rod may make, in lengths.
+constexpr double yields = 1e-4;
+constexpr double bending_forces = 40;
+/// Neighbouring points on a wall from which on a part lies, rather than touches at a point.
+constexpr Eigen::Index fewest_lying = 4;
+
+/// A polygon that crumples on its wall takes many more, and lies higher than others.
+constexpr int most_evaluations = 300;
+
+/// Points of a polygon along a span, by growing s. A clamp at an end holds one more, beyond it.
+struct Mesh {
+  std::vector<double> s;
+  bool before = false, after = false;  // a held point beyond the start or the end
+};
+
+Mesh mesh_of(const Span& span) {
+  std::vector<double> cuts = {0, span.length, span.anchor};
+  for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
+  for (const Span::Load& load : span.loads) cuts.push_back(load.at);
+  for (const Span::Part& part : span.parts) cuts.insert(cuts.end(), {part.begin, part.end});
+  std::sort(cuts.begin(), cuts.end());
+  const double load = std::max(1.0, span.total_load());
+  const double count = std::clamp(24 * std::pow(load, 0.25), fewest_segments, most_segments);
+  const double h = span.length / count;
+  Mesh mesh;
+  mesh.before = span.start_direction.has_value();
+  mesh.after = span.end_direction.has_value();
+  if (mesh.before) mesh.s.push_back(-h);
+  mesh.s.push_back(0);
+  double begin = 0;
+  for (const double cut : cuts) {
+    if (cut - begin < closest_cuts) continue;
+    const double segments = std::max(1.0, std::ceil((cut - begin) / h));
+    for (double i = 1; i <= segments; ++i) mesh.s.push_back(begin + (cut - begin) * i / segments);
+    begin = cut;
+  }
+  if (mesh.after) mesh.s.push_back(span.length + h);
+  return mesh;
+}
+
+class Resting {
+ public:
+  explicit Resting(const Span& span) : span_(span), mesh_(mesh_of(span)) {
+    const std::size_t count = mesh_.s.size();
+    const double stiff = (bending_forces + span.total_load()) / yields;
+    problem_.rest_lengths.resize(static_cast<Eigen::Index>(count) - 1);
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+      problem_.rest_lengths[static_cast<Eigen::Index>(i)] = mesh_.s[i + 1] - mesh_.s[i];
+    }
+    problem_.stretch_stiffness = stiff;
+    problem_.stiffness = 1;
+    place_joints();
+    place_forces();
+    hold();
+    for (const Span::Wall& wall : span.walls) {
+      const double h = span.length / static_cast<double>(count);
+      problem_.walls.push_back({-wall.offset * wall.normal, wall.normal,
+                                std::isfinite(wall.stiffness) ? wall.stiffness * h : stiff});
+    }
+  }
+
+  [[nodiscard]] RestingPolygon from(const TangentField& start, const Deadline& deadline) {
+    PolygonOptions options;
+    options.tolerance = 1e-9;
+    options.max_evaluations = most_evaluations;
+    options.time_limit = std::max(1e-3, deadline.remaining());
+    const PolygonResult found = solve_polygon(problem_, points_of(start), options);
+    RestingPolygon result;
+    result.evaluations = found.evaluations;
+    result.energy = found.energy;
+    result.at_rest = succeeded(found.status);
+    const Eigen::Index n = problem_.rest_lengths.size();
+    result.middles.resize(n);
+    for (Eigen::Index i = 0; i < n; ++i) result.middles[i] = (s(i) + s(i + 1)) / 2;
+    result.tangents = (found.points.rightCols(n) - found.points.leftCols(n)).colwise().normalized();
+    for (std::size_t w = 0; w < span_.walls.size(); ++w) add_contacts(w, found.points, result);
+    std::sort(result.contacts.begin(), result.contacts.end(),
+              [](const auto& a, const auto& b) { return a.begin < b.begin; });
+    return result;
+  }
+
+ private:
+  [[nodiscard]] double s(Eigen::Index i) const { return mesh_.s[static_cast<std::size_t>(i)]; }
+
+  [[nodiscard]] Eigen::Index point_at(double at) const {
+    const auto nearest = std::min_element(
+        mesh_.s.begin(), mesh_.s.end(),
+        [at](double a, double b) { return std::abs(a - at) < std::abs(b - at); });
+    return nearest - mesh_.s.begin();
+  }
+
+  void place_joints() {
+    const Eigen::Index joints = problem_.rest_lengths.size() - 1;
+    if (!span_.parts.empty()) problem_.stiffnesses.setOnes(joints);
+    if (span_.planar && !span_.natural.empty()) problem_.natural_turns.setZero(joints);
+    for (Eigen::Index i = 0; i < joints; ++i) {
+      const double begin = (s(i) + s(i + 1)) / 2;
+      const double end = (s(i + 1) + s(i + 2)) / 2;
+      for (const Span::Part& part : span_.parts) {
+        const bool within = s(i + 1) >= part.begin && s(i + 1) <= part.end;
+        if (within) problem_.stiffnesses[i] = part.bending;
+      }
+      if (problem_.natural_turns.size() > 0) {
+        problem_.natural_turns[i] =
+            span_.natural.integral(end).x() - span_.natural.integral(begin).x();
+      }
+    }
+  }
+
+  void place_forces() {
+    const auto count = static_cast<Eigen::Index>(mesh_.s.size());
+    problem_.node_forces.setZero(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double begin = i == 0 ? 0 : std::max(0.0, (s(i - 1) + s(i)) / 2);
+      const double end = i + 1 == count ? span_.length
+                                        : std::min(span_.length, (s(i) + s(i + 1)) / 2);
+      if (end > begin) problem_.node_forces.col(i) = span_.weight_between(begin, end);
+    }
+    for (const Span::Load& load : span_.loads) {
+      problem_.node_forces.col(point_at(load.at)) += load.force;
+    }
+  }
+
+  void hold() {
+    const auto last = static_cast<Eigen::Index>(mesh_.s.size()) - 1;
+    const double h = span_.length / static_cast<double>(last);
+    const auto hold_point = [&](Eigen::Index point, const Eigen::Vector3d& position) {
+      const bool held =
+          std::any_of(problem_.held.begin(), problem_.held.end(),
+                      [point](const HeldPoint& other) { return other.point == point; });
+      if (!held) problem_.held.push_back({point, position});
+    };
+    if (mesh_.before) hold_point(0, -problem_.rest_lengths[0] * *span_.start_direction);
+    hold_point(point_at(span_.anchor), Eigen::Vector3d::Zero());
+    for (const Span::Hold& held : span_.holds) {
+      const Eigen::Index point = point_at(held.at);
+      hold_point(point, held.offset);
+      if (!held.direction || point == 0) continue;
+      // Of a clamp inside the span: the point before it.
+      hold_point(point - 1, held.offset - problem_.rest_lengths[point - 1] * *held.direction);
+    }
+    if (mesh_.after) hold_point(last, span_.holds.back().offset + h * *span_.end_direction);
+  }
+
+  [[nodiscard]] Eigen::Matrix3Xd points_of(const TangentField& start) const {
+    const Eigen::Index n = problem_.rest_lengths.size();
+    Eigen::VectorXd middles(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      middles[i] = std::clamp((s(i) + s(i + 1)) / 2, 0.0, span_.length);
+    }
+    const Eigen::Matrix3Xd tangents = start(middles).tangents;
+    Eigen::Matrix3Xd points = Eigen::Matrix3Xd::Zero(3, n + 1);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      points.col(i + 1) = points.col(i) + problem_.rest_lengths[i] * tangents.col(i);
+    }
+    const Eigen::Vector3d anchor = points.col(point_at(span_.anchor));
+    points.colwise() -= anchor;
+    if (span_.planar) points.row(2).setZero();
+    return points;
+  }
+
+  /// Of a rigid wall: runs of points behind it.
+  void add_contacts(std::size_t w, const Eigen::Matrix3Xd& points, RestingPolygon& result) const {
+    const Span::Wall& wall = span_.walls[w];
+    if (std::isfinite(wall.stiffness)) return;
+    const Eigen::VectorXd clearance =
+        (wall.normal.transpose() * points).transpose().array() + wall.offset;
+    const Eigen::Index count = clearance.size();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto on = [&](Eigen::Index k) {
+        return clearance[k] <= 0 && s(k) >= 0 && s(k) <= span_.length;
+      };
+      if (!on(i)) continue;
+      const Eigen::Index first = i;
+      while (i + 1 < count && on(i + 1)) ++i;
+      Span::Contact contact{w, wall.normal, wall.offset, s(first), s(i)};
+      if (i - first + 1 < fewest_lying) {
+        double depth = 0;
+        double moment = 0;
+        for (Eigen::Index k = first; k <= i; ++k) {
+          depth -= clearance[k];
+          moment -= clearance[k] * s(k);
+        }
+        const bool at_end = s(first) == 0 || s(i) == span_.length;
+        if (!at_end) contact.begin = contact.end = depth > 0 ? moment / depth : s(first);
+        if (s(i) == span_.length) contact.begin = contact.end = span_.length;
+        if (s(first) == 0) contact.begin = contact.end = 0;
+      }
+      result.contacts.push_back(contact);
+    }
+  }
+
+  const Span& span_;
+  Mesh mesh_;
+  PolygonProblem problem_;
+};
+
+}  // namespace
+
+TangentField RestingPolygon::field() const {
+  return [middles = middles, tangents = tangents](const Eigen::VectorXd& s) {
+    Eigen::Matrix3Xd result(3, s.size());
+    for (Eigen::Index q = 0; q < s.size(); ++q) {
+      result.col(q) = tangent_between(middles, tangents, s[q]);
+    }
+    return result;
+  };
+}
+
+RestingPolygon rest_on_walls(const Span& span, const TangentField& start,
+                             const Deadline& deadline) {
+  return Resting(span).from(start, deadline);
+}
+
+}  // namespace dlo::energy_model

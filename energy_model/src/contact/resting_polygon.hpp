@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "base/deadline.hpp"
+#include "problem/span.hpp"
+#include "strain/span_shape.hpp"
+
+namespace dlo::energy_model {
+
+/// A coarse polygon at rest on a span's walls, which tells what touches what.
+struct RestingPolygon {
+  bool at_rest = false;
+  double energy = 0;               ///< in EI/l
+  int evaluations = 0;
+  Eigen::VectorXd middles;         ///< s of the segments' middles
+  Eigen::Matrix3Xd tangents;       ///< of the segments, unit, 3 x middles
+  std::vector<Span::Contact> contacts;
+
+  /// Its tangents, to start from.
+  [[nodiscard]] TangentField field() const;
+};
+
+/// Descends from a shape with points that the walls push back by stiff springs, and stretch that is
+/// small: right to about the square of a segment.
+[[nodiscard]] RestingPolygon rest_on_walls(const Span& span, const TangentField& start,
+                                           const Deadline& deadline);
+
+}  // namespace dlo::energy_model
