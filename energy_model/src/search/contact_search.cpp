@@ -23,6 +23,8 @@ namespace {
 /// What a shape may be behind a rigid wall, and how hard a wall may pull, over what all forces are
 /// there: rounding.
 constexpr double deepest = 1e-9;
+/// The same while terms may be missing.
+constexpr double deepest_coarse = 1e-6;
 constexpr double strongest_pull = 1e-7;
 
 /// Shapes from which polygons come to rest.
@@ -31,6 +33,8 @@ constexpr int most_rounds = 16;
 constexpr int most_steps = 25;
 /// Step of a lift-off at which it is found, in lengths.
 constexpr double lift_off_tolerance = 1e-10;
+/// Longest step of one, in lengths: the polygon has told where it is.
+constexpr double longest_step = 0.02;
 /// Length that a lying part is given where a point becomes one.
 constexpr double first_part = 0.01;
 
@@ -195,7 +199,8 @@ class ContactSearch {
       double share = 1;
       for (Eigen::Index i = 0; i < count; ++i) {
         const Room room = room_of(before, ends[static_cast<std::size_t>(i)]);
-        const double most = 0.45 * (way[i] < 0 ? room.down : room.up);
+        const double most =
+            std::min(0.45 * (way[i] < 0 ? room.down : room.up), longest_step * span_.length);
         if (std::abs(way[i]) > most) share = std::min(share, most / std::abs(way[i]));
       }
       if (!way.allFinite()) return;
@@ -249,18 +254,12 @@ class ContactSearch {
       near = field_of(solution.model->shape(solution.x));
       span = solution.model->span();
       if (getenv("CT")) { printf(" round %d terms %d E %.8g:", round, solution.terms, solution.energy); auto f=solution.model->contact_forces(solution.multipliers); for (size_t i=0;i<f.size();++i) printf(" [%.6f %.6f] F %.4g (%.3g %.3g) p %.3g", span.contacts[i].begin, span.contacts[i].end, f[i].total,f[i].begin,f[i].end,f[i].least_pressure); auto m=missed_by(solution, lift_offs(span)); for (double v: m) printf(" m %.1e", v); printf("\n"); }
-      if (mend(solution, span)) continue;
-      const int before = solution.terms;
-      SpanOptions own = options_;
-      solution = finish_span(span, own, workspace_, std::move(solution));
-      if (getenv("CT")) { Eigen::MatrixXd H, J(solution.model->constraints(), solution.model->size()); Eigen::VectorXd r(solution.model->constraints()), g(solution.model->size()); (void)solution.model->value(solution.x,g); solution.model->constraint(r,J); solution.model->hessian(solution.multipliers,H); printf("  %s: in plane %.4g all %.4g\n", solution.message.c_str(), smallest_eigenvalue(H,J), solution.smallest_curvature);}
+      if (mend(solution, span, deepest_coarse)) continue;
+      solution = with_all_terms(std::move(solution));
       if (!solution.is_equilibrium()) break;
-      if (solution.terms > before) {
-        find_lift_offs(solution);
-        span = solution.model->span();
-        if (mend(solution, span)) continue;
-        solution = finish_span(span, own, workspace_, std::move(solution));
-      }
+      near = field_of(solution.model->shape(solution.x));
+      span = solution.model->span();
+      if (mend(solution, span, deepest)) continue;
       return solution;
     }
     solution.status = SolveStatus::not_resolved;
@@ -268,10 +267,48 @@ class ContactSearch {
     return solution;
   }
 
+  [[nodiscard]] SpanSolution finished_with(const SpanOptions& options, SpanSolution solution) {
+    const Span span = solution.model->span();
+    return finish_span(span, options, workspace_, std::move(solution));
+  }
+
+  /// As many terms as the shape takes, and as many as what lies takes to be on its wall.
+  [[nodiscard]] SpanSolution with_all_terms(SpanSolution solution) {
+    SpanOptions options = options_;
+    options.start = nullptr;
+    for (;;) {
+      const int before = solution.terms;
+      solution = finished_with(options, std::move(solution));
+      if (!solution.is_equilibrium()) return solution;
+      const bool more = solution.terms > before;
+      if (more) find_lift_offs(solution);
+      const std::vector<Lowest> behind =
+          lowest_points(span_.walls, span_.length, solution.model->shape(solution.x),
+                        -deepest * span_.length);
+      const bool hardly = std::all_of(behind.begin(), behind.end(), [&](const Lowest& lowest) {
+        return lowest.clearance > -deepest_coarse * span_.length;
+      });
+      const int finer = solution.terms + solution.terms / 2;
+      if (behind.empty() || !hardly || options_.terms > 0 || finer > max_terms) {
+        return more ? finished_with(options, std::move(solution)) : solution;
+      }
+      options.least_terms = finer;
+      SpanSolution next;
+      next.model = workspace_.model(solution.model->span(), finer);
+      next.terms = finer;
+      next.x = next.model->adopt(*solution.model, solution.x);
+      next.multipliers = next.model->adopt_multipliers(*solution.model, solution.multipliers);
+      workspace_.newton().polish(next, load_);
+      if (!next.is_equilibrium()) return solution;
+      find_lift_offs(next);
+      solution = std::move(next);
+    }
+  }
+
   /// Changes the contacts where a wall would have to pull, and where the rod is behind one.
   /// @param[in,out] span  the solution's
   /// @return whether anything was wrong
-  [[nodiscard]] bool mend(const SpanSolution& solution, Span& span) const {
+  [[nodiscard]] bool mend(const SpanSolution& solution, Span& span, double depth) const {
     const std::vector<ContactForce> forces =
         solution.model->contact_forces(solution.multipliers);
     const double scale = 1 + load_ + solution.multipliers.norm();
@@ -306,22 +343,62 @@ class ContactSearch {
       kept.push_back(contact);
     }
     span.contacts = kept;
+    wrong = join(shape, span) || wrong;
     for (const Lowest& lowest :
-         lowest_points(span_.walls, span_.length, shape, -deepest * span_.length)) {
+         lowest_points(span_.walls, span_.length, shape, -depth * span_.length)) {
       wrong = true;
-      add_contact(lowest, span);
+      add_contact(lowest, shape, span);
     }
     return wrong;
   }
 
+  /// Neighbouring contacts with a wall that the rod hardly leaves between them, or is behind, are
+  /// one.
+  [[nodiscard]] static bool join(const SpanShape& shape, Span& span) {
+    bool joined = false;
+    for (std::size_t i = 0; i + 1 < span.contacts.size();) {
+      Span::Contact& here = span.contacts[i];
+      const Span::Contact& next = span.contacts[i + 1];
+      const double gap = next.begin - here.end;
+      const bool same = here.wall == next.wall;
+      // Of a free part as short as that nothing could be told.
+      const bool no_gap = gap < 0.02 * span.length &&
+                          highest_between(here, shape, here.end, next.begin) < 1e-3 * gap;
+      if (!same || !(no_gap || highest_between(here, shape, here.end, next.begin) < 0)) {
+        ++i;
+        continue;
+      }
+      here.end = std::max(here.end, next.end);
+      span.contacts.erase(span.contacts.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      joined = true;
+    }
+    return joined;
+  }
+
+  /// Largest clearance over a contact's wall between two arc lengths.
+  [[nodiscard]] static double highest_between(const Span::Contact& contact, const SpanShape& shape,
+                                              double from, double to) {
+    constexpr int looks = 16;
+    std::vector<double> s;
+    for (int i = 1; i < looks; ++i) s.push_back(from + (to - from) * i / looks);
+    const SpanSamples samples = shape.sample(s);
+    return (contact.normal.transpose() * samples.points).maxCoeff() + contact.offset;
+  }
+
   /// What is behind a wall touches it; next to a point of contact both lie.
-  void add_contact(const Lowest& lowest, Span& span) const {
+  void add_contact(const Lowest& lowest, const SpanShape& shape, Span& span) const {
     const Span::Wall& wall = span_.walls[lowest.wall];
     const double reach = first_part * span.length;
     for (Span::Contact& contact : span.contacts) {
       if (contact.normal != wall.normal || contact.offset != wall.offset) continue;
       const bool beside =
           lowest.s > contact.begin - 2 * reach && lowest.s < contact.end + 2 * reach;
+      const bool to_tip = lowest.s == span.length && contact.end < span.length &&
+                          highest_between(contact, shape, contact.end, span.length) < 0;
+      if (to_tip) {
+        contact.end = span.length;
+        return;
+      }
       if (!beside) continue;
       contact.begin = std::max(0.0, std::min(contact.begin, lowest.s) - reach / 2);
       contact.end = std::min(span.length, std::max(contact.end, lowest.s) + reach / 2);
