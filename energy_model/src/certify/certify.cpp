@@ -43,7 +43,7 @@ double rounding_of(double scale) { return 8 * std::numeric_limits<double>::epsil
 /// What the points of a shape may be away from those of an equilibrium, of the length: what
 /// Newton's method would still move them by, and what rounding and the modes that are left out push
 /// along the softest direction. The coefficients of strains bound what positions move by. NaN with
-/// walls.
+/// soft walls, which make kinks inside pieces.
 double error_estimate(const SpanSolution& solution, double load) {
   const SpanEnergy& model = *solution.model;
   if (model.has_walls()) return std::numeric_limits<double>::quiet_NaN();
@@ -80,20 +80,16 @@ void certify(SpanSolution& solution, double load) {
   }
   const double scale = scale_of(solution, load);
   solution.residual = std::hypot(gradient.norm(), scale * residual.norm());
-  // With rigid walls the multipliers have moved on since; how far the shape is behind them is told
-  // apart.
-  if (!model.has_walls() && !(solution.residual <= largest_next_step * scale)) {
+  if (!(solution.residual <= largest_next_step * scale)) {
     return solution.fail("the residual of the returned shape is not small");
   }
-  if (!model.has_walls()) {
-    solution.next_step = newton_step(hessian, jacobian, gradient, residual);
-  }
+  solution.next_step = newton_step(hessian, jacobian, gradient, residual);
   solution.smallest_curvature = smallest_eigenvalue(hessian, jacobian);
   solution.softest = std::abs(solution.smallest_curvature);
   // What is zero but for rounding is a direction that the rod moves in for nothing: no error.
   if (solution.softest <= 128 * rounding_of(scale)) solution.softest = neutral;
   solution.error = error_estimate(solution, load);
-  if (!model.has_walls() && !(solution.next_step <= largest_next_step)) {
+  if (!(solution.next_step <= largest_next_step)) {
     return solution.finish(SolveStatus::near_singular);
   }
   if (model.span().planar) {

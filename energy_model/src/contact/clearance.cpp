@@ -15,33 +15,31 @@ constexpr int refinements = 6;
 
 }  // namespace
 
-std::vector<Lowest> lowest_points(const std::vector<Span::Wall>& walls, double length,
-                                  const SpanShape& shape, double below) {
-  const std::vector<double> s = equal_arc_lengths(length, grid_points);
+std::vector<Lowest> lowest_points(const Span& span, const SpanShape& shape, double below) {
+  const std::vector<double> s = equal_arc_lengths(span.length, grid_points);
   const SpanSamples grid = shape.sample(s);
   const double h = s[1];
   // Between two points of the grid it may be lower by this.
   const double sag = h * h / 8 * grid.curvature.colwise().norm().maxCoeff();
   std::vector<Lowest> found;
-  for (std::size_t w = 0; w < walls.size(); ++w) {
-    const Eigen::Vector3d& normal = walls[w].normal;
-    if (std::isfinite(walls[w].stiffness)) continue;
+  for (const Span::Wall& wall : span.rigid_walls) {
+    const Eigen::Vector3d& normal = wall.normal;
     const Eigen::VectorXd clearance =
-        (normal.transpose() * grid.points).transpose().array() + walls[w].offset;
+        (normal.transpose() * grid.points).transpose().array() + wall.offset;
     for (Eigen::Index i = 0; i < grid_points; ++i) {
       const bool falls_to = i == 0 || clearance[i] < clearance[i - 1];
       const bool rises_from = i + 1 == grid_points || clearance[i] <= clearance[i + 1];
       if (!falls_to || !rises_from || clearance[i] > below + 2 * sag) continue;
       const double low = s[static_cast<std::size_t>(std::max<Eigen::Index>(0, i - 1))];
       const double high = s[static_cast<std::size_t>(std::min(grid_points - 1, i + 1))];
-      Lowest lowest{w, s[static_cast<std::size_t>(i)], clearance[i],
+      Lowest lowest{wall, s[static_cast<std::size_t>(i)], clearance[i],
                     normal.dot(grid.tangents.col(i))};
       double at = lowest.s;
       for (int k = 0; k < refinements; ++k) {
         const SpanSamples here = shape.sample(std::array{at});
-        const double value = normal.dot(here.points.col(0)) + walls[w].offset;
+        const double value = wall.clearance(here.points.col(0));
         const double slope = normal.dot(here.tangents.col(0));
-        if (value < lowest.clearance) lowest = {w, at, value, slope};
+        if (value < lowest.clearance) lowest = {wall, at, value, slope};
         const double rate = normal.dot(here.curvature.col(0));
         if (!(rate > 0)) break;
         at = std::clamp(at - slope / rate, low, high);

@@ -10,7 +10,7 @@ namespace dlo::energy_model {
 
 /// Where a shape comes nearest to a rigid wall, or is deepest behind it.
 struct Lowest {
-  std::size_t wall = 0;  ///< of the walls that were asked about
+  Span::Wall wall;
   double s = 0;
   double clearance = 0;
   double slope = 0;  ///< n.t there
@@ -18,7 +18,7 @@ struct Lowest {
 
 /// Every local minimum of the clearance over the rod that is below `below`, ends included, by
 /// growing s: those of a dense grid, each refined. Grips count.
-[[nodiscard]] std::vector<Lowest> lowest_points(const std::vector<Span::Wall>& walls, double length,
-                                                const SpanShape& shape, double below);
+[[nodiscard]] std::vector<Lowest> lowest_points(const Span& span, const SpanShape& shape,
+                                                double below);
 
 }  // namespace dlo::energy_model

@@ -60,8 +60,7 @@ Room room_of(const Span& span, const LiftOff& end) {
   return room;
 }
 
-Eigen::VectorXd missed(const Span& span, const std::vector<LiftOff>& ends,
-                       const SpanShape& shape) {
+Eigen::VectorXd missed(const Span& span, const std::vector<LiftOff>& ends, const SpanShape& shape) {
   constexpr double aside = 1e-12;
   std::vector<double> s;
   for (const LiftOff& end : ends) {
@@ -77,10 +76,10 @@ Eigen::VectorXd missed(const Span& span, const std::vector<LiftOff>& ends,
     const Span::Contact& contact = span.contacts[ends[i].contact];
     if (contact.lies()) {
       const Room room = room_of(span, ends[i]);
-      result[column] = contact.normal.dot(samples.curvature.col(column)) *
+      result[column] = contact.wall.normal.dot(samples.curvature.col(column)) *
                        (ends[i].begins ? room.down : room.up);
     } else {
-      result[column] = contact.normal.dot(samples.tangents.col(column));
+      result[column] = contact.wall.normal.dot(samples.tangents.col(column));
     }
   }
   return result;

@@ -66,16 +66,14 @@ class Resting {
     place_joints();
     place_forces();
     hold();
-    for (const Span::Wall& wall : span.walls) {
-      const double h = span.length / static_cast<double>(count);
-      problem_.walls.push_back({-wall.offset * wall.normal, wall.normal,
-                                std::isfinite(wall.stiffness) ? wall.stiffness * h : stiff});
-    }
+    const double h = span.length / static_cast<double>(count);
+    for (const Span::SoftWall& wall : span.soft_walls) add_wall(wall, wall.stiffness * h);
+    for (const Span::Wall& wall : span.rigid_walls) add_wall(wall, stiff);
   }
 
   [[nodiscard]] RestingPolygon from(const TangentField& start, const Deadline& deadline) {
     PolygonOptions options;
-    options.tolerance = 1e-9;
+    options.tolerance = 1e-6;
     options.max_evaluations = most_evaluations;
     options.time_limit = std::max(1e-3, deadline.remaining());
     const PolygonResult found = solve_polygon(problem_, points_of(start), options);
@@ -87,7 +85,7 @@ class Resting {
     result.middles.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) result.middles[i] = (s(i) + s(i + 1)) / 2;
     result.tangents = (found.points.rightCols(n) - found.points.leftCols(n)).colwise().normalized();
-    for (std::size_t w = 0; w < span_.walls.size(); ++w) add_contacts(w, found.points, result);
+    for (const Span::Wall& wall : span_.rigid_walls) add_contacts(wall, found.points, result);
     std::sort(result.contacts.begin(), result.contacts.end(),
               [](const auto& a, const auto& b) { return a.begin < b.begin; });
     return result;
@@ -96,10 +94,14 @@ class Resting {
  private:
   [[nodiscard]] double s(Eigen::Index i) const { return mesh_.s[static_cast<std::size_t>(i)]; }
 
+  void add_wall(const Span::Wall& wall, double stiffness) {
+    problem_.walls.push_back({-wall.offset * wall.normal, wall.normal, stiffness});
+  }
+
   [[nodiscard]] Eigen::Index point_at(double at) const {
-    const auto nearest = std::min_element(
-        mesh_.s.begin(), mesh_.s.end(),
-        [at](double a, double b) { return std::abs(a - at) < std::abs(b - at); });
+    const auto nearest = std::min_element(mesh_.s.begin(), mesh_.s.end(), [at](double a, double b) {
+      return std::abs(a - at) < std::abs(b - at);
+    });
     return nearest - mesh_.s.begin();
   }
 
@@ -126,8 +128,8 @@ class Resting {
     problem_.node_forces.setZero(3, count);
     for (Eigen::Index i = 0; i < count; ++i) {
       const double begin = i == 0 ? 0 : std::max(0.0, (s(i - 1) + s(i)) / 2);
-      const double end = i + 1 == count ? span_.length
-                                        : std::min(span_.length, (s(i) + s(i + 1)) / 2);
+      const double end =
+          i + 1 == count ? span_.length : std::min(span_.length, (s(i) + s(i + 1)) / 2);
       if (end > begin) problem_.node_forces.col(i) = span_.weight_between(begin, end);
     }
     for (const Span::Load& load : span_.loads) {
@@ -174,9 +176,8 @@ class Resting {
   }
 
   /// Of a rigid wall: runs of points behind it.
-  void add_contacts(std::size_t w, const Eigen::Matrix3Xd& points, RestingPolygon& result) const {
-    const Span::Wall& wall = span_.walls[w];
-    if (std::isfinite(wall.stiffness)) return;
+  void add_contacts(const Span::Wall& wall, const Eigen::Matrix3Xd& points,
+                    RestingPolygon& result) const {
     const Eigen::VectorXd clearance =
         (wall.normal.transpose() * points).transpose().array() + wall.offset;
     const Eigen::Index count = clearance.size();
@@ -187,7 +188,7 @@ class Resting {
       if (!on(i)) continue;
       const Eigen::Index first = i;
       while (i + 1 < count && on(i + 1)) ++i;
-      Span::Contact contact{w, wall.normal, wall.offset, s(first), s(i)};
+      Span::Contact contact{wall, s(first), s(i)};
       if (i - first + 1 < fewest_lying) {
         double depth = 0;
         double moment = 0;

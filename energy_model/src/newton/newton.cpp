@@ -272,12 +272,6 @@ void Newton::run(SpanSolution& solution, double load) {
     const bool small = size <= last_residual * (1 + load + solution.multipliers.norm());
     // Where the shape is right the forces need not be.
     if (moved <= finest_step && (small || walls)) return finish();
-    if (walls && small) {
-      // One more step for the multipliers of the walls, which are updated from what it leaves.
-      move(solution, 1);
-      size = evaluate(solution);
-      return finish();
-    }
     if (walls) {
       const double before = size;
       move(solution, step_length(solution, size));

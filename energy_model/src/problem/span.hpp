@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -24,18 +23,24 @@ struct Span {
     double at = 0;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
   };
-  /// A half-space's wall: one-sided springs along the rod, or rigid.
+  /// A half-space's wall.
   struct Wall {
+    std::size_t index = 0;  ///< of the problem's walls
     Eigen::Vector3d normal = Eigen::Vector3d::UnitY();
     double offset = 0;  ///< normal . (anchor - point): clearance of the anchor
-    double stiffness = std::numeric_limits<double>::infinity();  ///< per length
+
+    [[nodiscard]] double clearance(const Eigen::Vector3d& point) const {
+      return normal.dot(point) + offset;
+    }
+  };
+  /// One-sided springs along the rod.
+  struct SoftWall : Wall {
+    double stiffness = 0;  ///< per length
   };
 
-  /// Where the rod is held on a rigid half-space: at one point, or along a part, which lies on it.
+  /// Where the rod is held on a rigid wall: at one point, or along a part, which lies on it.
   struct Contact {
-    std::size_t wall = 0;  ///< of the problem
-    Eigen::Vector3d normal = Eigen::Vector3d::UnitY();
-    double offset = 0;          ///< as Wall's
+    Wall wall;
     double begin = 0, end = 0;  ///< s; equal where it touches at one point
 
     [[nodiscard]] bool lies() const { return end > begin; }
@@ -64,10 +69,11 @@ struct Span {
   std::vector<Hold> holds;                         ///< the other grips, by growing s
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();
   std::vector<Load> loads;  ///< by growing s
-  std::vector<Wall> walls;
+  std::vector<SoftWall> soft_walls;
+  std::vector<Wall> rigid_walls;  ///< which the energy knows nothing of but for these:
   std::vector<Contact> contacts;  ///< by growing s, none over another
-  std::optional<Twist> twist;  ///< where both ends are clamped, not planar
-  std::vector<Part> parts;     ///< where the section is another one, by growing s
+  std::optional<Twist> twist;     ///< where both ends are clamped, not planar
+  std::vector<Part> parts;        ///< where the section is another one, by growing s
   /// About d1, d2 and the tangent of a frame that has d1() at the start; about d1 alone if planar.
   NaturalStrains natural;
   double torsion = 0;  ///< GJ / EI where `parts` do not say so; of a rod with natural strains
@@ -85,7 +91,7 @@ struct Span {
   [[nodiscard]] bool pulled_one_way() const;
   /// A uniform straight rod with one clamp and nothing but weight and loads, in a plane.
   [[nodiscard]] bool is_plain_cantilever() const {
-    return planar && start_direction && holds.empty() && walls.empty() && contacts.empty() &&
+    return planar && start_direction && holds.empty() && soft_walls.empty() && contacts.empty() &&
            parts.empty() && natural.empty();
   }
 };

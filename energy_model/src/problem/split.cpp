@@ -55,7 +55,8 @@ void turn_vectors(Span& span, const Eigen::Matrix3d& rotation) {
     if (hold.direction) turn(*hold.direction);
   }
   for (Span::Load& load : span.loads) turn(load.force);
-  for (Span::Wall& wall : span.walls) turn(wall.normal);
+  for (Span::SoftWall& wall : span.soft_walls) turn(wall.normal);
+  for (Span::Wall& wall : span.rigid_walls) turn(wall.normal);
   for (Span::Part& part : span.parts) turn(part.weight);
   turn(span.weight);
 }
@@ -127,7 +128,7 @@ void place_natural_strains(const Problem& problem, PlacedSpan& placed, const Ord
   span.natural.rate = 2 * sense;
   span.natural.from = 2 * placed.start / l - 1;
   // What a wall keeps from leaving the plane is looked at in space.
-  if (!span.walls.empty()) span.planar = false;
+  if (!span.soft_walls.empty() || !span.rigid_walls.empty()) span.planar = false;
   constexpr double rounding = 1e-12;
   const double largest = span.natural.largest();
   for (Eigen::Vector3d& strain : span.natural.coefficients) {
@@ -212,10 +213,15 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   }
   std::sort(span.loads.begin(), span.loads.end(),
             [](const Span::Load& a, const Span::Load& b) { return a.at < b.at; });
-  for (const Wall& wall : problem.walls) {
+  for (std::size_t i = 0; i < problem.walls.size(); ++i) {
+    const Wall& wall = problem.walls[i];
     const Eigen::Vector3d normal = wall.normal.normalized();
-    span.walls.push_back({normal, normal.dot(placed.anchor_position - wall.point) / l,
-                          wall.stiffness * l * l / force_unit});
+    const Span::Wall placed_wall{i, normal, normal.dot(placed.anchor_position - wall.point) / l};
+    if (std::isinf(wall.stiffness)) {
+      span.rigid_walls.push_back(placed_wall);
+    } else {
+      span.soft_walls.push_back({placed_wall, wall.stiffness * l * l / force_unit});
+    }
     directions.grips.push_back(normal);
   }
   choose_frame(placed, directions);

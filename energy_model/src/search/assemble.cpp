@@ -66,14 +66,14 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
     const Span::Contact& contact = span.contacts[i];
     const double sense = place.reversed ? -length : length;
     ContactPart part;
-    part.wall = contact.wall;
+    part.wall = contact.wall.index;
     const bool at_tip = contact.end == span.length && !span.end_direction;
-    part.kind = contact.lies() ? ContactKind::lying
+    part.kind = contact.lies()                 ? ContactKind::lying
                 : at_tip || contact.begin == 0 ? ContactKind::tip
                                                : ContactKind::touching;
     part.begin = place.start + sense * contact.begin;
     part.end = place.start + sense * contact.end;
-    part.force = forces[i].total * (place.frame.transpose() * contact.normal);
+    part.force = forces[i].total * (place.frame.transpose() * contact.wall.normal);
     part.begin_force = forces[i].begin;
     part.end_force = forces[i].end;
     part.largest_pressure = forces[i].largest_pressure;
@@ -150,7 +150,8 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     const std::vector<Eigen::Vector3d> walls = solution.model->walls().forces();
     for (std::size_t w = 0; w < walls.size(); ++w) {
       carried += walls[w];
-      result.walls[w] += force_unit * (place.frame.transpose() * walls[w]);
+      result.walls[place.span.soft_walls[w].index] +=
+          force_unit * (place.frame.transpose() * walls[w]);
     }
     for (const ContactPart& contact : contacts_of(place, solution, l)) {
       carried += place.frame * contact.force;

@@ -9,13 +9,13 @@
 #include "base/legendre.hpp"
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
+#include "contact/penetration.hpp"
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
 #include "search/contact_search.hpp"
 #include "search/polygon_fields.hpp"
 #include "search/span_solver.hpp"
 #include "search/twist_path.hpp"
-#include "strain/penetration.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -65,7 +65,7 @@ std::vector<Equilibrium> combine(const Problem& problem,
     const PlacedSolution& only = solutions.front().front();
     std::vector<Equilibrium> result;
     result.push_back(assemble(problem, {&only.placed}, {&only.solution}));
-    judge_contact(problem, {&only.solution}, result.back());
+    judge_penetration(problem, result.back());
     return result;
   }
   std::vector<std::vector<SpanCandidate>> candidates;
@@ -87,7 +87,7 @@ std::vector<Equilibrium> combine(const Problem& problem,
       chosen.push_back(&solutions[i][choice[i]].solution);
     }
     result.push_back(assemble(problem, placed, chosen));
-    judge_contact(problem, chosen, result.back());
+    judge_penetration(problem, result.back());
   }
   std::stable_sort(result.begin(), result.end(), [](const Equilibrium& a, const Equilibrium& b) {
     if (succeeded(a.status) != succeeded(b.status)) return succeeded(a.status);
@@ -277,7 +277,7 @@ class EnergySolver::State {
   void add_polygon_minima(const PlacedSpan& placed, const Problem& problem,
                           const SpanOptions& options, std::vector<PlacedSolution>& found,
                           int& spent) {
-    if (!placed.span.walls.empty()) return;
+    if (!placed.span.soft_walls.empty() || !placed.span.rigid_walls.empty()) return;
     for (const TangentField& field : polygon_fields(problem, placed, options.deadline)) {
       if (options.deadline.passed()) return;
       SpanOptions own = options;
@@ -320,10 +320,7 @@ class EnergySolver::State {
   [[nodiscard]] std::vector<PlacedSolution> search(const PlacedSpan& placed,
                                                    const SpanOptions& options) {
     std::vector<PlacedSolution> found;
-    const auto is_rigid = [](const Span::Wall& wall) { return std::isinf(wall.stiffness); };
-    const bool touching =
-        std::any_of(placed.span.walls.begin(), placed.span.walls.end(), is_rigid);
-    const auto solver = touching ? solve_touching_span : solve_span;
+    const auto solver = placed.span.rigid_walls.empty() ? solve_span : solve_touching_span;
     for (SpanSolution& solution : solver(placed.span, options, workspace_)) {
       found.push_back({placed, std::move(solution)});
       PlacedSolution& last = found.back();

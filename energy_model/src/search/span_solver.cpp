@@ -70,7 +70,7 @@ class Search {
       stiffness_ = std::max(stiffness_, segment.tension / std::max(1e-12, segment.slack()));
     }
     // Where contact begins inside a piece it takes more terms than the piece's length tells.
-    if (!span.walls.empty() || span.is_plain_cantilever()) {
+    if (!span.soft_walls.empty() || span.is_plain_cantilever()) {
       longest_piece_ = span.length;
       return;
     }
@@ -242,12 +242,6 @@ class Search {
 
   /// From the caller's own start.
   [[nodiscard]] SpanSolution from_start() {
-    if (!span_.walls.empty()) {
-      SpanSolution solution = empty_solution(terms());
-      solution.x = solution.model->fit(options_.start(solution.model->nodes()));
-      descend(solution);
-      return solution;
-    }
     const bool follow = options_.approach == Approach::follow;
     SpanSolution solution = follow ? near_field(options_.start) : from_field(options_.start);
     if (succeeded(solution.status)) return solution;
@@ -264,27 +258,13 @@ class Search {
     return solution;
   }
 
-  /// NLopt from solution.x, then Newton; with walls until their multipliers settle.
+  /// NLopt from solution.x, then Newton.
   void descend(SpanSolution& solution) {
     minimise(solution);
     if (!succeeded(solution.status)) return;
     // A cantilever is polished once it has all its terms.
     if (span_.is_plain_cantilever() && solution.terms < terms()) return;
     workspace_.newton().polish(solution, load_);
-    SpanEnergy& model = *solution.model;
-    Eigen::VectorXd gradient(model.size());
-    for (int round = 0; model.has_walls() && succeeded(solution.status); ++round) {
-      solution.energy = model.value(solution.x, gradient);
-      ++solution.evaluations;
-      if (model.walls().update() < 1e-9 * span_.length) return;
-      if (round == 200) return solution.fail("the contact forces of the walls did not settle");
-      const Eigen::VectorXd before = solution.x;
-      workspace_.newton().polish(solution, load_);
-      if (succeeded(solution.status)) continue;
-      solution.x = before;
-      minimise(solution);
-      if (succeeded(solution.status)) workspace_.newton().polish(solution, load_);
-    }
   }
 
   void minimise(SpanSolution& solution) const {
@@ -311,12 +291,10 @@ class Search {
   [[nodiscard]] SpanSolution refined(SpanSolution solution) {
     const int fields = span_.planar ? 1 : span_.natural.empty() ? 2 : 3;
     const int affordable = std::max(32, most_unknowns / (fields * solution.model->pieces()));
-    // With walls the curvature has kinks where contact begins; more terms help only so far, where
-    // the walls yield somewhat farther.
-    const bool yields = std::all_of(span_.walls.begin(), span_.walls.end(),
-                                    [](const auto& wall) { return std::isfinite(wall.stiffness); });
-    const int most_with_walls = yields ? 64 : 32;
-    const int most_terms = std::min(affordable, span_.walls.empty() ? max_terms : most_with_walls);
+    // Soft walls make kinks inside pieces, where contact begins; more terms help only so far.
+    constexpr int most_with_walls = 64;
+    const int most_terms =
+        std::min(affordable, span_.soft_walls.empty() ? max_terms : most_with_walls);
     while (solution.is_equilibrium()) {
       solution.resolved = options_.terms > 0 || resolved(solution);
       if (solution.resolved) break;
@@ -325,7 +303,7 @@ class Search {
         break;
       }
       if (solution.terms >= most_terms) {
-        solution.resolved = !span_.walls.empty();
+        solution.resolved = !span_.soft_walls.empty();
         if (solution.resolved) break;
         solution.fail(solution.too_few_terms());
         break;
@@ -364,7 +342,7 @@ class Search {
     const double K = solution.terms;
     // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
     if (solution.model->tail(solution.x) > options_.tolerance * 4 * K * K) return false;
-    if (span_.is_plain_cantilever() || !span_.walls.empty()) return true;
+    if (span_.is_plain_cantilever() || !span_.soft_walls.empty()) return true;
     return residual_with_more_terms(solution) < largest_residual * (1 + load_);
   }
 
@@ -378,8 +356,8 @@ class Search {
     Eigen::VectorXd residual(model->constraints());
     Eigen::MatrixXd jacobian(model->constraints(), model->size());
     model->constraint(residual, jacobian);
-    return (gradient - jacobian.transpose() *
-                           model->adopt_multipliers(*solution.model, solution.multipliers))
+    return (gradient -
+            jacobian.transpose() * model->adopt_multipliers(*solution.model, solution.multipliers))
         .norm();
   }
 
@@ -398,16 +376,8 @@ class Search {
   [[nodiscard]] bool is_known(const SpanSolution& solution,
                               const std::vector<SpanSolution>& found) const {
     return std::any_of(found.begin(), found.end(), [&](const SpanSolution& other) {
-      return other.is_equilibrium() && is_same(solution, other);
+      return other.is_equilibrium() && is_same_shape(solution, other);
     });
-  }
-
-  [[nodiscard]] bool is_same(const SpanSolution& a, const SpanSolution& b) const {
-    if (std::abs(a.energy - b.energy) > 1e-8 * (1 + load_)) return false;
-    const std::vector<double> s = {0.3 * span_.length, 0.6 * span_.length, span_.length};
-    const Eigen::Matrix3Xd difference =
-        a.model->shape(a.x).sample(s).points - b.model->shape(b.x).sample(s).points;
-    return difference.norm() < 1e-6 * span_.length;
   }
 
   /// Descends from the unstable equilibria, once more from those that it leads to.
@@ -481,6 +451,15 @@ std::shared_ptr<SpanEnergy> SpanWorkspace::model(const Span& span, int terms) {
   }
   models_.push_back(std::make_shared<SpanEnergy>(span, terms));
   return models_.back();
+}
+
+bool is_same_shape(const SpanSolution& a, const SpanSolution& b) {
+  const Span& span = a.model->span();
+  if (std::abs(a.energy - b.energy) > 1e-8 * (1 + span.total_load())) return false;
+  const std::vector<double> s = {0.3 * span.length, 0.6 * span.length, span.length};
+  const Eigen::Matrix3Xd difference =
+      a.model->shape(a.x).sample(s).points - b.model->shape(b.x).sample(s).points;
+  return difference.norm() < 1e-6 * span.length;
 }
 
 std::vector<SpanSolution> solve_span(const Span& span, const SpanOptions& options,

@@ -53,6 +53,9 @@ class SpanWorkspace {
   Newton newton_;
 };
 
+/// Two equilibria of one span that are the same but for rounding.
+[[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b);
+
 /// Equilibria of a span, lowest energy first: the search's best one, or all of them. Never empty; a
 /// failure is a single solution that says so.
 [[nodiscard]] std::vector<SpanSolution> solve_span(const Span& span, const SpanOptions& options,

@@ -196,7 +196,10 @@ TangentField soft_field(const Span& span) {
 std::vector<TangentField> start_fields(const Span& span) {
   std::vector<TangentField> fields;
   if (span.holds.empty() && span.start_direction) {
-    for (const Span::Wall& wall : span.walls) {
+    for (const Span::SoftWall& wall : span.soft_walls) {
+      if (std::optional<TangentField> lying = lying_field(span, wall)) fields.push_back(*lying);
+    }
+    for (const Span::Wall& wall : span.rigid_walls) {
       if (std::optional<TangentField> lying = lying_field(span, wall)) fields.push_back(*lying);
     }
     fields.push_back(soft_field(span));

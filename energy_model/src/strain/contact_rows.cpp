@@ -46,7 +46,7 @@ Eigen::Index ContactRows::add_row(const Span::Contact& contact, double offset) {
   weighted_.conservativeResize(Eigen::NoChange, row + 1);
   weighted_.col(row).setZero();
   normal_.conservativeResize(Eigen::NoChange, row + 1);
-  normal_.col(row) = contact.normal;
+  normal_.col(row) = contact.wall.normal;
   offset_.conservativeResize(row + 1);
   offset_[row] = offset;
   return row;
@@ -64,7 +64,7 @@ void ContactRows::reset(const Span& span, const std::vector<Piece>& pieces, int 
     Rows rows;
     const HeldBy held = held_within(span, contact.begin, contact.end);
     if (held == HeldBy::nothing) {
-      rows.clearance = add_row(contact, contact.offset);
+      rows.clearance = add_row(contact, contact.wall.offset);
       for (Eigen::Index q = 0; q < nodes.size(); ++q) {
         if (nodes[q] > span.anchor && nodes[q] < contact.begin) {
           weighted_(q, rows.clearance) = weights[q];

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "base/legendre.hpp"
 #include "problem/segments.hpp"
@@ -154,6 +156,27 @@ void cut_taut(const Segment& segment, const Span& span, std::vector<double>& cut
   }
 }
 
+/// Cuts where the layers beside contacts have decayed.
+void cut_lift_offs(const Span& span, double layer, std::vector<double>& cuts) {
+  const std::vector<double> others = cuts;
+  const auto cut = [&](double from, double sense) {
+    double room = std::numeric_limits<double>::infinity();
+    for (const double other : others) {
+      const double way = sense * (other - from);
+      if (way > closest_cuts) room = std::min(room, way);
+    }
+    for (const double depth : layer_depths) {
+      if (std::isfinite(room) && 2.5 * depth * layer < room) {
+        cuts.push_back(from + sense * depth * layer);
+      }
+    }
+  };
+  for (const Span::Contact& contact : span.contacts) {
+    cut(contact.begin, -1);
+    cut(contact.end, 1);
+  }
+}
+
 }  // namespace
 
 std::vector<Piece> pieces_of(const Span& span) {
@@ -177,6 +200,7 @@ std::vector<Piece> pieces_of(const Span& span) {
   for (const Segment& segment : segments_of(span)) {
     if (segment.taut()) cut_taut(segment, span, cuts);
   }
+  cut_lift_offs(span, layer, cuts);
   std::sort(cuts.begin(), cuts.end());
   std::vector<Piece> pieces;
   double begin = 0;
@@ -223,6 +247,12 @@ SpanSamples SpanShape::sample(std::span<const double> s) const {
     samples.d1.col(i) = frame.col(0);
   }
   return samples;
+}
+
+TangentField field_of(SpanShape shape) {
+  return [shape = std::move(shape)](const Eigen::VectorXd& s) {
+    return StartShape(shape.sample({s.data(), static_cast<std::size_t>(s.size())}).tangents);
+  };
 }
 
 }  // namespace dlo::energy_model

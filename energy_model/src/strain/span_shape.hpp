@@ -64,4 +64,7 @@ struct SpanShape {
   [[nodiscard]] SpanSamples sample(std::span<const double> s) const;
 };
 
+/// A shape's tangents, to start from.
+[[nodiscard]] TangentField field_of(SpanShape shape);
+
 }  // namespace dlo::energy_model

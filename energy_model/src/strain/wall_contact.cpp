@@ -11,7 +11,7 @@ namespace dlo::energy_model {
 void WallContact::reset(const Span& span, const std::vector<Piece>& pieces,
                         const LegendreTable& table, const Eigen::VectorXd& nodes,
                         const Eigen::VectorXd& weights) {
-  walls_ = span.walls;
+  walls_ = span.soft_walls;
   if (!any()) return;
   weights_ = weights;
   const Eigen::Index Q = table.nodes.size();
@@ -26,31 +26,19 @@ void WallContact::reset(const Span& span, const std::vector<Piece>& pieces,
       (nodes.array() < span.anchor).select(weights, Eigen::VectorXd::Zero(nodes.size()));
   position_.rowwise() -= to_anchor.transpose();
   const auto count = static_cast<Eigen::Index>(walls_.size());
-  contact_.setZero(nodes.size(), count);
   pressure_.setZero(nodes.size(), count);
-  // Stiff enough that the multipliers settle in a few rounds, soft enough for Newton's method.
-  rigid_stiffness_ = 1e6 * (1 + span.total_load()) / (span.length * span.length);
-}
-
-double WallContact::stiffness(std::size_t wall) const {
-  return std::isfinite(walls_[wall].stiffness) ? walls_[wall].stiffness : rigid_stiffness_;
 }
 
 double WallContact::add(const Eigen::MatrixX3d& tangents, Eigen::MatrixX3d& force) {
-  points_ = position_ * tangents;
+  const Eigen::MatrixX3d points = position_ * tangents;
   double energy = 0;
   for (std::size_t i = 0; i < walls_.size(); ++i) {
-    const Span::Wall& wall = walls_[i];
+    const Span::SoftWall& wall = walls_[i];
     const auto column = static_cast<Eigen::Index>(i);
-    const double k = stiffness(i);
-    // p = max(0, lambda - k d), energy (p^2 - lambda^2) / 2k, d the clearance
-    pressure_.col(column) =
-        (contact_.col(column).array() - k * ((points_ * wall.normal).array() + wall.offset))
-            .cwiseMax(0.0);
-    energy += (weights_.array() *
-               (pressure_.col(column).array().square() - contact_.col(column).array().square()))
-                  .sum() /
-              (2 * k);
+    const double k = wall.stiffness;
+    // p = max(0, -k d), energy p^2 / 2k, d the clearance
+    pressure_.col(column) = (-k * ((points * wall.normal).array() + wall.offset)).cwiseMax(0.0);
+    energy += weights_.dot(pressure_.col(column).cwiseAbs2()) / (2 * k);
     const Eigen::VectorXd push =
         position_.transpose() * weights_.cwiseProduct(pressure_.col(column));
     force.noalias() += push * wall.normal.transpose();
@@ -67,29 +55,9 @@ void WallContact::add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
     depth.noalias() = position_ * (normal.x() * tangents[0] + normal.y() * tangents[1] +
                                    normal.z() * tangents[2]);
     const Eigen::VectorXd springs = (pressure_.col(static_cast<Eigen::Index>(i)).array() > 0)
-                                        .select(stiffness(i) * weights_.array(), 0.0);
+                                        .select(walls_[i].stiffness * weights_.array(), 0.0);
     hessian.noalias() += depth.transpose() * springs.asDiagonal() * depth;
   }
-}
-
-double WallContact::violation() const {
-  double largest = 0;
-  for (std::size_t i = 0; i < walls_.size(); ++i) {
-    if (std::isfinite(walls_[i].stiffness)) continue;
-    const auto column = static_cast<Eigen::Index>(i);
-    const double change = (pressure_.col(column) - contact_.col(column)).cwiseAbs().maxCoeff();
-    largest = std::max(largest, change / rigid_stiffness_);
-  }
-  return largest;
-}
-
-double WallContact::update() {
-  const double before = violation();
-  for (std::size_t i = 0; i < walls_.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    if (std::isinf(walls_[i].stiffness)) contact_.col(column) = pressure_.col(column);
-  }
-  return before;
 }
 
 std::vector<Eigen::Vector3d> WallContact::forces() const {

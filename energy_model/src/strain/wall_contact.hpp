@@ -9,8 +9,7 @@
 
 namespace dlo::energy_model {
 
-/// Contact of a span's quadrature nodes with its walls. Soft walls are one-sided springs; rigid
-/// ones are met by an augmented Lagrangian whose multipliers live at the nodes.
+/// Contact of a span's quadrature nodes with its soft walls, which are one-sided springs.
 class WallContact {
  public:
   /// @param nodes, weights  of the span's quadrature
@@ -28,24 +27,16 @@ class WallContact {
   void add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
                    Eigen::Ref<Eigen::MatrixXd> hessian) const;
 
-  /// What update() would return after the last add().
-  [[nodiscard]] double violation() const;
-  /// Moves the multipliers of rigid walls towards complementarity. @return largest violation, in l
-  double update();
   /// Force of each wall on the span.
   [[nodiscard]] std::vector<Eigen::Vector3d> forces() const;
   /// Their moment about the anchor.
   [[nodiscard]] Eigen::Vector3d moment(const Eigen::MatrixX3d& tangents) const;
 
  private:
-  [[nodiscard]] double stiffness(std::size_t wall) const;
-
-  std::vector<Span::Wall> walls_;
-  double rigid_stiffness_ = 0;
+  std::vector<Span::SoftWall> walls_;
   Eigen::VectorXd weights_;
-  Eigen::MatrixXd position_;            // of the nodes by tangent of the nodes
-  Eigen::MatrixXd contact_, pressure_;  // nodes x walls
-  Eigen::MatrixX3d points_;             // of the last add()
+  Eigen::MatrixXd position_;  // of the nodes by tangent of the nodes
+  Eigen::MatrixXd pressure_;  // nodes x walls, of the last add()
 };
 
 }  // namespace dlo::energy_model

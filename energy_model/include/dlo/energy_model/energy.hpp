@@ -11,7 +11,7 @@ namespace dlo::energy_model {
 
 /// Depth behind a rigid wall up to which a shape is called converged, in lengths of the rod: what a
 /// lying rod keeps to everywhere, and a touching tip does not.
-inline constexpr double allowed_penetration = 1e-4;
+inline constexpr double allowed_penetration = 1e-8;
 
 /// How well to solve, and from where.
 struct EnergyOptions {

@@ -1,0 +1,144 @@
+#include "contact/mend.hpp"
+
+#include <algorithm>
+
+#include "contact/clearance.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// How hard a wall may pull, over what all forces are there: rounding.
+constexpr double strongest_pull = 1e-7;
+/// In lengths: a part that lies and is shorter is a point; one that begins to lie has this.
+constexpr double shortest_part = 1e-6;
+constexpr double first_part = 0.01;
+/// Between two contacts, in lengths, and how high over its own length a free part has to rise that
+/// is that short, to be one.
+constexpr double short_gap = 0.02;
+constexpr double least_rise = 1e-3;
+
+class Contacts {
+ public:
+  Contacts(const SpanSolution& solution, double load, double depth)
+      : solution_(solution),
+        span_(solution.model->span()),
+        shape_(solution.model->shape(solution.x)),
+        pull_(-strongest_pull * (1 + load + solution.multipliers.norm())),
+        depth_(depth),
+        contacts_(span_.contacts) {}
+
+  [[nodiscard]] std::optional<std::vector<Span::Contact>> mended() {
+    let_go();
+    join();
+    for (const Lowest& lowest : lowest_points(span_, shape_, -depth_ * span_.length)) {
+      wrong_ = true;
+      add(lowest);
+    }
+    if (!wrong_) return std::nullopt;
+    return std::move(contacts_);
+  }
+
+ private:
+  /// Of what a wall would have to pull at: points, and the ends of parts.
+  void let_go() {
+    const std::vector<ContactForce> forces = solution_.model->contact_forces(solution_.multipliers);
+    std::vector<Span::Contact> kept;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      Span::Contact contact = contacts_[i];
+      const ContactForce& force = forces[i];
+      if (!contact.lies()) {
+        if (force.total >= pull_) kept.push_back(contact);
+        continue;
+      }
+      const double length = contact.end - contact.begin;
+      const bool lifted = force.least_pressure * length < pull_ || force.least_inner < pull_;
+      // Nothing beyond a free end is carried there.
+      const bool begin_pulls = contact.begin > 0 && force.begin < pull_;
+      const bool end_pulls = contact.end < span_.length && force.end < pull_;
+      if (begin_pulls || end_pulls || lifted || length < shortest_part * span_.length) {
+        wrong_ = true;
+        double at = (contact.begin + contact.end) / 2;
+        if (begin_pulls && !end_pulls) at = contact.end;
+        if (end_pulls && !begin_pulls) at = contact.begin;
+        contact.begin = contact.end = at;
+      }
+      kept.push_back(contact);
+    }
+    wrong_ = wrong_ || kept.size() < contacts_.size();
+    contacts_ = std::move(kept);
+  }
+
+  /// Neighbouring contacts with a wall that the rod hardly leaves between them, or is behind, are
+  /// one.
+  void join() {
+    for (std::size_t i = 0; i + 1 < contacts_.size();) {
+      Span::Contact& here = contacts_[i];
+      const Span::Contact& next = contacts_[i + 1];
+      const double gap = next.begin - here.end;
+      bool one = here.wall.index == next.wall.index;
+      if (one) {
+        const double rise = highest(here.wall, here.end, next.begin);
+        // Of a free part as short as that nothing could be told.
+        one = rise < 0 || (gap < short_gap * span_.length && rise < least_rise * gap);
+      }
+      if (!one) {
+        ++i;
+        continue;
+      }
+      here.end = std::max(here.end, next.end);
+      contacts_.erase(contacts_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      wrong_ = true;
+    }
+  }
+
+  /// Largest clearance between two arc lengths.
+  [[nodiscard]] double highest(const Span::Wall& wall, double from, double to) const {
+    constexpr int looks = 16;
+    std::vector<double> s;
+    for (int i = 1; i < looks; ++i) s.push_back(from + (to - from) * i / looks);
+    const SpanSamples samples = shape_.sample(s);
+    return (wall.normal.transpose() * samples.points).maxCoeff() + wall.offset;
+  }
+
+  /// What is behind a wall touches it; next to another contact both lie, and so does what is behind
+  /// it all the way from there to the tip.
+  void add(const Lowest& lowest) {
+    const double length = span_.length;
+    for (Span::Contact& contact : contacts_) {
+      if (contact.wall.index != lowest.wall.index) continue;
+      if (lowest.s == length && contact.end < length &&
+          highest(contact.wall, contact.end, length) < 0) {
+        contact.end = length;
+        return;
+      }
+      const double reach = first_part * length;
+      const bool beside =
+          lowest.s > contact.begin - 2 * reach && lowest.s < contact.end + 2 * reach;
+      if (!beside) continue;
+      contact.begin = std::max(0.0, std::min(contact.begin, lowest.s) - reach / 2);
+      contact.end = std::min(length, std::max(contact.end, lowest.s) + reach / 2);
+      return;
+    }
+    const double at = std::clamp(lowest.s, 0.0, length);
+    contacts_.push_back({lowest.wall, at, at});
+    std::sort(contacts_.begin(), contacts_.end(),
+              [](const auto& a, const auto& b) { return a.begin < b.begin; });
+  }
+
+  const SpanSolution& solution_;
+  const Span& span_;
+  SpanShape shape_;
+  double pull_;
+  double depth_;
+  std::vector<Span::Contact> contacts_;
+  bool wrong_ = false;
+};
+
+}  // namespace
+
+std::optional<std::vector<Span::Contact>> mended(const SpanSolution& solution, double load,
+                                                 double depth) {
+  return Contacts(solution, load, depth).mended();
+}
+
+}  // namespace dlo::energy_model
