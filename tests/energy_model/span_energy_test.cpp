@@ -54,7 +54,17 @@ Span free_span(bool planar) {
 
 Span span_on_wall(bool planar) {
   Span span = gripped_span(planar);
-  span.walls = {{.normal = {0, 1, 0}, .offset = -0.02, .stiffness = 500}};
+  span.soft_walls = {{{.normal = {0, 1, 0}, .offset = -0.02}, 500}};
+  return span;
+}
+
+/// On a rigid wall, which it touches at one point and lies on beyond, up to a load and on.
+Span touching_span(bool planar) {
+  const double z = planar ? 0 : 0.3;
+  Span span = gripped_span(planar);
+  const Span::Wall wall{0, Eigen::Vector3d(0.1, 1, z).normalized(), 0.05};
+  span.rigid_walls = {wall};
+  span.contacts = {{wall, 0.15, 0.15}, {wall, 0.25, 0.45}};
   return span;
 }
 
@@ -196,6 +206,7 @@ INSTANTIATE_TEST_SUITE_P(Spans, Objective,
                          testing::Values(Case{gripped_span, true}, Case{gripped_span, false},
                                          Case{free_span, true}, Case{free_span, false},
                                          Case{span_on_wall, true}, Case{span_on_wall, false},
+                                         Case{touching_span, true}, Case{touching_span, false},
                                          Case{twisted_span, false}, Case{natural_span, true},
                                          Case{natural_span, false}, Case{free_natural_span, true},
                                          Case{free_natural_span, false}));

@@ -34,6 +34,41 @@ const char* status_name(energy_model::SolveStatus status) {
   }
 }
 
+void append_contact(std::string& out, const energy_model::ContactPart& contact) {
+  const Eigen::Vector3d& force = contact.force;
+  append(out, "contact    obstacle {}, {}", contact.wall + 1,
+         energy_model::to_string(contact.kind));
+  if (contact.kind == energy_model::ContactKind::lying) {
+    append(out, " from s = {:.6g} to {:.6g} m", contact.begin, contact.end);
+  } else {
+    append(out, " at s = {:.6g} m", contact.begin);
+  }
+  append(out, ": force [{:.6g}, {:.6g}, {:.6g}] N", force.x(), force.y(), force.z());
+  if (contact.kind == energy_model::ContactKind::lying) {
+    append(out, ", of it {:.4g} N and {:.4g} N where it begins and ends", contact.begin_force,
+           contact.end_force);
+  }
+  append(out, "\n");
+}
+
+Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
+  Json result = Json::array();
+  for (const energy_model::ContactPart& contact : contacts) {
+    Json entry = {{"obstacle", contact.wall},
+                  {"kind", energy_model::to_string(contact.kind)},
+                  {"from_m", contact.begin},
+                  {"to_m", contact.end},
+                  {"force_N", to_json(contact.force)}};
+    if (contact.kind == energy_model::ContactKind::lying) {
+      entry["from_force_N"] = contact.begin_force;
+      entry["to_force_N"] = contact.end_force;
+      entry["largest_pressure_N_per_m"] = contact.largest_pressure;
+    }
+    result.push_back(std::move(entry));
+  }
+  return result;
+}
+
 Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
   double total = 0;
   Json parts = Json::array();
@@ -82,6 +117,7 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
            force.z());
   }
+  for (const energy_model::ContactPart& contact : solution.contacts) append_contact(out, contact);
   for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
     compare::GripperLoad load = solution.grippers[i];
     const compare::Gripper& gripper = scene.grippers[i];
@@ -152,7 +188,10 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
       obstacles.push_back({{"force_N", to_json(force)}});
     }
     result["obstacles"] = std::move(obstacles);
-    if (solution.model == compare::Model::energy) result["penetration_m"] = solution.penetration;
+    if (solution.model == compare::Model::energy) {
+      result["penetration_m"] = solution.penetration;
+      result["contacts"] = contacts_json(solution.contacts);
+    }
   }
   if (solution.model == compare::Model::chain || solution.model == compare::Model::force) {
     result["parameters"] = parameters_json(solution, scene.force_model);

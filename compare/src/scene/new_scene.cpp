@@ -133,6 +133,7 @@ std::string optional_part(const Scene& scene) {
 #[[obstacle]]
 #point = [0, {floor:.4g}, 0]  # any point of the plane
 #normal = [0, 1, 0]  # to the free side
+#touches = "surface"  # of the rod, half a diameter from its axis; or "axis"
 # Force per depth and per length of rod if it yields (N/m^2, N/mm^2); without it the plane is rigid.
 #stiffness = {stiffness:.3g}
 

@@ -186,14 +186,35 @@ void check_natural_strain(const Scene& scene, const StrictTable& rod) {
   (void)scene.natural_curvature();
 }
 
-Obstacle read_obstacle(StrictTable& table) {
+/// @param radius  of the rod [m]
+Obstacle read_obstacle(StrictTable& table, double radius) {
   Obstacle obstacle;
   obstacle.point = table.vector("point", Dimension::length);
   obstacle.normal = unit_vector(table, "normal");
   obstacle.stiffness = table.optional_number("stiffness", Dimension::foundation, Range::positive())
                            .value_or(obstacle.stiffness);
+  const bool axis = table.has("touches") && table.choice("touches", {"surface", "axis"}) == "axis";
+  if (!axis) obstacle.point += radius * obstacle.normal;
   table.finish();
   return obstacle;
+}
+
+/// The gripper that was read last has to be on the free side of every obstacle.
+void require_clear(const Scene& scene, const StrictTable& entry) {
+  for (const Obstacle& obstacle : scene.obstacles) {
+    const double height = (scene.grippers.back().position - obstacle.point).dot(obstacle.normal);
+    const double rounding = 1e-12 * scene.length;
+    if (height >= -rounding) continue;
+    const double radius = scene.diameter / 2;
+    if (height < -radius - rounding) {
+      entry.fail("position", "behind an obstacle (allowed: the side its normal points to)");
+    }
+    entry.fail("position",
+               fmt::format("{:.4g} m from an obstacle, which the rod would enter with its surface "
+                           "(allowed: its radius, {:.4g} m, or more; or touches = \"axis\" in the "
+                           "[[obstacle]])",
+                           height + radius, radius));
+  }
 }
 
 PointLoad read_load(StrictTable& table, const Scene& scene) {
@@ -228,15 +249,12 @@ Scene read_scene(const toml::table& root, const std::string& file,
   read_rod(rod, sections, known_materials, scene);
 
   for (StrictTable& entry : bounded_tables(table, "obstacle", most_obstacles)) {
-    scene.obstacles.push_back(read_obstacle(entry));
+    scene.obstacles.push_back(read_obstacle(entry, scene.diameter / 2));
   }
   std::vector<StrictTable> grippers = bounded_tables(table, "gripper", most_grippers);
   for (StrictTable& entry : grippers) {
     scene.grippers.push_back(read_gripper(entry, scene.length));
-    for (const Obstacle& obstacle : scene.obstacles) {
-      if ((scene.grippers.back().position - obstacle.point).dot(obstacle.normal) >= 0) continue;
-      entry.fail("position", "behind an obstacle (allowed: the side its normal points to)");
-    }
+    require_clear(scene, entry);
   }
   if (scene.grippers.empty()) {
     throw InputError(fmt::format(

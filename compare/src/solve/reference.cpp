@@ -11,7 +11,6 @@
 #include "dlo/energy_model/exact.hpp"
 #include "polygon/energy_problems.hpp"
 #include "scene/reach.hpp"
-#include "solve/chain_start.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -49,27 +48,6 @@ bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
          (options.accept_unresolved && status == energy_model::SolveStatus::not_resolved);
 }
 
-/// A search among obstacles once more, from the chain's shape. Of two failures the one with a shape
-/// that can be shown stays.
-void try_from_chain(const Scene& scene, const SolveOptions& options,
-                    energy_model::Equilibrium& result) {
-  energy_model::Equilibrium other;
-  try {
-    other = solve_from_chain(scene, options);
-  } catch (const ConvergenceError&) {
-    return;
-  } catch (const InputError&) {
-    return;
-  }
-  const int spent = result.evaluations + other.evaluations;
-  const double seconds = result.seconds + other.seconds;
-  const bool shows = other.status == energy_model::SolveStatus::not_resolved &&
-                     result.status != energy_model::SolveStatus::not_resolved;
-  if (energy_model::succeeded(other.status) || shows) result = std::move(other);
-  result.evaluations = spent;
-  result.seconds = seconds;
-}
-
 }  // namespace
 
 energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
@@ -84,12 +62,6 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                                         .max_evaluations = options.max_evaluations,
                                                         .time_limit = options.time_limit,
                                                         .start = options.start});
-    const bool searched = model == Model::energy && options.start == nullptr;
-    SolveOptions rest = options;
-    rest.time_limit = std::max(options.time_limit - result.seconds, options.time_limit / 4);
-    if (!energy_model::succeeded(result.status) && searched && !problem.walls.empty()) {
-      try_from_chain(scene, rest, result);
-    }
   } catch (const std::invalid_argument& error) {
     refuse_rod(scene, model, error);
   }

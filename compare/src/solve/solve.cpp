@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
+#include <cmath>
 
 #include "dlo/compare/chain.hpp"
 #include "dlo/compare/force.hpp"
@@ -18,17 +18,29 @@ namespace {
 
 /// What the part of the rod beyond `at` pulls the part before it with: the opposite of all that
 /// acts on the part before.
-Eigen::Vector3d section_force(const Scene& scene, const std::vector<GripperLoad>& grippers,
-                              double at) {
+/// @param solution  its grippers and contacts count
+Eigen::Vector3d section_force(const Scene& scene, const Solution& solution, double at) {
   const auto before = [&](double s) { return s < at || (s == at && at < scene.length); };
   Eigen::Vector3d sum = scene.weight_between(0, at);
-  for (std::size_t i = 0; i < grippers.size(); ++i) {
-    if (before(scene.grippers[i].at)) sum += grippers[i].force;
+  for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
+    if (before(scene.grippers[i].at)) sum += solution.grippers[i].force;
+  }
+  // Of a part that lies there what is missing is across the rod.
+  for (const energy_model::ContactPart& contact : solution.contacts) {
+    if (before(contact.end)) sum += contact.force;
   }
   for (const PointLoad& load : scene.loads) {
     if (before(load.at)) sum += load.force;
   }
   return -sum;
+}
+
+/// Such an obstacle pushes with a pressure that is told by its sum alone.
+bool touches_yielding_obstacle(const Scene& scene, const std::vector<Eigen::Vector3d>& forces) {
+  for (std::size_t i = 0; i < forces.size(); ++i) {
+    if (std::isfinite(scene.obstacles[i].stiffness) && forces[i].norm() > 0) return true;
+  }
+  return false;
 }
 
 Solution sampled(const Scene& scene, Model model, const energy_model::Equilibrium& equilibrium,
@@ -52,16 +64,19 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   for (const energy_model::Reaction& reaction : equilibrium.grips) {
     solution.grippers.push_back({reaction.force, reaction.torque});
   }
-  solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene), equilibrium.walls);
+  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
+  solution.obstacles = forces_of_all(scene, in_reach, equilibrium.walls);
   solution.twists = equilibrium.twists;
   if (scene.holds_twist() && solution.twists.empty()) solution.left_out = {"twist"};
-  const bool touches = std::any_of(equilibrium.walls.begin(), equilibrium.walls.end(),
-                                   [](const Eigen::Vector3d& force) { return force.norm() > 0; });
+  solution.contacts = equilibrium.contacts;
+  for (energy_model::ContactPart& contact : solution.contacts)
+    contact.wall = in_reach[contact.wall];
+  const bool sinks_in = touches_yielding_obstacle(scene, solution.obstacles);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     solution.curvature.push_back(shape.curvature.col(column).norm());
-    if (touches) continue;
-    const Eigen::Vector3d force = section_force(scene, solution.grippers, samples[i]);
+    if (sinks_in) continue;
+    const Eigen::Vector3d force = section_force(scene, solution, samples[i]);
     // Adding zero turns -0 into 0.
     solution.tension.push_back(force.dot(shape.tangents.col(column)) + 0.0);
   }

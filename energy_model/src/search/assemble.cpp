@@ -74,7 +74,7 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
     part.begin = place.start + sense * contact.begin;
     part.end = place.start + sense * contact.end;
     part.force = forces[i].total * (place.frame.transpose() * contact.wall.normal);
-    part.begin_force = forces[i].begin;
+    part.begin_force = contact.lies() ? forces[i].begin : 0;
     part.end_force = forces[i].end;
     part.largest_pressure = forces[i].largest_pressure;
     if (place.reversed) {

@@ -69,6 +69,8 @@ c_h = 0.5
   EXPECT_DOUBLE_EQ(scene.loads.at(0).force.y(), -0.1);
   EXPECT_EQ(scene.obstacles.at(0).normal, Eigen::Vector3d(0, 1, 0));
   EXPECT_TRUE(std::isinf(scene.obstacles.at(0).stiffness));
+  // Where the axis is when the rod's surface touches.
+  EXPECT_DOUBLE_EQ(scene.obstacles.at(0).point.y(), -0.2 + scene.diameter / 2);
   EXPECT_EQ(scene.force_model.points, 20);
   EXPECT_EQ(scene.force_model.law, BendingLaw::paper);
   EXPECT_EQ(scene.force_model.stepper, Stepper::dynamic);
@@ -131,6 +133,11 @@ TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
        {"my.toml:2", "rod.lenght", "unknown key", "did you mean length"}},
       {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\ndirection = -175\n",
        {"my.toml:8", "gripper.direction", "-175", "deg"}},
+      {good_rod + good_gripper + "[[obstacle]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n",
+       {"my.toml:7", "gripper.position", "0 m from an obstacle", "touches = \"axis\""}},
+      {good_rod + good_gripper +
+           "[[obstacle]]\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\ntouches = \"tip\"\n",
+       {"my.toml:12", "obstacle.touches", "surface, axis"}},
       {good_rod + good_gripper + "[[obstacle]]\npoint = [0, 1, 0]\nnormal = [0, 1, 0]\n",
        {"my.toml:7", "gripper.position", "behind an obstacle"}},
       {good_rod + good_gripper + "[force_model]\nc_F = 1e-5\n",

@@ -43,7 +43,8 @@ struct PointLoad {
   bool operator==(const PointLoad&) const = default;
 };
 
-/// A half-space that the rod stays out of.
+/// A half-space that the rod's axis stays out of: one that its surface must not enter, as a scene
+/// file has it, is nearer by half the diameter.
 struct Obstacle {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< of the plane [m]
   Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< unit, to the free side

@@ -78,12 +78,14 @@ struct Solution {
   /// joints.
   std::vector<double> curvature;
   /// Of energy and exact: tension [N] there, positive where the rod is pulled; at a gripper or load
-  /// inside the rod that of the side towards l. None where an obstacle is touched.
+  /// inside the rod that of the side towards l. None where a yielding obstacle is touched.
   std::vector<double> tension;
-  Eigen::Matrix3Xd d1;                            ///< there, of energy and exact: Samples::d1
-  SceneEnergies energy;                           ///< of that shape
-  std::vector<GripperLoad> grippers;              ///< in the scene's order
-  std::vector<Eigen::Vector3d> obstacles;         ///< force of each on the rod [N]
+  Eigen::Matrix3Xd d1;                     ///< there, of energy and exact: Samples::d1
+  SceneEnergies energy;                    ///< of that shape
+  std::vector<GripperLoad> grippers;       ///< in the scene's order
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod [N]
+  /// Of energy: where it touches rigid ones, `wall` being the obstacle's index in the scene.
+  std::vector<energy_model::ContactPart> contacts;
   std::vector<energy_model::TwistedPart> twists;  ///< as Equilibrium::twists
   /// Of what the scene asks for, what the model left out: "twist", "natural curvature" or nothing.
   std::vector<std::string> left_out;

@@ -9,8 +9,7 @@
 
 namespace dlo::energy_model {
 
-/// Depth behind a rigid wall up to which a shape is called converged, in lengths of the rod: what a
-/// lying rod keeps to everywhere, and a touching tip does not.
+/// Depth behind a rigid wall up to which a shape is called converged, in lengths of the rod.
 inline constexpr double allowed_penetration = 1e-8;
 
 /// How well to solve, and from where.
@@ -53,12 +52,17 @@ struct EnergyOptions {
 /// as unknowns; a planar shape is proven against leaving its plane by bending and twisting. It is
 /// searched from the free rod too, and with its frame turned on.
 ///
-/// Rigid walls are met by an augmented Lagrangian whose multipliers live at the quadrature's nodes,
-/// between which a shape may enter a wall: a tip that just touches one by up to 1e-3 l. Equilibrium
-/// has the depth as `penetration`; a shape deeper than `allowed_penetration`, or whose contact
-/// forces have not settled, has the status `not_resolved`. The curvature has kinks where contact
-/// begins: a lying rod against its exact solution is right to 5e-5 l, its force to 5e-4 of the
-/// weight.
+/// What touches a rigid wall, and where, is first told by a polygon at rest (solve_polygon) from
+/// several starts. Then the rod's own shape is found with these contacts: pieces end where contact
+/// does, at arc lengths that are unknowns, found by Newton's method from what a frictionless wall
+/// demands there (no slope at a point, no moment where a part lifts off); a part that lies has its
+/// slope's moments as constraints, whose multipliers are the force that the wall carries. Contacts
+/// that would have to pull go, others come where the shape is behind a wall, a bounded number of
+/// times. `converged` says of contact that no point of the rod is deeper than `allowed_penetration`
+/// (Equilibrium::penetration) and that no wall pulls; what does not settle is `not_resolved`. The
+/// second variation is looked at with the contacts held where they are. A lying rod against its
+/// exact solution is right to 1e-12 l. Walls that yield are springs along the rod: the curvature
+/// has kinks where contact begins, and the shape no error_estimate.
 /// @throws std::invalid_argument if the problem or an option is out of range, with the numbers
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 

@@ -1,0 +1,405 @@
+// Rods on rigid and on soft walls.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "equilibrium_balance.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using test::BalanceDefects;
+using test::heavy_cantilever;
+
+Problem over_floor(double gamma, double height) {
+  Problem problem = heavy_cantilever(gamma, 0);
+  problem.walls = {{.point = {0, -height, 0}, .normal = {0, 1, 0}}};
+  return problem;
+}
+
+/// A rod held above a floor, worked out from its shear force alone. Where it lies it is straight
+/// and its weight is carried on the spot; up to the touch-down at s = b it hangs free:
+///     theta'' = (w (b - s) - R) cos(theta),  theta = theta' = 0 at s = b,
+/// R the floor's force at the touch-down. b and R follow from the height and from theta = 0
+/// (clamped level) or theta' = 0 (hinged) at s = 0.
+class LyingRod {
+ public:
+  LyingRod(double gamma, double height, bool hinged) : gamma_(gamma), hinged_(hinged) {
+    // From small slopes on, higher and higher.
+    const double linear = hinged ? 24 : 72;
+    double h = std::min(height, 1e-3);
+    Eigen::Vector2d unknown(std::pow(linear * h / gamma, 0.25), 0);
+    unknown[1] = gamma * unknown[0] / (hinged ? 2 : 3);
+    for (;; h = std::min(1.1 * h, height)) {
+      solve(unknown, h);
+      if (h == height) break;
+    }
+    b = unknown[0];
+    R = unknown[1];
+    residual = shoot(unknown, height).norm();
+    tip = width_ + 1 - b;
+  }
+
+  double b = 0, R = 0, tip = 0, residual = 0;
+
+ private:
+  void solve(Eigen::Vector2d& unknown, double height) {
+    for (int step = 0; step < 20; ++step) {
+      const Eigen::Vector2d miss = shoot(unknown, height);
+      if (miss.norm() < 1e-13) return;
+      Eigen::Matrix2d jacobian;
+      for (int k = 0; k < 2; ++k) {
+        Eigen::Vector2d moved = unknown;
+        const double h = 1e-6 * unknown[k];
+        moved[k] += h;
+        jacobian.col(k) = (shoot(moved, height) - miss) / h;
+      }
+      const Eigen::Vector2d way = -jacobian.partialPivLu().solve(miss);
+      double share = 1;
+      while (share > 1e-3 && !(shoot(unknown + share * way, height).norm() < miss.norm())) {
+        share /= 2;
+      }
+      unknown += share * way;
+    }
+  }
+
+  /// Angle or curvature, and height, missed at the start; Runge-Kutta 4 backwards from the
+  /// touch-down.
+  Eigen::Vector2d shoot(const Eigen::Vector2d& unknown, double height) {
+    using State = Eigen::Array4d;  // theta, theta', x, y
+    const auto rate = [&](double back, const State& z) {
+      return State(-z[1], -(gamma_ * back - unknown[1]) * std::cos(z[0]), -std::cos(z[0]),
+                   -std::sin(z[0]));
+    };
+    State z = State::Zero();
+    constexpr int steps = 1500;
+    const double h = unknown[0] / steps;
+    for (int i = 0; i < steps; ++i) {
+      const double t = i * h;
+      const State k1 = rate(t, z);
+      const State k2 = rate(t + h / 2, z + h / 2 * k1);
+      const State k3 = rate(t + h / 2, z + h / 2 * k2);
+      const State k4 = rate(t + h, z + h * k3);
+      z += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
+    width_ = -z[2];
+    return {hinged_ ? z[1] * unknown[0] : z[0], z[3] - height};
+  }
+
+  double gamma_;
+  bool hinged_;
+  double width_ = 0;
+};
+
+TEST(Contact, LyingRodIsThatOfTheElastica) {
+  int looked = 0;
+  for (const double gamma : {10.0, 100.0, 1e3, 1e4, 1e5}) {
+    for (const double height : {0.01, 0.1, 0.3}) {
+      const LyingRod exact(gamma, height, false);
+      if (!(exact.residual < 1e-10) || exact.b > 1) continue;  // its tip touches
+      SCOPED_TRACE("Gamma " + std::to_string(gamma) + ", height " + std::to_string(height));
+      ++looked;
+      const Equilibrium result = solve_energy(over_floor(gamma, height));
+      ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+      ASSERT_EQ(result.contacts.size(), 1);
+      const ContactPart& contact = result.contacts[0];
+      EXPECT_EQ(contact.kind, ContactKind::lying);
+      EXPECT_NEAR(contact.begin, exact.b, 1e-8);
+      EXPECT_EQ(contact.end, 1);
+      EXPECT_NEAR(contact.begin_force, exact.R, 1e-7 * gamma);
+      EXPECT_NEAR(contact.end_force, 0, 1e-7 * gamma);
+      EXPECT_NEAR(contact.largest_pressure, gamma, 1e-4 * gamma);  // a difference
+      EXPECT_NEAR(result.walls[0].y(), exact.R + gamma * (1 - exact.b), 1e-7 * gamma);
+      EXPECT_NEAR(result.grips[0].force.y(), gamma * exact.b - exact.R, 1e-7 * gamma);
+      const Samples tip = result.sample(std::array{1.0});
+      EXPECT_NEAR(tip.points(0, 0), exact.tip, 1e-8);
+      EXPECT_NEAR(tip.points(1, 0), -height, 1e-12);
+    }
+  }
+  EXPECT_GE(looked, 11);
+}
+
+// A rod that touches with its tip alone: theta'' = (w (1 - s) - R) cos(theta), theta'(1) = 0.
+TEST(Contact, TouchingTipIsThatOfTheElastica) {
+  const double gamma = 20;
+  const double height = 0.3;
+  const Equilibrium result = solve_energy(over_floor(gamma, height));
+  ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+  ASSERT_EQ(result.contacts.size(), 1);
+  EXPECT_EQ(result.contacts[0].kind, ContactKind::tip);
+  const double R = result.contacts[0].force.y();
+  EXPECT_NEAR(result.grips[0].force.y() + R, gamma, 1e-9);
+  // Forwards from the clamp with the torque that the solver says.
+  double theta = 0;
+  double kappa = -result.grips[0].torque.z();
+  Eigen::Vector2d point(0, 0);
+  constexpr int steps = 4000;
+  const double h = 1.0 / steps;
+  using State = Eigen::Array4d;
+  const auto rate = [&](double s, const State& z) {
+    return State(z[1], (gamma * (1 - s) - R) * std::cos(z[0]), std::cos(z[0]), std::sin(z[0]));
+  };
+  State z(theta, kappa, point.x(), point.y());
+  for (int i = 0; i < steps; ++i) {
+    const double s = i * h;
+    const State k1 = rate(s, z);
+    const State k2 = rate(s + h / 2, z + h / 2 * k1);
+    const State k3 = rate(s + h / 2, z + h / 2 * k2);
+    const State k4 = rate(s + h, z + h * k3);
+    z += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  EXPECT_NEAR(z[1], 0, 1e-8);
+  EXPECT_NEAR(z[3], -height, 1e-9);
+  const Samples tip = result.sample(std::array{1.0});
+  EXPECT_NEAR(tip.points(0, 0), z[2], 1e-9);
+}
+
+// Small slopes: lift-off at (72 EI h / w)^(1/4) clamped level and (24 EI h / w)^(1/4) hinged, with
+// w b / 3 and w b / 2 concentrated there; they are approached with the square of the slope.
+TEST(Contact, SmallSlopesLiftOffWhereBeamTheorySays) {
+  const double gamma = 100;
+  double before = 0;
+  for (const double height : {1e-3, 1e-4, 1e-5}) {
+    const Equilibrium clamped = solve_energy(over_floor(gamma, height));
+    ASSERT_EQ(clamped.status, SolveStatus::converged) << clamped.message;
+    const double b = std::pow(72 * height / gamma, 0.25);
+    ASSERT_EQ(clamped.contacts.size(), 1);
+    const double away = std::abs(clamped.contacts[0].begin / b - 1);
+    const double slope = height / b;
+    EXPECT_LT(away, slope * slope);
+    EXPECT_NEAR(clamped.contacts[0].begin_force / (gamma * b / 3), 1, slope * slope);
+    if (before > 0) {
+      EXPECT_LT(away, before / 10);  // 10^1.5
+    }
+    before = away;
+  }
+}
+
+// Hinged at its start and clamped on the floor at its end, where the rod without the clamp is.
+TEST(Contact, HingedRodLiesUpToItsClamp) {
+  const double gamma = 100;
+  for (const double height : {1e-4, 0.01}) {
+    const LyingRod exact(gamma, height, true);
+    ASSERT_LT(exact.residual, 1e-10);
+    Problem problem = over_floor(gamma, height);
+    problem.grips[0].direction.reset();
+    problem.grips.push_back({1, {exact.tip, -height, 0}, Eigen::Vector3d(1, 0, 0)});
+    const Equilibrium result = solve_energy(problem);
+    ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
+    ASSERT_EQ(result.contacts.size(), 1);
+    EXPECT_NEAR(result.contacts[0].begin, exact.b, 1e-7);
+    EXPECT_NEAR(result.contacts[0].begin_force, exact.R, 1e-5 * gamma);
+    if (height < 1e-3) {
+      EXPECT_NEAR(exact.b, std::pow(24 * height / gamma, 0.25), 1e-4);
+      EXPECT_NEAR(exact.R, gamma * exact.b / 2, 1e-2);
+    }
+  }
+}
+
+/// The contacts of a twist-free rod as loads: what a wall does at single points, and where the rod
+/// lies the pressure, which is that of its weight.
+Problem with_contacts_as_loads(const Problem& problem, const Equilibrium& shape) {
+  Problem loaded = problem;
+  loaded.walls.clear();
+  for (const ContactPart& contact : shape.contacts) {
+    const Eigen::Vector3d n = problem.walls[contact.wall].normal.normalized();
+    if (contact.kind != ContactKind::lying) {
+      loaded.loads.push_back({contact.begin, contact.force});
+      continue;
+    }
+    loaded.loads.push_back({contact.begin, contact.begin_force * n});
+    loaded.loads.push_back({contact.end, contact.end_force * n});
+    const Eigen::Vector3d w = problem.weight_per_length;
+    loaded.sections.push_back({contact.begin, contact.end, problem.bending_stiffness,
+                               problem.torsional_stiffness, w - w.dot(n) * n});
+  }
+  return loaded;
+}
+
+/// What `converged` claims of a rod on walls, from its samples and forces alone.
+void expect_rests(const Problem& problem, const Equilibrium& shape, double panel) {
+  const double l = problem.length;
+  const Samples dense = shape.sample(equal_arc_lengths(l, 7919));
+  double forces = problem.weight_per_length.norm() * l + problem.bending_stiffness / (l * l);
+  for (const Reaction& grip : shape.grips) forces = std::max(forces, grip.force.norm());
+  for (std::size_t w = 0; w < problem.walls.size(); ++w) {
+    const Eigen::Vector3d n = problem.walls[w].normal.normalized();
+    const Eigen::RowVectorXd clearance =
+        n.transpose() * (dense.points.colwise() - problem.walls[w].point);
+    EXPECT_GT(clearance.minCoeff(), -1e-8 * l);
+    EXPECT_NEAR(shape.walls[w].norm(), std::abs(shape.walls[w].dot(n)), 1e-9 * forces);
+  }
+  for (const ContactPart& contact : shape.contacts) {
+    const Wall& wall = problem.walls[contact.wall];
+    const Eigen::Vector3d n = wall.normal.normalized();
+    EXPECT_GE(contact.force.dot(n), -1e-6 * forces);
+    EXPECT_GE(contact.begin_force, -1e-6 * forces);
+    EXPECT_GE(contact.end_force, -1e-6 * forces);
+    for (const double at : {contact.begin, (contact.begin + contact.end) / 2, contact.end}) {
+      EXPECT_NEAR(n.dot(shape.sample(std::array{at}).points.col(0) - wall.point), 0, 1e-8 * l);
+    }
+  }
+  const BalanceDefects defects =
+      test::balance_of(with_contacts_as_loads(problem, shape), shape, panel);
+  EXPECT_LT(defects.worst(), 1e-6)
+      << "force " << defects.force << ", torque " << defects.torque << ", moment " << defects.moment
+      << ", grips " << defects.grips << ", integral " << defects.integral;
+}
+
+/// One to three grips above or beside a half-space, as drawn by a seed.
+Problem random_touching_problem(unsigned seed, bool space, double largest_gamma) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() - std::mt19937::min()) /
+                     static_cast<double>(std::mt19937::max());
+  };
+  const auto direction = [&] {
+    const double azimuth = uniform(-M_PI, M_PI);
+    const double z = space ? uniform(-1, 1) : 0;
+    const double r = std::sqrt(1 - z * z);
+    return Eigen::Vector3d(r * std::cos(azimuth), r * std::sin(azimuth), z);
+  };
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.weight_per_length = {0, -std::pow(10, uniform(0, std::log10(largest_gamma))), 0};
+  std::vector<double> at = {0};
+  const unsigned grips = 1 + random() % 3;
+  if (grips == 3) at.push_back(uniform(0.3, 0.7));
+  if (grips > 1) at.push_back(1);
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (i > 0) position += (at[i] - at[i - 1]) * uniform(0.2, 0.97) * direction();
+    Grip grip{at[i], position};
+    if (i == 0 || random() % 2 == 0) grip.direction = direction();
+    problem.grips.push_back(grip);
+  }
+  const double tilt = uniform(-0.7, 0.7);
+  const double aside = space ? uniform(-0.3, 0.3) : 0;
+  const std::array<Eigen::Vector3d, 3> normals = {
+      Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(std::sin(tilt), std::cos(tilt), aside),
+      Eigen::Vector3d(random() % 2 == 0 ? 1 : -1, tilt / 2, aside)};
+  const Eigen::Vector3d n = normals[random() % 3].normalized();
+  double lowest = 0;
+  for (const Grip& grip : problem.grips) lowest = std::min(lowest, n.dot(grip.position));
+  problem.walls = {{.point = (lowest - std::pow(10, uniform(-2, -0.3))) * n, .normal = n}};
+  return problem;
+}
+
+// What converges is an equilibrium with walls that only push, weighed from its samples; hardly any
+// scene is refused, and none without a reason.
+TEST(Contact, RandomScenesRestOrSayWhyNot) {
+  constexpr unsigned scenes = 40;
+  for (const bool space : {false, true}) {
+    int converged = 0;
+    int touching = 0;
+    for (unsigned seed = 0; seed < scenes; ++seed) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + (space ? " in space" : " in the plane"));
+      const Problem problem = random_touching_problem(seed, space, 300);
+      const Equilibrium result = solve_energy(problem, {.time_limit = 60});
+      if (result.status != SolveStatus::converged) {
+        EXPECT_FALSE(result.message.empty());
+        continue;
+      }
+      ++converged;
+      touching += result.contacts.empty() ? 0 : 1;
+      const double load = problem.weight_per_length.norm();
+      expect_rests(problem, result, 0.06 / std::sqrt(std::max(load, 10.0)));
+    }
+    EXPECT_GE(converged, scenes - 1);
+    EXPECT_GE(touching, 10);
+  }
+}
+
+// A wall that yields less and less is another solver's way to the same shape.
+TEST(Contact, StifferAndStifferWallsLeadToTheRigidOne) {
+  Problem problem = heavy_cantilever(40, 0);
+  problem.grips.push_back({1, {0.6, 0.02, 0.3}, Eigen::Vector3d(0.2, 0.3, 1)});
+  problem.walls = {{.point = {0, -0.05, 0}, .normal = {0.1, 1, 0.05}}};
+  const Equilibrium rigid = solve_energy(problem);
+  ASSERT_EQ(rigid.status, SolveStatus::converged) << rigid.message;
+  ASSERT_FALSE(rigid.contacts.empty());
+  const std::vector<double> s = equal_arc_lengths(1, 101);
+  double before = 1;
+  for (const double stiffness : {1e4, 1e5, 1e6}) {
+    problem.walls[0].stiffness = stiffness;
+    const Equilibrium soft = solve_energy(problem);
+    ASSERT_EQ(soft.status, SolveStatus::converged) << soft.message;
+    EXPECT_EQ(soft.penetration, 0);  // only a rigid wall is penetrated, a soft one yields
+    const double away =
+        (soft.sample(s).points - rigid.sample(s).points).colwise().norm().maxCoeff();
+    EXPECT_LT(away, before / 2) << stiffness;
+    before = away;
+  }
+  EXPECT_LT(before, 1e-3);
+}
+
+// A rod does not know from which end it is counted.
+TEST(Contact, ReversedRodRestsAsTheOther) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    const Problem problem = random_touching_problem(100 + seed, seed % 2 == 0, 100);
+    Problem reversed = problem;
+    for (Grip& grip : reversed.grips) {
+      grip.at = problem.length - grip.at;
+      if (grip.direction) grip.direction = Eigen::Vector3d(-*grip.direction);
+    }
+    const Equilibrium there = solve_energy(problem);
+    const Equilibrium back = solve_energy(reversed);
+    if (!succeeded(there.status) || !succeeded(back.status)) continue;
+    // Else they are two minima.
+    const double scale = 1 + problem.weight_per_length.norm();
+    if (std::abs(there.energy.total() - back.energy.total()) > 1e-3 * scale) continue;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    EXPECT_NEAR(there.energy.total(), back.energy.total(), 1e-8 * scale);
+    ASSERT_EQ(there.contacts.size(), back.contacts.size());
+    for (std::size_t i = 0; i < there.contacts.size(); ++i) {
+      const ContactPart& a = there.contacts[i];
+      const ContactPart& b = back.contacts[back.contacts.size() - 1 - i];
+      EXPECT_NEAR(a.begin, 1 - b.end, 1e-6);
+      EXPECT_NEAR(a.begin_force, b.kind == ContactKind::lying ? b.end_force : b.begin_force,
+                  1e-5 * scale);
+    }
+  }
+}
+
+// A search that is out of time returns what it has, wherever it was.
+TEST(Contact, EndsWithNumbersWheneverTheTimeEnds) {
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.weight_per_length = {0, -2, 0};
+  problem.grips = {{0, {0, 0.03, 0}, Eigen::Vector3d(-0.33, -0.94, 0).normalized()},
+                   {1, {0.48, 0.18, 0}, Eigen::Vector3d(0.8, 0.6, 0).normalized()}};
+  problem.walls = {{}};
+  for (double limit = 1e-6; limit < 0.3; limit *= 1.4) {
+    const Equilibrium result = solve_energy(problem, {.time_limit = limit});
+    for (const Reaction& grip : result.grips) {
+      EXPECT_TRUE(grip.force.allFinite() && grip.torque.allFinite()) << limit;
+    }
+  }
+}
+
+TEST(Contact, OutOfReachChangesNothing) {
+  Problem problem = heavy_cantilever(20, 0);
+  problem.walls = {{.point = {0, -2, 0}, .normal = {0, 1, 0}}};
+  const std::vector<double> s = equal_arc_lengths(1, 101);
+  const Equilibrium free = solve_energy(problem);
+  ASSERT_EQ(free.status, SolveStatus::converged) << free.message;
+  EXPECT_EQ(free.penetration, 0);
+  EXPECT_TRUE(free.contacts.empty());
+  const Equilibrium without = solve_energy(heavy_cantilever(20, 0));
+  EXPECT_LT((free.sample(s).points - without.sample(s).points).norm(), 1e-9);
+  EXPECT_EQ(free.walls[0].norm(), 0);
+  EXPECT_EQ(free.evaluations, without.evaluations);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
