@@ -292,6 +292,16 @@ void require_fit(const Scene& scene, const ForceModelSettings& settings, const L
   }
 }
 
+/// A joint turns alike about every axis.
+void require_round(const Scene& scene) {
+  if (!scene.has_two_stiffnesses()) return;
+  const bool of_rod = scene.given_bending_stiffness_2.has_value();
+  throw InputError(fmt::format(
+      "{}: {}.bending_stiffness: two values, about d1 and d2, which the polygons of models force "
+      "and chain have no axes for (allowed here: one value; of two: --model energy or exact)",
+      scene.file, of_rod ? "rod" : "section"));
+}
+
 }  // namespace
 
 double largest_strain(const Scene& scene, const ForceModelSettings& settings) {
@@ -311,6 +321,7 @@ std::vector<force_model::Wall> walls_of(const Scene& scene, const Parameters& pa
 }
 
 Discretisation discretise(const Scene& scene, const ForceModelSettings& settings) {
+  require_round(scene);
   const Layout layout = lay_out(scene, settings);
   const double L = layout.segment_length;
   Discretisation result;
