@@ -86,6 +86,10 @@ std::string content_of(const Scene& scene) {
   if (scene.naturally_bent()) {
     text += "natural ";
     add_vector(scene.natural_strain);
+    for (const Eigen::Vector2d& strain : scene.natural_variation) {
+      text += "varies ";
+      add_vector({strain.x(), strain.y(), 0});
+    }
   }
   for (const Section& section : scene.sections) {
     text += "\nsection ";

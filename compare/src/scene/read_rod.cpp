@@ -12,6 +12,8 @@ namespace {
 
 /// Beyond it no solver resolves the layer at a clamp, and no rod looks any different.
 constexpr double largest_gamma = 1e12;
+/// Of Legendre's polynomials; beyond it a curvature has more waves than a smooth rod.
+constexpr std::size_t most_natural_terms = 24;
 /// Arc lengths of two sections that meet may differ by what rounding of units makes [-].
 constexpr double same_place_share = 1e-12;
 
@@ -178,8 +180,12 @@ void read_rod(StrictTable& rod, std::vector<StrictTable>& sections,
   read_stiffness(rod, known_materials, scene);
   scene.torsional_stiffness =
       rod.optional_number("torsional_stiffness", Dimension::section_stiffness, Range::positive());
-  scene.natural_strain.head<2>() = rod.optional_pair("natural_curvature", Dimension::curvature)
-                                       .value_or(Eigen::Vector2d::Zero());
+  const std::vector<Eigen::Vector2d> curvature =
+      rod.pairs("natural_curvature", Dimension::curvature, most_natural_terms);
+  if (!curvature.empty()) {
+    scene.natural_strain.head<2>() = curvature.front();
+    scene.natural_variation.assign(curvature.begin() + 1, curvature.end());
+  }
   scene.natural_strain.z() =
       rod.optional_number("natural_twist", Dimension::twist, Range::any()).value_or(0);
   read_sections(sections, scene);

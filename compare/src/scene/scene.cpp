@@ -167,6 +167,7 @@ double Scene::gamma() const {
 Scene Scene::without_natural_strain() const {
   Scene scene = *this;
   scene.natural_strain.setZero();
+  scene.natural_variation.clear();
   return scene;
 }
 
@@ -190,9 +191,30 @@ Eigen::Matrix3d Scene::first_frame() const {
   return energy_model::first_frame(problem);
 }
 
-Eigen::Vector3d Scene::natural_curvature() const {
-  if (natural_strain.head<2>().isZero(0)) return Eigen::Vector3d::Zero();
-  return first_frame().leftCols<2>() * natural_strain.head<2>();
+bool Scene::naturally_curved() const {
+  return !natural_strain.head<2>().isZero(0) ||
+         std::any_of(natural_variation.begin(), natural_variation.end(),
+                     [](const Eigen::Vector2d& strain) { return !strain.isZero(0); });
+}
+
+Eigen::Vector3d Scene::natural_curvature() const { return natural_curvature(0, length); }
+
+Eigen::Vector3d Scene::natural_curvature(double begin, double end) const {
+  if (!naturally_curved()) return Eigen::Vector3d::Zero();
+  Eigen::Vector2d mean = natural_strain.head<2>();
+  const double from = 2 * begin / length - 1;
+  const double to = 2 * end / length - 1;
+  for (std::size_t k = 0; k < natural_variation.size(); ++k) {
+    // int P_j = (P_(j+1) - P_(j-1)) / (2 j + 1)
+    const auto j = static_cast<unsigned>(k + 1);
+    const auto integral = [j](double x) {
+      return (std::legendre(j + 1, x) - std::legendre(j - 1, x)) / (2.0 * j + 1);
+    };
+    const double of_part =
+        to > from ? (integral(to) - integral(from)) / (to - from) : std::legendre(j, from);
+    mean += of_part * natural_variation[k];
+  }
+  return first_frame().leftCols<2>() * mean;
 }
 
 bool Scene::holds_twist() const {
@@ -236,7 +258,7 @@ void Scene::scale_density(double factor) {
 std::optional<Eigen::Vector3d> Scene::plane_normal() const {
   if (holds_twist()) return std::nullopt;
   std::optional<Eigen::Vector3d> normal = scene_normal(*this);
-  const bool curved = !natural_strain.head<2>().isZero(0);
+  const bool curved = naturally_curved();
   if (!normal || !(curved || has_two_stiffnesses())) return normal;
   normal = energy_model::natural_normal(scene_problem(*this));
   if (!normal) return std::nullopt;
@@ -248,9 +270,13 @@ std::optional<Eigen::Vector3d> Scene::plane_normal() const {
     if (oblique || natural_strain.z() != 0) return std::nullopt;
     if (!curved) return normal;
   }
-  const Eigen::Vector3d curvature = natural_curvature();
-  const bool about_normal = normal->cross(curvature).norm() <= noise * curvature.norm();
-  return about_normal && natural_strain.z() == 0 ? normal : std::nullopt;
+  const Eigen::Matrix3d frame = first_frame();
+  const auto about_normal = [&](const Eigen::Vector2d& strain) {
+    return normal->cross(frame.leftCols<2>() * strain).norm() <= noise * strain.norm();
+  };
+  const bool flat = about_normal(natural_strain.head<2>()) && natural_strain.z() == 0 &&
+                    std::all_of(natural_variation.begin(), natural_variation.end(), about_normal);
+  return flat ? normal : std::nullopt;
 }
 
 int Scene::spans() const {

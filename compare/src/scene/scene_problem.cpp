@@ -25,6 +25,9 @@ energy_model::Problem scene_problem(const Scene& scene) {
                                 .bending_stiffness_2 = section.bending_stiffness_2});
   }
   if (scene.naturally_bent()) problem.natural_strains = {scene.natural_strain};
+  for (const Eigen::Vector2d& strain : scene.natural_variation) {
+    problem.natural_strains.emplace_back(strain.x(), strain.y(), 0);
+  }
   for (const Gripper& grip : scene.grippers) {
     energy_model::Grip held{grip.at, grip.position, grip.direction, std::nullopt};
     if (grip.frame) held.frame = {grip.frame->d1, grip.frame->roll};

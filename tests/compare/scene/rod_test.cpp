@@ -204,6 +204,42 @@ TEST(ScenesNaturalCurvature, AboutAnotherAxisThanThePlanesIsSpatial) {
   EXPECT_NEAR((half.natural_curvature() - Eigen::Vector3d(0, 0, -2)).norm(), 0, 1e-12);
 }
 
+TEST(ScenesNaturalCurvature, VariesAlongTheRodAsALegendreSeries) {
+  const auto curved = [](const std::string& rows) {
+    return scene_of(by_stiffness + "natural_curvature = " + rows + "\n" + clamp);
+  };
+  const Scene scene = curved(R"([[0, "3 1/m"], [0, 1.5], [0, -2]])");
+  EXPECT_EQ(scene.natural_strain, Eigen::Vector3d(0, 3, 0));
+  ASSERT_EQ(scene.natural_variation.size(), 2U);
+  EXPECT_TRUE(scene.planar());
+  const energy_model::Problem problem = energy_problem(scene);
+  ASSERT_EQ(problem.natural_strains.size(), 3U);
+  EXPECT_EQ(problem.natural_strains[2], Eigen::Vector3d(0, -2, 0));
+  // The mean over a part, by the midpoint rule: k(s) = 3 + 1.5 x - 2 (3 x^2 - 1) / 2, x = s - 1.
+  constexpr double begin = 0.3;
+  constexpr double end = 0.8;
+  double sum = 0;
+  constexpr int count = 2000;
+  for (int i = 0; i < count; ++i) {
+    const double x = begin + (end - begin) * (i + 0.5) / count - 1;
+    sum += (3 + 1.5 * x - (3 * x * x - 1)) / count;
+  }
+  EXPECT_NEAR(scene.natural_curvature(begin, end).z(), sum, 1e-7);
+  EXPECT_NEAR(scene.natural_curvature().z(), 3, 1e-12);
+  const Discretisation polygon = discretise(scene, scene.force_model);
+  EXPECT_GT(polygon.rod.bending.natural_turns.maxCoeff(),
+            1.2 * polygon.rod.bending.natural_turns.minCoeff());
+  EXPECT_FALSE(curved("[[0, 3], [1, 0]]").planar());
+  EXPECT_TRUE(curved("[[0, 0], [0, 1]]").naturally_bent());
+  EXPECT_FALSE(scene.without_natural_strain().naturally_bent());
+  const std::string rod = by_stiffness + "natural_curvature = ";
+  expect_message(rod + "[[0, 3], [1]]\n" + clamp,
+                 {"my.toml:5: rod.natural_curvature", "rows of two numbers"});
+  std::string many = "[[0, 1]";
+  for (int i = 0; i < 30; ++i) many += ", [0, 1]";
+  expect_message(rod + many + "]\n" + clamp, {"my.toml:5", "31 rows", "1 to 24"});
+}
+
 TEST(ScenesNaturalCurvature, NeedsAClampThatSaysAboutWhichAxis) {
   const std::string curved = by_stiffness + "natural_curvature = 2\n";
   const std::string pin = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";

@@ -103,9 +103,11 @@ struct Scene {
   /// effect elsewhere.
   std::optional<double> torsional_stiffness;
   std::vector<Section> sections;  ///< where the rod is another one, by arc length, none overlap
-  /// Curvature of the free rod about d1 and d2 of its frame and its twist, the same all along
+  /// Curvature of the free rod about d1 and d2 of its frame and its twist, in the mean along it
   /// [1/m]; the first clamp along the rod holds that frame (energy_model::first_frame).
   Eigen::Vector3d natural_strain = Eigen::Vector3d::Zero();
+  /// What the curvature varies by: coefficients of Legendre's P_1, P_2, .. of 2 s/l - 1 [1/m].
+  std::vector<Eigen::Vector2d> natural_variation;
   std::vector<Gripper> grippers;    ///< one or more, in the file's order
   std::vector<PointLoad> loads;     ///< may be empty
   std::vector<Obstacle> obstacles;  ///< may be empty
@@ -142,7 +144,11 @@ struct Scene {
   /// w l^3 / (EI) [-], w the mean weight per length and EI the smaller one outside sections.
   [[nodiscard]] double gamma() const;
   /// Whether the free rod is no straight, untwisted one.
-  [[nodiscard]] bool naturally_bent() const { return !natural_strain.isZero(0); }
+  [[nodiscard]] bool naturally_bent() const {
+    return naturally_curved() || natural_strain.z() != 0;
+  }
+  /// The same of the curvature alone.
+  [[nodiscard]] bool naturally_curved() const;
   /// Whether the rod, or a section of it, has one EI about d1 and another about d2.
   [[nodiscard]] bool has_two_stiffnesses() const;
   /// Whether d1 and d2 are fixed to the rod's material (energy_model::has_material_directors).
@@ -154,10 +160,12 @@ struct Scene {
   [[nodiscard]] Eigen::Matrix3d first_frame() const;
   /// The same rod, straight by nature.
   [[nodiscard]] Scene without_natural_strain() const;
-  /// Curvature of the free rod where the first clamp holds it, as a vector about which its tangent
-  /// turns [1/m]; zero for a rod that is straight by nature. @throws InputError if no clamp, or no
-  /// plane, says where its frame is
+  /// Mean curvature of the free rod in the axes that the first clamp holds, as a vector about which
+  /// its tangent turns [1/m]; zero for a rod that is straight by nature. @throws InputError if no
+  /// clamp, or no plane, says where its frame is
   [[nodiscard]] Eigen::Vector3d natural_curvature() const;
+  /// The same of the rod between two arc lengths, begin < end.
+  [[nodiscard]] Eigen::Vector3d natural_curvature(double begin, double end) const;
   /// Whether two clamps or more hold the rod's frame, which twists it or keeps it from twisting. Of
   /// a rod with material directors the first clamp always does.
   [[nodiscard]] bool holds_twist() const;
