@@ -19,7 +19,8 @@ struct BalanceDefects {
   double torque = 0;    ///< of all torques about a section, the largest of all sections, over
                         ///< largest force times l plus largest torque
   double moment = 0;    ///< largest |EI t x t' + GJ tau t - torque of all that lies beyond|, over
-                        ///< the same; of a rod that is straight by nature
+                        ///< the same; with material directors of what is across t, where there is
+                        ///< EI_1 (u1 - n1) d1 + EI_2 (u2 - n2) d2
   double grips = 0;     ///< positions over l, and directions
   double integral = 0;  ///< largest |r(b) - r(a) - int t ds| over l, and ||t| - 1|
 
@@ -45,8 +46,36 @@ inline energy_model::Section section_at(const energy_model::Problem& problem, do
   for (const energy_model::Section& section : problem.sections) {
     if (section.begin < at && at < section.end) return section;
   }
-  return {0, problem.length, problem.bending_stiffness, problem.torsional_stiffness,
-          problem.weight_per_length};
+  return {0,
+          problem.length,
+          problem.bending_stiffness,
+          problem.torsional_stiffness,
+          problem.weight_per_length,
+          problem.bending_stiffness_2};
+}
+
+/// Strains of the free rod at an arc length.
+inline Eigen::Vector3d natural_at(const energy_model::Problem& problem, double at) {
+  Eigen::Vector3d natural = Eigen::Vector3d::Zero();
+  for (std::size_t j = 0; j < problem.natural_strains.size(); ++j) {
+    natural += std::legendre(static_cast<unsigned>(j), 2 * at / problem.length - 1) *
+               problem.natural_strains[j];
+  }
+  return natural;
+}
+
+/// Bending moment of a rod with material directors, from the tangent's rate and d1.
+inline Eigen::Vector3d bending_moment(const energy_model::Problem& problem, double at,
+                                      const Eigen::Vector3d& t, const Eigen::Vector3d& rate,
+                                      const Eigen::Vector3d& d1) {
+  const energy_model::Section section = section_at(problem, at);
+  const Eigen::Vector3d natural = natural_at(problem, at);
+  const Eigen::Vector3d d2 = t.cross(d1);
+  // t' = u2 d1 - u1 d2
+  const double first = section.bending_stiffness * (-rate.dot(d2) - natural.x());
+  const double second = section.bending_stiffness_2.value_or(section.bending_stiffness) *
+                        (rate.dot(d1) - natural.y());
+  return first * d1 + second * d2;
 }
 
 /// The arc lengths where something happens: ends, grips, loads, sections; growing, each once.
@@ -151,7 +180,15 @@ inline BalanceDefects balance_of(const energy_model::Problem& problem,
     raise(defects.integral, (point - at_cuts.points.col(here - 1) - run).norm() / l);
     // Where something happens, the curvature has a kink or a jump.
     const bool event = std::binary_search(events.begin(), events.end(), cuts[c]);
-    if (!event && problem.natural_strains.empty()) {
+    if (!event && has_material_directors(problem)) {
+      const Eigen::Vector3d tangent = at_cuts.tangents.col(here);
+      const Eigen::Vector3d carried = beyond.torque_about_origin - point.cross(beyond.force);
+      const Eigen::Vector3d moment =
+          bending_moment(problem, cuts[c], tangent, at_cuts.curvature.col(here),
+                         at_cuts.d1.col(here)) -
+          (carried - carried.dot(tangent) * tangent);
+      raise(defects.moment, moment.norm() / torque_unit);
+    } else if (!event) {
       const Eigen::Vector3d tangent = at_cuts.tangents.col(here);
       Eigen::Vector3d moment = section_at(problem, cuts[c]).bending_stiffness *
                                tangent.cross(Eigen::Vector3d(at_cuts.curvature.col(here)));

@@ -39,17 +39,19 @@ Vector3d point_at(const Equilibrium& equilibrium, double s) {
 
 /// Section and strains of the free rod at an arc length.
 struct Local {
-  double bending, torsion;
+  Vector3d stiffness;  // about d1, d2 and the tangent
   Vector3d weight, natural;
 };
 
 Local local(const Problem& problem, double s) {
-  Local here{problem.bending_stiffness, problem.torsional_stiffness, problem.weight_per_length,
-             Vector3d::Zero()};
+  const auto stiffness = [](const auto& of) {
+    return Vector3d(of.bending_stiffness, of.bending_stiffness_2.value_or(of.bending_stiffness),
+                    of.torsional_stiffness);
+  };
+  Local here{stiffness(problem), problem.weight_per_length, Vector3d::Zero()};
   for (const Section& section : problem.sections) {
     if (s < section.begin || s > section.end) continue;
-    here.bending = section.bending_stiffness;
-    here.torsion = section.torsional_stiffness;
+    here.stiffness = stiffness(section);
     here.weight = section.weight_per_length;
   }
   for (std::size_t j = 0; j < problem.natural_strains.size(); ++j) {
@@ -93,7 +95,7 @@ Shot shoot(const Problem& problem, const Equilibrium& solution, const Matrix3d& 
         const double inside = std::clamp(where, stops[i] + h / 1e3, stops[i + 1] - h / 1e3);
         const Local here = local(problem, inside);
         Vector3d u = at.frame.transpose() * at.moment;
-        u = here.natural + u.cwiseQuotient(Vector3d(here.bending, here.bending, here.torsion));
+        u = here.natural + u.cwiseQuotient(here.stiffness);
         Matrix3d turn;
         turn << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
         const Vector3d t = at.frame.col(2);
@@ -283,6 +285,36 @@ TEST(NaturalRod, OfAllKindsObeysKirchhoffsEquations) {
     if (i % 2 == 1) {
       problem.sections = {{0.2, 0.45, uniform(0.3, 4), uniform(0.2, 3), vector(9)},
                           {0.45, 0.7, uniform(0.3, 4), uniform(0.2, 3), vector(9)}};
+    }
+    if (i % 3 > 0) {
+      problem.grips.push_back(
+          {1, {uniform(0.3, 0.8), uniform(-0.3, 0.3), uniform(-0.3, 0.3)}, vector(1), {}});
+      if (i % 3 == 2) problem.grips.back().frame = FrameHold{std::nullopt, uniform(-3, 3)};
+    }
+    SCOPED_TRACE(i);
+    const Equilibrium result = solved_rod(problem);
+    expect_kirchhoff(problem, result, along_x(), 1e-8);
+  }
+}
+
+TEST(Strip, OfAllKindsObeysKirchhoffsEquations) {
+  std::mt19937_64 random(20261123);  // NOLINT(cert-msc51-cpp): the same strips each time
+  const auto uniform = [&](double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random);
+  };
+  const auto vector = [&](double size) {
+    return Vector3d(uniform(-size, size), uniform(-size, size), uniform(-size, size));
+  };
+  for (int i = 0; i < 12; ++i) {
+    Problem problem = clamped_rod();
+    problem.bending_stiffness_2 = uniform(0.2, 6);
+    problem.weight_per_length = vector(6);
+    if (i % 4 > 0) problem.natural_strains = {vector(4), vector(2)};
+    problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};
+    if (i % 2 == 1) {
+      problem.sections = {{0.2, 0.45, uniform(0.3, 4), uniform(0.2, 3), vector(9)},
+                          {0.45, 0.7, uniform(0.3, 4), uniform(0.2, 3), vector(9)}};
+      problem.sections[0].bending_stiffness_2 = uniform(0.3, 4);
     }
     if (i % 3 > 0) {
       problem.grips.push_back(

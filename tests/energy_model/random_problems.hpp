@@ -14,13 +14,15 @@
 namespace dlo::test {
 
 /// Where a random rod, its grips and its forces lie: in the x-y plane or anywhere; there it may be
-/// twisted too, or curved by nature. Mixed: everything that a straight rod may be held by.
-enum class RandomSpace { plane, space, twisted, curved, mixed };
+/// twisted too, or curved by nature, or a strip of two bending stiffnesses. Mixed: everything that
+/// a straight rod may be held by.
+enum class RandomSpace { plane, space, twisted, curved, mixed, strip };
 
 inline const char* name_of(RandomSpace space) {
   if (space == RandomSpace::twisted) return "twisted";
   if (space == RandomSpace::curved) return "curved";
   if (space == RandomSpace::mixed) return "mixed";
+  if (space == RandomSpace::strip) return "strip";
   return space == RandomSpace::plane ? "plane" : "space";
 }
 
@@ -129,6 +131,7 @@ inline std::vector<double> random_grip_places(RandomNumbers& random, int count) 
 inline energy_model::Problem twisted_problem(std::uint64_t number);
 inline energy_model::Problem curved_problem(std::uint64_t number);
 inline energy_model::Problem mixed_problem(std::uint64_t number);
+inline energy_model::Problem strip_problem(std::uint64_t number);
 
 /// How much a random problem may have.
 struct RandomLimits {
@@ -179,12 +182,16 @@ inline energy_model::Problem random_rod_held(RandomNumbers& random, RandomSpace 
 /// of another kind, a clamp at its begin and in three of four cases a clamp or a pin besides; Gamma
 /// is between 0.1 and 300. Every other one lies in the x-y plane.
 ///
+/// A strip is what is curved by nature, or in one of two cases straight, with EI about d2 of a
+/// tenth to ten times that about d1; its section is round in one of two cases.
+///
 /// What is mixed is straight, has 1 to 4 grips and Gamma up to 1e5; every other one lies in the x-y
 /// plane, and of the others' clamps every other one holds a frame, turned by up to three turns.
 inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace space) {
   if (space == RandomSpace::twisted) return twisted_problem(number);
   if (space == RandomSpace::curved) return curved_problem(number);
   if (space == RandomSpace::mixed) return mixed_problem(number);
+  if (space == RandomSpace::strip) return strip_problem(number);
   RandomNumbers random(2 * number + (space == RandomSpace::space ? 1 : 0));
   return random_rod_held(random, space);
 }
@@ -258,6 +265,19 @@ inline energy_model::Problem curved_problem(std::uint64_t number) {
   if (kind > 1) grip.direction = random.direction(space);
   if (kind < 3) return problem;
   grip.frame.emplace().roll = planar ? 0 : random.uniform(-std::numbers::pi, std::numbers::pi);
+  return problem;
+}
+
+inline energy_model::Problem strip_problem(std::uint64_t number) {
+  constexpr std::uint64_t of_their_own = 1U << 26U;
+  RandomNumbers random(of_their_own + number);
+  energy_model::Problem problem = curved_problem(of_their_own + number);
+  if (random.chance(0.5)) problem.natural_strains.clear();
+  const auto ratio = [&] { return std::pow(10, random.uniform(-1, 1)); };
+  problem.bending_stiffness_2 = ratio();
+  for (energy_model::Section& section : problem.sections) {
+    if (random.chance(0.5)) section.bending_stiffness_2 = section.bending_stiffness * ratio();
+  }
   return problem;
 }
 

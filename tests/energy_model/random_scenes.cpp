@@ -1,7 +1,7 @@
 // Random scenes, the minimiser against multiple shooting, each shape against force and torque
 // balance. Prints what converged, what was refused and why, the slowest, and how both agree.
-//   dlo_random_scenes [--plane N] [--space N] [--twisted N] [--curved N] [--mixed N] [--first K]
-//   [--time-limit SECONDS] [--exact search|energy] [--write FOLDER]
+//   dlo_random_scenes [--plane N] [--space N] [--twisted N] [--curved N] [--mixed N] [--strip N]
+//   [--first K] [--time-limit SECONDS] [--exact search|energy] [--write FOLDER]
 // With `--exact energy` multiple shooting confirms the minimiser's shapes without a search.
 // Ends with 0 if no two converged shapes contradict each other, no equilibrium is out of balance
 // and no solve overran the limit; 1 if not; 2 for bad usage.
@@ -31,6 +31,7 @@ struct Options {
   std::uint64_t twisted = 100;
   std::uint64_t curved = 100;
   std::uint64_t mixed = 100;
+  std::uint64_t strip = 100;
   std::uint64_t first = 0;
   double time_limit = 20;
   dlo::test::ExactFrom exact = dlo::test::ExactFrom::search;
@@ -54,6 +55,8 @@ Options read_options(int argc, char** argv) {
       options.curved = std::stoul(value, &used);
     } else if (name == "--mixed") {
       options.mixed = std::stoul(value, &used);
+    } else if (name == "--strip") {
+      options.strip = std::stoul(value, &used);
     } else if (name == "--exact") {
       if (value != "search" && value != "energy") {
         throw std::invalid_argument("--exact " + value + " (allowed: search, energy)");
@@ -130,7 +133,7 @@ int run(const Options& options, RandomSpace space, std::uint64_t count) {
     const auto complain = [&](const std::string& what) {
       std::printf("  %s %lu: %s\n", kind, number, what.c_str());
       // A scene file has one natural curvature, not a series.
-      if (options.folder.empty() || space == RandomSpace::curved) return;
+      if (options.folder.empty() || has_material_directors(problem)) return;
       const std::string name = std::string(kind) + "_" + std::to_string(number);
       std::ofstream(options.folder + "/" + name + ".toml") << dlo::test::scene_text(problem, name);
     };
@@ -192,7 +195,8 @@ int main(int argc, char** argv) {
                   run(options, RandomSpace::space, options.space) +
                   run(options, RandomSpace::twisted, options.twisted) +
                   run(options, RandomSpace::curved, options.curved) +
-                  run(options, RandomSpace::mixed, options.mixed);
+                  run(options, RandomSpace::mixed, options.mixed) +
+                  run(options, RandomSpace::strip, options.strip);
   std::printf("%d scenes contradict, are out of balance or overran the limit\n", bad);
   return bad == 0 ? 0 : 1;
 }

@@ -44,7 +44,9 @@ inline double shape_length(const energy_model::Problem& problem,
   for (const energy_model::Reaction& grip : shape.grips) {
     force = std::max(force, grip.force.norm());
   }
-  const double soft = std::sqrt(problem.bending_stiffness / std::max(force, 1e-300));
+  const double stiffness = std::min(
+      problem.bending_stiffness, problem.bending_stiffness_2.value_or(problem.bending_stiffness));
+  const double soft = std::sqrt(stiffness / std::max(force, 1e-300));
   return std::min(problem.length / 8, soft);
 }
 
@@ -107,7 +109,7 @@ inline ComparedScene compare_models(std::uint64_t number, const energy_model::Pr
   const bool energy = succeeded(scene.energy.status);
   if (energy) scene.energy_defects = defects_of(problem, scene.energy);
   if (from == ExactFrom::energy && !energy) return scene;
-  if (problem.natural_strains.empty() && passes_torque(problem)) {
+  if (!has_material_directors(problem) && passes_torque(problem)) {
     scene.exact.status = energy_model::SolveStatus::failed;
     scene.exact.message = "passes torque on, which exact refuses";
     return scene;

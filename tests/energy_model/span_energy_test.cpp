@@ -80,8 +80,8 @@ Span twisted_span(bool planar) {
 Span natural_span(bool planar) {
   const double z = planar ? 0 : 1;
   Span span = gripped_span(planar);
-  span.torsion = 0.7;
-  span.parts = {{0.25, 0.5, 2, 1.1, {0, -4, z}}};
+  span.stiffness = {1, 1, 0.7};
+  span.parts = {{0.25, 0.5, {2, 2, 1.1}, {0, -4, z}}};
   span.natural = {.coefficients = {{2, z, 1.5 * z}, {-0.7, 0.4 * z, -0.6 * z}}};
   span.holds[0].direction = Eigen::Vector3d(1, 0.1, 0.2 * z).normalized();
   if (!planar) span.twist = Span::Twist{0.7, {0.1, 0.9, 0.8}};
@@ -93,6 +93,25 @@ Span free_natural_span(bool planar) {
   span.start_direction.reset();
   span.end_direction.reset();
   span.twist.reset();
+  span.anchor = 0.2;
+  return span;
+}
+
+/// A strip: three stiffnesses, in space about axes of its own, another three in its section.
+Span strip_span(bool planar) {
+  Span span = natural_span(planar);
+  span.stiffness = {1, 3, 0.7};
+  span.parts[0].stiffness = {2, 0.4, 1.1};
+  if (!planar) span.principal_d1 = Eigen::Vector3d(-0.1, 0.8, 0.6);
+  return span;
+}
+
+Span free_strip_span(bool planar) {
+  Span span = strip_span(planar);
+  span.start_direction.reset();
+  span.end_direction.reset();
+  span.twist.reset();
+  span.principal_d1.reset();
   span.anchor = 0.2;
   return span;
 }
@@ -198,8 +217,8 @@ INSTANTIATE_TEST_SUITE_P(Spans, ObjectiveWithoutWalls,
                          testing::Values(Case{gripped_span, true}, Case{gripped_span, false},
                                          Case{free_span, true}, Case{free_span, false},
                                          Case{twisted_span, false}, Case{natural_span, true},
-                                         Case{natural_span, false},
-                                         Case{free_natural_span, false}));
+                                         Case{natural_span, false}, Case{free_natural_span, false},
+                                         Case{strip_span, true}, Case{strip_span, false}));
 #endif
 
 INSTANTIATE_TEST_SUITE_P(Spans, Objective,
@@ -209,7 +228,8 @@ INSTANTIATE_TEST_SUITE_P(Spans, Objective,
                                          Case{touching_span, true}, Case{touching_span, false},
                                          Case{twisted_span, false}, Case{natural_span, true},
                                          Case{natural_span, false}, Case{free_natural_span, true},
-                                         Case{free_natural_span, false}));
+                                         Case{free_natural_span, false}, Case{strip_span, true},
+                                         Case{strip_span, false}, Case{free_strip_span, false}));
 
 }  // namespace
 }  // namespace dlo::energy_model

@@ -191,7 +191,13 @@ std::string material_toml(const MaterialReport& report) {
                           : "# Written by dlo calibrate. For dlo: --materials with this file and "
                             "material = \"calibrated\" in the scene.\n[[material]]\nname = "
                             "\"calibrated\"\n";
-  append(out, "{} = {:.8e}  # {}, 95 %: {:.4g} to {:.4g}\n", stiffness_key(scene).name, *E.value,
+  std::string value = fmt::format("{:.8e}", *E.value);
+  if (scene.given_bending_stiffness_2) {
+    // A fit leaves the ratio of the two as it is.
+    const double ratio = *scene.given_bending_stiffness_2 / *scene.given_bending_stiffness;
+    value = fmt::format("[{}, {:.8e}]", value, ratio * *E.value);
+  }
+  append(out, "{} = {}  # {}, 95 %: {:.4g} to {:.4g}\n", stiffness_key(scene).name, value,
          stiffness.unit, *E.low, *E.high);
   append(out, "{} = {:.8e}  # {}, {}\n", heaviness_key(scene).name, density, heaviness.unit,
          fit.density ? fmt::format("95 %: {:.4g} to {:.4g}", *fit.density->low, *fit.density->high)

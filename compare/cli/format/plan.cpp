@@ -69,8 +69,9 @@ std::string left_out_text(const compare::LeftOut& item, double length) {
 std::string assumption_text(const compare::Scene& scene) {
   if (!scene.assumes_torsion()) return "";
   return fmt::format(
-      "torsional stiffness GJ = EI / {:g} = {:.4g} N m^2 (Poisson's ratio {:g}), as "
+      "torsional stiffness GJ = {} / {:g} = {:.4g} N m^2 (Poisson's ratio {:g}), as "
       "rod.torsional_stiffness is not given",
+      scene.given_bending_stiffness_2 ? "2 EI_1 EI_2 / (EI_1 + EI_2)" : "EI",
       1 + compare::assumed_poisson_ratio, scene.twisting_stiffness(),
       compare::assumed_poisson_ratio);
 }

@@ -81,10 +81,15 @@ std::string content_of(const Scene& scene) {
   };
   add_named("torsion ", scene.torsional_stiffness);
   add_named("EI ", scene.given_bending_stiffness);
+  add_named("EI_2 ", scene.given_bending_stiffness_2);
   add_named("mass ", scene.given_mass_per_length);
   if (scene.naturally_bent()) {
     text += "natural ";
     add_vector(scene.natural_strain);
+    for (const Eigen::Vector2d& strain : scene.natural_variation) {
+      text += "varies ";
+      add_vector({strain.x(), strain.y(), 0});
+    }
   }
   for (const Section& section : scene.sections) {
     text += "\nsection ";
@@ -93,6 +98,7 @@ std::string content_of(const Scene& scene) {
       add(value);
     }
     add_named("torsion ", section.torsional_stiffness);
+    add_named("EI_2 ", section.bending_stiffness_2);
   }
   for (const Gripper& gripper : scene.grippers) {
     text += "\ngripper ";

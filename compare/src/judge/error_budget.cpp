@@ -75,8 +75,8 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, total.cols());
   const bool leaves_twist_out = scene.holds_twist() && !takes_twist(scene, own);
   const Eigen::Matrix3Xd twist = leaves_twist_out ? rod(scene.without_twist()) : none;
-  const bool leaves_curvature_out = scene.naturally_bent() && !taken.naturally_bent() &&
-                                    !scene.natural_strain.head<2>().isZero(0);
+  const bool leaves_curvature_out =
+      scene.naturally_bent() && !taken.naturally_bent() && scene.naturally_curved();
   const Eigen::Matrix3Xd left_out = leaves_curvature_out ? rod(taken) : twist;
 
   Budget budget;

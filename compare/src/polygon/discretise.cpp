@@ -144,18 +144,21 @@ void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings
         "directions, forces and normals; dlo solve and dlo compare turn other planes into it)",
         scene.file));
   }
-  const double curvature = scene.natural_curvature().z();
   bending.natural_turns.resize(joints);
   for (Eigen::Index i = 0; i < joints; ++i) {
     const Cell cell = cell_of(scene, layout, i + 1);
+    const double curvature = scene.natural_curvature(cell.begin, cell.end).z();
     bending.natural_turns[i] = curvature * (cell.end - cell.begin);
   }
-  const double largest = bending.natural_turns.cwiseAbs().maxCoeff();
+  Eigen::Index most = 0;
+  const double largest = bending.natural_turns.cwiseAbs().maxCoeff(&most);
   if (!(largest < force_model::hooke_fold_angle)) {
+    const Cell cell = cell_of(scene, layout, most + 1);
     throw InputError(fmt::format(
         "{}: force_model.points = {}: at rest a joint would turn by {:.3g} rad, as the rod is "
         "curved by {:.4g} 1/m (allowed: less than {:g} rad, {} points or more)",
-        scene.file, settings.points, largest, std::abs(curvature), force_model::hooke_fold_angle,
+        scene.file, settings.points, largest, largest / (cell.end - cell.begin),
+        force_model::hooke_fold_angle,
         static_cast<long>(std::ceil(settings.points * largest / 1.5))));
   }
   for (Eigen::Matrix3Xd& start : result.starts) start.row(2).setZero();
@@ -292,6 +295,16 @@ void require_fit(const Scene& scene, const ForceModelSettings& settings, const L
   }
 }
 
+/// A joint turns alike about every axis.
+void require_round(const Scene& scene) {
+  if (!scene.has_two_stiffnesses()) return;
+  const bool of_rod = scene.given_bending_stiffness_2.has_value();
+  throw InputError(fmt::format(
+      "{}: {}.bending_stiffness: two values, about d1 and d2, which the polygons of models force "
+      "and chain have no axes for (allowed here: one value; of two: --model energy or exact)",
+      scene.file, of_rod ? "rod" : "section"));
+}
+
 }  // namespace
 
 double largest_strain(const Scene& scene, const ForceModelSettings& settings) {
@@ -311,6 +324,7 @@ std::vector<force_model::Wall> walls_of(const Scene& scene, const Parameters& pa
 }
 
 Discretisation discretise(const Scene& scene, const ForceModelSettings& settings) {
+  require_round(scene);
   const Layout layout = lay_out(scene, settings);
   const double L = layout.segment_length;
   Discretisation result;

@@ -9,8 +9,6 @@
 namespace dlo::compare {
 namespace {
 
-bool is_curved_by_nature(const Scene& scene) { return !scene.natural_strain.head<2>().isZero(0); }
-
 /// Whether all that holds a rod and acts on it lies in the plane z = 0, to the last digit.
 bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
   const auto flat = [](const Eigen::Vector3d& vector) { return vector.z() == 0; };
@@ -29,7 +27,7 @@ bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
 }  // namespace
 
 bool takes_natural_curvature(const Scene& scene, const ForceModelSettings& settings) {
-  return is_curved_by_nature(scene) && settings.law == BendingLaw::hooke && scene.planar();
+  return scene.naturally_curved() && settings.law == BendingLaw::hooke && scene.planar();
 }
 
 bool takes_twist(const Scene& scene, const ForceModelSettings& settings) {
@@ -40,7 +38,7 @@ std::vector<std::string> left_out_of_polygon(const Scene& scene,
                                              const ForceModelSettings& settings) {
   std::vector<std::string> left_out;
   if (scene.holds_twist() && !takes_twist(scene, settings)) left_out.emplace_back("twist");
-  if (is_curved_by_nature(scene) && !takes_natural_curvature(scene, settings)) {
+  if (scene.naturally_curved() && !takes_natural_curvature(scene, settings)) {
     left_out.emplace_back("natural curvature");
   }
   return left_out;

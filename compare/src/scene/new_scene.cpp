@@ -58,6 +58,8 @@ length = {length}  # {units}
 diameter = {diameter}  # round, solid; bending stiffness EI = E pi d^4 / 64
 {material}# Or what was measured, in place of diameter and material (they may stay, for the axial stiffness):
 #   bending_stiffness = "1.2e-3 N m^2", mass_per_length = "20 g/m"
+# Of a flat cable bending_stiffness = ["1.2e-3 N m^2", "0.04 N m^2"], about d1 and about d2 of the
+# first clamp's frame: d2 is the normal of the scene's plane unless a frame or roll says otherwise.
 # The free rod need not be straight: natural_curvature = "3 1/m" bends it to the left in its plane;
 # [x, y] are about d1 and d2 of the first clamp's frame, natural_twist = "90 deg/m" about the rod.
 # torsional_stiffness (GJ) is then EI / 1.3, if it is not given.

@@ -12,6 +12,8 @@ namespace {
 
 /// Beyond it no solver resolves the layer at a clamp, and no rod looks any different.
 constexpr double largest_gamma = 1e12;
+/// Of Legendre's polynomials; beyond it a curvature has more waves than a smooth rod.
+constexpr std::size_t most_natural_terms = 24;
 /// Arc lengths of two sections that meet may differ by what rounding of units makes [-].
 constexpr double same_place_share = 1e-12;
 
@@ -36,10 +38,34 @@ Material read_material(StrictTable& rod, const std::vector<Material>& known_mate
                        did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
+/// EI about every axis across the rod, or about d1 and d2.
+struct GivenBending {
+  double about_d1;
+  std::optional<double> about_d2;
+};
+
+std::optional<GivenBending> read_bending_stiffness(StrictTable& table) {
+  constexpr const char* key = "bending_stiffness";
+  const Range range = Range::positive();
+  if (!table.is_array(key)) {
+    const std::optional<double> both =
+        table.optional_number(key, Dimension::section_stiffness, range);
+    if (!both) return std::nullopt;
+    return GivenBending{*both, std::nullopt};
+  }
+  const Eigen::Vector2d pair = table.optional_pair(key, Dimension::section_stiffness).value();
+  if (!range.holds(pair.x()) || !range.holds(pair.y())) {
+    table.fail(key, fmt::format("out of range (allowed: {}, about d1 and about d2)", range.text));
+  }
+  return GivenBending{pair.x(), pair.y()};
+}
+
 /// Bending stiffness and mass, given as they are or by material and diameter.
 void read_stiffness(StrictTable& rod, const std::vector<Material>& known_materials, Scene& scene) {
-  scene.given_bending_stiffness =
-      rod.optional_number("bending_stiffness", Dimension::section_stiffness, Range::positive());
+  if (const std::optional<GivenBending> given = read_bending_stiffness(rod)) {
+    scene.given_bending_stiffness = given->about_d1;
+    scene.given_bending_stiffness_2 = given->about_d2;
+  }
   scene.given_mass_per_length =
       rod.optional_number("mass_per_length", Dimension::mass_per_length, Range::not_negative());
   const bool has_bending = scene.given_bending_stiffness.has_value();
@@ -84,7 +110,7 @@ void require_finite_rod(const Scene& scene, const StrictTable& rod) {
              fmt::format("Gamma = w l^3 / (EI) = {:.4g} (allowed: 0 to {:g}), with w = {:.4g} N/m "
                          "and E I = {:.4g} N m^2",
                          scene.gamma(), largest_gamma, scene.weight_per_length().norm(),
-                         scene.bending_stiffness()));
+                         scene.softer_bending_stiffness()));
   }
 }
 
@@ -103,9 +129,10 @@ Section read_section(StrictTable& table, const Scene& scene) {
                "missing, and so are mass_per_length and torsional_stiffness (allowed: one of the "
                "three or more; the others are the rod's own)");
   }
-  section.bending_stiffness =
-      table.optional_number("bending_stiffness", Dimension::section_stiffness, Range::positive())
-          .value_or(scene.bending_stiffness());
+  const GivenBending bending = read_bending_stiffness(table).value_or(
+      GivenBending{scene.bending_stiffness(), scene.given_bending_stiffness_2});
+  section.bending_stiffness = bending.about_d1;
+  section.bending_stiffness_2 = bending.about_d2;
   section.mass_per_length =
       table.optional_number("mass_per_length", Dimension::mass_per_length, Range::not_negative())
           .value_or(scene.mass_per_length());
@@ -153,8 +180,12 @@ void read_rod(StrictTable& rod, std::vector<StrictTable>& sections,
   read_stiffness(rod, known_materials, scene);
   scene.torsional_stiffness =
       rod.optional_number("torsional_stiffness", Dimension::section_stiffness, Range::positive());
-  scene.natural_strain.head<2>() = rod.optional_pair("natural_curvature", Dimension::curvature)
-                                       .value_or(Eigen::Vector2d::Zero());
+  const std::vector<Eigen::Vector2d> curvature =
+      rod.pairs("natural_curvature", Dimension::curvature, most_natural_terms);
+  if (!curvature.empty()) {
+    scene.natural_strain.head<2>() = curvature.front();
+    scene.natural_variation.assign(curvature.begin() + 1, curvature.end());
+  }
   scene.natural_strain.z() =
       rod.optional_number("natural_twist", Dimension::twist, Range::any()).value_or(0);
   read_sections(sections, scene);

@@ -167,23 +167,29 @@ void check_twist(const Scene& scene, const StrictTable& rod,
   for (const std::size_t i : clamps) {
     const Gripper& clamp = scene.grippers[i];
     const bool ends = i == clamps.front() || clamp.at == scene.length;
-    if (!scene.naturally_bent() || ends || !clamp.frame || has_d1(clamp)) continue;
+    if (!scene.has_material_directors() || ends || !clamp.frame || has_d1(clamp)) continue;
     entries[i].fail("roll",
-                    "of a rod that is curved by nature and goes on behind this clamp (allowed: "
-                    "frame or quaternion)");
+                    fmt::format("of a rod {} and goes on behind this clamp (allowed: "
+                                "frame or quaternion)",
+                                scene.naturally_bent() ? "that is curved by nature"
+                                                       : "that has two bending stiffnesses"));
   }
 }
 
-/// Which way a rod is curved by nature has to be said by a clamp.
-void check_natural_strain(const Scene& scene, const StrictTable& rod) {
+/// Which way a rod is curved by nature, and where its principal axes are, has to be said by a
+/// clamp.
+void check_material_directors(const Scene& scene, const StrictTable& rod) {
   const bool clamped =
       std::any_of(scene.grippers.begin(), scene.grippers.end(),
                   [](const Gripper& gripper) { return gripper.direction.has_value(); });
+  constexpr const char* unheld =
+      "no gripper holds the rod's frame (allowed: a gripper with hold = \"clamp\")";
   for (const char* key : {"natural_curvature", "natural_twist"}) {
-    if (clamped || !rod.has(key)) continue;
-    rod.fail(key, "no gripper holds the rod's frame (allowed: a gripper with hold = \"clamp\")");
+    if (!clamped && rod.has(key)) rod.fail(key, unheld);
   }
+  if (!clamped && scene.has_two_stiffnesses()) rod.fail("bending_stiffness", unheld);
   (void)scene.natural_curvature();
+  if (scene.has_two_stiffnesses()) (void)scene.first_frame();
 }
 
 /// @param radius  of the rod [m]
@@ -265,7 +271,7 @@ Scene read_scene(const toml::table& root, const std::string& file,
   for (StrictTable& entry : bounded_tables(table, "load", most_loads)) {
     scene.loads.push_back(read_load(entry, scene));
   }
-  check_natural_strain(scene, rod);
+  check_material_directors(scene, rod);
   if (auto settings = table.optional_table("force_model")) {
     scene.force_model = read_force_model(*settings);
     check(scene.force_model, settings->where());

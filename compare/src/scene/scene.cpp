@@ -53,6 +53,9 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   return share_it ? std::optional(normal) : std::nullopt;
 }
 
+/// Of two numbers; of two equal ones to the last digit that number.
+double harmonic_mean(double a, double b) { return a / ((1 + a / b) / 2); }
+
 /// Index of the first clamp along the rod.
 std::optional<std::size_t> first_clamp_of(const Scene& scene) {
   std::optional<std::size_t> first;
@@ -72,16 +75,35 @@ double Scene::bending_stiffness() const {
                                           diameter / 16);
 }
 
+double Scene::softer_bending_stiffness() const {
+  return std::min(bending_stiffness(), given_bending_stiffness_2.value_or(bending_stiffness()));
+}
+
+double Scene::mean_bending_stiffness() const {
+  return harmonic_mean(bending_stiffness(),
+                       given_bending_stiffness_2.value_or(bending_stiffness()));
+}
+
+double Section::mean_bending_stiffness() const {
+  return harmonic_mean(bending_stiffness, bending_stiffness_2.value_or(bending_stiffness));
+}
+
+bool Scene::has_two_stiffnesses() const {
+  return given_bending_stiffness_2 ||
+         std::any_of(sections.begin(), sections.end(),
+                     [](const Section& section) { return section.bending_stiffness_2; });
+}
+
 double Scene::mass_per_length() const {
   return given_mass_per_length.value_or(material.density * cross_section());
 }
 
 double Scene::twisting_stiffness() const {
   if (torsional_stiffness) return *torsional_stiffness;
-  return naturally_bent() ? bending_stiffness() / (1 + assumed_poisson_ratio) : 0;
+  return has_material_directors() ? mean_bending_stiffness() / (1 + assumed_poisson_ratio) : 0;
 }
 
-bool Scene::assumes_torsion() const { return naturally_bent() && !torsional_stiffness; }
+bool Scene::assumes_torsion() const { return has_material_directors() && !torsional_stiffness; }
 
 double Scene::axial_stiffness() const {
   const double EA = material.youngs_modulus * cross_section();
@@ -91,7 +113,9 @@ double Scene::axial_stiffness() const {
 }
 
 NamedValue Scene::stiffness() const {
-  if (given_bending_stiffness) return {"EI", "N m^2", *given_bending_stiffness};
+  if (given_bending_stiffness) {
+    return {given_bending_stiffness_2 ? "EI about d1" : "EI", "N m^2", *given_bending_stiffness};
+  }
   return {"E", "Pa", material.youngs_modulus};
 }
 
@@ -130,45 +154,72 @@ double Scene::bending_compliance(double begin, double end) const {
 double Scene::twisting_compliance(double begin, double end) const {
   const double GJ = twisting_stiffness();
   const auto of_section = [&](const Section& s) {
-    return 1 / s.torsional_stiffness.value_or(s.bending_stiffness / bending_stiffness() * GJ);
+    return 1 / s.torsional_stiffness.value_or(s.mean_bending_stiffness() /
+                                              mean_bending_stiffness() * GJ);
   };
   return (end - begin) / GJ + excess_between(*this, begin, end, of_section, 1 / GJ);
 }
 
 double Scene::gamma() const {
-  return weight_per_length().norm() * length * length * length / bending_stiffness();
+  return weight_per_length().norm() * length * length * length / softer_bending_stiffness();
 }
 
 Scene Scene::without_natural_strain() const {
   Scene scene = *this;
   scene.natural_strain.setZero();
+  scene.natural_variation.clear();
   return scene;
 }
 
-Eigen::Vector3d Scene::natural_curvature() const {
-  if (natural_strain.head<2>().isZero(0)) return Eigen::Vector3d::Zero();
+Eigen::Matrix3d Scene::first_frame() const {
+  const char* const key = naturally_bent() ? "natural_curvature" : "bending_stiffness";
   const std::optional<std::size_t> clamp = first_clamp_of(*this);
   if (!clamp) {
     throw InputError(fmt::format(
-        "{}: rod.natural_curvature: no gripper says about which axis (allowed: a gripper with hold "
-        "= \"clamp\")",
-        file));
+        "{}: rod.{}: no gripper says about which axis (allowed: a gripper with hold = \"clamp\")",
+        file, key));
   }
   const energy_model::Problem problem = scene_problem(*this);
   const Gripper& gripper = grippers[*clamp];
   const bool has_d1 = gripper.frame && gripper.frame->d1;
   if (!has_d1 && !energy_model::natural_normal(problem)) {
     throw InputError(fmt::format(
-        "{}: rod.natural_curvature: the scene lies in no plane, and the first clamp does not say "
-        "where d1 is (allowed: frame or quaternion there)",
-        gripper.where.empty() ? file : gripper.where));
+        "{}: rod.{}: the scene lies in no plane, and the first clamp does not say where d1 is "
+        "(allowed: frame or quaternion there)",
+        gripper.where.empty() ? file : gripper.where, key));
   }
-  const Eigen::Matrix3d frame = energy_model::first_frame(problem);
-  return frame.leftCols<2>() * natural_strain.head<2>();
+  return energy_model::first_frame(problem);
+}
+
+bool Scene::naturally_curved() const {
+  return !natural_strain.head<2>().isZero(0) ||
+         std::any_of(natural_variation.begin(), natural_variation.end(),
+                     [](const Eigen::Vector2d& strain) { return !strain.isZero(0); });
+}
+
+Eigen::Vector3d Scene::natural_curvature() const { return natural_curvature(0, length); }
+
+Eigen::Vector3d Scene::natural_curvature(double begin, double end) const {
+  if (!naturally_curved()) return Eigen::Vector3d::Zero();
+  Eigen::Vector2d mean = natural_strain.head<2>();
+  const double from = 2 * begin / length - 1;
+  const double to = 2 * end / length - 1;
+  for (std::size_t k = 0; k < natural_variation.size(); ++k) {
+    // int P_j = (P_(j+1) - P_(j-1)) / (2 j + 1)
+    const auto j = static_cast<unsigned>(k + 1);
+    const auto integral = [j](double x) {
+      return (std::legendre(j + 1, x) - std::legendre(j - 1, x)) / (2.0 * j + 1);
+    };
+    const double of_part =
+        to > from ? (integral(to) - integral(from)) / (to - from) : std::legendre(j, from);
+    mean += of_part * natural_variation[k];
+  }
+  return first_frame().leftCols<2>() * mean;
 }
 
 bool Scene::holds_twist() const {
-  const std::optional<std::size_t> always = naturally_bent() ? first_clamp_of(*this) : std::nullopt;
+  const std::optional<std::size_t> always =
+      has_material_directors() ? first_clamp_of(*this) : std::nullopt;
   int holding = 0;
   for (std::size_t i = 0; i < grippers.size(); ++i) {
     if (grippers[i].frame || always == i) ++holding;
@@ -178,7 +229,8 @@ bool Scene::holds_twist() const {
 
 Scene Scene::without_twist() const {
   Scene scene = *this;
-  const std::optional<std::size_t> always = naturally_bent() ? first_clamp_of(*this) : std::nullopt;
+  const std::optional<std::size_t> always =
+      has_material_directors() ? first_clamp_of(*this) : std::nullopt;
   for (std::size_t i = 0; i < grippers.size(); ++i) {
     if (always != i) scene.grippers[i].frame.reset();
   }
@@ -188,9 +240,11 @@ Scene Scene::without_twist() const {
 void Scene::scale_modulus(double factor) {
   material.youngs_modulus *= factor;
   if (given_bending_stiffness) *given_bending_stiffness *= factor;
+  if (given_bending_stiffness_2) *given_bending_stiffness_2 *= factor;
   if (torsional_stiffness) *torsional_stiffness *= factor;
   for (Section& section : sections) {
     section.bending_stiffness *= factor;
+    if (section.bending_stiffness_2) *section.bending_stiffness_2 *= factor;
     if (section.torsional_stiffness) *section.torsional_stiffness *= factor;
   }
 }
@@ -204,13 +258,25 @@ void Scene::scale_density(double factor) {
 std::optional<Eigen::Vector3d> Scene::plane_normal() const {
   if (holds_twist()) return std::nullopt;
   std::optional<Eigen::Vector3d> normal = scene_normal(*this);
-  if (!normal || natural_strain.head<2>().isZero(0)) return normal;
+  const bool curved = naturally_curved();
+  if (!normal || !(curved || has_two_stiffnesses())) return normal;
   normal = energy_model::natural_normal(scene_problem(*this));
   if (!normal) return std::nullopt;
-  const Eigen::Vector3d curvature = natural_curvature();
   constexpr double noise = 1e-9;
-  const bool about_normal = normal->cross(curvature).norm() <= noise * curvature.norm();
-  return about_normal && natural_strain.z() == 0 ? normal : std::nullopt;
+  if (has_two_stiffnesses()) {
+    const Eigen::Matrix3d frame = first_frame();
+    const bool oblique =
+        std::abs(frame.col(0).dot(*normal)) > noise && std::abs(frame.col(1).dot(*normal)) > noise;
+    if (oblique || natural_strain.z() != 0) return std::nullopt;
+    if (!curved) return normal;
+  }
+  const Eigen::Matrix3d frame = first_frame();
+  const auto about_normal = [&](const Eigen::Vector2d& strain) {
+    return normal->cross(frame.leftCols<2>() * strain).norm() <= noise * strain.norm();
+  };
+  const bool flat = about_normal(natural_strain.head<2>()) && natural_strain.z() == 0 &&
+                    std::all_of(natural_variation.begin(), natural_variation.end(), about_normal);
+  return flat ? normal : std::nullopt;
 }
 
 int Scene::spans() const {

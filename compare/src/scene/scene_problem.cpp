@@ -10,19 +10,24 @@ energy_model::Problem scene_problem(const Scene& scene) {
   energy_model::Problem problem;
   problem.length = scene.length;
   problem.bending_stiffness = scene.bending_stiffness();
+  problem.bending_stiffness_2 = scene.given_bending_stiffness_2;
   problem.torsional_stiffness = scene.twisting_stiffness();
   problem.weight_per_length = scene.mass_per_length() * scene.gravity;
   for (const Section& section : scene.sections) {
     // Dividing first leaves GJ as it is where EI is.
-    const double like_the_rod = section.bending_stiffness / problem.bending_stiffness;
+    const double like_the_rod = section.mean_bending_stiffness() / scene.mean_bending_stiffness();
     problem.sections.push_back({.begin = section.from,
                                 .end = section.to,
                                 .bending_stiffness = section.bending_stiffness,
                                 .torsional_stiffness = section.torsional_stiffness.value_or(
                                     like_the_rod * problem.torsional_stiffness),
-                                .weight_per_length = section.mass_per_length * scene.gravity});
+                                .weight_per_length = section.mass_per_length * scene.gravity,
+                                .bending_stiffness_2 = section.bending_stiffness_2});
   }
   if (scene.naturally_bent()) problem.natural_strains = {scene.natural_strain};
+  for (const Eigen::Vector2d& strain : scene.natural_variation) {
+    problem.natural_strains.emplace_back(strain.x(), strain.y(), 0);
+  }
   for (const Gripper& grip : scene.grippers) {
     energy_model::Grip held{grip.at, grip.position, grip.direction, std::nullopt};
     if (grip.frame) held.frame = {grip.frame->d1, grip.frame->roll};

@@ -135,13 +135,14 @@ class Overrider {
   const std::vector<Material>& materials_;
 };
 
-/// EI of a scene whose GJ is given; none if the file is no scene without other values.
+/// EI, or the mean that GJ goes with, of a scene whose GJ is given; none if the file is no scene
+/// without other values.
 std::optional<double> bending_stiffness_with_torsion(const toml::table& root,
                                                      const std::string& name,
                                                      const std::vector<Material>& materials) {
   if (!root["rod"]["torsional_stiffness"]) return std::nullopt;
   try {
-    return read_scene(root, name, materials).bending_stiffness();
+    return read_scene(root, name, materials).mean_bending_stiffness();
   } catch (const InputError&) {
     return std::nullopt;
   }
@@ -208,7 +209,7 @@ Scene SceneTemplate::with(const std::vector<FieldValue>& values) const {
   });
   if (scene.torsional_stiffness && parsed_->bending_stiffness && !gives_torsion) {
     // Dividing first leaves GJ as it is where EI is.
-    *scene.torsional_stiffness *= scene.bending_stiffness() / *parsed_->bending_stiffness;
+    *scene.torsional_stiffness *= scene.mean_bending_stiffness() / *parsed_->bending_stiffness;
   }
   return scene;
 }

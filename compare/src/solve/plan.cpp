@@ -163,7 +163,7 @@ LeftOut inertia(const Scene& scene, double speed) {
   const double mass_per_length = scene.mass() / scene.length;
   result.bound_m = swings ? unbounded
                           : speed * scene.length * scene.length *
-                                std::sqrt(mass_per_length / (3 * scene.bending_stiffness()));
+                                std::sqrt(mass_per_length / (3 * scene.softer_bending_stiffness()));
   result.why =
       swings ? "a rod on one pin swings" : "kinetic energy of a start or stop at the gripper speed";
   return result;
@@ -176,11 +176,16 @@ LeftOut twist_left_out(const Scene& scene, const Plan& plan) {
     return {"twist", takes_twist(scene, hooke) ? "chain, force with the law paper" : "chain, force",
             unbounded, "the grippers hold it"};
   }
-  if (!scene.naturally_bent()) {
+  if (!scene.has_material_directors()) {
     return {"twist", "all", 0, "none in a round, naturally straight rod free to twist"};
   }
-  if (plan.planar) return {"twist", "chain, force", 0, "none in a plane"};
-  return {"twist", "chain, force", unbounded, "a rod that is curved by nature twists in space"};
+  // A strip may leave its plane sideways.
+  if (plan.planar && !scene.has_two_stiffnesses()) {
+    return {"twist", "chain, force", 0, "none in a plane"};
+  }
+  return {"twist", "chain, force", unbounded,
+          scene.naturally_bent() ? "a rod that is curved by nature twists in space"
+                                 : "a rod of two bending stiffnesses twists in space"};
 }
 
 LeftOut natural_left_out(const Scene& scene) {
@@ -214,6 +219,7 @@ void look_at_twist(const energy_model::Equilibrium& rod, Plan& plan) {
 std::string no_polygon(const Scene& scene, const Plan& plan) {
   if (!plan.twist.empty()) return "the polygon that answers has no twist";
   if (scene.naturally_bent()) return "the polygon that answers is straight by nature";
+  if (scene.has_two_stiffnesses()) return "the polygon that answers is round";
   if (!scene.sections.empty()) return "the polygon that answers is of one section";
   return {};
 }

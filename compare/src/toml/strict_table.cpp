@@ -184,6 +184,25 @@ std::optional<Eigen::Vector2d> StrictTable::optional_pair(std::string_view key,
   return read_numbers<2>(key, *node, dimension, "must be one number, or two in brackets [x, y]");
 }
 
+std::vector<Eigen::Vector2d> StrictTable::pairs(std::string_view key, Dimension dimension,
+                                                std::size_t most) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return {};
+  const toml::array* rows = node->as_array();
+  if (rows == nullptr || rows->empty() || !rows->front().is_array()) {
+    return {optional_pair(key, dimension).value()};
+  }
+  if (rows->size() > most) {
+    fail(key, fmt::format("{} rows (allowed: 1 to {})", rows->size(), most));
+  }
+  std::vector<Eigen::Vector2d> pairs;
+  for (const toml::node& row : *rows) {
+    pairs.emplace_back(read_numbers<2>(
+        key, row, dimension, "must be one number, [x, y], or rows of two numbers [[x, y], ..]"));
+  }
+  return pairs;
+}
+
 std::optional<Eigen::Matrix3d> StrictTable::optional_rows(std::string_view key) {
   const toml::node* node = find(key);
   if (node == nullptr) return std::nullopt;

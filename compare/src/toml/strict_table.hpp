@@ -63,6 +63,8 @@ class StrictTable {
   std::optional<Eigen::Vector3d> optional_vector(std::string_view key, Dimension dimension);
   /// One number y, which is [0, y], or [x, y].
   std::optional<Eigen::Vector2d> optional_pair(std::string_view key, Dimension dimension);
+  /// The same, or rows of two numbers each, one to `most` of them: [[x, y], ..]. None: no key.
+  std::vector<Eigen::Vector2d> pairs(std::string_view key, Dimension dimension, std::size_t most);
   /// Rows of three numbers each.
   std::optional<Eigen::Matrix3d> optional_rows(std::string_view key);
   /// As it is written, of any norm.

@@ -52,9 +52,10 @@ double error_estimate(const SpanSolution& solution, double load) {
   const double K = solution.terms;
   const double angle = model.tail(solution.x) / (2 * K);
   const double softest = std::min(solution.softest, 1.0);
+  // The unit is the rod's smaller bending stiffness.
   double softest_section = 1;
   for (const Span::Part& part : model.span().parts) {
-    softest_section = std::min(softest_section, part.bending);
+    softest_section = std::min(softest_section, part.stiffness.head<2>().minCoeff());
   }
   return (solution.next_step + (rounding_of(scale) + scale * angle / (2 * K)) / softest) /
              std::sqrt(softest_section) +

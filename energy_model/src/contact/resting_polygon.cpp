@@ -62,7 +62,7 @@ class Resting {
       problem_.rest_lengths[static_cast<Eigen::Index>(i)] = mesh_.s[i + 1] - mesh_.s[i];
     }
     problem_.stretch_stiffness = stiff;
-    problem_.stiffness = 1;
+    problem_.stiffness = round(span.stiffness);
     place_joints();
     place_forces();
     hold();
@@ -94,6 +94,11 @@ class Resting {
  private:
   [[nodiscard]] double s(Eigen::Index i) const { return mesh_.s[static_cast<std::size_t>(i)]; }
 
+  /// EI of a round rod that bends about as much; in the plane the same.
+  [[nodiscard]] double round(const Eigen::Vector3d& stiffness) const {
+    return span_.planar ? stiffness.x() : std::sqrt(stiffness.x() * stiffness.y());
+  }
+
   void add_wall(const Span::Wall& wall, double stiffness) {
     problem_.walls.push_back({-wall.offset * wall.normal, wall.normal, stiffness});
   }
@@ -107,14 +112,14 @@ class Resting {
 
   void place_joints() {
     const Eigen::Index joints = problem_.rest_lengths.size() - 1;
-    if (!span_.parts.empty()) problem_.stiffnesses.setOnes(joints);
+    if (!span_.parts.empty()) problem_.stiffnesses.setConstant(joints, problem_.stiffness);
     if (span_.planar && !span_.natural.empty()) problem_.natural_turns.setZero(joints);
     for (Eigen::Index i = 0; i < joints; ++i) {
       const double begin = (s(i) + s(i + 1)) / 2;
       const double end = (s(i + 1) + s(i + 2)) / 2;
       for (const Span::Part& part : span_.parts) {
         const bool within = s(i + 1) >= part.begin && s(i + 1) <= part.end;
-        if (within) problem_.stiffnesses[i] = part.bending;
+        if (within) problem_.stiffnesses[i] = round(part.stiffness);
       }
       if (problem_.natural_turns.size() > 0) {
         problem_.natural_turns[i] =

@@ -34,7 +34,7 @@ int curved_rates(double at, const double* y, double* rate, void* data) {
   const Vector m(y + 12);
   const Eigen::Vector3d n = piece.n - at * section.weight;
   const Eigen::Vector3d t = R.col(2);
-  const Eigen::Vector3d compliance(1 / section.bending, 1 / section.bending, 1 / section.torsion);
+  const Eigen::Vector3d compliance = section.stiffness().cwiseInverse();
   const Eigen::Vector3d own = R.transpose() * m;
   const Eigen::Vector3d stretch = compliance.cwiseProduct(own);
   const Eigen::Vector3d u = (*piece.natural)(piece.begin + at) + stretch;
@@ -65,13 +65,11 @@ int curved_rates(double at, const double* y, double* rate, void* data) {
 
 Eigen::Vector3d strain_of(const RodSection& section, const NaturalStrain& natural, double s,
                           const CurvedState& state) {
-  const Eigen::Vector3d stiffness(section.bending, section.bending, section.torsion);
-  return natural(s) + (state.R.transpose() * state.m).cwiseQuotient(stiffness);
+  return natural(s) + (state.R.transpose() * state.m).cwiseQuotient(section.stiffness());
 }
 
 Eigen::Matrix3d stiffness_of(const RodSection& section, const Eigen::Matrix3d& R) {
-  const Eigen::Vector3d stiffness(section.bending, section.bending, section.torsion);
-  return R * stiffness.asDiagonal() * R.transpose();
+  return R * section.stiffness().asDiagonal() * R.transpose();
 }
 
 Eigen::Matrix3d rotation_by(const Eigen::Vector3d& turn) {

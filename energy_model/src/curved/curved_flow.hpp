@@ -8,7 +8,7 @@
 
 namespace dlo::energy_model {
 
-/// Cross-section of an inextensible Kirchhoff rod that is curved by nature, in units of its length
+/// Cross-section of an inextensible Kirchhoff rod with material directors, in units of its length
 /// and stiffness (l, EI/l, EI/l^2).
 struct CurvedState {
   Eigen::Vector3d r = Eigen::Vector3d::Zero();      ///< position
@@ -23,7 +23,7 @@ struct CurvedState {
 using NaturalStrain = std::function<Eigen::Vector3d(double s)>;
 
 /// Strains of a cross-section at s,
-///     u = u0(s) + K^-1 R^T m,   K = diag(b, b, c).
+///     u = u0(s) + K^-1 R^T m,   K = diag(b1, b2, c).
 [[nodiscard]] Eigen::Vector3d strain_of(const RodSection& section, const NaturalStrain& natural,
                                         double s, const CurvedState& state);
 
@@ -45,7 +45,7 @@ struct CurvedVariation {
 
 /// Integrals over a piece of the rod.
 struct CurvedIntegrals {
-  double bending = 0;   ///< of b |(u - u0)_12|^2 / 2
+  double bending = 0;   ///< of (b1 (u - u0)_1^2 + b2 (u - u0)_2^2) / 2
   double twisting = 0;  ///< of c (u - u0)_3^2 / 2
   double gravity = 0;   ///< of -w . r
   double turn = 0;      ///< of u_3: the frame's turn ahead of transport

@@ -44,10 +44,7 @@ Eigen::Index node_of(const RodMesh& mesh, double s) {
 
 std::vector<FrameJoint> joints_of(const CurvedRod& rod, const RodMesh& mesh) {
   std::vector<FrameJoint> joints;
-  const auto stiffness = [&](Eigen::Index i) {
-    const RodSection& section = mesh.section_of(i);
-    return Eigen::Vector3d(section.bending, section.bending, section.torsion);
-  };
+  const auto stiffness = [&](Eigen::Index i) { return mesh.section_of(i).stiffness(); };
   const auto to_clamp = [&](Eigen::Index i, Eigen::Index clamp, bool before) {
     const double h = mesh.width(i) / 2;
     const double middle = before ? mesh.s[i + 1] - h / 2 : mesh.s[i] + h / 2;

@@ -11,7 +11,8 @@
 
 namespace dlo::energy_model {
 
-/// A rod that is curved by nature, with all of its grips: torque passes through clamps that do not
+/// A rod with directors that are fixed to its material, curved by nature or of two bending
+/// stiffnesses, with all of its grips: torque passes through clamps that do not
 /// hold the frame, so it is not cut. In the axes of the frame that the first clamp holds, in units
 /// of l, EI/l, EI/l^2.
 struct CurvedRod {

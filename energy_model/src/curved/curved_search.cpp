@@ -10,6 +10,7 @@
 #include "base/found_equilibria.hpp"
 #include "base/require.hpp"
 #include "curved/curved_polygon.hpp"
+#include "problem/rod_law.hpp"
 #include "shooting/span_equilibrium.hpp"
 #include "shooting/span_shooting.hpp"
 
@@ -281,7 +282,7 @@ void check_force(const CurvedRod& rod) {
 }
 
 /// Cross-sections at the nodes of a mesh of a shape: moments from what its grips exert, frames from
-/// the first clamp's on. As good as a start needs.
+/// its d1 or, as good as a start needs, from the first clamp's on.
 std::vector<CurvedState> states_of_shape(const CurvedRod& rod, const Problem& problem,
                                          const Equilibrium& shape, const RodMesh& mesh) {
   constexpr Eigen::Index parts = 8;  // of an interval
@@ -303,7 +304,7 @@ std::vector<CurvedState> states_of_shape(const CurvedRod& rod, const Problem& pr
     return Eigen::Vector3d(rod.axes.transpose() * implied_force(problem, shape, at));
   };
   std::vector<CurvedState> states(static_cast<std::size_t>(count + 1));
-  const double torque_unit = problem.bending_stiffness / problem.length;
+  const double torque_unit = bending_unit(problem) / problem.length;
   Eigen::Vector3d m = Eigen::Vector3d::Zero();
   for (Eigen::Index k = count; k >= 0; --k) {
     CurvedState& state = states[static_cast<std::size_t>(k)];
@@ -331,8 +332,15 @@ std::vector<CurvedState> states_of_shape(const CurvedRod& rod, const Problem& pr
     const Eigen::Matrix3d carried = rolled(transport * R, h * u3);
     states[static_cast<std::size_t>(to)].R = frame_of(carried.col(0), t.col(to).normalized());
   };
-  for (Eigen::Index k = first; k < count; ++k) carry(k, k + 1);
-  for (Eigen::Index k = first; k > 0; --k) carry(k, k - 1);
+  if (samples.d1.cols() > 0) {
+    for (Eigen::Index k = 0; k <= count; ++k) {
+      const Eigen::Vector3d d1 = rod.axes.transpose() * samples.d1.col(k);
+      states[static_cast<std::size_t>(k)].R = frame_of(d1, t.col(k).normalized());
+    }
+  } else {
+    for (Eigen::Index k = first; k < count; ++k) carry(k, k + 1);
+    for (Eigen::Index k = first; k > 0; --k) carry(k, k - 1);
+  }
   std::vector<CurvedState> nodes;
   for (Eigen::Index k = 0; k <= count; k += parts) {
     nodes.push_back(states[static_cast<std::size_t>(k)]);
@@ -356,7 +364,7 @@ CurvedEquilibrium refine_curved(const CurvedRod& rod, const Problem& problem,
   const double b = softest(rod.span);
   double force = total_load(rod.span) / b;
   for (const Reaction& grip : shape.grips) {
-    const double unit = problem.bending_stiffness / (problem.length * problem.length);
+    const double unit = bending_unit(problem) / (problem.length * problem.length);
     force = std::max(force, grip.force.norm() / unit / b);
   }
   const RodMesh mesh = make_mesh(rod.span, resolving_interval(rod, std::min(force, most_force)));

@@ -27,7 +27,8 @@ struct CurvedSearchResult {
                                                const Deadline& deadline);
 
 /// The equilibrium that Newton's method leads to from a shape of this problem or a similar one: its
-/// frames turn from the first clamp's by the torque that its grips imply. Frames after it are held
+/// frames are those of its d1, or turn from the first clamp's by the torque that its grips imply
+/// where it has none. Frames after the first clamp's are held
 /// where d1 and the rolls say, or without d1 where the shape has them.
 /// @throws std::invalid_argument if there is no clamp
 [[nodiscard]] CurvedEquilibrium refine_curved(const CurvedRod& rod, const Problem& problem,

@@ -266,7 +266,7 @@ double bending_force(const CurvedRod& rod, const std::vector<CurvedState>& state
   double force = 1;
   for (const CurvedState& state : states) {
     for (const RodSpan::Part& part : rod.span.parts) {
-      const double b = std::min(part.section.bending, part.section.torsion);
+      const double b = part.section.stiffness().minCoeff();
       force = std::max({force, state.n.norm() / b, state.m.squaredNorm() / (b * b)});
     }
   }

@@ -11,6 +11,7 @@
 #include "base/sized_samples.hpp"
 #include "curved/curved_search.hpp"
 #include "problem/reduction.hpp"
+#include "problem/rod_law.hpp"
 #include "shooting/second_variation.hpp"
 
 namespace dlo::energy_model {
@@ -42,7 +43,7 @@ std::size_t node_at(const CurvedEquilibrium& shape, double s) {
 std::vector<Reaction> reactions_of(const Problem& problem, const CurvedRod& rod,
                                    const CurvedEquilibrium& shape,
                                    const std::vector<CurvedState>& before) {
-  const double torque_unit = problem.bending_stiffness / problem.length;
+  const double torque_unit = bending_unit(problem) / problem.length;
   const double force_unit = torque_unit / problem.length;
   std::vector<Reaction> reactions(problem.grips.size());
   for (const RodSpan::Hold& hold : rod.span.holds) {
@@ -73,7 +74,7 @@ std::vector<TwistedPart> twists_of(const Problem& problem, const CurvedRod& rod,
     part.begin = shape.s[static_cast<Eigen::Index>(begin)] * problem.length;
     part.end = clamp.at * problem.length;
     for (std::size_t i = begin; i < end; ++i) part.angle += shape.turns[i];
-    part.torque = before[end].m.dot(clamp.direction) * problem.bending_stiffness / problem.length;
+    part.torque = before[end].m.dot(clamp.direction) * bending_unit(problem) / problem.length;
     parts.push_back(part);
     begin = end;
   }

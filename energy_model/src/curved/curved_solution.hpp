@@ -7,7 +7,7 @@
 
 namespace dlo::energy_model {
 
-/// Equilibria of a rod that is curved by nature, stable ones first, by energy; never empty.
+/// Equilibria of a rod that has_material_directors(), stable ones first, by energy; never empty.
 struct CurvedSolutions {
   std::vector<Equilibrium> equilibria;
   bool out_of_time = false;

@@ -202,7 +202,7 @@ Found scan_tip(const Problem& problem, const ReducedCantilever& cantilever,
   return result;
 }
 
-/// The spans of a rod that is straight by nature are twisted each on its own.
+/// The spans of a round rod that is straight by nature are twisted each on its own.
 void refuse_passed_torque(const Problem& problem) {
   const std::vector<OrderedGrip> grips = ordered_grips(problem);
   const auto holds = [](const OrderedGrip& g) { return g.grip->frame.has_value(); };
@@ -216,7 +216,7 @@ void refuse_passed_torque(const Problem& problem) {
 }
 
 Found search(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
-  if (!problem.natural_strains.empty()) {
+  if (has_material_directors(problem)) {
     CurvedSolutions curved = solve_curved(problem, options, deadline);
     return {std::move(curved.equilibria), curved.out_of_time, ""};
   }

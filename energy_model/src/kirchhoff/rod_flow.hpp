@@ -1,15 +1,22 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 namespace dlo::energy_model {
 
 /// A section of the rod, in units of the rod.
 struct RodSection {
-  double bending = 1;  ///< b, its EI over that of the problem
-  double torsion = 0;  ///< c, its GJ over the problem's EI; > 0 where directors come along
+  double bending = 1;  ///< b, its EI over bending_unit(); about d1 where bending_2 is given
+  double torsion = 0;  ///< c, its GJ over the same unit; > 0 where directors come along
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< w
+  std::optional<double> bending_2 = std::nullopt;    ///< about d2; none: as about d1
+
+  /// About d1, d2 and the tangent.
+  [[nodiscard]] Eigen::Vector3d stiffness() const {
+    return {bending, bending_2.value_or(bending), torsion};
+  }
 };
 
 /// Cross-section of an inextensible, round, naturally straight Kirchhoff rod in units of its length

@@ -65,17 +65,17 @@ std::optional<RodSpan::Twist> twist_between(const std::vector<RodSpan::Part>& pa
 /// Of the rod from `begin` to `end`, both in units of l.
 std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, double end) {
   const double l = problem.length;
-  const double bending = problem.bending_stiffness;
+  const double unit = bending_unit(problem);
   std::vector<RodSpan::Part> parts;
   for (const Section& section : rod_parts(problem)) {
     const double from = std::max(own_arc_length(section.begin, l), begin);
     const double to = std::min(own_arc_length(section.end, l), end);
     // What is shorter than the distance of two places is none.
     if (to - from < same_place) continue;
-    parts.push_back({from - begin,
-                     to - begin,
-                     {section.bending_stiffness / bending, section.torsional_stiffness / bending,
-                      section.weight_per_length * l * l * l / bending}});
+    RodSection own{section.bending_stiffness / unit, section.torsional_stiffness / unit,
+                   section.weight_per_length * l * l * l / unit};
+    if (section.bending_stiffness_2) own.bending_2 = *section.bending_stiffness_2 / unit;
+    parts.push_back({from - begin, to - begin, own});
   }
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) parts[i].end = parts[i + 1].begin;
   parts.front().begin = 0;
@@ -86,7 +86,7 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
 RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
                   double end) {
   const double l = problem.length;
-  const double force_unit = problem.bending_stiffness / (l * l);
+  const double force_unit = bending_unit(problem) / (l * l);
   const Eigen::Vector3d origin = problem.grips.front().position;
   RodSpan span;
   span.begin = begin;
@@ -125,7 +125,7 @@ std::vector<OrderedGrip> checked_grips(const Problem& problem) {
 
 RodSpan uncut(const Problem& problem) {
   const double l = problem.length;
-  const double force_unit = problem.bending_stiffness / (l * l);
+  const double force_unit = bending_unit(problem) / (l * l);
   const Eigen::Vector3d& origin = problem.grips.front().position;
   RodSpan span;
   for (const OrderedGrip& grip : checked_grips(problem)) {
@@ -238,7 +238,9 @@ const RodSection& section_at(const RodSpan& span, double s) {
 
 double softest(const RodSpan& span) {
   double least = INFINITY;
-  for (const RodSpan::Part& part : span.parts) least = std::min(least, part.section.bending);
+  for (const RodSpan::Part& part : span.parts) {
+    least = std::min(least, part.section.stiffness().head<2>().minCoeff());
+  }
   return least;
 }
 

@@ -90,7 +90,7 @@ struct ForceField {
 /// The section at s; of two that meet there the one after it.
 [[nodiscard]] const RodSection& section_at(const RodSpan& span, double s);
 
-/// Least bending stiffness of a span, b.
+/// Least bending stiffness of a span, about either axis.
 [[nodiscard]] double softest(const RodSpan& span);
 
 /// Sum of the norms of weight and loads.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/require.hpp"
+#include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -47,6 +48,8 @@ void check_sections(const Problem& problem) {
             ">= " + std::to_string(before) + ", where the one before it ends");
     before = section.end;
     require_positive("Problem", "bending_stiffness of a section", section.bending_stiffness);
+    require_positive("Problem", "bending_stiffness_2 of a section",
+                     section.bending_stiffness_2.value_or(section.bending_stiffness));
     require(section.torsional_stiffness >= 0 && std::isfinite(section.torsional_stiffness) &&
                 (section.torsional_stiffness > 0 || !(problem.torsional_stiffness > 0)),
             "Problem", "torsional_stiffness of a section", section.torsional_stiffness,
@@ -56,16 +59,25 @@ void check_sections(const Problem& problem) {
   }
 }
 
-void check_natural_strains(const Problem& problem) {
+void check_material_directors(const Problem& problem) {
+  require_positive("Problem", "bending_stiffness_2",
+                   problem.bending_stiffness_2.value_or(problem.bending_stiffness));
   for (const Eigen::Vector3d& strain : problem.natural_strains) {
     require(strain.allFinite(), "Problem", "natural strain", strain.norm(), "finite");
   }
-  if (problem.natural_strains.empty()) return;
-  require_positive("Problem", "torsional_stiffness, of a rod that is not straight by nature",
+  if (!has_material_directors(problem)) return;
+  require_positive("Problem",
+                   problem.natural_strains.empty()
+                       ? "torsional_stiffness, of a rod with two bending stiffnesses"
+                       : "torsional_stiffness, of a rod that is not straight by nature",
                    problem.torsional_stiffness);
 }
 
 }  // namespace
+
+bool has_material_directors(const Problem& problem) {
+  return !problem.natural_strains.empty() || has_two_stiffnesses(problem);
+}
 
 void check(const Problem& problem) {
   require_positive("Problem", "length", problem.length);
@@ -84,7 +96,7 @@ void check(const Problem& problem) {
   }
   check_twist(problem);
   check_sections(problem);
-  check_natural_strains(problem);
+  check_material_directors(problem);
   for (const Wall& wall : problem.walls) {
     require(wall.point.allFinite(), "Problem", "point of a wall", wall.point.norm(), "finite");
     require_positive("Problem", "|normal| of a wall", wall.normal.norm());

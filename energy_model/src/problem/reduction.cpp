@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/require.hpp"
+#include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
 
@@ -74,7 +75,7 @@ Reaction clamp_reaction(const Problem& problem, const ReducedCantilever& reduced
 }
 
 Energies restore(const Problem& problem, const Energies& own_units) {
-  const double unit = problem.bending_stiffness / problem.length;
+  const double unit = bending_unit(problem) / problem.length;
   return {.bending = own_units.bending * unit,
           .twisting = own_units.twisting * unit,
           .gravity = own_units.gravity * unit,

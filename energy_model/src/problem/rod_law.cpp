@@ -1,6 +1,7 @@
 #include "problem/rod_law.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "base/require.hpp"
@@ -16,7 +17,7 @@ std::vector<Section> rod_parts(const Problem& problem) {
   const auto fill_to = [&](double end) {
     if (end > at) {
       parts.push_back({at, end, problem.bending_stiffness, problem.torsional_stiffness,
-                       problem.weight_per_length});
+                       problem.weight_per_length, problem.bending_stiffness_2});
     }
   };
   for (const Section& section : problem.sections) {
@@ -26,6 +27,24 @@ std::vector<Section> rod_parts(const Problem& problem) {
   }
   fill_to(problem.length);
   return parts;
+}
+
+bool has_two_stiffnesses(const Problem& problem) {
+  return problem.bending_stiffness_2 ||
+         std::any_of(problem.sections.begin(), problem.sections.end(),
+                     [](const Section& section) { return section.bending_stiffness_2; });
+}
+
+double bending_unit(const Problem& problem) {
+  return std::min(problem.bending_stiffness,
+                  problem.bending_stiffness_2.value_or(problem.bending_stiffness));
+}
+
+Eigen::Vector3d principal_stiffness(const Section& section, double unit) {
+  return Eigen::Vector3d(section.bending_stiffness,
+                         section.bending_stiffness_2.value_or(section.bending_stiffness),
+                         section.torsional_stiffness) /
+         unit;
 }
 
 Eigen::Vector3d natural_strain(const Problem& problem, double arc_length) {
@@ -78,7 +97,8 @@ Eigen::Matrix3d first_frame(const Problem& problem) {
   if (clamp.frame && clamp.frame->d1) return held_frame(clamp, *clamp.frame->d1);
   const std::optional<Eigen::Vector3d> normal = natural_normal(problem);
   require(normal.has_value(), "Problem", "arc length of the first clamp, whose frame lacks d1",
-          clamp.at, "that of a clamp with d1: the rod is curved by nature and lies in no plane");
+          clamp.at,
+          "that of a clamp with d1: the rod is not round or not straight, and lies in no plane");
   return held_frame(clamp, normal->cross(*clamp.direction));
 }
 

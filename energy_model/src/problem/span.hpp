@@ -49,8 +49,7 @@ struct Span {
   /// A part with a section of its own.
   struct Part {
     double begin = 0, end = 0;
-    double bending = 1;                                ///< EI over the unit
-    double torsion = 0;                                ///< GJ over the same unit
+    Eigen::Vector3d stiffness = {1, 1, 0};             ///< as Span::stiffness
     Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< more than elsewhere
   };
 
@@ -74,12 +73,24 @@ struct Span {
   std::vector<Contact> contacts;  ///< by growing s, none over another
   std::optional<Twist> twist;     ///< where both ends are clamped, not planar
   std::vector<Part> parts;        ///< where the section is another one, by growing s
-  /// About d1, d2 and the tangent of a frame that has d1() at the start; about d1 alone if planar.
+  /// About d1, d2 and the tangent of a frame that has first_d1() at the start; about d1 alone if
+  /// planar. Of all rods with material directors, zero if the rod is straight.
   NaturalStrains natural;
-  double torsion = 0;  ///< GJ / EI where `parts` do not say so; of a rod with natural strains
+  /// EI about the same d1 and d2, and GJ of a rod with material directors, over the unit of EI,
+  /// where `parts` do not say so. Without material directors both EI are the same.
+  Eigen::Vector3d stiffness = {1, 1, 0};
+  /// d1 at a clamped start where the principal axes of the section say so; none: d1().
+  std::optional<Eigen::Vector3d> principal_d1;
 
   /// d1 of the frame that a clamp's direction has here: z, if that is not nearly the direction.
   [[nodiscard]] static Eigen::Vector3d d1(const Eigen::Vector3d& direction);
+
+  /// d1 of the frame at the start, whose tangent this is.
+  [[nodiscard]] Eigen::Vector3d first_d1(const Eigen::Vector3d& tangent) const {
+    return principal_d1.value_or(d1(tangent));
+  }
+  /// Whether the rod's frame is fixed to its material (dlo::energy_model::has_material_directors).
+  [[nodiscard]] bool has_material_directors() const { return !natural.empty(); }
 
   /// Of the rod between two arc lengths; negative where `to` comes first.
   [[nodiscard]] Eigen::Vector3d weight_between(double from, double to) const;
@@ -92,7 +103,7 @@ struct Span {
   /// A uniform straight rod with one clamp and nothing but weight and loads, in a plane.
   [[nodiscard]] bool is_plain_cantilever() const {
     return planar && start_direction && holds.empty() && soft_walls.empty() && contacts.empty() &&
-           parts.empty() && natural.empty();
+           parts.empty() && !has_material_directors();
   }
 };
 

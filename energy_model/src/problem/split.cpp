@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "base/require.hpp"
 #include "base/spin.hpp"
@@ -12,6 +14,8 @@
 
 namespace dlo::energy_model {
 namespace {
+
+using std::numbers::pi;
 
 /// What a span's frame has to reckon with: directions of grips, chords and forces, in space.
 struct Directions {
@@ -65,7 +69,7 @@ void turn_vectors(Span& span, const Eigen::Matrix3d& rotation) {
 /// placed.start on.
 void place_sections(const Problem& problem, PlacedSpan& placed, double begin, double end) {
   const double l = problem.length;
-  const double force_unit = problem.bending_stiffness / (l * l);
+  const double force_unit = bending_unit(problem) / (l * l);
   for (const Section& section : problem.sections) {
     const double from = std::max(begin, section.begin);
     const double to = std::min(end, section.end);
@@ -73,9 +77,9 @@ void place_sections(const Problem& problem, PlacedSpan& placed, double begin, do
     const double a = placed.s_of(from, l);
     const double b = placed.s_of(to, l);
     const Eigen::Vector3d more = section.weight_per_length - problem.weight_per_length;
-    placed.span.parts.push_back(
-        {std::min(a, b), std::max(a, b), section.bending_stiffness / problem.bending_stiffness,
-         section.torsional_stiffness / problem.bending_stiffness, more * l / force_unit});
+    placed.span.parts.push_back({std::min(a, b), std::max(a, b),
+                                 principal_stiffness(section, bending_unit(problem)),
+                                 more * l / force_unit});
   }
   if (placed.reversed) std::reverse(placed.span.parts.begin(), placed.span.parts.end());
 }
@@ -87,43 +91,77 @@ double mean_torsion(const Problem& problem, double begin, double end) {
     const double length = std::min(end, part.end) - std::max(begin, part.begin);
     if (length > 0) compliance += length / part.torsional_stiffness;
   }
-  return (end - begin) / compliance / problem.bending_stiffness;
+  return (end - begin) / compliance / bending_unit(problem);
 }
 
-/// The frame that a clamp holds the rod in, whose strains are not zero by nature; it is the first
-/// one, or says where d1 is.
+/// The frame in which a clamp holds a rod with material directors; it is the first one, or says
+/// where d1 is.
 Eigen::Matrix3d material_frame(const Problem& problem, const OrderedGrip& clamp) {
   if (clamp.index == first_clamp(problem)) return first_frame(problem);
   const FrameHold* const frame = clamp.grip->frame ? &*clamp.grip->frame : nullptr;
   require(frame != nullptr && frame->d1.has_value(), "Problem",
           "arc length of a clamp after the first one, whose frame lacks d1", clamp.grip->at,
-          "the rod's end, where the rod is not straight by nature");
+          "the rod's end, where the rod is not round or not straight by nature");
   return held_frame(*clamp.grip, *frame->d1);
 }
 
-/// Natural strains as the span sees them: about the axes of the frame with Span::d1() at its start.
-void place_natural_strains(const Problem& problem, PlacedSpan& placed, const OrderedGrip& anchor) {
+/// The rod's directors at the start of a span, as columns in the span's axes; its tangent there is
+/// `along`. Where no clamp holds the start they are those of a rod in its plane.
+Eigen::Matrix3d directors_at_start(const Problem& problem, const PlacedSpan& placed,
+                                   const OrderedGrip& anchor, const Eigen::Vector3d& along) {
+  Eigen::Matrix3d own;
+  if (placed.span.start_direction) {
+    own = placed.frame * material_frame(problem, anchor);
+  } else {
+    const Eigen::Vector3d normal = placed.frame * natural_normal(problem).value();
+    own << normal.cross(along), normal, along;
+  }
+  if (placed.reversed) own.rightCols<2>() *= -1;
+  return own;
+}
+
+/// Chooses the frame that the span has at its start, and by which angle the rod's own is ahead of
+/// it. That of a round rod is Span::d1()'s whatever the angle. Two bending stiffnesses want one
+/// along the principal axes: of the four the one next to Span::d1()'s, so that a rod in a plane
+/// across one of its axes bends about the frame's first one.
+void place_start_frame(const Eigen::Vector3d& along, const Eigen::Matrix3d& own, bool is_round,
+                       PlacedSpan& placed) {
+  constexpr double rounding = 1e-12;
+  Span& span = placed.span;
+  const Eigen::Vector3d d1 = Span::d1(along);
+  const Eigen::Matrix3d to_own = frame_along(along, d1).transpose() * own;
+  placed.ahead = std::atan2(to_own(1, 0), to_own(0, 0));
+  if (is_round) return;
+  const double quarters = std::round(placed.ahead / (pi / 2));
+  const double aside = placed.ahead - quarters * pi / 2;
+  placed.ahead = quarters * pi / 2;
+  if (std::abs(aside) > rounding) {
+    span.planar = false;
+    span.principal_d1 = Eigen::AngleAxisd(aside, along) * frame_along(along, d1).col(0);
+  }
+  if (std::fmod(std::abs(quarters), 2) == 0) return;
+  std::swap(span.stiffness[0], span.stiffness[1]);
+  for (Span::Part& part : span.parts) std::swap(part.stiffness[0], part.stiffness[1]);
+}
+
+/// Stiffnesses and natural strains of a rod with material directors, about the axes of the frame
+/// that the span has at its start.
+void place_material_directors(const Problem& problem, PlacedSpan& placed,
+                              const OrderedGrip& anchor) {
   Span& span = placed.span;
   const double l = problem.length;
-  span.torsion = problem.torsional_stiffness / problem.bending_stiffness;
-  Eigen::Matrix3d own = Eigen::Matrix3d::Identity();  // directors at the start
-  if (span.start_direction) {
-    own = placed.frame * material_frame(problem, anchor);
-  } else if (span.planar) {
-    const Eigen::Vector3d normal = placed.frame * natural_normal(problem).value();
-    const Eigen::Vector3d t = Eigen::Vector3d::UnitX();
-    own << normal.cross(t), normal, t;
+  if (span.start_direction || span.planar) {
+    const Eigen::Vector3d along =
+        span.start_direction.value_or(Eigen::Vector3d(Eigen::Vector3d::UnitX()));
+    place_start_frame(along, directors_at_start(problem, placed, anchor, along),
+                      !has_two_stiffnesses(problem), placed);
   }
-  const Eigen::Vector3d along =
-      span.start_direction.value_or(Eigen::Vector3d(Eigen::Vector3d::UnitX()));
-  if (placed.reversed) own.rightCols<2>() *= -1;
-  const Eigen::Matrix3d to_own = frame_along(along, Span::d1(along)).transpose() * own;
-  if (span.start_direction || span.planar) placed.ahead = std::atan2(to_own(1, 0), to_own(0, 0));
+  const Eigen::AngleAxisd to_own(placed.ahead, Eigen::Vector3d::UnitZ());
   for (Eigen::Vector3d strain : problem.natural_strains) {
     if (placed.reversed) strain.x() *= -1;
-    if (span.start_direction || span.planar) strain = (to_own * strain).eval();
-    span.natural.coefficients.emplace_back(l * strain);
+    span.natural.coefficients.emplace_back(l * (to_own * strain));
   }
+  if (span.natural.empty()) span.natural.coefficients = {Eigen::Vector3d::Zero()};
   const double sense = placed.reversed ? -1 : 1;
   span.natural.rate = 2 * sense;
   span.natural.from = 2 * placed.start / l - 1;
@@ -141,7 +179,7 @@ void place_natural_strains(const Problem& problem, PlacedSpan& placed, const Ord
 /// What two clamps do with the rod's frame between them, seen in a span's own axes.
 std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& start,
                                     const Grip& end, const Eigen::Matrix3d& axes) {
-  const bool fixed = !problem.natural_strains.empty();
+  const bool fixed = has_material_directors(problem);
   if (!end.frame || !(fixed || start.grip->frame)) return std::nullopt;
   const double start_roll = start.grip->frame ? start.grip->frame->roll : 0;
   HeldFrames frames;
@@ -162,13 +200,17 @@ std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& s
 PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
                  double end, bool clamped_begin, bool clamped_end) {
   const double l = problem.length;
-  const double force_unit = problem.bending_stiffness / (l * l);
+  const double force_unit = bending_unit(problem) / (l * l);
   PlacedSpan placed;
   placed.reversed = clamped_end && !clamped_begin;
   placed.start = placed.reversed ? end : begin;
   Span& span = placed.span;
   span.length = (end - begin) / l;
   span.weight = problem.weight_per_length * l / force_unit;
+  span.stiffness = principal_stiffness({.bending_stiffness = problem.bending_stiffness,
+                                        .torsional_stiffness = problem.torsional_stiffness,
+                                        .bending_stiffness_2 = problem.bending_stiffness_2},
+                                       bending_unit(problem));
   place_sections(problem, placed, begin, end);
   const double sense = placed.reversed ? -1 : 1;
 
@@ -226,7 +268,7 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   }
   choose_frame(placed, directions);
   turn_vectors(span, placed.frame);
-  if (!problem.natural_strains.empty()) place_natural_strains(problem, placed, anchor);
+  if (has_material_directors(problem)) place_material_directors(problem, placed, anchor);
   if (clamped_begin && clamped_end) {
     placed.frames = frames_of(problem, held.front(), *held.back().grip, placed.frame);
   }
@@ -235,13 +277,13 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
 
 /// Arc lengths of the clamps that nothing passes through: one that lets the rod turn about its
 /// direction passes a torque on, which there is between clamps that hold frames, and all along a
-/// rod that is not straight by nature.
+/// rod with material directors.
 std::vector<double> cuts_at_clamps(const Problem& problem, const std::vector<OrderedGrip>& grips) {
   std::vector<OrderedGrip> clamps;
   for (const OrderedGrip& g : grips) {
     if (g.grip->direction) clamps.push_back(g);
   }
-  const bool natural = !problem.natural_strains.empty();
+  const bool material = has_material_directors(problem);
   const auto holds = [](const OrderedGrip& g) { return g.grip->frame.has_value(); };
   const auto first = std::find_if(clamps.begin(), clamps.end(), holds);
   const auto last = std::find_if(clamps.rbegin(), clamps.rend(), holds).base();
@@ -249,7 +291,7 @@ std::vector<double> cuts_at_clamps(const Problem& problem, const std::vector<Ord
   for (auto clamp = clamps.begin(); clamp != clamps.end(); ++clamp) {
     const bool between = clamp > first && clamp < last;
     const bool at_end = clamp + 1 == clamps.end() && clamp->grip->at == problem.length;
-    const bool passes = natural ? clamp != clamps.begin() && !at_end : between;
+    const bool passes = material ? clamp != clamps.begin() && !at_end : between;
     if (holds(*clamp) || !passes) cuts.push_back(clamp->grip->at);
   }
   return cuts;

@@ -21,8 +21,8 @@ struct HeldFrames {
 struct PlacedSpan {
   Span span;                                            ///< without twist
   std::optional<HeldFrames> frames;                     ///< that twist it
-  double ahead = 0;                                     ///< of a rod with natural strains: by which
-                                                        ///< its d1 is turned on from the span's
+  double ahead = 0;                                     ///< of a rod with material directors: by
+                                                        ///< which its d1 is turned from the span's
   bool reversed = false;                                ///< s runs against the arc length
   double start = 0;                                     ///< arc length of s = 0 [m]
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();  ///< rows: the span's axes in space

@@ -9,6 +9,7 @@
 
 #include "base/sized_samples.hpp"
 #include "problem/ordered_grips.hpp"
+#include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -99,7 +100,7 @@ ContactPart in_newtons(ContactPart part, double force_unit, double length) {
 Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*>& placed,
                      const std::vector<const SpanSolution*>& solutions) {
   const double l = problem.length;
-  const double energy_unit = problem.bending_stiffness / l;
+  const double energy_unit = bending_unit(problem) / l;
   const double force_unit = energy_unit / l;
   const Eigen::Vector3d origin = problem.grips.front().position;
   Equilibrium result;
@@ -189,9 +190,10 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     if (solutions[i]->x.size() == 0) continue;
     const PlacedSpan& place = *placed[i];
     const double end = place.reversed ? place.start : place.start + place.span.length * l;
-    shapes.push_back({solutions[i]->model->shape(solutions[i]->x), place.reversed, place.start, end,
-                      place.frame.transpose(), place.anchor_position,
-                      place.span.natural.empty() ? std::nullopt : std::optional(place.ahead)});
+    shapes.push_back(
+        {solutions[i]->model->shape(solutions[i]->x), place.reversed, place.start, end,
+         place.frame.transpose(), place.anchor_position,
+         place.span.has_material_directors() ? std::optional(place.ahead) : std::nullopt});
   }
   result.sample = [l, shapes = std::move(shapes)](std::span<const double> arc_lengths) {
     return sample(shapes, l, arc_lengths);

@@ -46,7 +46,7 @@ TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double
     }
     const Samples samples = start.sample(arc_lengths);
     StartShape shape((placed.reversed ? -1.0 : 1.0) * (placed.frame * samples.tangents));
-    if (!placed.span.natural.empty() && samples.d1.cols() > 0) {
+    if (placed.span.has_material_directors() && samples.d1.cols() > 0) {
       shape.roll = roll_of(shape.tangents, placed.frame * samples.d1);
     }
     return shape;
@@ -343,7 +343,7 @@ class EnergySolver::State {
   static StartShape follow_field(const PlacedSpan& placed, const Remembered& last,
                                  const Eigen::VectorXd& s) {
     StartShape shape(placed.frame * last.frame.transpose() * last.model->tangents());
-    if (!placed.span.natural.empty() && !last.planar()) {
+    if (placed.span.has_material_directors() && !last.planar()) {
       shape.roll = roll_of(last.model->tangents(), last.model->d1());
     }
     const Eigen::VectorXd& nodes = last.model->nodes();

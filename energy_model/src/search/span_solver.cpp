@@ -77,7 +77,7 @@ class Search {
     for (const Piece& piece : pieces_of(span)) {
       longest_piece_ = std::max(longest_piece_, piece.length);
     }
-    if (span.natural.empty()) return;
+    if (!span.has_material_directors()) return;
     // What the free rod turns by has to be resolved as well.
     const double curvature = span.natural.largest();
     natural_terms_ = first_terms(curvature * curvature, longest_piece_);
@@ -99,7 +99,8 @@ class Search {
       add(std::move(solution), found);
     }
     const std::vector<TangentField> fields = ranked_fields();
-    const std::size_t tried = span_.natural.empty() ? followed_starts : followed_natural_starts;
+    const std::size_t tried =
+        span_.has_material_directors() ? followed_natural_starts : followed_starts;
     const std::size_t followed = options_.all ? fields.size() : std::min(tried, fields.size());
     std::vector<SpanSolution> coarse;
     for (std::size_t i = 0; i < fields.size() && !out_of_time(); ++i) {
@@ -116,7 +117,7 @@ class Search {
       if (options_.all) add(refined(near_field(fields[i])), found);
       if (i + 1 >= followed) leave_saddles(found);
     }
-    if (span_.planar && !span_.natural.empty()) look_in_space(found);
+    if (span_.planar && span_.has_material_directors()) look_in_space(found);
     return sorted(std::move(found));
   }
 
@@ -134,7 +135,7 @@ class Search {
   [[nodiscard]] int coarse_terms() const {
     if (options_.terms > 0) return options_.terms;
     if (terms() <= few_terms) return terms();
-    const int fields = span_.planar ? 1 : span_.natural.empty() ? 2 : 3;
+    const int fields = span_.planar ? 1 : span_.has_material_directors() ? 3 : 2;
     int coarse = terms() / 2;
     if (!span_.holds.empty()) {
       const int pieces = static_cast<int>(pieces_of(span_).size());
@@ -168,7 +169,7 @@ class Search {
 
   [[nodiscard]] std::vector<TangentField> ranked_fields() {
     std::vector<TangentField> fields =
-        span_.natural.empty() ? start_fields(span_) : natural_fields(span_);
+        span_.has_material_directors() ? natural_fields(span_) : start_fields(span_);
     if (options_.all) return fields;
     const std::shared_ptr<SpanEnergy> model =
         workspace_.model(span_, std::max(8, std::min(natural_terms_, coarse_terms())));
@@ -191,7 +192,8 @@ class Search {
     return ordered;
   }
 
-  /// A curved rod that gives way out of its plane twists far: it has shapes of its own there.
+  /// A curved rod, or a strip, that gives way out of its plane twists far: it has shapes of its own
+  /// there.
   void look_in_space(std::vector<SpanSolution>& found) {
     const auto is_saddle = [](const auto& solution) {
       return solution.status == SolveStatus::saddle;
@@ -289,7 +291,7 @@ class Search {
 
   /// Raises the number of terms until the last ones do not matter any more.
   [[nodiscard]] SpanSolution refined(SpanSolution solution) {
-    const int fields = span_.planar ? 1 : span_.natural.empty() ? 2 : 3;
+    const int fields = span_.planar ? 1 : span_.has_material_directors() ? 3 : 2;
     const int affordable = std::max(32, most_unknowns / (fields * solution.model->pieces()));
     // Soft walls make kinks inside pieces, where contact begins; more terms help only so far.
     constexpr int most_with_walls = 64;

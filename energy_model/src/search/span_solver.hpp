@@ -15,7 +15,7 @@ namespace dlo::energy_model {
 
 /// Starts, in the order of their energy, that the search for the lowest minimum follows.
 inline constexpr std::size_t followed_starts = 2;
-/// The same of a rod that is not straight by nature, whose lowest shape is harder to guess.
+/// The same of a rod with material directors, whose lowest shape is harder to guess.
 inline constexpr std::size_t followed_natural_starts = 6;
 
 /// Gradient norm at which a descent hands over: two Newton steps square it to below rounding, while

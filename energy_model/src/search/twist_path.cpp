@@ -263,7 +263,7 @@ class TwistPath {
 std::optional<Eigen::Vector3d> known_end_d1(const HeldFrames& held, const Span& span) {
   if (!held.start_d1 || !held.end_d1) return std::nullopt;
   const Eigen::Vector3d& start = *span.start_direction;
-  const double ahead = angle_about(start, Span::d1(start), *held.start_d1);
+  const double ahead = angle_about(start, span.first_d1(start), *held.start_d1);
   return Eigen::AngleAxisd(held.roll - ahead, *span.end_direction) * *held.end_d1;
 }
 

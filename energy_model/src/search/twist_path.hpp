@@ -13,7 +13,8 @@ struct EndFrame {
   double twist;        ///< of the rod that has been twisted from the untwisted shape [rad]
 };
 
-/// A shape of a span, planar or not, and d1 at its end, transported from Span::d1() at its start.
+/// A shape of a span, planar or not, and d1 at its end, transported from Span::first_d1() at its
+/// start.
 struct UntwistedShape {
   const SpanSolution& solution;
   Eigen::Vector3d end_d1;

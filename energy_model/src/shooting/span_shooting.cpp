@@ -222,7 +222,7 @@ Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, 
   for (const Load& load : problem.loads) {
     if (load.at <= at) n -= load.force;
   }
-  return n * problem.length * problem.length / problem.bending_stiffness;
+  return n * problem.length * problem.length / bending_unit(problem);
 }
 
 SpanSearchResult search_twisted_span(const RodSpan& span, double tolerance,
@@ -239,12 +239,12 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
   check_load(span);
   double force = total_load(span);
   for (const Reaction& grip : shape.grips) {
-    const double unit = problem.bending_stiffness / (problem.length * problem.length);
+    const double unit = bending_unit(problem) / (problem.length * problem.length);
     force = std::max(force, grip.force.norm() / unit);
   }
   const TwistedPart* twisted = twist_of(span, problem, shape);
   const double torque =
-      twisted == nullptr ? 0 : twisted->torque * problem.length / problem.bending_stiffness;
+      twisted == nullptr ? 0 : twisted->torque * problem.length / bending_unit(problem);
   const double b = softest(span);
   force = std::max(force / b, torque * torque / (b * b));
   const RodMesh mesh = make_mesh(span, longest_interval(span, std::min(force, largest_load)));

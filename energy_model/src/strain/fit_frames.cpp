@@ -24,12 +24,13 @@ Eigen::Vector2d turn_to(const Eigen::Vector3d& v) {
 Eigen::VectorXd RodFrames::from_angles(const Eigen::MatrixX2d& angles) const {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(fields_ * columns_);
   const Eigen::Index first = turn_nodes_ > 0 ? 1 : 0;
-  std::vector<double> turns;
-  for (const Panel& panel : panels_) {
-    if (panel.node >= turn_nodes_) turns.push_back(panel.length * panel.strain[0]);
-  }
   const LegendreTable& table = *panels_.back().table;
   for (Eigen::Index field = 0; field < 2; ++field) {
+    std::vector<double> turns;
+    for (const Panel& panel : panels_) {
+      if (panel.node < turn_nodes_) continue;
+      turns.push_back(panel.length * panel.strain[static_cast<std::size_t>(field)]);
+    }
     const FittedAngle fitted = fit_angle(table, turns, angles.col(field),
                                          first == 0 ? std::optional<double>(0) : std::nullopt);
     if (first == 1) x[field * columns_] = fitted.start;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cmath>
 
 namespace dlo::energy_model {
@@ -11,17 +12,18 @@ namespace dlo::energy_model {
 struct Piece {
   double begin = 0;
   double length = 0;
-  double bending = 1;  ///< EI over the span's unit of it
-  double torsion = 1;  ///< GJ over the same unit
+  /// EI about d1 and d2, and GJ, over the span's unit; in the plane only the first one counts.
+  Eigen::Vector3d stiffness = Eigen::Vector3d::Ones();
 
   [[nodiscard]] double end() const { return begin + length; }
-  /// Curvature of the coefficient of p_0 = 1.
-  [[nodiscard]] double curvature() const { return 1 / std::sqrt(bending * length); }
-  /// By which it turns the tangent from the piece's begin to its end.
-  [[nodiscard]] double angle() const { return std::sqrt(length / bending); }
-  /// The same for twist.
-  [[nodiscard]] double twist() const { return 1 / std::sqrt(torsion * length); }
-  [[nodiscard]] double twist_angle() const { return std::sqrt(length / torsion); }
+  /// Strain u1, u2 or u3 of the coefficient of p_0 = 1, by field 0, 1 or 2.
+  [[nodiscard]] double strain(Eigen::Index field) const {
+    return 1 / std::sqrt(stiffness[field] * length);
+  }
+  /// By which it turns the frame from the piece's begin to its end.
+  [[nodiscard]] double angle(Eigen::Index field) const {
+    return std::sqrt(length / stiffness[field]);
+  }
 };
 
 }  // namespace dlo::energy_model

@@ -90,8 +90,8 @@ void RodFrames::reset(const std::vector<Piece>& pieces, int terms, const Eigen::
   turn_nodes_ = nodes_;
   pieces_ = pieces.size();
   for (const Piece& piece : pieces) {
-    const double curvature = piece.curvature();
-    add(piece.length, {curvature, curvature, fields_ == 3 ? piece.twist() : 0}, terms);
+    const double twist = fields_ == 3 ? piece.strain(2) : 0;
+    add(piece.length, {piece.strain(0), piece.strain(1), twist}, terms);
   }
   natural_.resize(0, 3);
   if (natural.empty()) return;

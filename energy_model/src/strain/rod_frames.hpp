@@ -27,8 +27,9 @@ struct FrameGradient {
 /// is half the square of the coefficients. There are no poles.
 ///
 /// A round rod that is straight by nature and whose grips leave the twist free needs two fields,
-/// u = (u1, u2, 0): d1 and d2 do not turn about the tangent (Bishop's frame). Natural strains are
-/// fixed to the material, so that it takes u3 too.
+/// u = (u1, u2, 0): d1 and d2 do not turn about the tangent (Bishop's frame). Natural strains and
+/// the principal axes of a section that is not round are fixed to the material, so that it takes u3
+/// too: of a straight rod with such a section they are given, as zero.
 ///
 /// Unknowns x: of u1 the coefficients piece by piece, then of u2, then of u3. If no clamp holds the
 /// start, each begins with a component of the rotation vector, in the start frame, that turns the
@@ -66,7 +67,7 @@ class RodFrames {
   void reset(const std::vector<Piece>& pieces, int terms, const Eigen::Matrix3d& start,
              bool free_start, const NaturalStrains& natural);
 
-  /// Two, or three with natural strains.
+  /// Two, or three with natural strains, were they zero.
   [[nodiscard]] Eigen::Index fields() const { return fields_; }
   /// Frame at the end of a piece.
   [[nodiscard]] Eigen::Matrix3d frame_after(const State& state, Eigen::Index piece) const {

@@ -91,7 +91,7 @@ void SpanEnergy::tabulate_angles() {
     held_angle_.col(0).setOnes();
   }
   for (Eigen::Index e = 0; e < count; ++e) {
-    const double turn = pieces_[static_cast<std::size_t>(e)].angle();
+    const double turn = pieces_[static_cast<std::size_t>(e)].angle(0);
     const Eigen::Index column = free_start_ + e * K;
     angle_.block(e * Q, column, Q, K) = turn * table_->integrals.leftCols(K);
     // Only p_0 turns the tangent over a whole piece.
@@ -105,7 +105,7 @@ void SpanEnergy::tabulate_angles() {
 /// Of the nodes of a free rod.
 void SpanEnergy::tabulate_natural_angles() {
   natural_angle_.resize(0);
-  if (span_.natural.empty()) return;
+  if (!span_.has_material_directors()) return;
   natural_angle_.resize(s_.size());
   for (Eigen::Index q = 0; q < s_.size(); ++q) {
     natural_angle_[q] = span_.natural.integral(s_[q]).x();
@@ -167,7 +167,8 @@ void SpanEnergy::reset(const Span& span, int terms) {
     scaled_.resize(table_->nodes.size(), terms_);
     beside_.resize(terms_);
   } else {
-    start_frame_ = default_frame(first_tangent(span));
+    const Eigen::Vector3d tangent = first_tangent(span);
+    start_frame_ = frame_along(tangent, span.first_d1(tangent));
     frames_.reset(pieces_, terms, start_frame_, free_start_ == 1, span_.natural);
     frames_.resize(state_);
     pulled_.resize(size());
@@ -269,10 +270,10 @@ DirectorMiss SpanEnergy::miss_of(const DirectorRow& row) const {
 
 double SpanEnergy::twist(const Eigen::VectorXd& x) const {
   if (has_psi()) return x[x.size() - 1] / twist_root_;
-  if (span_.planar || span_.natural.empty()) return 0;
+  if (span_.planar || !span_.has_material_directors()) return 0;
   double angle = span_.natural.integral(span_.length).z();
   for (Eigen::Index e = 0; e < pieces(); ++e) {
-    angle += pieces_[static_cast<std::size_t>(e)].twist_angle() * x[first_twist(e)];
+    angle += pieces_[static_cast<std::size_t>(e)].angle(2) * x[first_twist(e)];
   }
   return angle;
 }
@@ -291,10 +292,10 @@ Eigen::VectorXd SpanEnergy::with_twist(Eigen::VectorXd x, double angle) const {
   }
   // A torque is the same everywhere.
   double compliance = 0;
-  for (const Piece& piece : pieces_) compliance += piece.length / piece.torsion;
+  for (const Piece& piece : pieces_) compliance += piece.length / piece.stiffness[2];
   const double torque = (angle - twist(x)) / compliance;
   for (Eigen::Index e = 0; e < pieces(); ++e) {
-    x[first_twist(e)] += torque * pieces_[static_cast<std::size_t>(e)].twist_angle();
+    x[first_twist(e)] += torque * pieces_[static_cast<std::size_t>(e)].angle(2);
   }
   return x;
 }
@@ -356,7 +357,7 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
 }
 
 double SpanEnergy::natural_turn(Eigen::Index piece) const {
-  if (span_.natural.empty()) return 0;
+  if (!span_.has_material_directors()) return 0;
   return span_.natural.integral(pieces_[static_cast<std::size_t>(piece)].end()).x();
 }
 
@@ -368,7 +369,7 @@ void SpanEnergy::add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result) {
   double later = 0;
   for (Eigen::Index e = pieces(); e-- > 0;) {
     const auto along = along_.segment(e * Q, Q);
-    const double own_turn = pieces_[static_cast<std::size_t>(e)].angle();
+    const double own_turn = pieces_[static_cast<std::size_t>(e)].angle(0);
     const Eigen::Index column = free_start_ + e * K;
     const auto angle = angle_.block(e * Q, column, Q, K);
     auto own = result.block(column, column, K, K);
@@ -379,7 +380,7 @@ void SpanEnergy::add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result) {
     beside[0] += own_turn * later;
     for (Eigen::Index before = -free_start_; before < e; ++before) {
       const bool start = before < 0;
-      const double turn = start ? 1 : pieces_[static_cast<std::size_t>(before)].angle();
+      const double turn = start ? 1 : pieces_[static_cast<std::size_t>(before)].angle(0);
       const Eigen::Index row = start ? 0 : free_start_ + before * K;
       result.row(row).segment(column, K) += turn * beside.transpose();
       result.col(row).segment(column, K) += turn * beside;
@@ -459,10 +460,10 @@ void SpanEnergy::carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipl
   along_ = carried_.cwiseProduct(t_).rowwise().sum();
   const Eigen::Index Q = table_->nodes.size();
   for (Eigen::Index e = 0; e < pieces(); ++e) {
-    const double scale = pieces_[static_cast<std::size_t>(e)].curvature();
+    const double scale = pieces_[static_cast<std::size_t>(e)].strain(0);
     kappa_.segment(e * Q, Q).noalias() =
         scale * (table_->values.leftCols(terms_) * x_.segment(free_start_ + e * terms_, terms_));
-    const double stiffness = pieces_[static_cast<std::size_t>(e)].bending;
+    const double stiffness = pieces_[static_cast<std::size_t>(e)].stiffness[0];
     along_.segment(e * Q, Q).array() -=
         stiffness * weights_.segment(e * Q, Q).array() * kappa_.segment(e * Q, Q).array().square();
   }
@@ -480,7 +481,7 @@ bool SpanEnergy::resists_sideways() {
 
 void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                           Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
-  if (!span_.natural.empty()) return sideways_with_twist(hessian, jacobian);
+  if (span_.has_material_directors()) return sideways_with_twist(hessian, jacobian);
   carry_sideways(multipliers);
   hessian.setIdentity(columns_, columns_);
   if (free_start_ == 1) hessian(0, 0) = 0;
@@ -490,7 +491,8 @@ void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
   jacobian.bottomRows(held_angle_.rows()) = held_angle_;
 }
 
-/// A curved rod that leaves its plane twists: what the same span in space says.
+/// A rod that is curved, or of another stiffness out of its plane, twists as it leaves it: what the
+/// same span in space says.
 void SpanEnergy::sideways_with_twist(Eigen::MatrixXd& hessian, Eigen::MatrixXd& jacobian) {
   Span space = span_;
   space.planar = false;
@@ -541,7 +543,7 @@ Eigen::VectorXd SpanEnergy::fit(const StartShape& shape) {
     row.angle = nearest_turn(row.angle, angles[last]);
   }
   std::vector<double> turns;
-  for (const Piece& piece : pieces_) turns.push_back(piece.angle());
+  for (const Piece& piece : pieces_) turns.push_back(piece.angle(0));
   std::optional<double> start;
   if (free_start_ == 0) start = start_theta_;
   const FittedAngle fitted = fit_angle(*table_, turns, angles, start);
@@ -600,7 +602,7 @@ double SpanEnergy::tail(const Eigen::VectorXd& x) const {
     for (std::size_t e = 0; e < pieces_.size(); ++e) {
       const Eigen::Index end =
           field * columns_ + free_start_ + (static_cast<Eigen::Index>(e) + 1) * terms_;
-      const double turn = field == 2 ? pieces_[e].twist_angle() : pieces_[e].angle();
+      const double turn = pieces_[e].angle(field);
       tail = std::max(tail, turn * x.segment(end - last, last).cwiseAbs().maxCoeff());
     }
   }

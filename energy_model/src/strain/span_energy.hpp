@@ -16,10 +16,10 @@ namespace dlo::energy_model {
 /// Bending plus load energy of a span over its unknowns, with constraints. Unknowns x in the plane:
 /// the tangent's angle at the start (if no clamp fixes it) and the curvature coefficients of every
 /// piece; in space those of RodFrames. Bending is half the square of the coefficients in both.
-/// Where the ends' frames of a rod that is straight by nature are held, the last unknown is the
+/// Where the ends' frames of a rod without material directors are held, the last unknown is the
 /// angle psi by which the rod's frame is turned ahead of Bishop's at the end, whole turns counted,
 /// times (GJ / EI / length)^(1/2): its square is twice the energy of twist. psi makes the end's
-/// frame meet its clamp's. With natural strains the frames are the rod's own.
+/// frame meet its clamp's. With material directors the frames are the rod's own.
 ///
 /// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of end angles)
 /// that the grips exert on the rod. value(), constraint() and hessian() allocate nothing, but for
@@ -46,8 +46,8 @@ class SpanEnergy {
   void constraint(Eigen::Ref<Eigen::VectorXd> residual, Eigen::Ref<Eigen::MatrixXd> jacobian);
   /// Second derivatives of E - mu . c at the point of the last value().
   void hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& result);
-  /// For a planar span: the same for bending (and twisting, with natural strains) out of the plane,
-  /// with its constraints' Jacobian; the last unknowns of the same span in space.
+  /// For a planar span: the same for bending (and twisting, with material directors) out of the
+  /// plane, with its constraints' Jacobian; the last unknowns of the same span in space.
   void sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixXd& hessian,
                 Eigen::MatrixXd& jacobian);
   /// For a planar span held by one clamp and nothing else: whether bending out of the plane stores
@@ -57,9 +57,9 @@ class SpanEnergy {
   /// Arc lengths of the nodes, and tangents there at the point of the last value(), 3 x nodes.
   [[nodiscard]] const Eigen::VectorXd& nodes() const { return s_; }
   [[nodiscard]] Eigen::Matrix3Xd tangents() const { return t_.transpose(); }
-  /// d1 of the rod's own frame there, of a span in space with natural strains.
+  /// d1 of the rod's own frame there, of a span in space with material directors.
   [[nodiscard]] Eigen::Matrix3Xd d1() const { return state_.d1.bottomRows(s_.size()).transpose(); }
-  /// Unknowns whose tangents, and with natural strains frames, at the nodes come nearest to the
+  /// Unknowns whose tangents, and with material directors frames, at the nodes come nearest to the
   /// given ones; a planar span drops what leaves its plane. Also turns the clamps' angles to the
   /// winding of these tangents.
   [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape);
@@ -80,8 +80,8 @@ class SpanEnergy {
                                        const Eigen::VectorXd& multipliers) const;
   /// Unknowns with this twist.
   [[nodiscard]] Eigen::VectorXd with_twist(Eigen::VectorXd x, double angle) const;
-  /// d1 at the end, at the point of the last value(), of the Bishop frame with Span::d1() at the
-  /// start.
+  /// d1 at the end, at the point of the last value(), of the frame with Span::first_d1() at the
+  /// start, the rod's or Bishop's.
   [[nodiscard]] Eigen::Vector3d transported_d1() const { return state_.end_frame().col(0); }
   /// Turns the clamp at the end of a span whose frames are held.
   void turn_end_clamp(const Eigen::Vector3d& end_d1);
@@ -124,11 +124,11 @@ class SpanEnergy {
     return first_contact_row() + contacts_.count();
   }
   [[nodiscard]] Eigen::Index first_contact_row() const { return axes_ * reach_.cols(); }
-  /// Unknown of the mean twist of a piece of a rod with natural strains.
+  /// Unknown of the mean twist of a piece of a rod with material directors.
   [[nodiscard]] Eigen::Index first_twist(Eigen::Index piece) const {
     return 2 * columns_ + free_start_ + piece * terms_;
   }
-  [[nodiscard]] bool has_psi() const { return span_.twist && span_.natural.empty(); }
+  [[nodiscard]] bool has_psi() const { return span_.twist && !span_.has_material_directors(); }
   void tabulate_nodes();
   void tabulate_angles();
   void tabulate_natural_angles();

@@ -55,8 +55,9 @@ class Sampler {
     const auto values = values_.head(shape_.terms);
     if (shape_.planar) {
       const auto theta = coefficients(shape_.theta, 0, e);
-      double angle = placed.theta + placed.piece.angle() * integrals_.head(shape_.terms).dot(theta);
-      double rate = placed.piece.curvature() * values.dot(theta);
+      double angle =
+          placed.theta + placed.piece.angle(0) * integrals_.head(shape_.terms).dot(theta);
+      double rate = placed.piece.strain(0) * values.dot(theta);
       if (!shape_.natural.empty()) {
         angle += shape_.natural.integral(at).x();
         rate += shape_.natural.at(at).x();
@@ -69,9 +70,10 @@ class Sampler {
     frame = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
     tangent = frame.col(2);
     const Eigen::Index second = shape_.strains.size() / (shape_.natural.empty() ? 2 : 3);
-    const double scale = placed.piece.curvature();
-    double u1 = scale * values.dot(coefficients(shape_.strains, first_strain(), e));
-    double u2 = scale * values.dot(coefficients(shape_.strains, second + first_strain(), e));
+    double u1 =
+        placed.piece.strain(0) * values.dot(coefficients(shape_.strains, first_strain(), e));
+    double u2 = placed.piece.strain(1) *
+                values.dot(coefficients(shape_.strains, second + first_strain(), e));
     if (!shape_.natural.empty()) {
       const Eigen::Vector3d natural = shape_.natural.at(at);
       u1 += natural.x();
@@ -93,7 +95,7 @@ class Sampler {
     placed.theta = shape_.start_theta;
     for (std::size_t e = 0; e < shape_.pieces.size(); ++e) {
       placed.piece = shape_.pieces[e];
-      const double turn = placed.piece.angle();
+      const double turn = placed.piece.angle(0);
       const Eigen::VectorXd theta = coefficients(shape_.theta, 0, e);
       Eigen::ArrayXd angle =
           placed.theta + turn * (table_.integrals.leftCols(shape_.terms) * theta).array();
@@ -207,15 +209,14 @@ std::vector<Piece> pieces_of(const Span& span) {
   for (const double c : cuts) {
     if (c - begin < closest_cuts) continue;
     const double end = span.length - c < closest_cuts ? span.length : c;
-    pieces.push_back({begin, end - begin, 1, span.torsion});
+    pieces.push_back({begin, end - begin, span.stiffness});
     begin = end;
   }
   for (Piece& piece : pieces) {
     const double middle = piece.begin + piece.length / 2;
     for (const Span::Part& part : span.parts) {
       if (middle < part.begin || middle > part.end) continue;
-      piece.bending = part.bending;
-      piece.torsion = part.torsion;
+      piece.stiffness = part.stiffness;
     }
   }
   return pieces;

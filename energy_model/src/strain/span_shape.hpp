@@ -24,7 +24,7 @@ struct SpanSamples {
   Eigen::Matrix3Xd points;  ///< from the anchor
   Eigen::Matrix3Xd tangents;
   Eigen::Matrix3Xd curvature;
-  Eigen::Matrix3Xd d1;  ///< of the frame that has Span::d1() at the start: the rod's or Bishop's
+  Eigen::Matrix3Xd d1;  ///< of the frame with Span::first_d1() at the start: the rod's or Bishop's
 };
 
 /// A shape to start from, at given arc lengths by growing s.

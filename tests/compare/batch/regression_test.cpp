@@ -216,7 +216,9 @@ TEST(Regression, AFingerprintStandsForAllThatTheShapeDependsOn) {
   differs([](auto& s) { s.given_bending_stiffness = s.bending_stiffness(); });
   differs([](auto& s) { s.given_mass_per_length = s.mass_per_length(); });
   differs([](auto& s) { s.natural_strain.y() = 1e-3; });
+  differs([](auto& s) { s.given_bending_stiffness_2 = 1e-3; });
   differs([](auto& s) { s.natural_strain.z() = 1e-3; });
+  differs([](auto& s) { s.natural_variation = {{0, 1e-3}}; });
   differs([](auto& s) {
     s.sections = {{.from = 0.1, .to = 0.2, .bending_stiffness = 1, .mass_per_length = 1}};
   });

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
@@ -203,6 +204,42 @@ TEST(ScenesNaturalCurvature, AboutAnotherAxisThanThePlanesIsSpatial) {
   EXPECT_NEAR((half.natural_curvature() - Eigen::Vector3d(0, 0, -2)).norm(), 0, 1e-12);
 }
 
+TEST(ScenesNaturalCurvature, VariesAlongTheRodAsALegendreSeries) {
+  const auto curved = [](const std::string& rows) {
+    return scene_of(by_stiffness + "natural_curvature = " + rows + "\n" + clamp);
+  };
+  const Scene scene = curved(R"([[0, "3 1/m"], [0, 1.5], [0, -2]])");
+  EXPECT_EQ(scene.natural_strain, Eigen::Vector3d(0, 3, 0));
+  ASSERT_EQ(scene.natural_variation.size(), 2U);
+  EXPECT_TRUE(scene.planar());
+  const energy_model::Problem problem = energy_problem(scene);
+  ASSERT_EQ(problem.natural_strains.size(), 3U);
+  EXPECT_EQ(problem.natural_strains[2], Eigen::Vector3d(0, -2, 0));
+  // The mean over a part, by the midpoint rule: k(s) = 3 + 1.5 x - 2 (3 x^2 - 1) / 2, x = s - 1.
+  constexpr double begin = 0.3;
+  constexpr double end = 0.8;
+  double sum = 0;
+  constexpr int count = 2000;
+  for (int i = 0; i < count; ++i) {
+    const double x = begin + (end - begin) * (i + 0.5) / count - 1;
+    sum += (3 + 1.5 * x - (3 * x * x - 1)) / count;
+  }
+  EXPECT_NEAR(scene.natural_curvature(begin, end).z(), sum, 1e-7);
+  EXPECT_NEAR(scene.natural_curvature().z(), 3, 1e-12);
+  const Discretisation polygon = discretise(scene, scene.force_model);
+  EXPECT_GT(polygon.rod.bending.natural_turns.maxCoeff(),
+            1.2 * polygon.rod.bending.natural_turns.minCoeff());
+  EXPECT_FALSE(curved("[[0, 3], [1, 0]]").planar());
+  EXPECT_TRUE(curved("[[0, 0], [0, 1]]").naturally_bent());
+  EXPECT_FALSE(scene.without_natural_strain().naturally_bent());
+  const std::string rod = by_stiffness + "natural_curvature = ";
+  expect_message(rod + "[[0, 3], [1]]\n" + clamp,
+                 {"my.toml:5: rod.natural_curvature", "rows of two numbers"});
+  std::string many = "[[0, 1]";
+  for (int i = 0; i < 30; ++i) many += ", [0, 1]";
+  expect_message(rod + many + "]\n" + clamp, {"my.toml:5", "31 rows", "1 to 24"});
+}
+
 TEST(ScenesNaturalCurvature, NeedsAClampThatSaysAboutWhichAxis) {
   const std::string curved = by_stiffness + "natural_curvature = 2\n";
   const std::string pin = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";
@@ -229,6 +266,88 @@ TEST(ScenesNaturalCurvature, MakesTheFirstClampHoldItsFrame) {
   const Scene scene = scene_of(curved + clamp + held);
   EXPECT_TRUE(scene.holds_twist());
   EXPECT_FALSE(scene.without_twist().holds_twist());
+}
+
+const std::string flat = R"([rod]
+length = "2 m"
+bending_stiffness = ["1.2e-3 N m^2", 0.04]
+mass_per_length = "20 g/m"
+)";
+
+TEST(ScenesStrip, HasTwoBendingStiffnesses) {
+  const Scene scene = scene_of(flat + clamp);
+  EXPECT_DOUBLE_EQ(scene.bending_stiffness(), 1.2e-3);
+  EXPECT_DOUBLE_EQ(scene.given_bending_stiffness_2.value(), 0.04);
+  EXPECT_DOUBLE_EQ(scene.softer_bending_stiffness(), 1.2e-3);
+  EXPECT_DOUBLE_EQ(scene.gamma(), 0.02 * 9.81 * 8 / 1.2e-3);
+  EXPECT_TRUE(scene.planar());
+  EXPECT_EQ(scene.stiffness().name, std::string("EI about d1"));
+  // J = pi a^3 b^3 / (a^2 + b^2) of an ellipse, whose I are pi a b^3 / 4 and pi a^3 b / 4.
+  EXPECT_TRUE(scene.assumes_torsion());
+  EXPECT_DOUBLE_EQ(scene.twisting_stiffness(), 2 * 1.2e-3 * 0.04 / (1.2e-3 + 0.04) / 1.3);
+  const energy_model::Problem problem = energy_problem(scene);
+  EXPECT_EQ(problem.bending_stiffness, 1.2e-3);
+  EXPECT_EQ(problem.bending_stiffness_2, 0.04);
+  EXPECT_NO_THROW(energy_model::check(problem));
+  Scene scaled = scene;
+  scaled.scale_modulus(2);
+  EXPECT_DOUBLE_EQ(*scaled.given_bending_stiffness_2, 0.08);
+  EXPECT_DOUBLE_EQ(scaled.twisting_stiffness(), 2 * scene.twisting_stiffness());
+}
+
+TEST(ScenesStrip, HasSectionsOfItsOwnOrRoundOnes) {
+  const std::string part = "[[section]]\nfrom = 0.5\nto = 1\n";
+  const Scene own = scene_of(flat + clamp + part + "mass_per_length = 1\n");
+  EXPECT_EQ(own.sections[0].bending_stiffness, 1.2e-3);
+  EXPECT_EQ(own.sections[0].bending_stiffness_2, 0.04);
+  const Scene round = scene_of(flat + clamp + part + "bending_stiffness = 3\n");
+  EXPECT_FALSE(round.sections[0].bending_stiffness_2.has_value());
+  const energy_model::Problem problem = energy_problem(round);
+  EXPECT_FALSE(problem.sections[0].bending_stiffness_2.has_value());
+  EXPECT_DOUBLE_EQ(problem.sections[0].torsional_stiffness, 3 / 1.3);
+  // A flat part alone makes it a strip.
+  const Scene flattened = scene_of(by_stiffness + clamp + part + "bending_stiffness = [1, 2]\n");
+  EXPECT_TRUE(flattened.has_material_directors());
+  EXPECT_DOUBLE_EQ(energy_problem(flattened).sections[0].torsional_stiffness, 4.0 / 3 / 1.3);
+}
+
+TEST(ScenesStrip, IsPlanarAcrossItsAxesAlone) {
+  EXPECT_TRUE(scene_of(flat + clamp + "roll = \"90 deg\"\n").planar());
+  EXPECT_FALSE(scene_of(flat + clamp + "roll = \"30 deg\"\n").planar());
+  EXPECT_FALSE(scene_of(flat + "natural_curvature = [1, 0]\n" + clamp).planar());
+  EXPECT_TRUE(scene_of(flat + "natural_curvature = 1\n" + clamp).planar());
+}
+
+TEST(ScenesStrip, IsRefusedWithWhatIsAllowed) {
+  const auto rod = [](const std::string& stiffness) {
+    return "[rod]\nlength = 2\nbending_stiffness = " + stiffness + "\nmass_per_length = 1\n" +
+           clamp;
+  };
+  expect_message(rod("[1, -1]"), {"my.toml:3: rod.bending_stiffness", "> 0", "d1 and about d2"});
+  expect_message(rod("[1, 2, 3]"), {"my.toml:3: rod.bending_stiffness", "two in brackets"});
+  expect_message(rod("[1, \"2 N\"]"), {"my.toml:3: rod.bending_stiffness", "N m^2"});
+  const std::string pin = "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n";
+  expect_message(flat + pin, {"my.toml:3: rod.bending_stiffness", "hold = \"clamp\""});
+  expect_message(flat + clamp + "[[load]]\nat = 2\nforce = [0, 0, 1]\n",
+                 {"my.toml:5", "rod.bending_stiffness", "no plane", "frame or quaternion"});
+  const Scene scene = scene_of(flat + clamp);
+  try {
+    (void)discretise(scene, scene.force_model);
+    ADD_FAILURE() << "a polygon was made";
+  } catch (const InputError& error) {
+    const std::string said = error.what();
+    for (const char* part : {"my.toml", "rod.bending_stiffness", "two values", "allowed here"}) {
+      EXPECT_NE(said.find(part), std::string::npos) << said;
+    }
+  }
+}
+
+TEST(ScenesStrip, IsVariedInBothAndKeepsTheRatioOfItsTorsion) {
+  const SceneTemplate base(flat + "torsional_stiffness = 2e-3\n" + clamp, "my.toml");
+  const Scene both = base.with({{"rod.bending_stiffness", "[2.4e-3, 0.08]"}});
+  EXPECT_DOUBLE_EQ(*both.given_bending_stiffness_2, 0.08);
+  EXPECT_DOUBLE_EQ(*both.torsional_stiffness, 4e-3);
+  EXPECT_EQ(base.with({{"rod.bending_stiffness.1", "0.5"}}).given_bending_stiffness_2, 0.5);
 }
 
 TEST(ScenesLoad, MayBeAMassThatHangsThere) {

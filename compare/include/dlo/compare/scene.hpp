@@ -59,10 +59,15 @@ struct Obstacle {
 struct Section {
   double from = 0;               ///< arc length [m]
   double to = 0;                 ///< arc length [m], > from
-  double bending_stiffness = 0;  ///< EI [N m^2], > 0
+  double bending_stiffness = 0;  ///< EI [N m^2], > 0; about d1 where bending_stiffness_2 is given
   double mass_per_length = 0;    ///< rho A [kg/m], >= 0
   /// GJ [N m^2]; none: its share of EI is the rod's own.
   std::optional<double> torsional_stiffness;
+  /// EI about d2 [N m^2], > 0; none: the section is round.
+  std::optional<double> bending_stiffness_2 = std::nullopt;
+
+  /// As Scene's.
+  [[nodiscard]] double mean_bending_stiffness() const;
 
   /// In every field.
   bool operator==(const Section&) const = default;
@@ -71,17 +76,19 @@ struct Section {
 /// As what a rod's stiffness or mass is told: Young's modulus and density, or EI and mass per
 /// length of a rod that is given by these.
 struct NamedValue {
-  const char* name = "";  ///< "E" or "EI"; "density" or "mass per length"
+  const char* name = "";  ///< "E", "EI" or "EI about d1"; "density" or "mass per length"
   const char* unit = "";  ///< "Pa" or "N m^2"; "kg/m^3" or "kg/m"
   double value = 0;       ///< in that unit
 };
 
-/// Poisson's ratio of a rod whose torsional stiffness is needed and not given: GJ = EI / (1 + nu).
+/// Poisson's ratio of a rod whose torsional stiffness is needed and not given: GJ = EI / (1 + nu),
+/// EI the harmonic mean of those about d1 and d2. So it is for a round section and every elliptic
+/// one (Saint-Venant), and for a rectangular one in the limit of a thin strip.
 inline constexpr double assumed_poisson_ratio = 0.3;
 
-/// A physical scene in SI units. A rod is round and of one material, or is given by its EI and its
-/// mass per length; where both are given, these count for bending and weight, and material and
-/// diameter for the axial stiffness only.
+/// A physical scene in SI units. A rod is round and of one material, or is given by its EI (about
+/// d1 and d2, if they differ) and its mass per length; where both are given, these count for
+/// bending and weight, and material and diameter for the axial stiffness only.
 struct Scene {
   std::string name;                         ///< for people; regression tests know the scene by it
   std::string file;                         ///< where it was read from, for messages
@@ -91,23 +98,31 @@ struct Scene {
   Material material;                        ///< of a round rod; youngs_modulus 0: not known
   std::optional<double> given_bending_stiffness;  ///< EI [N m^2], > 0; none: of the material
   std::optional<double> given_mass_per_length;    ///< rho A [kg/m], >= 0; none: of the material
-  /// GJ [N m^2], > 0; needed where two clamps hold frames or the rod is curved by nature, of no
+  /// EI about d2 [N m^2], > 0, beside given_bending_stiffness, which then is about d1; none: round.
+  std::optional<double> given_bending_stiffness_2;
+  /// GJ [N m^2], > 0; needed where two clamps hold frames or the rod has material directors, of no
   /// effect elsewhere.
   std::optional<double> torsional_stiffness;
   std::vector<Section> sections;  ///< where the rod is another one, by arc length, none overlap
-  /// Curvature of the free rod about d1 and d2 of its frame and its twist, the same all along
+  /// Curvature of the free rod about d1 and d2 of its frame and its twist, in the mean along it
   /// [1/m]; the first clamp along the rod holds that frame (energy_model::first_frame).
   Eigen::Vector3d natural_strain = Eigen::Vector3d::Zero();
+  /// What the curvature varies by: coefficients of Legendre's P_1, P_2, .. of 2 s/l - 1 [1/m].
+  std::vector<Eigen::Vector2d> natural_variation;
   std::vector<Gripper> grippers;    ///< one or more, in the file's order
   std::vector<PointLoad> loads;     ///< may be empty
   std::vector<Obstacle> obstacles;  ///< may be empty
   ForceModelSettings force_model;   ///< as the file has it
 
   [[nodiscard]] double cross_section() const;      ///< A [m^2]; 0 without a diameter
-  [[nodiscard]] double bending_stiffness() const;  ///< EI [N m^2], outside sections
-  [[nodiscard]] double mass_per_length() const;    ///< rho A [kg/m], outside sections
-  /// GJ [N m^2], outside sections: as given, of a naturally curved rod EI / (1 + 0.3) if not given;
-  /// else 0.
+  [[nodiscard]] double bending_stiffness() const;  ///< EI [N m^2], outside sections; about d1
+  /// The smaller EI of those about d1 and d2 [N m^2], outside sections.
+  [[nodiscard]] double softer_bending_stiffness() const;
+  /// Their harmonic mean [N m^2], which GJ of one material goes with; EI of a round rod.
+  [[nodiscard]] double mean_bending_stiffness() const;
+  [[nodiscard]] double mass_per_length() const;  ///< rho A [kg/m], outside sections
+  /// GJ [N m^2], outside sections: as given, of a rod with material directors
+  /// mean_bending_stiffness() / (1 + 0.3) if not given; else 0.
   [[nodiscard]] double twisting_stiffness() const;
   /// Whether that GJ is an assumption.
   [[nodiscard]] bool assumes_torsion() const;
@@ -127,25 +142,40 @@ struct Scene {
   [[nodiscard]] double twisting_compliance(double begin, double end) const;
   /// int 1/EI ds between two arc lengths [1/(N m)], as above.
   [[nodiscard]] double bending_compliance(double begin, double end) const;
-  /// w l^3 / (EI) [-], w the mean weight per length and EI that outside sections.
+  /// w l^3 / (EI) [-], w the mean weight per length and EI the smaller one outside sections.
   [[nodiscard]] double gamma() const;
   /// Whether the free rod is no straight, untwisted one.
-  [[nodiscard]] bool naturally_bent() const { return !natural_strain.isZero(0); }
+  [[nodiscard]] bool naturally_bent() const {
+    return naturally_curved() || natural_strain.z() != 0;
+  }
+  /// The same of the curvature alone.
+  [[nodiscard]] bool naturally_curved() const;
+  /// Whether the rod, or a section of it, has one EI about d1 and another about d2.
+  [[nodiscard]] bool has_two_stiffnesses() const;
+  /// Whether d1 and d2 are fixed to the rod's material (energy_model::has_material_directors).
+  [[nodiscard]] bool has_material_directors() const {
+    return naturally_bent() || has_two_stiffnesses();
+  }
+  /// Frame (columns d1, d2, t) in which the first clamp holds a rod with material directors.
+  /// @throws InputError if no clamp, or no plane, says where it is
+  [[nodiscard]] Eigen::Matrix3d first_frame() const;
   /// The same rod, straight by nature.
   [[nodiscard]] Scene without_natural_strain() const;
-  /// Curvature of the free rod where the first clamp holds it, as a vector about which its tangent
-  /// turns [1/m]; zero for a rod that is straight by nature. @throws InputError if no clamp, or no
-  /// plane, says where its frame is
+  /// Mean curvature of the free rod in the axes that the first clamp holds, as a vector about which
+  /// its tangent turns [1/m]; zero for a rod that is straight by nature. @throws InputError if no
+  /// clamp, or no plane, says where its frame is
   [[nodiscard]] Eigen::Vector3d natural_curvature() const;
+  /// The same of the rod between two arc lengths, begin < end.
+  [[nodiscard]] Eigen::Vector3d natural_curvature(double begin, double end) const;
   /// Whether two clamps or more hold the rod's frame, which twists it or keeps it from twisting. Of
-  /// a naturally bent rod the first clamp always does.
+  /// a rod with material directors the first clamp always does.
   [[nodiscard]] bool holds_twist() const;
   /// The same with clamps that let the rod turn about their directions, but for the first clamp of
-  /// a naturally bent rod.
+  /// a rod with material directors.
   [[nodiscard]] Scene without_twist() const;
   /// Unit normal of the plane that grips, forces and obstacles in reach share, if they do, no twist
   /// is held, which bends a rod out of its plane, and the rod is not curved about another axis by
-  /// nature; of several planes any one.
+  /// nature and not oblique to its principal axes; of several planes any one.
   [[nodiscard]] std::optional<Eigen::Vector3d> plane_normal() const;
   /// Whether there is one.
   [[nodiscard]] bool planar() const { return plane_normal().has_value(); }

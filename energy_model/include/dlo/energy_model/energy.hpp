@@ -47,10 +47,12 @@ struct EnergyOptions {
 /// what loses its stability or comes to the end of its branch is followed downhill. Nothing keeps
 /// the rod from passing through itself. `start` with its `twists` is gone from directly.
 ///
-/// A rod that is not straight by nature (Problem) has the energy of its strains less the natural
-/// ones, 1/2 EI |u - u0|^2 about d1 and d2 and 1/2 GJ (u3 - u03)^2, and strains of all three kinds
-/// as unknowns; a planar shape is proven against leaving its plane by bending and twisting. It is
-/// searched from the free rod too, and with its frame turned on.
+/// A rod with material directors (Problem) has the energy of its strains less the natural ones,
+///     E = int 1/2 EI_1 (u1 - u01)^2 + 1/2 EI_2 (u2 - u02)^2 + 1/2 GJ (u3 - u03)^2 ds - ...,
+/// and strains of all three kinds as unknowns. It lies in a plane if that is across one of its
+/// principal axes too; the shape there is proven against leaving it by bending and twisting, as a
+/// strip does that is bent about its stiff axis. It is searched from the free rod too, and with its
+/// frame turned on.
 ///
 /// What touches a rigid wall, and where, is first told by a polygon at rest (solve_polygon) from
 /// several starts. Then the rod's own shape is found with these contacts: pieces end where contact

@@ -18,34 +18,35 @@ struct ExactOptions {
   /// the rod it starts with the torque of the shape's `twists` and counts whole turns as they do;
   /// the frame at the end is held where both clamps' d1 and the rolls say, or without d1 where the
   /// shape has it. A shape without `twists` is taken for the rod without twist. Of a rod with
-  /// `natural_strains` the frames follow from the first clamp's, of which there has to be one, and
-  /// from what the grips exert.
+  /// material directors the frames are those of the shape's d1 or, if it has none, follow from the
+  /// first clamp's, of which there has to be one, and from what the grips exert.
   const Equilibrium* start = nullptr;
 };
 
 /// Equilibrium of the inextensible rod as a boundary value problem, by GSL and without any basis.
-/// Of one that is straight by nature
+/// Of a round one that is straight by nature
 ///     r' = t,  EI t'' = -(n - (n.t) t) - EI |t'|^2 t + M t x t',  n' = -w,  n falls by F at a load
 ///     F,  EI t' stays where sections meet,
 /// n the force of what lies beyond s on what lies before, M the torque of the twist, which is
-/// constant between two clamps that hold the rod's frame and zero elsewhere; of one that is not
-///     r' = t,  R' = R hat(u),  m = R diag(EI, EI, GJ) (u - u0),  m' = n x t,  n' = -w,
+/// constant between two clamps that hold the rod's frame and zero elsewhere; of one with material
+/// directors (Problem)
+///     r' = t,  R' = R hat(u),  m = R diag(EI_1, EI_2, GJ) (u - u0),  m' = n x t,  n' = -w,
 /// R = (d1, d2, t), m the moment of what lies beyond.
 ///
-/// A planar rod of one section, straight by nature, with one clamp at an end is shot from its tip
-/// and all of the tip's angles are scanned; for sums of weight and loads over EI/l^2 up to 4e5 if
-/// they are parallel, up to 60 if not. The scan's cells are halved until a cubic describes the miss
-/// of the clamp's angle in them, and pairs of roots are looked for at its extrema: found are all
-/// equilibria in the plane but those that lie closer together than the scan resolves (at a fold:
-/// within 1e-7 of its Gamma). Those out of the plane are not.
+/// A round planar rod of one section, straight by nature, with one clamp at an end is shot from its
+/// tip and all of the tip's angles are scanned; for sums of weight and loads over EI/l^2 up to 4e5
+/// if they are parallel, up to 60 if not. The scan's cells are halved until a cubic describes the
+/// miss of the clamp's angle in them, and pairs of roots are looked for at its extrema: found are
+/// all equilibria in the plane but those that lie closer together than the scan resolves (at a
+/// fold: within 1e-7 of its Gamma). Those out of the plane are not.
 ///
-/// All others that are straight by nature (any clamps and pins, in the plane or in space, up to
-/// 1e6 EI/l^2 of the softest section) are cut at their clamps and solved by multiple shooting:
-/// Newton's method closes the gaps between integrations over short intervals. It starts from
-/// `start`, or from the six lowest minima (twelve while nothing is stable) that a coarse polygon
-/// finds when it is relaxed from straight, arched, S-shaped and looped shapes, in the plane and out
-/// of it, and from beside the unstable equilibria that lie below all stable ones. That is a search:
-/// it may miss equilibria.
+/// All others that are round and straight by nature (any clamps and pins, in the plane or in space,
+/// up to 1e6 EI/l^2 of the softest section) are cut at their clamps and solved by multiple
+/// shooting: Newton's method closes the gaps between integrations over short intervals. It starts
+/// from `start`, or from the six lowest minima (twelve while nothing is stable) that a coarse
+/// polygon finds when it is relaxed from straight, arched, S-shaped and looped shapes, in the plane
+/// and out of it, and from beside the unstable equilibria that lie below all stable ones. That is a
+/// search: it may miss equilibria.
 ///
 /// Twist (Problem) is put in from the lowest equilibrium without it, by continuation in the roll;
 /// where a shape becomes unstable the gradient flow of the energy leads to the next stable one, the
@@ -53,7 +54,7 @@ struct ExactOptions {
 /// ends before the whole roll the status is `failed` and the message says how far it came: long
 /// rods whose buckle moves along them for nearly nothing may need a `start`.
 ///
-/// A rod with `natural_strains` is not cut, because its torque passes through clamps that do not
+/// A rod with material directors is not cut, because its torque passes through clamps that do not
 /// hold the frame; the first clamp holds the frame that Problem says. It is solved by multiple
 /// shooting too, from `start`, or from the eight lowest minima (sixteen while nothing is stable) of
 /// a polygon of frames that L-BFGS relaxes from the natural shape, the hanging and the straight
@@ -66,7 +67,7 @@ struct ExactOptions {
 ///
 /// The second variation of each equilibrium is looked at on its own shape, by finite elements, in
 /// space and under the grips' constraints: `smallest_curvature` is its smallest eigenvalue over
-/// int |eta'|^2 + |eta|^2 ds, eta the change of the tangent, of a rod with `natural_strains` the
+/// int |eta'|^2 + |eta|^2 ds, eta the change of the tangent, of a rod with material directors the
 /// spin of its cross-sections, lengths in l. The stable equilibrium of lowest energy is returned;
 /// if none is stable the lowest one, as `saddle`. The message names what moves for nothing (turning
 /// about a line), combinations of spans beyond the 64 lowest, and tips that could not be shot from.

@@ -8,14 +8,15 @@
 
 namespace dlo::energy_model {
 
-/// The plane's normal that d2 is where a naturally curved rod's first clamp does not say otherwise:
-/// that of grips, forces and walls, on the side of +z (+y, +x). None: they share no plane.
+/// The plane's normal that d2 is where the first clamp of a rod with material directors does not
+/// say otherwise: that of grips, forces and walls, on the side of +z (+y, +x). None: they share no
+/// plane.
 [[nodiscard]] std::optional<Eigen::Vector3d> natural_normal(const Problem& problem);
 
 /// Index of the first clamp along the rod in Problem::grips. None: there are but pins.
 [[nodiscard]] std::optional<std::size_t> first_clamp(const Problem& problem);
 
-/// Frame (columns d1, d2, t) that the first clamp holds a naturally curved rod in.
+/// Frame (columns d1, d2, t) that the first clamp holds a rod with material directors in.
 /// @throws std::invalid_argument if it does not say where d1 is and there is no plane that does
 [[nodiscard]] Eigen::Matrix3d first_frame(const Problem& problem);
 

@@ -45,12 +45,15 @@ struct Wall {
 struct Section {
   double begin = 0;                ///< arc length [m]
   double end = 0;                  ///< arc length [m], > begin
-  double bending_stiffness = 0;    ///< EI [N m^2], > 0
+  double bending_stiffness = 0;    ///< EI [N m^2], > 0; about d1 where bending_stiffness_2 is given
   double torsional_stiffness = 0;  ///< GJ [N m^2]; > 0 where Problem's has to be
   Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
+  /// EI about d2 [N m^2], > 0; none: the section is round, EI is that about every axis across.
+  std::optional<double> bending_stiffness_2 = std::nullopt;
 };
 
-/// A round, inextensible rod.
+/// An inextensible rod, round or of two bending stiffnesses about the principal axes d1 and d2 of
+/// its section, as a ribbon or a flat cable has them.
 ///
 /// Two neighbouring clamps that hold frames twist the rod between them by the difference of their
 /// rolls, the later less the earlier; if both say where d1 is, by the angle in (-pi, pi] more by
@@ -58,16 +61,16 @@ struct Section {
 /// That rod is the lowest minimum of the same problem without frames; from there the twist is put
 /// in little by little, and where a shape cannot hold itself any more it falls to the next one.
 ///
-/// A rod that is not straight by nature has directors d1 and d2 that are fixed to its material. The
-/// first clamp along it holds them: at its FrameHold::d1, or else d2 is the normal of the plane
-/// that grips and forces share, on the side of +z (of +y, or of +x, where the plane holds those),
-/// so that a strain u2 > 0 bends the rod to the left; its roll turns them on. Where no clamp holds
-/// the rod they are free. A later clamp holds them only if it has a frame; "where the rod without
-/// twist has it" then means where the rod has it without that frame, and its roll counts less the
-/// first one's.
+/// A rod that is not straight by nature, or that has a bending_stiffness_2 anywhere, has directors
+/// d1 and d2 that are fixed to its material. The first clamp along it holds them: at its
+/// FrameHold::d1, or else d2 is the normal of the plane that grips and forces share, on the side of
+/// +z (of +y, or of +x, where the plane holds those), so that a strain u2 > 0 bends the rod to the
+/// left; its roll turns them on. Where no clamp holds the rod they are free. A later clamp holds
+/// them only if it has a frame; "where the rod without twist has it" then means where the rod has
+/// it without that frame, and its roll counts less the first one's.
 struct Problem {
   double length = 0;               ///< l [m], > 0
-  double bending_stiffness = 0;    ///< EI [N m^2], > 0
+  double bending_stiffness = 0;    ///< EI [N m^2], > 0; about d1 where bending_stiffness_2 is given
   double torsional_stiffness = 0;  ///< GJ [N m^2]; > 0 where two clamps hold frames
   Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
   std::vector<Grip> grips;                                      ///< one or more
@@ -78,14 +81,21 @@ struct Problem {
   /// turns d1 towards d2: coefficients of Legendre's polynomials P_j(2 s/l - 1) [1/m]. Empty:
   /// straight. Not empty: torsional_stiffness > 0.
   std::vector<Eigen::Vector3d> natural_strains;
+  /// EI about d2 [N m^2], > 0; none: round, EI is that about every axis across. Given:
+  /// torsional_stiffness > 0.
+  std::optional<double> bending_stiffness_2 = std::nullopt;
 };
+
+/// Whether d1 and d2 are fixed to the rod's material: it is not straight by nature, or it or one of
+/// its sections has two bending stiffnesses, were they equal. A round straight rod has none.
+[[nodiscard]] bool has_material_directors(const Problem& problem);
 
 /// @throws std::invalid_argument naming the first member that is out of range
 void check(const Problem& problem);
 
 /// Energies [J]; gravity and loads are zero where their points sit at the first grip.
 struct Energies {
-  double bending = 0;   ///< int 1/2 EI |t'|^2 ds, of the curvature that is not natural
+  double bending = 0;   ///< int 1/2 (EI_1 u1^2 + EI_2 u2^2) ds, of what is not natural of u
   double twisting = 0;  ///< int 1/2 GJ tau^2 ds, tau the twist per length that is not natural
   double gravity = 0;   ///< of the rod's weight
   double load = 0;      ///< of point loads
@@ -101,7 +111,7 @@ struct Reaction {
 };
 
 /// Twist of a part of the rod whose ends hold frames. The torque is the same all along where the
-/// rod is straight by nature.
+/// rod is round and straight by nature.
 struct TwistedPart {
   double begin = 0;   ///< arc length [m]
   double end = 0;     ///< arc length [m]
@@ -115,7 +125,7 @@ struct Samples {
   Eigen::Matrix3Xd points;         ///< [m], 3 x M
   Eigen::Matrix3Xd tangents;       ///< unit, along growing arc length [-], 3 x M
   Eigen::Matrix3Xd curvature;      ///< derivative of the tangent by arc length [1/m], 3 x M
-  /// First director of a rod that is not straight by nature, 3 x M; empty of others.
+  /// First director of a rod that has_material_directors(), 3 x M; empty of others.
   Eigen::Matrix3Xd d1;
 };
 
