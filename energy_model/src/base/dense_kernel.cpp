@@ -97,10 +97,10 @@ inline Lanes last_lanes(std::ptrdiff_t rest) {
 /// The sums of the lanes of four registers, one after the other, to memory.
 inline void write_sums(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d, double* to) {
 #if defined(__AVX2__)
-  const Lanes ab = __builtin_shufflevector(a, b, 0, 4, 2, 6) +
-                   __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const Lanes cd = __builtin_shufflevector(c, d, 0, 4, 2, 6) +
-                   __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  const Lanes ab =
+      __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
+  const Lanes cd =
+      __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
   write_lanes(to, __builtin_shufflevector(ab, cd, 0, 1, 4, 5) +
                       __builtin_shufflevector(ab, cd, 2, 3, 6, 7));
 #else

@@ -144,6 +144,7 @@ class EnergySolver::State {
   /// A span's last solution, to go on from.
   struct Remembered {
     std::shared_ptr<const SpanEnergy> model;  // none after a failure
+    Eigen::VectorXd x;
     Eigen::Matrix3d frame;
 
     [[nodiscard]] bool planar() const { return !model || model->span().planar; }
@@ -228,6 +229,7 @@ class EnergySolver::State {
       start = field_of(*shape, placed, problem.length);
     } else if (last != nullptr && last->model) {
       options.least_terms = last->model->terms();
+      options.known = {last->model, last->x};
       start = [&placed, last = *last](const Eigen::VectorXd& s) {
         return follow_field(placed, last, s);
       };
@@ -240,6 +242,7 @@ class EnergySolver::State {
       // The branch has ended, or the step was too large for it.
       spent = followed.solution.evaluations;
       options.least_terms = 0;
+      options.known = {};
     }
     std::vector<PlacedSolution> found = search(placed, options);
     spent += found.front().solution.evaluations;
@@ -359,6 +362,7 @@ class EnergySolver::State {
 
   static void remember(const PlacedSolution& found, Remembered& last) {
     last.model = succeeded(found.solution.status) ? found.solution.model : nullptr;
+    last.x = found.solution.x;
     last.frame = found.placed.frame;
   }
 
