@@ -189,10 +189,106 @@ void multiply_symmetric(ConstColumns a, ConstColumns b, Columns result) {
   }
 }
 
+/// One row after the other, or as many as a register has lanes.
+inline void read(const double* from, double& value) { value = *from; }
+inline void read(const double* from, Lanes& value) { value = read_lanes(from); }
+inline void write(double* to, double value) { *to = value; }
+inline void write(double* to, Lanes value) { write_lanes(to, value); }
+inline double root(double a) { return __builtin_sqrt(a); }
+inline Lanes root(Lanes a) {
+  Lanes result{};
+  for (std::ptrdiff_t i = 0; i < lane_count; ++i) result[i] = __builtin_sqrt(a[i]);
+  return result;
+}
+
+template <typename Real>
+struct Quaternion {
+  Real w, x, y, z;
+};
+
+template <typename Real, typename Matrix>
+inline Quaternion<Real> read_quaternion(const Matrix& from, std::ptrdiff_t row) {
+  Quaternion<Real> q;
+  read(from.data + row, q.w);
+  read(from.data + from.stride + row, q.x);
+  read(from.data + 2 * from.stride + row, q.y);
+  read(from.data + 3 * from.stride + row, q.z);
+  return q;
+}
+
+template <typename Real>
+inline void write_quaternion(const Columns& to, std::ptrdiff_t row, const Quaternion<Real>& q) {
+  write(to.data + row, q.w);
+  write(to.data + to.stride + row, q.x);
+  write(to.data + 2 * to.stride + row, q.y);
+  write(to.data + 3 * to.stride + row, q.z);
+}
+
+template <typename Real>
+inline void strains_row(const ConstColumns& q, const ConstColumns& u, double scale,
+                        const Columns& result, std::ptrdiff_t row) {
+  const Quaternion<Real> from = read_quaternion<Real>(q, row);
+  Real a, b;
+  read(u.data + row, a);
+  read(u.data + u.stride + row, b);
+  a = a * scale;
+  b = b * scale;
+  write_quaternion<Real>(result, row,
+                         {-from.x * a - from.y * b, from.w * a - from.z * b,
+                          from.w * b + from.z * a, from.x * b - from.y * a});
+}
+
+template <typename Real>
+inline void conjugate_row(const Columns& a, const ConstColumns& b, std::ptrdiff_t row) {
+  const Quaternion<Real> p = read_quaternion<Real>(a, row);
+  const Quaternion<Real> q = read_quaternion<Real>(b, row);
+  write_quaternion<Real>(a, row,
+                         {p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z,
+                          -p.w * q.x + p.x * q.w - p.y * q.z + p.z * q.y,
+                          -p.w * q.y + p.y * q.w - p.z * q.x + p.x * q.z,
+                          -p.w * q.z + p.z * q.w - p.x * q.y + p.y * q.x});
+}
+
+template <typename Real>
+inline void add_row(const Columns& q, const ConstColumns& a, std::ptrdiff_t row) {
+  const Quaternion<Real> p = read_quaternion<Real>(q, row);
+  Quaternion<Real> by = read_quaternion<Real>(a, row);
+  by.w = by.w + 1.0;
+  const Quaternion<Real> sum = {by.w * p.w - by.x * p.x - by.y * p.y - by.z * p.z,
+                                by.w * p.x + by.x * p.w + by.y * p.z - by.z * p.y,
+                                by.w * p.y + by.y * p.w + by.z * p.x - by.x * p.z,
+                                by.w * p.z + by.z * p.w + by.x * p.y - by.y * p.x};
+  const Real size = root(sum.w * sum.w + sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
+  write_quaternion<Real>(q, row, {sum.w / size, sum.x / size, sum.y / size, sum.z / size});
+}
+
+void multiply_by_two_strains(ConstColumns q, ConstColumns u, double scale, Columns result) {
+  std::ptrdiff_t r = 0;
+  for (; r + lane_count <= q.rows; r += lane_count) strains_row<Lanes>(q, u, scale, result, r);
+  for (; r < q.rows; ++r) strains_row<double>(q, u, scale, result, r);
+}
+
+void multiply_by_conjugate(Columns a, ConstColumns b) {
+  std::ptrdiff_t r = 0;
+  for (; r + lane_count <= a.rows; r += lane_count) conjugate_row<Lanes>(a, b, r);
+  for (; r < a.rows; ++r) conjugate_row<double>(a, b, r);
+}
+
+void add_product(Columns q, ConstColumns a) {
+  std::ptrdiff_t r = 0;
+  for (; r + lane_count <= q.rows; r += lane_count) add_row<Lanes>(q, a, r);
+  for (; r < q.rows; ++r) add_row<double>(q, a, r);
+}
+
 }  // namespace
 
 const DenseKernel& dense_kernel() {
-  static constexpr DenseKernel kernel = {multiply, multiply_transposed, multiply_symmetric};
+  static constexpr DenseKernel kernel = {multiply,
+                                         multiply_transposed,
+                                         multiply_symmetric,
+                                         multiply_by_two_strains,
+                                         multiply_by_conjugate,
+                                         add_product};
   return kernel;
 }
 

@@ -75,7 +75,7 @@ Eigen::VectorXd RodFrames::fit(const Eigen::Matrix3Xd& tangents) const {
     turns.col(1) -= cumulated(strains.col(0).cwiseProduct(twist));
     x += from_angles(turns);
     // What is left is about its square, which is near enough for a start.
-    if (turns.cwiseAbs().maxCoeff() < 1e-2) break;
+    if (turns.cwiseAbs().maxCoeff() < 1e-3) break;
   }
   return x;
 }

@@ -21,20 +21,6 @@ using Rows = Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
 using ConstRows = Eigen::Ref<const Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
 using ConstStrains = Eigen::Ref<const Eigen::MatrixX3d, 0, Eigen::OuterStride<>>;
 
-/// product = scale q (0, u1, u2, 0), row by row.
-void multiply_by_two_strains(const ConstRows& q, const ConstStrains& u, double scale,
-                             Rows product) {
-  for (Eigen::Index r = 0; r < q.rows(); ++r) {
-    const double a = scale * u(r, 0);
-    const double b = scale * u(r, 1);
-    const double w = q(r, 0), x = q(r, 1), y = q(r, 2), z = q(r, 3);
-    product(r, 0) = -x * a - y * b;
-    product(r, 1) = w * a - z * b;
-    product(r, 2) = w * b + z * a;
-    product(r, 3) = x * b - y * a;
-  }
-}
-
 /// product = product + scale q (0, 0, 0, u3), row by row.
 void add_product_with_twist(const ConstRows& q, const ConstStrains& u, double scale, Rows product) {
   for (Eigen::Index r = 0; r < q.rows(); ++r) {
@@ -44,31 +30,6 @@ void add_product_with_twist(const ConstRows& q, const ConstStrains& u, double sc
     product(r, 2) -= q(r, 1) * c;
     product(r, 3) += q(r, 0) * c;
   }
-}
-
-/// a = a conj(b), row by row.
-void multiply_by_conjugate(Rows a, const ConstRows& b) {
-  for (Eigen::Index r = 0; r < a.rows(); ++r) {
-    const double w = a(r, 0), x = a(r, 1), y = a(r, 2), z = a(r, 3);
-    const double bw = b(r, 0), bx = b(r, 1), by = b(r, 2), bz = b(r, 3);
-    a(r, 0) = w * bw + x * bx + y * by + z * bz;
-    a(r, 1) = -w * bx + x * bw - y * bz + z * by;
-    a(r, 2) = -w * by + y * bw - z * bx + x * bz;
-    a(r, 3) = -w * bz + z * bw - x * by + y * bx;
-  }
-}
-
-/// q = q + a q, row by row, of length 1 again.
-void add_product(Rows q, const ConstRows& a) {
-  for (Eigen::Index r = 0; r < q.rows(); ++r) {
-    const double w = q(r, 0), x = q(r, 1), y = q(r, 2), z = q(r, 3);
-    const double aw = 1 + a(r, 0), ax = a(r, 1), ay = a(r, 2), az = a(r, 3);
-    q(r, 0) = aw * w - ax * x - ay * y - az * z;
-    q(r, 1) = aw * x + ax * w + ay * z - az * y;
-    q(r, 2) = aw * y + ay * w + az * x - ax * z;
-    q(r, 3) = aw * z + az * w + ax * y - ay * x;
-  }
-  for (Eigen::Index r = 0; r < q.rows(); ++r) q.row(r) /= q.row(r).norm();
 }
 
 Eigen::Vector4d as_vector(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
@@ -111,7 +72,8 @@ void RodFrames::multiply_by_strains(
     const ConstRows& q, const Panel& panel, const State& state,
     Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>> product) const {
   const auto u = state.u.middleRows(panel.node, panel.nodes());
-  multiply_by_two_strains(q, u, panel.length / 2, product);
+  dense_kernel().multiply_by_two_strains(columns_of(q), columns_of(u), panel.length / 2,
+                                         result_columns(product));
   if (fields_ == 3) add_product_with_twist(q, u, panel.length / 2, product);
 }
 
@@ -142,6 +104,7 @@ void RodFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& sta
     q.row(r) = as_vector(along).transpose();
   }
   const Eigen::Vector4d first = as_vector(at);
+  const DenseKernel& kernel = dense_kernel();
   for (int i = 0; i < most_corrections; ++i) {
     multiply_by_strains(q, panel, state, product);
     multiply(table.integration, product, defect);
@@ -151,11 +114,11 @@ void RodFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& sta
     if (!(size > finest_defect) || !(size < 1)) break;
     // eta = d q* + 1/2 int d u q*
     multiply_by_strains(defect, panel, state, product);
-    multiply_by_conjugate(product, q);
-    multiply_by_conjugate(defect, q);
+    kernel.multiply_by_conjugate(result_columns(product), columns_of(q));
+    kernel.multiply_by_conjugate(result_columns(defect), columns_of(q));
     multiply(table.integration, product, turn);
     defect += turn;
-    add_product(q, defect);
+    kernel.add_product(result_columns(q), columns_of(defect));
     // What is left is its square.
     if (size < 3e-8) break;
   }
