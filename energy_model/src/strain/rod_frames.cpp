@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/dense_products.hpp"
 #include "base/spin.hpp"
+#include "strain/dense_products.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "base/dense_kernel.hpp"
+#include "strain/dense_kernel.hpp"
 
 namespace dlo::energy_model {
 

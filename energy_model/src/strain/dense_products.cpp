@@ -1,4 +1,4 @@
-#include "base/dense_products.hpp"
+#include "strain/dense_products.hpp"
 
 namespace dlo::energy_model {
 

@@ -1,4 +1,4 @@
-#include "base/dense_kernel.hpp"
+#include "strain/dense_kernel.hpp"
 
 // Compiled once for each instruction set, DLO_KERNEL naming the namespace (see CMakeLists.txt).
 // Nothing inline from a library that another file might compile too may be used in here but what
