@@ -26,7 +26,8 @@ class AcrossNeutral {
 /// Orthonormal basis of what the constraints leave free.
 [[nodiscard]] Eigen::MatrixXd free_directions(const Eigen::MatrixXd& jacobian, Eigen::Index size);
 
-/// Smallest eigenvalue of the Hessian on these directions; 1 if the constraints leave none.
+/// Smallest eigenvalue of the Hessian on these directions, if it is positive larger by a hundredth
+/// at most; 1 if the constraints leave none.
 [[nodiscard]] double smallest_eigenvalue(const Eigen::MatrixXd& hessian,
                                          const Eigen::MatrixXd& jacobian);
 

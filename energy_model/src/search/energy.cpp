@@ -145,6 +145,7 @@ class EnergySolver::State {
   /// A span's last solution, to go on from.
   struct Remembered {
     std::shared_ptr<const SpanEnergy> model;  // none after a failure
+    Eigen::VectorXd x;
     Eigen::Matrix3d frame;
 
     [[nodiscard]] bool planar() const { return !model || model->span().planar; }
@@ -229,6 +230,7 @@ class EnergySolver::State {
       start = field_of(*shape, placed, problem.length);
     } else if (last != nullptr && last->model) {
       options.least_terms = last->model->terms();
+      options.known = {last->model, last->x};
       start = [&placed, last = *last](const Eigen::VectorXd& s) {
         return follow_field(placed, last, s);
       };
@@ -241,6 +243,7 @@ class EnergySolver::State {
       // The branch has ended, or the step was too large for it.
       spent = followed.solution.evaluations;
       options.least_terms = 0;
+      options.known = {};
     }
     std::vector<PlacedSolution> found = search(placed, options);
     spent += found.front().solution.evaluations;
@@ -361,6 +364,7 @@ class EnergySolver::State {
 
   static void remember(const PlacedSolution& found, Remembered& last) {
     last.model = succeeded(found.solution.status) ? found.solution.model : nullptr;
+    last.x = found.solution.x;
     last.frame = found.placed.frame;
   }
 

@@ -59,6 +59,13 @@ std::vector<SpanSolution> list_of(SpanSolution solution) {
   return result;
 }
 
+/// A shape to start from and, in space, what it was fitted with when starts were ranked.
+struct Start {
+  TangentField field;
+  int terms = 0;
+  Eigen::VectorXd x;
+};
+
 class Search {
  public:
   Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
@@ -90,7 +97,7 @@ class Search {
   }
 
   [[nodiscard]] std::vector<SpanSolution> run() {
-    if (options_.start) return list_of(finish(from_start()));
+    if (options_.start) return list_of(finish(from_given_start()));
     std::vector<SpanSolution> found;
     if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
       SpanSolution solution = plain_cantilever();
@@ -98,15 +105,15 @@ class Search {
       if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
       add(std::move(solution), found);
     }
-    const std::vector<TangentField> fields = ranked_fields();
+    const std::vector<Start> starts = ranked_starts();
     const std::size_t tried =
         span_.has_material_directors() ? followed_natural_starts : followed_starts;
-    const std::size_t followed = options_.all ? fields.size() : std::min(tried, fields.size());
+    const std::size_t followed = options_.all ? starts.size() : std::min(tried, starts.size());
     std::vector<SpanSolution> coarse;
-    for (std::size_t i = 0; i < fields.size() && !out_of_time(); ++i) {
+    for (std::size_t i = 0; i < starts.size() && !out_of_time(); ++i) {
       // The other starts only where the first ones and what they lead to do not hold.
       if (i >= followed && has_stable_lowest(found)) break;
-      SpanSolution solution = from_field(fields[i]);
+      SpanSolution solution = from_start(starts[i]);
       spent_ += solution.evaluations;
       solution.evaluations = 0;
       if (!is_known(solution, coarse)) {
@@ -114,7 +121,7 @@ class Search {
         add(refined(std::move(solution)), found);
       }
       // Descending leaves unstable equilibria; Newton's method alone stays near them.
-      if (options_.all) add(refined(near_field(fields[i])), found);
+      if (options_.all) add(refined(near_field(starts[i].field)), found);
       if (i + 1 >= followed) leave_saddles(found);
     }
     if (span_.planar && span_.has_material_directors()) look_in_space(found);
@@ -162,33 +169,40 @@ class Search {
       if (solution.status != SolveStatus::saddle) return solution;
       spent = solution.evaluations;
     }
-    SpanSolution solution = refined(from_field(soft_field(span_)));
+    SpanSolution solution = refined(from_start({soft_field(span_), 0, {}}));
     solution.evaluations += spent;
     return solution;
   }
 
-  [[nodiscard]] std::vector<TangentField> ranked_fields() {
-    std::vector<TangentField> fields =
-        span_.has_material_directors() ? natural_fields(span_) : start_fields(span_);
-    if (options_.all) return fields;
+  [[nodiscard]] std::vector<Start> ranked_starts() {
+    std::vector<Start> starts;
+    for (TangentField& field :
+         span_.has_material_directors() ? natural_fields(span_) : start_fields(span_)) {
+      starts.push_back({std::move(field), 0, {}});
+    }
+    if (options_.all) return starts;
     const std::shared_ptr<SpanEnergy> model =
         workspace_.model(span_, std::max(8, std::min(natural_terms_, coarse_terms())));
     std::vector<std::pair<double, std::size_t>> ranks;
     Eigen::VectorXd gradient(model->size());
     Eigen::VectorXd missed(model->constraints());
     Eigen::MatrixXd jacobian(model->constraints(), model->size());
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      const Eigen::VectorXd x = model->fit(fields[i](model->nodes()));
+    for (std::size_t i = 0; i < starts.size(); ++i) {
+      const Eigen::VectorXd x = model->fit(starts[i].field(model->nodes()));
       const double energy = model->value(x, gradient);
       model->constraint(missed, jacobian);
       // Where the rod is taut, springs at the grips as stiff as it is between them.
       ranks.emplace_back(energy + stiffness_ / 2 * missed.squaredNorm(), i);
+      // In the plane a fit also tells the clamps' winding.
+      if (span_.planar) continue;
+      starts[i].terms = model->terms();
+      starts[i].x = x;
     }
     std::stable_sort(ranks.begin(), ranks.end(),
                      [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<TangentField> ordered;
+    std::vector<Start> ordered;
     ordered.reserve(ranks.size());
-    for (const auto& rank : ranks) ordered.push_back(fields[rank.second]);
+    for (const auto& rank : ranks) ordered.push_back(std::move(starts[rank.second]));
     return ordered;
   }
 
@@ -207,12 +221,13 @@ class Search {
   }
 
   /// From a field to an equilibrium, with as many terms as it takes to meet the grips.
-  [[nodiscard]] SpanSolution from_field(const TangentField& field) {
+  [[nodiscard]] SpanSolution from_start(const Start& from) {
     SpanSolution solution;
     int spent = 0;
     for (int count = coarse_terms();; count *= 2) {
       solution = empty_solution(std::min(count, max_terms));
-      solution.x = solution.model->fit(field(solution.model->nodes()));
+      const bool fitted = from.terms == solution.terms;
+      solution.x = fitted ? from.x : solution.model->fit(from.field(solution.model->nodes()));
       const Eigen::VectorXd start = solution.x;
       // Where the rod is taut such a start is near to the shape already.
       if (taut_ && !solution.model->has_walls()) {
@@ -243,21 +258,38 @@ class Search {
   }
 
   /// From the caller's own start.
-  [[nodiscard]] SpanSolution from_start() {
+  [[nodiscard]] SpanSolution from_given_start() {
     const bool follow = options_.approach == Approach::follow;
-    SpanSolution solution = follow ? near_field(options_.start) : from_field(options_.start);
+    SpanSolution solution =
+        follow ? near_field(options_.start) : from_start({options_.start, 0, {}});
     if (succeeded(solution.status)) return solution;
     const int spent = solution.evaluations;
-    solution = follow ? from_field(options_.start) : near_field(options_.start);
+    solution = follow ? from_start({options_.start, 0, {}}) : near_field(options_.start);
     solution.evaluations += spent;
     return solution;
   }
 
   [[nodiscard]] SpanSolution near_field(const TangentField& field) {
     SpanSolution solution = empty_solution(terms());
-    solution.x = solution.model->fit(field(solution.model->nodes()));
+    const StartShape wanted = field(solution.model->nodes());
+    if (!adopt_known(wanted, solution)) solution.x = solution.model->fit(wanted);
     workspace_.newton().polish(solution, load_);
     return solution;
+  }
+
+  /// In space a rod that is straight by nature has next to the same strains where its grips have
+  /// hardly moved, unless the frame of its start has turned about it. @return whether they give the
+  /// tangents that are wanted
+  [[nodiscard]] bool adopt_known(const StartShape& wanted, SpanSolution& solution) const {
+    constexpr double near = 0.2;  // of tangents
+    const KnownShape& known = options_.known;
+    SpanEnergy& model = *solution.model;
+    if (!known.model || span_.planar || span_.has_material_directors()) return false;
+    if (known.model->span().planar || known.model->pieces() != model.pieces()) return false;
+    solution.x = model.adopt(*known.model, known.x);
+    Eigen::VectorXd gradient(model.size());
+    (void)model.value(solution.x, gradient);
+    return (model.tangents() - wanted.tangents).cwiseAbs().maxCoeff() < near;
   }
 
   /// NLopt from solution.x, then Newton.

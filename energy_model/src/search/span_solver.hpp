@@ -31,6 +31,12 @@ enum class Approach {
   descend,  ///< downhill, to a minimum
 };
 
+/// Unknowns of a shape that is known.
+struct KnownShape {
+  std::shared_ptr<const SpanEnergy> model;  ///< none: nothing is known
+  Eigen::VectorXd x;
+};
+
 struct SpanOptions {
   int terms = 0;  ///< 0: as many as `tolerance` needs
   double tolerance = 1e-10;
@@ -38,6 +44,7 @@ struct SpanOptions {
   bool all = false;                      ///< every equilibrium that the starts lead to
   TangentField start;                    ///< instead of the search
   Approach approach = Approach::follow;  ///< from `start`
+  KnownShape known;                      ///< what `start` shows, if it is a span's solution
   int least_terms = 0;                   ///< what resolves the start
   Deadline deadline;                     ///< of the whole solve
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/spin.hpp"
+#include "strain/dense_products.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -20,20 +21,6 @@ using Rows = Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
 using ConstRows = Eigen::Ref<const Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
 using ConstStrains = Eigen::Ref<const Eigen::MatrixX3d, 0, Eigen::OuterStride<>>;
 
-/// product = scale q (0, u1, u2, 0), row by row.
-void multiply_by_two_strains(const ConstRows& q, const ConstStrains& u, double scale,
-                             Rows product) {
-  for (Eigen::Index r = 0; r < q.rows(); ++r) {
-    const double a = scale * u(r, 0);
-    const double b = scale * u(r, 1);
-    const double w = q(r, 0), x = q(r, 1), y = q(r, 2), z = q(r, 3);
-    product(r, 0) = -x * a - y * b;
-    product(r, 1) = w * a - z * b;
-    product(r, 2) = w * b + z * a;
-    product(r, 3) = x * b - y * a;
-  }
-}
-
 /// product = product + scale q (0, 0, 0, u3), row by row.
 void add_product_with_twist(const ConstRows& q, const ConstStrains& u, double scale, Rows product) {
   for (Eigen::Index r = 0; r < q.rows(); ++r) {
@@ -43,31 +30,6 @@ void add_product_with_twist(const ConstRows& q, const ConstStrains& u, double sc
     product(r, 2) -= q(r, 1) * c;
     product(r, 3) += q(r, 0) * c;
   }
-}
-
-/// a = a conj(b), row by row.
-void multiply_by_conjugate(Rows a, const ConstRows& b) {
-  for (Eigen::Index r = 0; r < a.rows(); ++r) {
-    const double w = a(r, 0), x = a(r, 1), y = a(r, 2), z = a(r, 3);
-    const double bw = b(r, 0), bx = b(r, 1), by = b(r, 2), bz = b(r, 3);
-    a(r, 0) = w * bw + x * bx + y * by + z * bz;
-    a(r, 1) = -w * bx + x * bw - y * bz + z * by;
-    a(r, 2) = -w * by + y * bw - z * bx + x * bz;
-    a(r, 3) = -w * bz + z * bw - x * by + y * bx;
-  }
-}
-
-/// q = q + a q, row by row, of length 1 again.
-void add_product(Rows q, const ConstRows& a) {
-  for (Eigen::Index r = 0; r < q.rows(); ++r) {
-    const double w = q(r, 0), x = q(r, 1), y = q(r, 2), z = q(r, 3);
-    const double aw = 1 + a(r, 0), ax = a(r, 1), ay = a(r, 2), az = a(r, 3);
-    q(r, 0) = aw * w - ax * x - ay * y - az * z;
-    q(r, 1) = aw * x + ax * w + ay * z - az * y;
-    q(r, 2) = aw * y + ay * w + az * x - ax * z;
-    q(r, 3) = aw * z + az * w + ax * y - ay * x;
-  }
-  for (Eigen::Index r = 0; r < q.rows(); ++r) q.row(r) /= q.row(r).norm();
 }
 
 Eigen::Vector4d as_vector(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
@@ -110,7 +72,8 @@ void RodFrames::multiply_by_strains(
     const ConstRows& q, const Panel& panel, const State& state,
     Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>> product) const {
   const auto u = state.u.middleRows(panel.node, panel.nodes());
-  multiply_by_two_strains(q, u, panel.length / 2, product);
+  dense_kernel().multiply_by_two_strains(columns_of(q), columns_of(u), panel.length / 2,
+                                         result_columns(product));
   if (fields_ == 3) add_product_with_twist(q, u, panel.length / 2, product);
 }
 
@@ -123,7 +86,8 @@ void RodFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& sta
   auto defect = state.defect.topRows(Q);
   auto turn = state.turn.topRows(Q);
   // Magnus: the strain's integral, and h^2/12 of the commutator of the strains at both ends.
-  turn.leftCols(fields_).noalias() = panel.length * (table.integration * u.leftCols(fields_));
+  multiply(table.integration, u.leftCols(fields_), turn.leftCols(fields_));
+  turn.leftCols(fields_) *= panel.length;
   Eigen::Quaterniond along = at;
   for (Eigen::Index r = 0; r < Q; ++r) {
     Eigen::Vector3d step(turn(r, 0), turn(r, 1), fields_ == 3 ? turn(r, 2) : 0);
@@ -140,19 +104,21 @@ void RodFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& sta
     q.row(r) = as_vector(along).transpose();
   }
   const Eigen::Vector4d first = as_vector(at);
+  const DenseKernel& kernel = dense_kernel();
   for (int i = 0; i < most_corrections; ++i) {
     multiply_by_strains(q, panel, state, product);
-    defect.noalias() = table.integration * product;
+    multiply(table.integration, product, defect);
     defect -= q;
     defect.rowwise() += first.transpose();
     const double size = defect.cwiseAbs().maxCoeff();
     if (!(size > finest_defect) || !(size < 1)) break;
     // eta = d q* + 1/2 int d u q*
     multiply_by_strains(defect, panel, state, product);
-    multiply_by_conjugate(product, q);
-    multiply_by_conjugate(defect, q);
-    defect.noalias() += table.integration * product;
-    add_product(q, defect);
+    kernel.multiply_by_conjugate(result_columns(product), columns_of(q));
+    kernel.multiply_by_conjugate(result_columns(defect), columns_of(q));
+    multiply(table.integration, product, turn);
+    defect += turn;
+    kernel.add_product(result_columns(q), columns_of(defect));
     // What is left is its square.
     if (size < 3e-8) break;
   }
@@ -172,6 +138,7 @@ void RodFrames::resize(State& state) const {
   for (Eigen::MatrixX4d* m : {&state.product, &state.defect, &state.turn}) m->resize(Q, 4);
   for (Eigen::MatrixX3d* m : {&state.couples, &state.moments, &state.levers}) m->resize(Q, 3);
   state.along.resize(Q);
+  state.curvatures.resize(Q, 6);
   state.spins.resize(3 * Q, fields_ * K);
   state.weighted.resize(3 * Q, fields_ * K);
   state.scaled.resize(std::max(Q, K), fields_ * K);
@@ -188,8 +155,8 @@ void RodFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& stat
   for (const Panel& panel : panels_) {
     for (Eigen::Index f = 0; f < fields_; ++f) {
       auto strains = state.u.col(f).segment(panel.node, panel.nodes());
-      strains.noalias() = panel.table->values.leftCols(panel.terms) *
-                          x.segment(f * columns_ + panel.column, panel.terms);
+      multiply(panel.table->values.leftCols(panel.terms),
+               x.segment(f * columns_ + panel.column, panel.terms), strains);
       strains *= panel.strain[static_cast<std::size_t>(f)];
     }
     if (fields_ == 3) {
@@ -211,8 +178,8 @@ void RodFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& stat
     const auto t = state.t.middleRows(panel.node, Q);
     auto tails = state.tails.middleRows(panel.node, Q);
     const Eigen::Vector3d whole = t.transpose() * panel.table->weights;
-    tails.noalias() = -(panel.table->integration * t);
-    tails.rowwise() += whole.transpose();
+    multiply(panel.table->integration, t, tails);
+    tails = (-tails).rowwise() + whole.transpose();
     tails.array().colwise() *= panel.table->weights.array();
   }
 }
@@ -280,7 +247,7 @@ void RodFrames::pull_position(const std::vector<double>& signs, State& state,
         levers.row(r) = d.cross(own);
       }
       auto rows = jacobian.middleCols(field * columns_ + panel->column, panel->terms);
-      rows.noalias() = levers.transpose() * panel->table->values.leftCols(panel->terms);
+      multiply_transposed(levers, panel->table->values.leftCols(panel->terms), rows);
       rows *= panel->strain[static_cast<std::size_t>(field)];
     }
     const auto t = state.t.middleRows(panel->node, Q);
@@ -296,9 +263,10 @@ void RodFrames::own_spins(const Panel& panel, State& state) const {
     const auto d = director(state, field).middleRows(panel.node, Q);
     auto scaled = state.scaled.topLeftCorner(Q, panel.terms);
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      scaled.noalias() = d.col(axis).asDiagonal() * panel.table->values.leftCols(panel.terms);
-      state.spins.block(axis * Q, field * panel.terms, Q, panel.terms).noalias() =
-          scale * (panel.table->integration * scaled);
+      scaled.noalias() =
+          (scale * d.col(axis)).asDiagonal() * panel.table->values.leftCols(panel.terms);
+      multiply(panel.table->integration, scaled,
+               state.spins.block(axis * Q, field * panel.terms, Q, panel.terms));
     }
   }
 }
@@ -311,8 +279,23 @@ void RodFrames::end_spins(const Panel& panel, State& state) const {
     const auto d = director(state, field).middleRows(panel.node, Q);
     weighted.noalias() = panel.table->weights.asDiagonal() * d;
     auto ends = state.ends.middleCols(field * columns_ + panel.column, panel.terms);
-    ends.noalias() = weighted.transpose() * panel.table->values.leftCols(panel.terms);
+    multiply_transposed(weighted, panel.table->values.leftCols(panel.terms), ends);
     ends *= panel.length * panel.strain[static_cast<std::size_t>(field)];
+  }
+}
+
+/// Into state.weighted: state.curvatures of the nodes times state.spins.
+void RodFrames::weigh_spins(const Panel& panel, State& state) const {
+  constexpr std::array<std::array<Eigen::Index, 3>, 3> entry = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
+  const Eigen::Index Q = panel.nodes();
+  for (Eigen::Index column = 0; column < fields_ * panel.terms; ++column) {
+    const auto spin = state.spins.col(column);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      state.weighted.col(column).segment(static_cast<Eigen::Index>(axis) * Q, Q) =
+          state.curvatures.col(entry[axis][0]).head(Q).cwiseProduct(spin.head(Q)) +
+          state.curvatures.col(entry[axis][1]).head(Q).cwiseProduct(spin.segment(Q, Q)) +
+          state.curvatures.col(entry[axis][2]).head(Q).cwiseProduct(spin.segment(2 * Q, Q));
+    }
   }
 }
 
@@ -349,12 +332,10 @@ void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matri
         const Eigen::Matrix3d a =
             spin_curvature(state.t.row(node), f.nodes->row(node - turn_nodes_));
         curvature += a;
-        for (Eigen::Index axis = 0; axis < 3; ++axis) {
-          weighted.row(axis * Q + r) = a(axis, 0) * spins.row(r) + a(axis, 1) * spins.row(Q + r) +
-                                       a(axis, 2) * spins.row(2 * Q + r);
-        }
+        state.curvatures.row(r) << a(0, 0), a(0, 1), a(0, 2), a(1, 1), a(1, 2), a(2, 2);
       }
-      own.noalias() = spins.transpose() * weighted;
+      weigh_spins(*panel, state);
+      multiply_symmetric(spins, weighted, own);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
         beside.row(axis) = weighted.middleRows(axis * Q, Q).colwise().sum();
       }
@@ -370,14 +351,19 @@ void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matri
         lever.row(r) = d.cross(m);
       }
       auto by_node = state.weighted.topLeftCorner(Q, all);
-      by_node.noalias() = lever.col(0).asDiagonal() * spins.topRows(Q);
-      by_node.noalias() += lever.col(1).asDiagonal() * spins.middleRows(Q, Q);
-      by_node.noalias() += lever.col(2).asDiagonal() * spins.bottomRows(Q);
+      for (Eigen::Index column = 0; column < all; ++column) {
+        by_node.col(column) = lever.col(0).cwiseProduct(spins.col(column).head(Q)) +
+                              lever.col(1).cwiseProduct(spins.col(column).segment(Q, Q)) +
+                              lever.col(2).cwiseProduct(spins.col(column).tail(Q));
+      }
       auto product = state.scaled.topLeftCorner(K, all);
-      product.noalias() = half * (values.transpose() * by_node);
+      multiply_transposed(values, by_node, product);
+      product *= half;
       own.middleRows(field * K, K) += product;
       own.middleCols(field * K, K) += product.transpose();
-      beside.middleCols(field * K, K).noalias() += half * (lever.transpose() * values);
+      auto turned = state.turned.leftCols(K);
+      multiply_transposed(lever, values, turned);
+      beside.middleCols(field * K, K) += half * turned;
     }
     for (Eigen::Index field = 0; field < fields_; ++field) {
       const auto ends = state.ends.middleCols(field * columns_ + panel->column, K);

@@ -51,6 +51,8 @@ class RodFrames {
     Eigen::MatrixX4d product, defect, turn;
     Eigen::MatrixX3d couples, moments, levers;
     Eigen::VectorXd along;
+    /// Upper halves of symmetric 3 x 3 matrices, row by row.
+    Eigen::Matrix<double, Eigen::Dynamic, 6> curvatures;
     Eigen::MatrixXd spins, weighted, scaled, own, before;
     Eigen::Matrix3Xd beside, turned;
 
@@ -129,6 +131,7 @@ class RodFrames {
   void moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
                State& state) const;
   void own_spins(const Panel& panel, State& state) const;
+  void weigh_spins(const Panel& panel, State& state) const;
   void end_spins(const Panel& panel, State& state) const;
   void add_panel(const Panel& panel, const Eigen::Matrix3d& later_curvature, State& state,
                  Eigen::Ref<Eigen::MatrixXd> hessian) const;

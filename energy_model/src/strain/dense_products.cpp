@@ -1,0 +1,23 @@
+#include "strain/dense_products.hpp"
+
+namespace dlo::energy_model {
+
+// One for each time that dense_kernel.cpp is compiled.
+namespace kernel_baseline {
+const DenseKernel& dense_kernel();
+}
+#if defined(__x86_64__)
+namespace kernel_avx2 {
+const DenseKernel& dense_kernel();
+}
+#endif
+
+const DenseKernel& dense_kernel() {
+#if defined(__x86_64__)
+  static const bool runs_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  if (runs_avx2) return kernel_avx2::dense_kernel();
+#endif
+  return kernel_baseline::dense_kernel();
+}
+
+}  // namespace dlo::energy_model

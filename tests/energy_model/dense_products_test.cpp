@@ -1,0 +1,103 @@
+#include "strain/dense_products.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+namespace dlo::energy_model {
+
+namespace kernel_baseline {
+const DenseKernel& dense_kernel();
+}
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Rounding of sums of up to fifty products of numbers up to one.
+constexpr double rounding = 1e-13;
+
+/// What this machine runs and what any machine can.
+const DenseKernel* const kernels[] = {&dense_kernel(), &kernel_baseline::dense_kernel()};
+
+/// A block whose columns do not follow each other in memory.
+MatrixXd::BlockXpr part_of(MatrixXd& whole, Index rows, Index columns) {
+  whole = MatrixXd::Random(rows + 3, columns + 2);
+  return whole.block(2, 1, rows, columns);
+}
+
+TEST(DenseProducts, AreThoseOfTheLibraryInAllSizes) {
+  for (const Index rows : {1, 2, 3, 4, 5, 8, 11, 20, 47}) {
+    for (const Index inner : {1, 2, 3, 7, 26}) {
+      for (const Index columns : {1, 2, 3, 4, 5, 9}) {
+        MatrixXd wholes[4];
+        const auto a = part_of(wholes[0], rows, inner);
+        const auto b = part_of(wholes[1], inner, columns);
+        auto product = part_of(wholes[2], rows, columns);
+        const MatrixXd around = wholes[2];
+        auto transposed = part_of(wholes[3], inner, columns);
+        for (const DenseKernel* kernel : kernels) {
+          kernel->multiply(columns_of(a), columns_of(b), result_columns(product));
+          EXPECT_LT((product - a * b).norm(), rounding) << rows << ' ' << inner << ' ' << columns;
+          product = around.block(2, 1, rows, columns);
+          EXPECT_EQ(wholes[2], around) << "written beside the result";
+          kernel->multiply_transposed(columns_of(a), columns_of(product),
+                                      result_columns(transposed));
+          EXPECT_LT((transposed - a.transpose() * product).norm(), rounding)
+              << rows << ' ' << inner << ' ' << columns;
+        }
+      }
+    }
+  }
+}
+
+TEST(DenseProducts, WorkOutHalfOfWhatIsSymmetric) {
+  for (const Index rows : {1, 3, 4, 9, 47}) {
+    for (const Index columns : {1, 2, 3, 4, 5, 7, 20}) {
+      const MatrixXd a = MatrixXd::Random(rows, columns);
+      const Eigen::VectorXd weights = Eigen::VectorXd::Random(rows);
+      const MatrixXd weighted = weights.asDiagonal() * a;
+      MatrixXd product(columns, columns);
+      for (const DenseKernel* kernel : kernels) {
+        kernel->multiply_symmetric(columns_of(a), columns_of(weighted), result_columns(product));
+        EXPECT_LT((product - a.transpose() * weighted).norm(), rounding) << rows << ' ' << columns;
+      }
+    }
+  }
+}
+
+Eigen::Quaterniond row_of(const Eigen::MatrixX4d& rows, Index r) {
+  return {rows(r, 0), rows(r, 1), rows(r, 2), rows(r, 3)};
+}
+
+class QuaternionRows : public ::testing::TestWithParam<const DenseKernel*> {};
+
+TEST_P(QuaternionRows, AreMultipliedAsByTheLibrary) {
+  for (const Index rows : {1, 3, 4, 6, 13}) {
+    const Eigen::MatrixX4d q = Eigen::MatrixX4d::Random(rows, 4);
+    const Eigen::MatrixX4d a = Eigen::MatrixX4d::Random(rows, 4);
+    const Eigen::MatrixX3d u = Eigen::MatrixX3d::Random(rows, 3);
+    Eigen::MatrixX4d by_strains(rows, 4);
+    GetParam()->multiply_by_two_strains(columns_of(q), columns_of(u), 0.5,
+                                        result_columns(by_strains));
+    Eigen::MatrixX4d by_conjugate = a;
+    GetParam()->multiply_by_conjugate(result_columns(by_conjugate), columns_of(q));
+    Eigen::MatrixX4d turned = q;
+    GetParam()->add_product(result_columns(turned), columns_of(a));
+    for (Index r = 0; r < rows; ++r) {
+      const Eigen::Quaterniond at = row_of(q, r);
+      const Eigen::Quaterniond strain(0, u(r, 0) / 2, u(r, 1) / 2, 0);
+      EXPECT_LT((row_of(by_strains, r).coeffs() - (at * strain).coeffs()).norm(), rounding);
+      const Eigen::Quaterniond conjugate = row_of(a, r) * at.conjugate();
+      EXPECT_LT((row_of(by_conjugate, r).coeffs() - conjugate.coeffs()).norm(), rounding);
+      const Eigen::Vector4d sum = at.coeffs() + (row_of(a, r) * at).coeffs();
+      EXPECT_LT((row_of(turned, r).coeffs() - sum.normalized()).norm(), rounding);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(DenseProducts, QuaternionRows, ::testing::ValuesIn(kernels));
+
+}  // namespace
+}  // namespace dlo::energy_model

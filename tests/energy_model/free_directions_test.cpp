@@ -1,0 +1,59 @@
+#include "base/free_directions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <cmath>
+
+namespace dlo::energy_model {
+namespace {
+
+/// A symmetric matrix with these eigenvalues.
+Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& eigenvalues) {
+  const Eigen::Index n = eigenvalues.size();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(Eigen::MatrixXd::Random(n, n));
+  const Eigen::MatrixXd Q = qr.householderQ();
+  return Q * eigenvalues.asDiagonal() * Q.transpose();
+}
+
+TEST(FreeDirections, SmallestEigenvalueIsTheSmallestWhateverItsSign) {
+  for (const double smallest : {1e-3, 0.2, 0.999, 1.0, 1e-9, 0.0, -1e-3, -4.0}) {
+    Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(24, 1, 3);
+    eigenvalues[0] = smallest;
+    const double found = smallest_eigenvalue(with_eigenvalues(eigenvalues), Eigen::MatrixXd(0, 24));
+    // Among others that are hardly larger, a hundredth is what is proven.
+    EXPECT_NEAR(found, smallest, (smallest < 0.5 ? 1e-3 : 1e-2) * std::abs(smallest) + 1e-13);
+  }
+}
+
+TEST(FreeDirections, OnlyWhatConstraintsLeaveFreeIsAsked) {
+  for (const Eigen::Index constraints : {1, 3, 6}) {
+    const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(constraints, 16);
+    const Eigen::MatrixXd hessian =
+        with_eigenvalues(Eigen::VectorXd::LinSpaced(16, constraints == 3 ? -1 : 0.1, 2));
+    const Eigen::MatrixXd Z = free_directions(jacobian, 16);
+    EXPECT_LT((jacobian * Z).norm(), 1e-13);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Z.transpose() * hessian * Z);
+    const double smallest = eigen.eigenvalues()[0];
+    EXPECT_NEAR(smallest_eigenvalue(hessian, jacobian), smallest, 1e-3 * std::abs(smallest));
+  }
+  EXPECT_EQ(smallest_eigenvalue(Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Identity(2, 2)),
+            1);
+}
+
+/// A seed of the iteration that has nothing of the softest direction finds another eigenvalue,
+/// which the proof refuses.
+TEST(FreeDirections, SmallestEigenvalueIsProven) {
+  Eigen::VectorXd seed(6);
+  for (Eigen::Index i = 0; i < 6; ++i) seed[i] = std::sin(1 + 1.7 * static_cast<double>(i));
+  seed.normalize();
+  Eigen::VectorXd across = Eigen::VectorXd::Unit(6, 2);
+  across = (across - across.dot(seed) * seed).normalized();
+  const Eigen::MatrixXd hessian =
+      Eigen::MatrixXd::Identity(6, 6) - 0.9 * across * across.transpose();
+  EXPECT_NEAR(smallest_eigenvalue(hessian, Eigen::MatrixXd(0, 6)), 0.1, 1e-4);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
