@@ -19,18 +19,19 @@ constexpr double least_rise = 1e-3;
 
 class Contacts {
  public:
-  Contacts(const SpanSolution& solution, double load, double depth)
+  Contacts(const SpanSolution& solution, double load, Terms terms)
       : solution_(solution),
         span_(solution.model->span()),
         shape_(solution.model->shape(solution.x)),
         pull_(-strongest_pull * (1 + load + solution.multipliers.norm())),
-        depth_(depth),
+        terms_(terms),
         contacts_(span_.contacts) {}
 
   [[nodiscard]] std::optional<std::vector<Span::Contact>> mended() {
     let_go();
     join();
-    for (const Lowest& lowest : lowest_points(span_, shape_, -depth_ * span_.length)) {
+    const double depth = terms_ == Terms::all ? deepest : deepest_coarse;
+    for (const Lowest& lowest : lowest_points(span_, shape_, -depth * span_.length)) {
       wrong_ = true;
       add(lowest);
     }
@@ -51,7 +52,8 @@ class Contacts {
         continue;
       }
       const double length = contact.end - contact.begin;
-      const bool lifted = force.least_pressure * length < pull_ || force.least_inner < pull_;
+      const bool lifted = force.least_inner < pull_ ||
+                          (terms_ == Terms::all && force.least_pressure * length < pull_);
       // Nothing beyond a free end is carried there.
       const bool begin_pulls = contact.begin > 0 && force.begin < pull_;
       const bool end_pulls = contact.end < span_.length && force.end < pull_;
@@ -129,7 +131,7 @@ class Contacts {
   const Span& span_;
   SpanShape shape_;
   double pull_;
-  double depth_;
+  Terms terms_;
   std::vector<Span::Contact> contacts_;
   bool wrong_ = false;
 };
@@ -137,8 +139,8 @@ class Contacts {
 }  // namespace
 
 std::optional<std::vector<Span::Contact>> mended(const SpanSolution& solution, double load,
-                                                 double depth) {
-  return Contacts(solution, load, depth).mended();
+                                                 Terms terms) {
+  return Contacts(solution, load, terms).mended();
 }
 
 }  // namespace dlo::energy_model

@@ -9,13 +9,22 @@ namespace dlo::energy_model {
 
 /// What a shape may be behind a rigid wall and still be on it, in lengths: rounding.
 inline constexpr double deepest = 1e-9;
+/// The same while terms may be missing.
+inline constexpr double deepest_coarse = 1e-6;
+
+/// Whether a shape has all the terms that it takes; before, the pressure on what lies says nothing.
+enum class Terms {
+  some,
+  all,
+};
 
 /// Looks whether contacts are those of an equilibrium: no wall pulls (concentrated forces and
-/// pressures are above -1e-7 of all forces) and nothing is more than `depth` lengths behind one.
+/// pressures are above -1e-7 of all forces) and nothing is more than `deepest` (`deepest_coarse`)
+/// lengths behind one.
 /// @return nothing if so; else the contacts to try next: without those that pull, points where they
 ///         lie too short or are pulled along a part, one where two meet, more where the rod is
 ///         behind a wall
 [[nodiscard]] std::optional<std::vector<Span::Contact>> mended(const SpanSolution& solution,
-                                                               double load, double depth);
+                                                               double load, Terms terms);
 
 }  // namespace dlo::energy_model

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include "certify/enough_terms.hpp"
@@ -17,8 +18,6 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Behind a wall, in lengths, while terms may be missing.
-constexpr double deepest_coarse = 1e-6;
 /// Shapes from which polygons come to rest.
 constexpr std::size_t most_starts = 3;
 /// Times that the contacts are mended.
@@ -146,20 +145,20 @@ class ContactSearch {
       solution = near_field(span, near);
       if (!solution.is_equilibrium()) break;
       spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
-      std::optional<std::vector<Span::Contact>> next = mended(solution, load_, deepest_coarse);
+      std::optional<std::vector<Span::Contact>> next = mended(solution, load_, Terms::some);
       if (!next) {
         solution = with_all_terms(std::move(solution));
         if (!solution.is_equilibrium()) break;
-        next = mended(solution, load_, deepest);
+        next = mended(solution, load_, Terms::all);
         if (!next) return solution;
       }
       near = field_of(solution.model->shape(solution.x));
       span = solution.model->span();
       span.contacts = std::move(*next);
     }
-    solution.message = "what touches what did not settle" +
-                       (solution.is_equilibrium() ? "" : ": " + solution.message);
-    solution.status = SolveStatus::not_resolved;
+    std::string why = solution.is_equilibrium() ? "" : ": " + solution.message;
+    solution.finish(SolveStatus::not_resolved);
+    solution.message += ": what touches what did not settle" + why;
     return solution;
   }
 

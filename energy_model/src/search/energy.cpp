@@ -109,7 +109,11 @@ class EnergySolver::State {
   std::vector<Equilibrium> solve(const Problem& problem, bool all, bool follow) {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
-    const std::vector<PlacedSpan> placed = split(problem);
+    std::vector<PlacedSpan> placed = split(problem);
+    for (PlacedSpan& span : placed) {
+      // Contact is not looked for where clamps twist the rod; judge_penetration() tells of it.
+      if (span.frames) span.span.rigid_walls.clear();
+    }
     const bool warm = follow && remembered_.size() == placed.size();
     remembered_.resize(placed.size());
     twists_.resize(placed.size());

@@ -133,16 +133,18 @@ std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers
       } else {
         force.least_inner = std::min(force.least_inner, before - here);
       }
-      double last = here;
+      force.end = before = series(carried, 1);
+      // The pressure is its derivative, which the last coefficients hardly know.
+      const Eigen::VectorXd smooth = carried.head((slope.count + 1) / 2);
+      double last = series(smooth, 0);
       for (int k = 1; k <= looks; ++k) {
-        const double next = series(carried, static_cast<double>(k) / looks);
+        const double next = series(smooth, static_cast<double>(k) / looks);
         const double pressure = (last - next) * looks / slope.length;
         const bool first = i == 0 && k == 1;
         force.least_pressure = first ? pressure : std::min(force.least_pressure, pressure);
         force.largest_pressure = first ? pressure : std::max(force.largest_pressure, pressure);
         last = next;
       }
-      force.end = before = last;
     }
     result.push_back(force);
   }

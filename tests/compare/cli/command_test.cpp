@@ -228,7 +228,7 @@ normal = [0, 1, 0]
         command == "solve " ? document.at("plan") : document.at("cases")[0].at("plan");
     EXPECT_EQ(plan.at("geometry"), "planar");
     EXPECT_EQ(plan.at("obstacles")[0].at("in_reach"), false);
-    EXPECT_NEAR(plan.at("obstacles")[0].at("clearance_m").get<double>(), 0.1, 1e-12);
+    EXPECT_NEAR(plan.at("obstacles")[0].at("clearance_m").get<double>(), 0.099, 1e-12);
     EXPECT_GT(plan.at("left_out")[0].at("bound_m").get<double>(), 0);
   }
   // Out of reach, so that exact, which knows no obstacles, takes the scene.

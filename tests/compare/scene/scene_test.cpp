@@ -133,7 +133,7 @@ TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
        {"my.toml:2", "rod.lenght", "unknown key", "did you mean length"}},
       {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\ndirection = -175\n",
        {"my.toml:8", "gripper.direction", "-175", "deg"}},
-      {good_rod + good_gripper + "[[obstacle]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n",
+      {good_rod + good_gripper + "[[obstacle]]\npoint = [0, \"10 mm\", 0]\nnormal = [0, 1, 0]\n",
        {"my.toml:7", "gripper.position", "0 m from an obstacle", "touches = \"axis\""}},
       {good_rod + good_gripper +
            "[[obstacle]]\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\ntouches = \"tip\"\n",

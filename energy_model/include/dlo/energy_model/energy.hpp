@@ -62,9 +62,10 @@ struct EnergyOptions {
 /// that would have to pull go, others come where the shape is behind a wall, a bounded number of
 /// times. `converged` says of contact that no point of the rod is deeper than `allowed_penetration`
 /// (Equilibrium::penetration) and that no wall pulls; what does not settle is `not_resolved`. The
-/// second variation is looked at with the contacts held where they are. A lying rod against its
-/// exact solution is right to 1e-12 l. Walls that yield are springs along the rod: the curvature
-/// has kinks where contact begins, and the shape no error_estimate.
+/// second variation is looked at with the contacts held where they are. Between clamps that twist
+/// the rod contact is not looked for: a shape behind a wall is not_resolved there. A lying rod
+/// against its exact solution is right to 1e-12 l. Walls that yield are springs along the rod: the
+/// curvature has kinks where contact begins, and the shape no error_estimate.
 /// @throws std::invalid_argument if the problem or an option is out of range, with the numbers
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 
