@@ -219,7 +219,7 @@ void require_clear(const Scene& scene, const StrictTable& entry) {
                fmt::format("{:.4g} m from an obstacle, which the rod would enter with its surface "
                            "(allowed: its radius, {:.4g} m, or more; or touches = \"axis\" in the "
                            "[[obstacle]])",
-                           height + radius, radius));
+                           std::abs(height + radius) < rounding ? 0 : height + radius, radius));
   }
 }
 

@@ -284,7 +284,7 @@ class EnergySolver::State {
   void add_polygon_minima(const PlacedSpan& placed, const Problem& problem,
                           const SpanOptions& options, std::vector<PlacedSolution>& found,
                           int& spent) {
-    if (!placed.span.soft_walls.empty() || !placed.span.rigid_walls.empty()) return;
+    if (!problem.walls.empty()) return;
     for (const TangentField& field : polygon_fields(problem, placed, options.deadline)) {
       if (options.deadline.passed()) return;
       SpanOptions own = options;
