@@ -45,8 +45,9 @@ void append_contact(std::string& out, const energy_model::ContactPart& contact) 
   }
   append(out, ": force [{:.6g}, {:.6g}, {:.6g}] N", force.x(), force.y(), force.z());
   if (contact.kind == energy_model::ContactKind::lying) {
-    append(out, ", of it {:.4g} N and {:.4g} N where it begins and ends", contact.begin_force,
-           contact.end_force);
+    const auto clean = [&](double part) { return std::abs(part) < 1e-7 * force.norm() ? 0 : part; };
+    append(out, ", of it {:.4g} N and {:.4g} N where it begins and ends",
+           clean(contact.begin_force), clean(contact.end_force));
   }
   append(out, "\n");
 }
