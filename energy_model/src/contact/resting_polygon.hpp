@@ -12,10 +12,10 @@ namespace dlo::energy_model {
 /// A coarse polygon at rest on a span's walls, which tells what touches what.
 struct RestingPolygon {
   bool at_rest = false;
-  double energy = 0;               ///< in EI/l
+  double energy = 0;  ///< in EI/l
   int evaluations = 0;
-  Eigen::VectorXd middles;         ///< s of the segments' middles
-  Eigen::Matrix3Xd tangents;       ///< of the segments, unit, 3 x middles
+  Eigen::VectorXd middles;    ///< s of the segments' middles
+  Eigen::Matrix3Xd tangents;  ///< of the segments, unit, 3 x middles
   std::vector<Span::Contact> contacts;
 
   /// Its tangents, to start from.

@@ -407,8 +407,8 @@ class Search {
     if (!is_known(solution, found)) found.push_back(std::move(solution));
   }
 
-  [[nodiscard]] bool is_known(const SpanSolution& solution,
-                              const std::vector<SpanSolution>& found) const {
+  [[nodiscard]] static bool is_known(const SpanSolution& solution,
+                                     const std::vector<SpanSolution>& found) {
     return std::any_of(found.begin(), found.end(), [&](const SpanSolution& other) {
       return other.is_equilibrium() && is_same_shape(solution, other);
     });
