@@ -13,8 +13,8 @@ namespace dlo::energy_model {
 /// the part in contact, which are the same where it touches at one point, and between.
 struct ContactForce {
   double total = 0;
-  double begin = 0, end = 0;   ///< concentrated ones; `end` is 0 where it touches at one point
-  double least_pressure = 0;   ///< per length, of what lies; 0 where it touches at one point
+  double begin = 0, end = 0;  ///< concentrated ones; `end` is 0 where it touches at one point
+  double least_pressure = 0;  ///< per length, of what lies; 0 where it touches at one point
   double largest_pressure = 0;
   double least_inner = 0;  ///< least concentrated one inside, at loads and sections
 };

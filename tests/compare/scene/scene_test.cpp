@@ -134,7 +134,8 @@ TEST(Scene, ErrorsNameFileLineKeyValueAndWhatIsAllowed) {
       {good_rod + "[[gripper]]\nat = 0\nposition = [0,0,0]\ndirection = -175\n",
        {"my.toml:8", "gripper.direction", "-175", "deg"}},
       {good_rod + good_gripper + "[[obstacle]]\npoint = [0, \"10 mm\", 0]\nnormal = [0, 1, 0]\n",
-       {"my.toml:7", "gripper.position", "0 m from an obstacle, which the rod would enter", "touches = \"axis\""}},
+       {"my.toml:7", "gripper.position", "0 m from an obstacle, which the rod would enter",
+        "touches = \"axis\""}},
       {good_rod + good_gripper +
            "[[obstacle]]\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\ntouches = \"tip\"\n",
        {"my.toml:12", "obstacle.touches", "surface, axis"}},

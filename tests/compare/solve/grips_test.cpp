@@ -275,7 +275,7 @@ normal = [-1, 0, 0]
 law = "hooke"
 bookkeeping = "consistent"
 )",
-                                  "copper.toml");
+                            "copper.toml");
   const Solution energy = solve(scene, Model::energy);
   ASSERT_EQ(energy.contacts.size(), 1);
   EXPECT_EQ(energy.contacts[0].kind, energy_model::ContactKind::tip);
