@@ -215,9 +215,11 @@ Problem with_contacts_as_loads(const Problem& problem, const Equilibrium& shape)
       loaded.loads.push_back({contact.begin, contact.force});
       continue;
     }
-    loaded.loads.push_back({contact.begin, contact.begin_force * n});
-    loaded.loads.push_back({contact.end, contact.end_force * n});
     const Eigen::Vector3d w = problem.weight_per_length;
+    const double pressed = -w.dot(n) * (contact.end - contact.begin);
+    const Eigen::Vector3d begin_force = contact.force - (pressed + contact.end_force) * n;
+    loaded.loads.push_back({contact.begin, begin_force});
+    loaded.loads.push_back({contact.end, contact.end_force * n});
     loaded.sections.push_back({contact.begin, contact.end, problem.bending_stiffness,
                                problem.torsional_stiffness, w - w.dot(n) * n});
   }
@@ -249,7 +251,9 @@ void expect_rests(const Problem& problem, const Equilibrium& shape, double panel
   }
   const BalanceDefects defects =
       test::balance_of(with_contacts_as_loads(problem, shape), shape, panel);
-  EXPECT_LT(defects.worst(), 1e-6)
+  EXPECT_LT(defects.force, 1e-8);
+  // What is concentrated at the end of what lies is the end of a series.
+  EXPECT_LT(defects.worst(), 1e-5)
       << "force " << defects.force << ", torque " << defects.torque << ", moment " << defects.moment
       << ", grips " << defects.grips << ", integral " << defects.integral;
 }

@@ -74,7 +74,7 @@ inline void multiply_strip(const ConstColumns& a, const ConstColumns& b, const C
   }
 }
 
-void multiply(ConstColumns a, ConstColumns b, Columns result) {
+void multiply(const ConstColumns& a, const ConstColumns& b, const Columns& result) {
   constexpr std::ptrdiff_t width = 4;
   if (b.columns >= width) {
     for (std::ptrdiff_t j = 0; j < b.columns; j += width) {
@@ -166,7 +166,7 @@ inline void multiply_transposed_strip(const ConstColumns& a, const ConstColumns&
   }
 }
 
-void multiply_transposed(ConstColumns a, ConstColumns b, Columns result) {
+void multiply_transposed(const ConstColumns& a, const ConstColumns& b, const Columns& result) {
   constexpr std::ptrdiff_t width = 3;
   if (b.columns == 1) return multiply_transposed_strip<1>(a, b, result, 0, 0);
   if (b.columns == 2) return multiply_transposed_strip<2>(a, b, result, 0, 0);
@@ -175,7 +175,7 @@ void multiply_transposed(ConstColumns a, ConstColumns b, Columns result) {
   }
 }
 
-void multiply_symmetric(ConstColumns a, ConstColumns b, Columns result) {
+void multiply_symmetric(const ConstColumns& a, const ConstColumns& b, const Columns& result) {
   constexpr std::ptrdiff_t width = 3;
   if (b.columns < width) return multiply_transposed(a, b, result);
   for (std::ptrdiff_t j = 0; j < b.columns; j += width) {
@@ -262,19 +262,20 @@ inline void add_row(const Columns& q, const ConstColumns& a, std::ptrdiff_t row)
   write_quaternion<Real>(q, row, {sum.w / size, sum.x / size, sum.y / size, sum.z / size});
 }
 
-void multiply_by_two_strains(ConstColumns q, ConstColumns u, double scale, Columns result) {
+void multiply_by_two_strains(const ConstColumns& q, const ConstColumns& u, double scale,
+                             const Columns& result) {
   std::ptrdiff_t r = 0;
   for (; r + lane_count <= q.rows; r += lane_count) strains_row<Lanes>(q, u, scale, result, r);
   for (; r < q.rows; ++r) strains_row<double>(q, u, scale, result, r);
 }
 
-void multiply_by_conjugate(Columns a, ConstColumns b) {
+void multiply_by_conjugate(const Columns& a, const ConstColumns& b) {
   std::ptrdiff_t r = 0;
   for (; r + lane_count <= a.rows; r += lane_count) conjugate_row<Lanes>(a, b, r);
   for (; r < a.rows; ++r) conjugate_row<double>(a, b, r);
 }
 
-void add_product(Columns q, ConstColumns a) {
+void add_product(const Columns& q, const ConstColumns& a) {
   std::ptrdiff_t r = 0;
   for (; r + lane_count <= q.rows; r += lane_count) add_row<Lanes>(q, a, r);
   for (; r < q.rows; ++r) add_row<double>(q, a, r);
