@@ -288,12 +288,14 @@ bookkeeping = "consistent"
   EXPECT_NEAR(energy.tension.back(), energy.contacts[0].force.dot(tip.normalized()),
               2e-2 * energy.contacts[0].force.norm());
   // The force model approaches it with the square of its segments.
-  const double coarse = compare(scene).deviation.rms_over_length;
-  scene.force_model.points = 32;
-  const Comparison fine = compare(scene);
-  EXPECT_LT(fine.deviation.rms_over_length, 2e-4);
+  const SolveOptions patient{.time_limit = 300};  // of sanitizers
+  scene.force_model.points = 12;
+  const double coarse = compare(scene, patient).deviation.rms_over_length;
+  scene.force_model.points = 24;
+  const Comparison fine = compare(scene, patient);
+  EXPECT_LT(fine.deviation.rms_over_length, 4e-4);
   EXPECT_GT(coarse, 3.5 * fine.deviation.rms_over_length);
-  EXPECT_NEAR(fine.effective_modulus.ratio, 1, 2e-2);
+  EXPECT_NEAR(fine.effective_modulus.ratio, 1, 4e-2);
 }
 
 // Contact is not looked for between clamps that twist the rod.
