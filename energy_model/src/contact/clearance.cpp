@@ -32,14 +32,13 @@ std::vector<Lowest> lowest_points(const Span& span, const SpanShape& shape, doub
       if (!falls_to || !rises_from || clearance[i] > below + 2 * sag) continue;
       const double low = s[static_cast<std::size_t>(std::max<Eigen::Index>(0, i - 1))];
       const double high = s[static_cast<std::size_t>(std::min(grid_points - 1, i + 1))];
-      Lowest lowest{wall, s[static_cast<std::size_t>(i)], clearance[i],
-                    normal.dot(grid.tangents.col(i))};
+      Lowest lowest{wall, s[static_cast<std::size_t>(i)], clearance[i]};
       double at = lowest.s;
       for (int k = 0; k < refinements; ++k) {
         const SpanSamples here = shape.sample(std::array{at});
         const double value = wall.clearance(here.points.col(0));
         const double slope = normal.dot(here.tangents.col(0));
-        if (value < lowest.clearance) lowest = {wall, at, value, slope};
+        if (value < lowest.clearance) lowest = {wall, at, value};
         const double rate = normal.dot(here.curvature.col(0));
         if (!(rate > 0)) break;
         at = std::clamp(at - slope / rate, low, high);

@@ -13,7 +13,6 @@ struct Lowest {
   Span::Wall wall;
   double s = 0;
   double clearance = 0;
-  double slope = 0;  ///< n.t there
 };
 
 /// Every local minimum of the clearance over the rod that is below `below`, ends included, by

@@ -12,6 +12,7 @@ namespace {
 /// Points of the grid. Between two of them a shape of curvature k goes l^2 k / (8 grid^2) deeper,
 /// 3e-8 l for k = 1/l.
 constexpr Eigen::Index penetration_grid = 2001;
+
 bool is_rigid(const Wall& wall) { return std::isinf(wall.stiffness); }
 
 /// Largest depth behind a rigid wall [m].

@@ -144,7 +144,6 @@ class Resting {
 
   void hold() {
     const auto last = static_cast<Eigen::Index>(mesh_.s.size()) - 1;
-    const double h = span_.length / static_cast<double>(last);
     const auto hold_point = [&](Eigen::Index point, const Eigen::Vector3d& position) {
       const bool held =
           std::any_of(problem_.held.begin(), problem_.held.end(),
@@ -160,7 +159,9 @@ class Resting {
       // Of a clamp inside the span: the point before it.
       hold_point(point - 1, held.offset - problem_.rest_lengths[point - 1] * *held.direction);
     }
-    if (mesh_.after) hold_point(last, span_.holds.back().offset + h * *span_.end_direction);
+    if (!mesh_.after) return;
+    hold_point(last,
+               span_.holds.back().offset + problem_.rest_lengths[last - 1] * *span_.end_direction);
   }
 
   [[nodiscard]] Eigen::Matrix3Xd points_of(const TangentField& start) const {

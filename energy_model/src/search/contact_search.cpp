@@ -8,6 +8,7 @@
 
 #include "certify/enough_terms.hpp"
 #include "contact/clearance.hpp"
+#include "contact/lift_off.hpp"
 #include "contact/mend.hpp"
 #include "contact/resting_polygon.hpp"
 #include "newton/trust_region.hpp"
@@ -150,6 +151,7 @@ class ContactSearch {
         solution = with_all_terms(std::move(solution));
         if (!solution.is_equilibrium()) break;
         next = mended(solution, load_, Terms::all);
+        if (!next && !lifts_off(solution)) break;
         if (!next) return solution;
       }
       near = field_of(solution.model->shape(solution.x));
@@ -160,6 +162,17 @@ class ContactSearch {
     solution.finish(SolveStatus::not_resolved);
     solution.message += ": what touches what did not settle" + why;
     return solution;
+  }
+
+  /// Whether the contacts end where a wall without friction lets them, which is what makes the
+  /// shape an equilibrium: a slope or a moment that is left there would take more than pressure.
+  [[nodiscard]] static bool lifts_off(const SpanSolution& solution) {
+    constexpr double settled = 1e-6;
+    const Span& span = solution.model->span();
+    const std::vector<LiftOff> ends = lift_offs(span);
+    if (ends.empty()) return true;
+    const Eigen::VectorXd miss = missed(span, ends, solution.model->shape(solution.x));
+    return miss.cwiseAbs().maxCoeff() <= settled;
   }
 
   [[nodiscard]] SpanSolution near_field(const Span& span, const TangentField& near) {
