@@ -33,12 +33,13 @@ enum class ContactKind {
 
 /// Where the rod touches a rigid wall.
 struct ContactPart {
-  std::size_t wall = 0;  ///< of Problem::walls
-  ContactKind kind = ContactKind::lying;
-  double begin = 0, end = 0;                        ///< arc lengths [m]; equal but for `lying`
+  std::size_t wall = 0;                             ///< of Problem::walls
+  ContactKind kind = ContactKind::lying;            ///< how it touches
+  double begin = 0;                                 ///< arc length where contact begins [m]
+  double end = 0;                                   ///< where it ends; `begin` but for `lying` [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< of the wall on the rod, of all of it [N]
-  /// What of it is concentrated at the begin and at the end of what lies [N].
-  double begin_force = 0, end_force = 0;
+  double begin_force = 0;       ///< what of it is concentrated at the begin of what lies [N]
+  double end_force = 0;         ///< and at its end [N]
   double largest_pressure = 0;  ///< per length of what lies, between them [N/m]
 };
 
