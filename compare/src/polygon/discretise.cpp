@@ -337,9 +337,8 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
   result.rod.grips = grips_of(scene, layout);
   require_fit(scene, settings, layout, result.rod.grips);
   const std::vector<force_model::Wall> walls = walls_of(scene, result.parameters);
-  for (const std::size_t i : obstacles_in_reach(scene, settings)) {
-    result.rod.walls.push_back(walls[i]);
-  }
+  result.obstacles = obstacles_in_reach(scene, settings);
+  for (const std::size_t i : result.obstacles) result.rod.walls.push_back(walls[i]);
   const std::vector<Side> sides = scene.grippers.size() == 1
                                       ? std::vector<Side>{Side::along_load}
                                       : std::vector<Side>{Side::along_load, Side::against_load};

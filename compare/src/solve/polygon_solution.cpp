@@ -79,7 +79,7 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
     }
     wall_forces.push_back(force);
   }
-  solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene, settings), wall_forces);
+  solution.obstacles = forces_of_all(scene, discretisation.obstacles, wall_forces);
   return solution;
 }
 

@@ -16,7 +16,6 @@ namespace dlo::energy_model {
 namespace {
 
 using Points = Eigen::Ref<const Eigen::Matrix3Xd>;
-using Sparse = Eigen::SparseMatrix<double>;
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// Stretch that the softest stage may have [-].
@@ -44,7 +43,7 @@ class PolygonDescent {
         deadline_(deadline),
         result_(result),
         length_(problem.rest_lengths.sum()),
-        planar_(problem.natural_turns.size() > 0),
+        axes_(problem.natural_turns.size() > 0 ? 2 : 3),
         index_(static_cast<std::size_t>(problem.node_forces.cols()), 0),
         gradient_(3, problem.node_forces.cols()),
         trial_gradient_(3, problem.node_forces.cols()) {
@@ -181,32 +180,23 @@ class PolygonDescent {
   }
 
   void assemble() {
-    entries_.clear();
+    // A joint couples three points.
+    constexpr Eigen::Index coupled = 3;
+    const Eigen::Index unknowns = axes_ * free_;
+    hessian_.setZero(std::min(coupled * axes_, unknowns), unknowns);
     polygon_hessian(problem_, result_.points,
                     [&](Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
                       const Eigen::Index r = index_[static_cast<std::size_t>(row)];
                       const Eigen::Index c = index_[static_cast<std::size_t>(column)];
                       if (r < 0 || c < 0 || r < c) return;
-                      // Of a polygon that stays in its plane nothing else is asked.
-                      const int axes = planar_ ? 2 : 3;
-                      for (int i = 0; i < axes; ++i) {
-                        for (int j = 0; j < axes; ++j) {
-                          entries_.emplace_back(static_cast<int>(3 * r + i),
-                                                static_cast<int>(3 * c + j), block(i, j));
+                      for (Eigen::Index j = 0; j < axes_; ++j) {
+                        for (Eigen::Index i = r == c ? j : 0; i < axes_; ++i) {
+                          hessian_(axes_ * (r - c) + i - j, axes_ * c + j) += block(i, j);
                         }
                       }
                     });
-    if (planar_) {
-      const double stiff = problem_.stretch_stiffness / problem_.rest_lengths.minCoeff();
-      for (Eigen::Index i = 0; i < free_; ++i) {
-        const auto z = static_cast<int>(3 * i + 2);
-        entries_.emplace_back(z, z, stiff);
-      }
-    }
-    hessian_.resize(3 * free_, 3 * free_);
-    hessian_.setFromTriplets(entries_.begin(), entries_.end());
-    largest_ = hessian_.diagonal().cwiseAbs().maxCoeff();
-    columns_.resize(3 * free_, static_cast<Eigen::Index>(problem_.twists.size()));
+    largest_ = hessian_.row(0).cwiseAbs().maxCoeff();
+    columns_.resize(axes_ * free_, static_cast<Eigen::Index>(problem_.twists.size()));
     if (columns_.cols() == 0) return;
     const Eigen::MatrixXd of_all = twist_columns(problem_, result_.points);
     for (std::size_t i = 0; i < index_.size(); ++i) {
@@ -223,10 +213,10 @@ class PolygonDescent {
   }
 
   [[nodiscard]] Eigen::VectorXd free_part(const Eigen::Matrix3Xd& vectors) const {
-    Eigen::VectorXd result(3 * free_);
+    Eigen::VectorXd result(axes_ * free_);
     for (Eigen::Index i = 0; i < vectors.cols(); ++i) {
       const Eigen::Index k = index_[static_cast<std::size_t>(i)];
-      if (k >= 0) result.segment<3>(3 * k) = vectors.col(i);
+      if (k >= 0) result.segment(axes_ * k, axes_) = vectors.col(i).head(axes_);
     }
     return result;
   }
@@ -235,7 +225,7 @@ class PolygonDescent {
     Eigen::Matrix3Xd points = result_.points;
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       const Eigen::Index k = index_[static_cast<std::size_t>(i)];
-      if (k >= 0) points.col(i) += step.segment<3>(3 * k);
+      if (k >= 0) points.col(i).head(axes_) += step.segment(axes_ * k, axes_);
     }
     return points;
   }
@@ -244,14 +234,11 @@ class PolygonDescent {
   void escape() {
     constexpr int iterations = 20;
     constexpr double size = 1e-3;
-    Eigen::VectorXd direction(3 * free_);
+    Eigen::VectorXd direction(axes_ * free_);
     for (Eigen::Index i = 0; i < direction.size(); ++i) {
       direction[i] = 1 + std::sin(static_cast<double>(i));  // anything without a symmetry
     }
     for (int i = 0; i < iterations; ++i) direction = solver_.solve(direction).normalized();
-    if (planar_) {
-      for (Eigen::Index i = 0; i < free_; ++i) direction[3 * i + 2] = 0;
-    }
     direction *= size * length_ / direction.cwiseAbs().maxCoeff();
     const Eigen::Matrix3Xd ahead = moved(direction);
     const Eigen::Matrix3Xd back = moved(-direction);
@@ -268,7 +255,7 @@ class PolygonDescent {
   const Deadline& deadline_;
   PolygonResult& result_;
   double length_;
-  bool planar_;  // free points keep z = 0
+  Eigen::Index axes_;  // in which free points move: of a polygon with natural turns x and y
   double tolerance_ = 0;
   std::vector<Eigen::Index> index_;  // of each point among the free ones, -1 for held points
   Eigen::Index free_ = 0;
@@ -276,9 +263,8 @@ class PolygonDescent {
   double largest_ = 0;
   Eigen::Matrix3Xd gradient_;
   Eigen::Matrix3Xd trial_gradient_;
-  std::vector<Eigen::Triplet<double>> entries_;
-  Sparse hessian_;
-  Eigen::MatrixXd columns_;  // of the free points, see PolygonFactor
+  Eigen::MatrixXd hessian_;  // of the free points, banded: see PolygonFactor
+  Eigen::MatrixXd columns_;  // of the same
   PolygonFactor solver_;
 };
 

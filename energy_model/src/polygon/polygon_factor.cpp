@@ -1,43 +1,57 @@
 #include "polygon/polygon_factor.hpp"
 
-#include <vector>
+#include <gsl/gsl_linalg.h>
+
+#include <Eigen/Eigenvalues>
+
+#include "base/silence_gsl.hpp"
 
 namespace dlo::energy_model {
+namespace {
 
-bool PolygonFactor::compute(const Sparse& A, const Eigen::MatrixXd& B, double shift) {
-  columns_ = B.cols();
-  if (columns_ == 0) {
-    solver_.setShift(shift);
-    solver_.compute(A);
-    return solver_.info() == Eigen::Success && solver_.vectorD().minCoeff() > 0;
-  }
-  const Eigen::Index rows = A.rows();
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(static_cast<std::size_t>(A.nonZeros() + (rows + 1) * columns_ + rows));
-  for (Eigen::Index j = 0; j < rows; ++j) {
-    for (Sparse::InnerIterator entry(A, j); entry; ++entry) {
-      entries.emplace_back(entry.row(), entry.col(), entry.value());
-    }
-    entries.emplace_back(j, j, shift);
-  }
-  for (Eigen::Index k = 0; k < columns_; ++k) {
-    for (Eigen::Index i = 0; i < rows; ++i) entries.emplace_back(rows + k, i, B(i, k));
-    entries.emplace_back(rows + k, rows + k, -1);
-  }
-  bordered_.resize(rows + columns_, rows + columns_);
-  bordered_.setFromTriplets(entries.begin(), entries.end());
-  solver_.setShift(0);
-  solver_.compute(bordered_);
-  if (solver_.info() != Eigen::Success) return false;
-  const Eigen::VectorXd pivots = solver_.vectorD();
-  return pivots.allFinite() && (pivots.array() > 0).count() == rows;
+/// GSL keeps a column of a banded matrix in a row, and rows one after the other.
+gsl_matrix_view view_of(Eigen::MatrixXd& band) {
+  return gsl_matrix_view_array(band.data(), static_cast<std::size_t>(band.cols()),
+                               static_cast<std::size_t>(band.rows()));
 }
 
-Eigen::VectorXd PolygonFactor::solve(const Eigen::VectorXd& right) const {
-  if (columns_ == 0) return solver_.solve(right);
-  Eigen::VectorXd bordered = Eigen::VectorXd::Zero(right.size() + columns_);
-  bordered.head(right.size()) = right;
-  return solver_.solve(bordered).head(right.size());
+}  // namespace
+
+bool PolygonFactor::compute(const Eigen::MatrixXd& band, const Eigen::MatrixXd& B, double shift) {
+  silence_gsl();
+  factor_ = band;
+  factor_.row(0).array() += shift;
+  gsl_matrix_view factor = view_of(factor_);
+  if (gsl_linalg_ldlt_band_decomp(&factor.matrix) != GSL_SUCCESS) return false;
+  B_ = B;
+  const auto pivots = factor_.row(0).array();
+  if (!pivots.isFinite().all() || (pivots == 0).any()) return false;
+  Eigen::Index positive = (pivots > 0).count();
+  if (B_.cols() == 0) return positive == band.cols();
+  carried_ = B_;
+  for (Eigen::Index k = 0; k < B_.cols(); ++k) solve_banded(carried_.col(k));
+  Eigen::MatrixXd small = B_.transpose() * carried_;
+  small.diagonal().array() += 1;
+  if (!small.allFinite()) return false;
+  small_.compute(small);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(small, Eigen::EigenvaluesOnly);
+  positive += (spectrum.eigenvalues().array() < 0).count();
+  return positive == band.cols();
+}
+
+Eigen::VectorXd PolygonFactor::solve(Eigen::VectorXd right) {
+  solve_banded(right);
+  if (B_.cols() == 0) return right;
+  const Eigen::VectorXd across = small_.solve(B_.transpose() * right);
+  right.noalias() -= carried_ * across;
+  return right;
+}
+
+void PolygonFactor::solve_banded(Eigen::Ref<Eigen::VectorXd> vector) {
+  const gsl_matrix_view factor = view_of(factor_);
+  gsl_vector_view entries =
+      gsl_vector_view_array(vector.data(), static_cast<std::size_t>(vector.size()));
+  gsl_linalg_ldlt_band_svx(&factor.matrix, &entries.vector);
 }
 
 }  // namespace dlo::energy_model

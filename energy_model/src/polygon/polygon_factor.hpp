@@ -1,29 +1,33 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
+#include <Eigen/LU>
 
 namespace dlo::energy_model {
 
-/// L D L^T of H = A + B B^T + shift, A banded and B of few columns, in O(rows): the border
+/// H = A + B B^T + shift, A symmetric and banded, B of few columns, factored in O(rows): L D L^T of
+/// A + shift by GSL, and S = 1 + B^T (A + shift)^-1 B. The border
 ///     [ A + shift  B ]
 ///     [ B^T       -1 ]
-/// has a negative eigenvalue for each column of B, and besides those of H (Haynsworth).
+/// has a negative eigenvalue for each column of B besides those of H, and besides those of A +
+/// shift those of -S (Haynsworth).
 class PolygonFactor {
  public:
-  using Sparse = Eigen::SparseMatrix<double>;
-
-  /// @param A  lower half;  @param B  rows x 0 where there is none
+  /// @param band  lower half of A, A(j + d, j) in row d and column j; at most as many rows as
+  ///              columns
+  /// @param B     rows x 0 where there is none
   /// @return whether H is positive definite
-  bool compute(const Sparse& A, const Eigen::MatrixXd& B, double shift);
+  bool compute(const Eigen::MatrixXd& band, const Eigen::MatrixXd& B, double shift);
   /// H^-1 of a vector.
-  [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& right) const;
+  [[nodiscard]] Eigen::VectorXd solve(Eigen::VectorXd right);
 
  private:
-  Eigen::Index columns_ = 0;
-  Sparse bordered_;
-  Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::NaturalOrdering<int>> solver_;
+  void solve_banded(Eigen::Ref<Eigen::VectorXd> vector);
+
+  Eigen::MatrixXd factor_;  // D in the first row, L below
+  Eigen::MatrixXd B_;
+  Eigen::MatrixXd carried_;  // (A + shift)^-1 B
+  Eigen::PartialPivLU<Eigen::MatrixXd> small_;
 };
 
 }  // namespace dlo::energy_model

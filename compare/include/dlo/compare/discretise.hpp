@@ -19,8 +19,9 @@ struct Parameters {
 
 /// A scene as points and segments.
 struct Discretisation {
-  force_model::Rod rod;      ///< polygon, forces and grips of the force model
-  Eigen::Matrix3Xd weights;  ///< the part of rod.loads that is gravity [N]
+  force_model::Rod rod;                ///< polygon, forces and grips of the force model
+  std::vector<std::size_t> obstacles;  ///< of the scene: those in reach, whose walls are rod.walls
+  Eigen::Matrix3Xd weights;            ///< the part of rod.loads that is gravity [N]
   /// Where a simulation may start [m]: straight from a single gripper; two shapes for several
   /// grippers, whose slack hangs along or against the load.
   std::vector<Eigen::Matrix3Xd> starts;

@@ -93,7 +93,7 @@ struct [[nodiscard]] PolygonResult {
   std::vector<double> twists;    ///< theta of each of PolygonProblem::twists [rad]
 };
 
-/// Minimises E by damped Newton steps over the free points (a banded matrix, sparse LDL^T), each of
+/// Minimises E by damped Newton steps over the free points (a banded matrix, GSL's LDL^T), each of
 /// which must lower E. NLopt's L-BFGS, which the rigid chain starts with, would need about N^2
 /// iterations here: over positions the Hessian's condition grows like N^4. The stretch stiffness
 /// starts so low that forces stretch the rod by about a hundredth, and grows tenfold a stage: a
