@@ -30,6 +30,7 @@ class Contacts {
   [[nodiscard]] std::optional<std::vector<Span::Contact>> mended() {
     let_go();
     join();
+    unlike_ = wrong_;
     const double depth = terms_ == Terms::all ? deepest : deepest_coarse;
     for (const Lowest& lowest : lowest_points(span_, shape_, -depth * span_.length)) {
       wrong_ = true;
@@ -117,6 +118,8 @@ class Contacts {
       const bool beside =
           lowest.s > contact.begin - 2 * reach && lowest.s < contact.end + 2 * reach;
       if (!beside) continue;
+      // Next to one that has just become another the shape says nothing.
+      if (unlike_) return;
       contact.begin = std::max(0.0, std::min(contact.begin, lowest.s) - reach / 2);
       contact.end = std::min(length, std::max(contact.end, lowest.s) + reach / 2);
       return;
@@ -134,6 +137,7 @@ class Contacts {
   Terms terms_;
   std::vector<Span::Contact> contacts_;
   bool wrong_ = false;
+  bool unlike_ = false;  // contacts_ are no longer those of the shape
 };
 
 }  // namespace

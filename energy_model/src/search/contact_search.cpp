@@ -23,6 +23,8 @@ namespace {
 constexpr std::size_t most_starts = 3;
 /// Times that the contacts are mended.
 constexpr int most_rounds = 16;
+/// Times that a shape is left which cannot hold itself.
+constexpr int most_saddles = 4;
 /// Out of its plane a polygon has tangents with more than this across it.
 constexpr double flat = 1e-6;
 /// Polygons whose energies are this close, over 1 + energy, are the same.
@@ -39,7 +41,11 @@ class ContactSearch {
     std::vector<SpanSolution> found;
     if (options_.start && !options_.all) look_from({options_.start}, found);
     if (found.empty() || !succeeded(found.front().status)) search(found);
-    if (found.front().status == SolveStatus::saddle) leave(found);
+    for (int i = 0; i < most_saddles && found.front().status == SolveStatus::saddle; ++i) {
+      const double energy = found.front().energy;
+      leave(found);
+      if (!(found.front().energy < energy)) break;
+    }
     found.front().evaluations = spent_;
     if (!options_.all) found.resize(1);
     return found;
@@ -181,7 +187,8 @@ class ContactSearch {
     solution.model = workspace_.model(span, solution.terms);
     solution.x = solution.model->fit(near(solution.model->nodes()));
     const Eigen::VectorXd start = solution.x;
-    workspace_.newton().polish(solution, load_);
+    // Newton's method would go back into the plane that a shape has left, where it is a saddle.
+    if (span.planar == span_.planar) workspace_.newton().polish(solution, load_);
     if (!solution.is_equilibrium()) {
       solution.x = start;
       descend_in_trust_region(

@@ -34,12 +34,13 @@ class ContactRows {
 
   [[nodiscard]] Eigen::Index count() const { return weighted_.cols(); }
   /// @param tangents  nodes x 3
-  [[nodiscard]] double residual(Eigen::Index row, const Eigen::MatrixX3d& tangents) const {
-    return weighted_.col(row).dot(tangents * normal_.col(row)) + offset_[row];
+  /// Of all rows.
+  [[nodiscard]] Eigen::VectorXd residual(const Eigen::MatrixX3d& tangents) const {
+    return along(tangents).colwise().sum().transpose() + offset_;
   }
-  /// What the row changes by along these vectors at the nodes, node by node.
-  [[nodiscard]] Eigen::VectorXd along(Eigen::Index row, const Eigen::MatrixX3d& vectors) const {
-    return weighted_.col(row).cwiseProduct(vectors * normal_.col(row));
+  /// What the rows change by along these vectors at the nodes, nodes x rows.
+  [[nodiscard]] Eigen::MatrixXd along(const Eigen::MatrixX3d& vectors) const {
+    return weighted_.cwiseProduct(vectors * normal_);
   }
   /// Gradient by the tangents, nodes x 3.
   [[nodiscard]] Eigen::MatrixX3d by_node(Eigen::Index row) const {

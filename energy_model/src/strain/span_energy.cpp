@@ -318,19 +318,20 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
     }
     row += axes_;
   }
-  for (Eigen::Index i = 0; i < contacts_.count(); ++i) {
-    residual[row] = contacts_.residual(i, t_);
+  if (contacts_.count() > 0) {
+    residual.segment(row, contacts_.count()) = contacts_.residual(t_);
     if (span_.planar) {
-      turning_ = contacts_.along(i, t_theta_);
-      jacobian.row(row).noalias() = turning_.transpose() * angle_;
-    } else {
-      carried_ = contacts_.by_node(i);
-      pulled_.setZero();
-      frames_.pull({&carried_}, 1, state_, pulled_);
-      jacobian.row(row) = pulled_.transpose();
+      jacobian.middleRows(row, contacts_.count()).noalias() =
+          contacts_.along(t_theta_).transpose() * angle_;
     }
-    ++row;
   }
+  for (Eigen::Index i = 0; i < contacts_.count() && !span_.planar; ++i) {
+    carried_ = contacts_.by_node(i);
+    pulled_.setZero();
+    frames_.pull({&carried_}, 1, state_, pulled_);
+    jacobian.row(row + i) = pulled_.transpose();
+  }
+  row += contacts_.count();
   if (span_.planar) {
     if (director_rows_.empty()) return;
     jacobian.bottomRows(held_angle_.rows()) = held_angle_;
