@@ -8,6 +8,7 @@
 #include "base/display.hpp"
 #include "format/plan.hpp"
 #include "option/output.hpp"
+#include "shape/self_crossing.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -104,6 +105,12 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     append(out, "left out   {}: the scene has it, model {} has not\n",
            fmt::join(solution.left_out, ", "), compare::to_string(solution.model));
   }
+  if (const auto crossing = compare::self_crossing(solution.shape, scene.diameter)) {
+    append(out,
+           "crossing   at s = {:.4g} m and {:.4g} m the rod's axis is {:.2g} m apart, its diameter "
+           "is {:g} m: contact of the rod with itself is in no model\n",
+           crossing->first, crossing->second, crossing->distance, scene.diameter);
+  }
   compare::SceneEnergies e = solution.energy;
   // Adding zero turns -0 into 0.
   for (double* part : {&e.bending, &e.twisting, &e.gravity, &e.load, &e.stretch}) *part += 0.0;
@@ -193,6 +200,10 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
       result["penetration_m"] = solution.penetration;
       result["contacts"] = contacts_json(solution.contacts);
     }
+  }
+  if (const auto crossing = compare::self_crossing(solution.shape, scene.diameter)) {
+    result["self_crossing"] = {{"s_m", {crossing->first, crossing->second}},
+                               {"distance_m", crossing->distance}};
   }
   if (solution.model == compare::Model::chain || solution.model == compare::Model::force) {
     result["parameters"] = parameters_json(solution, scene.force_model);
