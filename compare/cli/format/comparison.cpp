@@ -7,6 +7,7 @@
 #include "base/display.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "format/plan.hpp"
+#include "format/solution.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {
@@ -114,6 +115,9 @@ std::string comparison_text(const compare::Comparison& c) {
     append(out, "                  (the unbent rod would be {:.4g} % of l off)\n",
            c.undeformed_rms_over_length * 100);
   }
+  for (const energy_model::ContactPart& contact : c.contacts) {
+    append(out, "  contact         {}\n", contact_text(contact));
+  }
   if (c.unresolved.empty()) {
     const double movement_m = c.deviation.rms_m / c.deviation.rms_over_movement;
     add_modulus(out, c.effective_modulus, movement_m, c.stiffness, NAN);
@@ -162,6 +166,7 @@ Json comparison_json(const compare::Comparison& comparison) {
       result["budget"]["shares_of_total"][key] = part->share;
     }
   }
+  if (!comparison.contacts.empty()) result["contacts"] = contacts_json(comparison.contacts);
   result["reference_resolved"] = comparison.unresolved.empty();
   result["state"] = to_json(comparison.state);
   result["cost"] = {{"force_s", comparison.force.seconds},

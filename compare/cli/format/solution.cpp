@@ -8,7 +8,7 @@
 #include "base/display.hpp"
 #include "format/plan.hpp"
 #include "option/output.hpp"
-#include "shape/self_crossing.hpp"
+#include "solve/self_crossing.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -35,10 +35,25 @@ const char* status_name(energy_model::SolveStatus status) {
   }
 }
 
-void append_contact(std::string& out, const energy_model::ContactPart& contact) {
+Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
+  double total = 0;
+  Json parts = Json::array();
+  for (const energy_model::TwistedPart& part : twists) {
+    total += part.angle;
+    parts.push_back({{"from_m", part.begin},
+                     {"to_m", part.end},
+                     {"angle_rad", part.angle},
+                     {"torque_Nm", part.torque}});
+  }
+  return {{"total_rad", total}, {"parts", std::move(parts)}};
+}
+
+}  // namespace
+
+std::string contact_text(const energy_model::ContactPart& contact) {
+  std::string out;
   const Eigen::Vector3d& force = contact.force;
-  append(out, "contact    obstacle {}, {}", contact.wall + 1,
-         energy_model::to_string(contact.kind));
+  append(out, "obstacle {}, {}", contact.wall + 1, energy_model::to_string(contact.kind));
   if (contact.kind == energy_model::ContactKind::lying) {
     append(out, " from s = {:.6g} to {:.6g} m", contact.begin, contact.end);
   } else {
@@ -50,7 +65,7 @@ void append_contact(std::string& out, const energy_model::ContactPart& contact) 
     append(out, ", of it {:.4g} N and {:.4g} N where it begins and ends",
            clean(contact.begin_force), clean(contact.end_force));
   }
-  append(out, "\n");
+  return out;
 }
 
 Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
@@ -70,21 +85,6 @@ Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
   }
   return result;
 }
-
-Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
-  double total = 0;
-  Json parts = Json::array();
-  for (const energy_model::TwistedPart& part : twists) {
-    total += part.angle;
-    parts.push_back({{"from_m", part.begin},
-                     {"to_m", part.end},
-                     {"angle_rad", part.angle},
-                     {"torque_Nm", part.torque}});
-  }
-  return {{"total_rad", total}, {"parts", std::move(parts)}};
-}
-
-}  // namespace
 
 std::string solution_text(const compare::Solution& solution, const compare::Scene& scene) {
   std::string out;
@@ -125,7 +125,9 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
            force.z());
   }
-  for (const energy_model::ContactPart& contact : solution.contacts) append_contact(out, contact);
+  for (const energy_model::ContactPart& contact : solution.contacts) {
+    append(out, "contact    {}\n", contact_text(contact));
+  }
   for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
     compare::GripperLoad load = solution.grippers[i];
     const compare::Gripper& gripper = scene.grippers[i];

@@ -10,6 +10,13 @@
 
 namespace dlo::cli {
 
+/// What touches an obstacle, where and with what force, as a person reads it; obstacles count from
+/// one.
+[[nodiscard]] std::string contact_text(const energy_model::ContactPart& contact);
+
+/// The same of all, by arc length; obstacles count from zero.
+[[nodiscard]] Json contacts_json(const std::vector<energy_model::ContactPart>& contacts);
+
 /// A shape as a person reads it.
 [[nodiscard]] std::string solution_text(const compare::Solution& solution,
                                         const compare::Scene& scene);

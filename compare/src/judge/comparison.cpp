@@ -68,6 +68,7 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   const std::vector<double>& s = force.arc_length;
   result.reference = {s, energy.sample(s).points};
   result.reference_rod = energy.sample;
+  result.contacts = contacts_of(scene, energy);
   const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
   result.deviation = shape_deviation(scene, force, energy.sample);
   result.undeformed_rms_over_length =

@@ -99,4 +99,12 @@ std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
   return states;
 }
 
+std::vector<energy_model::ContactPart> contacts_of(const Scene& scene,
+                                                   const energy_model::Equilibrium& equilibrium) {
+  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
+  std::vector<energy_model::ContactPart> contacts = equilibrium.contacts;
+  for (energy_model::ContactPart& contact : contacts) contact.wall = in_reach[contact.wall];
+  return contacts;
+}
+
 }  // namespace dlo::compare

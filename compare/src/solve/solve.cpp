@@ -64,13 +64,10 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   for (const energy_model::Reaction& reaction : equilibrium.grips) {
     solution.grippers.push_back({reaction.force, reaction.torque});
   }
-  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
-  solution.obstacles = forces_of_all(scene, in_reach, equilibrium.walls);
+  solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene), equilibrium.walls);
   solution.twists = equilibrium.twists;
   if (scene.holds_twist() && solution.twists.empty()) solution.left_out = {"twist"};
-  solution.contacts = equilibrium.contacts;
-  for (energy_model::ContactPart& contact : solution.contacts)
-    contact.wall = in_reach[contact.wall];
+  solution.contacts = contacts_of(scene, equilibrium);
   const bool sinks_in = touches_yielding_obstacle(scene, solution.obstacles);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);

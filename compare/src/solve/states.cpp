@@ -36,6 +36,9 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
     return samples;
   };
   for (Eigen::Vector3d& force : result.walls) force = (mirror * force).eval();
+  for (energy_model::ContactPart& contact : result.contacts) {
+    contact.force = (mirror * contact.force).eval();
+  }
   for (energy_model::Reaction& grip : result.grips) {
     grip.force = (mirror * grip.force).eval();
     grip.torque = (-(mirror * grip.torque)).eval();  // an axial vector

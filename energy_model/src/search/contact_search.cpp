@@ -24,7 +24,7 @@ constexpr std::size_t most_starts = 3;
 /// Times that the contacts are mended.
 constexpr int most_rounds = 16;
 /// Times that a shape is left which cannot hold itself.
-constexpr int most_saddles = 4;
+constexpr int most_departures = 4;
 /// Out of its plane a polygon has tangents with more than this across it.
 constexpr double flat = 1e-6;
 /// Polygons whose energies are this close, over 1 + energy, are the same.
@@ -41,7 +41,7 @@ class ContactSearch {
     std::vector<SpanSolution> found;
     if (options_.start && !options_.all) look_from({options_.start}, found);
     if (found.empty() || !succeeded(found.front().status)) search(found);
-    for (int i = 0; i < most_saddles && found.front().status == SolveStatus::saddle; ++i) {
+    for (int i = 0; i < most_departures && found.front().status == SolveStatus::saddle; ++i) {
       const double energy = found.front().energy;
       leave(found);
       if (!(found.front().energy < energy)) break;

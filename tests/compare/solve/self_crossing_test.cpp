@@ -1,4 +1,4 @@
-#include "shape/self_crossing.hpp"
+#include "solve/self_crossing.hpp"
 
 #include <gtest/gtest.h>
 

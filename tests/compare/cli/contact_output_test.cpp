@@ -1,0 +1,71 @@
+// What the command says of rods that touch: an obstacle, or themselves.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Outcome;
+using nlohmann::json;
+
+class ContactCommand : public dlo::test::Command {
+ protected:
+  std::string scene(const std::string& name, const std::string& text) {
+    std::ofstream(path(name)) << text;
+    return path(name);
+  }
+  /// A cable on a floor; a second floor is out of reach.
+  std::string lying() {
+    return scene("lying.toml",
+                 "[rod]\nlength = 0.6\ndiameter = \"4 mm\"\nmaterial = \"silicone\"\n"
+                 "[[gripper]]\nat = 0\nposition = [0, 0.05, 0]\ndirection = \"0 deg\"\n"
+                 "[[obstacle]]\npoint = [0, -9, 0]\nnormal = [0, 1, 0]\n"
+                 "[[obstacle]]\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\n");
+  }
+};
+
+TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
+  const json solved = json::parse(run("solve --format json " + lying()).out);
+  const Outcome compared = run("compare --no-modulus --format json " + lying());
+  ASSERT_EQ(compared.status, 0) << compared.err;
+  const json document = json::parse(compared.out);
+  const json& comparison = document.contains("comparisons") ? document.at("comparisons")[0]
+                           : document.is_array()            ? document[0]
+                                                            : document;
+  const json& contacts = comparison.at("contacts");
+  ASSERT_EQ(contacts.size(), 1);
+  EXPECT_EQ(contacts[0].at("obstacle"), 1);
+  EXPECT_EQ(contacts[0].at("kind"), "lying");
+  EXPECT_NEAR(contacts[0].at("from_m").get<double>(),
+              solved.at("contacts")[0].at("from_m").get<double>(), 1e-8);
+  const Outcome text = run("compare --no-modulus " + lying());
+  EXPECT_NE(text.out.find("\n  contact         obstacle 2, lying from s = "), std::string::npos)
+      << text.out;
+}
+
+TEST_F(ContactCommand, SolveSaysWhereARodCrossesItself) {
+  // Nothing but its own nature bends it, round by more than once.
+  const std::string loop =
+      scene("loop.toml",
+            "gravity = [0, 0, 0]\n[rod]\nlength = 1\ndiameter = \"2 mm\"\nmaterial = \"nitinol\"\n"
+            "natural_curvature = \"9 1/m\"\n"
+            "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n");
+  const Outcome text = run("solve " + loop);
+  ASSERT_EQ(text.status, 0) << text.err;
+  const json document = json::parse(run("solve --format json " + loop).out);
+  ASSERT_TRUE(document.contains("self_crossing")) << text.out;
+  EXPECT_NE(text.out.find("\ncrossing   at s = "), std::string::npos) << text.out;
+  const json& crossing = document.at("self_crossing");
+  EXPECT_LT(crossing.at("distance_m").get<double>(), 2e-3);
+  EXPECT_NEAR(crossing.at("s_m")[1].get<double>() - crossing.at("s_m")[0].get<double>(),
+              2 * M_PI / 9, 0.02);
+  EXPECT_EQ(run("solve " + lying()).out.find("crossing"), std::string::npos);
+}
+
+}  // namespace
