@@ -35,10 +35,7 @@ TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
   const Outcome compared = run("compare --no-modulus --format json " + lying());
   ASSERT_EQ(compared.status, 0) << compared.err;
   const json document = json::parse(compared.out);
-  const json& comparison = document.contains("comparisons") ? document.at("comparisons")[0]
-                           : document.is_array()            ? document[0]
-                                                            : document;
-  const json& contacts = comparison.at("contacts");
+  const json& contacts = document.at("cases").at(0).at("contacts");
   ASSERT_EQ(contacts.size(), 1);
   EXPECT_EQ(contacts[0].at("obstacle"), 1);
   EXPECT_EQ(contacts[0].at("kind"), "lying");
