@@ -117,7 +117,9 @@ class ContactSearch {
         pushed.adopt(*found.front().model, found.front().x) + push * way->along;
     Span span = span_;
     span.planar = way->span.planar;
-    ContactSearch search(span, options_, workspace_);
+    SpanOptions options = options_;
+    options.approach = Approach::descend;
+    ContactSearch search(span, options, workspace_);
     search.look_from({field_of(pushed.shape(x))}, found);
     spent_ += search.spent_;
   }
@@ -187,8 +189,9 @@ class ContactSearch {
     solution.model = workspace_.model(span, solution.terms);
     solution.x = solution.model->fit(near(solution.model->nodes()));
     const Eigen::VectorXd start = solution.x;
-    // Newton's method would go back into the plane that a shape has left, where it is a saddle.
-    if (span.planar == span_.planar) workspace_.newton().polish(solution, load_);
+    // Newton's method would go back to the saddle, or into the plane, that a shape has left.
+    const bool has_left = options_.approach == Approach::descend || span.planar != span_.planar;
+    if (!has_left) workspace_.newton().polish(solution, load_);
     if (!solution.is_equilibrium()) {
       solution.x = start;
       descend_in_trust_region(

@@ -33,8 +33,7 @@ class ContactRows {
              const Eigen::VectorXd& weights);
 
   [[nodiscard]] Eigen::Index count() const { return weighted_.cols(); }
-  /// @param tangents  nodes x 3
-  /// Of all rows.
+  /// Of all rows. @param tangents  nodes x 3
   [[nodiscard]] Eigen::VectorXd residual(const Eigen::MatrixX3d& tangents) const {
     return along(tangents).colwise().sum().transpose() + offset_;
   }

@@ -25,7 +25,7 @@ struct Comparison {
   Solution force;               ///< the force model at rest
   Shape reference;              ///< the energy model at the force model's arc lengths
   Reference reference_rod;      ///< and anywhere from 0 to l
-  std::vector<energy_model::ContactPart> contacts;  ///< of the reference, with scene's obstacles
+  std::vector<energy_model::ContactPart> contacts;  ///< of the reference, as Solution::contacts
   /// Why nothing may be concluded from the reference; empty if it is proven. Only where
   /// SolveOptions::accept_unresolved is set.
   std::string unresolved;
