@@ -48,8 +48,8 @@ dlo_debian(libdlo-force-model-dev COMPONENTS force_model SECTION libdevel
   DEPENDS "libeigen3-dev (>= 3.4)"
   DESCRIPTION "fast force-based model of rods, wires, ropes and cables
 Points, inner forces and explicit steps, made for 1 kHz haptic loops. This
-package contains the static library dlo::force_model, its headers, and files
-for CMake and pkg-config. It needs Eigen only.")
+package contains the static libraries dlo::force_model and dlo::obstacle, their
+headers, and files for CMake and pkg-config. They need Eigen only.")
 dlo_debian(libdlo-dev COMPONENTS energy_model compare SECTION libdevel
   DEPENDS "libdlo-force-model-dev (= ${PROJECT_VERSION})" "libeigen3-dev (>= 3.4)"
     "libnlopt-dev (>= 2.7)" "libgsl-dev (>= 2.7)" "libtomlplusplus-dev (>= 3.3)"

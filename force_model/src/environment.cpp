@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "require.hpp"
+#include "solid_looks.hpp"
 
 namespace dlo::force_model {
 namespace {
@@ -28,6 +29,31 @@ Eigen::Vector3d wall_force(const Wall& wall, const Eigen::Vector3d& position) {
 double wall_energy(const Wall& wall, const Eigen::Vector3d& position) {
   const double d = depth(wall, position);
   return wall.stiffness * d * d / 2;
+}
+
+void check(const Solid& solid) {
+  require_not_negative("Solid", "stiffness", solid.stiffness);
+  require(solid.looks >= 1, "Solid", "looks", solid.looks, ">= 1");
+  require(solid.body.centre().allFinite() && solid.body.axes().allFinite(), "Solid", "centre",
+          solid.body.centre().norm(), "finite, as its axes");
+}
+
+void add_solid_forces(const Solid& solid, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                      Eigen::Ref<Eigen::Matrix3Xd> forces) {
+  const auto at = [&points](Eigen::Index i) -> Eigen::Vector3d { return points.col(i); };
+  for_each_push(solid, points.cols(), at, [&](const SolidPush& push) {
+    forces.col(push.point) += (1 - push.share) * push.force;
+    if (push.share > 0) forces.col(push.point + 1) += push.share * push.force;
+  });
+}
+
+double solid_energy(const Solid& solid, const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  const auto at = [&points](Eigen::Index i) -> Eigen::Vector3d { return points.col(i); };
+  double energy = 0;
+  for_each_push(solid, points.cols(), at, [&](const SolidPush& push) {
+    energy -= push.force.dot(push.gap.gradient) * push.gap.value / 2;
+  });
+  return energy;
 }
 
 Eigen::Vector3d spring_force(double stiffness, const Eigen::Vector3d& anchor,

@@ -91,7 +91,7 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
     return {};
   }
   // The chord of a contact that opens and closes proves nothing; calm it all the same.
-  const double nearly = rod_.walls.empty() ? 1 : 100;
+  const double nearly = rod_.touches_anything() ? 100 : 1;
   // What only creeps without momentum needs it back: no descent after one that did not halve the
   // distance.
   constexpr double helps = 0.5;

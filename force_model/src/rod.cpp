@@ -132,7 +132,11 @@ bool is_planar(const Rod& rod) {
   }
   const auto in_plane = [](const Grip& grip) { return (grip.targets.row(2).array() == 0).all(); };
   const auto upright = [](const Wall& wall) { return wall.normal.z() == 0; };
+  const auto symmetric = [&rod](const Solid& solid) {
+    return solid.body.is_symmetric(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), rod.length());
+  };
   return (rod.loads.row(2).array() == 0).all() &&
+         std::all_of(rod.solids.begin(), rod.solids.end(), symmetric) &&
          std::all_of(rod.grips.begin(), rod.grips.end(), in_plane) &&
          std::all_of(rod.walls.begin(), rod.walls.end(), upright);
 }
@@ -149,13 +153,14 @@ void check(const Rod& rod) {
           static_cast<double>(rod.loads.cols()), "the number of points");
   require(rod.loads.allFinite(), "Rod", "loads", rod.loads.norm(), "finite");
   for (const Wall& wall : rod.walls) check(wall);
+  for (const Solid& solid : rod.solids) check(solid);
   for (const Grip& grip : rod.grips) check_grip(grip, rod.points());
   require_own_points("Rod", rod.grips);
   check_twist(rod);
   if (rod.bending.natural_turns.size() > 0) {
     require(is_planar(rod), "Rod", "number of natural turns",
             static_cast<double>(rod.bending.natural_turns.size()),
-            "0 unless loads, grips and walls lie in the plane z = 0");
+            "0 unless loads, grips, walls and solids lie in the plane z = 0");
   }
 }
 
@@ -172,6 +177,7 @@ void total_forces(const Rod& rod, const Points& points, Eigen::Ref<Eigen::Matrix
       forces.col(i) += wall_force(wall, points.col(i));
     }
   }
+  for (const Solid& solid : rod.solids) add_solid_forces(solid, points, forces);
   for (const Grip& grip : rod.grips) {
     if (grip.hold == GripHold::rigid) continue;
     for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
@@ -229,6 +235,7 @@ RodEnergy energy(const Rod& rod, const Points& points) {
       energy.contact += wall_energy(wall, points.col(i));
     }
   }
+  for (const Solid& solid : rod.solids) energy.contact += solid_energy(solid, points);
   for (const Grip& grip : rod.grips) {
     if (grip.hold == GripHold::rigid) continue;
     for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solid_looks.hpp"
 #include "twisted_spans.hpp"
 
 namespace dlo::force_model {
@@ -31,6 +32,8 @@ RodBlock::RodBlock(std::span<const Rod> rods, bool lockstep, InstructionSet set)
       law_(rods.front().bending.law),
       natural_(std::any_of(rods.begin(), rods.end(), is_naturally_bent)),
       spring_grips_(std::any_of(rods.begin(), rods.end(), has_spring_grips)),
+      solids_(std::any_of(rods.begin(), rods.end(),
+                          [](const Rod& rod) { return !rod.solids.empty(); })),
       plain_points_(axes, points_),
       plain_forces_(axes, points_) {
   // An odd number of cache lines from array to array, so that they do not share cache sets.
@@ -175,7 +178,7 @@ void RodBlock::add_spring_grips(std::span<const Rod> rods) {
         }
       }
     };
-    if (walls_.empty()) {
+    if (walls_.empty() && !solids_) {
       on_springs([this](const Grip&, int axis, Eigen::Index, std::ptrdiff_t e) {
         at(external_forces + axis, e) = at(loads + axis, e);
       });
@@ -184,6 +187,34 @@ void RodBlock::add_spring_grips(std::span<const Rod> rods) {
       at(external_forces + axis, e) +=
           grip.stiffness * (grip.targets(axis, k) - at(positions + axis, e));
     });
+  }
+}
+
+void RodBlock::add_solids(std::span<const Rod> rods) {
+  for (std::size_t lane = 0; lane < rods.size(); ++lane) {
+    if (walls_.empty()) {
+      for (Eigen::Index i = 0; i < points_; ++i) {
+        const std::ptrdiff_t e = element(i, lane);
+        for (int axis = 0; axis < axes; ++axis) at(external_forces + axis, e) = at(loads + axis, e);
+      }
+    }
+    const auto position = [&](Eigen::Index i) {
+      const std::ptrdiff_t e = element(i, lane);
+      return Eigen::Vector3d(at(positions, e), at(positions + 1, e), at(positions + 2, e));
+    };
+    for (const Solid& solid : rods[lane].solids) {
+      for_each_push(solid, points_, position, [&](const SolidPush& push) {
+        const std::ptrdiff_t e = element(push.point, lane);
+        for (int axis = 0; axis < axes; ++axis) {
+          at(external_forces + axis, e) += (1 - push.share) * push.force[axis];
+        }
+        if (push.share == 0) return;
+        const std::ptrdiff_t next = element(push.point + 1, lane);
+        for (int axis = 0; axis < axes; ++axis) {
+          at(external_forces + axis, next) += push.share * push.force[axis];
+        }
+      });
+    }
   }
 }
 
@@ -200,8 +231,9 @@ void RodBlock::compute_plain_forces(std::size_t lane, const Rod& rod) {
 
 void RodBlock::compute_forces(std::span<const Rod> rods, const PerLane& active) {
   if (!walls_.empty()) kernel_->add_walls(block(), walls_.data(), std::ssize(walls_));
+  if (solids_) add_solids(rods);
   if (spring_grips_) add_spring_grips(rods);
-  const bool only_loads = walls_.empty() && !spring_grips_;
+  const bool only_loads = walls_.empty() && !spring_grips_ && !solids_;
   kernel_->compute_forces(block(), only_loads ? loads : external_forces, regular_);
   for (std::size_t lane = 0; lane < rods.size(); ++lane) {
     if (regular_.lane[lane] == 0 && active.lane[lane] != 0) compute_plain_forces(lane, rods[lane]);

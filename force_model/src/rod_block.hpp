@@ -73,6 +73,7 @@ class RodBlock {
   void set_padding();
   void set_rod(std::size_t lane, const Rod& rod);
   void add_spring_grips(std::span<const Rod> rods);
+  void add_solids(std::span<const Rod> rods);
   void compute_plain_forces(std::size_t lane, const Rod& rod);
 
   Eigen::Index points_ = 0;
@@ -87,6 +88,7 @@ class RodBlock {
   std::vector<Line> memory_;
   std::vector<WallLanes> walls_;
   bool spring_grips_ = false;
+  bool solids_ = false;
   int turn_ = 0;  // which set of proposals the next step writes
   PerLane regular_;
   Eigen::Matrix3Xd plain_points_;

@@ -77,6 +77,7 @@ ModeBounds mode_bounds(const Rod& rod, const Points& points) {
 double constraint_stiffness(const Rod& rod) {
   double walls = 0;
   for (const Wall& wall : rod.walls) walls += wall.stiffness;
+  for (const Solid& solid : rod.solids) walls += solid.stiffness;
   double grip = 0;
   for (const Grip& g : rod.grips) {
     if (g.hold == GripHold::spring) grip = std::max(grip, g.stiffness);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "require.hpp"
+#include "solid_looks.hpp"
 #include "stiffness_factor.hpp"
 #include "twisted_spans.hpp"
 
@@ -283,6 +284,20 @@ void add_springs(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& point
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
       if ((wall.point - points.col(i)).dot(wall.normal) > 0) stiffness.add(i, i, block);
     }
+  }
+  const auto at = [&points](Eigen::Index i) -> Eigen::Vector3d { return points.col(i); };
+  for (const Solid& solid : rod.solids) {
+    for_each_push(solid, points.cols(), at, [&](const SolidPush& push) {
+      const Eigen::Vector3d& normal = push.gap.gradient;
+      const Eigen::Matrix3d block =
+          solid.stiffness / solid.looks *
+          (normal * normal.transpose() + push.gap.value * push.gap.hessian);
+      const double own = 1 - push.share;
+      stiffness.add(push.point, push.point, own * own * block);
+      if (push.share == 0) return;
+      stiffness.add(push.point + 1, push.point + 1, push.share * push.share * block);
+      stiffness.add(push.point, push.point + 1, own * push.share * block);
+    });
   }
   for (const Grip& grip : rod.grips) {
     if (grip.hold == GripHold::rigid) continue;

@@ -1,4 +1,4 @@
-// Rods on rigid and on soft walls.
+// Rods on rigid and on soft obstacles.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using test::heavy_cantilever;
 
 Problem over_floor(double gamma, double height) {
   Problem problem = heavy_cantilever(gamma, 0);
-  problem.walls = {{.point = {0, -height, 0}, .normal = {0, 1, 0}}};
+  problem.obstacles = {{obstacle::Body::half_space({0, -height, 0}, {0, 1, 0})}};
   return problem;
 }
 
@@ -117,7 +117,7 @@ TEST(Contact, LyingRodIsThatOfTheElastica) {
       EXPECT_NEAR(contact.begin_force, exact.R, 1e-7 * gamma);
       EXPECT_NEAR(contact.end_force, 0, 1e-7 * gamma);
       EXPECT_NEAR(contact.largest_pressure, gamma, 1e-4 * gamma);  // a difference
-      EXPECT_NEAR(result.walls[0].y(), exact.R + gamma * (1 - exact.b), 1e-7 * gamma);
+      EXPECT_NEAR(result.obstacles[0].y(), exact.R + gamma * (1 - exact.b), 1e-7 * gamma);
       EXPECT_NEAR(result.grips[0].force.y(), gamma * exact.b - exact.R, 1e-7 * gamma);
       const Samples tip = result.sample(std::array{1.0});
       EXPECT_NEAR(tip.points(0, 0), exact.tip, 1e-8);
@@ -204,13 +204,13 @@ TEST(Contact, HingedRodLiesUpToItsClamp) {
   }
 }
 
-/// The contacts of a twist-free rod as loads: what a wall does at single points, and where the rod
-/// lies the pressure, which is that of its weight.
+/// The contacts of a twist-free rod as loads: what an obstacle does at single points, and where the
+/// rod lies the pressure, which is that of its weight.
 Problem with_contacts_as_loads(const Problem& problem, const Equilibrium& shape) {
   Problem loaded = problem;
-  loaded.walls.clear();
+  loaded.obstacles.clear();
   for (const ContactPart& contact : shape.contacts) {
-    const Eigen::Vector3d n = problem.walls[contact.wall].normal.normalized();
+    const Eigen::Vector3d n = problem.obstacles[contact.obstacle].body.normal();
     if (contact.kind != ContactKind::lying) {
       loaded.loads.push_back({contact.begin, contact.force});
       continue;
@@ -226,27 +226,28 @@ Problem with_contacts_as_loads(const Problem& problem, const Equilibrium& shape)
   return loaded;
 }
 
-/// What `converged` claims of a rod on walls, from its samples and forces alone.
+/// What `converged` claims of a rod on obstacles, from its samples and forces alone.
 void expect_rests(const Problem& problem, const Equilibrium& shape, double panel) {
   const double l = problem.length;
   const Samples dense = shape.sample(equal_arc_lengths(l, 7919));
   double forces = problem.weight_per_length.norm() * l + problem.bending_stiffness / (l * l);
   for (const Reaction& grip : shape.grips) forces = std::max(forces, grip.force.norm());
-  for (std::size_t w = 0; w < problem.walls.size(); ++w) {
-    const Eigen::Vector3d n = problem.walls[w].normal.normalized();
+  for (std::size_t w = 0; w < problem.obstacles.size(); ++w) {
+    const Eigen::Vector3d n = problem.obstacles[w].body.normal();
     const Eigen::RowVectorXd clearance =
-        n.transpose() * (dense.points.colwise() - problem.walls[w].point);
+        n.transpose() * (dense.points.colwise() - problem.obstacles[w].body.centre());
     EXPECT_GT(clearance.minCoeff(), -1e-8 * l);
-    EXPECT_NEAR(shape.walls[w].norm(), std::abs(shape.walls[w].dot(n)), 1e-9 * forces);
+    EXPECT_NEAR(shape.obstacles[w].norm(), std::abs(shape.obstacles[w].dot(n)), 1e-9 * forces);
   }
   for (const ContactPart& contact : shape.contacts) {
-    const Wall& wall = problem.walls[contact.wall];
-    const Eigen::Vector3d n = wall.normal.normalized();
+    const Obstacle& obstacle = problem.obstacles[contact.obstacle];
+    const Eigen::Vector3d n = obstacle.body.normal();
     EXPECT_GE(contact.force.dot(n), -1e-6 * forces);
     EXPECT_GE(contact.begin_force, -1e-6 * forces);
     EXPECT_GE(contact.end_force, -1e-6 * forces);
     for (const double at : {contact.begin, (contact.begin + contact.end) / 2, contact.end}) {
-      EXPECT_NEAR(n.dot(shape.sample(std::array{at}).points.col(0) - wall.point), 0, 1e-8 * l);
+      EXPECT_NEAR(n.dot(shape.sample(std::array{at}).points.col(0) - obstacle.body.centre()), 0,
+                  1e-8 * l);
     }
   }
   const BalanceDefects defects =
@@ -294,12 +295,13 @@ Problem random_touching_problem(unsigned seed, bool space, double largest_gamma)
   const Eigen::Vector3d n = normals[random() % 3].normalized();
   double lowest = 0;
   for (const Grip& grip : problem.grips) lowest = std::min(lowest, n.dot(grip.position));
-  problem.walls = {{.point = (lowest - std::pow(10, uniform(-2, -0.3))) * n, .normal = n}};
+  problem.obstacles = {
+      {obstacle::Body::half_space((lowest - std::pow(10, uniform(-2, -0.3))) * n, n)}};
   return problem;
 }
 
-// What converges is an equilibrium with walls that only push, weighed from its samples; hardly any
-// scene is refused, and none without a reason.
+// What converges is an equilibrium with obstacles that only push, weighed from its samples; hardly
+// any scene is refused, and none without a reason.
 TEST(Contact, RandomScenesRestOrSayWhyNot) {
   constexpr unsigned scenes = 40;
   for (const bool space : {false, true}) {
@@ -323,21 +325,21 @@ TEST(Contact, RandomScenesRestOrSayWhyNot) {
   }
 }
 
-// A wall that yields less and less is another solver's way to the same shape.
-TEST(Contact, StifferAndStifferWallsLeadToTheRigidOne) {
+// An obstacle that yields less and less is another solver's way to the same shape.
+TEST(Contact, StifferAndStifferObstaclesLeadToTheRigidOne) {
   Problem problem = heavy_cantilever(40, 0);
   problem.grips.push_back({1, {0.6, 0.02, 0.3}, Eigen::Vector3d(0.2, 0.3, 1)});
-  problem.walls = {{.point = {0, -0.05, 0}, .normal = {0.1, 1, 0.05}}};
+  problem.obstacles = {{obstacle::Body::half_space({0, -0.05, 0}, {0.1, 1, 0.05})}};
   const Equilibrium rigid = solve_energy(problem);
   ASSERT_EQ(rigid.status, SolveStatus::converged) << rigid.message;
   ASSERT_FALSE(rigid.contacts.empty());
   const std::vector<double> s = equal_arc_lengths(1, 101);
   double before = 1;
   for (const double stiffness : {1e4, 1e5, 1e6}) {
-    problem.walls[0].stiffness = stiffness;
+    problem.obstacles[0].stiffness = stiffness;
     const Equilibrium soft = solve_energy(problem);
     ASSERT_EQ(soft.status, SolveStatus::converged) << soft.message;
-    EXPECT_EQ(soft.penetration, 0);  // only a rigid wall is penetrated, a soft one yields
+    EXPECT_EQ(soft.penetration, 0);  // only a rigid obstacle is penetrated, a soft one yields
     const double away =
         (soft.sample(s).points - rigid.sample(s).points).colwise().norm().maxCoeff();
     EXPECT_LT(away, before / 2) << stiffness;
@@ -382,7 +384,7 @@ TEST(Contact, EndsWithNumbersWheneverTheTimeEnds) {
   problem.weight_per_length = {0, -2, 0};
   problem.grips = {{0, {0, 0.03, 0}, Eigen::Vector3d(-0.33, -0.94, 0).normalized()},
                    {1, {0.48, 0.18, 0}, Eigen::Vector3d(0.8, 0.6, 0).normalized()}};
-  problem.walls = {{}};
+  problem.obstacles = {{}};
   for (double limit = 1e-6; limit < 0.3; limit *= 1.4) {
     const Equilibrium result = solve_energy(problem, {.time_limit = limit});
     for (const Reaction& grip : result.grips) {
@@ -393,7 +395,7 @@ TEST(Contact, EndsWithNumbersWheneverTheTimeEnds) {
 
 TEST(Contact, OutOfReachChangesNothing) {
   Problem problem = heavy_cantilever(20, 0);
-  problem.walls = {{.point = {0, -2, 0}, .normal = {0, 1, 0}}};
+  problem.obstacles = {{obstacle::Body::half_space({0, -2, 0}, {0, 1, 0})}};
   const std::vector<double> s = equal_arc_lengths(1, 101);
   const Equilibrium free = solve_energy(problem);
   ASSERT_EQ(free.status, SolveStatus::converged) << free.message;
@@ -401,7 +403,7 @@ TEST(Contact, OutOfReachChangesNothing) {
   EXPECT_TRUE(free.contacts.empty());
   const Equilibrium without = solve_energy(heavy_cantilever(20, 0));
   EXPECT_LT((free.sample(s).points - without.sample(s).points).norm(), 1e-9);
-  EXPECT_EQ(free.walls[0].norm(), 0);
+  EXPECT_EQ(free.obstacles[0].norm(), 0);
   EXPECT_EQ(free.evaluations, without.evaluations);
 }
 

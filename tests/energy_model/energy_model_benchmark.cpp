@@ -150,7 +150,7 @@ BENCHMARK_CAPTURE(cold, two_clamps_spatial, two_clamps(10, 0.8, 0.3))
 
 Problem on_a_floor() {
   Problem problem = clamp(20);
-  problem.walls = {{.point = {0, -0.3, 0}, .normal = {0, 1, 0}}};
+  problem.obstacles = {{dlo::obstacle::Body::half_space({0, -0.3, 0}, {0, 1, 0})}};
   return problem;
 }
 BENCHMARK_CAPTURE(cold, clamp_above_a_floor, on_a_floor())->Unit(benchmark::kMicrosecond);

@@ -48,7 +48,8 @@ TEST_P(PolygonOfBothLaws, GradientIsTheDifferenceOfTheEnergy) {
   PolygonProblem problem = two_clamps(GetParam(), 9, 0.8, 5);
   problem.stretch_stiffness = 50;
   problem.rest_lengths[3] *= 1.3;
-  problem.walls = {{{0, -0.1, 0}, Eigen::Vector3d(0.6, 0.8, 0), 30}};
+  problem.obstacles = {
+      {obstacle::Body::half_space({0, -0.1, 0}, Eigen::Vector3d(0.6, 0.8, 0)), 30}};
   Eigen::Matrix3Xd points = arch(problem, 0.8, 0.3);
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(-0.05, 0.05);
@@ -144,12 +145,13 @@ TEST(Polygon, LeavesASaddle) {
   EXPECT_NEAR(sideways, 2 / std::numbers::pi * std::sqrt(0.05), 0.01);
 }
 
-TEST(Polygon, WallPushesBackWithItsStiffness) {
+TEST(Polygon, ObstaclePushesBackWithItsStiffness) {
   PolygonProblem problem = two_clamps(JointLaw::hooke, 33, 0.9, 20);
   const PolygonResult free = solve_polygon(problem, arch(problem, 0.9, 0));
   ASSERT_TRUE(succeeded(free.status));
   const double sag = free.points.row(1).minCoeff();
-  problem.walls = {{{0, sag / 2, 0}, Eigen::Vector3d::UnitY(), 1e5}};
+  problem.obstacles = {
+      {obstacle::Body::half_space({0, sag / 2, 0}, Eigen::Vector3d::UnitY()), 1e5}};
   const PolygonResult held = solve_polygon(problem, arch(problem, 0.9, 0));
   ASSERT_TRUE(succeeded(held.status)) << held.message;
   const Eigen::ArrayXd depth = (sag / 2 - held.points.row(1).array()).max(0.0);
@@ -207,7 +209,7 @@ TEST(Polygon, RefusesBadProblems) {
   refused([](PolygonProblem& p) { p.held.clear(); });
   refused([](PolygonProblem& p) { p.held[0].point = 10; });
   refused([](PolygonProblem& p) { p.held[1].point = 0; });
-  refused([](PolygonProblem& p) { p.walls = {{{0, 0, 0}, {0, 2, 0}, 1}}; });
+  refused([](PolygonProblem& p) { p.obstacles = {{{}, 1, 0}}; });
   Eigen::Matrix3Xd coincident = start;
   coincident.col(4) = coincident.col(5);
   EXPECT_THROW((void)solve_polygon(good, coincident), std::invalid_argument);

@@ -52,19 +52,32 @@ Span free_span(bool planar) {
   return span;
 }
 
-Span span_on_wall(bool planar) {
+Span span_on_obstacle(bool planar) {
   Span span = gripped_span(planar);
-  span.soft_walls = {{{.normal = {0, 1, 0}, .offset = -0.02}, 500}};
+  span.soft_obstacles = {
+      {{0, obstacle::Body::half_space({0, 0.02, 0}, Eigen::Vector3d::UnitY())}, 500}};
   return span;
 }
 
-/// On a rigid wall, which it touches at one point and lies on beyond, up to a load and on.
+/// On a rigid obstacle, which it touches at one point and lies on beyond, up to a load and on.
 Span touching_span(bool planar) {
   const double z = planar ? 0 : 0.3;
   Span span = gripped_span(planar);
-  const Span::Wall wall{0, Eigen::Vector3d(0.1, 1, z).normalized(), 0.05};
-  span.rigid_walls = {wall};
-  span.contacts = {{wall, 0.15, 0.15}, {wall, 0.25, 0.45}};
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.1, 1, z).normalized();
+  const Span::Obstacle obstacle{0, obstacle::Body::half_space(-0.05 * normal, normal)};
+  span.rigid_obstacles = {obstacle};
+  span.contacts = {{obstacle, 0.15, 0.15}, {obstacle, 0.25, 0.45}};
+  return span;
+}
+
+/// The same on a peg; beyond the load it is held at a point.
+Span span_on_peg(bool planar) {
+  const double z = planar ? 0 : 0.3;
+  Span span = gripped_span(planar);
+  const Span::Obstacle peg{0,
+                           obstacle::Body::cylinder({0.3, -0.2, 0}, {-0.1 * z, 0.3 * z, 1}, 0.15)};
+  span.rigid_obstacles = {peg};
+  span.contacts = {{peg, 0.15, 0.15}, {peg, 0.25, 0.45}, {peg, 0.7, 0.7, false}};
   return span;
 }
 
@@ -193,9 +206,9 @@ TEST_P(Objective, OfAnotherSpanIsNotTheOneBefore) {
 }
 
 #ifdef DLO_COUNTS_ALLOCATIONS
-class ObjectiveWithoutWalls : public Objective {};
+class ObjectiveWithoutObstacles : public Objective {};
 
-TEST_P(ObjectiveWithoutWalls, DoesNotAllocate) {
+TEST_P(ObjectiveWithoutObstacles, DoesNotAllocate) {
   SpanEnergy model(GetParam().span(), 12);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(model.size());
   Eigen::VectorXd gradient(model.size());
@@ -213,7 +226,7 @@ TEST_P(ObjectiveWithoutWalls, DoesNotAllocate) {
   EXPECT_EQ(allocations, before);
 }
 
-INSTANTIATE_TEST_SUITE_P(Spans, ObjectiveWithoutWalls,
+INSTANTIATE_TEST_SUITE_P(Spans, ObjectiveWithoutObstacles,
                          testing::Values(Case{gripped_span, true}, Case{gripped_span, false},
                                          Case{free_span, true}, Case{free_span, false},
                                          Case{twisted_span, false}, Case{natural_span, true},
@@ -221,15 +234,15 @@ INSTANTIATE_TEST_SUITE_P(Spans, ObjectiveWithoutWalls,
                                          Case{strip_span, true}, Case{strip_span, false}));
 #endif
 
-INSTANTIATE_TEST_SUITE_P(Spans, Objective,
-                         testing::Values(Case{gripped_span, true}, Case{gripped_span, false},
-                                         Case{free_span, true}, Case{free_span, false},
-                                         Case{span_on_wall, true}, Case{span_on_wall, false},
-                                         Case{touching_span, true}, Case{touching_span, false},
-                                         Case{twisted_span, false}, Case{natural_span, true},
-                                         Case{natural_span, false}, Case{free_natural_span, true},
-                                         Case{free_natural_span, false}, Case{strip_span, true},
-                                         Case{strip_span, false}, Case{free_strip_span, false}));
+INSTANTIATE_TEST_SUITE_P(
+    Spans, Objective,
+    testing::Values(Case{gripped_span, true}, Case{gripped_span, false}, Case{free_span, true},
+                    Case{free_span, false}, Case{span_on_obstacle, true},
+                    Case{span_on_obstacle, false}, Case{touching_span, true},
+                    Case{touching_span, false}, Case{span_on_peg, true}, Case{span_on_peg, false},
+                    Case{twisted_span, false}, Case{natural_span, true}, Case{natural_span, false},
+                    Case{free_natural_span, true}, Case{free_natural_span, false},
+                    Case{strip_span, true}, Case{strip_span, false}, Case{free_strip_span, false}));
 
 }  // namespace
 }  // namespace dlo::energy_model

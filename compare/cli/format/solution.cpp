@@ -53,7 +53,7 @@ Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
 std::string contact_text(const energy_model::ContactPart& contact) {
   std::string out;
   const Eigen::Vector3d& force = contact.force;
-  append(out, "obstacle {}, {}", contact.wall + 1, energy_model::to_string(contact.kind));
+  append(out, "obstacle {}, {}", contact.obstacle + 1, energy_model::to_string(contact.kind));
   if (contact.kind == energy_model::ContactKind::lying) {
     append(out, " from s = {:.6g} to {:.6g} m", contact.begin, contact.end);
   } else {
@@ -71,7 +71,7 @@ std::string contact_text(const energy_model::ContactPart& contact) {
 Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
   Json result = Json::array();
   for (const energy_model::ContactPart& contact : contacts) {
-    Json entry = {{"obstacle", contact.wall},
+    Json entry = {{"obstacle", contact.obstacle},
                   {"kind", energy_model::to_string(contact.kind)},
                   {"from_m", contact.begin},
                   {"to_m", contact.end},

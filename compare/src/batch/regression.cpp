@@ -116,9 +116,18 @@ std::string content_of(const Scene& scene) {
     add_vector(load.force);
   }
   for (const Obstacle& obstacle : scene.obstacles) {
-    text += "\nobstacle ";
-    add_vector(obstacle.point);
-    add_vector(obstacle.normal);
+    const obstacle::Body& body = obstacle.body;
+    if (body.is_half_space()) {
+      text += "\nobstacle ";
+      add_vector(body.centre() + body.radius() * body.normal());
+      add_vector(body.normal());
+    } else {
+      text += "\nbody ";
+      add_vector(body.centre());
+      for (Eigen::Index axis = 0; axis < 3; ++axis) add_vector(body.axes().col(axis));
+      add_vector(body.upper());
+      add(body.radius());
+    }
     add(obstacle.stiffness);
   }
   const ForceModelSettings& settings = scene.force_model;

@@ -57,9 +57,7 @@ double depth_in_obstacles(const Scene& scene, const energy_model::Equilibrium& e
   double depth = 0;
   for (const Obstacle& obstacle : scene.obstacles) {
     if (std::isfinite(obstacle.stiffness)) continue;
-    const double lowest =
-        (obstacle.normal.transpose() * (points.colwise() - obstacle.point)).minCoeff();
-    depth = std::max(depth, -lowest);
+    depth = std::max(depth, -obstacle.body.clearances(points).minCoeff());
   }
   return depth;
 }

@@ -312,15 +312,28 @@ double largest_strain(const Scene& scene, const ForceModelSettings& settings) {
   return asked ? 0.5 : 0.01;
 }
 
-std::vector<force_model::Wall> walls_of(const Scene& scene, const Parameters& parameters) {
-  const double L = parameters.segment_length;
-  std::vector<force_model::Wall> walls;
-  for (const Obstacle& obstacle : scene.obstacles) {
-    const double stiffness =
-        std::isfinite(obstacle.stiffness) ? obstacle.stiffness * L : parameters.c_c / L;
-    walls.push_back({obstacle.point, obstacle.normal, stiffness});
+void set_obstacles(const Scene& scene, const std::vector<std::size_t>& obstacles,
+                   Discretisation& discretisation) {
+  const double L = discretisation.parameters.segment_length;
+  force_model::Rod& rod = discretisation.rod;
+  rod.walls.clear();
+  rod.solids.clear();
+  discretisation.walls.clear();
+  discretisation.solids.clear();
+  for (const std::size_t i : obstacles) {
+    const Obstacle& obstacle = scene.obstacles[i];
+    const obstacle::Body& body = obstacle.body;
+    const double stiffness = std::isfinite(obstacle.stiffness) ? obstacle.stiffness * L
+                                                               : discretisation.parameters.c_c / L;
+    if (body.is_half_space()) {
+      rod.walls.push_back(
+          {body.centre() + body.radius() * body.normal(), body.normal(), stiffness});
+      discretisation.walls.push_back(i);
+    } else {
+      rod.solids.push_back({body, stiffness, obstacle::looks_per_segment(body, L)});
+      discretisation.solids.push_back(i);
+    }
   }
-  return walls;
 }
 
 Discretisation discretise(const Scene& scene, const ForceModelSettings& settings) {
@@ -336,9 +349,7 @@ Discretisation discretise(const Scene& scene, const ForceModelSettings& settings
   result.rod.c_c = result.parameters.c_c;
   result.rod.grips = grips_of(scene, layout);
   require_fit(scene, settings, layout, result.rod.grips);
-  const std::vector<force_model::Wall> walls = walls_of(scene, result.parameters);
-  result.obstacles = obstacles_in_reach(scene, settings);
-  for (const std::size_t i : result.obstacles) result.rod.walls.push_back(walls[i]);
+  set_obstacles(scene, obstacles_in_reach(scene, settings), result);
   const std::vector<Side> sides = scene.grippers.size() == 1
                                       ? std::vector<Side>{Side::along_load}
                                       : std::vector<Side>{Side::along_load, Side::against_load};

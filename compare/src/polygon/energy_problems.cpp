@@ -14,7 +14,7 @@ std::optional<ChainScene> chain_scene(const Scene& scene, const Discretisation& 
   const Gripper& grip = scene.grippers.front();
   const bool end_clamp =
       scene.grippers.size() == 1 && grip.direction && (grip.at == 0 || grip.at == scene.length);
-  if (!end_clamp || !discretisation.rod.walls.empty()) return std::nullopt;
+  if (!end_clamp || discretisation.rod.touches_anything()) return std::nullopt;
   const bool reversed = grip.at != 0;
   const Eigen::Index N = settings.points;
   std::vector<Eigen::Vector3d> forces = {scene.weight_per_length() * scene.length};
@@ -78,7 +78,11 @@ energy_model::PolygonProblem polygon_problem(const force_model::Rod& rod) {
                               span.compliance, span.angle});
   }
   for (const force_model::Wall& wall : rod.walls) {
-    problem.walls.push_back({wall.point, wall.normal, wall.stiffness});
+    const obstacle::Body body = obstacle::Body::half_space(wall.point, wall.normal);
+    problem.obstacles.push_back({body, wall.stiffness});
+  }
+  for (const force_model::Solid& solid : rod.solids) {
+    problem.obstacles.push_back({solid.body, solid.stiffness, solid.looks});
   }
   return problem;
 }

@@ -15,13 +15,17 @@ bool lies_in_plane(const Scene& scene, const ForceModelSettings& settings) {
   const auto held_flat = [&](const Gripper& gripper) {
     return flat(gripper.position) && (!gripper.direction || flat(*gripper.direction));
   };
+  const auto flat_body = [&](const obstacle::Body& body) {
+    if (body.is_half_space()) return flat(body.normal());
+    return body.is_symmetric(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(), scene.length);
+  };
   const auto in_reach = obstacles_in_reach(scene, settings);
   return flat(scene.gravity) &&
          std::all_of(scene.grippers.begin(), scene.grippers.end(), held_flat) &&
          std::all_of(scene.loads.begin(), scene.loads.end(),
                      [&](const PointLoad& load) { return flat(load.force); }) &&
          std::all_of(in_reach.begin(), in_reach.end(),
-                     [&](std::size_t i) { return flat(scene.obstacles[i].normal); });
+                     [&](std::size_t i) { return flat_body(scene.obstacles[i].body); });
 }
 
 }  // namespace
@@ -70,11 +74,13 @@ Scene PlaneTurn::laid(const Scene& scene) const {
   }
   for (PointLoad& load : result.loads) load.force = flat(load.force);
   for (Obstacle& obstacle : result.obstacles) {
-    obstacle.point = turn_ * (obstacle.point - origin_);
-    obstacle.normal = turn_ * obstacle.normal;
+    obstacle.body = obstacle.body.seen_from(origin_, turn_, 1);
   }
   for (const std::size_t i : obstacles_in_reach(scene)) {
-    result.obstacles[i].normal = flat(scene.obstacles[i].normal).normalized();
+    obstacle::Body& body = result.obstacles[i].body;
+    if (!body.is_half_space()) continue;
+    const Eigen::Vector3d normal = flat(scene.obstacles[i].body.normal());
+    body = obstacle::Body::half_space(body.centre(), normal).grown(body.radius());
   }
   return result;
 }

@@ -163,13 +163,15 @@ Eigen::Matrix3Xd start_shape(const Scene& scene, const std::vector<std::size_t>&
 
 namespace {
 
-/// The direction of a segment of length L from `from`, turned into the face of a wall that it would
-/// enter; `last` is where it goes if it points straight into the wall.
-Eigen::Vector3d turned_along(const force_model::Wall& wall, const Eigen::Vector3d& from,
+/// The direction of a segment of length L from `from`, turned into the face of a body that it would
+/// enter; `last` is where it goes if it points straight into the body.
+Eigen::Vector3d turned_along(const obstacle::Body& body, const Eigen::Vector3d& from,
                              const Eigen::Vector3d& direction, double L,
                              const Eigen::Vector3d& last) {
-  const Eigen::Vector3d normal = wall.normal.normalized();
-  const double height = std::max(0.0, (from - wall.point).dot(normal));
+  const obstacle::Gap gap = body.gap(from + L * direction);
+  if (gap.value >= 0) return direction;
+  const Eigen::Vector3d normal = gap.gradient;
+  const double height = std::max(0.0, gap.value - L * direction.dot(normal));
   if (height + L * direction.dot(normal) >= 0) return direction;
   Eigen::Vector3d face = across(direction, normal);
   if (face.norm() < 1e-3) face = across(last, normal);
@@ -181,7 +183,12 @@ Eigen::Vector3d turned_along(const force_model::Wall& wall, const Eigen::Vector3
 }  // namespace
 
 void keep_free_ends_clear(const force_model::Rod& rod, Eigen::Ref<Eigen::Matrix3Xd> points) {
-  if (rod.walls.empty()) return;
+  if (!rod.touches_anything()) return;
+  std::vector<obstacle::Body> bodies;
+  for (const force_model::Wall& wall : rod.walls) {
+    bodies.push_back(obstacle::Body::half_space(wall.point, wall.normal));
+  }
+  for (const force_model::Solid& solid : rod.solids) bodies.push_back(solid.body);
   Eigen::Index first = points.cols();
   Eigen::Index last = 0;
   for (const force_model::Grip& grip : rod.grips) {
@@ -195,8 +202,8 @@ void keep_free_ends_clear(const force_model::Rod& rod, Eigen::Ref<Eigen::Matrix3
       const Eigen::Vector3d step = start.col(i + way) - start.col(i);
       const double L = step.norm();
       Eigen::Vector3d direction = step / L;
-      for (const force_model::Wall& wall : rod.walls) {
-        direction = turned_along(wall, points.col(i), direction, L, before);
+      for (const obstacle::Body& body : bodies) {
+        direction = turned_along(body, points.col(i), direction, L, before);
       }
       before = direction;
       points.col(i + way) = points.col(i) + L * direction;

@@ -29,7 +29,7 @@ enum class Side {
 
 /// Turns the parts of a start beyond its outermost grips out of the obstacles: where a segment
 /// would enter one it lies along its face, at its own length.
-/// @param rod  its grips and walls count;  @param[in,out] points  [m], 3 x M
+/// @param rod  its grips, walls and solids count;  @param[in,out] points  [m], 3 x M
 void keep_free_ends_clear(const force_model::Rod& rod, Eigen::Ref<Eigen::Matrix3Xd> points);
 
 }  // namespace dlo::compare

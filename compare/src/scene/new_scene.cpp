@@ -130,13 +130,18 @@ std::string optional_part(const Scene& scene) {
 #at = {middle:.4g}  # arc length
 #force = [0, {force:.3g}, 0]  # N, mN, kN
 
-# A plane that the rod cannot pass, such as a floor; one [[obstacle]] for each. Grippers are on its
-# free side.
+# What the rod cannot pass; one [[obstacle]] for each. Grippers are outside of it.
 #[[obstacle]]
+#shape = "plane"
 #point = [0, {floor:.4g}, 0]  # any point of the plane
 #normal = [0, 1, 0]  # to the free side
+# Other shapes: point is the middle of
+#   "sphere"    with radius
+#   "cylinder"  with axis and radius, without ends
+#   "capsule"   with axis, radius and the length between the middles of its round ends
+#   "box"       with size = [along axis (+x), along normal (+y), across], radius of its edges
 #touches = "surface"  # of the rod, half a diameter from its axis; or "axis"
-# Force per depth and per length of rod if it yields (N/m^2, N/mm^2); without it the plane is rigid.
+# Force per depth and per length of rod if it yields (N/m^2, N/mm^2); without it it is rigid.
 #stiffness = {stiffness:.3g}
 
 # The force model, which dlo compare, calibrate and solve --model force use; these are the defaults.

@@ -30,16 +30,15 @@ std::vector<double> obstacle_clearances(const Scene& scene) {
     return clearances;
   }
   for (const Obstacle& obstacle : scene.obstacles) {
-    const auto height = [&](const Eigen::Vector3d& point) {
-      return obstacle.normal.dot(point - obstacle.point);
-    };
+    const obstacle::Body& body = obstacle.body;
+    const auto height = [&body](const Eigen::Vector3d& point) { return body.clearance(point); };
     double least = std::min(height(along.front()->position) - along.front()->at,
                             height(along.back()->position) - (scene.length - along.back()->at));
     for (std::size_t k = 0; k + 1 < along.size(); ++k) {
       const Eigen::Vector3d apart = along[k + 1]->position - along[k]->position;
       const double rod = along[k + 1]->at - along[k]->at;
       // Half axes of the ellipsoid: rod/2 along `apart`, sqrt(rod^2 - apart^2)/2 across.
-      const double along_normal = obstacle.normal.dot(apart);
+      const double along_normal = body.is_half_space() ? body.normal().dot(apart) : apart.norm();
       const double support =
           std::sqrt(std::max(0.0, rod * rod - apart.squaredNorm() + along_normal * along_normal)) /
           2;

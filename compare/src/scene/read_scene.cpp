@@ -192,15 +192,61 @@ void check_material_directors(const Scene& scene, const StrictTable& rod) {
   if (scene.has_two_stiffnesses()) (void)scene.first_frame();
 }
 
+/// Edges of a box: `size` along `axis`, along `normal` and across both.
+obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
+  const Eigen::Vector3d size = table.vector("size", Dimension::length);
+  if (!(size.minCoeff() > 0)) table.fail("size", "has to be three lengths > 0");
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  if (table.has("axis")) axes.col(0) = unit_vector(table, "axis");
+  if (table.has("normal")) axes.col(1) = unit_vector(table, "normal");
+  constexpr double square = 1e-6;
+  if (std::abs(axes.col(0).dot(axes.col(1))) > square) {
+    table.fail(table.has("axis") ? "axis" : "normal",
+               "the edges along axis and normal are not at right angles (axis is +x and normal +y "
+               "if not given)");
+  }
+  axes.col(1) = (axes.col(1) - axes.col(1).dot(axes.col(0)) * axes.col(0)).normalized();
+  axes.col(2) = axes.col(0).cross(axes.col(1));
+  const double largest = size.minCoeff() / 2;
+  const Range round{0, largest, false,
+                    fmt::format("0 to half of the smallest size, {:.4g} m", largest)};
+  const double radius = table.optional_number("radius", Dimension::length, round).value_or(0);
+  return obstacle::Body::box(centre, axes, size, radius);
+}
+
 /// @param radius  of the rod [m]
 Obstacle read_obstacle(StrictTable& table, double radius) {
+  const Eigen::Vector3d point = table.vector("point", Dimension::length);
+  const std::string shape =
+      table.has("shape") ? table.choice("shape", {"plane", "sphere", "cylinder", "capsule", "box"})
+                         : "plane";
+  const auto length_of = [&table](const char* key) {
+    return table.number(key, Dimension::length, Range::positive());
+  };
   Obstacle obstacle;
-  obstacle.point = table.vector("point", Dimension::length);
-  obstacle.normal = unit_vector(table, "normal");
+  if (shape == "plane") {
+    obstacle.body = obstacle::Body::half_space(point, unit_vector(table, "normal"));
+  } else if (shape == "sphere") {
+    obstacle.body = obstacle::Body::sphere(point, length_of("radius"));
+  } else if (shape == "cylinder") {
+    obstacle.body =
+        obstacle::Body::cylinder(point, unit_vector(table, "axis"), length_of("radius"));
+  } else if (shape == "capsule") {
+    obstacle.body = obstacle::Body::capsule(point, unit_vector(table, "axis"), length_of("length"),
+                                            length_of("radius"));
+  } else {
+    obstacle.body = read_box(table, point);
+  }
   obstacle.stiffness = table.optional_number("stiffness", Dimension::foundation, Range::positive())
                            .value_or(obstacle.stiffness);
   const bool axis = table.has("touches") && table.choice("touches", {"surface", "axis"}) == "axis";
-  if (!axis) obstacle.point += radius * obstacle.normal;
+  if (!axis) obstacle.body = obstacle.body.grown(radius);
+  if (!(obstacle.body.smallest_radius() > 0)) {
+    table.fail(axis ? "touches" : "size",
+               "a box whose edges are sharp, over which the rod would bend without a radius "
+               "(allowed: radius > 0, which rounds its edges, or the surface of a rod with a "
+               "diameter)");
+  }
   table.finish();
   return obstacle;
 }
@@ -208,12 +254,14 @@ Obstacle read_obstacle(StrictTable& table, double radius) {
 /// The gripper that was read last has to be on the free side of every obstacle.
 void require_clear(const Scene& scene, const StrictTable& entry) {
   for (const Obstacle& obstacle : scene.obstacles) {
-    const double height = (scene.grippers.back().position - obstacle.point).dot(obstacle.normal);
+    const double height = obstacle.body.clearance(scene.grippers.back().position);
     const double rounding = 1e-12 * scene.length;
     if (height >= -rounding) continue;
     const double radius = scene.diameter / 2;
     if (height < -radius - rounding) {
-      entry.fail("position", "behind an obstacle (allowed: the side its normal points to)");
+      entry.fail("position", obstacle.body.is_half_space()
+                                 ? "behind an obstacle (allowed: the side its normal points to)"
+                                 : "within an obstacle (allowed: outside of it)");
     }
     entry.fail("position",
                fmt::format("{:.4g} m from an obstacle, which the rod would enter with its surface "

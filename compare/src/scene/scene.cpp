@@ -37,7 +37,8 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   }
   for (const PointLoad& load : scene.loads) vectors.push_back(load.force);
   for (const std::size_t i : obstacles_in_reach(scene)) {
-    vectors.push_back(scene.obstacles[i].normal);
+    const obstacle::Body& body = scene.obstacles[i].body;
+    if (body.is_half_space()) vectors.push_back(body.normal());
   }
   Eigen::Matrix3d moments = Eigen::Matrix3d::Zero();
   for (const Eigen::Vector3d& v : vectors) {
@@ -50,7 +51,12 @@ std::optional<Eigen::Vector3d> scene_normal(const Scene& scene) {
   const bool share_it = std::all_of(vectors.begin(), vectors.end(), [&](const auto& v) {
     return std::abs(v.dot(normal)) <= noise * v.norm();
   });
-  return share_it ? std::optional(normal) : std::nullopt;
+  if (!share_it) return std::nullopt;
+  for (const std::size_t i : obstacles_in_reach(scene)) {
+    const Eigen::Vector3d& within = scene.grippers.front().position;
+    if (!scene.obstacles[i].body.is_symmetric(within, normal, scene.length)) return std::nullopt;
+  }
+  return normal;
 }
 
 /// Of two numbers; of two equal ones to the last digit that number.

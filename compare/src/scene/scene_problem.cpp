@@ -36,7 +36,7 @@ energy_model::Problem scene_problem(const Scene& scene) {
   for (const PointLoad& load : scene.loads) problem.loads.push_back({load.at, load.force});
   for (const std::size_t i : obstacles_in_reach(scene)) {
     const Obstacle& obstacle = scene.obstacles[i];
-    problem.walls.push_back({obstacle.point, obstacle.normal, obstacle.stiffness});
+    problem.obstacles.push_back({obstacle.body, obstacle.stiffness});
   }
   return problem;
 }

@@ -114,6 +114,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   // What an obstacle does to a held point inside a gripper is not felt outside.
   force_model::Rod without_walls = simulation.rod();
   without_walls.walls.clear();
+  without_walls.solids.clear();
   for (const force_model::GripReaction& reaction :
        force_model::grip_reactions(without_walls, simulation.points())) {
     solution.grippers.push_back({reaction.force, reaction.torque});

@@ -104,7 +104,7 @@ std::optional<energy_model::Equilibrium> rod_shape(const Scene& scene, double ti
 }
 
 bool touches(const energy_model::Equilibrium& rod) {
-  return std::any_of(rod.walls.begin(), rod.walls.end(),
+  return std::any_of(rod.obstacles.begin(), rod.obstacles.end(),
                      [](const Eigen::Vector3d& force) { return force.norm() > 0; });
 }
 

@@ -69,7 +69,8 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
   for (const force_model::Grip& grip : rod.grips) {
     std::fill_n(held.begin() + grip.first_point, grip.targets.cols(), true);
   }
-  std::vector<Eigen::Vector3d> wall_forces;
+  solution.obstacles.assign(scene.obstacles.size(), Eigen::Vector3d::Zero());
+  std::size_t index = 0;
   for (const force_model::Wall& wall : rod.walls) {
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
     for (Eigen::Index i = 0; i < points.cols(); ++i) {
@@ -77,9 +78,19 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
       force += force_model::wall_force(wall, points.col(i));
       energy.contact += force_model::wall_energy(wall, points.col(i));
     }
-    wall_forces.push_back(force);
+    if (index < discretisation.walls.size()) {
+      solution.obstacles[discretisation.walls[index++]] = force;
+    }
   }
-  solution.obstacles = forces_of_all(scene, discretisation.obstacles, wall_forces);
+  for (std::size_t k = 0; k < rod.solids.size(); ++k) {
+    Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, points.cols());
+    force_model::add_solid_forces(rod.solids[k], points, forces);
+    energy.contact += force_model::solid_energy(rod.solids[k], points);
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      if (held[static_cast<std::size_t>(i)]) continue;
+      solution.obstacles[discretisation.solids[k]] += forces.col(i);
+    }
+  }
   return solution;
 }
 

@@ -72,7 +72,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
         result.status == energy_model::SolveStatus::time_limit
             ? fmt::format("; --time-limit {:g} allows no more", options.time_limit)
             : "",
-        problem.walls.empty() ? "" : "; --model chain or an obstacle with a stiffness may do"));
+        problem.obstacles.empty() ? "" : "; --model chain or an obstacle with a stiffness may do"));
   }
   return result;
 }
@@ -103,7 +103,7 @@ std::vector<energy_model::ContactPart> contacts_of(const Scene& scene,
                                                    const energy_model::Equilibrium& equilibrium) {
   const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
   std::vector<energy_model::ContactPart> contacts = equilibrium.contacts;
-  for (energy_model::ContactPart& contact : contacts) contact.wall = in_reach[contact.wall];
+  for (energy_model::ContactPart& contact : contacts) contact.obstacle = in_reach[contact.obstacle];
   return contacts;
 }
 

@@ -64,7 +64,7 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   for (const energy_model::Reaction& reaction : equilibrium.grips) {
     solution.grippers.push_back({reaction.force, reaction.torque});
   }
-  solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene), equilibrium.walls);
+  solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene), equilibrium.obstacles);
   solution.twists = equilibrium.twists;
   if (scene.holds_twist() && solution.twists.empty()) solution.left_out = {"twist"};
   solution.contacts = contacts_of(scene, equilibrium);

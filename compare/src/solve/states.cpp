@@ -35,7 +35,7 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
     samples.curvature = (mirror * samples.curvature).eval();
     return samples;
   };
-  for (Eigen::Vector3d& force : result.walls) force = (mirror * force).eval();
+  for (Eigen::Vector3d& force : result.obstacles) force = (mirror * force).eval();
   for (energy_model::ContactPart& contact : result.contacts) {
     contact.force = (mirror * contact.force).eval();
   }

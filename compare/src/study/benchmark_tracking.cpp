@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <numeric>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/force_model_settings.hpp"
@@ -120,7 +121,9 @@ BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int po
                          const Track& track, const BenchmarkOptions& options) {
   const ForceModelSettings settings = variant.settings(scene, points);
   Discretisation discretisation = discretise(scene, settings);
-  discretisation.rod.walls = walls_of(scene, discretisation.parameters);  // the gripper will move
+  std::vector<std::size_t> all(scene.obstacles.size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  set_obstacles(scene, all, discretisation);  // the gripper will move
   force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(),
                                      step_options(settings, discretisation));
   (void)simulation.relax({.tolerance = 1e-5});

@@ -100,6 +100,25 @@ void legendre(double xi, Eigen::Ref<Eigen::VectorXd> values,
   }
 }
 
+void legendre_slopes(double xi, Eigen::Ref<Eigen::VectorXd> slopes) {
+  const double x = 2 * xi - 1;
+  double before = 0;  // P_{k-1} and P_k
+  double here = 1;
+  double slope_before = 0;
+  double slope = 0;
+  for (Eigen::Index k = 0; k < slopes.size(); ++k) {
+    const auto order = static_cast<double>(k);
+    slopes[k] = 2 * std::sqrt(2 * order + 1) * slope;
+    // P'_{k+1} = P'_{k-1} + (2 k + 1) P_k
+    const double next = ((2 * order + 1) * x * here - order * before) / (order + 1);
+    const double next_slope = slope_before + (2 * order + 1) * here;
+    before = here;
+    here = next;
+    slope_before = slope;
+    slope = next_slope;
+  }
+}
+
 const LegendreTable& legendre_table(int terms) {
   static Tables tables;
   return tables.of(terms, terms + 6);

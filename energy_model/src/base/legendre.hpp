@@ -20,6 +20,9 @@ struct LegendreTable {
 /// Values p_k(xi) and integrals int_0^xi p_k for k = 0 .. K-1 into `values` and `integrals`.
 void legendre(double xi, Eigen::Ref<Eigen::VectorXd> values, Eigen::Ref<Eigen::VectorXd> integrals);
 
+/// Derivatives p_k'(xi) for k = 0 .. K-1.
+void legendre_slopes(double xi, Eigen::Ref<Eigen::VectorXd> slopes);
+
 /// Table of K terms, made once and kept, with Q = K + 6: for a tangent angle of degree K the sines
 /// and cosines of the integrand are then resolved as far as the angle itself is. Safe to call from
 /// several threads.

@@ -43,10 +43,10 @@ double rounding_of(double scale) { return 8 * std::numeric_limits<double>::epsil
 /// What the points of a shape may be away from those of an equilibrium, of the length: what
 /// Newton's method would still move them by, and what rounding and the modes that are left out push
 /// along the softest direction. The coefficients of strains bound what positions move by. NaN with
-/// soft walls, which make kinks inside pieces.
+/// soft obstacles, which make kinks inside pieces.
 double error_estimate(const SpanSolution& solution, double load) {
   const SpanEnergy& model = *solution.model;
-  if (model.has_walls()) return std::numeric_limits<double>::quiet_NaN();
+  if (model.has_soft_obstacles()) return std::numeric_limits<double>::quiet_NaN();
   const double scale = scale_of(solution, load);
   // The angle that the last coefficient adds is a_K / (2K); forces feel it as little again.
   const double K = solution.terms;

@@ -8,11 +8,21 @@
 
 namespace dlo::energy_model {
 
-/// Where a shape comes nearest to a rigid wall, or is deepest behind it.
+/// Clearance of a point of a shape, and its derivatives by the arc length.
+struct Clearance {
+  double value = 0;
+  double slope = 0;
+  double rate = 0;  ///< of the slope
+};
+[[nodiscard]] Clearance clearance_at(const obstacle::Body& body, const SpanSamples& samples,
+                                     Eigen::Index i);
+
+/// Where a shape comes nearest to a rigid obstacle, or is deepest behind it.
 struct Lowest {
-  Span::Wall wall;
+  Span::Obstacle obstacle;
   double s = 0;
   double clearance = 0;
+  int feature = 0;  ///< of the body, next to it
 };
 
 /// Every local minimum of the clearance over the rod that is below `below`, ends included, by

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "contact/clearance.hpp"
+
 namespace dlo::energy_model {
 namespace {
 
@@ -60,8 +62,11 @@ Room room_of(const Span& span, const LiftOff& end) {
   return room;
 }
 
-Eigen::VectorXd missed(const Span& span, const std::vector<LiftOff>& ends, const SpanShape& shape) {
+Eigen::VectorXd missed(const SpanSolution& solution, const std::vector<LiftOff>& ends) {
   constexpr double aside = 1e-12;
+  const Span& span = solution.model->span();
+  Eigen::VectorXd gradient(solution.x.size());
+  (void)solution.model->value(solution.x, gradient);
   std::vector<double> s;
   for (const LiftOff& end : ends) {
     // Of two pieces that meet there the free one.
@@ -69,17 +74,19 @@ Eigen::VectorXd missed(const Span& span, const std::vector<LiftOff>& ends, const
     const bool after = span.contacts[end.contact].lies() && !end.begins;
     s.push_back(after ? at + aside : at - aside);
   }
-  const SpanSamples samples = shape.sample(s);
+  const SpanSamples samples = solution.model->shape(solution.x).sample(s);
   Eigen::VectorXd result(static_cast<Eigen::Index>(ends.size()));
   for (std::size_t i = 0; i < ends.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     const Span::Contact& contact = span.contacts[ends[i].contact];
+    const Clearance here = clearance_at(contact.obstacle.body, samples, column);
     if (contact.lies()) {
       const Room room = room_of(span, ends[i]);
-      result[column] = contact.wall.normal.dot(samples.curvature.col(column)) *
-                       (ends[i].begins ? room.down : room.up);
+      result[column] = here.rate * (ends[i].begins ? room.down : room.up);
+    } else if (const auto at = solution.model->touches_at(ends[i].contact)) {
+      result[column] = contact.begin - *at;
     } else {
-      result[column] = contact.wall.normal.dot(samples.tangents.col(column));
+      result[column] = here.rate > 0 ? here.slope / here.rate : here.slope;
     }
   }
   return result;

@@ -4,13 +4,13 @@
 #include <vector>
 
 #include "problem/span.hpp"
-#include "strain/span_shape.hpp"
+#include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
 
 /// An arc length at which a contact begins or ends and which is not given: where a rod that
-/// touches at one point is parallel to the wall, and where a lying part lifts off without a moment,
-/// that is with no curvature towards the wall.
+/// touches at one point is parallel to the obstacle, and where a lying part lifts off without a
+/// moment, that is with no curvature towards the obstacle.
 struct LiftOff {
   std::size_t contact = 0;  ///< of Span::contacts
   bool begins = true;       ///< the part that lies; or, of one that touches, where it does
@@ -22,10 +22,10 @@ struct LiftOff {
 /// All of a span's, by growing s.
 [[nodiscard]] std::vector<LiftOff> lift_offs(const Span& span);
 
-/// What is missed there: the slope towards the wall, or the curvature times the length of the
-/// shorter of the neighbouring free pieces.
-[[nodiscard]] Eigen::VectorXd missed(const Span& span, const std::vector<LiftOff>& ends,
-                                     const SpanShape& shape);
+/// What is missed there: of one that touches the way to where it is nearest, of a lying part the
+/// second derivative of the clearance times the length of the free piece beside it.
+[[nodiscard]] Eigen::VectorXd missed(const SpanSolution& solution,
+                                     const std::vector<LiftOff>& ends);
 
 /// How far a lift-off may be moved down and up without passing what is beside it.
 struct Room {

@@ -1,13 +1,14 @@
 #include "contact/mend.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "contact/clearance.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-/// How hard a wall may pull, over what all forces are there: rounding.
+/// How hard an obstacle may pull, over what all forces are there: rounding.
 constexpr double strongest_pull = 1e-7;
 /// In lengths: a part that lies and is shorter is a point; one that begins to lie has this.
 constexpr double shortest_part = 1e-6;
@@ -28,6 +29,11 @@ class Contacts {
         contacts_(span_.contacts) {}
 
   [[nodiscard]] std::optional<std::vector<Span::Contact>> mended() {
+    for (Span::Contact& contact : contacts_) {
+      const double middle = (contact.begin + contact.end) / 2;
+      contact.feature =
+          contact.obstacle.body.feature(shape_.sample(std::array{middle}).points.col(0));
+    }
     let_go();
     join();
     unlike_ = wrong_;
@@ -41,7 +47,7 @@ class Contacts {
   }
 
  private:
-  /// Of what a wall would have to pull at: points, and the ends of parts.
+  /// Of what an obstacle would have to pull at: points, and the ends of parts.
   void let_go() {
     const std::vector<ContactForce> forces = solution_.model->contact_forces(solution_.multipliers);
     std::vector<Span::Contact> kept;
@@ -71,16 +77,16 @@ class Contacts {
     contacts_ = std::move(kept);
   }
 
-  /// Neighbouring contacts with a wall that the rod hardly leaves between them, or is behind, are
-  /// one.
+  /// Neighbouring contacts with an obstacle that the rod hardly leaves between them, or is behind,
+  /// are one.
   void join() {
     for (std::size_t i = 0; i + 1 < contacts_.size();) {
       Span::Contact& here = contacts_[i];
       const Span::Contact& next = contacts_[i + 1];
       const double gap = next.begin - here.end;
-      bool one = here.wall.index == next.wall.index;
+      bool one = here.obstacle.index == next.obstacle.index && here.feature == next.feature;
       if (one) {
-        const double rise = highest(here.wall, here.end, next.begin);
+        const double rise = highest(here.obstacle, here.end, next.begin);
         // Of a free part as short as that nothing could be told.
         one = rise < 0 || (gap < short_gap * span_.length && rise < least_rise * gap);
       }
@@ -95,22 +101,23 @@ class Contacts {
   }
 
   /// Largest clearance between two arc lengths.
-  [[nodiscard]] double highest(const Span::Wall& wall, double from, double to) const {
+  [[nodiscard]] double highest(const Span::Obstacle& obstacle, double from, double to) const {
     constexpr int looks = 16;
     std::vector<double> s;
     for (int i = 1; i < looks; ++i) s.push_back(from + (to - from) * i / looks);
     const SpanSamples samples = shape_.sample(s);
-    return (wall.normal.transpose() * samples.points).maxCoeff() + wall.offset;
+    return obstacle.body.clearances(samples.points).maxCoeff();
   }
 
-  /// What is behind a wall touches it; next to another contact both lie, and so does what is behind
-  /// it all the way from there to the tip.
+  /// What is behind an obstacle touches it; next to another contact both lie, and so does what is
+  /// behind it all the way from there to the tip.
   void add(const Lowest& lowest) {
     const double length = span_.length;
     for (Span::Contact& contact : contacts_) {
-      if (contact.wall.index != lowest.wall.index) continue;
+      const bool same = contact.obstacle.index == lowest.obstacle.index;
+      if (!same || contact.feature != lowest.feature) continue;
       if (lowest.s == length && contact.end < length &&
-          highest(contact.wall, contact.end, length) < 0) {
+          highest(contact.obstacle, contact.end, length) < 0) {
         contact.end = length;
         return;
       }
@@ -125,7 +132,7 @@ class Contacts {
       return;
     }
     const double at = std::clamp(lowest.s, 0.0, length);
-    contacts_.push_back({lowest.wall, at, at});
+    contacts_.push_back({lowest.obstacle, at, at, true, lowest.feature});
     std::sort(contacts_.begin(), contacts_.end(),
               [](const auto& a, const auto& b) { return a.begin < b.begin; });
   }

@@ -7,7 +7,7 @@
 
 namespace dlo::energy_model {
 
-/// What a shape may be behind a rigid wall and still be on it, in lengths: rounding.
+/// What a shape may be behind a rigid obstacle and still be on it, in lengths: rounding.
 inline constexpr double deepest = 1e-9;
 /// The same while terms may be missing.
 inline constexpr double deepest_coarse = 1e-6;
@@ -18,12 +18,12 @@ enum class Terms {
   all,
 };
 
-/// Looks whether contacts are those of an equilibrium: no wall pulls (concentrated forces and
+/// Looks whether contacts are those of an equilibrium: no obstacle pulls (concentrated forces and
 /// pressures are above -1e-7 of all forces) and nothing is more than `deepest` (`deepest_coarse`)
 /// lengths behind one.
 /// @return nothing if so; else the contacts to try next: without those that pull, points where they
 ///         lie too short or are pulled along a part, one where two meet, more where the rod is
-///         behind a wall
+///         behind an obstacle
 [[nodiscard]] std::optional<std::vector<Span::Contact>> mended(const SpanSolution& solution,
                                                                double load, Terms terms);
 

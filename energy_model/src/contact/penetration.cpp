@@ -13,16 +13,14 @@ namespace {
 /// 3e-8 l for k = 1/l.
 constexpr Eigen::Index penetration_grid = 2001;
 
-bool is_rigid(const Wall& wall) { return std::isinf(wall.stiffness); }
+bool is_rigid(const Obstacle& obstacle) { return std::isinf(obstacle.stiffness); }
 
-/// Largest depth behind a rigid wall [m].
+/// Largest depth behind a rigid obstacle [m].
 double penetration(const Problem& problem, const Samples& shape) {
   double deepest = 0;
-  for (const Wall& wall : problem.walls) {
-    if (!is_rigid(wall)) continue;
-    const Eigen::RowVectorXd height =
-        wall.normal.normalized().transpose() * (shape.points.colwise() - wall.point);
-    deepest = std::max(deepest, -height.minCoeff());
+  for (const Obstacle& obstacle : problem.obstacles) {
+    if (!is_rigid(obstacle)) continue;
+    deepest = std::max(deepest, -obstacle.body.clearances(shape.points).minCoeff());
   }
   return deepest;
 }
@@ -30,7 +28,7 @@ double penetration(const Problem& problem, const Samples& shape) {
 }  // namespace
 
 void judge_penetration(const Problem& problem, Equilibrium& equilibrium) {
-  if (std::none_of(problem.walls.begin(), problem.walls.end(), is_rigid)) return;
+  if (std::none_of(problem.obstacles.begin(), problem.obstacles.end(), is_rigid)) return;
   const double l = problem.length;
   equilibrium.penetration =
       penetration(problem, equilibrium.sample(equal_arc_lengths(l, penetration_grid)));
@@ -39,7 +37,7 @@ void judge_penetration(const Problem& problem, Equilibrium& equilibrium) {
   std::ostringstream why;
   why.precision(2);
   why << "the shape is " << equilibrium.penetration << " m = " << equilibrium.penetration / l
-      << " l behind a rigid wall (allowed: " << allowed_penetration << " l)";
+      << " l within a rigid obstacle (allowed: " << allowed_penetration << " l)";
   equilibrium.status = SolveStatus::not_resolved;
   equilibrium.message = std::string(to_string(equilibrium.status)) + ": " + why.str();
 }

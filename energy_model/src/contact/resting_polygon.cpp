@@ -15,10 +15,13 @@ constexpr double most_segments = 256;
 /// Stretch and penetration that the loads and what bends a rod may make, in lengths.
 constexpr double yields = 1e-4;
 constexpr double bending_forces = 40;
-/// Neighbouring points on a wall from which on a part lies, rather than touches at a point.
+/// Neighbouring segments on an obstacle from which on a part lies, rather than touches at a point.
 constexpr Eigen::Index fewest_lying = 4;
 
-/// A polygon that crumples on its wall takes many more, and lies higher than others.
+/// How far above a surface a grip is that holds the rod on it, in lengths: rounding.
+constexpr double on_surface = 1e-9;
+
+/// A polygon that crumples on its obstacle takes many more, and lies higher than others.
 constexpr int most_evaluations = 300;
 
 /// Points of a polygon along a span, by growing s. A clamp at an end holds one more, beyond it.
@@ -67,8 +70,19 @@ class Resting {
     place_forces();
     hold();
     const double h = span.length / static_cast<double>(count);
-    for (const Span::SoftWall& wall : span.soft_walls) add_wall(wall, wall.stiffness * h);
-    for (const Span::Wall& wall : span.rigid_walls) add_wall(wall, stiff);
+    for (const Span::SoftObstacle& obstacle : span.soft_obstacles)
+      add_obstacle(obstacle, obstacle.stiffness * h);
+    for (const Span::Obstacle& obstacle : span.rigid_obstacles) add_obstacle(obstacle, stiff);
+  }
+
+  /// Whether a shape has points within the core of a rigid obstacle that is no half-space.
+  [[nodiscard]] bool goes_through(const TangentField& start) const {
+    const Eigen::Matrix3Xd points = points_of(start);
+    return std::any_of(
+        span_.rigid_obstacles.begin(), span_.rigid_obstacles.end(), [&](const auto& obstacle) {
+          const obstacle::Body& body = obstacle.body;
+          return !body.is_half_space() && body.clearances(points).minCoeff() < -body.radius();
+        });
   }
 
   [[nodiscard]] RestingPolygon from(const TangentField& start, const Deadline& deadline) {
@@ -85,7 +99,8 @@ class Resting {
     result.middles.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) result.middles[i] = (s(i) + s(i + 1)) / 2;
     result.tangents = (found.points.rightCols(n) - found.points.leftCols(n)).colwise().normalized();
-    for (const Span::Wall& wall : span_.rigid_walls) add_contacts(wall, found.points, result);
+    for (const Span::Obstacle& obstacle : span_.rigid_obstacles)
+      add_contacts(obstacle, found.points, result);
     std::sort(result.contacts.begin(), result.contacts.end(),
               [](const auto& a, const auto& b) { return a.begin < b.begin; });
     return result;
@@ -99,8 +114,16 @@ class Resting {
     return span_.planar ? stiffness.x() : std::sqrt(stiffness.x() * stiffness.y());
   }
 
-  void add_wall(const Span::Wall& wall, double stiffness) {
-    problem_.walls.push_back({-wall.offset * wall.normal, wall.normal, stiffness});
+  [[nodiscard]] bool is_gripped(double at) const {
+    const auto near = [at](double other) { return std::abs(at - other) < closest_cuts; };
+    return near(span_.anchor) || std::any_of(span_.holds.begin(), span_.holds.end(),
+                                             [&](const Span::Hold& hold) { return near(hold.at); });
+  }
+
+  void add_obstacle(const Span::Obstacle& obstacle, double stiffness) {
+    const double h = span_.length / static_cast<double>(mesh_.s.size());
+    problem_.obstacles.push_back(
+        {obstacle.body, stiffness, obstacle::looks_per_segment(obstacle.body, h)});
   }
 
   [[nodiscard]] Eigen::Index point_at(double at) const {
@@ -181,31 +204,47 @@ class Resting {
     return points;
   }
 
-  /// Of a rigid wall: runs of points behind it.
-  void add_contacts(const Span::Wall& wall, const Eigen::Matrix3Xd& points,
+  /// Of a rigid obstacle: runs of points within it.
+  void add_contacts(const Span::Obstacle& obstacle, const Eigen::Matrix3Xd& points,
                     RestingPolygon& result) const {
-    const Eigen::VectorXd clearance =
-        (wall.normal.transpose() * points).transpose().array() + wall.offset;
-    const Eigen::Index count = clearance.size();
+    // Where the polygon is looked at.
+    const double h = span_.length / static_cast<double>(mesh_.s.size());
+    const int looks = obstacle::looks_per_segment(obstacle.body, h);
+    const Eigen::Index count = looks * (points.cols() - 1) + 1;
+    std::vector<double> at;
+    Eigen::VectorXd clearance(count);
+    std::vector<int> feature;
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Eigen::Index i = std::min(k / looks, points.cols() - 2);
+      const double share = static_cast<double>(k - i * looks) / looks;
+      at.push_back((1 - share) * s(i) + share * s(i + 1));
+      const Eigen::Vector3d point = (1 - share) * points.col(i) + share * points.col(i + 1);
+      clearance[k] = obstacle.body.clearance(point);
+      feature.push_back(obstacle.body.feature(point));
+    }
+    // A grip may hold the rod on the surface, where nothing pushes a held point away.
+    const auto on = [&](Eigen::Index k) {
+      return at[k] >= 0 && at[k] <= span_.length &&
+             (clearance[k] <= 0 || (is_gripped(at[k]) && clearance[k] <= on_surface));
+    };
     for (Eigen::Index i = 0; i < count; ++i) {
-      const auto on = [&](Eigen::Index k) {
-        return clearance[k] <= 0 && s(k) >= 0 && s(k) <= span_.length;
-      };
       if (!on(i)) continue;
       const Eigen::Index first = i;
-      while (i + 1 < count && on(i + 1)) ++i;
-      Span::Contact contact{wall, s(first), s(i)};
-      if (i - first + 1 < fewest_lying) {
+      const auto next_to = [&](Eigen::Index k) { return feature[static_cast<std::size_t>(k)]; };
+      while (i + 1 < count && on(i + 1) && next_to(i + 1) == next_to(first)) ++i;
+      Span::Contact contact{obstacle, at[first], at[i], true, next_to(first)};
+      if (i - first + 1 < fewest_lying * looks) {
         double depth = 0;
         double moment = 0;
         for (Eigen::Index k = first; k <= i; ++k) {
           depth -= clearance[k];
-          moment -= clearance[k] * s(k);
+          moment -= clearance[k] * at[k];
         }
-        const bool at_end = s(first) == 0 || s(i) == span_.length;
-        if (!at_end) contact.begin = contact.end = depth > 0 ? moment / depth : s(first);
-        if (s(i) == span_.length) contact.begin = contact.end = span_.length;
-        if (s(first) == 0) contact.begin = contact.end = 0;
+        const bool at_end = at[first] == 0 || at[i] == span_.length;
+        if (!at_end) contact.begin = contact.end = depth > 0 ? moment / depth : at[first];
+        if (at[i] == span_.length) contact.begin = contact.end = span_.length;
+        if (at[first] == 0) contact.begin = contact.end = 0;
+        if (is_gripped(contact.begin)) continue;
       }
       result.contacts.push_back(contact);
     }
@@ -228,9 +267,24 @@ TangentField RestingPolygon::field() const {
   };
 }
 
-RestingPolygon rest_on_walls(const Span& span, const TangentField& start,
-                             const Deadline& deadline) {
-  return Resting(span).from(start, deadline);
+RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start,
+                                 const Deadline& deadline) {
+  Resting resting(span);
+  if (!resting.goes_through(start)) return resting.from(start, deadline);
+  TangentField from = start;
+  int evaluations = 0;
+  for (const double round : {1.0, 0.75, 0.5, 0.25}) {
+    Span rounder = span;
+    for (Span::Obstacle& obstacle : rounder.rigid_obstacles) {
+      obstacle.body = obstacle.body.rounded(round);
+    }
+    const RestingPolygon before = Resting(rounder).from(from, deadline);
+    evaluations += before.evaluations;
+    from = before.field();
+  }
+  RestingPolygon result = resting.from(from, deadline);
+  result.evaluations += evaluations;
+  return result;
 }
 
 }  // namespace dlo::energy_model

@@ -9,7 +9,7 @@
 
 namespace dlo::energy_model {
 
-/// A coarse polygon at rest on a span's walls, which tells what touches what.
+/// A coarse polygon at rest on a span's obstacles, which tells what touches what.
 struct RestingPolygon {
   bool at_rest = false;
   double energy = 0;  ///< in EI/l
@@ -22,9 +22,10 @@ struct RestingPolygon {
   [[nodiscard]] TangentField field() const;
 };
 
-/// Descends from a shape with points that the walls push back by stiff springs, and stretch that is
-/// small: right to about the square of a segment.
-[[nodiscard]] RestingPolygon rest_on_walls(const Span& span, const TangentField& start,
-                                           const Deadline& deadline);
+/// Descends from a shape with points that the obstacles push back by stiff springs, and stretch
+/// that is small: right to about the square of a segment. Where the shape goes through the inside
+/// of a block, which would push it out of several faces at once, the block grows out of a ball.
+[[nodiscard]] RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start,
+                                               const Deadline& deadline);
 
 }  // namespace dlo::energy_model

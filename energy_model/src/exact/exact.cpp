@@ -237,8 +237,8 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   const auto begin = std::chrono::steady_clock::now();
   require_positive("solve_exact", "tolerance", options.tolerance);
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
-  require(problem.walls.empty(), "solve_exact", "number of walls",
-          static_cast<double>(problem.walls.size()), "0");
+  require(problem.obstacles.empty(), "solve_exact", "number of obstacles",
+          static_cast<double>(problem.obstacles.size()), "0");
   Found found = search(problem, options, deadline);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -116,8 +116,8 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
 
 std::vector<OrderedGrip> checked_grips(const Problem& problem) {
   check(problem);
-  require(problem.walls.empty(), "solve_exact", "number of walls",
-          static_cast<double>(problem.walls.size()), "0");
+  require(problem.obstacles.empty(), "solve_exact", "number of obstacles",
+          static_cast<double>(problem.obstacles.size()), "0");
   return ordered_grips(problem);
 }
 

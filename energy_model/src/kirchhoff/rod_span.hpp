@@ -49,8 +49,8 @@ struct RodSpan {
 };
 
 /// Cuts a problem at its clamps. Grips within 1e-9 l of an end of the rod are at that end.
-/// @throws std::invalid_argument if the problem is out of range, has walls, or grips are further
-/// apart than the rod between them
+/// @throws std::invalid_argument if the problem is out of range, has obstacles, or grips are
+/// further apart than the rod between them
 [[nodiscard]] std::vector<RodSpan> cut_at_clamps(const Problem& problem);
 
 /// All of the rod as one span without directions; loads on clamps are the gripper's and the span's.

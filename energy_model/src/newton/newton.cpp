@@ -150,10 +150,10 @@ double Newton::step_length_by_energy(SpanSolution& solution) {
   return 1e-4;
 }
 
-/// Walls make the energy's second derivative jump: Newton's step is halved until the energy falls,
-/// or between grips the residual.
+/// Obstacles make the energy's second derivative jump: Newton's step is halved until the energy
+/// falls, or between grips the residual.
 double Newton::step_length(SpanSolution& solution, double size) {
-  if (!solution.model->has_walls()) return 1;
+  if (!solution.model->has_soft_obstacles()) return 1;
   if (definite_) return step_length_by_energy(solution);
   trial_x_ = solution.x;
   trial_multipliers_ = solution.multipliers;
@@ -232,7 +232,7 @@ void Newton::polish_along_branch(SpanSolution& solution, double load) {
 
 void Newton::polish(SpanSolution& solution, double load) {
   const SpanEnergy& model = *solution.model;
-  if (model.constraints() == 0 || model.has_walls()) return run(solution, load);
+  if (model.constraints() == 0 || model.has_soft_obstacles()) return run(solution, load);
   const Eigen::VectorXd x = solution.x;
   const Eigen::VectorXd multipliers = solution.multipliers;
   run(solution, load);
@@ -245,8 +245,8 @@ void Newton::polish(SpanSolution& solution, double load) {
 void Newton::run(SpanSolution& solution, double load) {
   load_ = load;
   begin(solution);
-  const bool walls = solution.model->has_walls();
-  const int most_steps = walls ? 60 : 30;
+  const bool obstacles = solution.model->has_soft_obstacles();
+  const int most_steps = obstacles ? 60 : 30;
   double size = evaluate(solution);
   bool factored = false;
   bool shrinks = false;  // the steps, with the factor of an earlier point
@@ -271,8 +271,8 @@ void Newton::run(SpanSolution& solution, double load) {
     solution.next_step = moved;
     const bool small = size <= last_residual * (1 + load + solution.multipliers.norm());
     // Where the shape is right the forces need not be.
-    if (moved <= finest_step && (small || walls)) return finish();
-    if (walls) {
+    if (moved <= finest_step && (small || obstacles)) return finish();
+    if (obstacles) {
       const double before = size;
       move(solution, step_length(solution, size));
       size = evaluate(solution);
@@ -298,12 +298,12 @@ void Newton::run(SpanSolution& solution, double load) {
       return solution.finish(SolveStatus::near_singular);
     }
     const double scale = 1 + load + solution.multipliers.norm();
-    if (!walls && size <= last_residual * scale && solution.next_step <= finest_step) {
+    if (!obstacles && size <= last_residual * scale && solution.next_step <= finest_step) {
       return finish();
     }
     // Between grips the caller looks at the second variation; without, the factor has to tell it.
     const bool near = moved * (1 + load) <= factor_reach;
-    factored = !walls && (near || (shrinks && jacobian_.rows() > 0));
+    factored = !obstacles && (near || (shrinks && jacobian_.rows() > 0));
   }
   solution.residual = size;
   solution.fail("Newton's method did not reduce the residual to rounding");

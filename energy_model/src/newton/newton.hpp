@@ -16,7 +16,7 @@ namespace dlo::energy_model {
 inline constexpr double largest_pull = 1e10;
 
 /// Newton's method on the gradient of E - mu . c and on the constraints, with its buffers. Without
-/// constraints and walls it allocates nothing once they have their size.
+/// constraints and obstacles it allocates nothing once they have their size.
 class Newton {
  public:
   /// From now on: what has not come to its end by then ends as `time_limit`.

@@ -139,8 +139,6 @@ class PolygonDescent {
     }
   }
 
-  [[nodiscard]] const Eigen::Matrix3Xd& gradient() const { return gradient_; }
-
  private:
   // Shares of the largest diagonal element.
   static constexpr double first_damping = 1e-12;
@@ -272,7 +270,7 @@ class PolygonDescent {
 double softest(const PolygonProblem& problem, const Eigen::Matrix3Xd& start) {
   PolygonProblem bending = problem;
   bending.node_forces.setZero();
-  bending.walls.clear();
+  bending.obstacles.clear();
   // No stretch: what is left is the bending of the start.
   bending.stretch_stiffness = 0;
   Eigen::Matrix3Xd unused(3, start.cols());
@@ -301,9 +299,9 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
   for (double c_c = first;; c_c *= growth) {
     const bool last = c_c >= problem.stretch_stiffness;
     stage.stretch_stiffness = last ? problem.stretch_stiffness : c_c;
-    for (std::size_t i = 0; i < problem.walls.size(); ++i) {
-      const double stiffness = problem.walls[i].stiffness;
-      stage.walls[i].stiffness = last ? stiffness : std::min(stiffness, c_c / shortest);
+    for (std::size_t i = 0; i < problem.obstacles.size(); ++i) {
+      const double stiffness = problem.obstacles[i].stiffness;
+      stage.obstacles[i].stiffness = last ? stiffness : std::min(stiffness, c_c / shortest);
     }
     PolygonDescent descent(stage, options, deadline, result);
     result.status = descent.run(last ? options.tolerance : stage_tolerance);
@@ -312,16 +310,18 @@ PolygonResult solve_polygon(const PolygonProblem& problem, const Points& start,
     if (!last && go_on) continue;
     // A softer stage may have failed; what is returned belongs to the problem that was asked.
     stage.stretch_stiffness = problem.stretch_stiffness;
-    stage.walls = problem.walls;
+    stage.obstacles = problem.obstacles;
     PolygonDescent asked(stage, options, deadline, result);
     asked.prove();
     for (const PolygonTwist& twist : stage.twists) {
       result.twists.push_back(polygon_twist_angle(twist, result.points));
     }
     result.grip_forces.resize(3, static_cast<Eigen::Index>(problem.held.size()));
+    stage.obstacles.clear();
+    Eigen::Matrix3Xd gradient(3, result.points.cols());
+    (void)polygon_energy(stage, result.points, gradient);
     for (std::size_t i = 0; i < problem.held.size(); ++i) {
-      result.grip_forces.col(static_cast<Eigen::Index>(i)) =
-          asked.gradient().col(problem.held[i].point);
+      result.grip_forces.col(static_cast<Eigen::Index>(i)) = gradient.col(problem.held[i].point);
     }
     break;
   }

@@ -87,16 +87,29 @@ Eigen::Matrix3d second_of_angle(const Eigen::Vector3d& u, double length) {
 
 Eigen::Vector3d left_of(const Eigen::Vector3d& u) { return {-u.y(), u.x(), 0}; }
 
-/// Whether a point is held, for each; a held one does not feel walls.
+/// Whether a point is held, for each; a held one does not feel obstacles.
 std::vector<bool> held_points(const PolygonProblem& problem) {
   std::vector<bool> held(static_cast<std::size_t>(problem.node_forces.cols()), false);
   for (const HeldPoint& point : problem.held) held[static_cast<std::size_t>(point.point)] = true;
   return held;
 }
 
-/// How far a point is behind a wall [m].
-double depth(const PointWall& wall, const Points& points, Eigen::Index i) {
-  return std::max(0.0, (wall.point - points.col(i)).dot(wall.normal));
+/// Calls action(i, share, point) for each point of the polygon that an obstacle may push, which is
+/// the share of the way from point i to the next.
+template <typename Action>
+void for_each_look(const PolygonProblem& problem, const PointObstacle& obstacle,
+                   const Points& points, const Action& action) {
+  const std::vector<bool> held = held_points(problem);
+  const Eigen::Index n = problem.rest_lengths.size();
+  const auto is_held = [&held](Eigen::Index i) { return held[static_cast<std::size_t>(i)]; };
+  for (Eigen::Index i = 0; i <= n; ++i) {
+    if (!is_held(i)) action(i, 0.0, Eigen::Vector3d(points.col(i)));
+    if (i == n || (is_held(i) && is_held(i + 1))) continue;
+    for (int k = 1; k < obstacle.looks; ++k) {
+      const double share = static_cast<double>(k) / obstacle.looks;
+      action(i, share, Eigen::Vector3d((1 - share) * points.col(i) + share * points.col(i + 1)));
+    }
+  }
 }
 
 }  // namespace
@@ -144,15 +157,17 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
     gradient.col(i + 1) += by_b;
   }
   energy += add_twist_energy(problem, points, gradient);
-  if (problem.walls.empty()) return energy;
-  const std::vector<bool> held = held_points(problem);
-  for (const PointWall& wall : problem.walls) {
-    for (Eigen::Index i = 0; i <= n; ++i) {
-      if (held[static_cast<std::size_t>(i)]) continue;
-      const double d = depth(wall, points, i);
-      energy += wall.stiffness * d * d / 2;
-      gradient.col(i) -= wall.stiffness * d * wall.normal;
-    }
+  for (const PointObstacle& obstacle : problem.obstacles) {
+    const double k = obstacle.stiffness / obstacle.looks;
+    const auto push = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
+      if (obstacle.body.clearance(point) >= 0) return;
+      const obstacle::Gap gap = obstacle.body.gap(point);
+      energy += k * gap.value * gap.value / 2;
+      const Eigen::Vector3d by_point = k * gap.value * gap.gradient;
+      gradient.col(i) += (1 - share) * by_point;
+      if (share > 0) gradient.col(i + 1) += share * by_point;
+    };
+    for_each_look(problem, obstacle, points, push);
   }
   return energy;
 }
@@ -198,13 +213,20 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, const 
     add_difference_block(i, i - 1, ab.transpose(), add);
   }
   add_twist_hessian(problem, points, add);
-  if (problem.walls.empty()) return;
-  const std::vector<bool> held = held_points(problem);
-  for (const PointWall& wall : problem.walls) {
-    for (Eigen::Index i = 0; i <= n; ++i) {
-      if (held[static_cast<std::size_t>(i)] || depth(wall, points, i) <= 0) continue;
-      add(i, i, wall.stiffness * wall.normal * wall.normal.transpose());
-    }
+  for (const PointObstacle& obstacle : problem.obstacles) {
+    const double k = obstacle.stiffness / obstacle.looks;
+    const auto stiffen = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
+      if (obstacle.body.clearance(point) >= 0) return;
+      const obstacle::Gap gap = obstacle.body.gap(point);
+      const Eigen::Matrix3d H =
+          k * (gap.gradient * gap.gradient.transpose() + gap.value * gap.hessian);
+      add(i, i, (1 - share) * (1 - share) * H);
+      if (share == 0) return;
+      add(i + 1, i + 1, share * share * H);
+      add(i + 1, i, share * (1 - share) * H);
+      add(i, i + 1, share * (1 - share) * H);
+    };
+    for_each_look(problem, obstacle, points, stiffen);
   }
 }
 

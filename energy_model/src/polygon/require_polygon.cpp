@@ -48,12 +48,12 @@ void require_polygon(const PolygonProblem& problem, const Points& start,
     require(held.position.allFinite(), name, "position of a held point", held.position.norm(),
             "finite");
   }
-  for (const PointWall& wall : problem.walls) {
-    require(wall.stiffness >= 0 && std::isfinite(wall.stiffness), name, "stiffness of a wall",
-            wall.stiffness, "finite and >= 0");
-    require(std::abs(wall.normal.norm() - 1) < 1e-9, name, "length of a wall's normal",
-            wall.normal.norm(), "1");
-    require(wall.point.allFinite(), name, "point of a wall", wall.point.norm(), "finite");
+  for (const PointObstacle& obstacle : problem.obstacles) {
+    require(obstacle.stiffness >= 0 && std::isfinite(obstacle.stiffness), name,
+            "stiffness of an obstacle", obstacle.stiffness, "finite and >= 0");
+    require(obstacle.body.centre().allFinite() && obstacle.body.axes().allFinite(), name,
+            "point of an obstacle", obstacle.body.centre().norm(), "finite, as its axes");
+    require(obstacle.looks >= 1, name, "looks per segment", obstacle.looks, ">= 1");
   }
   require_positive("PolygonOptions", "tolerance", options.tolerance);
   require(options.max_evaluations >= 1, "PolygonOptions", "max_evaluations",
@@ -68,8 +68,11 @@ void require_polygon(const PolygonProblem& problem, const Points& start,
     for (const HeldPoint& held : problem.held) {
       require_in_plane(name, "a held point", held.position);
     }
-    for (const PointWall& wall : problem.walls) {
-      require_in_plane(name, "a wall's normal", wall.normal);
+    for (const PointObstacle& obstacle : problem.obstacles) {
+      require(obstacle.body.is_symmetric(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(),
+                                         problem.rest_lengths.sum()),
+              name, "z of an obstacle's centre", obstacle.body.centre().z(),
+              "0, its own mirror image in the plane z = 0");
     }
   }
   require(start.allFinite() && closest > 0, "solve_polygon", "shortest segment of start", closest,

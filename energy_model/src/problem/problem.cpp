@@ -97,10 +97,16 @@ void check(const Problem& problem) {
   check_twist(problem);
   check_sections(problem);
   check_material_directors(problem);
-  for (const Wall& wall : problem.walls) {
-    require(wall.point.allFinite(), "Problem", "point of a wall", wall.point.norm(), "finite");
-    require_positive("Problem", "|normal| of a wall", wall.normal.norm());
-    require(wall.stiffness > 0, "Problem", "stiffness of a wall", wall.stiffness, "> 0");
+  for (const Obstacle& obstacle : problem.obstacles) {
+    const obstacle::Body& body = obstacle.body;
+    require(body.centre().allFinite(), "Problem", "point of an obstacle", body.centre().norm(),
+            "finite");
+    require(body.axes().allFinite(), "Problem", "axes of an obstacle", body.axes().norm(),
+            "finite, of a length > 0");
+    require(body.smallest_radius() > 0, "Problem", "radius of an obstacle's edges",
+            body.smallest_radius(), "> 0");
+    require(obstacle.stiffness > 0, "Problem", "stiffness of an obstacle", obstacle.stiffness,
+            "> 0");
   }
   for (const Load& load : problem.loads) {
     require_on_rod("arc length of a load", load.at, problem.length);

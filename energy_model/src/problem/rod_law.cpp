@@ -64,12 +64,18 @@ std::optional<Eigen::Vector3d> natural_normal(const Problem& problem) {
   add(problem.weight_per_length, 0);
   for (const Section& section : problem.sections) add(section.weight_per_length, 0);
   for (const Load& load : problem.loads) add(load.force, 0);
-  for (const Wall& wall : problem.walls) add(wall.normal, 0);
+  for (const Obstacle& obstacle : problem.obstacles) {
+    if (obstacle.body.is_half_space()) add(obstacle.body.normal(), 0);
+  }
   // A line alone lies in the plane that holds x, or y.
   const Eigen::Vector3d first = directions.empty() ? Eigen::Vector3d::UnitX() : directions.front();
   const std::optional<Plane> plane = find_plane(Eigen::Vector3d::Zero(), first, directions);
   if (!plane) return std::nullopt;
   const Eigen::Vector3d normal = plane->x.cross(plane->y);
+  for (const Obstacle& obstacle : problem.obstacles) {
+    const Eigen::Vector3d& within = problem.grips.front().position;
+    if (!obstacle.body.is_symmetric(within, normal, problem.length)) return std::nullopt;
+  }
   for (const Eigen::Index axis : {2, 1, 0}) {
     constexpr double noise = 1e-9;
     if (std::abs(normal[axis]) > noise) return normal[axis] > 0 ? normal : Eigen::Vector3d(-normal);

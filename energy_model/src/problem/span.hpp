@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "dlo/obstacle/body.hpp"
 #include "problem/natural_strains.hpp"
 
 namespace dlo::energy_model {
@@ -23,25 +24,22 @@ struct Span {
     double at = 0;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
   };
-  /// A half-space's wall.
-  struct Wall {
-    std::size_t index = 0;  ///< of the problem's walls
-    Eigen::Vector3d normal = Eigen::Vector3d::UnitY();
-    double offset = 0;  ///< normal . (anchor - point): clearance of the anchor
-
-    [[nodiscard]] double clearance(const Eigen::Vector3d& point) const {
-      return normal.dot(point) + offset;
-    }
+  struct Obstacle {
+    std::size_t index = 0;  ///< of the problem's obstacles
+    obstacle::Body body;    ///< seen from the anchor
   };
   /// One-sided springs along the rod.
-  struct SoftWall : Wall {
+  struct SoftObstacle : Obstacle {
     double stiffness = 0;  ///< per length
   };
 
-  /// Where the rod is held on a rigid wall: at one point, or along a part, which lies on it.
+  /// Where the rod is held on a rigid obstacle: along a part, which lies on it, or at one point.
   struct Contact {
-    Wall wall;
+    Obstacle obstacle;
     double begin = 0, end = 0;  ///< s; equal where it touches at one point
+    /// The point, between grips, is that next to `begin` where the rod is nearest; else `begin`.
+    bool slides = true;
+    int feature = 0;  ///< of the body, which the rod touches there; it lies on one only
 
     [[nodiscard]] bool lies() const { return end > begin; }
   };
@@ -68,11 +66,11 @@ struct Span {
   std::vector<Hold> holds;                         ///< the other grips, by growing s
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();
   std::vector<Load> loads;  ///< by growing s
-  std::vector<SoftWall> soft_walls;
-  std::vector<Wall> rigid_walls;  ///< which the energy knows nothing of but for these:
-  std::vector<Contact> contacts;  ///< by growing s, none over another
-  std::optional<Twist> twist;     ///< where both ends are clamped, not planar
-  std::vector<Part> parts;        ///< where the section is another one, by growing s
+  std::vector<SoftObstacle> soft_obstacles;
+  std::vector<Obstacle> rigid_obstacles;  ///< which the energy knows nothing of but for these:
+  std::vector<Contact> contacts;          ///< by growing s, none over another
+  std::optional<Twist> twist;             ///< where both ends are clamped, not planar
+  std::vector<Part> parts;                ///< where the section is another one, by growing s
   /// About d1, d2 and the tangent of a frame that has first_d1() at the start; about d1 alone if
   /// planar. Of all rods with material directors, zero if the rod is straight.
   NaturalStrains natural;
@@ -102,8 +100,8 @@ struct Span {
   [[nodiscard]] bool pulled_one_way() const;
   /// A uniform straight rod with one clamp and nothing but weight and loads, in a plane.
   [[nodiscard]] bool is_plain_cantilever() const {
-    return planar && start_direction && holds.empty() && soft_walls.empty() && contacts.empty() &&
-           parts.empty() && !has_material_directors();
+    return planar && start_direction && holds.empty() && soft_obstacles.empty() &&
+           contacts.empty() && parts.empty() && !has_material_directors();
   }
 };
 

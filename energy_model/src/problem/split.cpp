@@ -59,10 +59,24 @@ void turn_vectors(Span& span, const Eigen::Matrix3d& rotation) {
     if (hold.direction) turn(*hold.direction);
   }
   for (Span::Load& load : span.loads) turn(load.force);
-  for (Span::SoftWall& wall : span.soft_walls) turn(wall.normal);
-  for (Span::Wall& wall : span.rigid_walls) turn(wall.normal);
+  const Eigen::Vector3d anchor = Eigen::Vector3d::Zero();
+  const auto turn_body = [&](Span::Obstacle& obstacle) {
+    obstacle.body = obstacle.body.seen_from(anchor, rotation, 1);
+  };
+  for (Span::SoftObstacle& obstacle : span.soft_obstacles) turn_body(obstacle);
+  for (Span::Obstacle& obstacle : span.rigid_obstacles) turn_body(obstacle);
   for (Span::Part& part : span.parts) turn(part.weight);
   turn(span.weight);
+}
+
+/// Whether all that the rod may touch leaves a planar shape in its plane.
+bool are_symmetric(const Span& span) {
+  const auto symmetric = [&span](const Span::Obstacle& obstacle) {
+    return obstacle.body.is_symmetric(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ(),
+                                      span.length);
+  };
+  return std::all_of(span.soft_obstacles.begin(), span.soft_obstacles.end(), symmetric) &&
+         std::all_of(span.rigid_obstacles.begin(), span.rigid_obstacles.end(), symmetric);
 }
 
 /// The parts of the rod that have another section, between two arc lengths of a span that runs from
@@ -165,8 +179,8 @@ void place_material_directors(const Problem& problem, PlacedSpan& placed,
   const double sense = placed.reversed ? -1 : 1;
   span.natural.rate = 2 * sense;
   span.natural.from = 2 * placed.start / l - 1;
-  // What a wall keeps from leaving the plane is looked at in space.
-  if (!span.soft_walls.empty() || !span.rigid_walls.empty()) span.planar = false;
+  // What an obstacle keeps from leaving the plane is looked at in space.
+  if (!span.soft_obstacles.empty() || !span.rigid_obstacles.empty()) span.planar = false;
   constexpr double rounding = 1e-12;
   const double largest = span.natural.largest();
   for (Eigen::Vector3d& strain : span.natural.coefficients) {
@@ -255,19 +269,20 @@ PlacedSpan place(const Problem& problem, const std::vector<OrderedGrip>& grips, 
   }
   std::sort(span.loads.begin(), span.loads.end(),
             [](const Span::Load& a, const Span::Load& b) { return a.at < b.at; });
-  for (std::size_t i = 0; i < problem.walls.size(); ++i) {
-    const Wall& wall = problem.walls[i];
-    const Eigen::Vector3d normal = wall.normal.normalized();
-    const Span::Wall placed_wall{i, normal, normal.dot(placed.anchor_position - wall.point) / l};
-    if (std::isinf(wall.stiffness)) {
-      span.rigid_walls.push_back(placed_wall);
+  for (std::size_t i = 0; i < problem.obstacles.size(); ++i) {
+    const Obstacle& obstacle = problem.obstacles[i];
+    const Span::Obstacle placed_obstacle{
+        i, obstacle.body.seen_from(placed.anchor_position, Eigen::Matrix3d::Identity(), l)};
+    if (std::isinf(obstacle.stiffness)) {
+      span.rigid_obstacles.push_back(placed_obstacle);
     } else {
-      span.soft_walls.push_back({placed_wall, wall.stiffness * l * l / force_unit});
+      span.soft_obstacles.push_back({placed_obstacle, obstacle.stiffness * l * l / force_unit});
     }
-    directions.grips.push_back(normal);
+    if (obstacle.body.is_half_space()) directions.grips.push_back(obstacle.body.normal());
   }
   choose_frame(placed, directions);
   turn_vectors(span, placed.frame);
+  if (!are_symmetric(span)) span.planar = false;
   if (has_material_directors(problem)) place_material_directors(problem, placed, anchor);
   if (clamped_begin && clamped_end) {
     placed.frames = frames_of(problem, held.front(), *held.back().grip, placed.frame);

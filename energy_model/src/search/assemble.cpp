@@ -67,14 +67,14 @@ std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution
     const Span::Contact& contact = span.contacts[i];
     const double sense = place.reversed ? -length : length;
     ContactPart part;
-    part.wall = contact.wall.index;
+    part.obstacle = contact.obstacle.index;
     const bool at_tip = contact.end == span.length && !span.end_direction;
     part.kind = contact.lies()                 ? ContactKind::lying
                 : at_tip || contact.begin == 0 ? ContactKind::tip
                                                : ContactKind::touching;
     part.begin = place.start + sense * contact.begin;
     part.end = place.start + sense * contact.end;
-    part.force = forces[i].total * (place.frame.transpose() * contact.wall.normal);
+    part.force = place.frame.transpose() * forces[i].force;
     part.begin_force = contact.lies() ? forces[i].begin : 0;
     part.end_force = forces[i].end;
     part.largest_pressure = forces[i].largest_pressure;
@@ -109,7 +109,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
   result.residual = 0;
   result.error_estimate = 0;
   result.grips.resize(problem.grips.size());
-  result.walls.assign(problem.walls.size(), Eigen::Vector3d::Zero());
+  result.obstacles.assign(problem.obstacles.size(), Eigen::Vector3d::Zero());
   result.smallest_curvature = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < placed.size(); ++i) {
     const PlacedSpan& place = *placed[i];
@@ -148,15 +148,15 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
       carried += load.force;
       result.energy.load -= force_unit * (place.frame.transpose() * load.force).dot(lift);
     }
-    const std::vector<Eigen::Vector3d> walls = solution.model->walls().forces();
-    for (std::size_t w = 0; w < walls.size(); ++w) {
-      carried += walls[w];
-      result.walls[place.span.soft_walls[w].index] +=
-          force_unit * (place.frame.transpose() * walls[w]);
+    const std::vector<Eigen::Vector3d> obstacles = solution.model->soft_contact().forces();
+    for (std::size_t w = 0; w < obstacles.size(); ++w) {
+      carried += obstacles[w];
+      result.obstacles[place.span.soft_obstacles[w].index] +=
+          force_unit * (place.frame.transpose() * obstacles[w]);
     }
     for (const ContactPart& contact : contacts_of(place, solution, l)) {
       carried += place.frame * contact.force;
-      result.walls[contact.wall] += force_unit * contact.force;
+      result.obstacles[contact.obstacle] += force_unit * contact.force;
       result.contacts.push_back(in_newtons(contact, force_unit, l));
     }
     const Eigen::Index axes = solution.model->span().planar ? 2 : 3;

@@ -52,7 +52,8 @@ class ContactSearch {
   }
 
  private:
-  /// From the rod without walls, which may stay clear of them, and from the starts of all searches.
+  /// From the rod without obstacles, which may stay clear of them, and from the starts of all
+  /// searches.
   void search(std::vector<SpanSolution>& found) {
     SpanOptions without_start = options_;
     without_start.start = nullptr;
@@ -90,7 +91,7 @@ class ContactSearch {
     std::vector<RestingPolygon> polygons;
     for (std::size_t i = 0; i < most; ++i) {
       if (options_.deadline.passed() && !polygons.empty()) break;
-      RestingPolygon polygon = rest_on_walls(span_, starts[i], options_.deadline);
+      RestingPolygon polygon = rest_on_obstacles(span_, starts[i], options_.deadline);
       spent_ += polygon.evaluations;
       const bool known = std::any_of(polygons.begin(), polygons.end(), [&](const auto& other) {
         return other.at_rest && polygon.at_rest &&
@@ -152,6 +153,7 @@ class ContactSearch {
     SpanSolution solution;
     for (int round = 0; round < most_rounds; ++round) {
       solution = near_field(span, near);
+      if (!solution.is_equilibrium() && hold_points(span)) solution = near_field(span, near);
       if (!solution.is_equilibrium()) break;
       spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
       std::optional<std::vector<Span::Contact>> next = mended(solution, load_, Terms::some);
@@ -165,6 +167,7 @@ class ContactSearch {
       near = field_of(solution.model->shape(solution.x));
       span = solution.model->span();
       span.contacts = std::move(*next);
+      for (Span::Contact& contact : span.contacts) contact.slides = true;
     }
     std::string why = solution.is_equilibrium() ? "" : ": " + solution.message;
     solution.finish(SolveStatus::not_resolved);
@@ -172,14 +175,25 @@ class ContactSearch {
     return solution;
   }
 
-  /// Whether the contacts end where a wall without friction lets them, which is what makes the
+  /// Where an obstacle would have to pull there may be no shape that slides, but one that is held.
+  /// @return whether any contact slid
+  [[nodiscard]] static bool hold_points(Span& span) {
+    bool any = false;
+    for (Span::Contact& contact : span.contacts) {
+      any = any || (contact.slides && !contact.lies());
+      contact.slides = false;
+    }
+    return any;
+  }
+
+  /// Whether the contacts end where an obstacle without friction lets them, which is what makes the
   /// shape an equilibrium: a slope or a moment that is left there would take more than pressure.
   [[nodiscard]] static bool lifts_off(const SpanSolution& solution) {
     constexpr double settled = 1e-6;
     const Span& span = solution.model->span();
     const std::vector<LiftOff> ends = lift_offs(span);
     if (ends.empty()) return true;
-    const Eigen::VectorXd miss = missed(span, ends, solution.model->shape(solution.x));
+    const Eigen::VectorXd miss = missed(solution, ends);
     return miss.cwiseAbs().maxCoeff() <= settled;
   }
 
@@ -211,7 +225,7 @@ class ContactSearch {
     return std::max(fewest, first_terms(load_, longest));
   }
 
-  /// As many terms as the shape takes, and as what lies takes to be on its wall; certified.
+  /// As many terms as the shape takes, and as what lies takes to be on its obstacle; certified.
   [[nodiscard]] SpanSolution with_all_terms(SpanSolution solution) {
     for (;;) {
       const int before = solution.terms;
@@ -235,7 +249,7 @@ class ContactSearch {
     }
   }
 
-  /// Behind a wall by no more than missing terms may make it.
+  /// Behind an obstacle by no more than missing terms may make it.
   [[nodiscard]] bool hardly_behind(const SpanSolution& solution) const {
     if (!solution.is_equilibrium()) return false;
     const std::vector<Lowest> behind =

@@ -112,7 +112,7 @@ class EnergySolver::State {
     std::vector<PlacedSpan> placed = split(problem);
     for (PlacedSpan& span : placed) {
       // Contact is not looked for where clamps twist the rod; judge_penetration() tells of it.
-      if (span.frames) span.span.rigid_walls.clear();
+      if (span.frames) span.span.rigid_obstacles.clear();
     }
     const bool warm = follow && remembered_.size() == placed.size();
     remembered_.resize(placed.size());
@@ -284,7 +284,7 @@ class EnergySolver::State {
   void add_polygon_minima(const PlacedSpan& placed, const Problem& problem,
                           const SpanOptions& options, std::vector<PlacedSolution>& found,
                           int& spent) {
-    if (!problem.walls.empty()) return;
+    if (!problem.obstacles.empty()) return;
     for (const TangentField& field : polygon_fields(problem, placed, options.deadline)) {
       if (options.deadline.passed()) return;
       SpanOptions own = options;
@@ -327,7 +327,7 @@ class EnergySolver::State {
   [[nodiscard]] std::vector<PlacedSolution> search(const PlacedSpan& placed,
                                                    const SpanOptions& options) {
     std::vector<PlacedSolution> found;
-    const auto solver = placed.span.rigid_walls.empty() ? solve_span : solve_touching_span;
+    const auto solver = placed.span.rigid_obstacles.empty() ? solve_span : solve_touching_span;
     for (SpanSolution& solution : solver(placed.span, options, workspace_)) {
       found.push_back({placed, std::move(solution)});
       PlacedSolution& last = found.back();

@@ -46,7 +46,7 @@ class Settling {
 
  private:
   [[nodiscard]] Eigen::VectorXd missed_by(const SpanSolution& solution) const {
-    return missed(solution.model->span(), ends_, solution.model->shape(solution.x));
+    return missed(solution, ends_);
   }
 
   [[nodiscard]] Eigen::VectorXd bounded(Eigen::VectorXd way) const {
@@ -93,7 +93,14 @@ class Settling {
   [[nodiscard]] bool differentiate() {
     Eigen::VectorXd way = Eigen::VectorXd::Zero(miss_.size());
     for (Eigen::Index i = 0; i < miss_.size(); ++i) {
-      const Room room = room_of(solution_.model->span(), ends_[static_cast<std::size_t>(i)]);
+      const LiftOff& end = ends_[static_cast<std::size_t>(i)];
+      const Span::Contact& contact = solution_.model->span().contacts[end.contact];
+      if (!contact.lies() && contact.slides) {
+        // Where a rod touches does not depend on where it is looked for.
+        jacobian_.col(i) = Eigen::VectorXd::Unit(miss_.size(), i);
+        continue;
+      }
+      const Room room = room_of(solution_.model->span(), end);
       way[i] = difference * (room.down > room.up ? -room.down : room.up);
       const SpanSolution beside = with_moved(way);
       if (!beside.is_equilibrium()) return false;

@@ -77,7 +77,7 @@ class Search {
       stiffness_ = std::max(stiffness_, segment.tension / std::max(1e-12, segment.slack()));
     }
     // Where contact begins inside a piece it takes more terms than the piece's length tells.
-    if (!span.soft_walls.empty() || span.is_plain_cantilever()) {
+    if (!span.soft_obstacles.empty() || span.is_plain_cantilever()) {
       longest_piece_ = span.length;
       return;
     }
@@ -230,20 +230,21 @@ class Search {
       solution.x = fitted ? from.x : solution.model->fit(from.field(solution.model->nodes()));
       const Eigen::VectorXd start = solution.x;
       // Where the rod is taut such a start is near to the shape already.
-      if (taut_ && !solution.model->has_walls()) {
+      if (taut_ && !solution.model->has_soft_obstacles()) {
         workspace_.newton().polish(solution, load_);
       } else {
         descend(solution);
       }
       if (solution.model->constraints() > 0 && !solution.is_equilibrium() &&
-          !solution.model->has_walls()) {
+          !solution.model->has_soft_obstacles()) {
         solution.x = start;
         solution.multipliers.resize(0);
         pull_to_grips(solution);
       }
       spent += solution.evaluations;
       solution.evaluations = spent;
-      const bool plain = solution.model->constraints() == 0 && !solution.model->has_walls();
+      const bool plain =
+          solution.model->constraints() == 0 && !solution.model->has_soft_obstacles();
       if (solution.is_equilibrium() || plain) return solution;
       const bool more = 2 * solution.model->size() <= most_descended && options_.terms == 0;
       if (!more || out_of_time()) return solution;
@@ -325,10 +326,10 @@ class Search {
   [[nodiscard]] SpanSolution refined(SpanSolution solution) {
     const int fields = span_.planar ? 1 : span_.has_material_directors() ? 3 : 2;
     const int affordable = std::max(32, most_unknowns / (fields * solution.model->pieces()));
-    // Soft walls make kinks inside pieces, where contact begins; more terms help only so far.
-    constexpr int most_with_walls = 64;
+    // Soft obstacles make kinks inside pieces, where contact begins; more terms help only so far.
+    constexpr int most_with_soft_obstacles = 64;
     const int most_terms =
-        std::min(affordable, span_.soft_walls.empty() ? max_terms : most_with_walls);
+        std::min(affordable, span_.soft_obstacles.empty() ? max_terms : most_with_soft_obstacles);
     while (solution.is_equilibrium()) {
       solution.resolved = options_.terms > 0 || resolved(solution);
       if (solution.resolved) break;
@@ -337,7 +338,7 @@ class Search {
         break;
       }
       if (solution.terms >= most_terms) {
-        solution.resolved = !span_.soft_walls.empty();
+        solution.resolved = !span_.soft_obstacles.empty();
         if (solution.resolved) break;
         solution.fail(solution.too_few_terms());
         break;
@@ -360,8 +361,8 @@ class Search {
     finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
     workspace_.newton().polish(finer, load_);
     const bool descends = finer.model->size() <= most_descended;
-    if (descends && (!finer.is_equilibrium() || finer.model->has_walls())) descend(finer);
-    if (!finer.is_equilibrium() && !finer.model->has_walls()) {
+    if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles())) descend(finer);
+    if (!finer.is_equilibrium() && !finer.model->has_soft_obstacles()) {
       finer.x = finer.model->adopt(*solution.model, solution.x);
       finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
       pull_to_grips(finer);
@@ -376,7 +377,7 @@ class Search {
     const double K = solution.terms;
     // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
     if (solution.model->tail(solution.x) > options_.tolerance * 4 * K * K) return false;
-    if (span_.is_plain_cantilever() || !span_.soft_walls.empty()) return true;
+    if (span_.is_plain_cantilever() || !span_.soft_obstacles.empty()) return true;
     return residual_with_more_terms(solution) < largest_residual * (1 + load_);
   }
 

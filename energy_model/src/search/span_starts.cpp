@@ -166,17 +166,19 @@ TangentField field(Tangent tangent) {
   };
 }
 
-/// From a clamp down onto a wall and along it: over (72 EI h / w)^(1/4), as a rod of small slopes
-/// under its weight w comes to lie from the height h. Nothing where it does not come to lie.
-std::optional<TangentField> lying_field(const Span& span, const Span::Wall& wall) {
-  const double pressed = -span.weight.dot(wall.normal);
-  const double height = wall.offset;
+/// From a clamp down onto an obstacle and along it: over (72 EI h / w)^(1/4), as a rod of small
+/// slopes under its weight w comes to lie from the height h. Nothing where it does not come to lie.
+std::optional<TangentField> lying_field(const Span& span, const Span::Obstacle& obstacle) {
+  if (!obstacle.body.is_half_space()) return {};
+  const Eigen::Vector3d normal = obstacle.body.normal();
+  const double pressed = -span.weight.dot(normal);
+  const double height = obstacle.body.clearance(Eigen::Vector3d::Zero());
   const Eigen::Vector3d& start = *span.start_direction;
-  const Eigen::Vector3d along = start - start.dot(wall.normal) * wall.normal;
+  const Eigen::Vector3d along = start - start.dot(normal) * normal;
   if (!(pressed > 0 && height >= 0 && height < span.length / 2 && along.norm() > 0.1)) return {};
   const double reach = std::max(2 * height, std::pow(72 * height / pressed, 0.25));
   if (!(reach < span.length)) return {};
-  return field([start, flat = along.normalized(), normal = wall.normal, height, reach](double s) {
+  return field([start, flat = along.normalized(), normal, height, reach](double s) {
     const double u = s / reach;
     if (!(u < 1)) return flat;
     const double slope = -6 * height / reach * u * (1 - u);
@@ -196,11 +198,11 @@ TangentField soft_field(const Span& span) {
 std::vector<TangentField> start_fields(const Span& span) {
   std::vector<TangentField> fields;
   if (span.holds.empty() && span.start_direction) {
-    for (const Span::SoftWall& wall : span.soft_walls) {
-      if (std::optional<TangentField> lying = lying_field(span, wall)) fields.push_back(*lying);
+    for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
+      if (std::optional<TangentField> lying = lying_field(span, obstacle)) fields.push_back(*lying);
     }
-    for (const Span::Wall& wall : span.rigid_walls) {
-      if (std::optional<TangentField> lying = lying_field(span, wall)) fields.push_back(*lying);
+    for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
+      if (std::optional<TangentField> lying = lying_field(span, obstacle)) fields.push_back(*lying);
     }
     fields.push_back(soft_field(span));
     fields.push_back(field([&span](double) { return *span.start_direction; }));

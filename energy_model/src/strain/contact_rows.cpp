@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "strain/span_shape.hpp"
 
@@ -41,64 +42,311 @@ double series(const Eigen::Ref<const Eigen::VectorXd>& coefficients, double xi) 
 
 }  // namespace
 
-Eigen::Index ContactRows::add_row(const Span::Contact& contact, double offset) {
-  const Eigen::Index row = weighted_.cols();
-  weighted_.conservativeResize(Eigen::NoChange, row + 1);
-  weighted_.col(row).setZero();
+Eigen::Index ContactRows::add_row() {
+  const Eigen::Index row = linear_.cols();
+  linear_.conservativeResize(Eigen::NoChange, row + 1);
+  linear_.col(row).setZero();
   normal_.conservativeResize(Eigen::NoChange, row + 1);
-  normal_.col(row) = contact.wall.normal;
+  normal_.col(row).setZero();
   offset_.conservativeResize(row + 1);
-  offset_[row] = offset;
+  offset_[row] = 0;
   return row;
+}
+
+void ContactRows::add_curved(Curved curved, Eigen::Index rows) {
+  curved.first = linear_.cols();
+  for (Eigen::Index k = 0; k < rows; ++k) (void)add_row();
+  curved.gaps.resize(static_cast<std::size_t>(curved.reach.cols()));
+  curved_.push_back(std::move(curved));
+}
+
+void ContactRows::add_clearance(const Span& span, std::size_t contact,
+                                const std::vector<Piece>& pieces) {
+  const Span::Contact& own = span.contacts[contact];
+  contacts_[contact].clearance = linear_.cols();
+  Eigen::Index piece = 0;  // that begins there, or the span's end
+  while (piece < std::ssize(pieces) &&
+         pieces[static_cast<std::size_t>(piece)].begin < own.begin - closest_cuts) {
+    ++piece;
+  }
+  if (!own.lies() && own.slides && piece > 0 && piece < std::ssize(pieces)) {
+    Touch touch;
+    touch.contact = contact;
+    touch.body = own.obstacle.body;
+    touch.row = add_row();
+    touch.at = own.begin;
+    touch.before = piece - 1;
+    // Within half of the pieces beside it.
+    touch.low = own.begin - pieces[static_cast<std::size_t>(piece) - 1].length / 2;
+    touch.high = own.begin + pieces[static_cast<std::size_t>(piece)].length / 2;
+    touches_.push_back(std::move(touch));
+  } else if (own.obstacle.body.is_half_space()) {
+    const Eigen::Index row = add_row();
+    linear_.col(row) = reach_.begin(piece);
+    normal_.col(row) = own.obstacle.body.normal();
+    offset_[row] = own.obstacle.body.clearance(Eigen::Vector3d::Zero());
+  } else {
+    Curved curved;
+    curved.contact = contact;
+    curved.body = own.obstacle.body;
+    curved.reach = reach_.begin(piece);
+    curved.weights.setOnes(1, 1);
+    add_curved(std::move(curved), 1);
+  }
+}
+
+void ContactRows::add_slopes(const Span& span, std::size_t contact,
+                             const std::vector<Piece>& pieces, Eigen::Index degrees,
+                             Eigen::Index terms, const LegendreTable& table) {
+  const Span::Contact& own = span.contacts[contact];
+  const obstacle::Body& body = own.obstacle.body;
+  const Eigen::Index Q = table.nodes.size();
+  for (Eigen::Index e = 0; e < std::ssize(pieces); ++e) {
+    const Piece& piece = pieces[static_cast<std::size_t>(e)];
+    const double middle = piece.begin + piece.length / 2;
+    if (middle < own.begin || middle > own.end) continue;
+    Rows::Slope slope;
+    slope.first = linear_.cols();
+    slope.count = degrees;
+    slope.length = piece.length;
+    contacts_[contact].slopes.push_back(slope);
+    if (body.is_half_space()) {
+      for (Eigen::Index k = 0; k < degrees; ++k) {
+        const Eigen::Index row = add_row();
+        linear_.col(row).segment(e * Q, Q) = table.weights.cwiseProduct(table.values.col(k));
+        normal_.col(row) = body.normal();
+      }
+    } else {
+      Curved curved;
+      curved.contact = contact;
+      curved.body = body;
+      curved.reach.resize(linear_.rows(), Q + 2);
+      curved.reach << reach_.begin(e), reach_.of_nodes(e), reach_.begin(e + 1);
+      curved.weights.resize(Q + 2, degrees);
+      Eigen::VectorXd values(degrees);
+      Eigen::VectorXd unused(degrees);
+      legendre(0, values, unused);
+      curved.weights.row(0) = -values;
+      legendre(1, values, unused);
+      curved.weights.row(Q + 1) = values;
+      for (Eigen::Index q = 0; q < Q; ++q) {
+        legendre_slopes(table.nodes[q], values);
+        curved.weights.row(q + 1) = -table.weights[q] * values;
+      }
+      curved.weights /= piece.length;
+      add_curved(std::move(curved), degrees);
+    }
+    degrees = terms;
+  }
 }
 
 void ContactRows::reset(const Span& span, const std::vector<Piece>& pieces, int terms,
                         const LegendreTable& table, const Eigen::VectorXd& nodes,
                         const Eigen::VectorXd& weights) {
-  contacts_.clear();
-  weighted_.resize(nodes.size(), 0);
+  contacts_.assign(span.contacts.size(), {});
+  curved_.clear();
+  touches_.clear();
+  normals_.clear();
+  linear_.resize(nodes.size(), 0);
   normal_.resize(3, 0);
   offset_.resize(0);
-  const Eigen::Index Q = table.nodes.size();
-  for (const Span::Contact& contact : span.contacts) {
-    Rows rows;
+  if (!span.contacts.empty()) reach_ = NodeReach(span, pieces, table, nodes, weights);
+  for (std::size_t i = 0; i < span.contacts.size(); ++i) {
+    const Span::Contact& contact = span.contacts[i];
+    const obstacle::Body& body = contact.obstacle.body;
+    normals_.emplace_back(body.is_half_space() ? body.normal() : Eigen::Vector3d::Zero());
     const HeldBy held = held_within(span, contact.begin, contact.end);
     if (held == HeldBy::nothing) {
-      rows.clearance = add_row(contact, contact.wall.offset);
-      for (Eigen::Index q = 0; q < nodes.size(); ++q) {
-        if (nodes[q] > span.anchor && nodes[q] < contact.begin) {
-          weighted_(q, rows.clearance) = weights[q];
-        }
-        if (nodes[q] < span.anchor && nodes[q] > contact.begin) {
-          weighted_(q, rows.clearance) = -weights[q];
-        }
-      }
+      add_clearance(span, i, pieces);
+    } else {
+      contacts_[i].held_at_begin =
+          held_within(span, contact.begin, contact.begin) != HeldBy::nothing;
+      contacts_[i].held_at_end = held_within(span, contact.end, contact.end) != HeldBy::nothing;
     }
+    if (!contact.lies()) continue;
     // A slope of which nothing is known yet has one more unknown than its curvature.
-    Eigen::Index degrees = held == HeldBy::clamp ? terms : terms + 1;
-    for (std::size_t e = 0; e < pieces.size() && contact.lies(); ++e) {
-      const double middle = pieces[e].begin + pieces[e].length / 2;
-      if (middle < contact.begin || middle > contact.end) continue;
-      Rows::Slope slope;
-      slope.first = weighted_.cols();
-      slope.count = degrees;
-      slope.length = pieces[e].length;
-      for (Eigen::Index k = 0; k < degrees; ++k) {
-        const Eigen::Index row = add_row(contact, 0);
-        weighted_.col(row).segment(static_cast<Eigen::Index>(e) * Q, Q) =
-            table.weights.cwiseProduct(table.values.col(k));
-      }
-      rows.slopes.push_back(slope);
-      degrees = terms;
+    const Eigen::Index degrees = held == HeldBy::clamp ? terms : terms + 1;
+    add_slopes(span, i, pieces, degrees, terms, table);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    by_tangent_[axis] = linear_ * normal_.row(static_cast<Eigen::Index>(axis)).asDiagonal();
+  }
+  residual_.setZero(count());
+}
+
+/// The first least clearance on that side of where it is looked for to which the clearance falls.
+void ContactRows::place_touch(const Eigen::MatrixX3d& tangents, Touch& touch) const {
+  constexpr double found = 1e-14;
+  constexpr int strides = 8;
+  constexpr int most_steps = 50;
+  const auto look = [&](Eigen::Index piece, double s) {
+    touch.found = s;
+    touch.point = reach_.at(piece, s);
+    touch.gap = touch.body.gap(tangents.transpose() * touch.point.position);
+    touch.tangent = tangents.transpose() * touch.point.tangent;
+    touch.rate = touch.gap.gradient.dot(tangents.transpose() * touch.point.curvature) +
+                 touch.tangent.dot(touch.gap.hessian * touch.tangent);
+    return touch.gap.gradient.dot(touch.tangent);
+  };
+  // Slopes in the direction in which it falls.
+  double sense = -1;
+  double slope = -look(touch.before, touch.at);
+  Eigen::Index piece = touch.before;
+  if (!(slope < 0)) {
+    sense = 1;
+    slope = std::min(look(++piece, touch.at), 0.0);
+  }
+  const double room = std::abs((sense < 0 ? touch.low : touch.high) - touch.at);
+  double low = 0;  // ways from there; it falls at `low` and rises at `high`
+  double high = 0;
+  double way = 0;
+  for (int step = 0; step < most_steps; ++step) {
+    const double newton = touch.rate > 0 ? way - slope / touch.rate : room;
+    if (touch.rate > 0 && std::abs(newton - way) < found) return;
+    const bool bracketed = high > 0;
+    if (bracketed) {
+      way = newton > low && newton < high ? newton : (low + high) / 2;
+    } else {
+      way = std::min(newton, low + room / strides);
     }
-    contacts_.push_back(std::move(rows));
+    if (way > room || (bracketed && high - low < found)) break;
+    slope = sense * look(piece, touch.at + sense * way);
+    (slope < 0 ? low : high) = way;
+  }
+  touch.rate = 0;  // it falls to where it is not looked for
+}
+
+void ContactRows::place(const Eigen::MatrixX3d& tangents) {
+  for (Touch& touch : touches_) {
+    place_touch(tangents, touch);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      by_tangent_[axis].col(touch.row) =
+          touch.gap.gradient[static_cast<Eigen::Index>(axis)] * touch.point.position;
+    }
+  }
+  for (Curved& curved : curved_) {
+    const Eigen::Index points = curved.reach.cols();
+    Eigen::MatrixX3d gradients(points, 3);
+    Eigen::VectorXd clearances(points);
+    for (Eigen::Index m = 0; m < points; ++m) {
+      obstacle::Gap& gap = curved.gaps[static_cast<std::size_t>(m)];
+      gap = curved.body.gap(tangents.transpose() * curved.reach.col(m));
+      gradients.row(m) = gap.gradient;
+      clearances[m] = gap.value;
+    }
+    const Eigen::Index rows = curved.weights.cols();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      by_tangent_[axis].middleCols(curved.first, rows).noalias() =
+          curved.reach *
+          (gradients.col(static_cast<Eigen::Index>(axis)).asDiagonal() * curved.weights);
+    }
+    residual_.segment(curved.first, rows).noalias() = curved.weights.transpose() * clearances;
+  }
+  for (Eigen::Index row = 0; row < count(); ++row) {
+    if (normal_.col(row).squaredNorm() == 0) continue;
+    residual_[row] =
+        linear_.col(row).dot(tangents * Eigen::Vector3d(normal_.col(row))) + offset_[row];
+  }
+  for (const Touch& touch : touches_) residual_[touch.row] = touch.gap.value;
+}
+
+std::optional<double> ContactRows::touches_at(std::size_t contact) const {
+  for (const Touch& touch : touches_) {
+    if (touch.contact == contact) return touch.found;
+  }
+  return std::nullopt;
+}
+
+Eigen::MatrixXd ContactRows::along(const Eigen::MatrixX3d& vectors) const {
+  Eigen::MatrixXd result = vectors.col(0).asDiagonal() * by_tangent_[0];
+  result += vectors.col(1).asDiagonal() * by_tangent_[1];
+  result += vectors.col(2).asDiagonal() * by_tangent_[2];
+  return result;
+}
+
+Eigen::MatrixX3d ContactRows::by_node(Eigen::Index row) const {
+  Eigen::MatrixX3d result(linear_.rows(), 3);
+  result << by_tangent_[0].col(row), by_tangent_[1].col(row), by_tangent_[2].col(row);
+  return result;
+}
+
+void ContactRows::add(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                      Eigen::MatrixX3d& carried) const {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    carried.col(static_cast<Eigen::Index>(axis)).noalias() += by_tangent_[axis] * multipliers;
   }
 }
 
-Eigen::Vector3d ContactRows::moment(Eigen::Index row, double multiplier,
+void ContactRows::subtract_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                                   const std::array<Eigen::MatrixXd, 3>& tangents,
+                                   Eigen::Ref<Eigen::MatrixXd> hessian) const {
+  Eigen::MatrixX3d moved(hessian.cols(), 3);
+  for (const Touch& touch : touches_) {
+    const double mu = multipliers[touch.row];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      moved.col(static_cast<Eigen::Index>(axis)).noalias() =
+          tangents[axis].transpose() * touch.point.position;
+    }
+    hessian.noalias() -= mu * (moved * touch.gap.hessian * moved.transpose());
+    if (!(touch.rate > 0)) continue;
+    // The point slides along the rod by as much as the slope turns.
+    Eigen::VectorXd turned = moved * (touch.gap.hessian * touch.tangent);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      turned.noalias() += touch.gap.gradient[static_cast<Eigen::Index>(axis)] *
+                          (tangents[axis].transpose() * touch.point.tangent);
+    }
+    hessian.noalias() += (mu / touch.rate) * turned * turned.transpose();
+  }
+  for (const Curved& curved : curved_) {
+    const Eigen::VectorXd forces =
+        curved.weights * multipliers.segment(curved.first, curved.weights.cols());
+    std::array<Eigen::MatrixXd, 3> points;  // x unknowns
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      points[axis].noalias() = curved.reach.transpose() * tangents[axis];
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      Eigen::MatrixXd bent = Eigen::MatrixXd::Zero(points[a].rows(), points[a].cols());
+      for (std::size_t b = 0; b < 3; ++b) {
+        Eigen::VectorXd by_point(forces.size());
+        for (Eigen::Index m = 0; m < forces.size(); ++m) {
+          by_point[m] = forces[m] * curved.gaps[static_cast<std::size_t>(m)].hessian(
+                                        static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b));
+        }
+        bent.noalias() += by_point.asDiagonal() * points[b];
+      }
+      hessian.noalias() -= points[a].transpose() * bent;
+    }
+  }
+}
+
+void ContactRows::subtract_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                                    const Eigen::MatrixXd& tangents,
+                                    Eigen::Ref<Eigen::MatrixXd> hessian) const {
+  const auto subtract = [&](double force, const obstacle::Gap& gap, const auto& reach) {
+    const Eigen::VectorXd moved = tangents.transpose() * reach;
+    hessian.noalias() -= (force * gap.hessian(2, 2)) * moved * moved.transpose();
+  };
+  for (const Touch& touch : touches_) {
+    subtract(multipliers[touch.row], touch.gap, touch.point.position);
+  }
+  for (const Curved& curved : curved_) {
+    const Eigen::VectorXd forces =
+        curved.weights * multipliers.segment(curved.first, curved.weights.cols());
+    for (Eigen::Index m = 0; m < forces.size(); ++m) {
+      subtract(forces[m], curved.gaps[static_cast<std::size_t>(m)], curved.reach.col(m));
+    }
+  }
+}
+
+Eigen::Vector3d ContactRows::moment(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                                     const Eigen::MatrixX3d& tangents) const {
-  const Eigen::Vector3d lever = tangents.transpose() * weighted_.col(row);
-  return multiplier * lever.cross(Eigen::Vector3d(normal_.col(row)));
+  Eigen::MatrixX3d carried = Eigen::MatrixX3d::Zero(tangents.rows(), 3);
+  add(multipliers, carried);
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for (Eigen::Index q = 0; q < tangents.rows(); ++q) {
+    moment += Eigen::Vector3d(tangents.row(q)).cross(Eigen::Vector3d(carried.row(q)));
+  }
+  return moment;
 }
 
 Eigen::VectorXd ContactRows::adopt(const ContactRows& other,
@@ -120,9 +368,15 @@ Eigen::VectorXd ContactRows::adopt(const ContactRows& other,
 std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers) const {
   constexpr int looks = 32;  // at the pressure of a piece
   std::vector<ContactForce> result;
-  for (const Rows& rows : contacts_) {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Rows& rows = contacts_[c];
     ContactForce force;
     double before = rows.clearance < 0 ? 0 : multipliers[rows.clearance];
+    if (rows.held_at_begin && !rows.slopes.empty()) {
+      // What is concentrated there is the grip's.
+      const Rows::Slope& slope = rows.slopes.front();
+      before = series(multipliers.segment(slope.first, slope.count) / slope.length, 0);
+    }
     force.total = force.begin = before;
     for (std::size_t i = 0; i < rows.slopes.size(); ++i) {
       const Rows::Slope& slope = rows.slopes[i];
@@ -146,7 +400,24 @@ std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers
         last = next;
       }
     }
+    if (rows.held_at_end && !rows.held_at_begin) force.total -= std::exchange(force.end, 0);
+    force.force = force.total * normals_[c];
     result.push_back(force);
+  }
+  for (const Touch& touch : touches_) {
+    result[touch.contact].force = multipliers[touch.row] * touch.gap.gradient;
+  }
+  for (const Curved& curved : curved_) {
+    const Eigen::VectorXd forces =
+        curved.weights * multipliers.segment(curved.first, curved.weights.cols());
+    const Rows& rows = contacts_[curved.contact];
+    const bool begins = !rows.slopes.empty() && curved.first == rows.slopes.front().first;
+    const bool ends = !rows.slopes.empty() && curved.first == rows.slopes.back().first;
+    const Eigen::Index first = begins && rows.held_at_begin ? 1 : 0;
+    const Eigen::Index last = forces.size() - (ends && rows.held_at_end ? 1 : 0);
+    for (Eigen::Index m = first; m < last; ++m) {
+      result[curved.contact].force += forces[m] * curved.gaps[static_cast<std::size_t>(m)].gradient;
+    }
   }
   return result;
 }

@@ -1,30 +1,38 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <optional>
 #include <vector>
 
 #include "base/legendre.hpp"
 #include "problem/span.hpp"
+#include "strain/node_reach.hpp"
 #include "strain/piece.hpp"
 
 namespace dlo::energy_model {
 
-/// Forces with which a rigid wall holds a contact, along its normal: at the begin and the end of
+/// Forces with which a rigid obstacle holds a contact, away from it: at the begin and the end of
 /// the part in contact, which are the same where it touches at one point, and between.
 struct ContactForce {
-  double total = 0;
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< of all of it
+  double total = 0;                                 ///< sum of the magnitudes
   double begin = 0, end = 0;  ///< concentrated ones; `end` is 0 where it touches at one point
   double least_pressure = 0;  ///< per length, of what lies; 0 where it touches at one point
   double largest_pressure = 0;
   double least_inner = 0;  ///< least concentrated one inside, at loads and sections
 };
 
-/// Constraints c = sum_q w_q phi(s_q) n.t_q + c0 of the rod's contacts with rigid walls, linear in
-/// the tangents: the clearance of a contact's begin; where the rod lies the moments of its slope
-/// n.t on each piece, over the piece's length, with the polynomials up to the degree to which its
-/// strains resolve it. The strains of a lying part are thereby fixed in the wall's normal direction
-/// and free along it. The multipliers' series N(s) = sum mu phi(s) is the force that the contacts
-/// carry there, -N' the wall's pressure.
+/// Constraints of the rod's contacts with rigid obstacles, over clearances g of its points. A
+/// contact at one point that slides is the least clearance near it, of whatever point that is. Else
+/// there is the clearance of a contact's begin and, where the rod lies, the moments int phi g' ds
+/// of its slope on each piece, over the piece's length, with the polynomials phi up to the degree
+/// to which its strains resolve it. The strains of a lying part are thereby fixed in the direction
+/// away from the obstacle and free along it. The multipliers' series N(s) = sum mu phi(s) is the
+/// force that the contacts carry there, -N' the obstacle's pressure.
+///
+/// On a half-space g' = n.t, and the moments are linear in the tangents. On other bodies they are
+/// taken from clearances alone, int phi g' = [phi g] - int phi' g.
 class ContactRows {
  public:
   /// @param terms  of a piece's strains;  @param nodes, weights  of the span's quadrature
@@ -32,25 +40,34 @@ class ContactRows {
              const LegendreTable& table, const Eigen::VectorXd& nodes,
              const Eigen::VectorXd& weights);
 
-  [[nodiscard]] Eigen::Index count() const { return weighted_.cols(); }
-  /// Of all rows. @param tangents  nodes x 3
-  [[nodiscard]] Eigen::VectorXd residual(const Eigen::MatrixX3d& tangents) const {
-    return along(tangents).colwise().sum().transpose() + offset_;
-  }
+  [[nodiscard]] Eigen::Index count() const { return linear_.cols(); }
+  /// Looks where the rod is; all below is at these tangents. @param tangents  nodes x 3
+  void place(const Eigen::MatrixX3d& tangents);
+
+  /// Of all rows.
+  [[nodiscard]] const Eigen::VectorXd& residual() const { return residual_; }
   /// What the rows change by along these vectors at the nodes, nodes x rows.
-  [[nodiscard]] Eigen::MatrixXd along(const Eigen::MatrixX3d& vectors) const {
-    return weighted_.cwiseProduct(vectors * normal_);
-  }
+  [[nodiscard]] Eigen::MatrixXd along(const Eigen::MatrixX3d& vectors) const;
   /// Gradient by the tangents, nodes x 3.
-  [[nodiscard]] Eigen::MatrixX3d by_node(Eigen::Index row) const {
-    return weighted_.col(row) * normal_.col(row).transpose();
-  }
-  /// Adds a multiplier times by_node().
-  void add(Eigen::Index row, double multiplier, Eigen::MatrixX3d& carried) const {
-    carried.noalias() += multiplier * weighted_.col(row) * normal_.col(row).transpose();
-  }
-  /// Moment about the anchor of what the multiplier stands for.
-  [[nodiscard]] Eigen::Vector3d moment(Eigen::Index row, double multiplier,
+  [[nodiscard]] Eigen::MatrixX3d by_node(Eigen::Index row) const;
+  /// Adds the multipliers times by_node().
+  void add(const Eigen::Ref<const Eigen::VectorXd>& multipliers, Eigen::MatrixX3d& carried) const;
+  /// Where a contact that slides is; nothing of others.
+  [[nodiscard]] std::optional<double> touches_at(std::size_t contact) const;
+  /// Whether rows bend where tangents turn steadily.
+  [[nodiscard]] bool curved() const { return !touches_.empty() || !curved_.empty(); }
+  /// Subtracts the multipliers times the rows' second derivatives, but for what bends the tangents
+  /// twice, which is in add().
+  /// @param tangents  derivatives of the tangents by the unknowns, an axis each, nodes x unknowns
+  void subtract_hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                        const std::array<Eigen::MatrixXd, 3>& tangents,
+                        Eigen::Ref<Eigen::MatrixXd> hessian) const;
+  /// The same along z alone, of a rod in the plane.
+  void subtract_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                         const Eigen::MatrixXd& tangents,
+                         Eigen::Ref<Eigen::MatrixXd> hessian) const;
+  /// Moment about the anchor of what the multipliers stand for. @param tangents  as placed
+  [[nodiscard]] Eigen::Vector3d moment(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                                        const Eigen::MatrixX3d& tangents) const;
   /// Multipliers of these rows from those of the same contacts with another number of terms.
   [[nodiscard]] Eigen::VectorXd adopt(const ContactRows& other,
@@ -59,8 +76,8 @@ class ContactRows {
   [[nodiscard]] std::vector<ContactForce> forces(const Eigen::VectorXd& multipliers) const;
 
  private:
-  /// Rows of a contact: of its begin's clearance (-1: a grip holds it there), and of the slope on
-  /// each of its pieces.
+  /// Rows of a contact: of its begin's, or the least, clearance (-1: a grip holds it there), and of
+  /// the slope on each of its pieces.
   struct Rows {
     struct Slope {
       Eigen::Index first = 0, count = 0;
@@ -68,13 +85,50 @@ class ContactRows {
     };
     Eigen::Index clearance = -1;
     std::vector<Slope> slopes;
+    bool held_at_begin = false, held_at_end = false;  // by a grip
   };
-  [[nodiscard]] Eigen::Index add_row(const Span::Contact& contact, double offset);
+  /// Rows over the clearances of points from a body that is not flat.
+  struct Curved {
+    std::size_t contact = 0;
+    obstacle::Body body;
+    Eigen::Index first = 0;           // row
+    Eigen::MatrixXd weights;          // rows = weights^T clearances, points x rows
+    Eigen::MatrixXd reach;            // of the points, nodes x points
+    std::vector<obstacle::Gap> gaps;  // of the points
+  };
+  /// The row of a least clearance.
+  struct Touch {
+    std::size_t contact = 0;
+    obstacle::Body body;
+    Eigen::Index row = 0;
+    double at = 0;             // s where it is looked for
+    Eigen::Index before = 0;   // piece that ends there
+    double low = 0, high = 0;  // how far away it may be
+    NodeReach::Point point;    // where it is
+    double found = 0;
+    obstacle::Gap gap;
+    Eigen::Vector3d tangent = Eigen::Vector3d::Zero();
+    double rate = 0;  // second derivative by s; 0 where there is no least one
+  };
+  [[nodiscard]] Eigen::Index add_row();
+  void add_clearance(const Span& span, std::size_t contact, const std::vector<Piece>& pieces);
+  void add_slopes(const Span& span, std::size_t contact, const std::vector<Piece>& pieces,
+                  Eigen::Index degrees, Eigen::Index terms, const LegendreTable& table);
+  void add_curved(Curved curved, Eigen::Index rows);
+  void place_touch(const Eigen::MatrixX3d& tangents, Touch& touch) const;
 
   std::vector<Rows> contacts_;
-  Eigen::MatrixXd weighted_;  // weight times phi, nodes x rows
-  Eigen::Matrix3Xd normal_;   // by row
+  std::vector<Curved> curved_;
+  std::vector<Touch> touches_;
+  std::vector<Eigen::Vector3d> normals_;  // of half-spaces, by contact
+  NodeReach reach_;
+  // Of rows that are linear in the tangents; zero of others.
+  Eigen::MatrixXd linear_;   // weight times phi, nodes x rows
+  Eigen::Matrix3Xd normal_;  // by row
   Eigen::VectorXd offset_;
+  // As placed
+  std::array<Eigen::MatrixXd, 3> by_tangent_;  // nodes x rows, an axis each
+  Eigen::VectorXd residual_;
 };
 
 }  // namespace dlo::energy_model

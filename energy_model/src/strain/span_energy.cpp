@@ -178,7 +178,7 @@ void SpanEnergy::reset(const Span& span, int terms) {
   x_.setZero(size());
   gradient_.setZero(size());
   evaluated_ = false;
-  walls_.reset(span_, pieces_, *table_, s_, weights_);
+  soft_contact_.reset(span_, pieces_, *table_, s_, weights_);
 }
 
 /// The directions of the clamps inside the span and at its end; there of d1 too if it is held.
@@ -236,18 +236,19 @@ void SpanEnergy::place_tangents() {
 
 double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
                          Eigen::Ref<Eigen::VectorXd> gradient) {
-  if (evaluated_ && !has_walls() && x == x_) {
+  if (evaluated_ && !has_soft_obstacles() && x == x_) {
     gradient = gradient_;
     return energy_;
   }
   x_ = x;
   place_tangents();
+  if (contacts_.count() > 0) contacts_.place(t_);
   gradient = x;
   // A free start turns for nothing.
   for (Eigen::Index f = 0; f < fields() && free_start_ == 1; ++f) gradient[f * columns_] = 0;
   double energy = gradient.dot(x) / 2 - force_.cwiseProduct(t_).sum();
   total_ = force_;
-  if (has_walls()) energy += walls_.add(t_, total_);
+  if (has_soft_obstacles()) energy += soft_contact_.add(t_, total_);
   if (span_.planar) {
     turning_ = total_.cwiseProduct(t_theta_).rowwise().sum();
     gradient.noalias() -= angle_.transpose() * turning_;
@@ -319,7 +320,7 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
     row += axes_;
   }
   if (contacts_.count() > 0) {
-    residual.segment(row, contacts_.count()) = contacts_.residual(t_);
+    residual.segment(row, contacts_.count()) = contacts_.residual();
     if (span_.planar) {
       jacobian.middleRows(row, contacts_.count()).noalias() =
           contacts_.along(t_theta_).transpose() * angle_;
@@ -399,9 +400,8 @@ void SpanEnergy::carry(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
       carried_.col(axis) += multipliers[j * axes_ + axis] * reach_.col(j);
     }
   }
-  for (Eigen::Index i = 0; i < contacts_.count(); ++i) {
-    contacts_.add(i, multipliers[first_contact_row() + i], carried_);
-  }
+  if (contacts_.count() == 0) return;
+  contacts_.add(multipliers.segment(first_contact_row(), contacts_.count()), carried_);
 }
 
 void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
@@ -430,8 +430,12 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
     }
     if (has_psi()) add_twist_hessian(-multipliers[constraints_ - 1], result);
   }
-  if (!has_walls()) return;
-  walls_.add_hessian(tangent_jacobian(), result.topLeftCorner(strains(), strains()));
+  if (!has_soft_obstacles() && !contacts_.curved()) return;
+  const std::array<Eigen::MatrixXd, 3> tangents = tangent_jacobian();
+  auto by_strains = result.topLeftCorner(strains(), strains());
+  soft_contact_.add_hessian(tangents, by_strains);
+  contacts_.subtract_hessian(multipliers.segment(first_contact_row(), contacts_.count()), tangents,
+                             by_strains);
 }
 
 /// Second derivatives with the twist psi of what the end's d1 misses, times a factor: psi turns it
@@ -487,6 +491,10 @@ void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
   hessian.setIdentity(columns_, columns_);
   if (free_start_ == 1) hessian(0, 0) = 0;
   add_angles_squared(hessian);
+  if (contacts_.curved()) {
+    contacts_.subtract_sideways(multipliers.segment(first_contact_row(), contacts_.count()), angle_,
+                                hessian);
+  }
   jacobian.resize(reach_.cols() + held_angle_.rows(), columns_);
   jacobian.topRows(reach_.cols()).noalias() = reach_.transpose() * angle_;
   jacobian.bottomRows(held_angle_.rows()) = held_angle_;

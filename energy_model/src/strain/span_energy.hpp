@@ -8,8 +8,8 @@
 #include "strain/contact_rows.hpp"
 #include "strain/director_miss.hpp"
 #include "strain/rod_frames.hpp"
+#include "strain/soft_contact.hpp"
 #include "strain/span_shape.hpp"
-#include "strain/wall_contact.hpp"
 
 namespace dlo::energy_model {
 
@@ -23,7 +23,7 @@ namespace dlo::energy_model {
 ///
 /// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of end angles)
 /// that the grips exert on the rod. value(), constraint() and hessian() allocate nothing, but for
-/// walls.
+/// obstacles.
 class SpanEnergy {
  public:
   SpanEnergy() = default;
@@ -38,7 +38,7 @@ class SpanEnergy {
   [[nodiscard]] int pieces() const { return static_cast<int>(pieces_.size()); }
   [[nodiscard]] double longest_piece() const;
 
-  /// Energy in EI/l and its gradient; known already where the last value() was, unless walls'
+  /// Energy in EI/l and its gradient; known already where the last value() was, unless obstacles'
   /// multipliers may have moved on.
   [[nodiscard]] double value(const Eigen::Ref<const Eigen::VectorXd>& x,
                              Eigen::Ref<Eigen::VectorXd> gradient);
@@ -89,12 +89,18 @@ class SpanEnergy {
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
   [[nodiscard]] Energies energies(const Eigen::VectorXd& x);
 
-  [[nodiscard]] bool has_walls() const { return walls_.any(); }
-  [[nodiscard]] WallContact& walls() { return walls_; }
-  [[nodiscard]] const WallContact& walls() const { return walls_; }
-  /// What holds the rod on rigid walls by these multipliers.
+  [[nodiscard]] bool has_soft_obstacles() const { return soft_contact_.any(); }
+  [[nodiscard]] SoftContact& soft_contact() { return soft_contact_; }
+  [[nodiscard]] const SoftContact& soft_contact() const { return soft_contact_; }
+  /// What holds the rod on rigid obstacles by these multipliers.
   [[nodiscard]] std::vector<ContactForce> contact_forces(const Eigen::VectorXd& multipliers) const {
     return contacts_.forces(multipliers.segment(first_contact_row(), contacts_.count()));
+  }
+
+  /// Where one of Span::contacts that slides is, at the point of the last value(); nothing of
+  /// others.
+  [[nodiscard]] std::optional<double> touches_at(std::size_t contact) const {
+    return contacts_.touches_at(contact);
   }
 
   /// Torque of one of the span's holds and of the clamp at its start, at the point of the last
@@ -169,7 +175,7 @@ class SpanEnergy {
   Eigen::MatrixXd reach_;   // per hold, weight of the node times -1, 0, 1
   std::vector<std::vector<double>> reach_signs_;  // the same by hold and piece, without weights
   ContactRows contacts_;
-  WallContact walls_;
+  SoftContact soft_contact_;
 
   // At the point of the last value(), nodes x 3
   Eigen::VectorXd theta_, kappa_;

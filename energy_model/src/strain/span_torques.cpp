@@ -36,10 +36,10 @@ Eigen::Vector3d SpanEnergy::start_torque(const Eigen::VectorXd& multipliers) con
     const Eigen::Vector3d point = t_.transpose() * before;
     moment += point.cross(load.force);
   }
-  for (Eigen::Index i = 0; i < contacts_.count(); ++i) {
-    moment += contacts_.moment(i, multipliers[first_contact_row() + i], t_);
+  if (contacts_.count() > 0) {
+    moment += contacts_.moment(multipliers.segment(first_contact_row(), contacts_.count()), t_);
   }
-  return -(moment + walls_.moment(t_));
+  return -(moment + soft_contact_.moment(t_));
 }
 
 }  // namespace dlo::energy_model

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "command_fixture.hpp"
 
@@ -44,6 +46,50 @@ TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
   const Outcome text = run("compare --no-modulus " + lying());
   EXPECT_NE(text.out.find("\n  contact         obstacle 2, lying from s = "), std::string::npos)
       << text.out;
+}
+
+// A cable that hangs beside a peg, a ball or a box: all models know the same bodies.
+TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
+  const std::vector<std::string> bodies = {
+      "shape = \"cylinder\"\npoint = [0.02, -0.05, 0]\naxis = [0, 0, 1]\nradius = \"2 cm\"\n",
+      "shape = \"sphere\"\npoint = [0.02, -0.05, 0]\nradius = \"2 cm\"\n",
+      "shape = \"capsule\"\npoint = [0.02, -0.05, 0]\naxis = [0, 0, 1]\nlength = 0.1\n"
+      "radius = \"2 cm\"\n",
+      "shape = \"box\"\npoint = [0, -0.03, 0]\nsize = [0.08, 0.1, 0.1]\n"};
+  for (const std::string& body : bodies) {
+    SCOPED_TRACE(body);
+    const auto solve = [&](const std::string& model, int points) {
+      const std::string file =
+          scene("body.toml",
+                "[rod]\nlength = 0.6\ndiameter = \"4 mm\"\nmaterial = \"silicone\"\n"
+                "[[gripper]]\nat = 0\nposition = [0, 0.05, 0]\ndirection = \"0 deg\"\n"
+                "[force_model]\nlaw = \"hooke\"\nbookkeeping = \"consistent\"\npoints = " +
+                    std::to_string(points) + "\n[[obstacle]]\n" + body);
+      const Outcome outcome = run("solve --format json --samples 13 --model " + model + " " + file);
+      EXPECT_EQ(outcome.status, 0) << outcome.err;
+      return json::parse(outcome.out);
+    };
+    const json energy = solve("energy", 16);
+    ASSERT_EQ(energy.at("contacts").size(), 1);
+    const double pushed = energy.at("obstacles")[0].at("force_N")[0].get<double>();
+    EXPECT_GT(pushed, 0.01);
+    for (const std::string model : {"chain", "force"}) {
+      for (const int points : {64, 128}) {
+        const json polygon = solve(model, points);
+        double apart = 0;
+        for (std::size_t i = 0; i < 13; ++i) {
+          for (std::size_t axis = 0; axis < 2; ++axis) {
+            apart = std::max(apart, std::abs(polygon.at("points_m")[i][axis].get<double>() -
+                                             energy.at("points_m")[i][axis].get<double>()));
+          }
+        }
+        EXPECT_LT(apart, 2e-3 * 0.6) << model << " with " << points;
+        const double force = polygon.at("obstacles")[0].at("force_N")[0].get<double>();
+        EXPECT_NEAR(force, pushed, 0.2 * pushed) << model << " with " << points;
+        EXPECT_NEAR(force, -polygon.at("grippers")[0].at("force_N")[0].get<double>(), 1e-6);
+      }
+    }
+  }
 }
 
 TEST_F(ContactCommand, SolveSaysWhereARodCrossesItself) {

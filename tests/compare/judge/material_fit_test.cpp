@@ -259,7 +259,7 @@ TEST(MaterialFit, TheTimeLimitEndsItWithItsName) {
 // A shape on a wall that its solver does not vouch for is no reference; one that it does is.
 TEST(MaterialFit, ReferencesOnWallsAreUsedOnlyWhereTheyAreResolved) {
   Scene scene = heavy_scene(1, 0);
-  scene.obstacles = {{.point = Eigen::Vector3d(0, -0.08, 0)}};
+  scene.obstacles = {{obstacle::Body::half_space({0, -0.08, 0}, Eigen::Vector3d::UnitY())}};
   const energy_model::Equilibrium state = energy_model::solve_energy(energy_problem(scene));
   const MeasuredShape shape{"seen", state.sample(equal_arc_lengths(1, 15)).points, {}};
   const MaterialFitOptions options{.smallest_ratio = 0.6, .largest_ratio = 1.7};

@@ -67,10 +67,10 @@ c_h = 0.5
   EXPECT_DOUBLE_EQ(scene.grippers.at(0).position.z(), 0.01);
   EXPECT_FALSE(scene.grippers.at(1).direction);
   EXPECT_DOUBLE_EQ(scene.loads.at(0).force.y(), -0.1);
-  EXPECT_EQ(scene.obstacles.at(0).normal, Eigen::Vector3d(0, 1, 0));
+  EXPECT_EQ(scene.obstacles.at(0).body.normal(), Eigen::Vector3d(0, 1, 0));
   EXPECT_TRUE(std::isinf(scene.obstacles.at(0).stiffness));
   // Where the axis is when the rod's surface touches.
-  EXPECT_DOUBLE_EQ(scene.obstacles.at(0).point.y(), -0.2 + scene.diameter / 2);
+  EXPECT_DOUBLE_EQ(scene.obstacles.at(0).body.clearance({0, -0.2, 0}), -scene.diameter / 2);
   EXPECT_EQ(scene.force_model.points, 20);
   EXPECT_EQ(scene.force_model.law, BendingLaw::paper);
   EXPECT_EQ(scene.force_model.stepper, Stepper::dynamic);

@@ -279,7 +279,7 @@ bookkeeping = "consistent"
   const Solution energy = solve(scene, Model::energy);
   ASSERT_EQ(energy.contacts.size(), 1);
   EXPECT_EQ(energy.contacts[0].kind, energy_model::ContactKind::tip);
-  EXPECT_EQ(energy.contacts[0].wall, 0);
+  EXPECT_EQ(energy.contacts[0].obstacle, 0);
   // Its surface touches.
   EXPECT_NEAR(energy.shape.points(0, 100), 0.25 - 0.25e-3, 1e-12);
   EXPECT_NEAR(energy.grippers[0].force.x(), -energy.contacts[0].force.x(), 1e-12);
@@ -329,7 +329,7 @@ bookkeeping = "consistent"
     (void)solve_reference(scene, Model::energy);
     FAIL() << "no error";
   } catch (const ConvergenceError& error) {
-    EXPECT_NE(std::string(error.what()).find("behind a rigid wall"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("within a rigid obstacle"), std::string::npos)
         << error.what();
   }
   EXPECT_THROW((void)solve(scene, Model::energy), ConvergenceError);
@@ -340,7 +340,7 @@ bookkeeping = "consistent"
   EXPECT_EQ(shown.status, energy_model::SolveStatus::not_resolved);
   EXPECT_NEAR(shown.penetration, -(0.02 - 0.25e-3) - shown.shape.points.row(1).minCoeff(), 1e-5);
   const Comparison comparison = compare(scene, options);
-  EXPECT_NE(comparison.unresolved.find("behind a rigid wall"), std::string::npos);
+  EXPECT_NE(comparison.unresolved.find("within a rigid obstacle"), std::string::npos);
   EXPECT_TRUE(std::isnan(comparison.effective_modulus.ratio));
 }
 

@@ -159,19 +159,19 @@ TEST(Plan, AnObstacleOutOfReachChangesNothingAndOneInReachIsKept) {
       Scene scene = entry.scene;
       const double angle = degrees * std::numbers::pi / 180;
       const Vector3d normal(std::cos(angle), std::sin(angle), 0);
-      scene.obstacles = {{.point = Vector3d::Zero(), .normal = normal}};
+      scene.obstacles = {{obstacle::Body::half_space(Vector3d::Zero(), normal)}};
       // Moved to where the plan's clearance is zero: no shape gets any nearer.
       const double clearance = obstacle_clearances(scene).front();
-      scene.obstacles.front().point = clearance * normal;
+      scene.obstacles.front().body = obstacle::Body::half_space(clearance * normal, normal);
       EXPECT_NEAR(obstacle_clearances(scene).front(), 0, 1e-12);
       const energy_model::Equilibrium rod = solve_reference(entry.scene, Model::energy);
       const Eigen::Matrix3Xd points = rod.sample(equal_arc_lengths(1, 101)).points;
-      EXPECT_GE(
-          ((points.colwise() - scene.obstacles.front().point).transpose() * normal).minCoeff(),
-          -1e-9)
+      EXPECT_GE(((points.colwise() - scene.obstacles.front().body.centre()).transpose() * normal)
+                    .minCoeff(),
+                -1e-9)
           << entry.name << " " << degrees;
       EXPECT_TRUE(make_plan(scene).obstacles.front().in_reach);
-      scene.obstacles.front().point -= 0.05 * normal;
+      scene.obstacles.front().body = scene.obstacles.front().body.grown(-0.05);
       EXPECT_FALSE(make_plan(scene).obstacles.front().in_reach);
       const Solution with = solve(scene, Model::energy);
       const Solution without = solve(entry.scene, Model::energy);
@@ -185,7 +185,7 @@ TEST(Plan, AnObstacleOutOfReachChangesNothingAndOneInReachIsKept) {
 TEST(Plan, TheReachOfARodIsAttained) {
   // A straight rod points at the obstacle: its tip gets exactly as near as the plan says.
   Scene scene = heavy_scene(0, -90);
-  scene.obstacles = {{.point = {0, -1.5, 0}}};
+  scene.obstacles = {{obstacle::Body::half_space({0, -1.5, 0}, Eigen::Vector3d::UnitY())}};
   EXPECT_NEAR(obstacle_clearances(scene).front(), 0.5, 1e-15);
   // A rod folded straight down between two pins: an isosceles triangle.
   scene.grippers = {{.at = 0, .position = {0, 0, 0}}, {.at = 1, .position = {0.6, 0, 0}}};
@@ -205,9 +205,9 @@ TEST(Plan, TellsPlanarFromSpatialAndListsTheSpans) {
   EXPECT_EQ(plan.spans[0].inner_pins, 1);
   EXPECT_EQ(plan.spans[0].end, 0.8);
   EXPECT_EQ(plan.spans[1].end_held, "free");
-  scene.obstacles = {{.point = {0, -0.1, 0}, .normal = {0, 0.8, 0.6}}};
+  scene.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, {0, 0.8, 0.6})}};
   EXPECT_FALSE(make_plan(scene).planar);
-  scene.obstacles.front().point.y() = -9;
+  scene.obstacles.front().body = obstacle::Body::half_space({0, -9, 0}, {0, 0.8, 0.6});
   EXPECT_TRUE(make_plan(scene).planar);
 }
 
@@ -305,7 +305,7 @@ TEST(Plan, SaysWhatGrippersTwistAndThatNoPolygonAnswersForIt) {
 
 TEST(Plan, NoBoundIsGivenWhereTheRodTouches) {
   Scene scene = heavy_scene(20, 0);
-  scene.obstacles = {{.point = {0, -0.15, 0}}};
+  scene.obstacles = {{obstacle::Body::half_space({0, -0.15, 0}, Eigen::Vector3d::UnitY())}};
   const Plan plan = make_plan(scene);
   EXPECT_TRUE(plan.contact);
   EXPECT_EQ(plan.bound("stretch"), std::numeric_limits<double>::infinity());

@@ -19,9 +19,8 @@ using test::heavy_scene;
 
 /// A floor and a tilted wall that no point of a rod of length 1 gets to.
 Scene among_far_obstacles(Scene scene) {
-  scene.obstacles.push_back({.point = {0, -100, 0}});
-  scene.obstacles.push_back(
-      {.point = {-50, 0, 0}, .normal = Vector3d(3, 1, 2).normalized(), .stiffness = 1000});
+  scene.obstacles.push_back({obstacle::Body::half_space({0, -100, 0}, Eigen::Vector3d::UnitY())});
+  scene.obstacles.push_back({obstacle::Body::half_space({-50, 0, 0}, {3, 1, 2}), 1000});
   return scene;
 }
 
@@ -66,7 +65,8 @@ TEST(Reach, TheSolversThemselvesLeaveThemOut) {
 // One that can be touched keeps its place among those that cannot.
 TEST(Reach, ForcesAreInTheScenesOrder) {
   Scene scene = heavy_scene(30, 0);
-  scene.obstacles = {{.point = {0, -100, 0}}, {.point = {0, -0.3, 0}, .stiffness = 1e4}};
+  scene.obstacles = {{obstacle::Body::half_space({0, -100, 0}, Eigen::Vector3d::UnitY())},
+                     {obstacle::Body::half_space({0, -0.3, 0}, Eigen::Vector3d::UnitY()), 1e4}};
   ASSERT_EQ(obstacles_in_reach(scene), std::vector<std::size_t>{1});
   for (const Model model : {Model::energy, Model::chain, Model::force}) {
     const Solution solution = solve(scene, model);
@@ -79,7 +79,7 @@ TEST(Reach, ForcesAreInTheScenesOrder) {
 // A soft rod stretches further than a stiff one.
 TEST(Reach, TheSettingsStretchCounts) {
   Scene scene = heavy_scene(30, 0);
-  scene.obstacles = {{.point = {0, -1.2, 0}}};
+  scene.obstacles = {{obstacle::Body::half_space({0, -1.2, 0}, Eigen::Vector3d::UnitY())}};
   EXPECT_TRUE(obstacles_in_reach(scene).empty());
   ForceModelSettings soft = scene.force_model;
   soft.c_c = scene.weight_per_length().norm();
@@ -91,7 +91,8 @@ TEST(Reach, TheSettingsStretchCounts) {
 TEST(Reach, CheckAndCalibrateLeaveThemOutForEveryModulus) {
   const Scene scene = heavy_scene(8, 0);
   Scene among = among_far_obstacles(scene);
-  among.obstacles.push_back({.point = {0, -1.0001, 0}});
+  among.obstacles.push_back(
+      {obstacle::Body::half_space({0, -1.0001, 0}, Eigen::Vector3d::UnitY())});
   const Solution solution = solve(scene, Model::energy);
   const MeasuredShape shape{
       .file = "own", .points = solution.shape.points, .arc_length = solution.shape.arc_length};

@@ -19,9 +19,10 @@ struct Parameters {
 
 /// A scene as points and segments.
 struct Discretisation {
-  force_model::Rod rod;                ///< polygon, forces and grips of the force model
-  std::vector<std::size_t> obstacles;  ///< of the scene: those in reach, whose walls are rod.walls
-  Eigen::Matrix3Xd weights;            ///< the part of rod.loads that is gravity [N]
+  force_model::Rod rod;             ///< polygon, forces and grips of the force model
+  std::vector<std::size_t> walls;   ///< obstacles of the scene that rod.walls are
+  std::vector<std::size_t> solids;  ///< obstacles of the scene that rod.solids are
+  Eigen::Matrix3Xd weights;         ///< the part of rod.loads that is gravity [N]
   /// Where a simulation may start [m]: straight from a single gripper; two shapes for several
   /// grippers, whose slack hangs along or against the load.
   std::vector<Eigen::Matrix3Xd> starts;
@@ -62,20 +63,21 @@ struct Discretisation {
 /// natural curvature out. GJ goes with EI where the clamps twist the rod and the law is hooke;
 /// their frames are no part of this, as a roll counts from where the rod rests without twist.
 ///
-/// A wall acts on points, each with L times the obstacle's stiffness, as the force model's walls
-/// have one stiffness for all points (the last point of a free end has twice its share). A rigid
+/// A half-space is a wall of the force model, which acts on points, each with L times the
+/// obstacle's stiffness, as walls have one stiffness for all points (the last point of a free end
+/// has twice its share); other bodies are solids, which act all along the segments. A rigid
 /// obstacle gets c_c / L: as stiff as the rod's own segments, so that points enter it by the weight
 /// of a segment over c_c / L; stiffer ones would only slow the steps down. Obstacles out of the
-/// rod's reach have no wall; who moves grips afterwards takes walls_of().
+/// rod's reach are left out; who moves grips afterwards takes set_obstacles().
 /// @throws InputError if there are too few points for the grippers (with the number needed), two
 /// grippers hold the same arc length, grippers, or the segments that they hold, are further apart
 /// than the rod between them, or a single segment between two held points does not fit (with the
 /// number of points that do), or a joint would turn by 3 rad or more at rest
 [[nodiscard]] Discretisation discretise(const Scene& scene, const ForceModelSettings& settings);
 
-/// The walls of all obstacles of a scene, in their order, for segments of length L and with c_c.
-[[nodiscard]] std::vector<force_model::Wall> walls_of(const Scene& scene,
-                                                      const Parameters& parameters);
+/// Gives a discretisation the walls and solids of these obstacles of a scene, and no others.
+void set_obstacles(const Scene& scene, const std::vector<std::size_t>& obstacles,
+                   Discretisation& discretisation);
 
 /// Largest share by which a segment's length may differ from its rest length in a result [-]: a
 /// hundredth, so that a rod that is stretched or crushed because its polygon is too coarse, or its

@@ -19,7 +19,7 @@ namespace dlo::compare {
 [[nodiscard]] std::vector<energy_model::Equilibrium> reference_states(
     const Scene& scene, const SolveOptions& options = {});
 
-/// What touches rigid obstacles in such an equilibrium; its `wall` is that of the scene's
+/// What touches rigid obstacles in such an equilibrium; its `obstacle` is that of the scene's
 /// obstacles.
 [[nodiscard]] std::vector<energy_model::ContactPart> contacts_of(
     const Scene& scene, const energy_model::Equilibrium& equilibrium);

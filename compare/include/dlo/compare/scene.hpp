@@ -8,6 +8,7 @@
 
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/material.hpp"
+#include "dlo/obstacle/body.hpp"
 
 namespace dlo::compare {
 
@@ -43,11 +44,10 @@ struct PointLoad {
   bool operator==(const PointLoad&) const = default;
 };
 
-/// A half-space that the rod's axis stays out of: one that its surface must not enter, as a scene
-/// file has it, is nearer by half the diameter.
+/// A body that the rod's axis stays out of: one that its surface must not enter, as a scene file
+/// has it, is larger by half the diameter.
 struct Obstacle {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< of the plane [m]
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< unit, to the free side
+  obstacle::Body body;  ///< [m]
   /// Force per depth and per length of rod [N/m^2]; infinite: rigid.
   double stiffness = std::numeric_limits<double>::infinity();
 

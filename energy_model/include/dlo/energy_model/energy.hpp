@@ -9,7 +9,7 @@
 
 namespace dlo::energy_model {
 
-/// Depth behind a rigid wall up to which a shape is called converged, in lengths of the rod.
+/// Depth behind a rigid obstacle up to which a shape is called converged, in lengths of the rod.
 inline constexpr double allowed_penetration = 1e-8;
 
 /// How well to solve, and from where.
@@ -54,18 +54,19 @@ struct EnergyOptions {
 /// strip does that is bent about its stiff axis. It is searched from the free rod too, and with its
 /// frame turned on.
 ///
-/// What touches a rigid wall, and where, is first told by a polygon at rest (solve_polygon) from
-/// several starts. Then the rod's own shape is found with these contacts: pieces end where contact
-/// does, at arc lengths that are unknowns, found by Newton's method from what a frictionless wall
-/// demands there (no slope at a point, no moment where a part lifts off); a part that lies has its
-/// slope's moments as constraints, whose multipliers are the force that the wall carries. Contacts
-/// that would have to pull go, others come where the shape is behind a wall, a bounded number of
+/// What touches a rigid obstacle, and where, is first told by a polygon at rest (solve_polygon)
+/// from several starts. Then the rod's own shape is found with these contacts: pieces end where
+/// contact does. A contact at one point slides, as the least clearance near it; a part that lies
+/// has its slope's moments as constraints, whose multipliers are the force that the obstacle
+/// carries, and ends at arc lengths that are unknowns, found by Newton's method from what a
+/// frictionless obstacle demands there (no bending towards it but its own curvature). Contacts that
+/// would have to pull go, others come where the shape is behind an obstacle, a bounded number of
 /// times. `converged` says of contact that no point of the rod is deeper than `allowed_penetration`
-/// (Equilibrium::penetration) and that no wall pulls; what does not settle is `not_resolved`. The
-/// second variation is looked at with the contacts held where they are. Between clamps that twist
-/// the rod contact is not looked for: a shape behind a wall is not_resolved there. A lying rod
-/// against its exact solution is right to 1e-12 l. Walls that yield are springs along the rod: the
-/// curvature has kinks where contact begins, and the shape no error_estimate.
+/// (Equilibrium::penetration) and that no obstacle pulls; what does not settle is `not_resolved`.
+/// Between clamps that twist the rod contact is not looked for: a shape behind an obstacle is
+/// not_resolved there. A lying rod against its exact solution is right to 1e-12 l. Obstacles that
+/// yield are springs along the rod: the curvature has kinks where contact begins, and the shape no
+/// error_estimate.
 /// @throws std::invalid_argument if the problem or an option is out of range, with the numbers
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 

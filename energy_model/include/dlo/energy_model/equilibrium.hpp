@@ -31,13 +31,14 @@ enum class ContactKind {
   return "tip";
 }
 
-/// Where the rod touches a rigid wall.
+/// Where the rod touches a rigid obstacle.
 struct ContactPart {
-  std::size_t wall = 0;                             ///< of Problem::walls
-  ContactKind kind = ContactKind::lying;            ///< how it touches
-  double begin = 0;                                 ///< arc length where contact begins [m]
-  double end = 0;                                   ///< where it ends; `begin` but for `lying` [m]
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< of the wall on the rod, of all of it [N]
+  std::size_t obstacle = 0;               ///< of Problem::obstacles
+  ContactKind kind = ContactKind::lying;  ///< how it touches
+  double begin = 0;                       ///< arc length where contact begins [m]
+  double end = 0;                         ///< where it ends; `begin` but for `lying` [m]
+  Eigen::Vector3d force =
+      Eigen::Vector3d::Zero();  ///< of the obstacle on the rod, of all of it [N]
   double begin_force = 0;       ///< what of it is concentrated at the begin of what lies [N]
   double end_force = 0;         ///< and at its end [N]
   double largest_pressure = 0;  ///< per length of what lies, between them [N/m]
@@ -54,19 +55,21 @@ struct [[nodiscard]] Equilibrium {
   double residual = -1;
   /// Of solve_energy(): what points of the shape may be away from those of an equilibrium, over the
   /// rod's length: an estimate from what the solver, rounding and the terms leave out, divided by
-  /// the smallest eigenvalue. `near_singular` shapes have one too. NaN: not known (walls, `exact`).
+  /// the smallest eigenvalue. `near_singular` shapes have one too. NaN: not known (obstacles,
+  /// `exact`).
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
   /// Smallest eigenvalue of the second variation over EI/l, with the constraints and, for planar
   /// shapes, with bending out of the plane; NaN where a solver did not look. Negative: unstable.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
-  /// Largest depth of the shape behind a rigid wall, between the solver's own nodes too [m]; 0
-  /// without such walls. A shape that is deeper than `allowed_penetration` lengths is not_resolved.
+  /// Largest depth of the shape behind a rigid obstacle, between the solver's own nodes too [m]; 0
+  /// without such obstacles. A shape that is deeper than `allowed_penetration` lengths is
+  /// not_resolved.
   double penetration = 0;
-  Energies energy;                     ///< of the shape [J]
-  std::vector<Eigen::Vector3d> walls;  ///< force of each wall on the rod [N]
-  std::vector<ContactPart> contacts;   ///< with rigid walls, by arc length
-  std::vector<Reaction> grips;         ///< in the order of Problem::grips
-  std::vector<TwistedPart> twists;     ///< of what clamps that hold frames twist; by arc length
+  Energies energy;                         ///< of the shape [J]
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each obstacle on the rod [N]
+  std::vector<ContactPart> contacts;       ///< with rigid obstacles, by arc length
+  std::vector<Reaction> grips;             ///< in the order of Problem::grips
+  std::vector<TwistedPart> twists;         ///< of what clamps that hold frames twist; by arc length
 
   /// The shape at arc lengths within [0, length], in any order [m].
   std::function<Samples(std::span<const double>)> sample;

@@ -71,7 +71,7 @@ struct ExactOptions {
 /// spin of its cross-sections, lengths in l. The stable equilibrium of lowest energy is returned;
 /// if none is stable the lowest one, as `saddle`. The message names what moves for nothing (turning
 /// about a line), combinations of spans beyond the 64 lowest, and tips that could not be shot from.
-/// @throws std::invalid_argument if the problem or an option is out of range, or has walls
+/// @throws std::invalid_argument if the problem or an option is out of range, or has obstacles
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
 /// Every equilibrium that the scan or the search finds, stable ones first, by energy; unstable ones

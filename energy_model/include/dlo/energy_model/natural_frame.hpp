@@ -9,8 +9,8 @@
 namespace dlo::energy_model {
 
 /// The plane's normal that d2 is where the first clamp of a rod with material directors does not
-/// say otherwise: that of grips, forces and walls, on the side of +z (+y, +x). None: they share no
-/// plane.
+/// say otherwise: that of grips, forces and obstacles, on the side of +z (+y, +x). None: they share
+/// no plane.
 [[nodiscard]] std::optional<Eigen::Vector3d> natural_normal(const Problem& problem);
 
 /// Index of the first clamp along the rod in Problem::grips. None: there are but pins.

@@ -7,6 +7,7 @@
 
 #include "dlo/energy_model/chain.hpp"
 #include "dlo/energy_model/status.hpp"
+#include "dlo/obstacle/body.hpp"
 
 namespace dlo::energy_model {
 
@@ -16,11 +17,14 @@ struct HeldPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
 };
 
-/// A half-space that pushes every free point behind its plane back.
-struct PointWall {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< of the plane [m]
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< to the free side, unit
-  double stiffness = 0;                               ///< force on a point per depth [N/m], >= 0
+/// A body that pushes back what of a polygon is within it: its free points or, so that no edge and
+/// no thin body goes unseen between them, points all along its segments.
+struct PointObstacle {
+  obstacle::Body body;   ///< [m]
+  double stiffness = 0;  ///< force on a segment per depth [N/m], >= 0
+  /// Points to a segment, each with its share of the stiffness, >= 1; 1: where segments meet
+  /// (obstacle::looks_per_segment).
+  int looks = 1;
 };
 
 /// Twist of a round rod between two held segments that hold its material frame. The angle theta is
@@ -58,16 +62,16 @@ struct PolygonTwist {
 /// acts on it: turns have a sign there, and its joints' potentials are those of ChainProblem.
 /// Nothing is said of its stability across that plane.
 struct PolygonProblem {
-  Eigen::VectorXd rest_lengths;        ///< L_i [m], n >= 2, each > 0
-  double stretch_stiffness = 0;        ///< c_c [N], > 0
-  Eigen::Matrix3Xd node_forces;        ///< dead force on each point [N], 3 x (n+1)
-  JointLaw law = JointLaw::hooke;      ///< of every joint
-  double stiffness = 0;                ///< c_b [N] or EI [N m^2], > 0
-  Eigen::VectorXd stiffnesses = {};    ///< as ChainProblem's
-  Eigen::VectorXd natural_turns = {};  ///< as ChainProblem's, from x to y
-  std::vector<HeldPoint> held;         ///< one or more, each point once
-  std::vector<PointWall> walls;        ///< may be empty
-  std::vector<PolygonTwist> twists;    ///< law hooke, without natural turns; may be empty
+  Eigen::VectorXd rest_lengths;          ///< L_i [m], n >= 2, each > 0
+  double stretch_stiffness = 0;          ///< c_c [N], > 0
+  Eigen::Matrix3Xd node_forces;          ///< dead force on each point [N], 3 x (n+1)
+  JointLaw law = JointLaw::hooke;        ///< of every joint
+  double stiffness = 0;                  ///< c_b [N] or EI [N m^2], > 0
+  Eigen::VectorXd stiffnesses = {};      ///< as ChainProblem's
+  Eigen::VectorXd natural_turns = {};    ///< as ChainProblem's, from x to y
+  std::vector<HeldPoint> held;           ///< one or more, each point once
+  std::vector<PointObstacle> obstacles;  ///< may be empty
+  std::vector<PolygonTwist> twists;      ///< law hooke, without natural turns; may be empty
 };
 
 /// How far to minimise.
@@ -88,9 +92,11 @@ struct [[nodiscard]] PolygonResult {
   double seconds = 0;                         ///< wall time
   double residual = -1;                       ///< largest force on a free point [N]
   Eigen::Matrix3Xd points;                    ///< [m], 3 x (n+1)
-  Eigen::Matrix3Xd grip_forces;  ///< what holds each of PolygonProblem::held exerts [N]
-  double energy = 0;             ///< E [J]
-  std::vector<double> twists;    ///< theta of each of PolygonProblem::twists [rad]
+  /// What holds each of PolygonProblem::held exerts, but against what obstacles do to the point
+  /// [N].
+  Eigen::Matrix3Xd grip_forces;
+  double energy = 0;           ///< E [J]
+  std::vector<double> twists;  ///< theta of each of PolygonProblem::twists [rad]
 };
 
 /// Minimises E by damped Newton steps over the free points (a banded matrix, GSL's LDL^T), each of

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dlo/energy_model/status.hpp"
+#include "dlo/obstacle/body.hpp"
 
 namespace dlo::energy_model {
 
@@ -33,11 +34,10 @@ struct Load {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]
 };
 
-/// A half-space that the rod may not enter.
-struct Wall {
-  Eigen::Vector3d point = Eigen::Vector3d::Zero();    ///< of the plane [m]
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitY();  ///< to the free side, any length > 0
-  /// Force per depth and per length of rod behind the plane [N/m^2], > 0; infinite: rigid.
+/// A body that the rod's axis may not enter.
+struct Obstacle {
+  obstacle::Body body;  ///< [m]
+  /// Force per depth and per length of rod within the body [N/m^2], > 0; infinite: rigid.
   double stiffness = std::numeric_limits<double>::infinity();
 };
 
@@ -75,7 +75,7 @@ struct Problem {
   Eigen::Vector3d weight_per_length = Eigen::Vector3d::Zero();  ///< rho A g [N/m]
   std::vector<Grip> grips;                                      ///< one or more
   std::vector<Load> loads;                                      ///< may be empty
-  std::vector<Wall> walls;                                      ///< may be empty
+  std::vector<Obstacle> obstacles;                              ///< may be empty
   std::vector<Section> sections;  ///< where it is another one, by arc length, none over another
   /// Strains u of the free rod about d1, d2 and the tangent t, of which t' = u2 d1 - u1 d2 and u3
   /// turns d1 towards d2: coefficients of Legendre's polynomials P_j(2 s/l - 1) [1/m]. Empty:

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 
+#include "dlo/obstacle/body.hpp"
+
 namespace dlo::force_model {
 
 /// An obstacle's plane (paper, Formula 5, constraint 2). It acts on the side `normal` points away
@@ -20,6 +22,27 @@ void check(const Wall& wall);
 
 /// Potential of wall_force, 1/2 c_e d^2 [J].
 [[nodiscard]] double wall_energy(const Wall& wall, const Eigen::Vector3d& position);
+
+/// A body of any form, which pushes the rod as a wall does, along the body's own normal: at its
+/// points or, so that no edge and no thin body slips between two of them, all along its segments.
+struct Solid {
+  obstacle::Body body;   ///< [m]
+  double stiffness = 0;  ///< c_e of all looks at a segment together [N/m], >= 0
+  int looks = 1;         ///< to a segment, >= 1 (obstacle::looks_per_segment); 1: at its end
+};
+
+/// @throws std::invalid_argument naming the first member that is out of range
+void check(const Solid& solid);
+
+/// Adds what a solid does to each point [N]; what pushes within a segment is shared by its ends as
+/// a lever does.
+/// @param points  [m], 3 x N;  @param[in,out] forces  3 x N
+void add_solid_forces(const Solid& solid, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                      Eigen::Ref<Eigen::Matrix3Xd> forces);
+
+/// Potential of these forces [J].
+[[nodiscard]] double solid_energy(const Solid& solid,
+                                  const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
 /// Force of a spring that pulls `position` to `anchor` (Formula 5, constraint 3, with the restoring
 /// sign that the print lacks): c_e (anchor - position) [N].

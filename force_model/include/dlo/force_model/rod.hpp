@@ -13,15 +13,18 @@ namespace dlo::force_model {
 
 /// Everything that makes forces on the points P_0 .. P_n of a rod.
 struct Rod {
-  Eigen::VectorXd rest_lengths;  ///< of the n segments [m], each > 0
-  double c_c = 0;                ///< stretch stiffness [N], >= 0
-  Bending bending;               ///< law and stiffness of the joints
-  Eigen::Matrix3Xd loads;        ///< constant force on each point: gravity and loads (Formula 5,
-                                 ///< constraint 1) [N], 3 x (n+1)
-  std::vector<Wall> walls;       ///< each acts on every point
-  std::vector<Grip> grips;       ///< rigid ones hold points of their own
-  Twist twist = {};              ///< of use between grips that hold frames
+  Eigen::VectorXd rest_lengths;    ///< of the n segments [m], each > 0
+  double c_c = 0;                  ///< stretch stiffness [N], >= 0
+  Bending bending;                 ///< law and stiffness of the joints
+  Eigen::Matrix3Xd loads;          ///< constant force on each point: gravity and loads (Formula 5,
+                                   ///< constraint 1) [N], 3 x (n+1)
+  std::vector<Wall> walls;         ///< each acts on every point
+  std::vector<Grip> grips;         ///< rigid ones hold points of their own
+  Twist twist = {};                ///< of use between grips that hold frames
+  std::vector<Solid> solids = {};  ///< obstacles that are not planes
 
+  /// Whether there are walls or solids.
+  [[nodiscard]] bool touches_anything() const { return !walls.empty() || !solids.empty(); }
   /// N = n + 1.
   [[nodiscard]] Eigen::Index points() const { return rest_lengths.size() + 1; }
   /// Of all segments at rest [m].
@@ -66,7 +69,7 @@ struct RodEnergy {
   double bending = 0;  ///< of the joints
   double stretch = 0;  ///< of the segments
   double load = 0;     ///< of gravity and loads
-  double contact = 0;  ///< walls and spring grips
+  double contact = 0;  ///< walls, solids and spring grips
   double twist = 0;    ///< between grips that hold frames
 
   /// Of all [J].

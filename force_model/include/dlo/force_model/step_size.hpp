@@ -22,8 +22,8 @@ inline constexpr double smallest_mode_ratio = 1e-15;
 /// `fastest` adds up what can act on one point: 4 c_c / L of contraction, 16 M'(alpha) / L^2 of
 /// bending (hooke: 16 EI / L^3 when straight; paper: 48 c_b sin^2(alpha/2) cos(alpha/2) / L), what
 /// turning the joint's forces adds (at most 4 M / L^2, of a natural turn's couple too), twist
-/// (twist_mode_bound), walls and spring grips. L is the shortest segment as it is now, so that
-/// compressed segments count.
+/// (twist_mode_bound), walls, solids and spring grips. L is the shortest segment as it is now, so
+/// that compressed segments count.
 ///
 /// `slowest` is the first mode of a straight clamped-free rod of this length and these points,
 /// (1.8751 / l)^4 EI L, EI that of the softest joint. For the cubic law EI L is taken at the joint
@@ -33,7 +33,7 @@ inline constexpr double smallest_mode_ratio = 1e-15;
 [[nodiscard]] ModeBounds mode_bounds(const Rod& rod,
                                      const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
-/// What walls and spring grips add to the bound of the fastest mode [N/m].
+/// What walls, solids and spring grips add to the bound of the fastest mode [N/m].
 [[nodiscard]] double constraint_stiffness(const Rod& rod);
 
 /// Largest stable c_F [m/N] for a fastest mode [N/m]: Formula 15 solved by linear stability,

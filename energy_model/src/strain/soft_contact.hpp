@@ -9,14 +9,14 @@
 
 namespace dlo::energy_model {
 
-/// Contact of a span's quadrature nodes with its soft walls, which are one-sided springs.
-class WallContact {
+/// Contact of a span's quadrature nodes with its soft obstacles, which are one-sided springs.
+class SoftContact {
  public:
   /// @param nodes, weights  of the span's quadrature
   void reset(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table,
              const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights);
 
-  [[nodiscard]] bool any() const { return !walls_.empty(); }
+  [[nodiscard]] bool any() const { return !obstacles_.empty(); }
 
   /// Energy of the springs at these tangents (nodes x 3); adds what they push with, carried from
   /// beyond each node, to `force` (nodes x 3). Keeps the pressures.
@@ -27,16 +27,23 @@ class WallContact {
   void add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
                    Eigen::Ref<Eigen::MatrixXd> hessian) const;
 
-  /// Force of each wall on the span.
+  /// Force of each obstacle on the span.
   [[nodiscard]] std::vector<Eigen::Vector3d> forces() const;
   /// Their moment about the anchor.
   [[nodiscard]] Eigen::Vector3d moment(const Eigen::MatrixX3d& tangents) const;
 
  private:
-  std::vector<Span::SoftWall> walls_;
+  /// A node within an obstacle.
+  struct Pressed {
+    Eigen::Index node = 0;
+    obstacle::Gap gap;
+  };
+  [[nodiscard]] Eigen::Vector3d push(std::size_t obstacle, const Pressed& at) const;
+
+  std::vector<Span::SoftObstacle> obstacles_;
   Eigen::VectorXd weights_;
-  Eigen::MatrixXd position_;  // of the nodes by tangent of the nodes
-  Eigen::MatrixXd pressure_;  // nodes x walls, of the last add()
+  Eigen::MatrixXd position_;                   // of the nodes by tangent of the nodes
+  std::vector<std::vector<Pressed>> pressed_;  // by obstacle, of the last add()
 };
 
 }  // namespace dlo::energy_model

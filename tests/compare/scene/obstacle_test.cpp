@@ -1,0 +1,80 @@
+// Obstacles: what a file may say of them, and what is refused.
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+
+namespace dlo::compare {
+namespace {
+
+const std::string rod =
+    "[rod]\nlength = 1\ndiameter = 0.02\nmaterial = \"silicone\"\n"
+    "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n[[obstacle]]\n";
+
+double clearance(const std::string& keys, const Eigen::Vector3d& point) {
+  return parse_scene(rod + keys, "my.toml").obstacles.at(0).body.clearance(point);
+}
+
+void expect_message(const std::string& keys, const std::vector<std::string>& parts) {
+  try {
+    (void)parse_scene(rod + keys, "my.toml");
+    ADD_FAILURE() << keys << " was read";
+  } catch (const InputError& error) {
+    for (const std::string& part : parts) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+}
+
+// The rod's axis keeps half of its diameter, 10 mm, away from what its surface touches.
+TEST(SceneObstacle, HasTheBodyThatTheFileSays) {
+  EXPECT_NEAR(clearance("point = [0, -1, 0]\nnormal = [0, 1, 0]\n", {3, 2, 1}), 2.99, 1e-12);
+  EXPECT_NEAR(clearance("shape = \"plane\"\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\n"
+                        "touches = \"axis\"\n",
+                        {3, 2, 1}),
+              3, 1e-12);
+  EXPECT_NEAR(clearance("shape = \"sphere\"\npoint = [0, -1, 0]\nradius = \"20 cm\"\n", {0, 2, 4}),
+              4.79, 1e-12);
+  EXPECT_NEAR(clearance("shape = \"cylinder\"\npoint = [0, -1, 0]\naxis = [0, 0, 5]\n"
+                        "radius = 0.2\n",
+                        {4, 2, 77}),
+              4.79, 1e-12);
+  EXPECT_NEAR(clearance("shape = \"capsule\"\npoint = [0, -1, 0]\naxis = [0, 0, 5]\n"
+                        "radius = 0.2\nlength = 2\n",
+                        {0, 2, 5}),
+              4.79, 1e-12);
+  const std::string box = "shape = \"box\"\npoint = [0, -1, 0]\nsize = [0.2, 0.4, 0.6]\n";
+  EXPECT_NEAR(clearance(box, {0.05, 0, 0.1}), 0.79, 1e-12);
+  EXPECT_NEAR(clearance(box + "axis = [0, 0, 1]\n", {1, -1, 0}), 0.69, 1e-12);
+  EXPECT_NEAR(clearance(box + "axis = [1, 1, 0]\nnormal = [-1, 1, 0]\n", {0, -1, 1}), 0.69, 1e-12);
+  // 20 mm round: 80 and 180 mm to the middle of the edge's roundness.
+  EXPECT_NEAR(clearance(box + "radius = 0.02\n", {0.08 + 3, -1 + 0.18 + 4, 0}), 5 - 0.03, 1e-12);
+}
+
+TEST(SceneObstacle, IsRefusedWithWhatIsAllowed) {
+  expect_message("shape = \"cone\"\npoint = [0, -1, 0]\n",
+                 {"my.toml:10: obstacle.shape", "'cone'", "cylinder", "box"});
+  expect_message("shape = \"sphere\"\npoint = [0, -1, 0]\n", {"obstacle.radius", "missing"});
+  expect_message("shape = \"sphere\"\npoint = [0, -1, 0]\nradius = -1\n",
+                 {"my.toml:12: obstacle.radius", "> 0"});
+  expect_message("shape = \"sphere\"\npoint = [0, -1, 0]\nradius = 1\nnormal = [0, 1, 0]\n",
+                 {"my.toml:13: obstacle.normal"});
+  expect_message("shape = \"sphere\"\npoint = [0, -0.1, 0]\nradius = 0.2\n",
+                 {"gripper.position", "within an obstacle"});
+  expect_message("shape = \"cylinder\"\npoint = [0, -1, 0]\naxis = [0, 0, 0]\nradius = 1\n",
+                 {"obstacle.axis", "zero vector"});
+  const std::string box = "shape = \"box\"\npoint = [0, -1, 0]\n";
+  expect_message(box + "size = [1, 0, 1]\n", {"my.toml:12: obstacle.size", "> 0"});
+  expect_message(box + "size = [1, 1, 1]\nradius = 0.6\n", {"my.toml:13: obstacle.radius", "0.5"});
+  expect_message(box + "size = [1, 1, 1]\naxis = [1, 1, 0]\n",
+                 {"my.toml:13: obstacle.axis", "right angles"});
+  expect_message(box + "size = [1, 1, 1]\ntouches = \"axis\"\n",
+                 {"my.toml:13: obstacle.touches", "sharp", "radius"});
+}
+
+}  // namespace
+}  // namespace dlo::compare

@@ -1,0 +1,261 @@
+// Rods on pegs, balls and tables with edges.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <random>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using obstacle::Body;
+using test::heavy_cantilever;
+
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// A shape to start from, of unit length, along a line from corner to corner.
+Equilibrium along(const std::vector<Eigen::Vector3d>& corners) {
+  std::vector<double> at = {0};
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    at.push_back(at.back() + (corners[i] - corners[i - 1]).norm());
+  }
+  Equilibrium shape;
+  shape.status = SolveStatus::converged;
+  shape.sample = [corners, at](std::span<const double> s) {
+    Samples samples;
+    samples.arc_length.assign(s.begin(), s.end());
+    const auto count = static_cast<Eigen::Index>(s.size());
+    samples.points.resize(3, count);
+    samples.tangents.resize(3, count);
+    samples.curvature.setZero(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double way = s[static_cast<std::size_t>(i)] * at.back();
+      std::size_t k = 1;
+      while (k + 1 < at.size() && at[k] < way) ++k;
+      samples.tangents.col(i) = (corners[k] - corners[k - 1]).normalized();
+      samples.points.col(i) = corners[k - 1] + (way - at[k - 1]) * samples.tangents.col(i);
+    }
+    return samples;
+  };
+  return shape;
+}
+
+// A taut weightless rod bends towards the peg by theta' = 2 (T/EI)^(1/2) sin(theta/2), theta from
+// the line of its tension, and leaves it where that is the peg's curvature.
+TEST(Peg, TautRodLeavesItWhereItsCurvatureIsThePegs) {
+  for (const double radius : {0.03, 0.05, 0.1}) {
+    for (const double tension : {3e3, 1e4}) {
+      SCOPED_TRACE("radius " + std::to_string(radius) + ", tension " + std::to_string(tension));
+      Problem problem = heavy_cantilever(0, 0);
+      problem.loads = {{1, {0, -tension, 0}}};
+      problem.obstacles = {{Body::cylinder({0.4, -radius, 0}, {0, 0, 1}, radius)}};
+      // On this side of the peg it would hang from the clamp alone.
+      const Equilibrium start =
+          along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
+      const Equilibrium rod = solve_energy(problem, {.start = &start});
+      ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
+      ASSERT_EQ(rod.contacts.size(), 1);
+      const ContactPart& contact = rod.contacts[0];
+      ASSERT_EQ(contact.kind, ContactKind::lying);
+      const Samples ends = rod.sample(std::array{contact.begin, contact.end});
+      const double exact = 2 * std::asin(std::sqrt(1 / tension) / (2 * radius));
+      EXPECT_NEAR(angle_between(ends.tangents.col(1), {0, -1, 0}), exact, 1e-8);
+      const Eigen::Vector3d held = rod.grips[0].force;
+      EXPECT_NEAR(angle_between(ends.tangents.col(0), -held), exact, 1e-8);
+      // Without friction the tension is the same on both sides.
+      EXPECT_NEAR(held.norm(), tension, 1e-8 * tension);
+      const Eigen::Vector3d by_peg = -held - problem.loads[0].force;
+      EXPECT_LT((contact.force - by_peg).norm(), 1e-8 * tension);
+      EXPECT_LT((rod.obstacles[0] - by_peg).norm(), 1e-8 * tension);
+    }
+  }
+}
+
+// Over an edge a rod with the overhang a lifts off the table at 2^(1/2) a behind it, if it is
+// nearly straight: w a^2/2 at the edge is to end in no moment, no slope and no height at b, and so
+// w b^4/24 = w a^2/2 b^2/6.
+TEST(Table, OverhangLiftsTheRodBehindTheEdge) {
+  constexpr double overhang = 0.2;
+  double last = 1;
+  for (const double gamma : {4.0, 1.0, 0.25}) {
+    SCOPED_TRACE("Gamma " + std::to_string(gamma));
+    constexpr double radius = 1e-3;
+    Problem problem = heavy_cantilever(gamma, 0);
+    const Eigen::Vector3d size(1 - overhang + 1, 0.2, 1);
+    const Eigen::Vector3d centre(1 - overhang - size.x() / 2, -size.y() / 2, 0);
+    problem.obstacles = {{Body::box(centre, Eigen::Matrix3d::Identity(), size, radius)}};
+    const Equilibrium rod = solve_energy(problem);
+    ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
+    ASSERT_EQ(rod.contacts.size(), 2);
+    EXPECT_EQ(rod.contacts[0].kind, ContactKind::lying);
+    EXPECT_EQ(rod.contacts[1].kind, ContactKind::touching);
+    // The round edge begins a radius before the box ends.
+    EXPECT_NEAR(rod.contacts[1].begin, 1 - overhang - radius, radius);
+    const double edge = rod.contacts[1].begin;
+    const double behind = (edge - rod.contacts[0].end) / (1 - edge);
+    EXPECT_NEAR(behind, std::sqrt(2.0), 1e-3 * gamma);
+    EXPECT_LT(std::abs(behind - std::sqrt(2.0)), last);
+    last = std::abs(behind - std::sqrt(2.0));
+    // 3 w a^2 / 2 b carries the lever, w a and w b / 2 what hangs on it.
+    const double a = 1 - edge;
+    const double b = edge - rod.contacts[0].end;
+    EXPECT_NEAR(rod.contacts[1].force.y(), gamma * (a + b / 2 + a * a / (2 * b)), 2e-3 * gamma);
+  }
+}
+
+/// EI kappa^2 / 2 + n.t + w.r, n the force in the rod, at its start and at its end: what no
+/// frictionless obstacle changes along a rod, whatever it is and however the rod touches it.
+std::array<double, 2> ends_of_first_integral(const Problem& problem, const Equilibrium& rod) {
+  const Samples ends = rod.sample(std::array{0.0, problem.length});
+  std::array<double, 2> result{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    result[i] = problem.weight_per_length.dot(ends.points.col(column));
+    if (i == 1 && problem.grips.size() < 2) continue;
+    const Reaction& grip = i == 0 ? rod.grips.front() : rod.grips.back();
+    const double sense = i == 0 ? -1 : 1;
+    result[i] += sense * grip.force.dot(ends.tangents.col(column)) +
+                 grip.torque.squaredNorm() / (2 * problem.bending_stiffness);
+  }
+  return result;
+}
+
+// A rope over a peg: the tensions at its ends differ by the weight of its length between their
+// heights.
+TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
+  constexpr double gamma = 1e4;
+  Problem problem = heavy_cantilever(gamma, 0);
+  problem.grips = {{0, {-0.33, -0.28, 0}}, {1, {0.38, -0.29, 0}}};
+  problem.obstacles = {{Body::cylinder({0, 0, 0}, {0, 0, 1}, 0.05)}};
+  const Equilibrium start = along({{-0.33, -0.28, 0}, {0, 0.06, 0}, {0.38, -0.29, 0}});
+  const Equilibrium rod = solve_energy(problem, {.start = &start});
+  ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
+  ASSERT_EQ(rod.contacts.size(), 1);
+  EXPECT_EQ(rod.contacts[0].kind, ContactKind::lying);
+  const Samples ends = rod.sample(std::array{0.0, 1.0});
+  const double before = -rod.grips[0].force.dot(ends.tangents.col(0));
+  const double after = rod.grips[1].force.dot(ends.tangents.col(1));
+  EXPECT_NEAR(before - after, gamma * (ends.points(1, 0) - ends.points(1, 1)), 1e-7 * gamma);
+}
+
+/// A body that the shape without it would enter, clear of the grips. @return whether there is one
+bool put_in_the_way(std::mt19937& random, bool space, Problem& problem) {
+  const auto uniform = [&random](double low, double high) {
+    return low + (high - low) * std::generate_canonical<double, 53>(random);
+  };
+  const Equilibrium free = solve_energy(problem);
+  if (!succeeded(free.status)) return false;
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const double radius = std::pow(10, uniform(-2, -0.7));
+    const double turn = uniform(0, 6.28);
+    const Eigen::Vector3d aside(std::cos(turn), std::sin(turn), space ? uniform(-0.5, 0.5) : 0);
+    const Eigen::Vector3d centre = free.sample(std::array{uniform(0.2, 1)}).points.col(0) +
+                                   radius * uniform(0.3, 0.9) * aside.normalized();
+    const Eigen::Vector3d axis(space ? uniform(-0.5, 0.5) : 0, space ? uniform(-0.5, 0.5) : 0, 1);
+    const std::array<Body, 3> bodies = {Body::cylinder(centre, axis, radius),
+                                        Body::sphere(centre, radius),
+                                        Body::capsule(centre, axis, 0.2, radius)};
+    const Body& body = bodies[random() % 3];
+    bool clear = true;
+    for (const Grip& grip : problem.grips) {
+      for (const double way : {-0.06, -0.03, 0.0, 0.03, 0.06}) {
+        const Eigen::Vector3d along =
+            grip.direction ? Eigen::Vector3d(way * *grip.direction) : Eigen::Vector3d::Zero();
+        clear = clear && body.clearance(grip.position + along) > 0.01;
+      }
+    }
+    if (!clear) continue;
+    problem.obstacles = {{body}};
+    return true;
+  }
+  return false;
+}
+
+// What converges is clear of the body, is pushed only, and keeps its first integral; hardly any
+// does not converge.
+TEST(Peg, RandomRodsRestOnBodiesOrSayWhyNot) {
+  int looked = 0;
+  int converged = 0;
+  int touching = 0;
+  for (const bool space : {false, true}) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+      std::mt19937 random(seed + 977 * static_cast<unsigned>(space));
+      const auto uniform = [&random](double low, double high) {
+        return low + (high - low) * std::generate_canonical<double, 53>(random);
+      };
+      const auto direction = [&]() -> Eigen::Vector3d {
+        const Eigen::Vector3d d(uniform(-1, 1), uniform(-1, 1), space ? uniform(-1, 1) : 0);
+        return d.normalized();
+      };
+      const double gamma = std::pow(10, uniform(0, 4));
+      Problem problem = heavy_cantilever(gamma, 0);
+      problem.grips[0].direction = direction();
+      if (random() % 2 == 0) {
+        problem.grips.push_back({1, uniform(0.3, 0.9) * direction()});
+        if (random() % 2 == 0) problem.grips[1].direction = direction();
+      }
+      if (!put_in_the_way(random, space, problem)) continue;
+      SCOPED_TRACE("seed " + std::to_string(seed) + (space ? " in space" : " in the plane"));
+      ++looked;
+      const Equilibrium rod = solve_energy(problem, {.time_limit = 20});
+      if (rod.status != SolveStatus::converged) {
+        EXPECT_FALSE(succeeded(rod.status)) << rod.message;
+        continue;
+      }
+      ++converged;
+      touching += rod.contacts.empty() ? 0 : 1;
+      const Body& body = problem.obstacles[0].body;
+      const Samples dense = rod.sample(equal_arc_lengths(1, 7919));
+      EXPECT_GT(body.clearances(dense.points).minCoeff(), -1e-8);
+      for (const ContactPart& contact : rod.contacts) {
+        EXPECT_GE(contact.begin_force, -1e-6 * (1 + gamma));
+        EXPECT_GE(contact.end_force, -1e-6 * (1 + gamma));
+        const Samples there =
+            rod.sample(std::array{contact.begin, (contact.begin + contact.end) / 2, contact.end});
+        EXPECT_LT(body.clearances(there.points).cwiseAbs().maxCoeff(), 1e-8);
+        if (contact.kind == ContactKind::lying) continue;
+        const Eigen::Vector3d normal = body.gap(there.points.col(0)).gradient;
+        EXPECT_NEAR(contact.force.dot(normal), contact.force.norm(), 1e-9 * (1 + gamma));
+      }
+      const std::array<double, 2> integral = ends_of_first_integral(problem, rod);
+      double size = 1 + gamma;
+      for (const Reaction& grip : rod.grips) size += grip.force.norm();
+      EXPECT_NEAR(integral[0], integral[1], 1e-7 * size);
+    }
+  }
+  EXPECT_GE(looked, 30);
+  EXPECT_GE(converged, looked - 1);
+  EXPECT_GE(touching, converged - 4);
+}
+
+// An obstacle that yields less and less is another solver's way to the same shape.
+TEST(Peg, StifferAndStifferOnesLeadToTheRigidOne) {
+  Problem problem = heavy_cantilever(100, 0);
+  problem.obstacles = {{Body::sphere({0.14, -0.1, 0.01}, 0.08)}};
+  const Equilibrium rigid = solve_energy(problem);
+  ASSERT_EQ(rigid.status, SolveStatus::converged) << rigid.message;
+  double last = 4;
+  for (const double stiffness : {1e5, 1e6, 1e7}) {
+    problem.obstacles[0].stiffness = stiffness;
+    const Equilibrium soft = solve_energy(problem);
+    ASSERT_TRUE(succeeded(soft.status)) << soft.message;
+    const double below = rigid.energy.total() - soft.energy.total();
+    EXPECT_GT(below, 0);
+    EXPECT_LT(below, last / 3);
+    last = below;
+  }
+  EXPECT_LT(last, 0.1);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
