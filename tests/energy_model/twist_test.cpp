@@ -12,6 +12,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
+#include "problems.hpp"
 #include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {
@@ -279,6 +280,27 @@ TEST(Twist, IsRefusedWhereItMeansNothing) {
   problem = turned_rod(0.8, 1, 0);
   problem.grips.back().frame->d1 = Eigen::Vector3d(2, 0, 0);
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
+}
+
+// A roll counts from the rod without twist: a shape to start from has another one.
+TEST(Twist, StartedFromAnotherRollItMeetsItsOwn) {
+  Problem problem = test::two_clamps(5, 0.7);
+  problem.torsional_stiffness = 0.8;
+  for (Grip& grip : problem.grips) grip.frame.emplace();
+  const auto solved = [&problem](double roll, const Equilibrium* start) {
+    problem.grips[1].frame->roll = roll;
+    const Equilibrium rod = solve_energy(problem, {.start = start});
+    EXPECT_EQ(rod.status, SolveStatus::converged) << rod.message;
+    return rod;
+  };
+  const Equilibrium first = solved(1, nullptr);
+  for (const double roll : {1.01, 1.3, 0.6}) {
+    const Equilibrium searched = solved(roll, nullptr);
+    const Equilibrium started = solved(roll, &first);
+    EXPECT_NEAR(started.twists.at(0).angle, searched.twists.at(0).angle, 1e-8);
+    EXPECT_NEAR(started.energy.total(), searched.energy.total(), 1e-9);
+    EXPECT_GT(std::abs(started.twists.at(0).angle - first.twists.at(0).angle), 1e-3);
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "command/commands.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/explanation.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_verdict.hpp"
 #include "format/json.hpp"
@@ -27,6 +28,7 @@ struct CheckOptions {
   std::string measure = "rms";
   std::optional<double> min_seen;
   bool no_modulus = false;
+  bool no_explanation = false;
   ShapeOptions shapes;
   SceneOptions overrides;
   OutputOptions output;
@@ -70,13 +72,21 @@ void run(const CheckOptions& options) {
     if (options.min_seen) verdict->tolerance.least_seen_share = *options.min_seen;
   }
   report.pose = options.shapes.pose();
-  report.check = compare::check_shape(
-      report.scene, shape,
-      {.pose = report.pose,
-       .arc_lengths = options.shapes.arc_lengths(),
-       .modulus = options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes,
-       .solve = options.overrides.solve()});
-  if (verdict) verdict->judgement = compare::judge(report.check, verdict->tolerance);
+  const compare::ShapeCheckOptions check_options = {
+      .pose = report.pose,
+      .arc_lengths = options.shapes.arc_lengths(),
+      .modulus = options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes,
+      .solve = options.overrides.solve()};
+  report.check = compare::check_shape(report.scene, shape, check_options);
+  if (verdict) {
+    verdict->judgement = compare::judge(report.check, verdict->tolerance);
+    if (!verdict->judgement.pass && !options.no_explanation) {
+      report.explanations =
+          compare::explain_shape(report.scene, shape, report.check, check_options);
+      verdict->judgement =
+          compare::judge_explained(report.check, verdict->tolerance, report.explanations);
+    }
+  }
   report.unit_hint = options.shapes.unit_hint(report.check.polyline_length_m, report.scene.length);
   report.file = options.output.file;
   write_output(options.output, {.text = [&] { return shape_check_text(report); },
@@ -110,6 +120,8 @@ void add_check(CLI::App& app) {
           "what is missing counts, and less than half never passes")
       ->transform(share_of_length());
   command->add_flag("--no-modulus", options->no_modulus, "leave E*/E out");
+  command->add_flag("--no-explanation", options->no_explanation,
+                    "do not look for what would make a shape right that fails");
   options->shapes.add_to(*command, ChordLengths::offered);
   options->overrides.add_solvers_to(*command);
   add_output_options(*command, options->output);

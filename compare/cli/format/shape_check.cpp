@@ -1,5 +1,6 @@
 #include "format/shape_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -86,6 +87,14 @@ std::string shape_check_text(const ShapeCheckReport& report) {
   }
   add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
   add_state(out, c.state, scene.length, "the shape");
+  constexpr std::size_t most_explanations = 3;
+  for (std::size_t i = 0; i < std::min(most_explanations, report.explanations.size()); ++i) {
+    const compare::Explanation& explanation = report.explanations[i];
+    append(out, "  {}  RMS {:.4g} mm if {}{}\n", i == 0 ? "explained by  " : "              ",
+           explanation.rms_m * 1e3,
+           explanation.kind == compare::ExplanationKind::discretisation ? "it is " : "",
+           explanation.cause);
+  }
   if (verdict) {
     append(out, "  verdict         {}: {}\n",
            verdict_word(verdict->text(), verdict->judgement.pass, report.file),
@@ -131,6 +140,13 @@ Json shape_check_json(const ShapeCheckReport& report) {
     result["judged_m"] = verdict->judgement.judged_m;
     result["verdict"] = verdict->text();
     result["reason"] = verdict->judgement.reason;
+  }
+  result["explanations"] = Json::array();
+  for (const compare::Explanation& explanation : report.explanations) {
+    result["explanations"].push_back({{"cause", explanation.cause},
+                                      {"kind", compare::to_string(explanation.kind)},
+                                      {"numbers", explanation.numbers},
+                                      {"rms_m", explanation.rms_m}});
   }
   result["state"] = to_json(c.state);
   result["arc_length_m"] = s;

@@ -2,8 +2,10 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dlo/compare/alignment.hpp"
+#include "dlo/compare/explanation.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_verdict.hpp"
@@ -24,6 +26,8 @@ struct ShapeCheckReport {
   compare::Scene scene;
   compare::ShapeCheck check;
   std::optional<Verdict> verdict;  ///< without a tolerance none
+  /// Of a shape that fails, the best first.
+  std::vector<compare::Explanation> explanations = {};
   compare::PoseFreedom pose = compare::PoseFreedom::known;
   std::string unit_hint;  ///< where the check itself has none
   std::string file;       ///< of the text; empty: standard output, which may be a terminal

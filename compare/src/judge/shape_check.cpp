@@ -82,31 +82,6 @@ Deviation measured_deviation(const Scene& scene, const Alignment& alignment,
   return result;
 }
 
-/// What the rod's missing ends add: their distance from the outermost points.
-void add_missing_ends(ShapeCheck& check, const Reference& reference) {
-  const std::vector<double>& s = check.reference.arc_length;
-  const Eigen::Matrix3Xd& points = check.alignment.shape.points;
-  const double length = check.length_m;
-  double covered = s.back() - s.front();
-  double sum = check.deviation.rms_m * check.deviation.rms_m * covered;
-  check.whole_max_m = check.deviation.max_m;
-  const auto add = [&](double from, double to, const Eigen::Vector3d& outermost) {
-    if (!(to > from)) return;
-    constexpr int samples = 65;
-    std::vector<double> missing = equal_arc_lengths(to - from, samples);
-    for (double& at : missing) at = std::min(at + from, to);
-    const Eigen::Matrix3Xd gaps = reference(missing).points.colwise() - outermost;
-    const double part = rms(missing, gaps);
-    sum += part * part * (to - from);
-    covered += to - from;
-    check.whole_max_m =
-        std::max(check.whole_max_m, std::sqrt(gaps.colwise().squaredNorm().maxCoeff()));
-  };
-  add(0, s.front(), points.leftCols<1>());
-  add(s.back(), length, points.rightCols<1>());
-  check.whole_rms_m = std::min(check.whole_max_m, std::sqrt(sum / covered));
-}
-
 /// What looks wrong with a polyline that is not as long as the rod under it.
 std::string hint_of(const ShapeCheck& check, const Measured& measured) {
   constexpr double least = 1e-3;  // of the length: what a person would see
@@ -179,13 +154,16 @@ ShapeCheck check_shape(const Scene& scene, const MeasuredShape& shape,
   const Measured measured = measure(alignment, energy.sample, scene.length);
   const std::vector<double>& s = measured.arc_length;
   result.reference = {s, measured.reference};
+  result.rod = energy;
   const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
   result.movement_m = straight ? rms(s, *straight - result.reference.points) : NAN;
   result.deviation =
       measured_deviation(scene, alignment, energy.sample, measured, result.movement_m);
   result.excess_m = measured.excess_at_start_m + measured.excess_at_end_m;
   result.between = parts_between(s, energy.sample, scene.length);
-  add_missing_ends(result, energy.sample);
+  const WholeRod whole = whole_of(measured, alignment, energy.sample, scene.length);
+  result.whole_rms_m = whole.rms_m;
+  result.whole_max_m = whole.max_m;
 
   const Eigen::Index worst = measured.worst;
   result.worst_position = alignment.shape.points.col(worst);

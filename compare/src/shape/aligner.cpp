@@ -250,13 +250,14 @@ Alignment Aligner::finished(const Placed& placed, bool reversed, const Curve& cu
 }
 
 Alignment Aligner::align(const Curve& curve) const {
-  const Placed along = best_place(ways_[0], curve);
-  const Placed against = best_place(ways_[1], curve);
+  // With arc lengths in order, which points that run the other way find only out of order.
+  Alignment along = finished(best_place(ways_[0], curve), false, curve);
+  Alignment against = finished(best_place(ways_[1], curve), true, curve);
   // Of two ways that are as good, along.
-  const bool reversed = against.mean_square < (1 - 1e-9) * along.mean_square;
-  Alignment result = finished(reversed ? against : along, reversed, curve);
-  result.other_rms_m = std::sqrt(reversed ? along.mean_square : against.mean_square);
-  return result;
+  const double rounding = 1e-12 * length_;
+  if (against.rms_m + rounding < (1 - 1e-9) * along.rms_m) std::swap(along, against);
+  along.other_rms_m = against.rms_m;
+  return along;
 }
 
 Alignment Aligner::align_near(const Curve& curve, const Alignment& previous) const {

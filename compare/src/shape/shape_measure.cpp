@@ -111,6 +111,31 @@ Measured measure(const Alignment& alignment, const Reference& reference, double 
   return result;
 }
 
+WholeRod whole_of(const Measured& measured, const Alignment& alignment, const Reference& reference,
+                  double length) {
+  const std::vector<double>& s = measured.arc_length;
+  const Eigen::Matrix3Xd& points = alignment.shape.points;
+  double covered = s.back() - s.front();
+  double sum = measured.rms_m * measured.rms_m * covered;
+  WholeRod whole;
+  whole.max_m = measured.max_m;
+  const auto add = [&](double from, double to, const Eigen::Vector3d& outermost) {
+    if (!(to > from)) return;
+    constexpr int samples = 65;
+    std::vector<double> missing = equal_arc_lengths(to - from, samples);
+    for (double& at : missing) at = std::min(at + from, to);
+    const Eigen::Matrix3Xd gaps = reference(missing).points.colwise() - outermost;
+    const double part = rms(missing, gaps);
+    sum += part * part * (to - from);
+    covered += to - from;
+    whole.max_m = std::max(whole.max_m, std::sqrt(gaps.colwise().squaredNorm().maxCoeff()));
+  };
+  add(0, s.front(), points.leftCols<1>());
+  add(s.back(), length, points.rightCols<1>());
+  whole.rms_m = std::min(whole.max_m, std::sqrt(sum / covered));
+  return whole;
+}
+
 std::vector<RodPart> parts_between(const std::vector<double>& s, const Reference& reference,
                                    double length) {
   constexpr double least_part = 1e-3;

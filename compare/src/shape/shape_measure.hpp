@@ -35,6 +35,16 @@ struct Measured {
 [[nodiscard]] Measured measure(const Alignment& alignment, const Reference& reference,
                                double length);
 
+/// Distances of a file as the whole rod.
+struct WholeRod {
+  double rms_m = 0;
+  double max_m = 0;
+};
+
+/// What is missing of the rod at an end counts with its distance from the outermost point.
+[[nodiscard]] WholeRod whole_of(const Measured& measured, const Alignment& alignment,
+                                const Reference& reference, double length);
+
 /// Parts of the rod between neighbouring points, those longer than 1e-3 l, and how well points
 /// there tell the rod between: the reference at the middle against the cubic through the
 /// reference at the four points around (fewer at the ends; none that are nearer to the gap than

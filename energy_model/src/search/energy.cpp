@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -176,9 +177,11 @@ class EnergySolver::State {
       to.placed.span.planar = false;
       return to;
     };
-    if (const TwistedPart* part = known_part(placed, problem.length); part && !options.all) {
-      PlacedSolution to = from_shape(field_of(*options_.start, placed, problem.length), part->angle,
-                                     known_end_d1(held, placed.span));
+    const TwistedPart* part = options.all ? nullptr : known_part(placed, problem.length);
+    const std::optional<Eigen::Vector3d> known_d1 = known_end_d1(held, placed.span);
+    if (part && known_d1) {
+      PlacedSolution to =
+          from_shape(field_of(*options_.start, placed, problem.length), part->angle, known_d1);
       if (to.solution.is_equilibrium()) return one(std::move(to));
     }
     const Remembered* last = warm && memory.untwisted.model ? &memory.untwisted : nullptr;
@@ -186,6 +189,13 @@ class EnergySolver::State {
     remember(untwisted.front(), memory.untwisted);
     if (!succeeded(untwisted.front().solution.status)) return untwisted;
     const EndFrame frame = end_frame(held, untwisted_shape(untwisted.front().solution, workspace_));
+    // A roll counts from the rod without twist, of which the shape to start from knows nothing.
+    if (part && !known_d1 && std::abs(frame.twist - part->angle) < std::numbers::pi) {
+      PlacedSolution to =
+          from_shape(field_of(*options_.start, placed, problem.length), part->angle, frame.d1);
+      to.solution.evaluations += untwisted.front().solution.evaluations;
+      if (to.solution.is_equilibrium()) return one(std::move(to));
+    }
     const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
     if (warm && memory.twisted.model && std::abs(turned) < largest_followed_turn && !options.all) {
       const auto field = [&placed, &memory](const Eigen::VectorXd& s) {

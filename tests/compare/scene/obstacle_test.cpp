@@ -11,17 +11,17 @@
 namespace dlo::compare {
 namespace {
 
-const std::string rod =
+const std::string over_a_rod =
     "[rod]\nlength = 1\ndiameter = 0.02\nmaterial = \"silicone\"\n"
     "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n[[obstacle]]\n";
 
 double clearance(const std::string& keys, const Eigen::Vector3d& point) {
-  return parse_scene(rod + keys, "my.toml").obstacles.at(0).body.clearance(point);
+  return parse_scene(over_a_rod + keys, "my.toml").obstacles.at(0).body.clearance(point);
 }
 
-void expect_message(const std::string& keys, const std::vector<std::string>& parts) {
+void expect_refused(const std::string& keys, const std::vector<std::string>& parts) {
   try {
-    (void)parse_scene(rod + keys, "my.toml");
+    (void)parse_scene(over_a_rod + keys, "my.toml");
     ADD_FAILURE() << keys << " was read";
   } catch (const InputError& error) {
     for (const std::string& part : parts) {
@@ -56,23 +56,23 @@ TEST(SceneObstacle, HasTheBodyThatTheFileSays) {
 }
 
 TEST(SceneObstacle, IsRefusedWithWhatIsAllowed) {
-  expect_message("shape = \"cone\"\npoint = [0, -1, 0]\n",
+  expect_refused("shape = \"cone\"\npoint = [0, -1, 0]\n",
                  {"my.toml:10: obstacle.shape", "'cone'", "cylinder", "box"});
-  expect_message("shape = \"sphere\"\npoint = [0, -1, 0]\n", {"obstacle.radius", "missing"});
-  expect_message("shape = \"sphere\"\npoint = [0, -1, 0]\nradius = -1\n",
+  expect_refused("shape = \"sphere\"\npoint = [0, -1, 0]\n", {"obstacle.radius", "missing"});
+  expect_refused("shape = \"sphere\"\npoint = [0, -1, 0]\nradius = -1\n",
                  {"my.toml:12: obstacle.radius", "> 0"});
-  expect_message("shape = \"sphere\"\npoint = [0, -1, 0]\nradius = 1\nnormal = [0, 1, 0]\n",
+  expect_refused("shape = \"sphere\"\npoint = [0, -1, 0]\nradius = 1\nnormal = [0, 1, 0]\n",
                  {"my.toml:13: obstacle.normal"});
-  expect_message("shape = \"sphere\"\npoint = [0, -0.1, 0]\nradius = 0.2\n",
+  expect_refused("shape = \"sphere\"\npoint = [0, -0.1, 0]\nradius = 0.2\n",
                  {"gripper.position", "within an obstacle"});
-  expect_message("shape = \"cylinder\"\npoint = [0, -1, 0]\naxis = [0, 0, 0]\nradius = 1\n",
+  expect_refused("shape = \"cylinder\"\npoint = [0, -1, 0]\naxis = [0, 0, 0]\nradius = 1\n",
                  {"obstacle.axis", "zero vector"});
   const std::string box = "shape = \"box\"\npoint = [0, -1, 0]\n";
-  expect_message(box + "size = [1, 0, 1]\n", {"my.toml:12: obstacle.size", "> 0"});
-  expect_message(box + "size = [1, 1, 1]\nradius = 0.6\n", {"my.toml:13: obstacle.radius", "0.5"});
-  expect_message(box + "size = [1, 1, 1]\naxis = [1, 1, 0]\n",
+  expect_refused(box + "size = [1, 0, 1]\n", {"my.toml:12: obstacle.size", "> 0"});
+  expect_refused(box + "size = [1, 1, 1]\nradius = 0.6\n", {"my.toml:13: obstacle.radius", "0.5"});
+  expect_refused(box + "size = [1, 1, 1]\naxis = [1, 1, 0]\n",
                  {"my.toml:13: obstacle.axis", "right angles"});
-  expect_message(box + "size = [1, 1, 1]\ntouches = \"axis\"\n",
+  expect_refused(box + "size = [1, 1, 1]\ntouches = \"axis\"\n",
                  {"my.toml:13: obstacle.touches", "sharp", "radius"});
 }
 

@@ -50,6 +50,22 @@ TEST(Alignment, RecoversARandomRigidMotionOfSevenUnevenPointsFromEitherEnd) {
   }
 }
 
+// Whichever way a shape is looked at, its points fit where they are; against its order they do not.
+TEST(Alignment, AShiftedShapeIsNotReversedByRounding) {
+  const Scene scene = heavy_scene(5, 20);
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
+  for (const double shift : {0.015, 0.2, -0.01, 1.0 / 3}) {
+    MeasuredShape shape = exact_shape(scene, equal_arc_lengths(1, 41));
+    shape.arc_length.clear();
+    shape.points.row(1).array() += shift;
+    const Alignment found = align(shape, energy.sample, 1, {.pose = PoseFreedom::translation});
+    EXPECT_FALSE(found.reversed) << shift;
+    EXPECT_LT(found.rms_m, 1e-6) << shift;
+    EXPECT_NEAR(found.shape.arc_length.back(), 1, 1e-3) << shift;
+    EXPECT_GT(found.other_rms_m, 0.1) << shift;
+  }
+}
+
 TEST(Alignment, RecoversTheMotionOfAWholeRodToTheNoise) {
   std::mt19937 random(2);
   for (const double gamma : {0.5, 5.0, 100.0}) {

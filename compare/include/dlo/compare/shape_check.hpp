@@ -11,6 +11,7 @@
 #include "dlo/compare/effective_modulus.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
 
 namespace dlo::compare {
 
@@ -24,13 +25,14 @@ struct ShapeCheckOptions {
 
 /// A measured shape against the energy model of its scene.
 struct ShapeCheck {
-  std::string scene;    ///< its name
-  std::string file;     ///< the shape's name
-  double gamma = 0;     ///< w l^3 / (EI) [-]
-  double length_m = 0;  ///< l of the rod
-  Alignment alignment;  ///< the shape as laid on the reference
-  ComparedState state;  ///< the stable one that the shape comes nearest to
-  Shape reference;      ///< the energy model at the alignment's arc lengths
+  std::string scene;              ///< its name
+  std::string file;               ///< the shape's name
+  double gamma = 0;               ///< w l^3 / (EI) [-]
+  double length_m = 0;            ///< l of the rod
+  Alignment alignment;            ///< the shape as laid on the reference
+  ComparedState state;            ///< the stable one that the shape comes nearest to
+  Shape reference;                ///< the energy model at the alignment's arc lengths
+  energy_model::Equilibrium rod;  ///< all of it
   /// Of all points from the reference, each with the longer of the rod's arc length and the
   /// polyline's own between its neighbours; parts of the rod that are missing at the ends do not
   /// count. RMS over length is of the whole rod. For `nearest` distances are from the nearest

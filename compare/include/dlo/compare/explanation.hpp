@@ -1,0 +1,63 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape_check.hpp"
+#include "dlo/compare/shape_file.hpp"
+#include "dlo/compare/shape_verdict.hpp"
+
+namespace dlo::compare {
+
+/// What an explanation is about.
+enum class ExplanationKind {
+  file,            ///< how the file says the shape
+  discretisation,  ///< a chain of hinges instead of a rod
+  scene,           ///< another scene than the one given
+};
+
+/// In words, for files.
+[[nodiscard]] constexpr const char* to_string(ExplanationKind kind) {
+  switch (kind) {
+    case ExplanationKind::file:
+      return "file";
+    case ExplanationKind::discretisation:
+      return "discretisation";
+    case ExplanationKind::scene:
+      break;
+  }
+  return "scene";
+}
+
+/// What may be wrong with a shape, or with the scene that it is held against.
+struct Explanation {
+  std::string cause;                              ///< a clause: "gripper 1 is turned by 5 deg"
+  double rms_m = 0;                               ///< of the whole rod, were it so
+  int numbers = 0;                                ///< that were fitted to the shape
+  ExplanationKind kind = ExplanationKind::scene;  ///< what it is about
+};
+
+/// Looks for a single thing that would make a shape right: of the file (its unit, its axes, points
+/// that leave the rod, what it is stretched by, noise), of its simulator (a chain of hinges instead
+/// of a rod) or of the scene (stiffness or weight, the direction of gravity, the length, the place
+/// and direction of a gripper, natural curvature, twist). Each is fitted to the shape in the state
+/// that it was compared with, by Gauss-Newton steps whose derivatives are differences between
+/// solved rods.
+/// @param check  of the same scene and shape
+/// @return those that leave no more than half of the deviation, the best first: one that fits with
+///         fewer numbers before one that fits hardly better with more; empty where none does
+[[nodiscard]] std::vector<Explanation> explain_shape(const Scene& scene, const MeasuredShape& shape,
+                                                     const ShapeCheck& check,
+                                                     const ShapeCheckOptions& options);
+
+/// Share of the tolerance within which a chain's points have to be to be right for a chain.
+inline constexpr double right_chain = 0.25;
+
+/// As judge(), with the best explanation named where the shape fails. A shape that is right for a
+/// chain of its own points passes: all that it is away from the rod is discretisation.
+[[nodiscard]] ShapeJudgement judge_explained(const ShapeCheck& check,
+                                             const ShapeTolerance& tolerance,
+                                             const std::vector<Explanation>& explanations);
+
+}  // namespace dlo::compare

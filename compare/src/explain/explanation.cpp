@@ -1,0 +1,268 @@
+#include "dlo/compare/explanation.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
+#include "explain/file_causes.hpp"
+#include "explain/own_polygon.hpp"
+#include "explain/scene_causes.hpp"
+#include "shape/aligner.hpp"
+#include "shape/shape_measure.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// What an explanation may leave of the deviation.
+constexpr double most_left = 0.5;
+/// A number more has to take away this share of what is left.
+constexpr double worth_of_a_number = 0.5;
+/// What is nearer than this share of the deviation, or of the length, is the same.
+constexpr double same_share = 0.02;
+constexpr double same_length = 1e-5;
+/// Deviation beyond which a shape is just another one, in lengths.
+constexpr double another_shape = 0.05;
+constexpr int most_steps = 10;
+/// What a step has to leave less of to be gone, and to be followed by another one.
+constexpr double hardly_better = 0.95;
+
+class Search {
+ public:
+  Search(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
+         const ShapeCheckOptions& options)
+      : scene_(scene), shape_(shape), check_(check), options_(options) {
+    align_.pose = options.pose;
+    align_.arc_lengths = options.arc_lengths;
+    align_.up = up_of(scene, options.pose);
+  }
+
+  [[nodiscard]] std::vector<Explanation> run() {
+    const energy_model::Equilibrium& rod = check_.rod;
+    before_ = check_.whole_rms_m;
+    if (options_.pose == PoseFreedom::known) {
+      for (const FileCause& cause : file_causes(scene_, shape_, check_)) look_at(cause, rod);
+    }
+    look_at_noise();
+    if (!is_found(0)) look_at_chains(Springs::as_the_rod);
+    for (const SceneCause& cause :
+         scene_causes(scene_, check_.polyline_length_m, lies_in_plane())) {
+      if (!is_found(static_cast<int>(cause.start.size())) && !is_over()) fit(cause, rod);
+    }
+    if (!is_found(1)) look_at_chains(Springs::fitted);
+    std::stable_sort(found_.begin(), found_.end(),
+                     [this](const auto& a, const auto& b) { return price(a) < price(b); });
+    return std::move(found_);
+  }
+
+ private:
+  [[nodiscard]] bool is_over() const {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
+    return spent.count() > options_.solve.time_limit;
+  }
+
+  /// Whether nothing with so many numbers could be better than what has been found.
+  [[nodiscard]] bool is_found(int numbers) const {
+    return best_ && price(*best_) <= price({"", 0, numbers, ExplanationKind::scene});
+  }
+
+  void look_at_chains(Springs springs) {
+    for (const OwnPolygon& chain : own_polygons(scene_, check_.alignment.shape, springs)) {
+      if (springs == Springs::as_the_rod) {
+        add({chain.words, chain.rms_m, 0, ExplanationKind::discretisation});
+      } else {
+        add({fmt::format("it is {} whose springs are {:.3g} times EI/h", chain.words,
+                         chain.stiffness),
+             chain.rms_m, 1, ExplanationKind::scene});
+      }
+    }
+  }
+
+  [[nodiscard]] bool lies_in_plane() const {
+    const std::optional<Eigen::Vector3d> normal = scene_.plane_normal();
+    if (!normal) return false;
+    const Eigen::RowVectorXd aside =
+        normal->transpose() *
+        (check_.alignment.shape.points.colwise() - scene_.grippers.front().position);
+    return aside.cwiseAbs().maxCoeff() < same_share * before_;
+  }
+
+  [[nodiscard]] double price(const Explanation& explanation) const {
+    const double same = std::max(same_share * std::min(before_, another_shape * scene_.length),
+                                 same_length * scene_.length);
+    return std::max(explanation.rms_m, same) *
+           std::pow(1 / worth_of_a_number, std::max(0, explanation.numbers));
+  }
+
+  void add(Explanation explanation) {
+    if (!(explanation.rms_m <= most_left * before_)) return;
+    if (!best_ || price(explanation) < price(*best_)) best_ = explanation;
+    found_.push_back(std::move(explanation));
+  }
+
+  void look_at(const FileCause& cause, const energy_model::Equilibrium& rod) {
+    AlignOptions options = align_;
+    options.pose = cause.pose;
+    try {
+      const Aligner aligner(cause.shape, scene_.length, options);
+      const Alignment laid = aligner.align(Curve(rod.sample, scene_.length));
+      const Measured measured = measure(laid, rod.sample, scene_.length);
+      Explanation explanation{cause.words, measured.rms_m, cause.numbers, ExplanationKind::file};
+      // What points that are left out are blamed for has to be their own.
+      if (cause.part && cause.shape.points.cols() < shape_.points.cols() &&
+          !(measured.rms_m <= most_left * check_.deviation.rms_m)) {
+        return;
+      }
+      if (!cause.part) {
+        explanation.rms_m = whole_of(measured, laid, rod.sample, scene_.length).rms_m;
+      }
+      if (cause.pose == PoseFreedom::translation) {
+        const Eigen::Vector3d way = laid.pose.translation * 1e3;
+        explanation.cause +=
+            fmt::format(", [{:.4g}, {:.4g}, {:.4g}] mm away", way.x(), way.y(), way.z());
+      }
+      add(std::move(explanation));
+    } catch (const InputError&) {
+      // A file that is none, said in this way.
+    }
+  }
+
+  /// Of noise, neighbours have nothing in common: little is left of their mean.
+  void look_at_noise() {
+    const Shape& shape = check_.alignment.shape;
+    const Eigen::Matrix3Xd gaps = shape.points - check_.rod.sample(shape.arc_length).points;
+    const Eigen::Index count = gaps.cols();
+    const Eigen::Index around = std::max<Eigen::Index>(2, count / 10);
+    if (count < 4 * around) return;
+    Eigen::Matrix3Xd common(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const Eigen::Index first = std::max<Eigen::Index>(0, i - around);
+      const Eigen::Index last = std::min(count - 1, i + around);
+      common.col(i) = gaps.middleCols(first, last - first + 1).rowwise().mean();
+    }
+    const double noise = std::sqrt((gaps - common).colwise().squaredNorm().mean());
+    const double left = std::sqrt(common.colwise().squaredNorm().mean());
+    add({fmt::format("there were no noise from point to point, {:.3g} mm RMS", noise * 1e3), left,
+         0, ExplanationKind::file});
+  }
+
+  /// A scene's rod against the file.
+  struct Trial {
+    energy_model::Equilibrium rod;
+    double rms = std::numeric_limits<double>::infinity();
+    Eigen::VectorXd residual;  // weighted, of all points
+  };
+
+  [[nodiscard]] std::optional<Trial> attempt(const Scene& scene,
+                                             const energy_model::Equilibrium* start) const {
+    SolveOptions solve = options_.solve;
+    solve.start = start;
+    try {
+      Trial trial;
+      trial.rod = solve_reference(scene, Model::energy, solve);
+      const Aligner aligner(shape_, scene.length, align_);
+      const Alignment laid = aligner.align(Curve(trial.rod.sample, scene.length));
+      const Measured measured = measure(laid, trial.rod.sample, scene.length);
+      trial.rms = whole_of(measured, laid, trial.rod.sample, scene.length).rms_m;
+      const Eigen::VectorXd weights = point_weights(measured.arc_length, laid.shape.points);
+      const Eigen::Matrix3Xd gaps =
+          (laid.shape.points - measured.reference) * weights.cwiseSqrt().asDiagonal();
+      trial.residual = gaps.reshaped();
+      return trial;
+    } catch (const ConvergenceError&) {
+      return std::nullopt;
+    } catch (const InputError&) {
+      return std::nullopt;
+    }
+  }
+
+  void fit(const SceneCause& cause, const energy_model::Equilibrium& rod) {
+    Eigen::VectorXd p = cause.start;
+    const bool from_here = p.isZero();
+    std::optional<Trial> best = attempt(cause.changed(p), from_here ? &rod : nullptr);
+    for (int step = 0; best && step < most_steps && !is_over(); ++step) {
+      Eigen::MatrixXd jacobian(best->residual.size(), p.size());
+      for (Eigen::Index i = 0; i < p.size(); ++i) {
+        Eigen::VectorXd moved = p;
+        moved[i] += cause.stride[i];
+        const std::optional<Trial> beside = attempt(cause.changed(moved), &best->rod);
+        if (!beside) return add_fit(cause, p, *best);
+        jacobian.col(i) = (beside->residual - best->residual) / cause.stride[i];
+      }
+      Eigen::VectorXd way = -jacobian.completeOrthogonalDecomposition().solve(best->residual);
+      const double longest = way.cwiseAbs().maxCoeff();
+      if (!std::isfinite(longest)) break;
+      way *= std::min(1.0, cause.longest_step / longest);
+      // What hardly changes the shape would have to go far.
+      const double expected = (best->residual + jacobian * way).norm();
+      if (!(expected < hardly_better * best->residual.norm())) break;
+      bool better = false;
+      for (double share = 1; share > 0.05 && !better; share /= 2) {
+        std::optional<Trial> next = attempt(cause.changed(p + share * way), &best->rod);
+        if (!next || !(next->rms < best->rms)) continue;
+        better = true;
+        const bool done = next->rms > hardly_better * best->rms;
+        p += share * way;
+        best = std::move(next);
+        if (done) return add_fit(cause, p, *best);
+      }
+      if (!better) break;
+    }
+    if (best) add_fit(cause, p, *best);
+  }
+
+  void add_fit(const SceneCause& cause, const Eigen::VectorXd& p, const Trial& best) {
+    add({cause.words(p), best.rms, static_cast<int>(p.size()), ExplanationKind::scene});
+  }
+
+  const Scene& scene_;
+  const MeasuredShape& shape_;
+  const ShapeCheck& check_;
+  const ShapeCheckOptions& options_;
+  AlignOptions align_;
+  double before_ = 0;
+  std::vector<Explanation> found_;
+  std::optional<Explanation> best_;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace
+
+std::vector<Explanation> explain_shape(const Scene& scene, const MeasuredShape& shape,
+                                       const ShapeCheck& check, const ShapeCheckOptions& options) {
+  return Search(scene, shape, check, options).run();
+}
+
+ShapeJudgement judge_explained(const ShapeCheck& check, const ShapeTolerance& tolerance,
+                               const std::vector<Explanation>& explanations) {
+  ShapeJudgement result = judge(check, tolerance);
+  if (result.pass || explanations.empty()) return result;
+  const Explanation& best = explanations.front();
+  const auto is_chain = [&](const Explanation& explanation) {
+    return explanation.kind == ExplanationKind::discretisation &&
+           explanation.rms_m <= right_chain * tolerance.allowed_m;
+  };
+  const auto chain = std::find_if(explanations.begin(), explanations.end(), is_chain);
+  if (chain != explanations.end()) {
+    result.reason = fmt::format(
+        "right for {}, {:.3g} mm away (RMS); the rod itself is {:.4g} mm = {:.3g} % of l away, all "
+        "of "
+        "it discretisation",
+        chain->cause, chain->rms_m * 1e3, result.judged_m * 1e3,
+        result.judged_m / check.length_m * 100);
+    result.pass = true;
+    return result;
+  }
+  result.reason += fmt::format(
+      "; it would be {:.4g} mm (RMS) if {}", best.rms_m * 1e3,
+      best.kind == ExplanationKind::discretisation ? "it were " + best.cause : best.cause);
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,221 @@
+#include "explain/own_polygon.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/energy_model/polygon.hpp"
+#include "scene/reach.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Segments that a chain may have to be told from the rod itself.
+constexpr Eigen::Index most_segments = 200;
+
+/// From a shape that is hardly that of the chain it would take more.
+constexpr int most_evaluations = 2000;
+
+/// How clamps hold a chain.
+enum class Convention {
+  hinge,   ///< a hinge where the clamp is
+  welded,  ///< the first segment does not turn
+  middle,  ///< the clamp is in the middle of a segment, of which the file has one half
+};
+
+std::string words_of(Convention convention, Eigen::Index segments) {
+  switch (convention) {
+    case Convention::hinge:
+      return fmt::format("a chain of {} segments with a hinge at the clamp", segments);
+    case Convention::welded:
+      return fmt::format("a chain of {} segments, those at clamps welded to them", segments);
+    case Convention::middle:
+      break;
+  }
+  return fmt::format("a chain of {} segments, clamped in the middle of a segment", segments);
+}
+
+/// Lengths of the segments as shares of the rod.
+Eigen::VectorXd rest_lengths(const Eigen::Matrix3Xd& points, double length) {
+  const Eigen::Index n = points.cols() - 1;
+  const Eigen::VectorXd chords = (points.rightCols(n) - points.leftCols(n)).colwise().norm();
+  return chords * (length / chords.sum());
+}
+
+class Chain {
+ public:
+  Chain(const Scene& scene, const Shape& shape, Convention convention)
+      : scene_(scene), points_(shape.points), convention_(convention) {
+    inner_ = rest_lengths(points_, scene.length);
+    s_.push_back(0);
+    for (const double L : inner_) s_.push_back(s_.back() + L);
+  }
+
+  /// Whether the chain is one of this scene.
+  [[nodiscard]] bool exists() {
+    if (!hold()) return false;
+    lay_out();
+    return true;
+  }
+
+  /// The file's points less its own at rest; nothing if it does not come to rest.
+  /// @param factor  of the springs
+  [[nodiscard]] std::optional<Eigen::Matrix3Xd> gaps(double factor) const {
+    energy_model::PolygonProblem problem = problem_;
+    problem.stiffness *= factor;
+    problem.stiffnesses *= factor;
+    energy_model::PolygonOptions options;
+    options.max_evaluations = most_evaluations;
+    options.in_stages = false;
+    const energy_model::PolygonResult rest = energy_model::solve_polygon(problem, start(), options);
+    if (!energy_model::succeeded(rest.status)) return std::nullopt;
+    return points_ - rest.points.middleCols(before_, points_.cols());
+  }
+
+  [[nodiscard]] double rms_of(const Eigen::Matrix3Xd& gaps) const { return rms(s_, gaps); }
+
+ private:
+  [[nodiscard]] std::optional<Eigen::Index> point_at(double at) const {
+    for (std::size_t i = 0; i < s_.size(); ++i) {
+      if (std::abs(s_[i] - at) < 1e-6 * scene_.length) return static_cast<Eigen::Index>(i);
+    }
+    return std::nullopt;
+  }
+
+  void hold_point(Eigen::Index point, const Eigen::Vector3d& position) {
+    problem_.held.push_back({point, position});
+  }
+
+  /// @return whether the grippers are at the file's points, clamps at its ends
+  [[nodiscard]] bool hold() {
+    const Eigen::Index n = inner_.size();
+    const Gripper* first = nullptr;
+    const Gripper* last = nullptr;
+    for (const Gripper& gripper : scene_.grippers) {
+      const std::optional<Eigen::Index> point = point_at(gripper.at);
+      if (!point) return false;
+      if (!gripper.direction) continue;
+      if (*point != 0 && *point != n) return false;
+      (*point == 0 ? first : last) = &gripper;
+    }
+    const bool hinged = convention_ == Convention::hinge;
+    before_ = first != nullptr && hinged ? 1 : 0;
+    after_ = last != nullptr && hinged ? 1 : 0;
+    for (const Gripper& gripper : scene_.grippers) {
+      hold_point(*point_at(gripper.at) + before_, gripper.position);
+    }
+    if (first != nullptr) {
+      const double way = hinged ? -inner_[0] : inner_[0];
+      hold_point(hinged ? 0 : 1, first->position + way * *first->direction);
+    }
+    if (last != nullptr) {
+      const double way = hinged ? inner_[n - 1] : -inner_[n - 1];
+      hold_point(hinged ? n + before_ + 1 : n - 1, last->position + way * *last->direction);
+    }
+    if (convention_ != Convention::middle) return true;
+    const auto is_half = [](double end, double beside) {
+      return std::abs(end / beside - 0.5) < 0.05;
+    };
+    return (first == nullptr || is_half(inner_[0], inner_[1])) &&
+           (last == nullptr || is_half(inner_[n - 1], inner_[n - 2]));
+  }
+
+  void lay_out() {
+    const Eigen::Index n = inner_.size();
+    problem_.rest_lengths.resize(n + before_ + after_);
+    problem_.rest_lengths << Eigen::VectorXd::Constant(before_, inner_[0]), inner_,
+        Eigen::VectorXd::Constant(after_, inner_[n - 1]);
+    const double stiffness = scene_.bending_stiffness();
+    const double l = scene_.length;
+    double force = stiffness / (l * l) + scene_.weight_per_length().norm() * l;
+    for (const PointLoad& load : scene_.loads) force += load.force.norm();
+    // Segments that do not stretch, but for a millionth.
+    problem_.stretch_stiffness = 1e6 * force;
+    problem_.stiffness = stiffness;
+    if (convention_ == Convention::middle) {
+      // The spring is that between two whole segments.
+      problem_.stiffnesses.setConstant(problem_.rest_lengths.size() - 1, stiffness);
+      problem_.stiffnesses[0] *= (inner_[0] + inner_[1]) / (2 * inner_[1]);
+      if (after_ == 0 && n > 2) {
+        problem_.stiffnesses[n - 2] *= (inner_[n - 1] + inner_[n - 2]) / (2 * inner_[n - 2]);
+      }
+    }
+    problem_.node_forces.setZero(3, n + 1 + before_ + after_);
+    for (Eigen::Index i = 0; i <= n; ++i) {
+      const double at = s_[static_cast<std::size_t>(i)];
+      const double begin = i == 0 ? 0 : at - inner_[i - 1] / 2;
+      const double end = i == n ? l : at + inner_[i] / 2;
+      problem_.node_forces.col(i + before_) = scene_.weight_between(begin, std::min(l, end));
+    }
+    for (const PointLoad& load : scene_.loads) {
+      const auto nearest = std::min_element(s_.begin(), s_.end(), [&](double a, double b) {
+        return std::abs(a - load.at) < std::abs(b - load.at);
+      });
+      problem_.node_forces.col(nearest - s_.begin() + before_) += load.force;
+    }
+  }
+
+  [[nodiscard]] Eigen::Matrix3Xd start() const {
+    Eigen::Matrix3Xd start(3, points_.cols() + before_ + after_);
+    start.middleCols(before_, points_.cols()) = points_;
+    for (const energy_model::HeldPoint& held : problem_.held) start.col(held.point) = held.position;
+    return start;
+  }
+
+  const Scene& scene_;
+  const Eigen::Matrix3Xd& points_;
+  Convention convention_;
+  Eigen::VectorXd inner_;  // rest lengths of the file's own segments
+  std::vector<double> s_;  // of the file's points
+  energy_model::PolygonProblem problem_;
+  Eigen::Index before_ = 0, after_ = 0;  // points beyond the rod's ends
+};
+
+/// The springs that fit best, by Gauss-Newton steps along the logarithm of their stiffness.
+std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps,
+                                 const std::string& words) {
+  constexpr int most_steps = 10;
+  constexpr double stride = 0.01;
+  constexpr double found = 1e-4;
+  double log_factor = 0;
+  for (int step = 0; step < most_steps; ++step) {
+    const std::optional<Eigen::Matrix3Xd> beside = chain.gaps(std::exp(log_factor + stride));
+    if (!beside) return std::nullopt;
+    const Eigen::Matrix3Xd slope = (*beside - gaps) / stride;
+    const double way = std::clamp(-slope.cwiseProduct(gaps).sum() / slope.squaredNorm(), -1.0, 1.0);
+    std::optional<Eigen::Matrix3Xd> next = chain.gaps(std::exp(log_factor + way));
+    if (!next || !(chain.rms_of(*next) < chain.rms_of(gaps))) break;
+    log_factor += way;
+    gaps = std::move(*next);
+    if (std::abs(way) < found) break;
+  }
+  return OwnPolygon{words, chain.rms_of(gaps), std::exp(log_factor)};
+}
+
+}  // namespace
+
+std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Springs springs) {
+  const Eigen::Index segments = shape.points.cols() - 1;
+  const bool plain = scene.sections.empty() && !scene.has_material_directors() &&
+                     !scene.holds_twist() && obstacles_in_reach(scene).empty();
+  if (!plain || segments < 4 || segments > most_segments) return {};
+  std::vector<OwnPolygon> found;
+  for (const Convention convention : {Convention::hinge, Convention::welded, Convention::middle}) {
+    Chain chain(scene, shape, convention);
+    if (!chain.exists()) continue;
+    std::optional<Eigen::Matrix3Xd> gaps = chain.gaps(1);
+    if (!gaps) continue;
+    const std::string words = words_of(convention, segments);
+    if (springs == Springs::as_the_rod) {
+      found.push_back({words, chain.rms_of(*gaps)});
+    } else if (const auto other = fitted(chain, std::move(*gaps), words)) {
+      found.push_back(*other);
+    }
+  }
+  return found;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,202 @@
+#include "explain/scene_causes.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace dlo::compare {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+Eigen::VectorXd zeros(Eigen::Index count) { return Eigen::VectorXd::Zero(count); }
+
+bool is_pulled_by_weight_alone(const Scene& scene) {
+  return scene.loads.empty() && scene.weight_per_length().norm() > 0;
+}
+
+SceneCause stiffness(const Scene& scene) {
+  return {zeros(1), Eigen::VectorXd::Constant(1, 0.02), 1.5,
+          [scene](const Eigen::VectorXd& p) {
+            Scene changed = scene;
+            changed.scale_modulus(std::exp(p[0]));
+            return changed;
+          },
+          [scene](const Eigen::VectorXd& p) {
+            std::string text =
+                fmt::format("the bending stiffness is {:.3g} times the scene's", std::exp(p[0]));
+            if (is_pulled_by_weight_alone(scene)) {
+              text += fmt::format(", or the weight {:.3g} times", std::exp(-p[0]));
+            }
+            return text;
+          }};
+}
+
+/// @param down  where it may point
+SceneCause gravity(const Scene& scene, const Eigen::Vector3d& down) {
+  const double size = scene.gravity.norm();
+  return {down * size - scene.gravity, Eigen::VectorXd::Constant(3, 0.02 * size), size,
+          [scene](const Eigen::VectorXd& p) {
+            Scene changed = scene;
+            changed.gravity += p;
+            return changed;
+          },
+          [scene](const Eigen::VectorXd& p) {
+            const Eigen::Vector3d g = scene.gravity + p;
+            const double turned = std::atan2(g.cross(scene.gravity).norm(), g.dot(scene.gravity));
+            return fmt::format("gravity is [{:.3g}, {:.3g}, {:.3g}] m/s^2, turned by {:.3g} deg",
+                               g.x(), g.y(), g.z(), turned / degree);
+          }};
+}
+
+SceneCause length(const Scene& scene, double polyline) {
+  return {Eigen::VectorXd::Constant(1, std::log(polyline / scene.length)),
+          Eigen::VectorXd::Constant(1, 0.01), 0.3,
+          [scene](const Eigen::VectorXd& p) {
+            Scene changed = scene;
+            const double factor = std::exp(p[0]);
+            changed.length *= factor;
+            for (Gripper& gripper : changed.grippers) gripper.at *= factor;
+            for (PointLoad& load : changed.loads) load.at *= factor;
+            for (Section& section : changed.sections) {
+              section.from *= factor;
+              section.to *= factor;
+            }
+            return changed;
+          },
+          [scene](const Eigen::VectorXd& p) {
+            return fmt::format("the rod is {:.4g} m long, not {:.4g} m",
+                               scene.length * std::exp(p[0]), scene.length);
+          }};
+}
+
+/// Of a clamp, in the plane with this normal or every way.
+SceneCause direction(const Scene& scene, std::size_t index,
+                     const std::optional<Eigen::Vector3d>& normal) {
+  const Eigen::Vector3d d = *scene.grippers[index].direction;
+  const Eigen::Vector3d first = normal.value_or(d.unitOrthogonal());
+  const Eigen::Vector3d second = d.cross(first);
+  const Eigen::Index numbers = normal ? 1 : 2;
+  const auto turned = [d, first, second](const Eigen::VectorXd& p) -> Eigen::Vector3d {
+    Eigen::Vector3d turn = p[0] * first;
+    if (p.size() > 1) turn += p[1] * second;
+    if (!(turn.norm() > 0)) return d;
+    return Eigen::AngleAxisd(turn.norm(), turn.normalized()) * d;
+  };
+  return {zeros(numbers), Eigen::VectorXd::Constant(numbers, 1 * degree), 40 * degree,
+          [scene, index, turned](const Eigen::VectorXd& p) {
+            Scene changed = scene;
+            changed.grippers[index].direction = turned(p);
+            return changed;
+          },
+          [index, turned](const Eigen::VectorXd& p) {
+            const Eigen::Vector3d to = turned(p);
+            return fmt::format("gripper {} is turned by {:.3g} deg, to [{:.4g}, {:.4g}, {:.4g}]",
+                               index + 1, p.norm() / degree, to.x(), to.y(), to.z());
+          }};
+}
+
+/// Of a gripper, in the plane with this normal or every way.
+SceneCause position(const Scene& scene, std::size_t index,
+                    const std::optional<Eigen::Vector3d>& normal) {
+  Eigen::Matrix3Xd ways = Eigen::Matrix3d::Identity();
+  if (normal) {
+    const Eigen::Vector3d first = normal->unitOrthogonal();
+    ways.resize(3, 2);
+    ways << first, normal->cross(first);
+  }
+  return {zeros(ways.cols()), Eigen::VectorXd::Constant(ways.cols(), 1e-3 * scene.length),
+          0.2 * scene.length,
+          [scene, index, ways](const Eigen::VectorXd& p) {
+            Scene changed = scene;
+            changed.grippers[index].position += ways * p;
+            return changed;
+          },
+          [index, ways](const Eigen::VectorXd& p) {
+            const Eigen::Vector3d way = ways * p * 1e3;
+            return fmt::format("gripper {} is {:.3g} mm away, by [{:.3g}, {:.3g}, {:.3g}] mm",
+                               index + 1, way.norm(), way.x(), way.y(), way.z());
+          }};
+}
+
+SceneCause natural_curvature(const Scene& scene) {
+  const double unit = 1 / scene.length;
+  return {zeros(1), Eigen::VectorXd::Constant(1, 0.02 * unit), 3 * unit,
+          [scene](const Eigen::VectorXd& p) {
+            Scene changed = scene;
+            changed.natural_strain.y() += p[0];
+            return changed;
+          },
+          [scene](const Eigen::VectorXd& p) {
+            return fmt::format("the rod is curved by nature, {:.3g} 1/m{}",
+                               scene.natural_strain.y() + p[0],
+                               scene.naturally_curved() ? " in the mean" : "");
+          }};
+}
+
+SceneCause twist(const Scene& scene, std::size_t last) {
+  return {Eigen::VectorXd::Constant(1, 60 * degree), Eigen::VectorXd::Constant(1, 2 * degree),
+          60 * degree,
+          [scene, last](const Eigen::VectorXd& p) {
+            Scene changed = scene;
+            for (Gripper& gripper : changed.grippers) {
+              if (gripper.direction && !gripper.frame) gripper.frame.emplace();
+            }
+            changed.grippers[last].frame->roll += p[0];
+            if (!changed.torsional_stiffness) {
+              changed.torsional_stiffness = scene.bending_stiffness() / (1 + assumed_poisson_ratio);
+            }
+            return changed;
+          },
+          [last](const Eigen::VectorXd& p) {
+            return fmt::format("gripper {} turns the rod about its direction by {:.3g} deg (twist)",
+                               last + 1, p[0] / degree);
+          }};
+}
+
+}  // namespace
+
+std::vector<SceneCause> scene_causes(const Scene& scene, double polyline, bool flat) {
+  std::vector<SceneCause> causes = {stiffness(scene)};
+  std::size_t last = 0;
+  std::size_t clamps = 0;
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    if (!scene.grippers[i].direction) continue;
+    ++clamps;
+    if (clamps == 1 || scene.grippers[i].at > scene.grippers[last].at) last = i;
+  }
+  const bool says_which_way = scene.planar() || (clamps > 0 && scene.has_material_directors());
+  if (clamps > 0 && says_which_way && !scene.holds_twist()) {
+    causes.push_back(natural_curvature(scene));
+  }
+  // Another length shows in the polyline.
+  constexpr double seen = 0.005;
+  const double longer = std::abs(std::log(polyline / scene.length));
+  if (longer > seen && longer < 1) causes.push_back(length(scene, polyline));
+  const std::optional<Eigen::Vector3d> normal = flat ? scene.plane_normal() : std::nullopt;
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    const Gripper& gripper = scene.grippers[i];
+    const bool held_frame = gripper.frame && gripper.frame->d1;
+    if (gripper.direction && !held_frame) causes.push_back(direction(scene, i, normal));
+    causes.push_back(position(scene, i, normal));
+  }
+  if (scene.gravity.norm() > 0) {
+    const Eigen::Vector3d down = scene.gravity.normalized();
+    causes.push_back(gravity(scene, down));
+    const Eigen::Vector3d across = down.unitOrthogonal();
+    for (const Eigen::Vector3d& other : {across, Eigen::Vector3d(down.cross(across))}) {
+      causes.push_back(gravity(scene, other));
+      causes.push_back(gravity(scene, -other));
+    }
+  }
+  const bool round = !scene.has_material_directors();
+  if (!flat && clamps == scene.grippers.size() && clamps > 1 && round) {
+    causes.push_back(twist(scene, last));
+  }
+  return causes;
+}
+
+}  // namespace dlo::compare

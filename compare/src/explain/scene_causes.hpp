@@ -1,0 +1,26 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+
+namespace dlo::compare {
+
+/// A way in which a scene may be another one, by some numbers that are zero if it is not.
+struct SceneCause {
+  Eigen::VectorXd start;    ///< of the search
+  Eigen::VectorXd stride;   ///< of differences
+  double longest_step = 0;  ///< of any number
+  std::function<Scene(const Eigen::VectorXd&)> changed;
+  std::function<std::string(const Eigen::VectorXd&)> words;
+};
+
+/// All that can be wrong with this scene, what takes longest last.
+/// @param polyline  length of the shape that it is held against [m]
+/// @param flat      the shape lies in the scene's plane: nothing leads out of it
+[[nodiscard]] std::vector<SceneCause> scene_causes(const Scene& scene, double polyline, bool flat);
+
+}  // namespace dlo::compare

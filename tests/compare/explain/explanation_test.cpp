@@ -1,0 +1,259 @@
+// Shapes that are wrong in one way, and what is said of them; chains that are right in theirs.
+
+#include "dlo/compare/explanation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/scene_file.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Matrix3Xd;
+using Eigen::Vector3d;
+
+constexpr double degree = std::numbers::pi / 180;
+constexpr double weight = 0.5 * 9.81;
+
+Scene clamped(const std::string& rod = "") {
+  return parse_scene("[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n" + rod +
+                         "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"20 deg\"\n",
+                     "clamped.toml");
+}
+
+Scene between_clamps(const std::string& rod = "", const std::string& last = "") {
+  return parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n" + rod +
+          "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"30 deg\"\n" +
+          (last.empty() ? "" : "roll = 0\n") +
+          "[[gripper]]\nat = 1\nposition = [0.7, 0.1, 0]\ndirection = \"-20 deg\"\n" + last,
+      "between.toml");
+}
+
+MeasuredShape shape_of(const Scene& scene, int count = 41) {
+  const energy_model::Equilibrium rod = solve_reference(scene, Model::energy);
+  MeasuredShape shape;
+  shape.file = "mine.csv";
+  shape.points = rod.sample(equal_arc_lengths(scene.length, count)).points;
+  return shape;
+}
+
+MeasuredShape made(Matrix3Xd points) {
+  MeasuredShape shape;
+  shape.file = "mine.csv";
+  shape.points = std::move(points);
+  return shape;
+}
+
+struct Outcome {
+  ShapeJudgement judgement;
+  std::vector<Explanation> explanations;
+};
+
+Outcome judged(const Scene& scene, const MeasuredShape& shape) {
+  const ShapeCheckOptions options{.modulus = ModulusSearch::no};
+  const ShapeCheck check = check_shape(scene, shape, options);
+  const ShapeTolerance tolerance{.allowed_m = 0.01 * scene.length};
+  Outcome outcome;
+  if (!judge(check, tolerance).pass) {
+    outcome.explanations = explain_shape(scene, shape, check, options);
+  }
+  outcome.judgement = judge_explained(check, tolerance, outcome.explanations);
+  return outcome;
+}
+
+/// Fails, and the best explanation has these words and leaves less than a tenth of the tolerance.
+void expect_named(const std::string& what, const Scene& scene, const MeasuredShape& shape,
+                  const std::vector<std::string>& words, double left_m = 1e-3) {
+  SCOPED_TRACE(what);
+  const Outcome outcome = judged(scene, shape);
+  EXPECT_FALSE(outcome.judgement.pass);
+  ASSERT_FALSE(outcome.explanations.empty()) << outcome.judgement.reason;
+  const Explanation& best = outcome.explanations.front();
+  for (const std::string& word : words) {
+    EXPECT_NE(best.cause.find(word), std::string::npos) << best.cause;
+    EXPECT_NE(outcome.judgement.reason.find(word), std::string::npos) << outcome.judgement.reason;
+  }
+  EXPECT_LT(best.rms_m, left_m);
+}
+
+TEST(Explanation, NamesWhatIsWrongWithAFile) {
+  const Scene scene = clamped();
+  const Matrix3Xd right = shape_of(scene).points;
+  Matrix3Xd wrong = right;
+  wrong.rightCols<1>() = right.col(39) + Vector3d(-0.02, 0.1, 0);
+  expect_named("a hook", scene, made(wrong), {"last point", "hook"});
+  expect_named("stretched", scene, made(1.02 * right), {"stretched by 2 %"});
+  expect_named("much stretched", scene, made(1.1 * right), {"stretched by 10 %"});
+  expect_named("compressed", scene, made(right / 1.1), {"compressed"});
+  expect_named("cut off", scene, made(right.leftCols(33)), {"cut off", "s = 0 to 0.8 m"});
+  const auto axes = [&right](const Vector3d& x, const Vector3d& y, const Vector3d& z) {
+    Matrix3d to;
+    to << x, y, z;
+    return made(to * right);
+  };
+  const Vector3d x = Vector3d::UnitX();
+  const Vector3d y = Vector3d::UnitY();
+  const Vector3d z = Vector3d::UnitZ();
+  expect_named("mirrored", scene, axes(-x, y, z), {"mirrored", "x is the file's -x"});
+  expect_named("z up", scene, axes(x, z, -y), {"z is up in the file"});
+  expect_named("y down", scene, axes(x, -y, z), {"y is down in the file"});
+  expect_named("mm", scene, made(1000 * right), {"in mm"});
+  expect_named("cm", scene, made(100 * right), {"in cm"});
+  expect_named("inches", scene, made(right / 0.0254), {"in inches"});
+  Matrix3Xd pixels = 800 * right;
+  pixels.row(1) *= -1;
+  pixels.colwise() += Vector3d(320, 240, 0);
+  expect_named("pixels", scene, made(pixels), {"1.25 mm", "y down", "pixels"});
+  expect_named("moved", scene, made(right.colwise() + Vector3d(0, 0.015, 0)),
+               {"another origin", "gripper is elsewhere", "-15"});
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal(0, 0.01);
+  const Matrix3Xd noise = Matrix3Xd::NullaryExpr(3, 41, [&] { return normal(random); });
+  expect_named("noise", scene, made(right + noise), {"noise"}, 0.01);
+  MeasuredShape against = made(right);
+  against.arc_length = equal_arc_lengths(1, 41);
+  EXPECT_TRUE(judged(scene, against).judgement.pass);
+}
+
+TEST(Explanation, NamesWhatIsAnotherScene) {
+  const Scene scene = clamped();
+  const auto other = [&scene](const std::function<void(Scene&)>& change) {
+    Scene changed = scene;
+    change(changed);
+    return shape_of(changed);
+  };
+  expect_named("softer", scene, other([](Scene& s) { s.scale_modulus(0.5); }),
+               {"bending stiffness is 0.5 times", "weight 2 times"});
+  expect_named("turned", scene, other([](Scene& s) {
+                 s.grippers[0].direction = {std::cos(25 * degree), std::sin(25 * degree), 0};
+               }),
+               {"gripper 1 is turned by 5 deg"});
+  expect_named("curved", scene,
+               shape_of(clamped("natural_curvature = 1\ntorsional_stiffness = 1\n")),
+               {"curved by nature, 1 1/m"});
+  expect_named("another gravity", scene, other([](Scene& s) {
+                 s.gravity = {0, 0, -9.81};
+               }),
+               {"gravity is", "-9.81", "turned by 90 deg"});
+  Scene longer = scene;
+  longer.length = 1.2;
+  expect_named("longer", scene, shape_of(longer), {"1.2 m long"});
+  expect_named("another rod", scene, other([](Scene& s) {
+                 s.scale_modulus(3);
+                 s.scale_density(0.4);
+               }),
+               {"bending stiffness is 7.5 times"});
+
+  const Scene two = between_clamps();
+  Scene moved = two;
+  moved.grippers[1].position.y() += 0.03;
+  expect_named("moved gripper", two, shape_of(moved), {"gripper 2 is 30 mm away"});
+  expect_named("twisted", two,
+               shape_of(between_clamps("torsional_stiffness = 0.76923\n", "roll = \"90 deg\"\n")),
+               {"gripper 2 turns the rod", "90 deg (twist)"});
+}
+
+/// Angles of a hinged chain under its weight, by Newton's method on its own equations.
+class HingedChain {
+ public:
+  /// @param lengths  of the segments;  @param h  over which a spring EI/h stands for the rod
+  HingedChain(std::vector<double> lengths, double h, double stiffness, bool welded)
+      : lengths_(std::move(lengths)), springs_(lengths_.size(), stiffness / h), welded_(welded) {
+    double beyond = 0;
+    carried_.resize(lengths_.size());
+    for (std::size_t i = lengths_.size(); i-- > 0;) {
+      carried_[i] = (beyond + lengths_[i] / 2) * weight;
+      beyond += lengths_[i];
+    }
+  }
+
+  [[nodiscard]] Matrix3Xd points() const {
+    const auto n = static_cast<Eigen::Index>(lengths_.size());
+    Eigen::VectorXd angle = Eigen::VectorXd::Constant(n, 20 * degree);
+    for (int step = 0; step < 500; ++step) {
+      Eigen::VectorXd residual = Eigen::VectorXd::Zero(n);
+      Eigen::MatrixXd slope = Eigen::MatrixXd::Zero(n, n);
+      for (Eigen::Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double lever = carried_[k] * lengths_[k];
+        residual[i] += lever * std::cos(angle[i]);
+        slope(i, i) -= lever * std::sin(angle[i]);
+        if (i == 0 && welded_) continue;
+        const double turn = angle[i] - (i == 0 ? 20 * degree : angle[i - 1]);
+        residual[i] += springs_[k] * turn;
+        slope(i, i) += springs_[k];
+        if (i == 0) continue;
+        residual[i - 1] -= springs_[k] * turn;
+        slope(i - 1, i - 1) += springs_[k];
+        slope(i, i - 1) -= springs_[k];
+        slope(i - 1, i) -= springs_[k];
+      }
+      if (welded_) {
+        residual[0] = 0;
+        slope.row(0).setZero();
+        slope.col(0).setZero();
+        slope(0, 0) = 1;
+      }
+      const Eigen::VectorXd way = -slope.partialPivLu().solve(residual);
+      angle += std::min(1.0, 0.5 / way.cwiseAbs().maxCoeff()) * way;
+      if (way.cwiseAbs().maxCoeff() < 1e-13) break;
+    }
+    Matrix3Xd points = Matrix3Xd::Zero(3, n + 1);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double L = lengths_[static_cast<std::size_t>(i)];
+      points.col(i + 1) = points.col(i) + L * Vector3d(std::cos(angle[i]), std::sin(angle[i]), 0);
+    }
+    return points;
+  }
+
+ private:
+  std::vector<double> lengths_;
+  std::vector<double> springs_;  // of the hinge before each segment
+  std::vector<double> carried_;
+  bool welded_;
+};
+
+// A right chain of few hinges is percents away from the rod: it is called what it is, and passes;
+// one with other springs does not.
+TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
+  const Scene scene = clamped();
+  for (const int segments : {10, 20, 40}) {
+    SCOPED_TRACE(segments);
+    const double h = 1.0 / segments;
+    const std::vector<double> whole(static_cast<std::size_t>(segments), h);
+    const Outcome hinged = judged(scene, made(HingedChain(whole, h, 1, false).points()));
+    EXPECT_TRUE(hinged.judgement.pass) << hinged.judgement.reason;
+    EXPECT_NE(hinged.judgement.reason.find("with a hinge at the clamp"), std::string::npos);
+    EXPECT_NE(hinged.judgement.reason.find("discretisation"), std::string::npos);
+    const Outcome welded = judged(scene, made(HingedChain(whole, h, 1, true).points()));
+    EXPECT_TRUE(welded.judgement.pass) << welded.judgement.reason;
+    EXPECT_NE(welded.judgement.reason.find("welded"), std::string::npos);
+    std::vector<double> half(static_cast<std::size_t>(segments) + 1, h);
+    half.front() = half.back() = h / 2;
+    const Outcome middle = judged(scene, made(HingedChain(half, h, 1, true).points()));
+    EXPECT_TRUE(middle.judgement.pass) << middle.judgement.reason;
+    expect_named("half as stiff", scene, made(HingedChain(whole, h, 0.5, false).points()),
+                 {"with a hinge at the clamp", "springs are 0.", "times EI/h"});
+  }
+}
+
+TEST(Explanation, OfARightShapeThereIsNone) {
+  const Scene scene = between_clamps();
+  EXPECT_TRUE(judged(scene, shape_of(scene)).judgement.pass);
+  EXPECT_TRUE(judged(scene, shape_of(scene, 9)).judgement.pass);
+}
+
+}  // namespace
+}  // namespace dlo::compare
