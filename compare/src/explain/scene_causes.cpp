@@ -83,8 +83,9 @@ SceneCause direction(const Scene& scene, std::size_t index,
   const auto turned = [d, first, second](const Eigen::VectorXd& p) -> Eigen::Vector3d {
     Eigen::Vector3d turn = p[0] * first;
     if (p.size() > 1) turn += p[1] * second;
-    if (!(turn.norm() > 0)) return d;
-    return Eigen::AngleAxisd(turn.norm(), turn.normalized()) * d;
+    const double angle = turn.norm();
+    return angle > 0 ? Eigen::Vector3d(Eigen::AngleAxisd(angle, turn / angle) * d)
+                     : Eigen::Vector3d(d);
   };
   return {zeros(numbers), Eigen::VectorXd::Constant(numbers, 1 * degree), 40 * degree,
           [scene, index, turned](const Eigen::VectorXd& p) {

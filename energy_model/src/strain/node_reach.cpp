@@ -1,10 +1,12 @@
 #include "strain/node_reach.hpp"
 
+#include <utility>
+
 namespace dlo::energy_model {
 
-NodeReach::NodeReach(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table,
+NodeReach::NodeReach(const Span& span, std::vector<Piece> pieces, const LegendreTable& table,
                      const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights)
-    : pieces_(pieces),
+    : pieces_(std::move(pieces)),
       table_(&table),
       weights_(weights),
       to_anchor_(

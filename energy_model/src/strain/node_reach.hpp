@@ -14,7 +14,7 @@ class NodeReach {
  public:
   NodeReach() = default;
   /// @param nodes, weights  of the span's quadrature
-  NodeReach(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table,
+  NodeReach(const Span& span, std::vector<Piece> pieces, const LegendreTable& table,
             const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights);
 
   /// Of where a piece begins; of the number of pieces: of the span's end.

@@ -49,6 +49,7 @@ class Body {
   [[nodiscard]] Body seen_from(const Eigen::Vector3d& origin, const Eigen::Matrix3d& turn,
                                double unit) const;
 
+  /// Of a point, with derivatives.
   [[nodiscard]] Gap gap(const Eigen::Vector3d& point) const;
   /// Its value alone.
   [[nodiscard]] double clearance(const Eigen::Vector3d& point) const;
@@ -59,6 +60,7 @@ class Body {
   /// to the same one see a smooth surface.
   [[nodiscard]] int feature(const Eigen::Vector3d& point) const;
 
+  /// Whether it ends in one plane, which has a normal().
   [[nodiscard]] bool is_half_space() const;
   /// Of a half-space.
   [[nodiscard]] Eigen::Vector3d normal() const { return axes_.col(1); }
@@ -70,6 +72,7 @@ class Body {
   [[nodiscard]] bool is_symmetric(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                   double unit) const;
 
+  /// Where the core's axes meet; of a half-space a point of its plane [m].
   [[nodiscard]] const Eigen::Vector3d& centre() const { return centre_; }
   [[nodiscard]] const Eigen::Matrix3d& axes() const { return axes_; }    ///< of the core, columns
   [[nodiscard]] const Eigen::Vector3d& lower() const { return lower_; }  ///< of the core, on them
