@@ -59,13 +59,14 @@ TEST_F(ContactCommand, AllModelsTouchTheSameBodies) {
   for (const std::string& body : bodies) {
     SCOPED_TRACE(body);
     const auto solve = [&](const std::string& model, int points) {
-      const std::string file =
-          scene("body.toml",
-                "[rod]\nlength = 0.6\ndiameter = \"4 mm\"\nmaterial = \"silicone\"\n"
-                "[[gripper]]\nat = 0\nposition = [0, 0.05, 0]\ndirection = \"0 deg\"\n"
-                "[force_model]\nlaw = \"hooke\"\nbookkeeping = \"consistent\"\npoints = " +
-                    std::to_string(points) + "\n[[obstacle]]\n" + body);
-      const Outcome outcome = run("solve --format json --samples 13 --model " + model + " " + file);
+      std::string text =
+          "[rod]\nlength = 0.6\ndiameter = \"4 mm\"\nmaterial = \"silicone\"\n"
+          "[[gripper]]\nat = 0\nposition = [0, 0.05, 0]\ndirection = \"0 deg\"\n"
+          "[force_model]\nlaw = \"hooke\"\nbookkeeping = \"consistent\"\npoints = ";
+      text.append(std::to_string(points)).append("\n[[obstacle]]\n").append(body);
+      std::string line = "solve --format json --samples 13 --model ";
+      line.append(model).append(" ").append(scene("body.toml", text));
+      const Outcome outcome = run(line);
       EXPECT_EQ(outcome.status, 0) << outcome.err;
       return json::parse(outcome.out);
     };
