@@ -325,6 +325,23 @@ TEST(Contact, RandomScenesRestOrSayWhyNot) {
   }
 }
 
+// A rod that is clamped level on the floor needs no force of the clamp.
+TEST(Contact, AClampOnTheFloorCarriesNothingOfWhatLies) {
+  for (const double at : {0.0, 1.0}) {
+    SCOPED_TRACE(at);
+    Problem problem = over_floor(50, 0);
+    problem.grips[0].at = at;
+    const Equilibrium rod = solve_energy(problem);
+    ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
+    ASSERT_EQ(rod.contacts.size(), 1);
+    EXPECT_EQ(rod.contacts[0].begin, 0);
+    EXPECT_EQ(rod.contacts[0].end, 1);
+    EXPECT_NEAR(rod.contacts[0].force.y(), 50, 1e-6);
+    EXPECT_LT(rod.grips[0].force.norm(), 1e-6);
+    EXPECT_LT(rod.grips[0].torque.norm(), 1e-6);
+  }
+}
+
 // An obstacle that yields less and less is another solver's way to the same shape.
 TEST(Contact, StifferAndStifferObstaclesLeadToTheRigidOne) {
   Problem problem = heavy_cantilever(40, 0);

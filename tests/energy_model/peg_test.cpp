@@ -97,6 +97,14 @@ TEST(Table, OverhangLiftsTheRodBehindTheEdge) {
     const Equilibrium rod = solve_energy(problem);
     ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
     ASSERT_EQ(rod.contacts.size(), 2);
+    // What lies is carried by the table, not by the clamp on it, which only keeps the rod from
+    // sliding off the edge, across which it is pushed.
+    EXPECT_NEAR(rod.grips[0].force.y(), 0, 1e-6 * gamma);
+    const Eigen::Vector3d weight(0, gamma, 0);
+    const Eigen::Vector3d pushed = rod.contacts[0].force + rod.contacts[1].force;
+    EXPECT_LT((pushed + rod.grips[0].force - weight).norm(), 1e-6 * gamma);
+    const Eigen::Vector3d across = rod.sample(std::array{rod.contacts[1].begin}).tangents.col(0);
+    EXPECT_NEAR(rod.contacts[1].force.dot(across), 0, 1e-6 * gamma);
     EXPECT_EQ(rod.contacts[0].kind, ContactKind::lying);
     EXPECT_EQ(rod.contacts[1].kind, ContactKind::touching);
     // The round edge begins a radius before the box ends.
@@ -255,6 +263,27 @@ TEST(Peg, StifferAndStifferOnesLeadToTheRigidOne) {
     last = below;
   }
   EXPECT_LT(last, 0.1);
+}
+
+// Where contact is not looked for, a body thinner than the grid on which shapes are judged is seen.
+TEST(Peg, AThinOneWithinARodIsSeenWhereverItIs) {
+  Problem problem = test::two_clamps(5, 0.7);
+  problem.torsional_stiffness = 0.8;
+  for (Grip& grip : problem.grips) grip.frame.emplace();
+  problem.grips[1].frame->roll = 1;
+  const Equilibrium free = solve_energy(problem);
+  ASSERT_EQ(free.status, SolveStatus::converged) << free.message;
+  for (const double at : {0.30025, 0.5001, 0.71234}) {
+    for (const double radius : {3e-5, 1e-4, 3e-4}) {
+      const Samples there = free.sample(std::array{at});
+      const Eigen::Vector3d aside = there.tangents.col(0).unitOrthogonal();
+      const Eigen::Vector3d centre = there.points.col(0) + radius / 2 * aside;
+      problem.obstacles = {{Body::sphere(centre, radius)}};
+      const Equilibrium rod = solve_energy(problem);
+      EXPECT_EQ(rod.status, SolveStatus::not_resolved) << at << ", radius " << radius;
+      EXPECT_NEAR(rod.penetration, radius / 2, 0.01 * radius) << at;
+    }
+  }
 }
 
 }  // namespace

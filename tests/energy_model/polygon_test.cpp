@@ -48,8 +48,8 @@ TEST_P(PolygonOfBothLaws, GradientIsTheDifferenceOfTheEnergy) {
   PolygonProblem problem = two_clamps(GetParam(), 9, 0.8, 5);
   problem.stretch_stiffness = 50;
   problem.rest_lengths[3] *= 1.3;
-  problem.obstacles = {
-      {obstacle::Body::half_space({0, -0.1, 0}, Eigen::Vector3d(0.6, 0.8, 0)), 30}};
+  problem.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, Eigen::Vector3d(0.6, 0.8, 0)), 30},
+                       {obstacle::Body::sphere({0.3, 0.1, 0.05}, 0.3), 20, 3}};
   Eigen::Matrix3Xd points = arch(problem, 0.8, 0.3);
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> uniform(-0.05, 0.05);

@@ -55,7 +55,8 @@ Span free_span(bool planar) {
 Span span_on_obstacle(bool planar) {
   Span span = gripped_span(planar);
   span.soft_obstacles = {
-      {{0, obstacle::Body::half_space({0, 0.02, 0}, Eigen::Vector3d::UnitY())}, 500}};
+      {{0, obstacle::Body::half_space({0, 0.02, 0}, Eigen::Vector3d::UnitY())}, 500},
+      {{1, obstacle::Body::sphere({0.3, 0.1, 0}, 0.25)}, 300}};
   return span;
 }
 

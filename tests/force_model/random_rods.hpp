@@ -50,6 +50,9 @@ inline Rod random_rod(unsigned seed, Eigen::Index points, const Variant& variant
   if (walls == Walls::two) {
     rod.walls = {{.point = {0, 0.01, 0}, .normal = {0.6, 0.8, 0}, .stiffness = 5},
                  {.point = {0.1, 0, 0}, .normal = {0, -1, 0}, .stiffness = 2}};
+    // In the way of points and, in the midst of segments, of the rod between them.
+    rod.solids = {{obstacle::Body::sphere({0.3 * length, 0.02, 0}, 0.1), 4, 3},
+                  {obstacle::Body::cylinder({0.6 * length, 0, 0}, {0, 0, 1}, 0.05), 3, 1}};
   }
   if (space == Space::plane) {
     rod.loads.row(2).setZero();

@@ -41,6 +41,7 @@ TEST(TotalForces, AreTheGradientOfTheEnergyForHooke) {
   SteelRod steel;
   Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
   rod.walls = {{.point = {0, 0.02, 0}, .normal = {0, 1, 0}, .stiffness = 50}};
+  rod.solids = {{obstacle::Body::sphere({0.1, 0.05, 0.02}, 0.2), 40, 3}};
   rod.grips.front().hold = GripHold::spring;
   rod.grips.front().stiffness = 7;
   const Eigen::Matrix3Xd points = random_polygon(10, 15, steel.segment(), 0.1);
@@ -49,6 +50,36 @@ TEST(TotalForces, AreTheGradientOfTheEnergyForHooke) {
   const Eigen::Matrix3Xd expected = difference_forces(
       [&](const Eigen::Matrix3Xd& p) { return energy(rod, p).total(); }, points, 1e-7);
   EXPECT_LT((forces - expected).cwiseAbs().maxCoeff(), 1e-6 * forces.cwiseAbs().maxCoeff());
+}
+
+// A point within a segment is pushed as a lever would be: no net force or torque is added to or
+// lost from what the solid does there.
+TEST(Solid, PushesWithinSegmentsAsALeverDoes) {
+  const Solid ball{obstacle::Body::sphere({0.5, -0.9, 0}, 1), 40, 4};
+  Eigen::Matrix3Xd points(3, 2);
+  points << 0, 1, 0.2, -0.1, 0, 0;
+  Eigen::Matrix3Xd forces = Eigen::Matrix3Xd::Zero(3, 2);
+  add_solid_forces(ball, points, forces);
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  Eigen::Vector3d torque = Eigen::Vector3d::Zero();
+  double potential = 0;
+  const auto push = [&](const Eigen::Vector3d& at) {
+    const double depth = 1 - (at - Eigen::Vector3d(0.5, -0.9, 0)).norm();
+    if (depth <= 0) return;
+    const Eigen::Vector3d f = 10 * depth * (at - Eigen::Vector3d(0.5, -0.9, 0)).normalized();
+    force += f;
+    torque += at.cross(f);
+    potential += 10 * depth * depth / 2;
+  };
+  for (const double share : {0.0, 0.25, 0.5, 0.75, 1.0}) {
+    push((1 - share) * points.col(0) + share * points.col(1));
+  }
+  EXPECT_GT(force.norm(), 0.1);
+  EXPECT_LT((forces.rowwise().sum() - force).norm(), 1e-14);
+  const Eigen::Vector3d balance = Eigen::Vector3d(points.col(0)).cross(forces.col(0)) +
+                                  Eigen::Vector3d(points.col(1)).cross(forces.col(1));
+  EXPECT_LT((balance - torque).norm(), 1e-14);
+  EXPECT_NEAR(solid_energy(ball, points), potential, 1e-14);
 }
 
 TEST(GripReaction, RigidHoldBalancesEverythingElseInEquilibrium) {
@@ -211,6 +242,9 @@ TEST(Rod, RefusesWhatIsOutOfRange) {
   EXPECT_THROW(check(rod), std::invalid_argument);
   rod = good;
   rod.walls = {{.normal = {0, 2, 0}, .stiffness = 1}};
+  EXPECT_THROW(check(rod), std::invalid_argument);
+  rod = good;
+  rod.solids = {{obstacle::Body::sphere({0, 0, 0}, 1), 1, 0}};
   EXPECT_THROW(check(rod), std::invalid_argument);
 }
 

@@ -75,7 +75,7 @@ class Search {
   void look_at_chains(Springs springs) {
     for (const OwnPolygon& chain : own_polygons(scene_, check_.alignment.shape, springs)) {
       if (springs == Springs::as_the_rod) {
-        add({chain.words, chain.rms_m, 0, ExplanationKind::discretisation});
+        add({chain.words, chain.rms_m, 0, ExplanationKind::discretisation, chain.max_m});
       } else {
         add({fmt::format("it is {} whose springs are {:.3g} times EI/h", chain.words,
                          chain.stiffness),
@@ -244,18 +244,20 @@ ShapeJudgement judge_explained(const ShapeCheck& check, const ShapeTolerance& to
   ShapeJudgement result = judge(check, tolerance);
   if (result.pass || explanations.empty()) return result;
   const Explanation& best = explanations.front();
+  const auto distance = [&](const Explanation& chain) {
+    return tolerance.largest ? chain.max_m : chain.rms_m;
+  };
   const auto is_chain = [&](const Explanation& explanation) {
     return explanation.kind == ExplanationKind::discretisation &&
-           explanation.rms_m <= right_chain * tolerance.allowed_m;
+           distance(explanation) <= right_chain * tolerance.allowed_m;
   };
   const auto chain = std::find_if(explanations.begin(), explanations.end(), is_chain);
   if (chain != explanations.end()) {
-    result.reason = fmt::format(
-        "right for {}, {:.3g} mm away (RMS); the rod itself is {:.4g} mm = {:.3g} % of l away, all "
-        "of "
-        "it discretisation",
-        chain->cause, chain->rms_m * 1e3, result.judged_m * 1e3,
-        result.judged_m / check.length_m * 100);
+    result.reason = fmt::format("right for {}, {:.3g} mm away ({})", chain->cause,
+                                distance(*chain) * 1e3, tolerance.largest ? "largest" : "RMS") +
+                    fmt::format("; the rod itself is {:.4g} mm = {:.3g} % of l away, all of it ",
+                                result.judged_m * 1e3, result.judged_m / check.length_m * 100) +
+                    "discretisation";
     result.pass = true;
     return result;
   }

@@ -77,8 +77,10 @@ std::vector<Eigen::Matrix3d> other_axes() {
     }
   } while (std::next_permutation(order.begin(), order.end()));
   const auto changes = [](const Eigen::Matrix3d& axes) {
-    return std::array{static_cast<int>(std::lround(3 - axes.cwiseAbs().trace())),
-                      static_cast<int>((axes.array() < 0).count()), axes.determinant() < 0 ? 1 : 0};
+    const auto exchanged = static_cast<int>(std::lround(3 - axes.cwiseAbs().trace()));
+    const int mirrored = axes.determinant() < 0 ? 1 : 0;
+    const auto negative = static_cast<int>((axes.array() < 0).count());
+    return std::array{exchanged, exchanged > 0 ? mirrored : 0, negative};
   };
   std::stable_sort(all.begin(), all.end(), [&](const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
     return changes(a) < changes(b);

@@ -115,6 +115,7 @@ class Chain {
       const double way = hinged ? inner_[n - 1] : -inner_[n - 1];
       hold_point(hinged ? n + before_ + 1 : n - 1, last->position + way * *last->direction);
     }
+    if (first == nullptr && last == nullptr) return hinged;  // pins hold all chains alike
     if (convention_ != Convention::middle) return true;
     const auto is_half = [](double end, double beside) {
       return std::abs(end / beside - 0.5) < 0.05;
@@ -139,9 +140,7 @@ class Chain {
       // The spring is that between two whole segments.
       problem_.stiffnesses.setConstant(problem_.rest_lengths.size() - 1, stiffness);
       problem_.stiffnesses[0] *= (inner_[0] + inner_[1]) / (2 * inner_[1]);
-      if (after_ == 0 && n > 2) {
-        problem_.stiffnesses[n - 2] *= (inner_[n - 1] + inner_[n - 2]) / (2 * inner_[n - 2]);
-      }
+      problem_.stiffnesses[n - 2] *= (inner_[n - 1] + inner_[n - 2]) / (2 * inner_[n - 2]);
     }
     problem_.node_forces.setZero(3, n + 1 + before_ + after_);
     for (Eigen::Index i = 0; i <= n; ++i) {
@@ -174,6 +173,10 @@ class Chain {
   Eigen::Index before_ = 0, after_ = 0;  // points beyond the rod's ends
 };
 
+double largest(const Eigen::Matrix3Xd& gaps) {
+  return std::sqrt(gaps.colwise().squaredNorm().maxCoeff());
+}
+
 /// The springs that fit best, by Gauss-Newton steps along the logarithm of their stiffness.
 std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps,
                                  const std::string& words) {
@@ -192,7 +195,7 @@ std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps,
     gaps = std::move(*next);
     if (std::abs(way) < found) break;
   }
-  return OwnPolygon{words, chain.rms_of(gaps), std::exp(log_factor)};
+  return OwnPolygon{words, chain.rms_of(gaps), largest(gaps), std::exp(log_factor)};
 }
 
 }  // namespace
@@ -210,7 +213,7 @@ std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Spr
     if (!gaps) continue;
     const std::string words = words_of(convention, segments);
     if (springs == Springs::as_the_rod) {
-      found.push_back({words, chain.rms_of(*gaps)});
+      found.push_back({words, chain.rms_of(*gaps), largest(*gaps)});
     } else if (const auto other = fitted(chain, std::move(*gaps), words)) {
       found.push_back(*other);
     }

@@ -19,6 +19,7 @@ enum class Springs {
 struct OwnPolygon {
   std::string words;
   double rms_m = 0;      ///< of the file's points from it
+  double max_m = 0;      ///< the largest of those
   double stiffness = 1;  ///< of its springs, over EI/h
 };
 

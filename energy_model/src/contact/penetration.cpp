@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <utility>
+#include <vector>
 
 #include "dlo/energy_model/energy.hpp"
 
@@ -15,12 +17,47 @@ constexpr Eigen::Index penetration_grid = 2001;
 
 bool is_rigid(const Obstacle& obstacle) { return std::isinf(obstacle.stiffness); }
 
+/// Largest depth of a shape within a body [m]. Between points a body of small radius may hide:
+/// where it may be deeper there, the shape is looked at again, 16 times as closely.
+double depth_within(const obstacle::Body& body, const Equilibrium& shape, std::vector<double> s,
+                    const Samples& grid, double enough) {
+  constexpr int closer = 16;
+  constexpr int most_levels = 4;
+  Eigen::VectorXd clearance = body.clearances(grid.points);
+  double deepest = -clearance.minCoeff();
+  double h = s[1] - s[0];
+  const double length = s.back();
+  for (int level = 0; level < most_levels; ++level) {
+    const double sag = h * h / (8 * body.smallest_radius());
+    if (!(sag > enough)) break;
+    std::vector<double> between;
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      const double here = clearance[static_cast<Eigen::Index>(i)];
+      if (here - sag > -std::max(deepest, enough)) continue;
+      for (int k = 1 - closer; k < closer; ++k) {
+        const double at = s[i] + h * k / closer;
+        if (k != 0 && at >= 0 && at <= length) between.push_back(at);
+      }
+    }
+    if (between.empty()) break;
+    std::sort(between.begin(), between.end());
+    s = std::move(between);
+    clearance = body.clearances(shape.sample(s).points);
+    deepest = std::max(deepest, -clearance.minCoeff());
+    h /= closer;
+  }
+  return deepest;
+}
+
 /// Largest depth behind a rigid obstacle [m].
-double penetration(const Problem& problem, const Samples& shape) {
+double penetration(const Problem& problem, const Equilibrium& shape) {
+  const std::vector<double> s = equal_arc_lengths(problem.length, penetration_grid);
+  const Samples grid = shape.sample(s);
   double deepest = 0;
   for (const Obstacle& obstacle : problem.obstacles) {
     if (!is_rigid(obstacle)) continue;
-    deepest = std::max(deepest, -obstacle.body.clearances(shape.points).minCoeff());
+    deepest = std::max(
+        deepest, depth_within(obstacle.body, shape, s, grid, allowed_penetration * problem.length));
   }
   return deepest;
 }
@@ -30,8 +67,7 @@ double penetration(const Problem& problem, const Samples& shape) {
 void judge_penetration(const Problem& problem, Equilibrium& equilibrium) {
   if (std::none_of(problem.obstacles.begin(), problem.obstacles.end(), is_rigid)) return;
   const double l = problem.length;
-  equilibrium.penetration =
-      penetration(problem, equilibrium.sample(equal_arc_lengths(l, penetration_grid)));
+  equilibrium.penetration = penetration(problem, equilibrium);
   if (!succeeded(equilibrium.status)) return;
   if (equilibrium.penetration <= allowed_penetration * l) return;
   std::ostringstream why;

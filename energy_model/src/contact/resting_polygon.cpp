@@ -69,9 +69,9 @@ class Resting {
     place_joints();
     place_forces();
     hold();
-    const double h = span.length / static_cast<double>(count);
-    for (const Span::SoftObstacle& obstacle : span.soft_obstacles)
-      add_obstacle(obstacle, obstacle.stiffness * h);
+    for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
+      add_obstacle(obstacle, obstacle.stiffness * segment());
+    }
     for (const Span::Obstacle& obstacle : span.rigid_obstacles) add_obstacle(obstacle, stiff);
   }
 
@@ -99,14 +99,24 @@ class Resting {
     result.middles.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) result.middles[i] = (s(i) + s(i + 1)) / 2;
     result.tangents = (found.points.rightCols(n) - found.points.leftCols(n)).colwise().normalized();
-    for (const Span::Obstacle& obstacle : span_.rigid_obstacles)
+    for (const Span::Obstacle& obstacle : span_.rigid_obstacles) {
       add_contacts(obstacle, found.points, result);
+    }
     std::sort(result.contacts.begin(), result.contacts.end(),
               [](const auto& a, const auto& b) { return a.begin < b.begin; });
     return result;
   }
 
  private:
+  /// Mean length of a segment.
+  [[nodiscard]] double segment() const {
+    return span_.length / static_cast<double>(mesh_.s.size());
+  }
+
+  [[nodiscard]] int looks_at(const Span::Obstacle& obstacle) const {
+    return obstacle::looks_per_segment(obstacle.body, segment());
+  }
+
   [[nodiscard]] double s(Eigen::Index i) const { return mesh_.s[static_cast<std::size_t>(i)]; }
 
   /// EI of a round rod that bends about as much; in the plane the same.
@@ -121,9 +131,7 @@ class Resting {
   }
 
   void add_obstacle(const Span::Obstacle& obstacle, double stiffness) {
-    const double h = span_.length / static_cast<double>(mesh_.s.size());
-    problem_.obstacles.push_back(
-        {obstacle.body, stiffness, obstacle::looks_per_segment(obstacle.body, h)});
+    problem_.obstacles.push_back({obstacle.body, stiffness, looks_at(obstacle)});
   }
 
   [[nodiscard]] Eigen::Index point_at(double at) const {
@@ -208,8 +216,7 @@ class Resting {
   void add_contacts(const Span::Obstacle& obstacle, const Eigen::Matrix3Xd& points,
                     RestingPolygon& result) const {
     // Where the polygon is looked at.
-    const double h = span_.length / static_cast<double>(mesh_.s.size());
-    const int looks = obstacle::looks_per_segment(obstacle.body, h);
+    const int looks = looks_at(obstacle);
     const Eigen::Index count = looks * (points.cols() - 1) + 1;
     std::vector<double> at;
     Eigen::VectorXd clearance(count);

@@ -96,11 +96,11 @@ std::vector<bool> held_points(const PolygonProblem& problem) {
 
 /// Calls action(i, share, point) for each point of the polygon that an obstacle may push, which is
 /// the share of the way from point i to the next.
+/// @param held  of held_points()
 template <typename Action>
-void for_each_look(const PolygonProblem& problem, const PointObstacle& obstacle,
+void for_each_look(const std::vector<bool>& held, const PointObstacle& obstacle,
                    const Points& points, const Action& action) {
-  const std::vector<bool> held = held_points(problem);
-  const Eigen::Index n = problem.rest_lengths.size();
+  const Eigen::Index n = points.cols() - 1;
   const auto is_held = [&held](Eigen::Index i) { return held[static_cast<std::size_t>(i)]; };
   for (Eigen::Index i = 0; i <= n; ++i) {
     if (!is_held(i)) action(i, 0.0, Eigen::Vector3d(points.col(i)));
@@ -157,6 +157,8 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
     gradient.col(i + 1) += by_b;
   }
   energy += add_twist_energy(problem, points, gradient);
+  if (problem.obstacles.empty()) return energy;
+  const std::vector<bool> held = held_points(problem);
   for (const PointObstacle& obstacle : problem.obstacles) {
     const double k = obstacle.stiffness / obstacle.looks;
     const auto push = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
@@ -167,7 +169,7 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
       gradient.col(i) += (1 - share) * by_point;
       if (share > 0) gradient.col(i + 1) += share * by_point;
     };
-    for_each_look(problem, obstacle, points, push);
+    for_each_look(held, obstacle, points, push);
   }
   return energy;
 }
@@ -213,6 +215,8 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, const 
     add_difference_block(i, i - 1, ab.transpose(), add);
   }
   add_twist_hessian(problem, points, add);
+  if (problem.obstacles.empty()) return;
+  const std::vector<bool> held = held_points(problem);
   for (const PointObstacle& obstacle : problem.obstacles) {
     const double k = obstacle.stiffness / obstacle.looks;
     const auto stiffen = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
@@ -226,7 +230,7 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, const 
       add(i + 1, i, share * (1 - share) * H);
       add(i, i + 1, share * (1 - share) * H);
     };
-    for_each_look(problem, obstacle, points, stiffen);
+    for_each_look(held, obstacle, points, stiffen);
   }
 }
 

@@ -189,6 +189,7 @@ class EnergySolver::State {
     remember(untwisted.front(), memory.untwisted);
     if (!succeeded(untwisted.front().solution.status)) return untwisted;
     const EndFrame frame = end_frame(held, untwisted_shape(untwisted.front().solution, workspace_));
+    const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
     // A roll counts from the rod without twist, of which the shape to start from knows nothing.
     if (part && !known_d1 && std::abs(frame.twist - part->angle) < std::numbers::pi) {
       PlacedSolution to =
@@ -196,7 +197,6 @@ class EnergySolver::State {
       to.solution.evaluations += untwisted.front().solution.evaluations;
       if (to.solution.is_equilibrium()) return one(std::move(to));
     }
-    const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
     if (warm && memory.twisted.model && std::abs(turned) < largest_followed_turn && !options.all) {
       const auto field = [&placed, &memory](const Eigen::VectorXd& s) {
         return follow_field(placed, memory.twisted, s);

@@ -179,8 +179,9 @@ std::optional<TangentField> lying_field(const Span& span, const Span::Obstacle& 
   const double reach = std::max(2 * height, std::pow(72 * height / pressed, 0.25));
   if (!(reach < span.length)) return {};
   return field([start, flat = along.normalized(), normal, height, reach](double s) {
+    // Also where it begins on the obstacle, and reach is zero.
+    if (!(s < reach)) return flat;
     const double u = s / reach;
-    if (!(u < 1)) return flat;
     const double slope = -6 * height / reach * u * (1 - u);
     return Eigen::Vector3d(
         (flat + slope * normal + std::pow(1 - u, 4) * (start - flat)).normalized());

@@ -400,7 +400,7 @@ std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers
         last = next;
       }
     }
-    if (rows.held_at_end && !rows.held_at_begin) force.total -= std::exchange(force.end, 0);
+    if (rows.held_at_end) force.total -= std::exchange(force.end, 0);
     force.force = force.total * normals_[c];
     result.push_back(force);
   }

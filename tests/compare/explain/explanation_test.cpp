@@ -61,10 +61,11 @@ struct Outcome {
   std::vector<Explanation> explanations;
 };
 
-Outcome judged(const Scene& scene, const MeasuredShape& shape) {
+Outcome judged(const Scene& scene, const MeasuredShape& shape, double share = 0.01,
+               bool largest = false) {
   const ShapeCheckOptions options{.modulus = ModulusSearch::no};
   const ShapeCheck check = check_shape(scene, shape, options);
-  const ShapeTolerance tolerance{.allowed_m = 0.01 * scene.length};
+  const ShapeTolerance tolerance{.allowed_m = share * scene.length, .largest = largest};
   Outcome outcome;
   if (!judge(check, tolerance).pass) {
     outcome.explanations = explain_shape(scene, shape, check, options);
@@ -107,7 +108,7 @@ TEST(Explanation, NamesWhatIsWrongWithAFile) {
   const Vector3d y = Vector3d::UnitY();
   const Vector3d z = Vector3d::UnitZ();
   expect_named("mirrored", scene, axes(-x, y, z), {"mirrored", "x is the file's -x"});
-  expect_named("z up", scene, axes(x, z, -y), {"z is up in the file"});
+  expect_named("z up", scene, axes(x, z, -y), {"z is up in the file", "z is the file's -y"});
   expect_named("y down", scene, axes(x, -y, z), {"y is down in the file"});
   expect_named("mm", scene, made(1000 * right), {"in mm"});
   expect_named("cm", scene, made(100 * right), {"in cm"});
@@ -244,9 +245,38 @@ TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
     half.front() = half.back() = h / 2;
     const Outcome middle = judged(scene, made(HingedChain(half, h, 1, true).points()));
     EXPECT_TRUE(middle.judgement.pass) << middle.judgement.reason;
+    EXPECT_TRUE(middle.explanations.empty());  // near the rod itself
     expect_named("half as stiff", scene, made(HingedChain(whole, h, 0.5, false).points()),
                  {"with a hinge at the clamp", "springs are 0.", "times EI/h"});
   }
+}
+
+// It is nearer to the rod than the others; a tolerance of 0.2 % tells them apart. Its springs are
+// linear in the angle, those of our chains in 2 tan(angle / 2), which is the rest.
+TEST(Explanation, AChainClampedInTheMiddleOfASegmentIsKnown) {
+  std::vector<double> lengths(11, 0.1);
+  lengths.front() = lengths.back() = 0.05;
+  const Matrix3Xd right = HingedChain(lengths, 0.1, 1, true).points();
+  const Outcome outcome = judged(clamped(), made(right), 0.002);
+  ASSERT_FALSE(outcome.explanations.empty());
+  const Explanation& best = outcome.explanations.front();
+  EXPECT_NE(best.cause.find("in the middle of a segment"), std::string::npos) << best.cause;
+  EXPECT_LT(best.rms_m, 1e-4);
+  for (const Explanation& other : outcome.explanations) {
+    const bool middle = other.cause.find("in the middle of a segment") != std::string::npos;
+    const bool chain = other.cause.find("a chain of") != std::string::npos;
+    if (chain && !middle) {
+      EXPECT_GT(other.rms_m, 10 * best.rms_m) << other.cause;
+    }
+  }
+}
+
+// A chain that is right but for its tip is right in the mean, and not everywhere.
+TEST(Explanation, AChainIsHeldAgainstTheMeasureThatWasAsked) {
+  Matrix3Xd points = HingedChain(std::vector<double>(20, 0.05), 0.05, 1, false).points();
+  points.rightCols<1>() += Vector3d(0.003, 0.0045, 0);
+  EXPECT_TRUE(judged(clamped(), made(points)).judgement.pass);
+  EXPECT_FALSE(judged(clamped(), made(points), 0.01, true).judgement.pass);
 }
 
 TEST(Explanation, OfARightShapeThereIsNone) {

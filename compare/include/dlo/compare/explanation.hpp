@@ -36,6 +36,7 @@ struct Explanation {
   double rms_m = 0;                               ///< of the whole rod, were it so
   int numbers = 0;                                ///< that were fitted to the shape
   ExplanationKind kind = ExplanationKind::scene;  ///< what it is about
+  double max_m = 0;  ///< of a discretisation: the largest deviation of a point from it
 };
 
 /// Looks for a single thing that would make a shape right: of the file (its unit, its axes, points
@@ -51,7 +52,8 @@ struct Explanation {
                                                      const ShapeCheck& check,
                                                      const ShapeCheckOptions& options);
 
-/// Share of the tolerance within which a chain's points have to be to be right for a chain.
+/// Share of the tolerance within which a chain's points have to be to be right for a chain, in the
+/// measure that the tolerance is of.
 inline constexpr double right_chain = 0.25;
 
 /// As judge(), with the best explanation named where the shape fails. A shape that is right for a
