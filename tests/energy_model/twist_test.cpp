@@ -289,7 +289,7 @@ TEST(Twist, StartedFromAnotherRollItMeetsItsOwn) {
   for (Grip& grip : problem.grips) grip.frame.emplace();
   const auto solved = [&problem](double roll, const Equilibrium* start) {
     problem.grips[1].frame->roll = roll;
-    const Equilibrium rod = solve_energy(problem, {.start = start});
+    Equilibrium rod = solve_energy(problem, {.start = start});
     EXPECT_EQ(rod.status, SolveStatus::converged) << rod.message;
     return rod;
   };
