@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <vector>
 
@@ -45,6 +46,22 @@ inline Eigen::Matrix3Xd with_noise(Eigen::Matrix3Xd points, double sigma, std::m
     for (Eigen::Index k = 0; k < 3; ++k) points(k, i) += normal(random);
   }
   return points;
+}
+
+/// Noise whose neighbours belong together over an arc length: a first-order autoregression.
+inline Eigen::Matrix3Xd correlated_noise(const std::vector<double>& s, double sigma, double length,
+                                         std::mt19937& random) {
+  std::normal_distribution<double> normal(0, sigma);
+  Eigen::Matrix3Xd noise(3, static_cast<Eigen::Index>(s.size()));
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    noise(k, 0) = normal(random);
+    for (Eigen::Index i = 1; i < noise.cols(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const double kept = std::exp(-(s[at] - s[at - 1]) / length);
+      noise(k, i) = kept * noise(k, i - 1) + std::sqrt(1 - kept * kept) * normal(random);
+    }
+  }
+  return noise;
 }
 
 inline compare::MeasuredShape reversed(const compare::MeasuredShape& shape) {

@@ -26,6 +26,9 @@ struct CalibrateOptions {
   std::vector<std::string> shapes;
   bool density = false;
   std::string noise;
+  int natural_curvature_terms = 0;
+  std::string clamp_angles;
+  std::string clamp_positions;
   std::vector<std::string> holdouts;
   std::optional<double> target;
   ShapeOptions shape_options;
@@ -33,15 +36,17 @@ struct CalibrateOptions {
   OutputOptions output;
 };
 
-std::optional<double> noise_m(const std::string& text) {
+/// A quantity > 0 that an option has, if it is given.
+std::optional<double> quantity_of(const char* option, const std::string& text,
+                                  compare::Dimension dimension) {
   if (text.empty()) return std::nullopt;
   try {
-    const double value = compare::parse_quantity(text, compare::Dimension::length);
+    const double value = compare::parse_quantity(text, dimension);
     if (value > 0) return value;
   } catch (const compare::InputError& error) {
-    throw compare::InputError(fmt::format("--noise = {}: {}", text, error.what()));
+    throw compare::InputError(fmt::format("{} = {}: {}", option, text, error.what()));
   }
-  throw compare::InputError(fmt::format("--noise = {}: out of range (allowed: > 0)", text));
+  throw compare::InputError(fmt::format("{} = {}: out of range (allowed: > 0)", option, text));
 }
 
 std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
@@ -91,11 +96,18 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
   if (report.scenes.size() == 1) report.scenes.resize(shapes.size(), report.scenes.front());
   report.files = options.shapes;
   report.frame_was_found = options.shape_options.pose() != compare::PoseFreedom::known;
-  const compare::MaterialFitOptions fit_options{.pose = options.shape_options.pose(),
-                                                .arc_lengths = options.shape_options.arc_lengths(),
-                                                .density = options.density,
-                                                .noise = noise_m(options.noise),
-                                                .solve = options.overrides.solve()};
+  using compare::Dimension;
+  const compare::MaterialFitOptions fit_options{
+      .pose = options.shape_options.pose(),
+      .arc_lengths = options.shape_options.arc_lengths(),
+      .density = options.density,
+      .natural_curvature_terms = options.natural_curvature_terms,
+      .direction_tolerance =
+          quantity_of("--clamp-angles", options.clamp_angles, Dimension::angle).value_or(0),
+      .position_tolerance =
+          quantity_of("--clamp-positions", options.clamp_positions, Dimension::length).value_or(0),
+      .noise = quantity_of("--noise", options.noise, Dimension::length),
+      .solve = options.overrides.solve()};
   report.fit = [&] {
     const ProgressBar bar("calibrate");
     return compare::fit_material(report.scenes, shapes, fit_options);
@@ -165,6 +177,24 @@ void add_calibrate(CLI::App& app) {
   command
       ->add_option("--noise", options->noise,
                    "standard deviation of one coordinate such as \"0.5 mm\"; default: estimated")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--natural-curvature", options->natural_curvature_terms,
+                   "fit this many terms of the wire's natural curvature as well (1: the same all "
+                   "along; Legendre's polynomials)")
+      ->check(CLI::Range(0, 24))
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--clamp-angles", options->clamp_angles,
+                   "how well the clamps' directions are known, as standard deviation such as \"5 "
+                   "deg\"; each shape's own are fitted as well")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--clamp-positions", options->clamp_positions,
+                   "the same of the grippers' positions, such as \"2 mm\"")
       ->needs(shape)
       ->group(measured);
   options->shape_options.add_to(*command, ChordLengths::not_exact_enough);

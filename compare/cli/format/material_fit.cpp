@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "base/display.hpp"
 #include "base/quote.hpp"
@@ -45,6 +46,63 @@ std::string correlation_text(const MaterialReport& report) {
       errors.widening, errors.degrees_of_freedom);
 }
 
+/// A number beside E, in the units that people read.
+std::string text_of(const compare::FittedNumber& number) {
+  struct Shown {
+    double factor;
+    const char* unit;
+  };
+  const Shown shown = number.unit == "rad" ? Shown{180 / std::numbers::pi, "deg"}
+                      : number.unit == "m" ? Shown{1e3, "mm"}
+                                           : Shown{1, number.unit.c_str()};
+  if (!number.is_seen()) {
+    return fmt::format("{}: not seen by these shapes, known to {:.3g} {}", number.name,
+                       number.known_before * shown.factor, shown.unit);
+  }
+  return fmt::format("{}: {:.4g} {}, standard deviation {:.2g} {}", number.name,
+                     number.value * shown.factor, shown.unit, number.deviation * shown.factor,
+                     shown.unit);
+}
+
+/// The wire's own numbers, or those of one shape, indented.
+std::string numbers_text(const compare::MaterialFit& fit, const std::optional<std::size_t>& shape) {
+  std::string out;
+  for (const compare::FittedNumber& number : fit.others) {
+    if (number.shape == shape) append(out, "            {}\n", text_of(number));
+  }
+  return out;
+}
+
+Json numbers_json(const compare::MaterialFit& fit) {
+  Json result = Json::array();
+  for (const compare::FittedNumber& number : fit.others) {
+    result.push_back({{"name", number.name},
+                      {"unit", number.unit},
+                      {"value", number.value},
+                      {"standard_deviation", number.deviation},
+                      {"known_before", number.known_before},
+                      {"seen", number.is_seen()},
+                      {"shape", number.shape ? Json(*number.shape) : Json(nullptr)}});
+  }
+  return result;
+}
+
+/// As a scene file has it [1/m].
+std::string natural_curvature_text(const compare::MaterialFit& fit) {
+  std::string out;
+  for (const Eigen::Vector2d& term : fit.natural_curvature) {
+    append(out, "{}[{:.6e}, {:.6e}]", out.empty() ? "" : ", ", term.x(), term.y());
+  }
+  return "[" + out + "]";
+}
+
+Json scatter_json(const std::optional<compare::ScatterBetweenShapes>& scatter) {
+  if (!scatter) return nullptr;
+  return {{"relative_deviation", scatter->relative_deviation},
+          {"chance", scatter->chance},
+          {"interval_widened_by", scatter->widening}};
+}
+
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 /// A fitted number's name and unit in keys.
@@ -85,10 +143,26 @@ std::string material_text(const MaterialReport& report) {
   if (fit.density) add(report.scenes.front().heaviness(), *fit.density);
   if (!fit.not_told.empty()) append(out, "            {}\n", fit.not_told);
   if (!fit.warning.empty()) append(out, "            {}\n", fit.warning);
+  append(out, "{}", numbers_text(fit, std::nullopt));
+  if (fit.scatter) {
+    append(out,
+           "            the shapes do not agree: they scatter by {:.2g} % in {} (by chance in "
+           "{:.2g} % "
+           "of cases);\n            the interval is {:.3g} times as wide for it\n",
+           fit.scatter->relative_deviation * 100, report.scenes.front().stiffness().name,
+           fit.scatter->chance * 100, fit.scatter->widening);
+  }
   append(out, "noise       {:.4g} mm in each coordinate, {} ({} degrees of freedom)\n",
          fit.noise_m * 1e3, fit.noise_is_estimated ? "estimated from the residuals" : "given",
          fit.degrees_of_freedom);
-  if (fit.correlation) append(out, "{}", correlation_text(report));
+  if (fit.correlation) {
+    append(out, "{}", correlation_text(report));
+    if (fit.others.empty()) {
+      out +=
+          "            (clamps that are off, or a wire that is not straight by nature, leave such "
+          "residuals:\n            --clamp-angles, --natural-curvature)\n";
+    }
+  }
   append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
     const compare::Alignment& a = fit.shapes[i].alignment;
@@ -98,6 +172,7 @@ std::string material_text(const MaterialReport& report) {
            std::sqrt(a.mean_square) * 1e3);
     append(out, "            arc lengths: {}\n", compare::to_string(a.arc_lengths));
     if (report.frame_was_found) append(out, "            frame {}\n", pose_text(a.pose));
+    append(out, "{}", numbers_text(fit, i));
   }
   return out;
 }
@@ -154,6 +229,8 @@ Json material_json(const MaterialReport& report) {
   } else {
     result["correlation"] = nullptr;
   }
+  result["others"] = numbers_json(fit);
+  result["scatter_between_shapes"] = scatter_json(fit.scatter);
   result["rms_m"] = fit.rms_m;
   Json shapes = Json::array();
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
@@ -202,6 +279,11 @@ std::string material_toml(const MaterialReport& report) {
   append(out, "{} = {:.8e}  # {}, {}\n", heaviness_key(scene).name, density, heaviness.unit,
          fit.density ? fmt::format("95 %: {:.4g} to {:.4g}", *fit.density->low, *fit.density->high)
                      : std::string("of the scene"));
+  if (!fit.natural_curvature.empty()) {
+    // Of a material no shape is known: it is a line for the scene.
+    append(out, "{}natural_curvature = {}\n",
+           given ? "" : "# of the rod: ", natural_curvature_text(fit));
+  }
   append(out, "{}least squares of {} measured shape{}, noise {:.3g} m{}{}\n",
          given ? "# " : "source = \"", fit.shapes.size(), fit.shapes.size() == 1 ? "" : "s",
          fit.noise_m, fit.correlation ? ", correlated along the rod" : "", given ? "" : "\"");

@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 #include <optional>
+
+#include "explain/scene_change.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -76,25 +77,18 @@ SceneCause length(const Scene& scene, double polyline) {
 /// Of a clamp, in the plane with this normal or every way.
 SceneCause direction(const Scene& scene, std::size_t index,
                      const std::optional<Eigen::Vector3d>& normal) {
-  const Eigen::Vector3d d = *scene.grippers[index].direction;
-  const Eigen::Vector3d first = normal.value_or(d.unitOrthogonal());
-  const Eigen::Vector3d second = d.cross(first);
-  const Eigen::Index numbers = normal ? 1 : 2;
-  const auto turned = [d, first, second](const Eigen::VectorXd& p) -> Eigen::Vector3d {
-    Eigen::Vector3d turn = p[0] * first;
-    if (p.size() > 1) turn += p[1] * second;
-    const double angle = turn.norm();
-    return angle > 0 ? Eigen::Vector3d(Eigen::AngleAxisd(angle, turn / angle) * d)
-                     : Eigen::Vector3d(d);
-  };
-  return {zeros(numbers), Eigen::VectorXd::Constant(numbers, 1 * degree), 40 * degree,
-          [scene, index, turned](const Eigen::VectorXd& p) {
+  const Gripper& clamp = scene.grippers[index];
+  const Eigen::Matrix3Xd ways = ways_across(*clamp.direction, normal);
+  return {zeros(ways.cols()), Eigen::VectorXd::Constant(ways.cols(), 1 * degree), 40 * degree,
+          [scene, index, ways](const Eigen::VectorXd& p) {
             Scene changed = scene;
-            changed.grippers[index].direction = turned(p);
+            turn_clamp(changed.grippers[index], ways * p);
             return changed;
           },
-          [index, turned](const Eigen::VectorXd& p) {
-            const Eigen::Vector3d to = turned(p);
+          [clamp, index, ways](const Eigen::VectorXd& p) {
+            Gripper turned = clamp;
+            turn_clamp(turned, ways * p);
+            const Eigen::Vector3d to = *turned.direction;
             return fmt::format("gripper {} is turned by {:.3g} deg, to [{:.4g}, {:.4g}, {:.4g}]",
                                index + 1, p.norm() / degree, to.x(), to.y(), to.z());
           }};
@@ -103,12 +97,7 @@ SceneCause direction(const Scene& scene, std::size_t index,
 /// Of a gripper, in the plane with this normal or every way.
 SceneCause position(const Scene& scene, std::size_t index,
                     const std::optional<Eigen::Vector3d>& normal) {
-  Eigen::Matrix3Xd ways = Eigen::Matrix3d::Identity();
-  if (normal) {
-    const Eigen::Vector3d first = normal->unitOrthogonal();
-    ways.resize(3, 2);
-    ways << first, normal->cross(first);
-  }
+  const Eigen::Matrix3Xd ways = ways_of_place(normal);
   return {zeros(ways.cols()), Eigen::VectorXd::Constant(ways.cols(), 1e-3 * scene.length),
           0.2 * scene.length,
           [scene, index, ways](const Eigen::VectorXd& p) {
@@ -128,7 +117,7 @@ SceneCause natural_curvature(const Scene& scene) {
   return {zeros(1), Eigen::VectorXd::Constant(1, 0.02 * unit), 3 * unit,
           [scene](const Eigen::VectorXd& p) {
             Scene changed = scene;
-            changed.natural_strain.y() += p[0];
+            bend_by_nature(changed, 0, {0, p[0]});
             return changed;
           },
           [scene](const Eigen::VectorXd& p) {

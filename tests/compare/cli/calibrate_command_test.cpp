@@ -64,6 +64,34 @@ TEST_F(CalibrateCommand, FindsTheModulusOfMeasuredShapes) {
   }
 }
 
+// The clamp points 4 degrees off, and the wire was on a reel.
+TEST_F(CalibrateCommand, FindsWhatElseAWireHas) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  std::string bent = read(a);
+  bent.replace(bent.find("[rod]"), 5, "[rod]\nnatural_curvature = \"0.7 1/m\"");
+  const std::string shape = seen(scene(bent), "a.csv");
+  const std::string wire = words({"calibrate", a, "--shape", shape, "--natural-curvature 1",
+                                  "--clamp-angles \"3 deg\" --clamp-positions \"1 mm\""});
+  const json document = json::parse(run(wire + " --format json").out);
+  const json& others = document.at("others");
+  ASSERT_EQ(others.size(), 4U);
+  EXPECT_EQ(others[0].at("unit"), "1/m");
+  EXPECT_NEAR(others[0].at("value").get<double>(), 0.7, 1e-3);
+  EXPECT_TRUE(others[0].at("seen").get<bool>());
+  EXPECT_TRUE(others[0].at("shape").is_null());
+  EXPECT_EQ(others[1].at("unit"), "rad");
+  EXPECT_EQ(others[1].at("shape"), 0);
+  EXPECT_NE(run(wire).out.find("natural curvature, P_0: 0.7"), std::string::npos) << run(wire).out;
+  EXPECT_EQ(run(wire + " -o " + path("wire.toml")).status, 0);
+  EXPECT_NE(read(path("wire.toml")).find("natural_curvature = [[0.000000e+00, 7.0"),
+            std::string::npos)
+      << read(path("wire.toml"));
+  expect_error(words({"calibrate", a, "--shape", shape, "--clamp-angles \"5 mm\""}), 2,
+               {"--clamp-angles", "5 mm", "allowed: rad, deg"});
+  expect_error(words({"calibrate", a, "--shape", shape, "--clamp-positions \"0 mm\""}), 2,
+               {"--clamp-positions", "allowed: > 0"});
+}
+
 TEST_F(CalibrateCommand, WritesAMaterialThatScenesCanUse) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string shape = seen(a, "a.csv");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,7 +18,15 @@ struct MaterialFitOptions {
   PoseFreedom pose = PoseFreedom::known;  ///< what is unknown of the shapes' frames
   /// `automatic` is the file's own, else nearest points: chord lengths are not exact enough.
   ArcLengths arc_lengths = ArcLengths::automatic;
-  bool density = false;          ///< fitted as well
+  bool density = false;  ///< fitted as well
+  /// Terms of the natural curvature that are fitted as well, as Legendre's P_0, P_1, .. of
+  /// 2 s/l - 1: 0 to 24. In a plane about its normal, else about d1 and d2.
+  int natural_curvature_terms = 0;
+  /// How well the clamps' directions are known: standard deviation about each axis across [rad]. If
+  /// it is > 0 each shape's own are fitted; in the plane of a planar scene.
+  double direction_tolerance = 0;
+  /// The same of the grippers' positions along each axis [m].
+  double position_tolerance = 0;
   std::optional<double> noise;   ///< standard deviation of one coordinate [m]; else estimated
   double smallest_ratio = 1e-4;  ///< of the modulus to the scene's, where it is looked for
   double largest_ratio = 1e4;    ///< the upper end of that range
@@ -31,6 +41,30 @@ struct FittedValue {
   std::optional<double> value;
   std::optional<double> low;   ///< lower end of the interval
   std::optional<double> high;  ///< upper end of the interval
+};
+
+/// A number that was fitted beside E and the density.
+struct FittedNumber {
+  std::string name;         ///< "natural curvature about d2, P_1", "direction of gripper 2"
+  std::string unit;         ///< SI: "1/m", "rad" or "m"
+  double value = 0;         ///< added to the scene's; the most likely one
+  double deviation = 0;     ///< its standard deviation, with what was known before
+  double known_before = 0;  ///< standard deviation without the shapes
+  std::optional<std::size_t> shape;  ///< whose own it is; none: it is the wire's
+
+  /// Whether the shapes tell it, rather than what was known before: of its variance half or more.
+  [[nodiscard]] bool is_seen() const {
+    return 2 * deviation * deviation <= known_before * known_before;
+  }
+};
+
+/// Of what single shapes say of E, where it differs by more than their errors explain in less than
+/// one case of twenty (Cochran's Q): shapes of one wire, hung several times, seldom repeat.
+struct ScatterBetweenShapes {
+  double relative_deviation = 0;  ///< of E between shapes, standard deviation [-]
+  double chance = 1;              ///< of as much without a scatter [-]
+  /// Width of the interval of E over that without it.
+  double widening = 1;
 };
 
 /// How one shape was laid on the rod of the fitted modulus.
@@ -69,8 +103,13 @@ struct MaterialFit {
   bool correlation_was_tested = false;
   /// If independent errors would look as correlated in less than one case of twenty.
   std::optional<CorrelatedErrors> correlation;
-  bool noise_is_estimated = true;   ///< else it was given
-  int degrees_of_freedom = 0;       ///< numbers measured less numbers fitted
+  std::vector<FittedNumber> others;  ///< those that were asked for, the wire's first
+  /// Of the first scene with what was fitted of it: coefficients of P_0, P_1, .. about d1 and d2
+  /// [1/m]; empty if it was not asked for.
+  std::vector<Eigen::Vector2d> natural_curvature;
+  std::optional<ScatterBetweenShapes> scatter;  ///< if there is one
+  bool noise_is_estimated = true;               ///< else it was given
+  int degrees_of_freedom = 0;                   ///< numbers measured less numbers fitted
   double rms_m = 0;                 ///< of the distances between points and rod at the fit
   long equilibria = 0;              ///< of the energy model that were solved
   long evaluations = 0;             ///< of its objective for these
@@ -103,6 +142,16 @@ struct MaterialFit {
 /// still holds the truth less often than in 95 of 100.
 ///
 /// Between several grippers, equilibria are followed from one E to the next.
+///
+/// With natural curvature, directions or positions to be fitted too, all numbers are found together
+/// by Gauss-Newton steps from that E, in generalised least squares under the errors' covariance;
+/// what is known before (the tolerances; of each term of natural curvature a standard deviation of
+/// 10 / l) counts as measured. The interval of E then is that of the profile likelihood in which
+/// the others' effect is linear about the optimum.
+///
+/// Two shapes or more are asked whether they agree on E within their errors; where they do not, the
+/// interval is that of their mean under a scatter between shapes (Paule and Mandel's estimate, with
+/// Student's t of one degree of freedom less than there are shapes), if it is wider.
 ///
 /// E and density are told apart only by forces that do not grow with density, such as loads: the
 /// shape under gravity alone depends on density / E.

@@ -1,4 +1,4 @@
-#include "judge/log_profile.hpp"
+#include "fit/log_profile.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -14,7 +14,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/force_model/step_size.hpp"
-#include "judge/force_model_shortfall.hpp"
+#include "fit/force_model_shortfall.hpp"
 #include "judge/scalar_search.hpp"
 #include "polygon/natural_plane.hpp"
 #include "solve/polygon_solution.hpp"

@@ -1,4 +1,4 @@
-#include "judge/force_model_shortfall.hpp"
+#include "fit/force_model_shortfall.hpp"
 
 #include <fmt/format.h>
 

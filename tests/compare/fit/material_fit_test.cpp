@@ -24,6 +24,7 @@
 namespace dlo::compare {
 namespace {
 
+using test::correlated_noise;
 using test::exact_shape;
 using test::heavy_scene;
 using test::random_pose;
@@ -123,22 +124,6 @@ TEST(MaterialFit, IntervalHoldsTheTruthInNineOfTenDrawsOfAnUnknownFrameWithArcLe
   if (test::sanitized) return;
   EXPECT_GE(tally.held, 90);
   EXPECT_LE(tally.held, 99);
-}
-
-/// Noise whose neighbours belong together over an arc length: a first-order autoregression.
-Eigen::Matrix3Xd correlated_noise(const std::vector<double>& s, double sigma, double length,
-                                  std::mt19937& random) {
-  std::normal_distribution<double> normal(0, sigma);
-  Eigen::Matrix3Xd noise(3, static_cast<Eigen::Index>(s.size()));
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    noise(k, 0) = normal(random);
-    for (Eigen::Index i = 1; i < noise.cols(); ++i) {
-      const auto at = static_cast<std::size_t>(i);
-      const double kept = std::exp(-(s[at] - s[at - 1]) / length);
-      noise(k, i) = kept * noise(k, i - 1) + std::sqrt(1 - kept * kept) * normal(random);
-    }
-  }
-  return noise;
 }
 
 // Taken for independent, such errors leave the truth outside in 25 and 60 of 100 draws.

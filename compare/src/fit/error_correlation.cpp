@@ -1,9 +1,10 @@
-#include "judge/error_correlation.hpp"
+#include "fit/error_correlation.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace dlo::compare {
 namespace {
@@ -109,6 +110,41 @@ double deviance(const Eigen::VectorXd& residual, const Eigen::MatrixXd& basis,
   return freedom * std::log(squares / freedom) + log_determinant;
 }
 
+/// A covariance of the grid that is searched.
+struct Candidate {
+  ErrorCovariance covariance;
+  double deviance = 0;
+};
+
+/// Independence first; nothing where there are too few residuals.
+std::vector<Candidate> candidates(const std::vector<ResidualSeries>& series) {
+  const Stacked all = stacked(series);
+  const Eigen::MatrixXd basis = basis_of(all.design);
+  if (basis.rows() - basis.cols() < least_degrees_of_freedom) return {};
+  double shortest = INFINITY;
+  double total = 0;
+  for (const ResidualSeries& one : series) {
+    if (one.arc_length.size() < 2) continue;
+    const double length = one.arc_length.back() - one.arc_length.front();
+    // All points past an end of a rod that does not fit are at that end.
+    if (!(length > 0)) continue;
+    total = std::max(total, length);
+    shortest = std::min(shortest, length / static_cast<double>(one.arc_length.size() - 1));
+  }
+  if (!(total > 0)) return {};
+  const auto candidate = [&](const ErrorCovariance& covariance) {
+    return Candidate{covariance, deviance(all.residual, basis, all.step, covariance)};
+  };
+  std::vector<Candidate> result = {candidate({.share = 0, .length = total})};
+  constexpr double factor = 1.35;
+  for (double length = shortest / 3; length < 2 * total; length *= factor) {
+    for (const double share : {0.3, 0.5, 0.7, 0.85, 0.95, 1.0}) {
+      result.push_back(candidate({.share = share, .length = length}));
+    }
+  }
+  return result;
+}
+
 /// exp(-|s - s'| / length) times columns, in one pass along the rod and one back.
 Eigen::MatrixXd smoothed(const Eigen::MatrixXd& columns, const std::vector<double>& step,
                          double length) {
@@ -144,35 +180,45 @@ double squared_entries(const std::vector<double>& step, const ErrorCovariance& c
 }  // namespace
 
 CorrelationEstimate correlation_of(const std::vector<ResidualSeries>& series) {
-  const Stacked all = stacked(series);
-  const Eigen::MatrixXd basis = basis_of(all.design);
+  const std::vector<Candidate> all = candidates(series);
   CorrelationEstimate result;
-  if (basis.rows() - basis.cols() < least_degrees_of_freedom) return result;
-  double shortest = INFINITY;
-  double total = 0;
-  for (const ResidualSeries& one : series) {
-    if (one.arc_length.size() < 2) continue;
-    const double length = one.arc_length.back() - one.arc_length.front();
-    total = std::max(total, length);
-    shortest = std::min(shortest, length / static_cast<double>(one.arc_length.size() - 1));
-  }
-  if (!(total > 0)) return result;
+  if (all.empty()) return result;
   result.tested = true;
-  const double independent = deviance(all.residual, basis, all.step, {.share = 0, .length = total});
-  double least = independent;
-  constexpr double factor = 1.35;
-  for (double length = shortest / 3; length < 2 * total; length *= factor) {
-    for (const double share : {0.3, 0.5, 0.7, 0.85, 0.95, 1.0}) {
-      const ErrorCovariance covariance{.share = share, .length = length};
-      const double value = deviance(all.residual, basis, all.step, covariance);
-      if (!(value < least)) continue;
-      least = value;
-      result.covariance = covariance;
-    }
-  }
-  result.likelihood_gain = independent - least;
+  const auto best = std::min_element(
+      all.begin(), all.end(),
+      [](const Candidate& a, const Candidate& b) { return a.deviance < b.deviance; });
+  result.covariance = best->covariance;
+  result.likelihood_gain = all.front().deviance - best->deviance;
   result.significant = result.likelihood_gain > significant_gain;
   return result;
+}
+
+std::vector<LikelyCovariance> likely_covariances(const std::vector<ResidualSeries>& series) {
+  const std::vector<Candidate> all = candidates(series);
+  if (all.empty()) return {{ErrorCovariance(), 1}};
+  double least = INFINITY;
+  for (const Candidate& one : all) least = std::min(least, one.deviance);
+  constexpr double least_likely = 1e-3;
+  std::vector<LikelyCovariance> result;
+  double sum = 0;
+  for (const Candidate& one : all) {
+    const double weight = std::exp((least - one.deviance) / 2);
+    if (!(weight >= least_likely)) continue;
+    result.push_back({one.covariance, weight});
+    sum += weight;
+  }
+  for (LikelyCovariance& one : result) one.weight /= sum;
+  return result;
+}
+
+Innovations innovations(const std::vector<ResidualSeries>& series,
+                        const ErrorCovariance& covariance) {
+  Stacked all = stacked(series);
+  if (!(covariance.share > 0)) return {std::move(all.residual), std::move(all.design)};
+  Eigen::MatrixXd columns(all.residual.size(), all.design.cols() + 1);
+  columns << all.design, all.residual;
+  const Eigen::MatrixXd white = whitened(std::move(columns), all.step, covariance).columns;
+  return {white.rightCols<1>(), white.leftCols(all.design.cols())};
 }
 
 CorrelationEffect correlation_effect(const std::vector<ResidualSeries>& series, Eigen::Index column,

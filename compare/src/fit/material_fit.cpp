@@ -10,9 +10,11 @@
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
-#include "judge/error_correlation.hpp"
-#include "judge/log_profile.hpp"
-#include "judge/shape_misfit.hpp"
+#include "fit/between_shapes.hpp"
+#include "fit/error_correlation.hpp"
+#include "fit/log_profile.hpp"
+#include "fit/shape_misfit.hpp"
+#include "fit/wire_fit.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {
@@ -141,6 +143,7 @@ class MaterialFitter {
   MaterialFitter(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                  const MaterialFitOptions& options)
       : scenes_(scenes),
+        shapes_(shapes),
         options_(options),
         misfit_(scenes, shapes, options),
         both_(options.density && has_forces_beside_weight(scenes)),
@@ -170,6 +173,7 @@ class MaterialFitter {
       throw ConvergenceError(fmt::format(
           "{}: the energy model has a shape at no modulus that was tried", scenes_.front().file));
     }
+    if (fits_a_wire(options_)) return whole_wire(best, least);
     measure_noise(least, best);
     const NamedValue stiffness = scenes_.front().stiffness();
     const Finding found = finding(*over_modulus, level(least, 0), rival_level(least, 0));
@@ -198,6 +202,19 @@ class MaterialFitter {
   }
 
  private:
+  [[nodiscard]] MaterialFit whole_wire(const MaterialPoint& best, double least) {
+    MaterialFit fit = fit_wire(scenes_, shapes_, options_, best, both_);
+    refuse_unresolved(least);
+    fit.equilibria += misfit_.solves();
+    fit.evaluations += misfit_.evaluations();
+    if (fit.warning.empty()) {
+      const auto points = static_cast<double>(misfit_.points());
+      fit.warning = warning_of(fit.rms_m * fit.rms_m * points, points, freedom(),
+                               scenes_.front().length, std::nullopt);
+    }
+    return fit;
+  }
+
   [[nodiscard]] double freedom() const { return result_.degrees_of_freedom; }
 
   // With both unknown each is profiled with the other at its own best.
@@ -240,25 +257,46 @@ class MaterialFitter {
     if (series.empty()) return;
     const CorrelationEstimate estimate = correlation_of(series);
     result_.correlation_was_tested = estimate.tested;
-    if (!estimate.significant) return;
     const Eigen::Index frames = series.front().design.cols() - (both_ ? 2 : 1);
+    if (estimate.significant) allow_for(estimate.covariance, series, frames);
+    measure_scatter(series, frames, estimate.significant ? estimate.covariance : ErrorCovariance());
+  }
+
+  /// Errors are correlated.
+  void allow_for(const ErrorCovariance& covariance, const std::vector<ResidualSeries>& series,
+                 Eigen::Index frames) {
     for (std::size_t k = 0; k < effects_.size(); ++k) {
-      effects_[k] =
-          correlation_effect(series, frames + static_cast<Eigen::Index>(k), estimate.covariance);
+      effects_[k] = correlation_effect(series, frames + static_cast<Eigen::Index>(k), covariance);
     }
     if (!options_.noise) result_.noise_m /= std::sqrt(effects_[0].residual_factor);
     result_.correlation =
-        CorrelatedErrors{.length_m = estimate.covariance.length,
-                         .share = estimate.covariance.share,
+        CorrelatedErrors{.length_m = covariance.length,
+                         .share = covariance.share,
                          .widening = std::sqrt(excess(0)) * quantile(0) / independent_quantile(),
                          .degrees_of_freedom = effects_[0].degrees_of_freedom};
+  }
+
+  /// Whether the shapes agree on E.
+  void measure_scatter(const std::vector<ResidualSeries>& series, Eigen::Index frames,
+                       const ErrorCovariance& covariance) {
+    std::vector<Nuisance> nuisances;
+    for (Eigen::Index k = 0; k < frames; ++k) nuisances.push_back({k, 0, INFINITY});
+    if (both_) nuisances.push_back({frames + 1, 0, INFINITY});
+    std::vector<ShapeEstimate> estimates;
+    for (std::size_t shape = 0; shape < scenes_.size(); ++shape) {
+      estimates.push_back(estimate_of_shape(series_of_shape(series, shape), covariance,
+                                            std::pow(result_.noise_m, 2), frames, nuisances));
+    }
+    result_.scatter = scatter_between(estimates, quantile(0));
   }
 
   /// Variance of a fitted number over that which independent errors would have, as they are taken
   /// to be from the sum of squares (or given).
   [[nodiscard]] double excess(std::size_t number) const {
     const CorrelationEffect& effect = effects_[number];
-    return std::max(1.0, effect.variance_factor / (options_.noise ? 1 : effect.residual_factor));
+    const double between = result_.scatter ? std::pow(result_.scatter->widening, 2) : 1;
+    return between *
+           std::max(1.0, effect.variance_factor / (options_.noise ? 1 : effect.residual_factor));
   }
 
   [[nodiscard]] double independent_quantile() const {
@@ -317,6 +355,7 @@ class MaterialFitter {
   }
 
   const std::vector<Scene>& scenes_;
+  const std::vector<MeasuredShape>& shapes_;
   const MaterialFitOptions& options_;
   ShapeMisfit misfit_;
   bool both_;

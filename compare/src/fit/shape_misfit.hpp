@@ -11,7 +11,7 @@
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/energy_model/energy.hpp"
-#include "judge/error_correlation.hpp"
+#include "fit/error_correlation.hpp"
 #include "shape/aligner.hpp"
 #include "shape/curve.hpp"
 

@@ -1,9 +1,7 @@
-#include "judge/shape_misfit.hpp"
+#include "fit/shape_misfit.hpp"
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +10,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/shape_check.hpp"
+#include "fit/residual_series.hpp"
 #include "polygon/energy_problems.hpp"
 
 namespace dlo::compare {
@@ -23,18 +22,6 @@ constexpr int most_searches = 4;
 constexpr std::size_t most_kept = 64;
 /// Step in the logarithm of a material for derivatives; shapes are right to 1e-10 l.
 constexpr double derivative_step = 1e-3;
-
-/// Principal directions of points, that of their least extent first.
-Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> extents(const Eigen::Matrix3Xd& points) {
-  const Eigen::Matrix3Xd centred = points.colwise() - points.rowwise().mean();
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(centred * centred.transpose());
-}
-
-/// Points that lie in a plane to rounding: their third coordinate was not measured.
-bool lies_in_a_plane(const Eigen::Matrix3Xd& points) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen = extents(points);
-  return eigen.eigenvalues()[0] < 1e-15 * eigen.eigenvalues()[2];
-}
 
 /// Numbers that are measured of a shape.
 int measured_numbers(const Aligner& aligner, bool flat) {
@@ -71,54 +58,6 @@ Scene only_the_rod(Scene scene) {
   scene.force_model = {};
   for (Gripper& gripper : scene.grippers) gripper.where.clear();
   return scene;
-}
-
-/// The directions in which a point's residual is seen, as columns.
-std::vector<Eigen::Matrix3Xd> seen_directions(const Alignment& alignment, const Curve& curve,
-                                              bool flat) {
-  const std::vector<double>& s = alignment.shape.arc_length;
-  const bool across = alignment.arc_lengths == ArcLengths::nearest;
-  const Eigen::Matrix3d principal = extents(alignment.shape.points).eigenvectors();
-  const Eigen::Vector3d out_of_plane = principal.col(0);
-  std::vector<Eigen::Matrix3Xd> result;
-  Eigen::Vector3d normal = out_of_plane;
-  for (const double at : s) {
-    if (!across) {
-      result.emplace_back(flat ? Eigen::Matrix3Xd(principal.rightCols<2>())
-                               : Eigen::Matrix3Xd(Eigen::Matrix3d::Identity()));
-      continue;
-    }
-    const Eigen::Vector3d tangent = curve.tangent(at).normalized();
-    if (flat) {
-      result.emplace_back(out_of_plane.cross(tangent).normalized());
-      continue;
-    }
-    // Carried along the rod without a turn about it, so that neighbours look the same way.
-    normal -= normal.dot(tangent) * tangent;
-    if (!(normal.norm() > 1e-3)) normal = tangent.unitOrthogonal();
-    normal.normalize();
-    Eigen::Matrix3Xd both(3, 2);
-    both << normal, tangent.cross(normal);
-    result.push_back(std::move(both));
-  }
-  return result;
-}
-
-/// Derivatives of a point by the free coordinates of its motion.
-Eigen::Matrix3Xd frame_derivatives(PoseFreedom pose, const Eigen::Vector3d& arm,
-                                   const Eigen::Vector3d& up) {
-  const Eigen::Matrix3d shift = Eigen::Matrix3d::Identity();
-  if (pose == PoseFreedom::known) return shift.leftCols(0);
-  if (pose == PoseFreedom::translation) return shift;
-  const Eigen::Index turns = pose == PoseFreedom::upright ? 1 : 3;
-  Eigen::Matrix3Xd result(3, 3 + turns);
-  result.leftCols<3>() = shift;
-  for (Eigen::Index k = 0; k < turns; ++k) {
-    const Eigen::Vector3d axis =
-        pose == PoseFreedom::upright ? up : Eigen::Vector3d(Eigen::Vector3d::Unit(k));
-    result.col(3 + k) = axis.cross(arm);
-  }
-  return result;
 }
 
 }  // namespace
@@ -309,53 +248,34 @@ std::vector<ResidualSeries> ShapeMisfit::residuals(const MaterialPoint& material
   std::vector<MaterialPoint> beside = {
       {material.log_modulus + derivative_step, material.log_density}};
   if (both) beside.push_back({material.log_modulus, material.log_density + derivative_step});
-  const auto unknowns = static_cast<Eigen::Index>(beside.size());
   Eigen::Index frames = 0;
   for (const Aligner& aligner : aligners_) frames += aligner.free_coordinates();
+  const Eigen::Index columns = frames + static_cast<Eigen::Index>(beside.size());
   Eigen::Index frame = 0;
   std::vector<ResidualSeries> result;
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     const std::shared_ptr<const Solved> shape = solved(i, material);
     if (!shape) return {};
     const Curve curve(shape->equilibrium.sample, scenes_[i].length);
-    std::vector<Curve> moved;
+    const Alignment alignment = aligners_[i].align(curve);
+    const Eigen::Matrix3Xd here = curve.points(alignment.shape.arc_length);
+    std::vector<Movement> movements;
     for (const MaterialPoint& other : beside) {
       const std::shared_ptr<const Solved> there = solved(i, other);
       if (!there) return {};
-      moved.emplace_back(there->equilibrium.sample, scenes_[i].length);
+      const Curve moved(there->equilibrium.sample, scenes_[i].length);
+      movements.emplace_back(frames + static_cast<Eigen::Index>(movements.size()),
+                             (moved.points(alignment.shape.arc_length) - here) / derivative_step);
     }
-    const Alignment alignment = aligners_[i].align(curve);
-    const std::vector<double>& s = alignment.shape.arc_length;
-    const Eigen::Matrix3Xd& points = alignment.shape.points;
-    const Eigen::Vector3d centre = points.rowwise().mean();
-    const std::vector<Eigen::Matrix3Xd> directions = seen_directions(alignment, curve, flat_[i]);
-    const Eigen::Index series = directions.front().cols();
-    const std::size_t first = result.size();
-    for (Eigen::Index k = 0; k < series; ++k) {
-      result.push_back({s, Eigen::VectorXd::Zero(points.cols()),
-                        Eigen::MatrixXd::Zero(points.cols(), frames + unknowns)});
-    }
-    const Eigen::Vector3d up = up_of(scenes_[i], options_.pose);
-    for (Eigen::Index row = 0; row < points.cols(); ++row) {
-      const double at = s[static_cast<std::size_t>(row)];
-      const Eigen::Vector3d here = curve.point(at);
-      const Eigen::Vector3d gap = points.col(row) - here;
-      Eigen::Matrix3Xd derivatives(3, frames + unknowns);
-      derivatives.setZero();
-      derivatives.middleCols(frame, aligners_[i].free_coordinates()) =
-          frame_derivatives(options_.pose, (points.col(row) - centre) / scenes_[i].length, up);
-      for (Eigen::Index k = 0; k < unknowns; ++k) {
-        derivatives.col(frames + k) =
-            (moved[static_cast<std::size_t>(k)].point(at) - here) / derivative_step;
-      }
-      const Eigen::Matrix3Xd& seen = directions[static_cast<std::size_t>(row)];
-      const Eigen::VectorXd values = seen.transpose() * gap;
-      const Eigen::MatrixXd slopes = seen.transpose() * derivatives;
-      for (Eigen::Index k = 0; k < series; ++k) {
-        ResidualSeries& one = result[first + static_cast<std::size_t>(k)];
-        one.residual[row] = values[k];
-        one.design.row(row) = slopes.row(k);
-      }
+    const LaidShape laid{.index = i,
+                         .alignment = alignment,
+                         .curve = curve,
+                         .flat = flat_[i],
+                         .pose = options_.pose,
+                         .up = up_of(scenes_[i], options_.pose),
+                         .first_of_frame = frame};
+    for (ResidualSeries& series : residual_series(laid, movements, columns)) {
+      result.push_back(std::move(series));
     }
     frame += aligners_[i].free_coordinates();
   }

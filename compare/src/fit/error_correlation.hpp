@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <vector>
 
 namespace dlo::compare {
@@ -8,6 +9,7 @@ namespace dlo::compare {
 /// One coordinate of a shape's residuals, by growing arc length, and how the fitted numbers move
 /// it.
 struct ResidualSeries {
+  std::size_t shape = 0;           ///< whose they are
   std::vector<double> arc_length;  ///< grows [m], n
   Eigen::VectorXd residual;        ///< [m], n
   Eigen::MatrixXd design;          ///< its derivatives by the fitted numbers, n x p, any scale
@@ -35,6 +37,17 @@ struct CorrelationEstimate {
 /// it costs O(n p) for n residuals.
 [[nodiscard]] CorrelationEstimate correlation_of(const std::vector<ResidualSeries>& series);
 
+/// A covariance and how likely it is beside others.
+struct LikelyCovariance {
+  ErrorCovariance covariance;
+  double weight = 0;  ///< all weights sum up to 1
+};
+
+/// All covariances of a grid that residuals leave likely, a thousandth as much as the most likely
+/// one at least, by the restricted likelihood. Where there are too few residuals: independence.
+[[nodiscard]] std::vector<LikelyCovariance> likely_covariances(
+    const std::vector<ResidualSeries>& series);
+
 /// What a covariance does to a least squares fit that takes errors for independent.
 struct CorrelationEffect {
   /// Variance of a fitted number over that of independent errors with the same variance.
@@ -46,6 +59,17 @@ struct CorrelationEffect {
   /// variance).
   double degrees_of_freedom = 0;
 };
+
+/// Residuals and their design, all series below each other, turned into innovations: errors of this
+/// covariance become independent, of the same variance each.
+struct Innovations {
+  Eigen::VectorXd residual;  ///< n
+  Eigen::MatrixXd design;    ///< n x p
+};
+
+/// Without correlation they are the residuals themselves.
+[[nodiscard]] Innovations innovations(const std::vector<ResidualSeries>& series,
+                                      const ErrorCovariance& covariance);
 
 /// @param column  of the design: the fitted number
 [[nodiscard]] CorrelationEffect correlation_effect(const std::vector<ResidualSeries>& series,

@@ -1,0 +1,44 @@
+#include "explain/scene_change.hpp"
+
+#include <Eigen/Geometry>
+
+namespace dlo::compare {
+
+Eigen::Matrix3Xd ways_across(const Eigen::Vector3d& direction,
+                             const std::optional<Eigen::Vector3d>& normal) {
+  if (normal) return *normal;
+  Eigen::Matrix3Xd ways(3, 2);
+  const Eigen::Vector3d first = direction.unitOrthogonal();
+  ways << first, direction.cross(first);
+  return ways;
+}
+
+Eigen::Matrix3Xd ways_of_place(const std::optional<Eigen::Vector3d>& normal) {
+  if (!normal) return Eigen::Matrix3d::Identity();
+  Eigen::Matrix3Xd ways(3, 2);
+  const Eigen::Vector3d first = normal->unitOrthogonal();
+  ways << first, normal->cross(first);
+  return ways;
+}
+
+void turn_clamp(Gripper& clamp, const Eigen::Vector3d& turn) {
+  const double angle = turn.norm();
+  if (!(angle > 0)) return;
+  const Eigen::AngleAxisd rotation(angle, turn / angle);
+  clamp.direction = rotation * *clamp.direction;
+  if (clamp.frame && clamp.frame->d1) clamp.frame->d1 = rotation * *clamp.frame->d1;
+}
+
+void bend_by_nature(Scene& scene, std::size_t term, const Eigen::Vector2d& curvature) {
+  if (curvature.isZero(0)) return;
+  if (term == 0) {
+    scene.natural_strain.head<2>() += curvature;
+    return;
+  }
+  if (scene.natural_variation.size() < term) {
+    scene.natural_variation.resize(term, Eigen::Vector2d::Zero());
+  }
+  scene.natural_variation[term - 1] += curvature;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,453 @@
+#include "fit/wire_fit.hpp"
+
+#include <fmt/format.h>
+#include <gsl/gsl_cdf.h>
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+#include "fit/between_shapes.hpp"
+#include "fit/wire_numbers.hpp"
+#include "fit/wire_shapes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// The energy model's own error, in lengths: no noise is taken to be less.
+constexpr double own_error = 1e-8;
+constexpr int most_steps = 30;
+constexpr int most_halvings = 8;
+/// A step below this share of every number's standard deviation is the last.
+constexpr double last_step = 0.01;
+/// Longest step in log E: beyond it nothing is linear.
+constexpr double longest_log_step = 1;
+/// The correlation is measured from residuals of a fit that knows it: so often.
+constexpr int most_correlations = 3;
+/// An end of the interval is right if the deviance there is its quantile's square to this share.
+constexpr double end_tolerance = 0.05;
+constexpr int most_ends = 6;
+
+/// The linear problem at some values: innovations, freed of what the frames explain.
+struct Linearised {
+  Eigen::MatrixXd design;    // by the numbers
+  Eigen::VectorXd residual;  // points less rod
+  Eigen::Index freedom = 0;  // rows less the frames' rank
+};
+
+Linearised without_frames(const std::vector<ResidualSeries>& series,
+                          const ErrorCovariance& covariance, Eigen::Index frames) {
+  Innovations seen = innovations(series, covariance);
+  Linearised result{seen.design.rightCols(seen.design.cols() - frames), std::move(seen.residual),
+                    seen.design.rows()};
+  if (frames == 0) return result;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(seen.design.leftCols(frames));
+  qr.setThreshold(own_error);
+  const Eigen::MatrixXd basis =
+      qr.householderQ() * Eigen::MatrixXd::Identity(seen.design.rows(), qr.rank());
+  result.design -= basis * (basis.transpose() * result.design).eval();
+  result.residual -= basis * (basis.transpose() * result.residual).eval();
+  result.freedom -= qr.rank();
+  return result;
+}
+
+class WireFitter {
+ public:
+  WireFitter(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+             const MaterialFitOptions& options, bool density)
+      : scenes_(scenes),
+        options_(options),
+        density_(density),
+        numbers_(wire_numbers(scenes, shapes, options, density)),
+        shapes_(scenes, shapes, options, numbers_),
+        before_(static_cast<Eigen::Index>(numbers_.size())) {
+    for (Eigen::Index k = 0; k < before_.size(); ++k) {
+      before_[k] = 1 / numbers_[static_cast<std::size_t>(k)].described.known_before;
+    }
+  }
+
+  [[nodiscard]] MaterialFit run(const MaterialPoint& start) {
+    values_ = Eigen::VectorXd::Zero(before_.size());
+    values_[0] = start.log_modulus;
+    if (density_) values_[1] = start.log_density;
+    look_for_start();
+    for (int i = 0; i < most_correlations; ++i) {
+      descend();
+      if (!(variance_ > std::pow(own_error * scenes_.front().length, 2))) break;
+      const CorrelationEstimate estimate = correlation_of(series_);
+      tested_ = estimate.tested;
+      const ErrorCovariance next = estimate.significant ? estimate.covariance : ErrorCovariance();
+      if (next.share == covariance_.share && next.length == covariance_.length) break;
+      covariance_ = next;
+    }
+    optimum_ = shapes_.rods();
+    return result();
+  }
+
+ private:
+  [[nodiscard]] std::vector<ResidualSeries> derived(const Eigen::VectorXd& values) {
+    std::optional<std::vector<ResidualSeries>> found =
+        shapes_.residuals(values, WireShapes::Columns::all);
+    if (!found) {
+      throw ConvergenceError(fmt::format("{}: the energy model has no shape beside the fitted one",
+                                         scenes_.front().file));
+    }
+    return std::move(*found);
+  }
+
+  [[nodiscard]] double penalty(const Eigen::VectorXd& values) const {
+    return values.cwiseProduct(before_).squaredNorm();
+  }
+
+  /// Minus twice the logarithm of the likelihood and of what was known before, with the variance as
+  /// it is; infinite where there is no shape.
+  [[nodiscard]] double deviance(const Eigen::VectorXd& values) {
+    const std::optional<std::vector<ResidualSeries>> series =
+        shapes_.residuals(values, WireShapes::Columns::frames);
+    if (!series) return INFINITY;
+    const Linearised there = without_frames(*series, covariance_, shapes_.frame_columns());
+    return there.residual.squaredNorm() / variance_ + penalty(values);
+  }
+
+  /// Inverse of the Hessian of half the deviance.
+  [[nodiscard]] Eigen::MatrixXd posterior(const Linearised& linear, double variance) const {
+    Eigen::MatrixXd information = linear.design.transpose() * linear.design / variance;
+    information.diagonal() += before_.cwiseAbs2();
+    return information.completeOrthogonalDecomposition().pseudoInverse();
+  }
+
+  void measure_variance(const Linearised& linear) {
+    const double floor = std::pow(own_error * scenes_.front().length, 2);
+    if (options_.noise) {
+      variance_ = std::pow(*options_.noise, 2);
+      freedom_ = static_cast<double>(linear.freedom);
+      return;
+    }
+    const double squares = linear.residual.squaredNorm();
+    if (!(variance_ > 0))
+      variance_ = std::max(floor, squares / static_cast<double>(linear.freedom));
+    // What was known before is no number found.
+    const Eigen::VectorXd kept =
+        posterior(linear, variance_).diagonal().cwiseProduct(before_.cwiseAbs2());
+    freedom_ = static_cast<double>(linear.freedom - before_.size()) + kept.sum();
+    if (!(freedom_ >= 1)) {
+      throw InputError(
+          fmt::format("calibrate: {} numbers measured beside the frames, {} to be found (allowed: "
+                      "more measured than found, so more points, or a given noise)",
+                      linear.freedom, before_.size()));
+    }
+    variance_ = std::max(floor, squares / freedom_);
+  }
+
+  /// A rod that is bent by nature may hang on the other side of its clamp, and the E that fits best
+  /// without that may be far away. So mean curvatures all over what is likely are gone through from
+  /// both ends, each shape following its own equilibrium, with that E and the scene's; each shape
+  /// goes on from the one of the two that is nearer to its points.
+  void look_for_start() {
+    if (options_.natural_curvature_terms == 0) return;
+    constexpr double turns[] = {8, 5, 3, 1.5, 0, -1.5, -3, -5, -8};
+    const Eigen::Index bent = density_ ? 2 : 1;
+    const Eigen::VectorXd straight = values_;
+    double least = INFINITY;
+    WireShapes::Rods nearest;
+    for (const double log_modulus : {straight[0], 0.0}) {
+      std::vector<WireShapes::State> down;
+      shapes_.go_on_from(WireShapes::Rods(scenes_.size()));
+      const auto at = [&](double turn) {
+        Eigen::VectorXd values = straight;
+        values[0] = log_modulus;
+        values[bent] = turn / scenes_.front().length;
+        return values;
+      };
+      for (const double turn : turns) down.push_back(shapes_.state(at(turn)));
+      shapes_.go_on_from(WireShapes::Rods(scenes_.size()));
+      for (std::size_t k = down.size(); k-- > 0;) {
+        const WireShapes::State up = shapes_.state(at(turns[k]));
+        double sum = 0;
+        for (std::size_t i = 0; i < scenes_.size(); ++i) {
+          if (up.squares[i] < down[k].squares[i]) {
+            down[k].squares[i] = up.squares[i];
+            down[k].rods[i] = up.rods[i];
+          }
+          sum += down[k].squares[i];
+        }
+        if (!(sum < least)) continue;
+        least = sum;
+        nearest = down[k].rods;
+        values_ = at(turns[k]);
+      }
+    }
+    shapes_.go_on_from(std::move(nearest));
+  }
+
+  /// Gauss-Newton steps to the least deviance.
+  void descend() {
+    for (int i = 0; i < most_steps; ++i) {
+      series_ = derived(values_);
+      linear_ = without_frames(series_, covariance_, shapes_.frame_columns());
+      measure_variance(linear_);
+      posterior_ = posterior(linear_, variance_);
+      Eigen::VectorXd step = next_step();
+      const Eigen::VectorXd deviations = posterior_.diagonal().cwiseSqrt();
+      if ((step.array().abs() <= last_step * deviations.array()).all()) return;
+      const double here = linear_.residual.squaredNorm() / variance_ + penalty(values_);
+      // Every trial follows from here, not from where a longer one has led.
+      const WireShapes::Rods rods = shapes_.rods();
+      int halvings = 0;
+      while (halvings < most_halvings && !(deviance(values_ + step) < here)) {
+        shapes_.go_on_from(rods);
+        step /= 2;
+        ++halvings;
+      }
+      // Nothing less along a direction of descent but rounding.
+      if (halvings == most_halvings) return;
+      values_ += step;
+    }
+  }
+
+  /// To the least deviance of the linear problem with log E near. Where E is hardly seen it would
+  /// be far away, and take the others with it.
+  [[nodiscard]] Eigen::VectorXd next_step() const {
+    const Eigen::VectorXd slope = linear_.design.transpose() * linear_.residual / variance_ -
+                                  before_.cwiseAbs2().cwiseProduct(values_);
+    Eigen::VectorXd step = posterior_ * slope;
+    if (std::abs(step[0]) <= longest_log_step) return step;
+    step[0] = std::copysign(longest_log_step, step[0]);
+    const Eigen::Index others = before_.size() - 1;
+    const auto of_others = linear_.design.rightCols(others);
+    const Eigen::VectorXd left =
+        slope.tail(others) - of_others.transpose() * linear_.design.col(0) / variance_ * step[0];
+    step.tail(others) = information_of_others().solve(left);
+    return step;
+  }
+
+  /// With log E held.
+  [[nodiscard]] Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> information_of_others()
+      const {
+    const Eigen::Index others = before_.size() - 1;
+    const auto of_others = linear_.design.rightCols(others);
+    Eigen::MatrixXd information = of_others.transpose() * of_others / variance_;
+    information.diagonal() += before_.tail(others).cwiseAbs2();
+    return information.completeOrthogonalDecomposition();
+  }
+
+  [[nodiscard]] double quantile() const {
+    return options_.noise ? gsl_cdf_ugaussian_Pinv(0.975) : gsl_cdf_tdist_Pinv(0.975, freedom_);
+  }
+
+  /// Least deviance over all other numbers at some log E, by chords of the optimum's derivatives.
+  [[nodiscard]] double profile(double log_modulus) {
+    const Eigen::Index others = before_.size() - 1;
+    Eigen::VectorXd values =
+        values_ + posterior_.col(0) / posterior_(0, 0) * (log_modulus - values_[0]);
+    double least = deviance(values);
+    if (others == 0) return least;
+    const auto inverse = information_of_others();
+    constexpr int most_chords = 4;
+    for (int i = 0; i < most_chords && std::isfinite(least); ++i) {
+      const std::optional<std::vector<ResidualSeries>> series =
+          shapes_.residuals(values, WireShapes::Columns::frames);
+      if (!series) break;
+      const Linearised there = without_frames(*series, covariance_, shapes_.frame_columns());
+      const Eigen::VectorXd slope =
+          linear_.design.rightCols(others).transpose() * there.residual / variance_ -
+          before_.tail(others).cwiseAbs2().cwiseProduct(values.tail(others));
+      Eigen::VectorXd next = values;
+      next.tail(others) += inverse.solve(slope);
+      const double deviance_there = deviance(next);
+      if (!(deviance_there < least)) break;
+      const bool done = least - deviance_there < end_tolerance;
+      least = deviance_there;
+      values = next;
+      if (done) break;
+    }
+    return least;
+  }
+
+  /// Distance in log E to the end of the interval on a side (1: above, -1: below); none: open.
+  /// Where the equilibria that are followed end before, linear theory has to do.
+  [[nodiscard]] std::optional<double> end(double side) {
+    const double wanted = quantile();
+    const double least = linear_.residual.squaredNorm() / variance_ + penalty(values_);
+    const double linear = wanted * std::sqrt(posterior_(0, 0));
+    const double farthest = std::log(options_.largest_ratio);
+    constexpr double jump = 4;
+    double distance = linear;
+    for (int i = 0; i < most_ends; ++i) {
+      if (!(distance < farthest)) return std::nullopt;
+      shapes_.go_on_from(optimum_);
+      const double excess = profile(values_[0] + side * distance) - least;
+      const double reached = std::sqrt(std::max(0.0, excess));
+      if (!(reached < jump * wanted)) return linear;
+      if (std::abs(reached - wanted) <= end_tolerance * wanted) break;
+      distance *= std::clamp(wanted / std::max(reached, 1e-300), 0.5, 2.0);
+    }
+    return distance;
+  }
+
+  /// @param variance  of the errors
+  void measure_scatter(MaterialFit& fit, double variance) const {
+    std::vector<ShapeEstimate> estimates;
+    const Eigen::Index frames = shapes_.frame_columns();
+    for (std::size_t shape = 0; shape < scenes_.size(); ++shape) {
+      std::vector<Nuisance> nuisances;
+      for (Eigen::Index k = 0; k < frames; ++k) nuisances.push_back({k, 0, INFINITY});
+      for (std::size_t k = 0; k < numbers_.size(); ++k) {
+        const auto number = static_cast<Eigen::Index>(k);
+        if (numbers_[k].described.shape != shape) continue;
+        nuisances.push_back({frames + number, values_[number], numbers_[k].described.known_before});
+      }
+      estimates.push_back(estimate_of_shape(series_of_shape(series_, shape), covariance_, variance,
+                                            frames, nuisances));
+    }
+    fit.scatter = scatter_between(estimates, quantile());
+  }
+
+  [[nodiscard]] FittedValue told(double log_value, double unit, std::optional<double> below,
+                                 std::optional<double> above) const {
+    FittedValue value;
+    if (below) value.low = unit * std::exp(log_value - *below);
+    if (above) value.high = unit * std::exp(log_value + *above);
+    if (below && above && *below + *above <= std::log(options_.told_within)) {
+      value.value = unit * std::exp(log_value);
+    }
+    return value;
+  }
+
+  /// The errors' covariance is known from the residuals only: by what the interval is wider when
+  /// all that they leave likely is averaged over. Of their variance it takes what the residuals
+  /// say, a given noise may be another one.
+  [[nodiscard]] double unknown_covariance() const {
+    if (!(covariance_.share > 0)) return 1;
+    const auto of_errors = [this](const Linearised& linear) {
+      return linear.residual.squaredNorm() / freedom_;
+    };
+    double variance = 0;
+    double mean = 0;
+    double square = 0;
+    for (const LikelyCovariance& likely : likely_covariances(series_)) {
+      const Linearised linear = without_frames(series_, likely.covariance, shapes_.frame_columns());
+      const Eigen::MatrixXd inverse = posterior(linear, of_errors(linear));
+      const double shift =
+          inverse.row(0).dot(linear.design.transpose() * linear.residual / of_errors(linear) -
+                             before_.cwiseAbs2().cwiseProduct(values_));
+      variance += likely.weight * inverse(0, 0);
+      mean += likely.weight * shift;
+      square += likely.weight * shift * shift;
+    }
+    const double alone = posterior(linear_, of_errors(linear_))(0, 0);
+    return std::max(1.0, std::sqrt((variance + square - mean * mean) / alone));
+  }
+
+  /// Where a given noise explains less than there is: by what the interval is wider.
+  [[nodiscard]] double misfit(MaterialFit& fit) const {
+    if (!options_.noise) return 1;
+    const double squares = linear_.residual.squaredNorm() / variance_ + penalty(values_);
+    constexpr double significant = 0.05;
+    if (!(gsl_cdf_chisq_Q(squares, freedom_) < significant)) return 1;
+    const double times = std::sqrt(squares / freedom_);
+    fit.warning = fmt::format(
+        "the residuals are {:.3g} times what the given noise explains; the interval is as much "
+        "wider",
+        times);
+    return times;
+  }
+
+  [[nodiscard]] MaterialFit result() {
+    MaterialFit fit;
+    const double times_noise = misfit(fit);
+    measure_scatter(fit, variance_ * times_noise * times_noise);
+    const double unknown = unknown_covariance();
+    const double widening = unknown * times_noise * (fit.scatter ? fit.scatter->widening : 1);
+    const auto widened = [widening](std::optional<double> distance) {
+      if (distance) *distance *= widening;
+      return distance;
+    };
+    const NamedValue stiffness = scenes_.front().stiffness();
+    fit.youngs_modulus = told(values_[0], stiffness.value, widened(end(-1)), widened(end(1)));
+    if (!fit.youngs_modulus.value) {
+      const FittedValue& E = fit.youngs_modulus;
+      fit.not_told = fmt::format(
+          "these shapes do not tell {0} beside what else is fitted: {1} to {2} {3} fit (told: "
+          "within "
+          "a factor of {4:g})",
+          stiffness.name, E.low ? fmt::format("{:.4g}", *E.low) : "...",
+          E.high ? fmt::format("{:.4g}", *E.high) : "...", stiffness.unit, options_.told_within);
+    }
+    if (density_) {
+      const double half = quantile() * std::sqrt(posterior_(1, 1)) * widening;
+      fit.density = told(values_[1], scenes_.front().heaviness().value, half, half);
+    }
+    for (std::size_t k = density_ ? 2 : 1; k < numbers_.size(); ++k) {
+      const auto number = static_cast<Eigen::Index>(k);
+      FittedNumber found = numbers_[k].described;
+      found.value = values_[number];
+      found.deviation = std::sqrt(posterior_(number, number));
+      fit.others.push_back(std::move(found));
+    }
+    if (options_.natural_curvature_terms > 0) {
+      const Scene found = shapes_.scene(0, values_);
+      fit.natural_curvature = {found.natural_strain.head<2>()};
+      fit.natural_curvature.insert(fit.natural_curvature.end(), found.natural_variation.begin(),
+                                   found.natural_variation.end());
+    }
+    fit.noise_m = std::sqrt(variance_);
+    fit.noise_is_estimated = !options_.noise;
+    fit.degrees_of_freedom = static_cast<int>(freedom_);
+    fit.correlation_was_tested = tested_;
+    if (covariance_.share > 0) {
+      fit.correlation = CorrelatedErrors{.length_m = covariance_.length,
+                                         .share = covariance_.share,
+                                         .widening = unknown,
+                                         .degrees_of_freedom = freedom_};
+    }
+    shapes_.go_on_from(optimum_);
+    const std::vector<Alignment> alignments = shapes_.alignments(values_);
+    double squares = 0;
+    Eigen::Index points = 0;
+    for (std::size_t i = 0; i < alignments.size(); ++i) {
+      const Eigen::Index count = alignments[i].shape.points.cols();
+      squares += alignments[i].mean_square * static_cast<double>(count);
+      points += count;
+      fit.shapes.push_back({scenes_[i].name, alignments[i]});
+    }
+    fit.rms_m = std::sqrt(squares / static_cast<double>(std::max<Eigen::Index>(1, points)));
+    fit.equilibria = shapes_.solves();
+    fit.evaluations = shapes_.evaluations();
+    return fit;
+  }
+
+  const std::vector<Scene>& scenes_;
+  const MaterialFitOptions& options_;
+  bool density_;
+  std::vector<WireNumber> numbers_;
+  WireShapes shapes_;
+  Eigen::VectorXd before_;  // 1 over what was known of each number
+  Eigen::VectorXd values_;
+  ErrorCovariance covariance_;
+  bool tested_ = false;
+  double variance_ = 0;  // of a coordinate's error [m^2]
+  double freedom_ = 0;
+  // At the values
+  WireShapes::Rods optimum_;
+  std::vector<ResidualSeries> series_;
+  Linearised linear_;
+  Eigen::MatrixXd posterior_;
+};
+
+}  // namespace
+
+bool fits_a_wire(const MaterialFitOptions& options) {
+  return options.natural_curvature_terms > 0 || options.direction_tolerance > 0 ||
+         options.position_tolerance > 0;
+}
+
+MaterialFit fit_wire(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                     const MaterialFitOptions& options, const MaterialPoint& start, bool density) {
+  return WireFitter(scenes, shapes, options, density).run(start);
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,126 @@
+#include "fit/wire_numbers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+#include "explain/scene_change.hpp"
+#include "fit/residual_series.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// What is known of natural curvature before, as standard deviation of each term times the length:
+/// hardly anything, the free rod may be bent by some whole turns.
+constexpr double natural_turns_before = 10;
+
+constexpr double unknown = std::numeric_limits<double>::infinity();
+
+/// The plane in which a shape's gripper may be off: the scene's, if nothing was measured out of it.
+std::optional<Eigen::Vector3d> plane_of(const Scene& scene, const MeasuredShape& shape) {
+  return lies_in_a_plane(shape.points) ? scene.plane_normal() : std::nullopt;
+}
+
+void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes,
+                           int terms) {
+  const bool planar =
+      std::all_of(scenes.begin(), scenes.end(), [](const Scene& scene) { return scene.planar(); });
+  for (const Scene& scene : scenes) {
+    Scene bent = scene;
+    bend_by_nature(bent, 0, {0, 1 / scene.length});
+    (void)bent.first_frame();
+  }
+  const double length = scenes.front().length;
+  for (int term = 0; term < terms; ++term) {
+    for (const int axis : {2, 1}) {
+      if (planar && axis == 1) continue;
+      const Eigen::Vector2d about = axis == 1 ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY();
+      numbers.push_back({{.name = fmt::format("natural curvature{}, P_{}",
+                                              planar ? "" : fmt::format(" about d{}", axis), term),
+                          .unit = "1/m",
+                          .known_before = natural_turns_before / length,
+                          .shape = std::nullopt},
+                         1e-3 / length,
+                         [about, term](Scene& scene, double value) {
+                           bend_by_nature(scene, static_cast<std::size_t>(term), value * about);
+                         }});
+    }
+  }
+}
+
+void add_directions(std::vector<WireNumber>& numbers, const Scene& scene, std::size_t shape,
+                    const std::optional<Eigen::Vector3d>& normal, double tolerance) {
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    if (!scene.grippers[i].direction) continue;
+    const Eigen::Matrix3Xd ways = ways_across(*scene.grippers[i].direction, normal);
+    for (Eigen::Index k = 0; k < ways.cols(); ++k) {
+      const Eigen::Vector3d axis = ways.col(k);
+      numbers.push_back({{.name = fmt::format("direction of gripper {}, about [{:.3g}, {:.3g}, "
+                                              "{:.3g}]",
+                                              i + 1, axis.x(), axis.y(), axis.z()),
+                          .unit = "rad",
+                          .known_before = tolerance,
+                          .shape = shape},
+                         1e-3,
+                         [i, axis](Scene& changed, double value) {
+                           turn_clamp(changed.grippers[i], value * axis);
+                         }});
+    }
+  }
+}
+
+void add_positions(std::vector<WireNumber>& numbers, const Scene& scene, std::size_t shape,
+                   const std::optional<Eigen::Vector3d>& normal, double tolerance) {
+  const Eigen::Matrix3Xd ways = ways_of_place(normal);
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    for (Eigen::Index k = 0; k < ways.cols(); ++k) {
+      const Eigen::Vector3d axis = ways.col(k);
+      numbers.push_back({{.name = fmt::format("position of gripper {}, along [{:.3g}, {:.3g}, "
+                                              "{:.3g}]",
+                                              i + 1, axis.x(), axis.y(), axis.z()),
+                          .unit = "m",
+                          .known_before = tolerance,
+                          .shape = shape},
+                         1e-4 * scene.length,
+                         [i, axis](Scene& changed, double value) {
+                           changed.grippers[i].position += value * axis;
+                         }});
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
+                                     const std::vector<MeasuredShape>& shapes,
+                                     const MaterialFitOptions& options, bool density) {
+  std::vector<WireNumber> numbers;
+  const FittedNumber of_wire{
+      .name = "", .unit = "", .known_before = unknown, .shape = std::nullopt};
+  numbers.push_back(
+      {of_wire, 1e-3, [](Scene& scene, double value) { scene.scale_modulus(std::exp(value)); }});
+  if (density) {
+    numbers.push_back(
+        {of_wire, 1e-3, [](Scene& scene, double value) { scene.scale_density(std::exp(value)); }});
+  }
+  if (options.natural_curvature_terms > 0) {
+    add_natural_curvature(numbers, scenes, options.natural_curvature_terms);
+  }
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const std::optional<Eigen::Vector3d> normal = plane_of(scenes[i], shapes[i]);
+    if (options.direction_tolerance > 0) {
+      add_directions(numbers, scenes[i], i, normal, options.direction_tolerance);
+    }
+    if (options.position_tolerance > 0) {
+      add_positions(numbers, scenes[i], i, normal, options.position_tolerance);
+    }
+  }
+  return numbers;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <vector>
+
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/material_fit.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "fit/residual_series.hpp"
+#include "fit/wire_numbers.hpp"
+#include "shape/aligner.hpp"
+#include "shape/curve.hpp"
+
+namespace dlo::compare {
+
+/// Measured shapes against the energy model's, for any values of a wire's numbers. Each equilibrium
+/// is followed from the last one.
+class WireShapes {
+ public:
+  /// @throws InputError as align()
+  WireShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+             const MaterialFitOptions& options, const std::vector<WireNumber>& numbers);
+
+  /// Columns of the design before those of the numbers: each shape's frame.
+  [[nodiscard]] Eigen::Index frame_columns() const { return frame_columns_; }
+
+  /// Whether the derivatives by the numbers are wanted, or only those by the frames.
+  enum class Columns { frames, all };
+  /// Residuals of all shapes, none if one has no equilibrium there.
+  /// @param values  of the numbers
+  /// @throws ConvergenceError if the time limit is over
+  [[nodiscard]] std::optional<std::vector<ResidualSeries>> residuals(const Eigen::VectorXd& values,
+                                                                     Columns columns);
+
+  /// An equilibrium of each shape to go on from; none: search.
+  using Rods = std::vector<std::optional<energy_model::Equilibrium>>;
+  void go_on_from(Rods rods);
+  /// Those of the last values.
+  [[nodiscard]] const Rods& rods() const { return last_; }
+
+  /// Rods at some values, and their sums of squared distances from the shapes [m^2].
+  struct State {
+    Rods rods;
+    std::vector<double> squares;  // infinite without a rod
+  };
+  /// Goes there, as residuals() does.
+  [[nodiscard]] State state(const Eigen::VectorXd& values);
+
+  /// A shape's scene at some values.
+  [[nodiscard]] Scene scene(std::size_t shape, const Eigen::VectorXd& values) const;
+
+  /// How the shapes lie at values where all have an equilibrium.
+  [[nodiscard]] std::vector<Alignment> alignments(const Eigen::VectorXd& values);
+
+  /// Equilibria solved so far.
+  [[nodiscard]] long solves() const { return solves_; }
+  /// Of the energy model's objective, for these.
+  [[nodiscard]] long evaluations() const { return evaluations_; }
+
+ private:
+  [[nodiscard]] std::optional<energy_model::Equilibrium> solve(std::size_t shape,
+                                                               const Eigen::VectorXd& values);
+  [[nodiscard]] std::optional<std::vector<Movement>> movements(std::size_t shape,
+                                                               const Eigen::VectorXd& values,
+                                                               const Eigen::Matrix3Xd& here,
+                                                               const std::vector<double>& s);
+
+  std::vector<Scene> scenes_;
+  const MaterialFitOptions& options_;
+  const std::vector<WireNumber>& numbers_;
+  std::vector<Aligner> aligners_;
+  std::vector<bool> flat_;
+  Eigen::Index frame_columns_ = 0;
+  Rods last_;
+  long solves_ = 0;
+  long evaluations_ = 0;
+  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace dlo::compare

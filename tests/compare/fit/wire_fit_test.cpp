@@ -1,0 +1,259 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "../../sanitized.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/shape.hpp"
+#include "dlo/compare/solution.hpp"
+#include "fit/between_shapes.hpp"
+#include "measured_shapes.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180;
+
+/// A wire of which a scene says nothing but what was meant, and a picture of it. EI = 1 in the
+/// scenes' unit, 1.6 times as much in what is said.
+struct Picture {
+  Scene said;
+  MeasuredShape seen;
+};
+
+constexpr double too_stiff = 1.6;
+
+double true_modulus(const Picture& picture) {
+  return picture.said.material.youngs_modulus / too_stiff;
+}
+
+Picture picture_of(Scene truth, const Scene& said, double noise, double correlation,
+                   std::mt19937& random, double half_scatter = 0) {
+  const std::vector<double> s = equal_arc_lengths(1, 40);
+  if (half_scatter > 0) {
+    truth.scale_modulus(std::exp(std::normal_distribution<double>(0, half_scatter)(random)));
+  }
+  Eigen::Matrix3Xd errors = test::correlated_noise(s, noise, correlation, random);
+  errors.row(2).setZero();
+  Picture picture{said,
+                  {"seen", solve_reference(truth, Model::energy).sample(s).points + errors, s}};
+  picture.said.scale_modulus(too_stiff);
+  return picture;
+}
+
+/// Five pictures of one wire, clamped at angles from -60 to 60 degrees.
+std::vector<Picture> five_pictures(double clamp_error, double noise, std::mt19937& random) {
+  std::uniform_real_distribution<double> anywhere(-1, 1);
+  std::normal_distribution<double> turn(0, clamp_error);
+  const double mean = 3 * anywhere(random);
+  const double slope = anywhere(random);
+  std::vector<Picture> pictures;
+  for (const double angle : {-60.0, -30.0, 0.0, 30.0, 60.0}) {
+    const Scene said = test::heavy_scene(20, angle);
+    Scene truth = said;
+    truth.natural_strain.y() = mean;
+    truth.natural_variation = {{0, slope}};
+    truth.grippers[0].direction =
+        Eigen::AngleAxisd(turn(random), Eigen::Vector3d::UnitZ()) * *said.grippers[0].direction;
+    pictures.push_back(picture_of(truth, said, noise, 0.2, random));
+  }
+  return pictures;
+}
+
+MaterialFit fit(const std::vector<Picture>& pictures, const MaterialFitOptions& options) {
+  std::vector<Scene> scenes;
+  std::vector<MeasuredShape> shapes;
+  for (const Picture& picture : pictures) {
+    scenes.push_back(picture.said);
+    shapes.push_back(picture.seen);
+  }
+  return fit_material(scenes, shapes, options);
+}
+
+bool holds(const FittedValue& value, double truth) {
+  return (!value.low || *value.low <= truth) && (!value.high || *value.high >= truth);
+}
+
+// Clamps off by 5 degrees, natural curvature up to 3 / l and errors of 0.3 % of the length that are
+// correlated over a fifth of it. An interval of 95 % that is right holds the truth in fewer than 90
+// or in more than 99 of 100 draws less than once in 20 tests.
+TEST(WireFit, StiffnessBesideCurvatureAndClampAnglesIsWithinFivePercentAndItsIntervalCovers) {
+  std::mt19937 random(41);
+  constexpr int draws = test::sanitized ? 3 : 100;
+  int held = 0;
+  int near = 0;
+  int told = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    const std::vector<Picture> pictures = five_pictures(5 * degree, 0.003, random);
+    const MaterialFit found =
+        fit(pictures, {.natural_curvature_terms = 3, .direction_tolerance = 5 * degree});
+    const double truth = true_modulus(pictures.front());
+    held += holds(found.youngs_modulus, truth) ? 1 : 0;
+    if (!found.youngs_modulus.value) continue;
+    ++told;
+    near += std::abs(*found.youngs_modulus.value / truth - 1) < 0.05 ? 1 : 0;
+  }
+  RecordProperty("held", held);
+  RecordProperty("near", near);
+  EXPECT_EQ(told, draws);
+  EXPECT_GE(near, 0.95 * draws);
+  if (test::sanitized) return;
+  EXPECT_GE(held, 90);
+  EXPECT_LE(held, 99);
+}
+
+// Without noise the numbers come back as they were.
+TEST(WireFit, PerfectPicturesGiveBackEveryNumber) {
+  std::mt19937 random(5);
+  std::vector<Picture> pictures;
+  for (const double angle : {-40.0, 10.0}) {
+    const Scene said = test::heavy_scene(8, angle);
+    Scene truth = said;
+    truth.natural_strain.y() = 1.3;
+    truth.grippers[0].direction =
+        Eigen::AngleAxisd(4 * degree, Eigen::Vector3d::UnitZ()) * *said.grippers[0].direction;
+    truth.grippers[0].position = {0.003, -0.002, 0};
+    pictures.push_back(picture_of(truth, said, 0, 0.2, random));
+  }
+  const MaterialFit found = fit(pictures, {.natural_curvature_terms = 2,
+                                           .direction_tolerance = 5 * degree,
+                                           .position_tolerance = 0.005});
+  EXPECT_NEAR(found.youngs_modulus.value.value_or(0) / true_modulus(pictures.front()), 1, 1e-5);
+  ASSERT_EQ(found.others.size(), 2 + 2 * 3);
+  EXPECT_NEAR(found.others[0].value, 1.3, 1e-5);
+  EXPECT_NEAR(found.others[1].value, 0, 1e-4);
+  for (const FittedNumber& number : found.others) {
+    if (number.unit == "rad") {
+      EXPECT_NEAR(number.value, 4 * degree, 1e-5) << number.name;
+    }
+  }
+  EXPECT_LT(found.rms_m, 1e-6);
+}
+
+// The moments of the two clamps take it up: what is there is what was known before.
+TEST(WireFit, AConstantCurvatureBetweenTwoClampsIsSaidNotToBeSeen) {
+  std::mt19937 random(6);
+  Scene said = test::heavy_scene(20, 30);
+  said.grippers.push_back({.at = 1,
+                           .position = {0.8, 0, 0},
+                           .direction = Eigen::Vector3d(std::cos(0.6), std::sin(0.6), 0)});
+  Scene truth = said;
+  truth.natural_strain.y() = 0.4;
+  const MaterialFit found =
+      fit({picture_of(truth, said, 1e-3, 0.02, random)}, {.natural_curvature_terms = 1});
+  ASSERT_EQ(found.others.size(), 1);
+  EXPECT_FALSE(found.others[0].is_seen());
+  EXPECT_NEAR(found.others[0].deviation / found.others[0].known_before, 1, 0.01);
+  EXPECT_TRUE(holds(found.youngs_modulus, true_modulus({said, {}}) * too_stiff));
+}
+
+// A stiff rod's moments are a parabola along it at any E, and so is a natural curvature of three
+// terms: one picture cannot tell them apart.
+TEST(WireFit, AStiffRodInOnePictureDoesNotTellItsStiffnessFromItsCurvature) {
+  std::mt19937 random(7);
+  constexpr int draws = test::sanitized ? 3 : 20;
+  for (int draw = 0; draw < draws; ++draw) {
+    const Scene said = test::heavy_scene(0.5, 20);
+    const Picture picture = picture_of(said, said, 1e-3, 0.05, random);
+    const MaterialFit found = fit({picture}, {.natural_curvature_terms = 3});
+    EXPECT_FALSE(found.youngs_modulus.value);
+    EXPECT_FALSE(found.not_told.empty());
+    EXPECT_TRUE(holds(found.youngs_modulus, true_modulus(picture)));
+  }
+}
+
+// One wire hung five times whose stiffness is another one each time, by 10 %: more than noise
+// makes of it. The interval is for their mean.
+TEST(WireFit, ShapesThatScatterSayItAndWidenTheInterval) {
+  for (const bool whole_wire : {false, true}) {
+    std::mt19937 random(8);
+    constexpr int draws = test::sanitized ? 4 : 100;
+    int held = 0;
+    int said_so = 0;
+    for (int draw = 0; draw < draws; ++draw) {
+      std::vector<Picture> pictures;
+      for (int i = 0; i < 5; ++i) {
+        const Scene scene = test::heavy_scene(10, 15 * i - 30);
+        pictures.push_back(picture_of(scene, scene, 1e-3, 0.02, random, 0.1));
+      }
+      const MaterialFit found =
+          fit(pictures, {.direction_tolerance = whole_wire ? 0.2 * degree : 0});
+      held += holds(found.youngs_modulus, true_modulus(pictures.front())) ? 1 : 0;
+      if (!found.scatter) continue;
+      ++said_so;
+      EXPECT_GT(found.scatter->widening, 1);
+      EXPECT_LT(found.scatter->chance, 0.05);
+    }
+    RecordProperty(whole_wire ? "wire_held" : "held", held);
+    EXPECT_GE(said_so, 0.9 * draws);
+    if (test::sanitized) continue;
+    EXPECT_GE(held, 90);
+    EXPECT_LE(held, 99);
+  }
+}
+
+// A chance of one in twenty, and no more.
+TEST(WireFit, ShapesOfOneStiffnessSeldomScatter) {
+  std::mt19937 random(9);
+  constexpr int draws = test::sanitized ? 4 : 100;
+  int said_so = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    std::vector<Picture> pictures;
+    for (int i = 0; i < 4; ++i) {
+      const Scene scene = test::heavy_scene(10, 15 * i - 30);
+      pictures.push_back(picture_of(scene, scene, 1e-3, 0.02, random));
+    }
+    said_so += fit(pictures, {}).scatter ? 1 : 0;
+  }
+  RecordProperty("said_so", said_so);
+  EXPECT_LE(said_so, 12);
+}
+
+TEST(WireFit, ANoiseThatIsTooSmallWidensTheIntervalAndWarns) {
+  std::mt19937 random(10);
+  const std::vector<Picture> pictures = five_pictures(2 * degree, 0.002, random);
+  MaterialFitOptions options{.natural_curvature_terms = 2, .direction_tolerance = 2 * degree};
+  const auto width = [](const MaterialFit& found) {
+    return std::log(*found.youngs_modulus.high / *found.youngs_modulus.low);
+  };
+  options.noise = 0.002;
+  const MaterialFit right = fit(pictures, options);
+  options.noise = 0.0005;
+  const MaterialFit wrong = fit(pictures, options);
+  EXPECT_TRUE(right.warning.empty()) << right.warning;
+  EXPECT_NE(wrong.warning.find("times what the given noise explains"), std::string::npos)
+      << wrong.warning;
+  EXPECT_NEAR(width(wrong) / width(right), 1, 0.3);
+}
+
+TEST(WireFit, RefusesNaturalCurvatureThatNoClampHolds) {
+  std::mt19937 random(11);
+  Scene scene = test::heavy_scene(5, 0);
+  scene.grippers[0].direction.reset();
+  scene.grippers.push_back({.at = 1, .position = {0.7, 0, 0}, .direction = std::nullopt});
+  EXPECT_THROW(
+      (void)fit({picture_of(scene, scene, 1e-3, 0.02, random)}, {.natural_curvature_terms = 1}),
+      InputError);
+}
+
+// By hand: two estimates 2 apart with variances 0.01 are 1.99 apart beyond it, half of its square.
+TEST(BetweenShapes, TwoEstimatesAreAsFarApartAsTheirScatter) {
+  const auto found = scatter_between({{-1, 0.01}, {1, 0.01}}, 2);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->relative_deviation, std::sqrt(2 - 0.01), 1e-9);
+  // t of one degree of freedom at 97.5 % is 12.7062.
+  EXPECT_NEAR(found->widening, 12.7062047 * std::sqrt(2.0 / 2) / (2 * std::sqrt(0.01 / 2)), 1e-5);
+  EXPECT_FALSE(scatter_between({{-1, 2}, {1, 2}}, 2));
+  EXPECT_FALSE(scatter_between({{-1, 0.01}, {1, INFINITY}}, 2));
+}
+
+}  // namespace
+}  // namespace dlo::compare
