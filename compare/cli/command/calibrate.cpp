@@ -27,6 +27,7 @@ struct CalibrateOptions {
   bool density = false;
   std::string noise;
   int natural_curvature_terms = 0;
+  int segments = 0;
   std::string clamp_angles;
   std::string clamp_positions;
   std::vector<std::string> holdouts;
@@ -106,6 +107,7 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
           quantity_of("--clamp-angles", options.clamp_angles, Dimension::angle).value_or(0),
       .position_tolerance =
           quantity_of("--clamp-positions", options.clamp_positions, Dimension::length).value_or(0),
+      .chain_segments = options.segments,
       .noise = quantity_of("--noise", options.noise, Dimension::length),
       .solve = options.overrides.solve()};
   report.fit = [&] {
@@ -195,6 +197,14 @@ void add_calibrate(CLI::App& app) {
   command
       ->add_option("--clamp-positions", options->clamp_positions,
                    "the same of the grippers' positions, such as \"2 mm\"")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option(
+          "--segments", options->segments,
+          "of your simulator's chain: also the stiffness of its joints with which it comes "
+          "nearest to the fitted rod, for three ways to hold it")
+      ->check(CLI::Range(4, 200))
       ->needs(shape)
       ->group(measured);
   options->shape_options.add_to(*command, ChordLengths::not_exact_enough);

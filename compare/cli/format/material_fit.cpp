@@ -73,6 +73,47 @@ std::string numbers_text(const compare::MaterialFit& fit, const std::optional<st
   return out;
 }
 
+const char* text_of(compare::ChainClamp clamp) {
+  switch (clamp) {
+    case compare::ChainClamp::hinge:
+      return "a hinge at the clamp";
+    case compare::ChainClamp::welded:
+      return "segments at clamps welded to them";
+    case compare::ChainClamp::middle:
+      break;
+  }
+  return "clamped in the middle of a segment";
+}
+
+/// Joints of the chains that come nearest to the fitted rod.
+std::string chains_text(const MaterialReport& report) {
+  const std::vector<compare::ChainSprings>& chains = report.fit.chains;
+  std::string out;
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    const compare::ChainSprings& chain = chains[i];
+    append(out, "{:<11} {} segments of {:.4g} m, {}: {:.5g} N m/rad a joint, {:.4g} times EI/h\n",
+           i == 0 ? "chain" : "", chain.segments, chain.segment_length, text_of(chain.clamp),
+           chain.stiffness, chain.over_rod);
+    append(out, "            ({:.4g} mm from the rod on {}, RMS)\n", chain.rms_m * 1e3,
+           compare::display(chain.scene));
+  }
+  return out;
+}
+
+Json chains_json(const compare::MaterialFit& fit) {
+  Json result = Json::array();
+  for (const compare::ChainSprings& chain : fit.chains) {
+    result.push_back({{"scene", chain.scene},
+                      {"clamp", compare::to_string(chain.clamp)},
+                      {"segments", chain.segments},
+                      {"segment_length_m", chain.segment_length},
+                      {"joint_stiffness_Nm_per_rad", chain.stiffness},
+                      {"over_bending_stiffness_per_length", chain.over_rod},
+                      {"rms_m", chain.rms_m}});
+  }
+  return result;
+}
+
 Json numbers_json(const compare::MaterialFit& fit) {
   Json result = Json::array();
   for (const compare::FittedNumber& number : fit.others) {
@@ -174,6 +215,7 @@ std::string material_text(const MaterialReport& report) {
     if (report.frame_was_found) append(out, "            frame {}\n", pose_text(a.pose));
     append(out, "{}", numbers_text(fit, i));
   }
+  out += chains_text(report);
   return out;
 }
 
@@ -230,6 +272,7 @@ Json material_json(const MaterialReport& report) {
     result["correlation"] = nullptr;
   }
   result["others"] = numbers_json(fit);
+  result["chains"] = chains_json(fit);
   result["scatter_between_shapes"] = scatter_json(fit.scatter);
   result["rms_m"] = fit.rms_m;
   Json shapes = Json::array();

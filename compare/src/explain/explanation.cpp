@@ -73,12 +73,13 @@ class Search {
   }
 
   void look_at_chains(Springs springs) {
-    for (const OwnPolygon& chain : own_polygons(scene_, check_.alignment.shape, springs)) {
+    const Shape& shape = check_.alignment.shape;
+    for (const OwnPolygon& chain : own_polygons(scene_, shape, springs)) {
+      const std::string words = words_of(chain.clamp, shape.points.cols() - 1);
       if (springs == Springs::as_the_rod) {
-        add({chain.words, chain.rms_m, 0, ExplanationKind::discretisation, chain.max_m});
+        add({words, chain.rms_m, 0, ExplanationKind::discretisation, chain.max_m});
       } else {
-        add({fmt::format("it is {} whose springs are {:.3g} times EI/h", chain.words,
-                         chain.stiffness),
+        add({fmt::format("it is {} whose springs are {:.3g} times EI/h", words, chain.stiffness),
              chain.rms_m, 1, ExplanationKind::scene});
       }
     }

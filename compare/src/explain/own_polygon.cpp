@@ -19,25 +19,6 @@ constexpr Eigen::Index most_segments = 200;
 /// From a shape that is hardly that of the chain it would take more.
 constexpr int most_evaluations = 2000;
 
-/// How clamps hold a chain.
-enum class Convention {
-  hinge,   ///< a hinge where the clamp is
-  welded,  ///< the first segment does not turn
-  middle,  ///< the clamp is in the middle of a segment, of which the file has one half
-};
-
-std::string words_of(Convention convention, Eigen::Index segments) {
-  switch (convention) {
-    case Convention::hinge:
-      return fmt::format("a chain of {} segments with a hinge at the clamp", segments);
-    case Convention::welded:
-      return fmt::format("a chain of {} segments, those at clamps welded to them", segments);
-    case Convention::middle:
-      break;
-  }
-  return fmt::format("a chain of {} segments, clamped in the middle of a segment", segments);
-}
-
 /// Lengths of the segments as shares of the rod.
 Eigen::VectorXd rest_lengths(const Eigen::Matrix3Xd& points, double length) {
   const Eigen::Index n = points.cols() - 1;
@@ -47,8 +28,8 @@ Eigen::VectorXd rest_lengths(const Eigen::Matrix3Xd& points, double length) {
 
 class Chain {
  public:
-  Chain(const Scene& scene, const Shape& shape, Convention convention)
-      : scene_(scene), points_(shape.points), convention_(convention) {
+  Chain(const Scene& scene, const Shape& shape, ChainClamp clamp)
+      : scene_(scene), points_(shape.points), clamp_(clamp) {
     inner_ = rest_lengths(points_, scene.length);
     s_.push_back(0);
     for (const double L : inner_) s_.push_back(s_.back() + L);
@@ -101,7 +82,7 @@ class Chain {
       if (*point != 0 && *point != n) return false;
       (*point == 0 ? first : last) = &gripper;
     }
-    const bool hinged = convention_ == Convention::hinge;
+    const bool hinged = clamp_ == ChainClamp::hinge;
     before_ = first != nullptr && hinged ? 1 : 0;
     after_ = last != nullptr && hinged ? 1 : 0;
     for (const Gripper& gripper : scene_.grippers) {
@@ -116,7 +97,7 @@ class Chain {
       hold_point(hinged ? n + before_ + 1 : n - 1, last->position + way * *last->direction);
     }
     if (first == nullptr && last == nullptr) return hinged;  // pins hold all chains alike
-    if (convention_ != Convention::middle) return true;
+    if (clamp_ != ChainClamp::middle) return true;
     const auto is_half = [](double end, double beside) {
       return std::abs(end / beside - 0.5) < 0.05;
     };
@@ -136,7 +117,7 @@ class Chain {
     // Segments that do not stretch, but for a millionth.
     problem_.stretch_stiffness = 1e6 * force;
     problem_.stiffness = stiffness;
-    if (convention_ == Convention::middle) {
+    if (clamp_ == ChainClamp::middle) {
       // The spring is that between two whole segments.
       problem_.stiffnesses.setConstant(problem_.rest_lengths.size() - 1, stiffness);
       problem_.stiffnesses[0] *= (inner_[0] + inner_[1]) / (2 * inner_[1]);
@@ -166,7 +147,7 @@ class Chain {
 
   const Scene& scene_;
   const Eigen::Matrix3Xd& points_;
-  Convention convention_;
+  ChainClamp clamp_;
   Eigen::VectorXd inner_;  // rest lengths of the file's own segments
   std::vector<double> s_;  // of the file's points
   energy_model::PolygonProblem problem_;
@@ -178,8 +159,7 @@ double largest(const Eigen::Matrix3Xd& gaps) {
 }
 
 /// The springs that fit best, by Gauss-Newton steps along the logarithm of their stiffness.
-std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps,
-                                 const std::string& words) {
+std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps, ChainClamp clamp) {
   constexpr int most_steps = 10;
   constexpr double stride = 0.01;
   constexpr double found = 1e-4;
@@ -195,10 +175,22 @@ std::optional<OwnPolygon> fitted(const Chain& chain, Eigen::Matrix3Xd gaps,
     gaps = std::move(*next);
     if (std::abs(way) < found) break;
   }
-  return OwnPolygon{words, chain.rms_of(gaps), largest(gaps), std::exp(log_factor)};
+  return OwnPolygon{clamp, chain.rms_of(gaps), largest(gaps), std::exp(log_factor)};
 }
 
 }  // namespace
+
+std::string words_of(ChainClamp clamp, Eigen::Index segments) {
+  switch (clamp) {
+    case ChainClamp::hinge:
+      return fmt::format("a chain of {} segments with a hinge at the clamp", segments);
+    case ChainClamp::welded:
+      return fmt::format("a chain of {} segments, those at clamps welded to them", segments);
+    case ChainClamp::middle:
+      break;
+  }
+  return fmt::format("a chain of {} segments, clamped in the middle of a segment", segments);
+}
 
 std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Springs springs) {
   const Eigen::Index segments = shape.points.cols() - 1;
@@ -206,15 +198,14 @@ std::vector<OwnPolygon> own_polygons(const Scene& scene, const Shape& shape, Spr
                      !scene.holds_twist() && obstacles_in_reach(scene).empty();
   if (!plain || segments < 4 || segments > most_segments) return {};
   std::vector<OwnPolygon> found;
-  for (const Convention convention : {Convention::hinge, Convention::welded, Convention::middle}) {
-    Chain chain(scene, shape, convention);
+  for (const ChainClamp clamp : {ChainClamp::hinge, ChainClamp::welded, ChainClamp::middle}) {
+    Chain chain(scene, shape, clamp);
     if (!chain.exists()) continue;
     std::optional<Eigen::Matrix3Xd> gaps = chain.gaps(1);
     if (!gaps) continue;
-    const std::string words = words_of(convention, segments);
     if (springs == Springs::as_the_rod) {
-      found.push_back({words, chain.rms_of(*gaps), largest(*gaps)});
-    } else if (const auto other = fitted(chain, std::move(*gaps), words)) {
+      found.push_back({clamp, chain.rms_of(*gaps), largest(*gaps)});
+    } else if (const auto other = fitted(chain, std::move(*gaps), clamp)) {
       found.push_back(*other);
     }
   }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "dlo/compare/discretise.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
 
@@ -17,11 +19,14 @@ enum class Springs {
 
 /// A chain of hinges in a scene, whose points a file may have.
 struct OwnPolygon {
-  std::string words;
+  ChainClamp clamp = ChainClamp::hinge;
   double rms_m = 0;      ///< of the file's points from it
   double max_m = 0;      ///< the largest of those
   double stiffness = 1;  ///< of its springs, over EI/h
 };
+
+/// The words for a chain.
+[[nodiscard]] std::string words_of(ChainClamp clamp, Eigen::Index segments);
 
 /// The chains that have as many hinges as a file has points, each at rest in the scene with a
 /// spring in each hinge: with a hinge at the clamp, with its first segment welded to it, and with

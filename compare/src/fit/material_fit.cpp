@@ -11,6 +11,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/error.hpp"
 #include "fit/between_shapes.hpp"
+#include "fit/chain_springs.hpp"
 #include "fit/error_correlation.hpp"
 #include "fit/log_profile.hpp"
 #include "fit/shape_misfit.hpp"
@@ -134,6 +135,27 @@ void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredS
   }
   if (options.noise && !(*options.noise > 0)) {
     throw InputError(fmt::format("calibrate: noise = {:g} m (allowed: > 0)", *options.noise));
+  }
+}
+
+/// Each scene's once.
+void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& options,
+                MaterialFit& fit) {
+  for (auto scene = scenes.begin(); scene != scenes.end(); ++scene) {
+    if (std::find(scenes.begin(), scene, *scene) != scene) continue;
+    Scene fitted = *scene;
+    fitted.scale_modulus(*fit.youngs_modulus.value / scenes.front().stiffness().value);
+    if (fit.density && fit.density->value) {
+      fitted.scale_density(*fit.density->value / scenes.front().heaviness().value);
+    }
+    if (!fit.natural_curvature.empty()) {
+      fitted.natural_strain.head<2>() = fit.natural_curvature.front();
+      fitted.natural_variation.assign(fit.natural_curvature.begin() + 1,
+                                      fit.natural_curvature.end());
+    }
+    for (ChainSprings& chain : chain_springs(fitted, options.chain_segments, options.solve)) {
+      fit.chains.push_back(std::move(chain));
+    }
   }
 }
 
@@ -369,7 +391,9 @@ class MaterialFitter {
 MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                          const MaterialFitOptions& options) {
   require_pairs(scenes, shapes, options);
-  return MaterialFitter(scenes, shapes, options).run();
+  MaterialFit fit = MaterialFitter(scenes, shapes, options).run();
+  if (options.chain_segments > 0 && fit.youngs_modulus.value) add_chains(scenes, options, fit);
+  return fit;
 }
 
 }  // namespace dlo::compare

@@ -92,6 +92,20 @@ TEST_F(CalibrateCommand, FindsWhatElseAWireHas) {
                {"--clamp-positions", "allowed: > 0"});
 }
 
+TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
+  const std::string a = scene_of("a.toml", "5 GPa", 0);
+  const std::string chain = words({"calibrate", a, "--shape", seen(a, "a.csv"), "--segments 12"});
+  const json chains = json::parse(run(chain + " --format json").out).at("chains");
+  ASSERT_EQ(chains.size(), 3U);
+  EXPECT_EQ(chains[0].at("clamp"), "hinge");
+  EXPECT_EQ(chains[2].at("clamp"), "middle");
+  EXPECT_NEAR(chains[2].at("over_bending_stiffness_per_length").get<double>(), 1, 0.02);
+  EXPECT_NE(run(chain).out.find("12 segments of 0.08333 m, a hinge at the clamp"),
+            std::string::npos);
+  expect_error(words({"calibrate", a, "--shape", path("a.csv"), "--segments 3"}), 2,
+               {"--segments", "3"});
+}
+
 TEST_F(CalibrateCommand, WritesAMaterialThatScenesCanUse) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string shape = seen(a, "a.csv");

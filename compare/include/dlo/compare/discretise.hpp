@@ -2,11 +2,29 @@
 
 #include <vector>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape.hpp"
 #include "dlo/force_model/rod.hpp"
 
 namespace dlo::compare {
+
+/// How clamps hold a chain of hinges.
+enum class ChainClamp {
+  hinge,   ///< a hinge where the clamp is
+  welded,  ///< the segment at the clamp does not turn
+  middle,  ///< the clamp is in the middle of a segment, of which half is the rod's
+};
+
+/// In words, for files and options.
+template <>
+struct Choices<ChainClamp> {
+  /// In the enumeration's order.
+  static constexpr Choice<ChainClamp> all[] = {
+      {ChainClamp::hinge, "hinge", "a hinge where the clamp is"},
+      {ChainClamp::welded, "welded", "the segment at the clamp does not turn"},
+      {ChainClamp::middle, "middle", "the clamp is in the middle of a segment"}};
+};
 
 /// Parameters of the force model as they follow from a scene.
 struct Parameters {

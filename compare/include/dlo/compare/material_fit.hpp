@@ -8,6 +8,7 @@
 
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/deviation.hpp"
+#include "dlo/compare/discretise.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
 
@@ -27,6 +28,7 @@ struct MaterialFitOptions {
   double direction_tolerance = 0;
   /// The same of the grippers' positions along each axis [m].
   double position_tolerance = 0;
+  int chain_segments = 0;        ///< of a chain of hinges that is to be as stiff; 0: of none
   std::optional<double> noise;   ///< standard deviation of one coordinate [m]; else estimated
   double smallest_ratio = 1e-4;  ///< of the modulus to the scene's, where it is looked for
   double largest_ratio = 1e4;    ///< the upper end of that range
@@ -65,6 +67,17 @@ struct ScatterBetweenShapes {
   double chance = 1;              ///< of as much without a scatter [-]
   /// Width of the interval of E over that without it.
   double widening = 1;
+};
+
+/// The springs with which a chain of equal segments comes nearest to the fitted rod in a scene.
+struct ChainSprings {
+  std::string scene;                     ///< its name
+  ChainClamp clamp = ChainClamp::hinge;  ///< how clamps hold it
+  int segments = 0;                      ///< those at clamps held in their middle counted whole
+  double segment_length = 0;             ///< h [m]
+  double stiffness = 0;                  ///< of one joint [N m/rad], its moment over 2 tan(angle/2)
+  double over_rod = 1;                   ///< that over EI / h
+  double rms_m = 0;                      ///< of its points from the rod
 };
 
 /// How one shape was laid on the rod of the fitted modulus.
@@ -108,8 +121,12 @@ struct MaterialFit {
   /// [1/m]; empty if it was not asked for.
   std::vector<Eigen::Vector2d> natural_curvature;
   std::optional<ScatterBetweenShapes> scatter;  ///< if there is one
-  bool noise_is_estimated = true;               ///< else it was given
-  int degrees_of_freedom = 0;                   ///< numbers measured less numbers fitted
+  /// Of chains with as many segments as were asked for, in each different scene; none where E is
+  /// not told, or the scene has what a plain chain has not (twist, sections, natural curvature,
+  /// obstacles, a gripper between its joints).
+  std::vector<ChainSprings> chains;
+  bool noise_is_estimated = true;   ///< else it was given
+  int degrees_of_freedom = 0;       ///< numbers measured less numbers fitted
   double rms_m = 0;                 ///< of the distances between points and rod at the fit
   long equilibria = 0;              ///< of the energy model that were solved
   long evaluations = 0;             ///< of its objective for these

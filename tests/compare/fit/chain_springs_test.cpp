@@ -1,0 +1,101 @@
+#include "fit/chain_springs.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+
+#include "dlo/compare/material_fit.hpp"
+#include "measured_shapes.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+std::map<ChainClamp, ChainSprings> springs_of(const Scene& scene, int segments) {
+  std::map<ChainClamp, ChainSprings> result;
+  for (const ChainSprings& chain : chain_springs(scene, segments, {})) result[chain.clamp] = chain;
+  return result;
+}
+
+// A load F at the tip of a rod that hardly bends: its points come down by F (3 l s^2 - s^3) / (6
+// EI), those of a chain by the sum over the joints i before them of F (n - i) h / k times (j - i)
+// h.
+TEST(ChainSprings, OfAStiffRodWithALoadAtItsTipTheyAreThoseOfBeamTheory) {
+  Scene scene = test::heavy_scene(1e-9, 0);
+  scene.loads = {{.at = 1, .force = {0, -0.001 * scene.bending_stiffness(), 0}}};
+  for (const int n : {10, 20, 40}) {
+    double product = 0;
+    double square = 0;
+    for (int j = 0; j <= n; ++j) {
+      const double s = static_cast<double>(j) / n;
+      const double rod = (3 * s * s - s * s * s) / 6;
+      double chain = 0;
+      for (int i = 0; i < j; ++i) chain += (n - i) * (j - i) / std::pow(n, 3);
+      product += rod * chain;
+      square += chain * chain;
+    }
+    const ChainSprings hinge = springs_of(scene, n).at(ChainClamp::hinge);
+    // The search ends at steps of 1e-4.
+    EXPECT_NEAR(hinge.over_rod, square / product, 1e-4) << n;
+    EXPECT_NEAR(hinge.segment_length, 1.0 / n, 1e-15);
+    EXPECT_NEAR(hinge.stiffness, hinge.over_rod * scene.bending_stiffness() * n, 1e-12);
+  }
+}
+
+// What a hinge at the clamp is too soft a welded segment is too stiff, both with the first order of
+// h; a clamp in the middle of a segment is right to the second.
+TEST(ChainSprings, TheOrderInTheSegmentIsThatOfTheClamp) {
+  const Scene scene = test::heavy_scene(8, 20);
+  const auto coarse = springs_of(scene, 16);
+  const auto fine = springs_of(scene, 64);
+  ASSERT_EQ(coarse.size(), 3);
+  const auto excess = [](const auto& chains, ChainClamp clamp) {
+    return chains.at(clamp).over_rod - 1;
+  };
+  EXPECT_GT(excess(fine, ChainClamp::hinge), 0);
+  EXPECT_LT(excess(fine, ChainClamp::welded), 0);
+  for (const ChainClamp clamp : {ChainClamp::hinge, ChainClamp::welded}) {
+    const double ratio = excess(coarse, clamp) / excess(fine, clamp);
+    EXPECT_NEAR(std::log2(ratio) / 2, 1, 0.2) << to_string(clamp);
+    EXPECT_NEAR(std::log2(coarse.at(clamp).rms_m / fine.at(clamp).rms_m) / 2, 1, 0.3);
+  }
+  EXPECT_NEAR(
+      std::log2(std::abs(excess(coarse, ChainClamp::middle) / excess(fine, ChainClamp::middle))) /
+          2,
+      2, 0.4);
+  EXPECT_LT(fine.at(ChainClamp::middle).rms_m, 0.1 * fine.at(ChainClamp::hinge).rms_m);
+}
+
+TEST(ChainSprings, BetweenTwoClampsBothEndsAreHeldAlike) {
+  Scene scene = test::heavy_scene(15, 30);
+  scene.grippers.push_back({.at = 1,
+                            .position = {0.8, 0.05, 0},
+                            .direction = Eigen::Vector3d(std::cos(0.5), std::sin(0.5), 0)});
+  const auto chains = springs_of(scene, 24);
+  EXPECT_NEAR(chains.at(ChainClamp::middle).segment_length, 1.0 / 23, 1e-15);
+  EXPECT_LT(chains.at(ChainClamp::middle).rms_m, 2e-3);
+}
+
+// Twist, sections and the like are not in a plain chain.
+TEST(ChainSprings, ARodThatIsNoPlainChainHasNone) {
+  Scene scene = test::heavy_scene(5, 0);
+  scene.natural_strain.y() = 1;
+  EXPECT_TRUE(chain_springs(scene, 20, {}).empty());
+}
+
+TEST(ChainSprings, AFitTellsThemOfTheRodThatItFound) {
+  const Scene truth = test::heavy_scene(5, 0);
+  Scene said = truth;
+  said.scale_modulus(2);
+  const MeasuredShape seen = test::exact_shape(truth, equal_arc_lengths(1, 15));
+  const MaterialFit fit = fit_material({said, said}, {seen, seen}, {.chain_segments = 20});
+  const auto right = springs_of(truth, 20);
+  ASSERT_EQ(fit.chains.size(), right.size());
+  for (const ChainSprings& chain : fit.chains) {
+    EXPECT_NEAR(chain.stiffness / right.at(chain.clamp).stiffness, 1, 1e-5);
+  }
+}
+
+}  // namespace
+}  // namespace dlo::compare
