@@ -85,6 +85,9 @@ void run(const CheckOptions& options) {
           compare::explain_shape(report.scene, shape, report.check, check_options);
       verdict->judgement =
           compare::judge_explained(report.check, verdict->tolerance, report.explanations);
+      if (compare::better_than_stiffness(report.check, report.explanations)) {
+        report.check.effective_modulus.optimum = compare::Optimum::outdone;
+      }
     }
   }
   report.unit_hint = options.shapes.unit_hint(report.check.polyline_length_m, report.scene.length);

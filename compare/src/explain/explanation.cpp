@@ -33,6 +33,15 @@ constexpr int most_steps = 10;
 /// What a step has to leave less of to be gone, and to be followed by another one.
 constexpr double hardly_better = 0.95;
 
+/// What is left and the numbers that it takes, in one: the less the better. What is left below the
+/// rest that is the same counts as that.
+/// @param before  the deviation that is to be explained [m];  @param length  of the rod [m]
+double price_of(double rms, int numbers, double before, double length) {
+  const double same =
+      std::max(same_share * std::min(before, another_shape * length), same_length * length);
+  return std::max(rms, same) * std::pow(1 / worth_of_a_number, std::max(0, numbers));
+}
+
 class Search {
  public:
   Search(const Scene& scene, const MeasuredShape& shape, const ShapeCheck& check,
@@ -95,10 +104,7 @@ class Search {
   }
 
   [[nodiscard]] double price(const Explanation& explanation) const {
-    const double same = std::max(same_share * std::min(before_, another_shape * scene_.length),
-                                 same_length * scene_.length);
-    return std::max(explanation.rms_m, same) *
-           std::pow(1 / worth_of_a_number, std::max(0, explanation.numbers));
+    return price_of(explanation.rms_m, explanation.numbers, before_, scene_.length);
   }
 
   void add(Explanation explanation) {
@@ -238,6 +244,22 @@ class Search {
 std::vector<Explanation> explain_shape(const Scene& scene, const MeasuredShape& shape,
                                        const ShapeCheck& check, const ShapeCheckOptions& options) {
   return Search(scene, shape, check, options).run();
+}
+
+std::optional<Explanation> better_than_stiffness(const ShapeCheck& check,
+                                                 const std::vector<Explanation>& explanations) {
+  if (!is_told(check.effective_modulus.optimum)) return std::nullopt;
+  const auto price = [&check](double rms, int numbers) {
+    return price_of(rms, numbers, check.whole_rms_m, check.length_m);
+  };
+  // E* is one number; a reason without any has to be as much better.
+  const double of_stiffness = price(check.effective_modulus.rms_m, 0);
+  for (const Explanation& explanation : explanations) {
+    if (price(explanation.rms_m, std::max(1, explanation.numbers)) < of_stiffness) {
+      return explanation;
+    }
+  }
+  return std::nullopt;
 }
 
 ShapeJudgement judge_explained(const ShapeCheck& check, const ShapeTolerance& tolerance,

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -164,6 +165,27 @@ TEST(Explanation, NamesWhatIsAnotherScene) {
   expect_named("twisted", two,
                shape_of(between_clamps("torsional_stiffness = 0.76923\n", "roll = \"90 deg\"\n")),
                {"gripper 2 turns the rod", "90 deg (twist)"});
+}
+
+// E* of a rod that was turned in its clamp explains a part of it, and is no measure of the
+// material.
+TEST(Explanation, AnotherReasonThatLeavesLessOutdoesTheStiffness) {
+  const Scene scene = clamped();
+  const auto better = [&scene](const std::function<void(Scene&)>& change) {
+    Scene changed = scene;
+    change(changed);
+    const MeasuredShape shape = shape_of(changed);
+    const ShapeCheck check = check_shape(scene, shape);
+    EXPECT_TRUE(is_told(check.effective_modulus.optimum));
+    return better_than_stiffness(check, explain_shape(scene, shape, check, {}));
+  };
+  EXPECT_FALSE(better([](Scene& s) { s.scale_modulus(0.5); }));
+  const std::optional<Explanation> turned = better([](Scene& s) {
+    s.grippers[0].direction = {std::cos(26 * degree), std::sin(26 * degree), 0};
+    s.scale_modulus(1.02);
+  });
+  ASSERT_TRUE(turned);
+  EXPECT_NE(turned->cause.find("gripper 1 is turned"), std::string::npos) << turned->cause;
 }
 
 /// Angles of a hinged chain under its weight, by Newton's method on its own equations.

@@ -22,17 +22,18 @@ enum class Optimum {
               ///< energy model's own error
   one_sided,  ///< the fit still improves where the search ended: at the end of the range, or where
               ///< the equilibrium that was followed ends
+  outdone,    ///< E* is told, but something else leaves far less (better_than_stiffness): it is no
+              ///< measure of the material
 };
 
 /// In words, for messages.
 template <>
 struct Choices<Optimum> {
   /// In the enumeration's order.
-  static constexpr Choice<Optimum> all[] = {{Optimum::none, "none", ""},
-                                            {Optimum::clear, "clear", ""},
-                                            {Optimum::partial, "partial", ""},
-                                            {Optimum::flat, "flat", ""},
-                                            {Optimum::one_sided, "one-sided", ""}};
+  static constexpr Choice<Optimum> all[] = {
+      {Optimum::none, "none", ""},           {Optimum::clear, "clear", ""},
+      {Optimum::partial, "partial", ""},     {Optimum::flat, "flat", ""},
+      {Optimum::one_sided, "one-sided", ""}, {Optimum::outdone, "outdone", ""}};
 };
 
 /// E* itself is told, whether or not it explains the deviation.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,13 @@ struct Explanation {
 [[nodiscard]] std::vector<Explanation> explain_shape(const Scene& scene, const MeasuredShape& shape,
                                                      const ShapeCheck& check,
                                                      const ShapeCheckOptions& options);
+
+/// What explains a shape better than any stiffness, where E* is told: it leaves less than half of
+/// what E* leaves, with two fitted numbers less than a quarter, and so on. E* is then no measure of
+/// the material (Optimum::outdone).
+/// @param explanations  of explain_shape(), for the same check
+[[nodiscard]] std::optional<Explanation> better_than_stiffness(
+    const ShapeCheck& check, const std::vector<Explanation>& explanations);
 
 /// Share of the tolerance within which a chain's points have to be to be right for a chain, in the
 /// measure that the tolerance is of.
