@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gsl/gsl_cdf.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -11,6 +10,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "fit/between_shapes.hpp"
+#include "fit/linear_fit.hpp"
 #include "fit/wire_numbers.hpp"
 #include "fit/wire_shapes.hpp"
 
@@ -30,29 +30,6 @@ constexpr int most_correlations = 3;
 /// An end of the interval is right if the deviance there is its quantile's square to this share.
 constexpr double end_tolerance = 0.05;
 constexpr int most_ends = 6;
-
-/// The linear problem at some values: innovations, freed of what the frames explain.
-struct Linearised {
-  Eigen::MatrixXd design;    // by the numbers
-  Eigen::VectorXd residual;  // points less rod
-  Eigen::Index freedom = 0;  // rows less the frames' rank
-};
-
-Linearised without_frames(const std::vector<ResidualSeries>& series,
-                          const ErrorCovariance& covariance, Eigen::Index frames) {
-  Innovations seen = innovations(series, covariance);
-  Linearised result{seen.design.rightCols(seen.design.cols() - frames), std::move(seen.residual),
-                    seen.design.rows()};
-  if (frames == 0) return result;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(seen.design.leftCols(frames));
-  qr.setThreshold(own_error);
-  const Eigen::MatrixXd basis =
-      qr.householderQ() * Eigen::MatrixXd::Identity(seen.design.rows(), qr.rank());
-  result.design -= basis * (basis.transpose() * result.design).eval();
-  result.residual -= basis * (basis.transpose() * result.residual).eval();
-  result.freedom -= qr.rank();
-  return result;
-}
 
 class WireFitter {
  public:
@@ -108,18 +85,11 @@ class WireFitter {
     const std::optional<std::vector<ResidualSeries>> series =
         shapes_.residuals(values, WireShapes::Columns::frames);
     if (!series) return INFINITY;
-    const Linearised there = without_frames(*series, covariance_, shapes_.frame_columns());
+    const LinearFit there = linear_fit(*series, covariance_, shapes_.frame_columns());
     return there.residual.squaredNorm() / variance_ + penalty(values);
   }
 
-  /// Inverse of the Hessian of half the deviance.
-  [[nodiscard]] Eigen::MatrixXd posterior(const Linearised& linear, double variance) const {
-    Eigen::MatrixXd information = linear.design.transpose() * linear.design / variance;
-    information.diagonal() += before_.cwiseAbs2();
-    return information.completeOrthogonalDecomposition().pseudoInverse();
-  }
-
-  void measure_variance(const Linearised& linear) {
+  void measure_variance(const LinearFit& linear) {
     const double floor = std::pow(own_error * scenes_.front().length, 2);
     if (options_.noise) {
       variance_ = std::pow(*options_.noise, 2);
@@ -131,7 +101,7 @@ class WireFitter {
       variance_ = std::max(floor, squares / static_cast<double>(linear.freedom));
     // What was known before is no number found.
     const Eigen::VectorXd kept =
-        posterior(linear, variance_).diagonal().cwiseProduct(before_.cwiseAbs2());
+        posterior(linear, variance_, before_).diagonal().cwiseProduct(before_.cwiseAbs2());
     freedom_ = static_cast<double>(linear.freedom - before_.size()) + kept.sum();
     if (!(freedom_ >= 1)) {
       throw InputError(
@@ -187,9 +157,9 @@ class WireFitter {
   void descend() {
     for (int i = 0; i < most_steps; ++i) {
       series_ = derived(values_);
-      linear_ = without_frames(series_, covariance_, shapes_.frame_columns());
+      linear_ = linear_fit(series_, covariance_, shapes_.frame_columns());
       measure_variance(linear_);
-      posterior_ = posterior(linear_, variance_);
+      posterior_ = posterior(linear_, variance_, before_);
       Eigen::VectorXd step = next_step();
       const Eigen::VectorXd deviations = posterior_.diagonal().cwiseSqrt();
       if ((step.array().abs() <= last_step * deviations.array()).all()) return;
@@ -211,27 +181,12 @@ class WireFitter {
   /// To the least deviance of the linear problem with log E near. Where E is hardly seen it would
   /// be far away, and take the others with it.
   [[nodiscard]] Eigen::VectorXd next_step() const {
-    const Eigen::VectorXd slope = linear_.design.transpose() * linear_.residual / variance_ -
-                                  before_.cwiseAbs2().cwiseProduct(values_);
-    Eigen::VectorXd step = posterior_ * slope;
+    const Eigen::VectorXd down = slope(linear_, variance_, before_, values_);
+    Eigen::VectorXd step = posterior_ * down;
     if (std::abs(step[0]) <= longest_log_step) return step;
     step[0] = std::copysign(longest_log_step, step[0]);
-    const Eigen::Index others = before_.size() - 1;
-    const auto of_others = linear_.design.rightCols(others);
-    const Eigen::VectorXd left =
-        slope.tail(others) - of_others.transpose() * linear_.design.col(0) / variance_ * step[0];
-    step.tail(others) = information_of_others().solve(left);
+    step.tail(step.size() - 1) = step_of_others(linear_, variance_, before_, down, step[0]);
     return step;
-  }
-
-  /// With log E held.
-  [[nodiscard]] Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> information_of_others()
-      const {
-    const Eigen::Index others = before_.size() - 1;
-    const auto of_others = linear_.design.rightCols(others);
-    Eigen::MatrixXd information = of_others.transpose() * of_others / variance_;
-    information.diagonal() += before_.tail(others).cwiseAbs2();
-    return information.completeOrthogonalDecomposition();
   }
 
   [[nodiscard]] double quantile() const {
@@ -245,18 +200,16 @@ class WireFitter {
         values_ + posterior_.col(0) / posterior_(0, 0) * (log_modulus - values_[0]);
     double least = deviance(values);
     if (others == 0) return least;
-    const auto inverse = information_of_others();
+    LinearFit chord = linear_;
     constexpr int most_chords = 4;
     for (int i = 0; i < most_chords && std::isfinite(least); ++i) {
       const std::optional<std::vector<ResidualSeries>> series =
           shapes_.residuals(values, WireShapes::Columns::frames);
       if (!series) break;
-      const Linearised there = without_frames(*series, covariance_, shapes_.frame_columns());
-      const Eigen::VectorXd slope =
-          linear_.design.rightCols(others).transpose() * there.residual / variance_ -
-          before_.tail(others).cwiseAbs2().cwiseProduct(values.tail(others));
+      chord.residual = linear_fit(*series, covariance_, shapes_.frame_columns()).residual;
+      const Eigen::VectorXd down = slope(chord, variance_, before_, values);
       Eigen::VectorXd next = values;
-      next.tail(others) += inverse.solve(slope);
+      next.tail(others) += step_of_others(chord, variance_, before_, down, 0);
       const double deviance_there = deviance(next);
       if (!(deviance_there < least)) break;
       const bool done = least - deviance_there < end_tolerance;
@@ -322,23 +275,21 @@ class WireFitter {
   /// say, a given noise may be another one.
   [[nodiscard]] double unknown_covariance() const {
     if (!(covariance_.share > 0)) return 1;
-    const auto of_errors = [this](const Linearised& linear) {
+    const auto of_errors = [this](const LinearFit& linear) {
       return linear.residual.squaredNorm() / freedom_;
     };
     double variance = 0;
     double mean = 0;
     double square = 0;
     for (const LikelyCovariance& likely : likely_covariances(series_)) {
-      const Linearised linear = without_frames(series_, likely.covariance, shapes_.frame_columns());
-      const Eigen::MatrixXd inverse = posterior(linear, of_errors(linear));
-      const double shift =
-          inverse.row(0).dot(linear.design.transpose() * linear.residual / of_errors(linear) -
-                             before_.cwiseAbs2().cwiseProduct(values_));
+      const LinearFit linear = linear_fit(series_, likely.covariance, shapes_.frame_columns());
+      const Eigen::MatrixXd inverse = posterior(linear, of_errors(linear), before_);
+      const double shift = inverse.row(0).dot(slope(linear, of_errors(linear), before_, values_));
       variance += likely.weight * inverse(0, 0);
       mean += likely.weight * shift;
       square += likely.weight * shift * shift;
     }
-    const double alone = posterior(linear_, of_errors(linear_))(0, 0);
+    const double alone = posterior(linear_, of_errors(linear_), before_)(0, 0);
     return std::max(1.0, std::sqrt((variance + square - mean * mean) / alone));
   }
 
@@ -434,7 +385,7 @@ class WireFitter {
   // At the values
   WireShapes::Rods optimum_;
   std::vector<ResidualSeries> series_;
-  Linearised linear_;
+  LinearFit linear_;
   Eigen::MatrixXd posterior_;
 };
 

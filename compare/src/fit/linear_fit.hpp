@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fit/error_correlation.hpp"
+
+namespace dlo::compare {
+
+/// Generalised least squares about some values of the numbers that are fitted, of some of which
+/// something was known before. All matrices are in the numbers' order.
+struct LinearFit {
+  Eigen::MatrixXd design;  ///< innovations by the numbers, freed of what the shapes' frames explain
+  Eigen::VectorXd residual;  ///< the same of the points less the rod
+  Eigen::Index freedom = 0;  ///< rows less the frames' rank
+};
+
+/// @param frames  columns of the series' design that are the frames', before those of the numbers
+[[nodiscard]] LinearFit linear_fit(const std::vector<ResidualSeries>& series,
+                                   const ErrorCovariance& covariance, Eigen::Index frames);
+
+/// Covariance of the numbers after the fit.
+/// @param variance  of the errors;  @param before  1 over what was known of each, standard
+///                  deviations about zero
+[[nodiscard]] Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
+                                        const Eigen::VectorXd& before);
+
+/// Minus half the derivative of the deviance (sum of squares over the variance, and of what was
+/// known before) by the numbers.
+[[nodiscard]] Eigen::VectorXd slope(const LinearFit& fit, double variance,
+                                    const Eigen::VectorXd& before, const Eigen::VectorXd& values);
+
+/// Step of all numbers but the first to the least deviance, with the first moved by `held`.
+/// @param slope  as above, of all
+[[nodiscard]] Eigen::VectorXd step_of_others(const LinearFit& fit, double variance,
+                                             const Eigen::VectorXd& before,
+                                             const Eigen::VectorXd& slope, double held);
+
+}  // namespace dlo::compare
