@@ -93,6 +93,7 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
   for (const std::string& path : options.shapes) {
     shapes.push_back(options.shape_options.load(path));
   }
+  for (const compare::Scene& scene : report.scenes) warn_of_friction(scene);
   // Several measurements of one scene
   if (report.scenes.size() == 1) report.scenes.resize(shapes.size(), report.scenes.front());
   report.files = options.shapes;

@@ -92,6 +92,7 @@ void run(const CheckOptions& options) {
   }
   report.unit_hint = options.shapes.unit_hint(report.check.polyline_length_m, report.scene.length);
   report.file = options.output.file;
+  if (options.output.is(Format::csv)) warn_of_friction(report.scene);
   write_output(options.output, {.text = [&] { return shape_check_text(report); },
                                 .json = [&] { return json_text(shape_check_json(report)); },
                                 .csv = [&] { return shape_check_csv(report); }});

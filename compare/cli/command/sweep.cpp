@@ -12,6 +12,7 @@
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
 #include "polygon/natural_plane.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -59,15 +60,16 @@ compare::Sweep sweep_of(const SweepOptions& options) {
           options.scene.solve()};
 }
 
-/// By the first scene of the grid of which polygons leave something out, of its two ends; one that
-/// cannot be read says so in its row.
+/// By the first scene of the grid of which the model leaves something out, of its two ends; one
+/// that cannot be read says so in its row.
 void warn_of_polygons_in(const compare::Sweep& sweep, const std::string& model) {
-  if (model == "energy" || model == "exact") return;
+  const bool is_rod = model == "energy" || model == "exact";
   for (const std::int64_t row : {std::int64_t{0}, sweep.grid().size() - 1}) {
     try {
       const compare::Scene scene = sweep.scene(row);
-      if (compare::left_out_of_polygon(scene, scene.force_model).empty()) continue;
-      return warn_of_polygons(scene);
+      const bool lacks = !is_rod && !compare::left_out_of_polygon(scene, scene.force_model).empty();
+      if (lacks) return warn_of_polygons(scene);
+      if (compare::friction_in_reach(scene)) return warn_of_friction(scene);
     } catch (const compare::InputError&) {
       continue;
     }

@@ -93,9 +93,15 @@ std::string comparison_text(const compare::Comparison& c) {
          c.settings.points, p.c_c);
   if (p.c_b > 0) append(out, ", c_b = {:.6g} N", p.c_b);
   append(out, "\n");
-  if (!c.force.left_out.empty()) {
+  std::vector<std::string> by_force = c.force.left_out;
+  by_force.erase(std::remove(by_force.begin(), by_force.end(), "friction"), by_force.end());
+  if (!by_force.empty()) {
     append(out, "  left out        {} that the scene has, by the force model: in all below\n",
-           fmt::join(c.force.left_out, ", "));
+           fmt::join(by_force, ", "));
+  }
+  if (leaves_out(c, "friction")) {
+    append(out,
+           "  left out        friction that the scene has, by both models: nothing below has it\n");
   }
   if (!c.unresolved.empty()) {
     append(out, "  reference       {}: nothing below is proven\n", c.unresolved);

@@ -11,6 +11,7 @@
 #include "format/comparison.hpp"
 #include "option/output.hpp"
 #include "option/terminal.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -87,6 +88,11 @@ std::string shape_check_text(const ShapeCheckReport& report) {
   }
   add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
   add_state(out, c.state, scene.length, "the shape");
+  if (compare::friction_in_reach(scene)) {
+    append(out,
+           "  left out        friction that the scene has: whether it could hold this shape is not "
+           "told\n");
+  }
   constexpr std::size_t most_explanations = 3;
   for (std::size_t i = 0; i < std::min(most_explanations, report.explanations.size()); ++i) {
     const compare::Explanation& explanation = report.explanations[i];
@@ -149,6 +155,7 @@ Json shape_check_json(const ShapeCheckReport& report) {
                                       {"rms_m", explanation.rms_m}});
   }
   result["state"] = to_json(c.state);
+  if (compare::friction_in_reach(report.scene)) result["left_out"] = {"friction"};
   result["arc_length_m"] = s;
   result["points_m"] = points_json(c.alignment.shape.points);
   result["reference_points_m"] = points_json(c.reference.points);

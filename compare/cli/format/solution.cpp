@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -46,6 +47,11 @@ Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
                      {"torque_Nm", part.torque}});
   }
   return {{"total_rad", total}, {"parts", std::move(parts)}};
+}
+
+bool lacks(const compare::Solution& solution, const char* what) {
+  const std::vector<std::string>& left_out = solution.left_out;
+  return std::find(left_out.begin(), left_out.end(), what) != left_out.end();
 }
 
 }  // namespace
@@ -105,6 +111,10 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     append(out, "left out   {}: the scene has it, model {} has not\n",
            fmt::join(solution.left_out, ", "), compare::to_string(solution.model));
   }
+  if (lacks(solution, "friction")) {
+    append(out,
+           "           (without it this is one shape; friction could hold others beside it)\n");
+  }
   if (const auto crossing = compare::self_crossing(solution.shape, scene.diameter)) {
     append(out,
            "crossing   at s = {:.4g} m and {:.4g} m the rod's axis is {:.2g} m apart, its diameter "
@@ -156,7 +166,8 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
     const compare::GripperLoad& load = solution.grippers[i];
     const compare::Gripper& gripper = scene.grippers[i];
     Json entry = {{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}};
-    if (gripper.frame && gripper.direction && solution.left_out.empty()) {
+    if (gripper.frame && gripper.direction && !lacks(solution, "twist") &&
+        !lacks(solution, "natural curvature")) {
       entry["axial_torque_Nm"] = load.torque.dot(*gripper.direction);
     }
     grippers.push_back(std::move(entry));

@@ -12,6 +12,7 @@
 #include "option/option_values.hpp"
 #include "option/share.hpp"
 #include "polygon/natural_plane.hpp"
+#include "scene/reach.hpp"
 #include "toml/quantity.hpp"
 
 namespace dlo::cli {
@@ -50,7 +51,13 @@ void warn_of_no_twist(const compare::Scene& scene, const std::string& study) {
   say("{}: the grippers hold twist, which {} leaves out", scene.file, study);
 }
 
+void warn_of_friction(const compare::Scene& scene) {
+  if (!compare::friction_in_reach(scene)) return;
+  say("{}: an obstacle in reach has friction, which all models leave out", scene.file);
+}
+
 void warn_of_polygons(const compare::Scene& scene) {
+  warn_of_friction(scene);
   const std::vector<std::string> left_out = compare::left_out_of_polygon(scene, scene.force_model);
   const auto leaves_out = [&left_out](const char* what) {
     return std::find(left_out.begin(), left_out.end(), what) != left_out.end();

@@ -49,8 +49,11 @@ class PlanOptions {
   compare::PlanOptions plan_;
 };
 
+/// Says on standard error that no model has the friction of an obstacle in reach.
+void warn_of_friction(const compare::Scene& scene);
+
 /// Says on standard error what models chain and force leave out that a scene has: twist that its
-/// grippers hold, natural curvature.
+/// grippers hold, natural curvature, friction.
 void warn_of_polygons(const compare::Scene& scene);
 
 /// The same of a study that has no twist where models chain and force have it.

@@ -129,6 +129,10 @@ std::string content_of(const Scene& scene) {
       add(body.radius());
     }
     add(obstacle.stiffness);
+    if (obstacle.friction > 0) {
+      text += "friction ";
+      add(obstacle.friction);
+    }
   }
   const ForceModelSettings& settings = scene.force_model;
   text += fmt::format("\n{} {} ", to_string(settings.stepper), to_string(settings.bending_rule));

@@ -10,6 +10,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
 #include "polygon/natural_plane.hpp"
+#include "scene/reach.hpp"
 #include "solve/states.hpp"
 
 namespace dlo::compare {
@@ -69,6 +70,11 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   result.reference = {s, energy.sample(s).points};
   result.reference_rod = energy.sample;
   result.contacts = contacts_of(scene, energy);
+  if (touches_with_friction(scene,
+                            forces_of_all(scene, obstacles_in_reach(scene), energy.obstacles)) &&
+      !touches_with_friction(scene, result.force.obstacles)) {
+    result.force.left_out.emplace_back("friction");
+  }
   const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
   result.deviation = shape_deviation(scene, force, energy.sample);
   result.undeformed_rms_over_length =

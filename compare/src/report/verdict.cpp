@@ -108,10 +108,12 @@ void say_shapes(const Report& report, std::vector<std::string>& verdict) {
 
 void say_left_out(const Report& report, std::vector<std::string>& verdict) {
   for (const SceneReport& scene : report.scenes) {
-    if (scene.comparisons.empty() || scene.comparisons.front().force.left_out.empty()) continue;
-    verdict.push_back(fmt::format("{}: the force model leaves out the {} that the scene has.",
-                                  scene.file.scene.name,
-                                  fmt::join(scene.comparisons.front().force.left_out, ", ")));
+    if (scene.comparisons.empty()) continue;
+    for (const std::string& what : scene.comparisons.front().force.left_out) {
+      verdict.push_back(
+          fmt::format("{}: {} out the {} that the scene has.", scene.file.scene.name,
+                      what == "friction" ? "both models leave" : "the force model leaves", what));
+    }
   }
 }
 

@@ -143,6 +143,8 @@ std::string optional_part(const Scene& scene) {
 #touches = "surface"  # of the rod, half a diameter from its axis; or "axis"
 # Force per depth and per length of rod if it yields (N/m^2, N/mm^2); without it it is rigid.
 #stiffness = {stiffness:.3g}
+# Coulomb's coefficient. No model has friction, and what solves the scene says so where it counts.
+#friction = 0.3
 
 # The force model, which dlo compare, calibrate and solve --model force use; these are the defaults.
 # dlo calibrate FILE -o params.toml finds the parameters.

@@ -84,4 +84,20 @@ std::vector<Eigen::Vector3d> forces_of_all(const Scene& scene,
   return result;
 }
 
+bool touches_with_friction(const Scene& scene, const std::vector<Eigen::Vector3d>& forces) {
+  for (std::size_t i = 0; i < std::min(forces.size(), scene.obstacles.size()); ++i) {
+    if (scene.obstacles[i].friction > 0 && forces[i].norm() > 0) return true;
+  }
+  return false;
+}
+
+bool friction_in_reach(const Scene& scene) {
+  const bool any = std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                               [](const Obstacle& obstacle) { return obstacle.friction > 0; });
+  if (!any) return false;
+  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene, scene.force_model);
+  return std::any_of(in_reach.begin(), in_reach.end(),
+                     [&](std::size_t i) { return scene.obstacles[i].friction > 0; });
+}
+
 }  // namespace dlo::compare

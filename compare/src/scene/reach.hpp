@@ -31,4 +31,11 @@ namespace dlo::compare {
     const Scene& scene, const std::vector<std::size_t>& in_reach,
     const std::vector<Eigen::Vector3d>& forces);
 
+/// Whether an obstacle that pushes the rod has friction. @param forces  of all obstacles [N]
+[[nodiscard]] bool touches_with_friction(const Scene& scene,
+                                         const std::vector<Eigen::Vector3d>& forces);
+
+/// Whether an obstacle with friction is in reach. Where none is, friction changes nothing.
+[[nodiscard]] bool friction_in_reach(const Scene& scene);
+
 }  // namespace dlo::compare

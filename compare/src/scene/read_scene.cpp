@@ -239,6 +239,8 @@ Obstacle read_obstacle(StrictTable& table, double radius) {
   }
   obstacle.stiffness = table.optional_number("stiffness", Dimension::foundation, Range::positive())
                            .value_or(obstacle.stiffness);
+  obstacle.friction = table.optional_number("friction", Dimension::number, Range::not_negative())
+                          .value_or(obstacle.friction);
   const bool axis = table.has("touches") && table.choice("touches", {"surface", "axis"}) == "axis";
   if (!axis) obstacle.body = obstacle.body.grown(radius);
   if (!(obstacle.body.smallest_radius() > 0)) {

@@ -197,6 +197,12 @@ LeftOut natural_left_out(const Scene& scene) {
       unbounded, "the rod is curved without loads"};
 }
 
+LeftOut friction_left_out(const Plan& plan) {
+  return {"friction", "all", unbounded,
+          plan.contact ? "the shape is one of all that friction could hold"
+                       : "none in the shape found, but friction could hold one that touches"};
+}
+
 /// What leaving something out changes: the rod is solved without it too.
 void look_at(const Scene& without, const energy_model::Equilibrium& rod, double time_limit,
              LeftOut& item) {
@@ -307,6 +313,7 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
   plan.stretch = stretch.bound_m > options.target * scene.length / 10;
   plan.left_out = {stretch, shear, polygon, inertia(scene, options.gripper_speed), twist};
   if (scene.naturally_bent()) plan.left_out.push_back(natural);
+  if (friction_in_reach(scene)) plan.left_out.push_back(friction_left_out(plan));
   plan.moving = plan.bound("inertia") > options.target * scene.length;
   if (in_reach.size() < scene.obstacles.size()) {
     plan.left_out.push_back(

@@ -91,6 +91,7 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
       solution.obstacles[discretisation.solids[k]] += forces.col(i);
     }
   }
+  if (touches_with_friction(scene, solution.obstacles)) solution.left_out.emplace_back("friction");
   return solution;
 }
 

@@ -67,6 +67,7 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene), equilibrium.obstacles);
   solution.twists = equilibrium.twists;
   if (scene.holds_twist() && solution.twists.empty()) solution.left_out = {"twist"};
+  if (touches_with_friction(scene, solution.obstacles)) solution.left_out.emplace_back("friction");
   solution.contacts = contacts_of(scene, equilibrium);
   const bool sinks_in = touches_yielding_obstacle(scene, solution.obstacles);
   for (std::size_t i = 0; i < samples.size(); ++i) {

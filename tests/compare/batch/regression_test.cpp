@@ -233,6 +233,11 @@ TEST(Regression, AFingerprintStandsForAllThatTheShapeDependsOn) {
   EXPECT_NE(digits(directed), digits(held));
   differs([](auto& s) { s.loads.push_back({.at = 0}); });
   differs([](auto& s) { s.obstacles.push_back({}); });
+  dlo::compare::Scene smooth = held;
+  smooth.obstacles.push_back({});
+  dlo::compare::Scene rough = smooth;
+  rough.obstacles.front().friction = 0.3;
+  EXPECT_NE(digits(rough), digits(smooth));
   differs([](auto& s) { s.force_model.c_c = 660; });
   differs([](auto& s) { s.force_model.l_s = 660; });
   differs([](auto& s) { s.force_model.stepper = dlo::compare::Stepper::basic; });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -46,6 +47,62 @@ TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
   const Outcome text = run("compare --no-modulus " + lying());
   EXPECT_NE(text.out.find("\n  contact         obstacle 2, lying from s = "), std::string::npos)
       << text.out;
+}
+
+// No model has friction: the shape is that without, and every command says what it left out, but
+// not of an obstacle that the rod does not touch.
+TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
+  const std::string smooth = lying();
+  std::ifstream file(smooth);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string rough = scene("rough.toml", text + "friction = 0.3\n");
+  const std::size_t second = text.rfind("[[obstacle]]");
+  const std::string rough_below =
+      scene("below.toml", text.substr(0, second) + "friction = 0.3\n" + text.substr(second));
+  for (const std::string model : {"energy", "chain", "force"}) {
+    SCOPED_TRACE(model);
+    const std::string solve = "solve --model " + model + " ";
+    const json with = json::parse(run(solve + "--format json " + rough).out);
+    const json without = json::parse(run(solve + "--format json " + smooth).out);
+    EXPECT_EQ(with.at("left_out"), json({"friction"}));
+    EXPECT_EQ(with.at("points_m"), without.at("points_m"));
+    EXPECT_FALSE(without.contains("left_out"));
+    EXPECT_NE(
+        run(solve + rough).out.find("\nleft out   friction: the scene has it, model " + model),
+        std::string::npos);
+    EXPECT_NE(run(solve + "--format csv " + rough).err.find("leaves out the friction"),
+              std::string::npos);
+    EXPECT_FALSE(json::parse(run(solve + "--format json " + rough_below).out).contains("left_out"));
+  }
+  const json compared = json::parse(run("compare --no-modulus --format json " + rough).out);
+  EXPECT_EQ(compared.at("cases").at(0).at("left_out"), json({"friction"}));
+  const std::string told = run("compare --no-modulus " + rough).out;
+  EXPECT_NE(told.find("\n  left out        friction that the scene has, by both models"),
+            std::string::npos)
+      << told;
+  EXPECT_EQ(told.find("by the force model: in all below"), std::string::npos) << told;
+  EXPECT_NE(run("solve --explain " + rough).out.find("friction                no bound"),
+            std::string::npos);
+  EXPECT_EQ(run("solve --explain " + rough_below).out.find("friction"), std::string::npos);
+}
+
+// A shape that friction may hold is held against the one without: it fails or passes as any other.
+TEST_F(ContactCommand, CheckSaysThatItKnowsNoFriction) {
+  const std::string smooth = lying();
+  std::ifstream file(smooth);
+  const std::string rough = scene(
+      "rough.toml", std::string{std::istreambuf_iterator<char>(file), {}} + "friction = 0.3\n");
+  const std::string mine = path("mine.csv");
+  ASSERT_EQ(run("solve --format csv --samples 40 -o " + mine + " " + smooth).status, 0);
+  const std::string rest = " --no-modulus --tolerance 1% --shape " + mine;
+  const Outcome with = run("check " + rough + rest);
+  EXPECT_EQ(with.status, 0) << with.err;
+  EXPECT_NE(with.out.find("\n  left out        friction that the scene has"), std::string::npos)
+      << with.out;
+  EXPECT_EQ(run("check " + smooth + rest).out.find("friction"), std::string::npos);
+  EXPECT_EQ(json::parse(run("check --format json " + rough + rest).out).at("left_out"),
+            json({"friction"}));
+  EXPECT_NE(run("check --format csv " + rough + rest).err.find("has friction"), std::string::npos);
 }
 
 // A cable that hangs beside a peg, a ball or a box: all models know the same bodies.

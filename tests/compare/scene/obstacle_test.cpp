@@ -55,6 +55,18 @@ TEST(SceneObstacle, HasTheBodyThatTheFileSays) {
   EXPECT_NEAR(clearance(box + "radius = 0.02\n", {0.08 + 3, -1 + 0.18 + 4, 0}), 5 - 0.03, 1e-12);
 }
 
+TEST(SceneObstacle, HasFrictionOnlyIfTheFileSaysSo) {
+  const std::string floor = "point = [0, -1, 0]\nnormal = [0, 1, 0]\n";
+  const auto friction = [&](const std::string& keys) {
+    return parse_scene(over_a_rod + floor + keys, "my.toml").obstacles.at(0).friction;
+  };
+  EXPECT_EQ(friction(""), 0);
+  EXPECT_EQ(friction("friction = 0\n"), 0);
+  EXPECT_EQ(friction("friction = 1.5\n"), 1.5);
+  expect_refused(floor + "friction = -0.3\n", {"my.toml:12: ", "friction = -0.3", ">= 0"});
+  expect_refused(floor + "friction = \"0.3 N\"\n", {"my.toml:12: ", "friction"});
+}
+
 TEST(SceneObstacle, IsRefusedWithWhatIsAllowed) {
   expect_refused("shape = \"cone\"\npoint = [0, -1, 0]\n",
                  {"my.toml:10: obstacle.shape", "'cone'", "cylinder", "box"});

@@ -50,6 +50,9 @@ struct Obstacle {
   obstacle::Body body;  ///< [m]
   /// Force per depth and per length of rod [N/m^2]; infinite: rigid.
   double stiffness = std::numeric_limits<double>::infinity();
+  /// Coulomb's coefficient [-], >= 0. No model has friction: what a shape that touches such an
+  /// obstacle leaves out is told (Solution::left_out).
+  double friction = 0;
 
   /// In every field.
   bool operator==(const Obstacle&) const = default;

@@ -87,7 +87,8 @@ struct Solution {
   /// Of energy: where it touches rigid ones, `obstacle` being the obstacle's index in the scene.
   std::vector<energy_model::ContactPart> contacts;
   std::vector<energy_model::TwistedPart> twists;  ///< as Equilibrium::twists
-  /// Of what the scene asks for, what the model left out: "twist", "natural curvature" or nothing.
+  /// Of what the scene asks for, what the model left out: "twist", "natural curvature", "friction"
+  /// (where it touches an obstacle that has it; of Comparison, where either model does).
   std::vector<std::string> left_out;
   /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
