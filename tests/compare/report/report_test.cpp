@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -160,6 +161,43 @@ TEST_F(ReportFolder, DrawsShapesWhereTheyAre) {
     ++row;
   }
   EXPECT_EQ(row, shape.arc_length.size());
+}
+
+// A rod that hangs down onto a floor, beside a wall that it does not reach: the outline ends where
+// its axis does, all points that touch are on it, and what is endless does not widen the plot.
+TEST_F(ReportFolder, DrawsTheObstaclesInReachAndWhatTouches) {
+  SceneFile file = heavy_file();
+  file.scene.force_model = {.points = 32};
+  const double l = file.scene.length;
+  const double floor = file.scene.grippers.front().position.y() - 0.3 * l;
+  file.scene.obstacles = {
+      {.body = obstacle::Body::half_space({0, floor, 0}, {0, 1, 0})},
+      {.body = obstacle::Body::half_space({9 * l, 0, 0}, {-1, 0, 0})},
+      {.body = obstacle::Body::half_space({0, 0, -l / 2}, {0, 0, 1})},
+  };
+  const Report report = make_report({file}, small_report());
+  (void)write_report(report, {}, folder());
+  ASSERT_FALSE(report.scenes.front().comparisons.empty());
+  ASSERT_FALSE(report.scenes.front().comparisons.front().contacts.empty());
+  std::istringstream csv(text_of(place() / "report" / "shapes_1.csv"));
+  std::map<std::string, std::vector<double>> heights;
+  for (std::string line; std::getline(csv, line);) {
+    std::vector<std::string> fields;
+    std::istringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) fields.push_back(field);
+    if (fields.at(0) != "series") heights[fields.at(0)].push_back(std::stod(fields.at(3)));
+  }
+  ASSERT_EQ(heights.count("obstacle_1_xy"), 1U);
+  EXPECT_EQ(heights.count("obstacle_2_xy"), 0U) << "out of reach";
+  EXPECT_EQ(heights.count("obstacle_3_xy"), 0U) << "seen from above";
+  const std::vector<double>& drawn = heights["obstacle_1_xy"];
+  EXPECT_NEAR(*std::max_element(drawn.begin(), drawn.end()), floor, 1e-9 * l);
+  ASSERT_FALSE(heights["contact"].empty());
+  for (const double height : heights["contact"]) EXPECT_NEAR(height, floor, 1e-6 * l);
+  const std::string script = text_of(place() / "report" / "shapes_1.gp");
+  EXPECT_THAT(script, AllOf(HasSubstr("'obstacle_1_xy'"), HasSubstr("'contact'")));
+  const std::size_t range = script.find("set yrange [") + 12;
+  EXPECT_GT(std::stod(script.substr(range)), floor - 2 * l);
 }
 
 TEST_F(ReportFolder, ShowsTheCurvatureThatTheRodHas) {
