@@ -60,7 +60,7 @@ TEST(Exact, RefusesLoadsBeyondDoublePrecisionAndBadOptions) {
   EXPECT_THROW((void)solve_exact(heavy_cantilever(1e7, 0)), std::invalid_argument);
   EXPECT_THROW((void)solve_exact(heavy_cantilever(1, 0), {.tolerance = -1}), std::invalid_argument);
   Problem problem = heavy_cantilever(1, 0);
-  problem.obstacles = {{obstacle::Body::half_space({0, -0.3, 0}, Eigen::Vector3d::UnitY())}};
+  problem.obstacles = {{obstacle::Body::sphere({0.5, -0.3, 0}, 0.1)}};
   EXPECT_THROW((void)solve_exact(problem), std::invalid_argument);
 }
 

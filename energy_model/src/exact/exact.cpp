@@ -25,6 +25,7 @@
 #include "shooting/planar_shooting.hpp"
 #include "shooting/second_variation.hpp"
 #include "shooting/span_shooting.hpp"
+#include "touching/touching_cantilever.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -230,6 +231,15 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
                   : solve_spans(problem, options, deadline);
 }
 
+Found search_touching(const Problem& problem, const Deadline& deadline) {
+  std::optional<Equilibrium> found = solve_touching_cantilever(problem, deadline);
+  require(found.has_value(), "solve_exact", "number of obstacles",
+          static_cast<double>(problem.obstacles.size()),
+          "0, or rigid half-spaces across the plane of a heavy round rod with one clamp at its "
+          "begin");
+  return {{*std::move(found)}, false, ""};
+}
+
 /// Never empty. Out of time, what is found is marked: it is an equilibrium, but others were not
 /// looked for to the end.
 std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& options) {
@@ -237,9 +247,8 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   const auto begin = std::chrono::steady_clock::now();
   require_positive("solve_exact", "tolerance", options.tolerance);
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
-  require(problem.obstacles.empty(), "solve_exact", "number of obstacles",
-          static_cast<double>(problem.obstacles.size()), "0");
-  Found found = search(problem, options, deadline);
+  Found found = problem.obstacles.empty() ? search(problem, options, deadline)
+                                          : search_touching(problem, deadline);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (Equilibrium& equilibrium : found.equilibria) {

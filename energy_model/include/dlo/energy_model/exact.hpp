@@ -54,6 +54,11 @@ struct ExactOptions {
 /// ends before the whole roll the status is `failed` and the message says how far it came: long
 /// rods whose buckle moves along them for nearly nothing may need a `start`.
 ///
+/// Over rigid half-spaces across its plane a heavy round rod of one section, straight by nature,
+/// with one clamp at its begin and no load is followed while its weight is raised from nothing: its
+/// end is free, touches or lies. Other contact is refused or ends as `failed` or `not_resolved`;
+/// the branch's end may be a `saddle` where there is a minimum. `start` is not used then.
+///
 /// A rod with material directors is not cut, because its torque passes through clamps that do not
 /// hold the frame; the first clamp holds the frame that Problem says. It is solved by multiple
 /// shooting too, from `start`, or from the eight lowest minima (sixteen while nothing is stable) of
