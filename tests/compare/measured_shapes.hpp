@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dlo/compare/alignment.hpp"
+#include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "dlo/compare/solution.hpp"
@@ -62,6 +63,11 @@ inline Eigen::Matrix3Xd correlated_noise(const std::vector<double>& s, double si
     }
   }
   return noise;
+}
+
+/// Whether an interval does; an open side holds all.
+inline bool holds(const compare::FittedValue& value, double truth) {
+  return (!value.low || *value.low <= truth) && (!value.high || *value.high >= truth);
 }
 
 inline compare::MeasuredShape reversed(const compare::MeasuredShape& shape) {

@@ -15,23 +15,15 @@
 namespace dlo::compare {
 namespace {
 
-/// The exact model's scenes, said in the scene's own words.
-void require_exact_scene(const Scene& scene) {
-  const std::size_t obstacles = obstacles_in_reach(scene).size();
-  if (obstacles == 0) return;
-  throw InputError(
-      fmt::format("{}: obstacle: {} in reach (allowed for model exact: none; --model energy, chain "
-                  "or force takes them)",
-                  scene.file, obstacles));
-}
-
 /// What a solver does not take, said of the scene's rod instead of the solver's function.
 [[noreturn]] void refuse_rod(const Scene& scene, Model model, const std::invalid_argument& error) {
   const std::string_view message = error.what();
   const std::size_t function = message.find(": ");
+  const bool touches = model == Model::exact && !obstacles_in_reach(scene).empty();
   throw InputError(
-      fmt::format("{}: rod: model {}: {}", scene.file, to_string(model),
-                  message.substr(function == std::string_view::npos ? 0 : function + 2)));
+      fmt::format("{}: rod: model {}: {}{}", scene.file, to_string(model),
+                  message.substr(function == std::string_view::npos ? 0 : function + 2),
+                  touches ? " (--model energy, chain or force takes every obstacle)" : ""));
 }
 
 /// What came of the searches for equilibria, for a message.
@@ -52,7 +44,6 @@ bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
 
 energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                           const SolveOptions& options) {
-  if (model == Model::exact) require_exact_scene(scene);
   const energy_model::Problem problem = energy_problem(scene);
   energy_model::Equilibrium result;
   try {
@@ -72,7 +63,9 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
         result.status == energy_model::SolveStatus::time_limit
             ? fmt::format("; --time-limit {:g} allows no more", options.time_limit)
             : "",
-        problem.obstacles.empty() ? "" : "; --model chain or an obstacle with a stiffness may do"));
+        problem.obstacles.empty() ? ""
+        : model == Model::exact   ? "; --model energy may do"
+                                  : "; --model chain or an obstacle with a stiffness may do"));
   }
   return result;
 }

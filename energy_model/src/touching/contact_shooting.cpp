@@ -154,6 +154,7 @@ void move(TouchingShape& shape, const Eigen::VectorXd& step, double share) {
 
 bool close_arcs(TouchingShape& shape) {
   System system = system_of(shape);
+  ++shape.shots;
   shape.residual = system.residual.lpNorm<Eigen::Infinity>();
   shape.step = INFINITY;
   for (int steps = 0; steps < most_steps; ++steps) {
@@ -164,6 +165,7 @@ bool close_arcs(TouchingShape& shape) {
     double share = 1;
     TouchingShape moved = shape;
     for (;; share /= 2) {
+      ++shape.shots;
       moved = shape;
       move(moved, step, share);
       system = moved.reach > 0 && moved.reach < 2 ? system_of(moved) : System{};

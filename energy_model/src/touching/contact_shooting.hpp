@@ -33,6 +33,7 @@ struct TouchingShape {
   std::vector<ArcState> nodes;  ///< where the arcs begin, which share `reach` in equal parts
   double residual = 1;          ///< largest gap that the arcs leave
   double step = 1;              ///< largest component of Newton's last step
+  int shots = 0;                ///< of all arcs, for this shape and those on the way to it
   bool positive = true;         ///< sign of the system's determinant
 };
 

@@ -199,6 +199,7 @@ Equilibrium assemble(const Problem& problem, const ReducedCantilever& reduced, c
   const Sums sums = sums_of(shape, floors);
   Equilibrium result;
   result.residual = shape.residual;
+  result.evaluations = shape.shots;
   result.penetration = sums.depth * problem.length;
   const std::string wrong = objection(stage, floors, sums.depth);
   result.status = wrong.empty() ? SolveStatus::converged : SolveStatus::not_resolved;

@@ -27,13 +27,10 @@ namespace {
 using test::correlated_noise;
 using test::exact_shape;
 using test::heavy_scene;
+using test::holds;
 using test::random_pose;
 using test::uneven_arc_lengths;
 using test::with_noise;
-
-bool holds(const FittedValue& value, double truth) {
-  return (!value.low || *value.low <= truth) && (!value.high || *value.high >= truth);
-}
 
 /// Of fits to one rod.
 struct Tally {

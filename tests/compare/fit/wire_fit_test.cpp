@@ -20,7 +20,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180;
+constexpr double deg = std::numbers::pi / 180;
 
 /// A wire of which a scene says nothing but what was meant, and a picture of it. EI = 1 in the
 /// scenes' unit, 1.6 times as much in what is said.
@@ -78,10 +78,6 @@ MaterialFit fit(const std::vector<Picture>& pictures, const MaterialFitOptions& 
   return fit_material(scenes, shapes, options);
 }
 
-bool holds(const FittedValue& value, double truth) {
-  return (!value.low || *value.low <= truth) && (!value.high || *value.high >= truth);
-}
-
 // Clamps off by 5 degrees, natural curvature up to 3 / l and errors of 0.3 % of the length that are
 // correlated over a fifth of it. An interval of 95 % that is right holds the truth in fewer than 90
 // or in more than 99 of 100 draws less than once in 20 tests.
@@ -92,11 +88,11 @@ TEST(WireFit, StiffnessBesideCurvatureAndClampAnglesIsWithinFivePercentAndItsInt
   int near = 0;
   int told = 0;
   for (int draw = 0; draw < draws; ++draw) {
-    const std::vector<Picture> pictures = five_pictures(5 * degree, 0.003, random);
+    const std::vector<Picture> pictures = five_pictures(5 * deg, 0.003, random);
     const MaterialFit found =
-        fit(pictures, {.natural_curvature_terms = 3, .direction_tolerance = 5 * degree});
+        fit(pictures, {.natural_curvature_terms = 3, .direction_tolerance = 5 * deg});
     const double truth = true_modulus(pictures.front());
-    held += holds(found.youngs_modulus, truth) ? 1 : 0;
+    held += test::holds(found.youngs_modulus, truth) ? 1 : 0;
     if (!found.youngs_modulus.value) continue;
     ++told;
     near += std::abs(*found.youngs_modulus.value / truth - 1) < 0.05 ? 1 : 0;
@@ -119,20 +115,20 @@ TEST(WireFit, PerfectPicturesGiveBackEveryNumber) {
     Scene truth = said;
     truth.natural_strain.y() = 1.3;
     truth.grippers[0].direction =
-        Eigen::AngleAxisd(4 * degree, Eigen::Vector3d::UnitZ()) * *said.grippers[0].direction;
+        Eigen::AngleAxisd(4 * deg, Eigen::Vector3d::UnitZ()) * *said.grippers[0].direction;
     truth.grippers[0].position = {0.003, -0.002, 0};
     pictures.push_back(picture_of(truth, said, 0, 0.2, random));
   }
-  const MaterialFit found = fit(pictures, {.natural_curvature_terms = 2,
-                                           .direction_tolerance = 5 * degree,
-                                           .position_tolerance = 0.005});
+  const MaterialFit found = fit(
+      pictures,
+      {.natural_curvature_terms = 2, .direction_tolerance = 5 * deg, .position_tolerance = 0.005});
   EXPECT_NEAR(found.youngs_modulus.value.value_or(0) / true_modulus(pictures.front()), 1, 1e-5);
   ASSERT_EQ(found.others.size(), 2 + 2 * 3);
   EXPECT_NEAR(found.others[0].value, 1.3, 1e-5);
   EXPECT_NEAR(found.others[1].value, 0, 1e-4);
   for (const FittedNumber& number : found.others) {
     if (number.unit == "rad") {
-      EXPECT_NEAR(number.value, 4 * degree, 1e-5) << number.name;
+      EXPECT_NEAR(number.value, 4 * deg, 1e-5) << number.name;
     }
   }
   EXPECT_LT(found.rms_m, 1e-6);
@@ -152,7 +148,7 @@ TEST(WireFit, AConstantCurvatureBetweenTwoClampsIsSaidNotToBeSeen) {
   ASSERT_EQ(found.others.size(), 1);
   EXPECT_FALSE(found.others[0].is_seen());
   EXPECT_NEAR(found.others[0].deviation / found.others[0].known_before, 1, 0.01);
-  EXPECT_TRUE(holds(found.youngs_modulus, true_modulus({said, {}}) * too_stiff));
+  EXPECT_TRUE(test::holds(found.youngs_modulus, true_modulus({said, {}}) * too_stiff));
 }
 
 // A stiff rod's moments are a parabola along it at any E, and so is a natural curvature of three
@@ -166,7 +162,7 @@ TEST(WireFit, AStiffRodInOnePictureDoesNotTellItsStiffnessFromItsCurvature) {
     const MaterialFit found = fit({picture}, {.natural_curvature_terms = 3});
     EXPECT_FALSE(found.youngs_modulus.value);
     EXPECT_FALSE(found.not_told.empty());
-    EXPECT_TRUE(holds(found.youngs_modulus, true_modulus(picture)));
+    EXPECT_TRUE(test::holds(found.youngs_modulus, true_modulus(picture)));
   }
 }
 
@@ -184,9 +180,8 @@ TEST(WireFit, ShapesThatScatterSayItAndWidenTheInterval) {
         const Scene scene = test::heavy_scene(10, 15 * i - 30);
         pictures.push_back(picture_of(scene, scene, 1e-3, 0.02, random, 0.1));
       }
-      const MaterialFit found =
-          fit(pictures, {.direction_tolerance = whole_wire ? 0.2 * degree : 0});
-      held += holds(found.youngs_modulus, true_modulus(pictures.front())) ? 1 : 0;
+      const MaterialFit found = fit(pictures, {.direction_tolerance = whole_wire ? 0.2 * deg : 0});
+      held += test::holds(found.youngs_modulus, true_modulus(pictures.front())) ? 1 : 0;
       if (!found.scatter) continue;
       ++said_so;
       EXPECT_GT(found.scatter->widening, 1);
@@ -219,8 +214,8 @@ TEST(WireFit, ShapesOfOneStiffnessSeldomScatter) {
 
 TEST(WireFit, ANoiseThatIsTooSmallWidensTheIntervalAndWarns) {
   std::mt19937 random(10);
-  const std::vector<Picture> pictures = five_pictures(2 * degree, 0.002, random);
-  MaterialFitOptions options{.natural_curvature_terms = 2, .direction_tolerance = 2 * degree};
+  const std::vector<Picture> pictures = five_pictures(2 * deg, 0.002, random);
+  MaterialFitOptions options{.natural_curvature_terms = 2, .direction_tolerance = 2 * deg};
   const auto width = [](const MaterialFit& found) {
     return std::log(*found.youngs_modulus.high / *found.youngs_modulus.low);
   };
