@@ -8,7 +8,7 @@ namespace {
 
 /// Columns of frames that are no more than this share of the largest are rounding: a flat shape
 /// does not see its third coordinate.
-constexpr double rank_tolerance = 1e-8;
+constexpr double frame_rank_tolerance = 1e-8;
 
 }  // namespace
 
@@ -19,7 +19,7 @@ LinearFit linear_fit(const std::vector<ResidualSeries>& series, const ErrorCovar
                    seen.design.rows()};
   if (frames == 0) return result;
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(seen.design.leftCols(frames));
-  qr.setThreshold(rank_tolerance);
+  qr.setThreshold(frame_rank_tolerance);
   const Eigen::MatrixXd basis =
       qr.householderQ() * Eigen::MatrixXd::Identity(seen.design.rows(), qr.rank());
   result.design -= basis * (basis.transpose() * result.design).eval();

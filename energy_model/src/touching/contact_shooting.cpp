@@ -13,7 +13,7 @@ constexpr int order = 20;  // of Taylor's series
 // Of sqrt(n) times a step. The pendulum's nearest pole is more than one away, so that the remainder
 // is below (0.3)^20 / 20.
 constexpr double series_step = 0.3;
-constexpr int most_steps = 30;
+constexpr int most_newton_steps = 30;
 constexpr double closed = 1e-9;
 
 using Complex = std::complex<double>;
@@ -157,7 +157,7 @@ bool close_arcs(TouchingShape& shape) {
   ++shape.shots;
   shape.residual = system.residual.lpNorm<Eigen::Infinity>();
   shape.step = INFINITY;
-  for (int steps = 0; steps < most_steps; ++steps) {
+  for (int steps = 0; steps < most_newton_steps; ++steps) {
     const Eigen::PartialPivLU<Eigen::MatrixXd> lu(system.jacobian);
     const Eigen::VectorXd step = -lu.solve(system.residual);
     if (!step.allFinite()) return false;
