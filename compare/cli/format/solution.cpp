@@ -209,7 +209,7 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
       obstacles.push_back({{"force_N", to_json(force)}});
     }
     result["obstacles"] = std::move(obstacles);
-    if (solution.model == compare::Model::energy) {
+    if (solution.model == compare::Model::energy || solution.model == compare::Model::exact) {
       result["penetration_m"] = solution.penetration;
       result["contacts"] = contacts_json(solution.contacts);
     }

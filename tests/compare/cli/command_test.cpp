@@ -161,12 +161,39 @@ force = [0, 0, "50 mN"]
   }
 }
 
-TEST_F(Command, SolveExactRefusesObstacles) {
-  const std::string text = std::string(good) + R"([[obstacle]]
-point = [0, -0.2, 0]
+TEST_F(Command, SolveExactTakesAFloorAndRefusesOtherObstacles) {
+  const std::string floor = scene(R"([rod]
+length = 1
+bending_stiffness = 0.01
+mass_per_length = 0.1
+[[gripper]]
+at = 0
+position = [0, 0.1, 0]
+direction = "0 deg"
+[[obstacle]]
+point = [0, 0, 0]
 normal = [0, 1, 0]
+)");
+  const auto solved = [&](const char* model) {
+    return json::parse(run("solve " + floor + " --format json --model " + model).out);
+  };
+  const json exact = solved("exact");
+  const json energy = solved("energy");
+  EXPECT_EQ(run("solve " + floor + " --model exact").out.find("work       0"), std::string::npos);
+  for (const char* key : {"from_m", "to_m"}) {
+    EXPECT_NEAR(exact.at("contacts")[0].at(key).get<double>(),
+                energy.at("contacts")[0].at(key).get<double>(), 1e-7);
+  }
+  const json& last = exact.at("points_m").back();
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(last[k].get<double>(), energy.at("points_m").back()[k].get<double>(), 1e-8);
+  }
+  const std::string ball = std::string(good) + R"([[obstacle]]
+shape = "sphere"
+point = [0, -0.2, 0]
+radius = 0.1
 )";
-  expect_error("solve " + scene(text) + " --model exact", 2, {"obstacle", "energy"});
+  expect_error("solve " + scene(ball) + " --model exact", 2, {"obstacle", "energy"});
 }
 
 TEST_F(Command, SolveMatchesTheReferenceValuesOfThePapersRod) {

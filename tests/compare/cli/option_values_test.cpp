@@ -132,9 +132,10 @@ TEST_F(Command, RodsBeyondTheLimitsNameFileLineAndKey) {
 }
 
 TEST_F(Command, AModelThatDoesNotTakeASceneSaysWhichDoes) {
-  const std::string floor =
-      scene(std::string(rod_of) + "[[obstacle]]\npoint = [0, -0.2, 0]\nnormal = [0, 1, 0]\n");
-  expect_error("solve " + floor + " --model exact", 2,
+  const std::string ball = scene(std::string(rod_of) +
+                                 "[[obstacle]]\nshape = \"sphere\"\npoint = [0, -0.2, "
+                                 "0]\nradius = 0.1\n");
+  expect_error("solve " + ball + " --model exact", 2,
                {"scene.toml", "obstacle", "--model energy, chain or force"});
   std::string soft = rod_of;
   soft.replace(soft.find("\"50 cm\""), 7, "1000");

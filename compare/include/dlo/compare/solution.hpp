@@ -84,7 +84,8 @@ struct Solution {
   SceneEnergies energy;                    ///< of that shape
   std::vector<GripperLoad> grippers;       ///< in the scene's order
   std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod [N]
-  /// Of energy: where it touches rigid ones, `obstacle` being the obstacle's index in the scene.
+  /// Of energy and exact: where it touches rigid ones, `obstacle` being the obstacle's index in the
+  /// scene.
   std::vector<energy_model::ContactPart> contacts;
   std::vector<energy_model::TwistedPart> twists;  ///< as Equilibrium::twists
   /// Of what the scene asks for, what the model left out: "twist", "natural curvature", "friction"
