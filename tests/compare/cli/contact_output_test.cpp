@@ -61,18 +61,18 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
       scene("below.toml", text.substr(0, second) + "friction = 0.3\n" + text.substr(second));
   for (const std::string model : {"energy", "chain", "force"}) {
     SCOPED_TRACE(model);
-    const std::string solve = "solve --model " + model + " ";
-    const json with = json::parse(run(solve + "--format json " + rough).out);
-    const json without = json::parse(run(solve + "--format json " + smooth).out);
+    const auto solve = [&](const std::string& format, const std::string& file) {
+      return run(words({"solve --model", model, "--format", format, file}));
+    };
+    const json with = json::parse(solve("json", rough).out);
+    const json without = json::parse(solve("json", smooth).out);
     EXPECT_EQ(with.at("left_out"), json({"friction"}));
     EXPECT_EQ(with.at("points_m"), without.at("points_m"));
     EXPECT_FALSE(without.contains("left_out"));
-    EXPECT_NE(
-        run(solve + rough).out.find("\nleft out   friction: the scene has it, model " + model),
-        std::string::npos);
-    EXPECT_NE(run(solve + "--format csv " + rough).err.find("leaves out the friction"),
+    EXPECT_NE(solve("text", rough).out.find("\nleft out   friction: the scene has it, model"),
               std::string::npos);
-    EXPECT_FALSE(json::parse(run(solve + "--format json " + rough_below).out).contains("left_out"));
+    EXPECT_NE(solve("csv", rough).err.find("leaves out the friction"), std::string::npos);
+    EXPECT_FALSE(json::parse(solve("json", rough_below).out).contains("left_out"));
   }
   const json compared = json::parse(run("compare --no-modulus --format json " + rough).out);
   EXPECT_EQ(compared.at("cases").at(0).at("left_out"), json({"friction"}));
