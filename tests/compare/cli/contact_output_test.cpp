@@ -61,8 +61,8 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
       scene("below.toml", text.substr(0, second) + "friction = 0.3\n" + text.substr(second));
   for (const std::string model : {"energy", "chain", "force"}) {
     SCOPED_TRACE(model);
-    const auto solve = [&](const std::string& format, const std::string& file) {
-      return run(words({"solve --model", model, "--format", format, file}));
+    const auto solve = [&](const std::string& format, const std::string& of) {
+      return run(words({"solve --model", model, "--format", format, of}));
     };
     const json with = json::parse(solve("json", rough).out);
     const json without = json::parse(solve("json", smooth).out);
