@@ -46,6 +46,14 @@ class TangentStiffness {
   }
 
   [[nodiscard]] Eigen::Index free_points() const { return count_; }
+  /// Of the rod's points those that are free.
+  [[nodiscard]] std::vector<Eigen::Index> point_indices() const {
+    std::vector<Eigen::Index> points;
+    for (std::size_t i = 0; i < index_.size(); ++i) {
+      if (index_[i] >= 0) points.push_back(static_cast<Eigen::Index>(i));
+    }
+    return points;
+  }
 
   /// @param block  -df_i/dx_j, with its transpose when i != j
   void add(Eigen::Index i, Eigen::Index j, const Eigen::Matrix3d& block) {
@@ -308,7 +316,31 @@ void add_springs(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& point
   }
 }
 
+/// Of all that makes forces.
+void add_all(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+             TangentStiffness& stiffness) {
+  add_segments(rod, points, stiffness);
+  add_joints(rod, points, stiffness);
+  add_springs(rod, points, stiffness);
+  add_twist(rod, points, stiffness);
+}
+
 }  // namespace
+
+StiffnessMatrix tangent_stiffness(const Rod& rod,
+                                  const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
+  require_polygon("tangent_stiffness", points, rod.rest_lengths);
+  require(rod.bending.natural_turns.size() == 0, "tangent_stiffness", "natural turns",
+          static_cast<double>(rod.bending.natural_turns.size()), "none");
+  TangentStiffness stiffness(rod);
+  StiffnessMatrix result;
+  result.points = stiffness.point_indices();
+  add_all(rod, points, stiffness);
+  const BorderedMatrix K = stiffness.matrix();
+  result.entries = Eigen::MatrixXd(K.A);
+  if (K.B.cols() > 0) result.entries += K.B * K.B.transpose();
+  return result;
+}
 
 EquilibriumCheck check_equilibrium(const Rod& rod,
                                    const Eigen::Ref<const Eigen::Matrix3Xd>& points) {
@@ -322,10 +354,7 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
     result.remaining_error = 0;
     return result;
   }
-  add_segments(rod, points, stiffness);
-  add_joints(rod, points, stiffness);
-  add_springs(rod, points, stiffness);
-  add_twist(rod, points, stiffness);
+  add_all(rod, points, stiffness);
   const BorderedMatrix K = stiffness.matrix();
   // Rounding of K, which is banded, leaves no sign to a mode below this.
   const double rounding = 64 * std::numeric_limits<double>::epsilon() * K.largest_eigenvalue();

@@ -5,8 +5,10 @@
 #include "dlo/compare/solution.hpp"
 #include "format/benchmark.hpp"
 #include "format/json.hpp"
+#include "option/exit_status.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
+#include "option/program_options.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
 #include "study/benchmark.hpp"
@@ -16,11 +18,14 @@ namespace {
 
 struct BenchOptions {
   std::vector<std::string> scenes;
+  std::vector<std::string> programs;
   compare::BenchmarkOptions benchmark;
   OutputOptions output;
 };
 
 void run(const BenchOptions& options) {
+  compare::BenchmarkOptions benchmark = options.benchmark;
+  benchmark.programs = compare::parse_foreign_programs(options.programs);
   std::vector<compare::Scene> scenes;
   for (const std::string& path : options.scenes) scenes.push_back(compare::load_scene(path));
   for (const compare::Scene& scene : scenes) {
@@ -30,12 +35,13 @@ void run(const BenchOptions& options) {
   if (scenes.empty()) scenes = compare::benchmark_scenes();
   const compare::BenchmarkReport report = [&] {
     ProgressBar bar("bench");
-    return compare::run_benchmark(scenes, options.benchmark,
+    return compare::run_benchmark(scenes, benchmark,
                                   [&](const std::string& what) { bar.stage(what); });
   }();
   write_output(options.output, {.text = [&] { return benchmark_text(report); },
                                 .json = [&] { return json_text(benchmark_json(report)); },
                                 .csv = [&] { return benchmark_csv(report); }});
+  if (!report.failures.empty()) end_with(ExitStatus::not_converged);
 }
 
 }  // namespace
@@ -54,8 +60,18 @@ void add_bench(CLI::App& app) {
   command->add_option("--speed", options->benchmark.gripper_speed, "of the moving gripper [m/s]")
       ->check(number_between(1e-9, 1e3))
       ->capture_default_str();
+  add_program_options(*command, options->programs);
+  command
+      ->add_option("--time-limit", options->benchmark.program_time_limit,
+                   "of each run of a program [s]")
+      ->check(number_between(1e-3, 1e9))
+      ->capture_default_str();
   add_output_options(*command, options->output);
-  command->footer("Example:\n  dlo bench data/scenes/spring_steel_175.toml --seconds 2");
+  command->footer(
+      "Examples:\n"
+      "  dlo bench data/scenes/spring_steel_175.toml --seconds 2\n"
+      "  dlo bench data/scenes/cable.toml --seconds 2 --with mine='dlo solve "
+      "data/scenes/cable.toml --model chain --points {points} --format csv -o {shape}'");
   command->callback([options] { run(*options); });
 }
 

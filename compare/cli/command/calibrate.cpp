@@ -25,6 +25,7 @@ struct CalibrateOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> shapes;
   bool density = false;
+  bool torsional_stiffness = false;
   std::string noise;
   int natural_curvature_terms = 0;
   int segments = 0;
@@ -103,6 +104,7 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
       .pose = options.shape_options.pose(),
       .arc_lengths = options.shape_options.arc_lengths(),
       .density = options.density,
+      .torsional_stiffness = options.torsional_stiffness,
       .natural_curvature_terms = options.natural_curvature_terms,
       .direction_tolerance =
           quantity_of("--clamp-angles", options.clamp_angles, Dimension::angle).value_or(0),
@@ -175,6 +177,11 @@ void add_calibrate(CLI::App& app) {
           ->excludes(target)
           ->group(measured);
   command->add_flag("--density", options->density, "fit the density as well")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_flag("--torsional-stiffness", options->torsional_stiffness,
+                 "fit GJ as well, from shapes whose clamps twist the wire")
       ->needs(shape)
       ->group(measured);
   command

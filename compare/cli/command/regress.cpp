@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 #include "batch/regression.hpp"
 #include "command/commands.hpp"
@@ -12,6 +13,7 @@
 #include "format/regression.hpp"
 #include "option/exit_status.hpp"
 #include "option/output.hpp"
+#include "option/program_options.hpp"
 #include "option/scene_options.hpp"
 #include "option/share.hpp"
 #include "option/terminal.hpp"
@@ -25,6 +27,7 @@ using compare::RegressionVerdict;
 
 struct RegressOptions {
   std::vector<std::string> scenes;
+  std::vector<std::string> programs;
   std::string baseline;
   std::string junit;
   std::string model = "force";
@@ -45,6 +48,38 @@ MeasuredCase measure(const RegressOptions& options, const std::string& path) {
   }
 }
 
+MeasuredCase measure_program(const RegressOptions& options, const std::string& path,
+                             const compare::ForeignProgram& program) {
+  const compare::Scene scene = options.overrides.load(path);
+  try {
+    return compare::measure_program(scene, program, options.overrides.solve());
+  } catch (const compare::ConvergenceError& error) {
+    compare::BaselineCase entry = compare::case_of(scene, compare::Model::force);
+    entry.program = program.name;
+    return {std::move(entry), error.what()};
+  }
+}
+
+std::vector<MeasuredCase> measure_all(const RegressOptions& options) {
+  const std::vector<compare::ForeignProgram> programs =
+      compare::parse_foreign_programs(options.programs);
+  std::vector<MeasuredCase> measured;
+  const std::size_t all = options.scenes.size() * (1 + programs.size());
+  measured.reserve(all);
+  ProgressBar bar("regress");
+  const auto take = [&](MeasuredCase entry) {
+    measured.push_back(std::move(entry));
+    bar.show(static_cast<std::int64_t>(measured.size()), static_cast<std::int64_t>(all));
+  };
+  for (const std::string& path : options.scenes) {
+    take(measure(options, path));
+    for (const compare::ForeignProgram& program : programs) {
+      take(measure_program(options, path, program));
+    }
+  }
+  return measured;
+}
+
 void run(const RegressOptions& options) {
   // An unreadable baseline is told before minutes of solving.
   std::vector<compare::BaselineCase> baseline;
@@ -52,16 +87,7 @@ void run(const RegressOptions& options) {
   if (!options.update || std::filesystem::exists(options.baseline, unknown)) {
     baseline = compare::load_baseline(options.baseline);
   }
-  std::vector<MeasuredCase> measured;
-  measured.reserve(options.scenes.size());
-  {
-    ProgressBar bar("regress");
-    for (const std::string& path : options.scenes) {
-      measured.push_back(measure(options, path));
-      bar.show(static_cast<std::int64_t>(measured.size()),
-               static_cast<std::int64_t>(options.scenes.size()));
-    }
-  }
+  const std::vector<MeasuredCase> measured = measure_all(options);
   const std::vector<RegressionResult> results =
       compare::judge_regression(baseline, measured, options.tolerance);
   const bool solved = std::none_of(results.begin(), results.end(), [](const auto& result) {
@@ -124,6 +150,7 @@ void add_regress(CLI::App& app) {
                    "and how much beside that, as a share of the rod's length")
       ->transform(share_up_to(1e3))
       ->capture_default_str();
+  add_program_options(*command, options->programs);
   options->overrides.add_to(*command);
   add_output_options(*command, options->output);
   command->footer(

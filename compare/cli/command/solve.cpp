@@ -56,11 +56,12 @@ void warn_of_force_model_options(const SolveOptions& options) {
   say("{}: no effect on the shape of model {} (only on force and chain)", names, options.model);
 }
 
-/// A shape that is not resolved has been shown, which is no success.
+/// A shape that is not resolved, or left open by a fold, has been shown, which is no success.
 void require_resolved(const compare::Solution& solution, const compare::Scene& scene) {
-  if (solution.status != energy_model::SolveStatus::not_resolved) return;
-  throw compare::ConvergenceError(
-      fmt::format("{}: the energy model: {}", scene.file, solution.message));
+  if (energy_model::succeeded(solution.status)) return;
+  if (solution.status == energy_model::SolveStatus::saddle) return;
+  throw compare::ConvergenceError(fmt::format(
+      "{}: the {} model: {}", scene.file, compare::to_string(solution.model), solution.message));
 }
 
 void run(const SolveOptions& options) {
@@ -79,11 +80,13 @@ void run(const SolveOptions& options) {
   }
   compare::SolveOptions solve = options.overrides.solve();
   solve.accept_unresolved = true;
-  const std::vector<compare::Solution> solutions =
-      options.all
-          ? compare::solve_all(scene, solve, arc_lengths)
-          : std::vector<compare::Solution>{compare::solve(scene, model, solve, arc_lengths)};
-  const compare::Solution& solution = solutions.front();
+  compare::AllSolutions all;
+  if (options.all) {
+    all = compare::solve_all(scene, solve, arc_lengths);
+  } else {
+    all.solutions.push_back(compare::solve(scene, model, solve, arc_lengths));
+  }
+  const compare::Solution& solution = all.solutions.front();
   warn_of_left_out(options, solution, scene);
   if (options.output.format == "vtk") {
     write_output(options.output, compare::vtk_polyline(solution.shape,
@@ -103,11 +106,11 @@ void run(const SolveOptions& options) {
                     [&] {
                       return (options.plan.explain() ? plan_text(plan(), scene) : "") +
                              solution_text(solution, scene) +
-                             (options.all ? equilibria_text(solutions) : "");
+                             (options.all ? equilibria_text(all) : "");
                     },
                 .json =
                     [&] {
-                      return json_text(options.all ? equilibria_json(solutions, scene, plan())
+                      return json_text(options.all ? equilibria_json(all, scene, plan())
                                                    : solution_json(solution, scene, plan()));
                     },
                 .csv = [&] { return solution_csv(solution); }});

@@ -20,6 +20,11 @@ using compare::SceneBenchmark;
 constexpr const char* not_run = "not run";
 constexpr const char* none_within = "no run is within the error";
 
+/// Nobody counts the work of somebody else's program.
+std::string work_of(const BenchmarkRun& run) {
+  return run.program.empty() ? fmt::format("{}", run.work) : "";
+}
+
 void add_runs(std::string& out, const std::vector<BenchmarkRun>& runs) {
   if (runs.empty()) {
     append(out, "  {}: all were skipped, see below\n", not_run);
@@ -30,7 +35,7 @@ void add_runs(std::string& out, const std::vector<BenchmarkRun>& runs) {
   for (const BenchmarkRun& run : runs) {
     append(out, "{} {:<52} {:>10.4g} {:>10.4g} {:>10.4g} {:>9} {:>10.2e}\n", run.front ? "*" : " ",
            name_of(run), run.time.median_s * 1e3, run.time.lower_quartile_s * 1e3,
-           run.time.upper_quartile_s * 1e3, run.work, run.rms_over_length);
+           run.time.upper_quartile_s * 1e3, work_of(run), run.rms_over_length);
   }
 }
 
@@ -72,7 +77,8 @@ void add_claim(std::string& out, const SceneBenchmark& scene) {
 Json run_json(const BenchmarkRun& run, const char* kind) {
   Json result = {{"scene", run.scene},
                  {"kind", kind},
-                 {"model", compare::to_string(run.model)},
+                 {"model", model_of(run)},
+                 {"is_program", !run.program.empty()},
                  {"setting", setting_of(run)},
                  {"law", nullptr},
                  {"bookkeeping", nullptr},
@@ -83,14 +89,14 @@ Json run_json(const BenchmarkRun& run, const char* kind) {
                  {"lower_quartile_s", run.time.lower_quartile_s},
                  {"upper_quartile_s", run.time.upper_quartile_s},
                  {"repeats", run.time.repeats},
-                 {"work", run.work},
+                 {"work", run.program.empty() ? Json(run.work) : Json()},
                  {"rms_over_length", run.rms_over_length},
                  {"front", run.front}};
   if (run.variant) {
     result["law"] = compare::to_string(run.variant->law);
     result["bookkeeping"] = compare::to_string(run.variant->bookkeeping);
   }
-  if (run.model == compare::Model::force) {
+  if (run.variant && run.model == compare::Model::force) {
     result["stepper"] = compare::to_string(run.variant->stepper);
     result["c_c_over_AE"] = run.variant->stretch_share;
   }
@@ -130,6 +136,10 @@ std::string benchmark_text(const compare::BenchmarkReport& report) {
   }
   for (const std::string& skipped : report.skipped)
     append(out, "skipped: {}\n", compare::display(skipped));
+  for (const compare::BenchmarkFailure& failure : report.failures) {
+    append(out, "failed: {}: {} N = {}: {}\n", compare::display(failure.scene), failure.program,
+           failure.points, compare::display(failure.problem));
+  }
   out += "\nWhat to use\n";
   for (const SceneBenchmark& scene : report.scenes) {
     append(out, "\n{}   Gamma = {:.4g}\n  for a static error of\n", compare::display(scene.scene),
@@ -168,24 +178,36 @@ Json benchmark_json(const compare::BenchmarkReport& report) {
     add_time("force_at_1e-3", scene.force_at_1e3, compare::Model::force);
     answers.push_back(std::move(entry));
   }
+  Json failures = Json::array();
+  for (const compare::BenchmarkFailure& failure : report.failures) {
+    failures.push_back({{"scene", failure.scene},
+                        {"program", failure.program},
+                        {"points", failure.points},
+                        {"problem", failure.problem}});
+  }
   return {{"schema", "dlo/bench/2"},       {"runs", std::move(runs)},
           {"answers", std::move(answers)}, {"gripper_speed_m_per_s", report.options.gripper_speed},
-          {"skipped", report.skipped},     {"wall_s", report.seconds}};
+          {"skipped", report.skipped},     {"failures", std::move(failures)},
+          {"wall_s", report.seconds}};
 }
 
 std::string benchmark_csv(const compare::BenchmarkReport& report) {
   std::string out =
       "scene,kind,model,size,setting,time_s,lower_quartile_s,upper_quartile_s,repeats,work,"
-      "rms_over_length,front\n";
+      "rms_over_length,front,problem\n";
   const auto add = [&](const BenchmarkRun& run, const char* kind) {
-    append_csv(out, "{},{},{},{},{},{:.4g},{:.4g},{:.4g},{},{},{:.6g},{}\n", csv_field(run.scene),
-               kind, compare::to_string(run.model), run.size, csv_field(setting_of(run)),
-               run.time.median_s, run.time.lower_quartile_s, run.time.upper_quartile_s,
-               run.time.repeats, run.work, run.rms_over_length, run.front);
+    append_csv(out, "{},{},{},{},{},{:.4g},{:.4g},{:.4g},{},{},{:.6g},{},\n", csv_field(run.scene),
+               kind, model_of(run), run.size, csv_field(setting_of(run)), run.time.median_s,
+               run.time.lower_quartile_s, run.time.upper_quartile_s, run.time.repeats, work_of(run),
+               run.rms_over_length, run.front);
   };
   for (const SceneBenchmark& scene : report.scenes) {
     for (const BenchmarkRun& run : scene.runs) add(run, "static");
     for (const BenchmarkRun& run : scene.tracking) add(run, "tracking");
+  }
+  for (const compare::BenchmarkFailure& failure : report.failures) {
+    append(out, "{},static,{},{},,,,,,,,,{}\n", csv_field(failure.scene), failure.program,
+           failure.points, csv_field(failure.problem));
   }
   return out;
 }

@@ -32,11 +32,13 @@ void add_budget(std::string& out, const compare::Comparison& comparison) {
       {"bookkeeping", &b.bookkeeping},
       {"discretisation", &b.discretisation},
       {"stretch", &b.stretch},
+      {"contact", &b.contact},
       {"not at rest", &b.not_at_rest},
       {"interaction", &b.interaction}};
   for (const auto& [name, part] : parts) {
     if (part == &b.twist && !leaves_out(comparison, "twist")) continue;
     if (part == &b.natural_curvature && !leaves_out(comparison, "natural curvature")) continue;
+    if (part == &b.contact && b.contact.rms_m == 0) continue;
     append(out, "                  {:<17}{:>9.4g} mm {:>9.2f} %\n", name, part->rms_m * 1e3,
            part->share * 100 + 0.0);
   }
@@ -151,6 +153,7 @@ Json comparison_json(const compare::Comparison& comparison) {
                       {"bookkeeping_m", budget.bookkeeping.rms_m},
                       {"discretisation_m", budget.discretisation.rms_m},
                       {"stretch_m", budget.stretch.rms_m},
+                      {"contact_m", budget.contact.rms_m},
                       {"not_at_rest_m", budget.not_at_rest.rms_m},
                       {"interaction_m", budget.interaction.rms_m},
                       {"total_m", budget.total_m},
@@ -159,6 +162,7 @@ Json comparison_json(const compare::Comparison& comparison) {
                         {"bookkeeping", budget.bookkeeping.share},
                         {"discretisation", budget.discretisation.share},
                         {"stretch", budget.stretch.share},
+                        {"contact", budget.contact.share},
                         {"not_at_rest", budget.not_at_rest.share},
                         {"interaction", budget.interaction.share}}}};
   if (!comparison.force.left_out.empty()) {
@@ -191,7 +195,8 @@ std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons)
       "scene,law,bookkeeping,points,gamma,rms_m,max_m,tip_m,rms_over_length,rms_over_movement,"
       "effective_modulus_ratio,rms_at_effective_modulus_m,optimum,c_b,c_c,budget_twist_m,budget_"
       "natural_curvature_m,"
-      "budget_law_m,budget_bookkeeping_m,budget_discretisation_m,budget_stretch_m,budget_not_at_"
+      "budget_law_m,budget_bookkeeping_m,budget_discretisation_m,budget_stretch_m,budget_contact_m,"
+      "budget_not_at_"
       "rest_m,"
       "budget_interaction_m,budget_parts_share,residual_over_movement,state_rank,states_stable,"
       "force_steps,force_s,energy_evaluations,energy_s\n";
@@ -219,6 +224,7 @@ std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons)
         csv_number(c.budget.bookkeeping.rms_m),
         csv_number(c.budget.discretisation.rms_m),
         csv_number(c.budget.stretch.rms_m),
+        csv_number(c.budget.contact.rms_m),
         csv_number(c.budget.not_at_rest.rms_m),
         csv_number(c.budget.interaction.rms_m),
         csv_number(1 - c.budget.interaction.share),

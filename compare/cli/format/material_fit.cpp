@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "base/display.hpp"
 #include "base/quote.hpp"
@@ -22,10 +23,11 @@ std::string number(const std::optional<double>& value, const char* none) {
 }
 
 std::string value_text(const FittedValue& value, const char* unit) {
-  const std::string interval =
-      fmt::format("95 %: {} to {} {}", number(value.low, "..."), number(value.high, "..."), unit);
+  const std::string_view blank = *unit == '\0' ? "" : " ";
+  const std::string interval = fmt::format("95 %: {} to {}{}{}", number(value.low, "..."),
+                                           number(value.high, "..."), blank, unit);
   if (!value.value) return "not told, " + interval;
-  return fmt::format("{:.5g} {}, {}", *value.value, unit, interval);
+  return fmt::format("{:.5g}{}{}, {}", *value.value, blank, unit, interval);
 }
 
 /// Of the two sides the larger; none if the interval is open.
@@ -164,6 +166,17 @@ Key heaviness_key(const compare::Scene& scene) {
                                      : Key{"density", "_kg_per_m3"};
 }
 
+const Key torsion_key{"torsional_stiffness", "_Nm2"};
+const Key ratio_key{"torsional_over_bending_stiffness", ""};
+
+compare::NamedValue torsion_of(const compare::Scene& scene) {
+  return {"GJ", "N m^2", scene.twisting_stiffness()};
+}
+
+compare::NamedValue torsion_ratio_of(const compare::Scene& scene) {
+  return {"GJ / EI", "", scene.twisting_stiffness() / scene.mean_bending_stiffness()};
+}
+
 /// @param prefix  of the keys of its uncertainty and its interval
 void add_value(Json& result, const Key& key, const std::string& prefix, const FittedValue& value) {
   result[key.text()] = json_of(value.value);
@@ -177,11 +190,15 @@ std::string material_text(const MaterialReport& report) {
   const compare::MaterialFit& fit = report.fit;
   std::string out;
   const auto add = [&](const compare::NamedValue& of, const FittedValue& value) {
-    append(out, "{:<11} {}   (scene: {:.5g} {})\n", of.name, value_text(value, of.unit), of.value,
-           of.unit);
+    append(out, "{:<11} {}   (scene: {:.5g}{}{})\n", of.name, value_text(value, of.unit), of.value,
+           *of.unit == '\0' ? "" : " ", of.unit);
   };
   add(report.scenes.front().stiffness(), fit.youngs_modulus);
   if (fit.density) add(report.scenes.front().heaviness(), *fit.density);
+  if (fit.torsional_stiffness) {
+    add(torsion_of(report.scenes.front()), *fit.torsional_stiffness);
+    add(torsion_ratio_of(report.scenes.front()), *fit.torsion_over_bending);
+  }
   if (!fit.not_told.empty()) append(out, "            {}\n", fit.not_told);
   if (!fit.warning.empty()) append(out, "            {}\n", fit.warning);
   append(out, "{}", numbers_text(fit, std::nullopt));
@@ -233,18 +250,21 @@ std::string material_csv(const MaterialReport& report) {
   out +=
       "noise_m,"
       "degrees_of_freedom,rms_m,not_told,warning,errors_are_correlated,correlation_length_m,"
-      "correlation_share,interval_widened_by,effective_degrees_of_freedom\n";
+      "correlation_share,interval_widened_by,effective_degrees_of_freedom,torsional_stiffness_Nm2,"
+      "torsional_stiffness_low,torsional_stiffness_high\n";
   append_csv(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{},{},", field(E.value), field(E.low),
              field(E.high), field(density.value), field(density.low), field(density.high),
              fit.noise_m, fit.degrees_of_freedom, fit.rms_m, csv_field(fit.not_told),
              csv_field(fit.warning));
   if (fit.correlation) {
-    append_csv(out, "true,{:.10g},{:.10g},{:.10g},{:.10g}\n", fit.correlation->length_m,
+    append_csv(out, "true,{:.10g},{:.10g},{:.10g},{:.10g}", fit.correlation->length_m,
                fit.correlation->share, fit.correlation->widening,
                fit.correlation->degrees_of_freedom);
   } else {
-    append_csv(out, "{},,,,\n", fit.correlation_was_tested ? "false" : "");
+    append_csv(out, "{},,,,", fit.correlation_was_tested ? "false" : "");
   }
+  const FittedValue torsion = fit.torsional_stiffness.value_or(FittedValue());
+  append_csv(out, ",{},{},{}\n", field(torsion.value), field(torsion.low), field(torsion.high));
   return out;
 }
 
@@ -255,6 +275,10 @@ Json material_json(const MaterialReport& report) {
   if (fit.density) {
     const Key key = heaviness_key(report.scenes.front());
     add_value(result, key, key.name + "_", *fit.density);
+  }
+  if (fit.torsional_stiffness) {
+    add_value(result, torsion_key, torsion_key.name + "_", *fit.torsional_stiffness);
+    add_value(result, ratio_key, ratio_key.name + "_", *fit.torsion_over_bending);
   }
   result["not_told"] = fit.not_told.empty() ? Json(nullptr) : Json(fit.not_told);
   result["warning"] = fit.warning.empty() ? Json(nullptr) : Json(fit.warning);
@@ -322,6 +346,11 @@ std::string material_toml(const MaterialReport& report) {
   append(out, "{} = {:.8e}  # {}, {}\n", heaviness_key(scene).name, density, heaviness.unit,
          fit.density ? fmt::format("95 %: {:.4g} to {:.4g}", *fit.density->low, *fit.density->high)
                      : std::string("of the scene"));
+  if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
+    append(out, "{}torsional_stiffness = {:.8e}  # N m^2, 95 %: {:.4g} to {:.4g}\n",
+           given ? "" : "# of the rod: ", *fit.torsional_stiffness->value,
+           *fit.torsional_stiffness->low, *fit.torsional_stiffness->high);
+  }
   if (!fit.natural_curvature.empty()) {
     // Of a material no shape is known: it is a line for the scene.
     append(out, "{}natural_curvature = {}\n",

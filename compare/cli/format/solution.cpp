@@ -49,6 +49,17 @@ Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
   return {{"total_rad", total}, {"parts", std::move(parts)}};
 }
 
+/// As far as it is known; a fold or bifurcation leaves it open.
+bool is_stable(const compare::Solution& solution) {
+  return solution.smallest_curvature >= -1e-7 &&
+         solution.status != energy_model::SolveStatus::near_singular;
+}
+
+const char* stability_of(const compare::Solution& solution) {
+  if (is_stable(solution)) return "stable";
+  return solution.status == energy_model::SolveStatus::near_singular ? "left open" : "unstable";
+}
+
 bool lacks(const compare::Solution& solution, const char* what) {
   const std::vector<std::string>& left_out = solution.left_out;
   return std::find(left_out.begin(), left_out.end(), what) != left_out.end();
@@ -201,6 +212,10 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
     result["assumed"] = {{"torsional_stiffness_Nm2", scene.twisting_stiffness()},
                          {"poisson_ratio", compare::assumed_poisson_ratio}};
   }
+  if (solution.status == energy_model::SolveStatus::near_singular &&
+      solution.model == compare::Model::energy) {
+    result["neutral_directions"] = solution.neutral_directions;
+  }
   if (!solution.twists.empty()) result["twist"] = twist_json(solution.twists);
   if (!solution.left_out.empty()) result["left_out"] = solution.left_out;
   if (!solution.obstacles.empty()) {
@@ -234,31 +249,49 @@ std::string solution_csv(const compare::Solution& solution) {
   return text;
 }
 
-std::string equilibria_text(const std::vector<compare::Solution>& solutions) {
+std::string equilibria_text(const compare::AllSolutions& all) {
   std::string out;
+  const std::vector<compare::Solution>& solutions = all.solutions;
   append(out, "\n{} equilibria found\n{:>16} {:>10} {:>20} {:>13} {:>13} {:>13}\n",
          solutions.size(), "energy [J]", "", "smallest curvature", "x(l) [m]", "y(l) [m]",
          "z(l) [m]");
   for (const compare::Solution& solution : solutions) {
     const Eigen::Vector3d tip = solution.shape.points.rightCols<1>();
     append(out, "{:16.9g} {:>10} {:20.6g} {:13.6f} {:13.6f} {:13.6f}\n", solution.energy.total(),
-           solution.smallest_curvature >= -1e-7 ? "stable" : "unstable",
-           solution.smallest_curvature, tip.x(), tip.y(), tip.z());
+           stability_of(solution), solution.smallest_curvature, tip.x(), tip.y(), tip.z());
+  }
+  append(out, "\nlooked from (a search: there may be others)\n{:>8} {:>12}\n", "starts",
+         "found first");
+  for (const energy_model::SearchStrategy& strategy : all.looked_from) {
+    append(out, "{:8} {:12}   {}\n", strategy.tried, strategy.found_first, strategy.name);
+  }
+  for (std::size_t i = 0; i < all.not_looked.size(); ++i) {
+    append(out, "{:<11}{}\n", i == 0 ? "not looked" : "", all.not_looked[i]);
   }
   return out;
 }
 
-Json equilibria_json(const std::vector<compare::Solution>& solutions, const compare::Scene& scene,
+Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& scene,
                      const compare::Plan& plan) {
+  const std::vector<compare::Solution>& solutions = all.solutions;
   Json document = solution_json(solutions.front(), scene, plan);
   Json equilibria = Json::array();
   for (const compare::Solution& solution : solutions) {
-    equilibria.push_back({{"stable", solution.smallest_curvature >= -1e-7},
+    equilibria.push_back({{"stable", is_stable(solution)},
+                          {"status", status_name(solution.status)},
                           {"smallest_curvature", solution.smallest_curvature},
                           {"energy_J", solution.energy.total()},
                           {"points_m", points_json(solution.shape.points)}});
   }
   document["equilibria"] = std::move(equilibria);
+  Json looked_from = Json::array();
+  for (const energy_model::SearchStrategy& strategy : all.looked_from) {
+    looked_from.push_back({{"strategy", strategy.name},
+                           {"starts", strategy.tried},
+                           {"found_first", strategy.found_first}});
+  }
+  document["looked_from"] = std::move(looked_from);
+  document["not_looked"] = all.not_looked;
   return document;
 }
 

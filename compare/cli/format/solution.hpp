@@ -6,6 +6,7 @@
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
 #include "format/json.hpp"
 
 namespace dlo::cli {
@@ -27,11 +28,11 @@ namespace dlo::cli {
 /// The points, as `dlo check` reads them.
 [[nodiscard]] std::string solution_csv(const compare::Solution& solution);
 
-/// What tells several equilibria apart.
-[[nodiscard]] std::string equilibria_text(const std::vector<compare::Solution>& solutions);
+/// What tells several equilibria apart, and where they were looked for.
+[[nodiscard]] std::string equilibria_text(const compare::AllSolutions& all);
 
 /// The first of several equilibria in full, then what tells them apart.
-[[nodiscard]] Json equilibria_json(const std::vector<compare::Solution>& solutions,
-                                   const compare::Scene& scene, const compare::Plan& plan);
+[[nodiscard]] Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& scene,
+                                   const compare::Plan& plan);
 
 }  // namespace dlo::cli

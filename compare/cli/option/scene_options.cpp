@@ -104,6 +104,16 @@ void PlanOptions::add_to(CLI::App& command) {
 }
 
 void SceneOptions::add_to(CLI::App& command) {
+  add_force_model_to(command);
+  add_solvers_to(command);
+}
+
+void SceneOptions::add_settings_to(CLI::App& command) {
+  add_force_model_to(command);
+  add_materials_to(command);
+}
+
+void SceneOptions::add_force_model_to(CLI::App& command) {
   const std::string group = force_model_group;
   command_ = &command;
   command
@@ -134,7 +144,6 @@ void SceneOptions::add_to(CLI::App& command) {
   command.add_option("--c-h", c_h_, "share of the last movement [-], stepper dynamic")
       ->group(group);
   command.add_option("--l-s", l_s_, "largest movement per step [m]")->group(group);
-  add_solvers_to(command);
 }
 
 void SceneOptions::add_solvers_to(CLI::App& command) {
@@ -160,9 +169,13 @@ void SceneOptions::add_solvers_to(CLI::App& command) {
       ->check(number_between(1e-12, 1e-1))
       ->capture_default_str()
       ->group(solvers);
+  add_materials_to(command);
+}
+
+void SceneOptions::add_materials_to(CLI::App& command) {
   command.add_option("--materials", materials_, "materials file instead of the built-in one")
       ->type_name("FILE")
-      ->group(solvers);
+      ->group("Solvers");
 }
 
 void SceneOptions::apply(compare::Scene& scene) const {

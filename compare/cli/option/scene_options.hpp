@@ -15,6 +15,8 @@ namespace dlo::cli {
 class SceneOptions {
  public:
   void add_to(CLI::App& command);
+  /// Only those that override [force_model], and --materials.
+  void add_settings_to(CLI::App& command);
   /// Only those that steer the solvers, and --materials.
   void add_solvers_to(CLI::App& command);
 
@@ -26,6 +28,8 @@ class SceneOptions {
   [[nodiscard]] std::string force_model_options() const;
 
  private:
+  void add_force_model_to(CLI::App& command);
+  void add_materials_to(CLI::App& command);
   void apply(compare::Scene& scene) const;
 
   const CLI::App* command_ = nullptr;

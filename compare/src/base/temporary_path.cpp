@@ -25,6 +25,8 @@ struct Slot {
 constexpr int most_slots = 16;
 std::array<Slot, most_slots> slots;
 
+std::atomic<int> temporary_group = 0;  ///< 0: none
+
 // As getdents64(2) fills a buffer, which readdir would take memory for: inode and offset of 8 bytes
 // each, the entry's length in 2 bytes, its type in 1 byte, its name.
 constexpr std::size_t length_at = 16;
@@ -81,7 +83,13 @@ void TemporaryPath::keep() {
   slot_ = -1;
 }
 
+TemporaryGroup::TemporaryGroup(int group) { temporary_group = group; }
+
+TemporaryGroup::~TemporaryGroup() { temporary_group = 0; }
+
 void remove_temporaries() {
+  // First, so that nobody writes into what is removed.
+  if (const int group = temporary_group; group > 1) ::kill(-group, SIGKILL);
   constexpr int deepest = 4;  // a report: its folder, report/, scenes/
   for (Slot& slot : slots) {
     if (slot.ready) remove_tree(AT_FDCWD, slot.path.data(), deepest);

@@ -23,7 +23,20 @@ class TemporaryPath {
   int slot_ = -1;
 };
 
-/// Removes what OutputFile and write_report() have not finished; may be called by a signal handler.
+/// A process group that is killed when the process is ended by a signal, as above. One at a time.
+class TemporaryGroup {
+ public:
+  /// @param group  number of the group, > 1
+  explicit TemporaryGroup(int group);
+  ~TemporaryGroup();
+  TemporaryGroup(const TemporaryGroup&) = delete;
+  TemporaryGroup& operator=(const TemporaryGroup&) = delete;
+  TemporaryGroup(TemporaryGroup&&) = delete;
+  TemporaryGroup& operator=(TemporaryGroup&&) = delete;
+};
+
+/// Kills a TemporaryGroup, and removes what OutputFile and write_report() have not finished; may be
+/// called by a signal handler.
 void remove_temporaries();
 
 /// Lets SIGHUP, SIGINT, SIGPIPE and SIGTERM remove_temporaries() before they end the process,

@@ -19,9 +19,13 @@ constexpr const char* schema = "dlo/baseline/1";
 BaselineCase read_case(StrictTable& table) {
   BaselineCase result;
   result.scene = table.text("scene");
-  result.model = from_name<Model>(table.choice("model", {"chain", "force"}));
-  result.law = table.choice<BendingLaw>("law");
-  result.bookkeeping = table.choice<Bookkeeping>("bookkeeping");
+  if (table.has("program")) {
+    result.program = table.text("program");
+  } else {
+    result.model = from_name<Model>(table.choice("model", {"chain", "force"}));
+    result.law = table.choice<BendingLaw>("law");
+    result.bookkeeping = table.choice<Bookkeeping>("bookkeeping");
+  }
   result.points = table.integer("points", 4, 1'000'000);
   const auto error = [&](const char* key) {
     return table.number(key, Dimension::number, Range::not_negative());
@@ -44,7 +48,10 @@ std::string toml_number(double value) { return fmt::format("{:#.6g}", value); }
 
 }  // namespace
 
+std::string BaselineCase::solver() const { return program.empty() ? to_string(model) : program; }
+
 std::string BaselineCase::name() const {
+  if (!program.empty()) return fmt::format("{} ({}, N = {})", scene, program, points);
   return fmt::format("{} ({}, law {}, bookkeeping {}, N = {})", scene, to_string(model),
                      to_string(law), to_string(bookkeeping), points);
 }
@@ -78,12 +85,14 @@ std::string baseline_text(std::vector<BaselineCase> cases) {
       "# dlo regress --update; a change of it is a change of a shape.\nschema = \"{}\"\n",
       schema);
   for (const BaselineCase& entry : cases) {
-    text += fmt::format(
-        "\n[[case]]\nscene = {}\nmodel = \"{}\"\nlaw = \"{}\"\nbookkeeping = \"{}\"\npoints = {}\n"
-        "rms_over_length = {}\nmax_over_length = {}\n",
-        toml_string(entry.scene), to_string(entry.model), to_string(entry.law),
-        to_string(entry.bookkeeping), entry.points, toml_number(entry.errors.rms),
-        toml_number(entry.errors.max));
+    text += fmt::format("\n[[case]]\nscene = {}\n", toml_string(entry.scene));
+    text += entry.program.empty()
+                ? fmt::format("model = \"{}\"\nlaw = \"{}\"\nbookkeeping = \"{}\"\n",
+                              to_string(entry.model), to_string(entry.law),
+                              to_string(entry.bookkeeping))
+                : fmt::format("program = {}\n", toml_string(entry.program));
+    text += fmt::format("points = {}\nrms_over_length = {}\nmax_over_length = {}\n", entry.points,
+                        toml_number(entry.errors.rms), toml_number(entry.errors.max));
     if (entry.errors.tip) {
       text += fmt::format("tip_over_length = {}\n", toml_number(*entry.errors.tip));
     }

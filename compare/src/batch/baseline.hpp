@@ -17,10 +17,11 @@ struct ShapeErrors {
   std::optional<double> tip;  ///< nothing if both ends are held
 };
 
-/// Errors of one scene with one choice of model, law, bookkeeping and N.
+/// Errors of one scene with one choice of model, law, bookkeeping and N, or of one program and N.
 struct BaselineCase {
   std::string scene;                                  ///< its name
-  Model model = Model::force;                         ///< force or chain
+  std::string program;                                ///< name of somebody else's, or empty
+  Model model = Model::force;                         ///< force or chain, without a program
   BendingLaw law = BendingLaw::hooke;                 ///< of bending
   Bookkeeping bookkeeping = Bookkeeping::consistent;  ///< of the polygon
   int points = 0;                                     ///< N
@@ -31,6 +32,8 @@ struct BaselineCase {
   /// "copper wire (force, law hooke, bookkeeping consistent, N = 16)": two cases with the same name
   /// are the same case.
   [[nodiscard]] std::string name() const;
+  /// "force", or the name of the program.
+  [[nodiscard]] std::string solver() const;
 };
 
 /// Reads a baseline: TOML with schema = "dlo/baseline/1" and a [[case]] for each.

@@ -154,12 +154,12 @@ std::map<std::string, const BaselineCase*> replaced_cases(
     now[measurement.entry.name()] = &measurement.entry;
   }
   using Cases = std::vector<const BaselineCase*>;
-  std::map<std::pair<std::string, Model>, std::pair<Cases, Cases>> unmatched;
+  std::map<std::pair<std::string, std::string>, std::pair<Cases, Cases>> unmatched;
   for (const auto& [name, entry] : before) {
-    if (!now.contains(name)) unmatched[{entry->scene, entry->model}].first.push_back(entry);
+    if (!now.contains(name)) unmatched[{entry->scene, entry->solver()}].first.push_back(entry);
   }
   for (const auto& [name, entry] : now) {
-    if (!before.contains(name)) unmatched[{entry->scene, entry->model}].second.push_back(entry);
+    if (!before.contains(name)) unmatched[{entry->scene, entry->solver()}].second.push_back(entry);
   }
   std::map<std::string, const BaselineCase*> replaced;
   for (const auto& [scene, cases] : unmatched) {
@@ -192,6 +192,12 @@ std::string change_between(const BaselineCase& before, const BaselineCase& now) 
                                                         : "";
 }
 
+ShapeErrors errors_of(const Scene& scene, const Deviation& deviation) {
+  ShapeErrors errors{deviation.rms_over_length, deviation.max_m / scene.length, std::nullopt};
+  if (std::isfinite(deviation.tip_m)) errors.tip = deviation.tip_m / scene.length;
+  return errors;
+}
+
 }  // namespace
 
 BaselineCase case_of(const Scene& scene, Model model) {
@@ -208,10 +214,25 @@ BaselineCase case_of(const Scene& scene, Model model) {
 BaselineCase measure_case(const Scene& scene, Model model, const SolveOptions& options) {
   const Solution solution = solve(scene, model, options);
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
-  const Deviation d = shape_deviation(scene, solution.shape, energy.sample);
   BaselineCase result = case_of(scene, model);
-  result.errors = {d.rms_over_length, d.max_m / scene.length, std::nullopt};
-  if (std::isfinite(d.tip_m)) result.errors.tip = d.tip_m / scene.length;
+  result.errors = errors_of(scene, shape_deviation(scene, solution.shape, energy.sample));
+  return result;
+}
+
+MeasuredCase measure_program(const Scene& scene, const ForeignProgram& program,
+                             const SolveOptions& options) {
+  MeasuredCase result{case_of(scene, Model::force), ""};
+  BaselineCase& entry = result.entry;
+  entry.program = program.name;
+  const ForeignRun run = run_foreign(program, scene, entry.points, options.time_limit);
+  result.problem = run.problem;
+  if (!run.shape) return result;
+  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options);
+  try {
+    entry.errors = errors_of(scene, foreign_deviation(scene, *run.shape, energy.sample));
+  } catch (const InputError& error) {
+    result.problem = error.what();
+  }
   return result;
 }
 

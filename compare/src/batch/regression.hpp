@@ -7,6 +7,7 @@
 #include "batch/baseline.hpp"
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/solution.hpp"
+#include "foreign/foreign_program.hpp"
 
 namespace dlo::compare {
 
@@ -66,6 +67,11 @@ struct MeasuredCase {
   BaselineCase entry;   ///< without errors if it was not solved
   std::string problem;  ///< of the solver; empty if there is none
 };
+
+/// Runs somebody else's program on a scene, with as many points as that says, and measures its
+/// shape against the energy model's. @throws ConvergenceError, InputError of the energy model
+[[nodiscard]] MeasuredCase measure_program(const Scene& scene, const ForeignProgram& program,
+                                           const SolveOptions& options = {});
 
 /// Every case of either side, sorted by name. A case is worse if any of its errors is, better if
 /// none is worse and any is better; an error that only one side has is worse. A case is changed,

@@ -148,6 +148,9 @@ void add_chains(const std::vector<Scene>& scenes, const MaterialFitOptions& opti
     if (fit.density && fit.density->value) {
       fitted.scale_density(*fit.density->value / scenes.front().heaviness().value);
     }
+    if (fit.torsional_stiffness && fit.torsional_stiffness->value) {
+      fitted.scale_torsion(*fit.torsional_stiffness->value / fitted.twisting_stiffness());
+    }
     if (!fit.natural_curvature.empty()) {
       fitted.natural_strain.head<2>() = fit.natural_curvature.front();
       fitted.natural_variation.assign(fit.natural_curvature.begin() + 1,

@@ -19,7 +19,7 @@ namespace {
 
 /// The energy model's own error, in lengths: no noise is taken to be less.
 constexpr double own_error = 1e-8;
-constexpr int most_steps = 30;
+constexpr int most_descents = 30;
 constexpr int most_halvings = 8;
 /// A step below this share of every number's standard deviation is the last.
 constexpr double last_step = 0.01;
@@ -38,6 +38,7 @@ class WireFitter {
       : scenes_(scenes),
         options_(options),
         density_(density),
+        curvature_(1 + (density ? 1 : 0) + (options.torsional_stiffness ? 1 : 0)),
         numbers_(wire_numbers(scenes, shapes, options, density)),
         shapes_(scenes, shapes, options, numbers_),
         before_(static_cast<Eigen::Index>(numbers_.size())) {
@@ -119,7 +120,6 @@ class WireFitter {
   void look_for_start() {
     if (options_.natural_curvature_terms == 0) return;
     constexpr double turns[] = {8, 5, 3, 1.5, 0, -1.5, -3, -5, -8};
-    const Eigen::Index bent = density_ ? 2 : 1;
     const Eigen::VectorXd straight = values_;
     double least = INFINITY;
     WireShapes::Rods nearest;
@@ -129,7 +129,7 @@ class WireFitter {
       const auto at = [&](double turn) {
         Eigen::VectorXd values = straight;
         values[0] = log_modulus;
-        values[bent] = turn / scenes_.front().length;
+        values[curvature_] = turn / scenes_.front().length;
         return values;
       };
       for (const double turn : turns) down.push_back(shapes_.state(at(turn)));
@@ -155,7 +155,7 @@ class WireFitter {
 
   /// Gauss-Newton steps to the least deviance.
   void descend() {
-    for (int i = 0; i < most_steps; ++i) {
+    for (int i = 0; i < most_descents; ++i) {
       series_ = derived(values_);
       linear_ = linear_fit(series_, covariance_, shapes_.frame_columns());
       measure_variance(linear_);
@@ -332,9 +332,19 @@ class WireFitter {
       const double half = quantile() * std::sqrt(posterior_(1, 1)) * widening;
       fit.density = told(values_[1], scenes_.front().heaviness().value, half, half);
     }
-    for (std::size_t k = density_ ? 2 : 1; k < numbers_.size(); ++k) {
-      const auto number = static_cast<Eigen::Index>(k);
-      FittedNumber found = numbers_[k].described;
+    if (options_.torsional_stiffness) {
+      // Its number is the logarithm of GJ / EI.
+      const Eigen::Index k = curvature_ - 1;
+      const double GJ = scenes_.front().twisting_stiffness();
+      const double EI = scenes_.front().mean_bending_stiffness();
+      const double variance = posterior_(0, 0) + 2 * posterior_(0, k) + posterior_(k, k);
+      const double half = quantile() * std::sqrt(variance) * widening;
+      fit.torsional_stiffness = told(values_[0] + values_[k], GJ, half, half);
+      const double half_ratio = quantile() * std::sqrt(posterior_(k, k)) * widening;
+      fit.torsion_over_bending = told(values_[k], GJ / EI, half_ratio, half_ratio);
+    }
+    for (Eigen::Index number = curvature_; number < values_.size(); ++number) {
+      FittedNumber found = numbers_[static_cast<std::size_t>(number)].described;
       found.value = values_[number];
       found.deviation = std::sqrt(posterior_(number, number));
       fit.others.push_back(std::move(found));
@@ -374,6 +384,7 @@ class WireFitter {
   const std::vector<Scene>& scenes_;
   const MaterialFitOptions& options_;
   bool density_;
+  Eigen::Index curvature_;  // the first number that has its own value: of natural curvature, if any
   std::vector<WireNumber> numbers_;
   WireShapes shapes_;
   Eigen::VectorXd before_;  // 1 over what was known of each number
@@ -392,8 +403,8 @@ class WireFitter {
 }  // namespace
 
 bool fits_a_wire(const MaterialFitOptions& options) {
-  return options.natural_curvature_terms > 0 || options.direction_tolerance > 0 ||
-         options.position_tolerance > 0;
+  return options.torsional_stiffness || options.natural_curvature_terms > 0 ||
+         options.direction_tolerance > 0 || options.position_tolerance > 0;
 }
 
 MaterialFit fit_wire(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,

@@ -19,12 +19,18 @@ namespace {
 /// hardly anything, the free rod may be bent by some whole turns.
 constexpr double natural_turns_before = 10;
 
+/// What is known of GJ / EI before, as standard deviation of its logarithm: a factor of ten.
+constexpr double torsion_before = 2.3;
+
 constexpr double unknown = std::numeric_limits<double>::infinity();
 
 /// The plane in which a shape's gripper may be off: the scene's, if nothing was measured out of it.
 std::optional<Eigen::Vector3d> plane_of(const Scene& scene, const MeasuredShape& shape) {
   return lies_in_a_plane(shape.points) ? scene.plane_normal() : std::nullopt;
 }
+
+/// Whether GJ has an effect.
+bool twists(const Scene& scene) { return scene.twisting_stiffness() > 0 && !scene.planar(); }
 
 void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes,
                            int terms) {
@@ -51,6 +57,20 @@ void add_natural_curvature(std::vector<WireNumber>& numbers, const std::vector<S
                          }});
     }
   }
+}
+
+void add_torsion(std::vector<WireNumber>& numbers, const std::vector<Scene>& scenes) {
+  if (std::none_of(scenes.begin(), scenes.end(), twists)) {
+    throw InputError(
+        fmt::format("{}: torsional stiffness is in no shape of this scene (allowed: two clamps "
+                    "that hold the rod's frame, roll or frame, or a rod curved by nature that "
+                    "leaves its plane)",
+                    scenes.front().file));
+  }
+  numbers.push_back(
+      {{.name = "", .unit = "", .known_before = torsion_before, .shape = std::nullopt},
+       1e-3,
+       [](Scene& scene, double value) { scene.scale_torsion(std::exp(value)); }});
 }
 
 void add_directions(std::vector<WireNumber>& numbers, const Scene& scene, std::size_t shape,
@@ -108,6 +128,7 @@ std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
     numbers.push_back(
         {of_wire, 1e-3, [](Scene& scene, double value) { scene.scale_density(std::exp(value)); }});
   }
+  if (options.torsional_stiffness) add_torsion(numbers, scenes);
   if (options.natural_curvature_terms > 0) {
     add_natural_curvature(numbers, scenes, options.natural_curvature_terms);
   }

@@ -17,9 +17,10 @@ struct WireNumber {
 };
 
 /// All that is to be found: first the logarithm of E over the scenes', then, with `density`, of the
-/// density, natural curvature, then each shape's own directions and positions.
+/// density, if asked for of GJ / EI, natural curvature, then each shape's own directions and
+/// positions.
 /// @throws InputError if natural curvature is asked for where no clamp or plane says about which
-/// axes
+/// axes, or GJ where no scene twists the rod
 [[nodiscard]] std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                                                    const std::vector<MeasuredShape>& shapes,
                                                    const MaterialFitOptions& options, bool density);

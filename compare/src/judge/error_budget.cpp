@@ -1,9 +1,13 @@
 #include "dlo/compare/error_budget.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "dlo/compare/chain.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
 #include "polygon/natural_plane.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -31,10 +35,53 @@ class Fields {
     return {.rms_m = rms(s_, field), .share = size > 0 ? (a * a - b * b) / (4 * size * size) : 0};
   }
 
+  [[nodiscard]] Eigen::Matrix3Xd zero() const {
+    return Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(s_.size()));
+  }
+
  private:
   const Reference& reference_;
   std::vector<double> s_;
 };
+
+bool reaches_rigid_obstacle(const Scene& scene) {
+  const std::vector<std::size_t> reached = obstacles_in_reach(scene, scene.force_model);
+  return std::any_of(reached.begin(), reached.end(),
+                     [&](std::size_t i) { return std::isinf(scene.obstacles[i].stiffness); });
+}
+
+/// On obstacles that are as stiff to a polygon of any c_c as rigid ones are to one with this c_c.
+Scene on_obstacles_for(Scene scene, double c_c, double segment_length) {
+  for (Obstacle& obstacle : scene.obstacles) {
+    if (std::isinf(obstacle.stiffness)) {
+      obstacle.stiffness = c_c / (segment_length * segment_length);
+    }
+  }
+  return scene;
+}
+
+/// How far rods without what the force model leaves out are from the rod.
+struct RodsWithout {
+  Eigen::Matrix3Xd twist;  ///< without the twist
+  Eigen::Matrix3Xd all;    ///< without the natural curvature too, of which the polygon is one
+};
+
+/// Of the lowest shapes of these rods. @param taken  what the polygons have of the scene
+RodsWithout rods_without(const Scene& scene, const Scene& taken, const std::vector<double>& s,
+                         const Fields& fields, const SolveOptions& options) {
+  const auto rod = [&](const Scene& other) {
+    const energy_model::Equilibrium lowest = solve_reference(other, Model::energy, options);
+    return fields.of({s, lowest.sample(s).points});
+  };
+  RodsWithout result;
+  result.twist = scene.holds_twist() && !takes_twist(scene, scene.force_model)
+                     ? rod(scene.without_twist())
+                     : fields.zero();
+  const bool leaves_curvature_out =
+      scene.naturally_bent() && !taken.naturally_bent() && scene.naturally_curved();
+  result.all = leaves_curvature_out ? rod(taken) : result.twist;
+  return result;
+}
 
 }  // namespace
 
@@ -45,12 +92,16 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   const double rigid = 100 * scene.axial_stiffness();
   // The chains are of the scene that the force model has taken.
   const Scene taken = as_polygons_take_it(scene, own);
-  const auto chain = [&](BendingLaw law, Bookkeeping bookkeeping, double c_c) {
+  const auto chain_in = [&](const Scene& other, BendingLaw law, Bookkeeping bookkeeping,
+                            double c_c) {
     ForceModelSettings settings = own;
     settings.law = law;
     settings.bookkeeping = bookkeeping;
     settings.c_c = c_c;
-    return fields.of(chain_from(taken, settings, force.shape, options));
+    return fields.of(chain_from(other, settings, force.shape, options));
+  };
+  const auto chain = [&](BendingLaw law, Bookkeeping bookkeeping, double c_c) {
+    return chain_in(taken, law, bookkeeping, c_c);
   };
   const Eigen::Matrix3Xd base = chain(BendingLaw::hooke, Bookkeeping::consistent, rigid);
   const Eigen::Matrix3Xd other_bookkeeping = own.bookkeeping == Bookkeeping::consistent
@@ -59,39 +110,35 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   const Eigen::Matrix3Xd other_law =
       own.law == BendingLaw::hooke ? base : chain(own.law, Bookkeeping::consistent, rigid);
   const Eigen::Matrix3Xd stiff = chain(own.law, own.bookkeeping, rigid);
-  const Eigen::Matrix3Xd elastic =
-      chain(own.law, own.bookkeeping, own.c_c.value_or(scene.axial_stiffness()));
+  const double c_c = own.c_c.value_or(scene.axial_stiffness());
+  const Eigen::Matrix3Xd elastic = chain(own.law, own.bookkeeping, c_c);
+  const Eigen::Matrix3Xd on_rigid =
+      reaches_rigid_obstacle(taken)
+          ? chain_in(on_obstacles_for(taken, rigid, force.parameters.segment_length), own.law,
+                     own.bookkeeping, c_c)
+          : elastic;
   Shape rested = force.shape;
   rested.points += force.to_rest;
   const Eigen::Matrix3Xd total = fields.of(force.shape);
   const Eigen::Matrix3Xd moving = total - fields.of(rested);
-
-  // The lowest shapes of the rods without it, of the last of which the polygon is one.
-  const auto rod = [&](const Scene& other) {
-    const energy_model::Equilibrium lowest = solve_reference(other, Model::energy, options);
-    const std::vector<double>& s = force.shape.arc_length;
-    return fields.of({s, lowest.sample(s).points});
-  };
-  const Eigen::Matrix3Xd none = Eigen::Matrix3Xd::Zero(3, total.cols());
-  const bool leaves_twist_out = scene.holds_twist() && !takes_twist(scene, own);
-  const Eigen::Matrix3Xd twist = leaves_twist_out ? rod(scene.without_twist()) : none;
-  const bool leaves_curvature_out =
-      scene.naturally_bent() && !taken.naturally_bent() && scene.naturally_curved();
-  const Eigen::Matrix3Xd left_out = leaves_curvature_out ? rod(taken) : twist;
+  const RodsWithout left_out = rods_without(scene, taken, force.shape.arc_length, fields, options);
 
   Budget budget;
   budget.total_m = fields.part(total, total).rms_m;
   const Eigen::Matrix3Xd law = other_law - base;
   const Eigen::Matrix3Xd bookkeeping = other_bookkeeping - base;
-  const Eigen::Matrix3Xd stretch = elastic - stiff;
-  budget.twist = fields.part(twist, total);
-  budget.natural_curvature = fields.part(left_out - twist, total);
-  budget.discretisation = fields.part(base - left_out, total);
+  const Eigen::Matrix3Xd stretch = on_rigid - stiff;
+  const Eigen::Matrix3Xd contact = elastic - on_rigid;
+  budget.twist = fields.part(left_out.twist, total);
+  budget.natural_curvature = fields.part(left_out.all - left_out.twist, total);
+  budget.discretisation = fields.part(base - left_out.all, total);
   budget.bookkeeping = fields.part(bookkeeping, total);
   budget.law = fields.part(law, total);
   budget.stretch = fields.part(stretch, total);
+  budget.contact = fields.part(contact, total);
   budget.not_at_rest = fields.part(moving, total);
-  budget.interaction = fields.part(total - base - bookkeeping - law - stretch - moving, total);
+  budget.interaction =
+      fields.part(total - base - bookkeeping - law - stretch - contact - moving, total);
   return budget;
 }
 

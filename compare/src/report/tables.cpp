@@ -149,13 +149,15 @@ HtmlTable budget_table(const Report& report) {
                               {"bookkeeping"},
                               {"discretisation"},
                               {"stretch"},
+                              {"contact"},
                               {"not at rest"},
                               {"interaction"}}};
   for_each_comparison(report, [&](const Comparison& c) {
     const Budget& b = c.budget;
     std::vector<std::string> row = {c.scene, setting_of(c), millimetres(b.total_m)};
-    for (const BudgetPart* part : {&b.twist, &b.natural_curvature, &b.law, &b.bookkeeping,
-                                   &b.discretisation, &b.stretch, &b.not_at_rest, &b.interaction}) {
+    for (const BudgetPart* part :
+         {&b.twist, &b.natural_curvature, &b.law, &b.bookkeeping, &b.discretisation, &b.stretch,
+          &b.contact, &b.not_at_rest, &b.interaction}) {
       row.push_back(
           fmt::format("{} ({}\u00a0%)", millimetres(part->rms_m), tenths(part->share * 100)));
     }

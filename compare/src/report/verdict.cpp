@@ -69,6 +69,7 @@ std::string largest_part(const Budget& b) {
       {"the bookkeeping", &b.bookkeeping},
       {"discretisation", &b.discretisation},
       {"stretch", &b.stretch},
+      {"obstacles that give way", &b.contact},
       {"not being at rest", &b.not_at_rest},
       {"law and bookkeeping together", &b.interaction}};
   const auto* largest = std::max_element(

@@ -60,9 +60,29 @@ std::optional<GivenBending> read_bending_stiffness(StrictTable& table) {
   return GivenBending{pair.x(), pair.y()};
 }
 
+/// EI of a chain's rod, or of one that is given by its own.
+std::optional<GivenBending> read_bending(StrictTable& rod, double length) {
+  const std::optional<double> joint =
+      rod.optional_number("joint_stiffness", Dimension::joint_stiffness, Range::positive());
+  const std::optional<double> spacing = rod.optional_number(
+      "joint_spacing", Dimension::length, Range::between(1e-6 * length, length, " m"));
+  if (!joint && !spacing) return read_bending_stiffness(rod);
+  if (!joint || !spacing) {
+    rod.fail(joint ? "joint_spacing" : "joint_stiffness",
+             "missing, joint_stiffness and joint_spacing are given together (allowed: both; EI is "
+             "one times the other)");
+  }
+  if (rod.has("bending_stiffness")) {
+    rod.fail("bending_stiffness",
+             "EI is given twice, by the joints of a chain too (allowed: bending_stiffness, or "
+             "joint_stiffness and joint_spacing)");
+  }
+  return GivenBending{*joint * *spacing, std::nullopt};
+}
+
 /// Bending stiffness and mass, given as they are or by material and diameter.
 void read_stiffness(StrictTable& rod, const std::vector<Material>& known_materials, Scene& scene) {
-  if (const std::optional<GivenBending> given = read_bending_stiffness(rod)) {
+  if (const std::optional<GivenBending> given = read_bending(rod, scene.length)) {
     scene.given_bending_stiffness = given->about_d1;
     scene.given_bending_stiffness_2 = given->about_d2;
   }
@@ -72,10 +92,11 @@ void read_stiffness(StrictTable& rod, const std::vector<Material>& known_materia
   const bool has_mass = scene.given_mass_per_length.has_value();
   const bool has_material = rod.has("material");
   if (!has_material && has_bending != has_mass) {
+    const char* bending = rod.has("joint_stiffness") ? "joint_stiffness" : "bending_stiffness";
     rod.fail(has_bending ? "mass_per_length" : "bending_stiffness",
              fmt::format("missing, it is required beside {} (allowed: both, or material and "
                          "diameter too)",
-                         has_bending ? "bending_stiffness" : "mass_per_length"));
+                         has_bending ? bending : "mass_per_length"));
   }
   const bool complete = has_bending && has_mass && !has_material;
   if (has_bending && has_mass && has_material && !rod.has("diameter")) {

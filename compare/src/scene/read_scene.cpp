@@ -283,6 +283,7 @@ PointLoad read_load(StrictTable& table, const Scene& scene) {
   }
   load.force =
       mass ? Eigen::Vector3d(*mass * scene.gravity) : table.vector("force", Dimension::force);
+  load.mass = mass.value_or(0);
   table.finish();
   return load;
 }

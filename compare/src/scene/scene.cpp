@@ -255,6 +255,13 @@ void Scene::scale_modulus(double factor) {
   }
 }
 
+void Scene::scale_torsion(double factor) {
+  if (twisting_stiffness() > 0) torsional_stiffness = twisting_stiffness() * factor;
+  for (Section& section : sections) {
+    if (section.torsional_stiffness) *section.torsional_stiffness *= factor;
+  }
+}
+
 void Scene::scale_density(double factor) {
   material.density *= factor;
   if (given_mass_per_length) *given_mass_per_length *= factor;

@@ -37,7 +37,8 @@ std::string looked_from(const std::vector<energy_model::Equilibrium>& searches) 
 /// Whether a shape may be handed on: proven, or unproven and asked for.
 bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
   return energy_model::succeeded(status) ||
-         (options.accept_unresolved && status == energy_model::SolveStatus::not_resolved);
+         (options.accept_unresolved && (status == energy_model::SolveStatus::not_resolved ||
+                                        status == energy_model::SolveStatus::near_singular));
 }
 
 }  // namespace
@@ -70,14 +71,14 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
   return result;
 }
 
-std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
-                                                        const SolveOptions& options) {
-  std::vector<energy_model::Equilibrium> states;
+energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions& options) {
+  energy_model::EnergySearch search;
+  std::vector<energy_model::Equilibrium>& states = search.equilibria;
   try {
-    states =
-        energy_model::all_energy(energy_problem(scene), {.terms = options.terms,
-                                                         .max_evaluations = options.max_evaluations,
-                                                         .time_limit = options.time_limit});
+    search = energy_model::search_energy(energy_problem(scene),
+                                         {.terms = options.terms,
+                                          .max_evaluations = options.max_evaluations,
+                                          .time_limit = options.time_limit});
   } catch (const std::invalid_argument& error) {
     refuse_rod(scene, Model::energy, error);
   }
@@ -89,7 +90,12 @@ std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
     throw ConvergenceError(
         fmt::format("{}: the energy model found no equilibrium ({})", scene.file, looked));
   }
-  return states;
+  return search;
+}
+
+std::vector<energy_model::Equilibrium> reference_states(const Scene& scene,
+                                                        const SolveOptions& options) {
+  return search_states(scene, options).equilibria;
 }
 
 std::vector<energy_model::ContactPart> contacts_of(const Scene& scene,

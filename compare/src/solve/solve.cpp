@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 #include "dlo/compare/chain.hpp"
 #include "dlo/compare/force.hpp"
@@ -79,6 +80,7 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
     solution.tension.push_back(force.dot(shape.tangents.col(column)) + 0.0);
   }
   solution.smallest_curvature = equilibrium.smallest_curvature;
+  solution.neutral_directions = equilibrium.neutral_directions;
   solution.evaluations = equilibrium.evaluations;
   solution.terms = equilibrium.terms;
   solution.seconds = equilibrium.seconds;
@@ -102,13 +104,16 @@ Solution solve(const Scene& scene, Model model, const SolveOptions& options,
   return solution;
 }
 
-std::vector<Solution> solve_all(const Scene& scene, const SolveOptions& options,
-                                const std::vector<double>& arc_lengths) {
-  std::vector<Solution> solutions;
-  for (const energy_model::Equilibrium& state : reference_states(scene, options)) {
-    solutions.push_back(sampled(scene, Model::energy, state, arc_lengths));
+AllSolutions solve_all(const Scene& scene, const SolveOptions& options,
+                       const std::vector<double>& arc_lengths) {
+  energy_model::EnergySearch search = search_states(scene, options);
+  AllSolutions all;
+  all.looked_from = std::move(search.looked_from);
+  all.not_looked = std::move(search.not_looked);
+  for (const energy_model::Equilibrium& state : search.equilibria) {
+    all.solutions.push_back(sampled(scene, Model::energy, state, arc_lengths));
   }
-  return solutions;
+  return all;
 }
 
 }  // namespace dlo::compare

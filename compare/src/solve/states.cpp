@@ -10,9 +10,10 @@ namespace {
 
 using energy_model::Equilibrium;
 
-/// Stable, as far as is known of a shape that is not resolved.
+/// Stable, as far as is known of a shape that is not resolved or that a fold leaves open.
 bool is_stable(const Equilibrium& state) {
-  return succeeded(state.status) || state.status == energy_model::SolveStatus::not_resolved;
+  return succeeded(state.status) || state.status == energy_model::SolveStatus::not_resolved ||
+         state.status == energy_model::SolveStatus::near_singular;
 }
 
 /// Shapes that are nearer than this share of the length are the same.

@@ -39,7 +39,12 @@ ForceModelSettings ForceVariant::settings(const Scene& scene, int points) const 
   return result;
 }
 
+std::string model_of(const BenchmarkRun& run) {
+  return run.program.empty() ? to_string(run.model) : run.program;
+}
+
 std::string setting_of(const BenchmarkRun& run) {
+  if (!run.program.empty()) return "";
   if (!run.variant) return run.model == Model::energy && run.size == 0 ? "K as needed" : "";
   const ForceVariant& variant = *run.variant;
   std::string result =
@@ -51,12 +56,21 @@ std::string setting_of(const BenchmarkRun& run) {
 }
 
 std::string name_of(const BenchmarkRun& run) {
-  std::string name = to_string(run.model);
-  if (run.model == Model::energy && run.size > 0) name += fmt::format(" K = {}", run.size);
-  if (run.variant) name += fmt::format(" N = {}", run.size);
+  std::string name = model_of(run);
+  const bool ours = run.program.empty();
+  if (ours && run.model == Model::energy && run.size > 0) name += fmt::format(" K = {}", run.size);
+  if (!ours || run.variant) name += fmt::format(" N = {}", run.size);
   const std::string setting = setting_of(run);
   return setting.empty() ? name : name + ", " + setting;
 }
+
+namespace {
+
+bool is_run_of(const BenchmarkRun& run, std::optional<Model> model) {
+  return !model || (run.program.empty() && run.model == *model);
+}
+
+}  // namespace
 
 void mark_front(std::vector<BenchmarkRun>& runs) {
   for (BenchmarkRun& run : runs) {
@@ -74,7 +88,7 @@ std::optional<std::size_t> fastest_within(const std::vector<BenchmarkRun>& runs,
                                           std::optional<Model> model) {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (!(runs[i].rms_over_length <= error) || (model && runs[i].model != *model)) continue;
+    if (!(runs[i].rms_over_length <= error) || !is_run_of(runs[i], model)) continue;
     if (!best || runs[i].time.median_s < runs[*best].time.median_s) best = i;
   }
   return best;
@@ -82,17 +96,18 @@ std::optional<std::size_t> fastest_within(const std::vector<BenchmarkRun>& runs,
 
 bool has_run(const std::vector<BenchmarkRun>& runs, std::optional<Model> model) {
   return std::any_of(runs.begin(), runs.end(),
-                     [&](const BenchmarkRun& run) { return !model || run.model == *model; });
+                     [&](const BenchmarkRun& run) { return is_run_of(run, model); });
 }
 
 BenchmarkReport run_benchmark(const std::vector<Scene>& scenes, const BenchmarkOptions& options,
                               const Stages& progress) {
   if (!(options.budget_s > 0) || options.repeats < 1 || !(options.gripper_speed > 0) ||
-      options.frames < 1) {
+      options.frames < 1 || !(options.program_time_limit > 0)) {
     throw std::invalid_argument(
         fmt::format("run_benchmark: budget_s = {}, repeats = {}, gripper_speed = {}, frames = {}, "
-                    "must be > 0, >= 1, > 0 and >= 1",
-                    options.budget_s, options.repeats, options.gripper_speed, options.frames));
+                    "program_time_limit = {}, must be > 0, >= 1, > 0, >= 1 and > 0",
+                    options.budget_s, options.repeats, options.gripper_speed, options.frames,
+                    options.program_time_limit));
   }
   BenchmarkReport report;
   report.options = options;
@@ -106,16 +121,18 @@ BenchmarkReport run_benchmark(const std::vector<Scene>& scenes, const BenchmarkO
     scene.gamma = scenes[i].gamma();
     ReferenceShape reference = benchmark_reference(scenes[i]);
     scene.reference = reference.model;
-    StaticRuns static_runs(scenes[i], reference, watch);
+    StaticRuns static_runs(scenes[i], reference, options, watch);
     // The cheapest of every model first, whatever the tracking runs leave over for the others.
     (void)static_runs.next_round();
     // The time of a median tells more than that of the first solution.
     for (const BenchmarkRun& run : static_runs.runs()) {
-      if (run.model == Model::exact) reference.rod.seconds = run.time.median_s;
+      if (is_run_of(run, Model::exact)) reference.rod.seconds = run.time.median_s;
     }
     scene.tracking = tracking_runs(scenes[i], reference, options, watch);
     while (static_runs.next_round()) continue;
     scene.runs = static_runs.runs();
+    const std::vector<BenchmarkFailure>& failures = static_runs.failures();
+    report.failures.insert(report.failures.end(), failures.begin(), failures.end());
     mark_front(scene.runs);
     mark_front(scene.tracking);
     for (const double error : {0.1, 0.01, 1e-3, 1e-6}) {

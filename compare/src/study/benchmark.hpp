@@ -8,6 +8,7 @@
 #include "dlo/compare/progress.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
+#include "foreign/foreign_program.hpp"
 
 namespace dlo::compare {
 
@@ -19,6 +20,8 @@ struct BenchmarkOptions {
   int repeats = 5;             ///< runs that a median is taken of, >= 1
   double gripper_speed = 0.1;  ///< v of the tracking runs [m/s], > 0; they also turn by v/l
   int frames = 200;            ///< of 1 ms that the gripper moves in a tracking run, >= 1
+  std::vector<ForeignProgram> programs = {};  ///< other people's, in the static runs
+  double program_time_limit = 20;             ///< of each run of one [s], > 0
 };
 
 /// Median and quartiles of repeated runs [s].
@@ -45,11 +48,13 @@ struct ForceVariant {
 /// One model with one setting on one scene.
 struct BenchmarkRun {
   std::string scene;            ///< its name
-  Model model = Model::energy;  ///< what was timed
-  int size = 0;  ///< K of energy (0: as many as needed), N of chain and force, 0 of exact
+  Model model = Model::energy;  ///< what was timed, where `program` is empty
+  std::string program = {};     ///< name of somebody else's
+  int size = 0;  ///< K of energy (0: as many as needed), N of chain, force, programs, 0 of exact
   std::optional<ForceVariant> variant;  ///< of chain and force
-  Timing time;                 ///< from straight to the shape; of tracking runs, of one frame
-  long work = 0;               ///< evaluations, or steps; of tracking runs, of one frame (mean)
+  /// From straight to the shape; of tracking runs, of one frame; of a program, of its process.
+  Timing time;
+  long work = 0;  ///< evaluations, or steps; of tracking runs, of one frame (mean); 0 of programs
   double rms_over_length = 0;  ///< against the reference; of tracking runs the RMS over all frames
   bool front = false;          ///< no other run of the scene is both faster and nearer
 };
@@ -60,10 +65,21 @@ struct BenchmarkRun {
 /// Model, size and setting in words.
 [[nodiscard]] std::string name_of(const BenchmarkRun& run);
 
+/// "exact", or the name of a program.
+[[nodiscard]] std::string model_of(const BenchmarkRun& run);
+
 /// What to use for an error.
 struct BenchmarkAnswer {
   double error = 0;                 ///< wanted, share of the length
   std::optional<std::size_t> best;  ///< the fastest run of the scene within it; nothing: none
+};
+
+/// A run of somebody else's program that has no shape to measure.
+struct BenchmarkFailure {
+  std::string scene;    ///< its name
+  std::string program;  ///< its name
+  int points = 0;       ///< that it was asked for
+  std::string problem;  ///< one line
 };
 
 /// All runs of one scene.
@@ -84,7 +100,8 @@ struct BenchmarkReport {
   BenchmarkOptions options;            ///< as given
   std::vector<SceneBenchmark> scenes;  ///< in the order given
   std::vector<std::string> skipped;    ///< runs that would not have fitted in, or did not converge
-  double seconds = 0;                  ///< all of it
+  std::vector<BenchmarkFailure> failures;  ///< in the order of the runs
+  double seconds = 0;                      ///< all of it
 };
 
 /// The paper's steel rod (Gamma = 0.18, horizontal) and one a hundred times softer.
@@ -109,7 +126,7 @@ void mark_front(std::vector<BenchmarkRun>& runs);
 /// `force` over N, laws, steppers (auto, and dynamic with the paper's constants) and c_c (AE and
 /// AE/1000, which the paper used), each from straight, or from its own start, to rest. Times are of
 /// the solver with the scene's set-up, as a caller sees it. The rest tolerance of `force` is a
-/// tenth of the error that its N is good for.
+/// tenth of the error that its N is good for. Programs are asked for the same N.
 ///
 /// Tracking: after the rod has come to rest all grippers move along +x at the given speed v and
 /// turn as one body about z by v/l, which changes the shape. Each frame of 1 ms the energy model

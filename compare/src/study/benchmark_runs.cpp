@@ -102,8 +102,9 @@ ReferenceShape benchmark_reference(const Scene& scene) {
   return result;
 }
 
-StaticRuns::StaticRuns(const Scene& scene, const ReferenceShape& reference, Stopwatch& watch)
-    : scene_(scene), reference_(reference), watch_(watch) {
+StaticRuns::StaticRuns(const Scene& scene, const ReferenceShape& reference,
+                       const BenchmarkOptions& options, Stopwatch& watch)
+    : scene_(scene), reference_(reference), options_(options), watch_(watch) {
   const ForceVariant hooke;
   ForceVariant soft;
   soft.stretch_share = 1e-3;
@@ -124,6 +125,9 @@ StaticRuns::StaticRuns(const Scene& scene, const ReferenceShape& reference, Stop
   for (const ForceVariant& variant : {soft, hooke, dynamic, paper_law}) {
     add(Model::force, variant, points);
   }
+  for (const ForeignProgram& program : options.programs) {
+    series_.push_back({.program = &program, .sizes = points});
+  }
 }
 
 bool StaticRuns::next_round() {
@@ -133,7 +137,9 @@ bool StaticRuns::next_round() {
     ran = true;
     const int size = series.sizes.front();
     series.sizes.erase(series.sizes.begin());
-    if (series.model == Model::exact || series.model == Model::energy) {
+    if (series.program != nullptr) {
+      run_program(series, size);
+    } else if (series.model == Model::exact || series.model == Model::energy) {
       run_continuous(series, size);
     } else {
       run_polygon(series, size);
@@ -198,6 +204,47 @@ void StaticRuns::run_polygon(StaticSeries& series, int points) {
                          .time = *time,
                          .work = model == Model::chain ? solution.evaluations : solution.steps,
                          .rms_over_length = error_of(scene_, solution.shape, reference_.rod)});
+}
+
+/// A failure says nothing of larger N, but one at the time limit does.
+void StaticRuns::run_program(StaticSeries& series, int points) {
+  BenchmarkRun run{.scene = scene_.name, .program = series.program->name, .size = points};
+  const double growth = series.last_points > 0 ? 1.0 * points / series.last_points : 1;
+  ForeignRun result;
+  std::vector<double> times;
+  double total = 0;
+  const auto again = [&] {
+    const auto count = static_cast<double>(times.size());
+    const bool time_left = total + total / count < watch_.left() / 4;
+    return result.problem.empty() && count < options_.repeats && time_left;
+  };
+  const bool ran = watch_.run_once(
+      fmt::format("{}: {}", scene_.name, name_of(run)), series.last_s * growth * growth, [&] {
+        do {
+          result = run_foreign(*series.program, scene_, points, options_.program_time_limit);
+          times.push_back(result.seconds);
+          total += result.seconds;
+        } while (again());
+      });
+  if (!ran || result.too_long) series.sizes.clear();
+  if (!ran) return;
+  std::string problem = std::move(result.problem);
+  if (problem.empty()) {
+    try {
+      run.rms_over_length =
+          foreign_deviation(scene_, *result.shape, reference_.rod.sample).rms_over_length;
+    } catch (const InputError& error) {
+      problem = error.what();
+    }
+  }
+  if (!problem.empty()) {
+    failures_.push_back({scene_.name, series.program->name, points, std::move(problem)});
+    return;
+  }
+  run.time = timing_of(std::move(times));
+  series.last_s = run.time.median_s;
+  series.last_points = points;
+  series.runs.push_back(std::move(run));
 }
 
 }  // namespace dlo::compare

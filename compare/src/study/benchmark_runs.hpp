@@ -55,8 +55,9 @@ struct ReferenceShape {
 /// One model of the static runs over its sizes, the cheapest first.
 struct StaticSeries {
   Model model = Model::exact;
-  ForceVariant variant;    ///< of chain and force
-  std::vector<int> sizes;  ///< K or N, not yet run
+  ForceVariant variant;                     ///< of chain and force
+  const ForeignProgram* program = nullptr;  ///< in place of a model
+  std::vector<int> sizes;                   ///< K or N, not yet run
   std::vector<BenchmarkRun> runs;
   double last_s = 0;    ///< time of the run before
   int last_points = 0;  ///< its N
@@ -67,21 +68,27 @@ struct StaticSeries {
 class StaticRuns {
  public:
   /// All are kept by reference.
-  StaticRuns(const Scene& scene, const ReferenceShape& reference, Stopwatch& watch);
+  StaticRuns(const Scene& scene, const ReferenceShape& reference, const BenchmarkOptions& options,
+             Stopwatch& watch);
 
   /// One round; false if nothing is left to run.
   bool next_round();
   /// All so far, by model and size.
   [[nodiscard]] std::vector<BenchmarkRun> runs() const;
+  /// Of programs, so far.
+  [[nodiscard]] const std::vector<BenchmarkFailure>& failures() const { return failures_; }
 
  private:
   void run_continuous(StaticSeries& series, int terms);
   void run_polygon(StaticSeries& series, int points);
+  void run_program(StaticSeries& series, int points);
 
   const Scene& scene_;
   const ReferenceShape& reference_;
+  const BenchmarkOptions& options_;
   Stopwatch& watch_;
   std::vector<StaticSeries> series_;
+  std::vector<BenchmarkFailure> failures_;
 };
 
 }  // namespace dlo::compare

@@ -26,6 +26,8 @@ constexpr Unit accelerations[] = {{"m/s^2", 1}};
 constexpr Unit curvatures[] = {{"1/m", 1}, {"1/cm", 1e2}, {"1/mm", 1e3}};
 constexpr Unit foundations[] = {{"N/m^2", 1}, {"N/mm^2", 1e6}};
 constexpr Unit section_stiffnesses[] = {{"N m^2", 1}, {"N mm^2", 1e-6}};
+constexpr Unit joint_stiffnesses[] = {
+    {"N m/rad", 1}, {"N m", 1}, {"N mm/rad", 1e-3}, {"N mm", 1e-3}};
 constexpr Unit masses[] = {{"kg", 1}, {"g", 1e-3}};
 constexpr Unit masses_per_length[] = {{"kg/m", 1}, {"g/m", 1e-3}, {"g/cm", 1e-1}};
 constexpr Unit twists[] = {{"rad/m", 1}, {"deg/m", std::numbers::pi / 180}, {"1/m", 1}};
@@ -50,6 +52,8 @@ std::span<const Unit> units(Dimension dimension) {
       return foundations;
     case Dimension::section_stiffness:
       return section_stiffnesses;
+    case Dimension::joint_stiffness:
+      return joint_stiffnesses;
     case Dimension::mass:
       return masses;
     case Dimension::mass_per_length:

@@ -18,6 +18,7 @@ enum class Dimension {
   curvature,
   foundation,         ///< force per depth and per length of rod
   section_stiffness,  ///< moment per curvature (EI), torque per twist (GJ)
+  joint_stiffness,    ///< moment per angle
   mass,
   mass_per_length,
   twist,  ///< angle per length

@@ -75,6 +75,18 @@ double smallest_eigenvalue(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd
       .eigenvalues()[0];
 }
 
+Eigen::VectorXd eigenvalues_by_size(const Eigen::MatrixXd& hessian,
+                                    const Eigen::MatrixXd& jacobian) {
+  const Eigen::MatrixXd projected = on_free_directions(hessian, jacobian);
+  if (projected.size() == 0) return {};
+  Eigen::VectorXd found =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected, Eigen::EigenvaluesOnly)
+          .eigenvalues();
+  std::sort(found.begin(), found.end(),
+            [](double a, double b) { return std::abs(a) < std::abs(b); });
+  return found;
+}
+
 bool is_minimum(const Eigen::MatrixXd& hessian) {
   Eigen::MatrixXd shifted = hessian;
   shifted.diagonal().array() += neutral;

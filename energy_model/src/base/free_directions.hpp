@@ -31,6 +31,10 @@ class AcrossNeutral {
 [[nodiscard]] double smallest_eigenvalue(const Eigen::MatrixXd& hessian,
                                          const Eigen::MatrixXd& jacobian);
 
+/// All eigenvalues there, by growing size: those nearest to zero come first.
+[[nodiscard]] Eigen::VectorXd eigenvalues_by_size(const Eigen::MatrixXd& hessian,
+                                                  const Eigen::MatrixXd& jacobian);
+
 /// Whether no eigenvalue of a matrix, of which the lower half is read, is negative.
 [[nodiscard]] bool is_minimum(const Eigen::MatrixXd& hessian);
 

@@ -7,8 +7,10 @@ namespace dlo::energy_model {
 /// Looks at what a search returns, at its own x, before it may be called `converged`: the residual
 /// of the gradient of E - mu.c and of the constraints, Newton's step from there, and the
 /// eigenvalues of the second variation in all directions that the constraints leave, those out of a
-/// span's plane included. A negative one makes it a `saddle`; a step that is no small one
-/// `near_singular`. Either way it gets its error. What had failed before stays as it is.
+/// span's plane included. A negative one makes it a `saddle`; a step that is no small one, or an
+/// eigenvalue that is zero to `neutral` in a direction that is no free turn (free_turns.hpp), makes
+/// it `near_singular`, with the number of such directions. Either way it gets its error. What had
+/// failed before stays as it is.
 /// @param load  sum of weight and loads, the scale of the residuals
 void certify(SpanSolution& solution, double load);
 

@@ -1,60 +1,17 @@
 #include "search/assemble.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
-#include "base/sized_samples.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
+#include "search/placed_shape.hpp"
 
 namespace dlo::energy_model {
 namespace {
-
-/// A span's shape and where it lies.
-struct PlacedShape {
-  SpanShape shape;
-  bool reversed;
-  double start, end;            // arc lengths of s = 0 and of the last point in the rod's order [m]
-  Eigen::Matrix3d to_space;     // from the span's frame
-  Eigen::Vector3d anchor;       // [m]
-  std::optional<double> ahead;  // by which the rod's own frame is turned on from the span's [rad]
-};
-
-Samples sample(const std::vector<PlacedShape>& shapes, double length,
-               std::span<const double> arc_lengths) {
-  const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-  Samples samples = sized_samples(arc_lengths, length);
-  if (!shapes.empty() && shapes.front().ahead) samples.d1.resize(3, count);
-  std::vector<std::vector<Eigen::Index>> columns(shapes.size());
-  std::vector<std::vector<double>> own_s(shapes.size());
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double at = arc_lengths[static_cast<std::size_t>(i)];
-    std::size_t p = 0;
-    while (p + 1 < shapes.size() && at > shapes[p].end) ++p;
-    columns[p].push_back(i);
-    own_s[p].push_back((shapes[p].reversed ? shapes[p].start - at : at - shapes[p].start) / length);
-  }
-  for (std::size_t p = 0; p < shapes.size(); ++p) {
-    const PlacedShape& placed = shapes[p];
-    const SpanSamples own = placed.shape.sample(own_s[p]);
-    const double sense = placed.reversed ? -1 : 1;
-    for (std::size_t k = 0; k < columns[p].size(); ++k) {
-      const Eigen::Index i = columns[p][k];
-      const auto from = static_cast<Eigen::Index>(k);
-      samples.points.col(i) = placed.anchor + length * (placed.to_space * own.points.col(from));
-      samples.tangents.col(i) = sense * (placed.to_space * own.tangents.col(from));
-      samples.curvature.col(i) = placed.to_space * own.curvature.col(from) / length;
-      if (!placed.ahead) continue;
-      const Eigen::AngleAxisd about(*placed.ahead, own.tangents.col(from));
-      samples.d1.col(i) = placed.to_space * (about * own.d1.col(from));
-    }
-  }
-  return samples;
-}
 
 /// With arc lengths in m, forces in the span's unit.
 std::vector<ContactPart> contacts_of(const PlacedSpan& place, const SpanSolution& solution,
@@ -117,6 +74,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     result.evaluations += solution.evaluations;
     result.terms = std::max(result.terms, solution.terms);
     result.residual = std::max(result.residual, solution.residual);
+    result.neutral_directions += solution.neutral_directions;
     // NaN, where one is not known, stays.
     if (std::isnan(solution.error) || solution.error > result.error_estimate) {
       result.error_estimate = solution.error;
@@ -177,6 +135,10 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
           to_space(solution.model->hold_torque(static_cast<Eigen::Index>(j), solution.multipliers));
     }
   }
+  if (result.status == SolveStatus::near_singular && result.neutral_directions > 0) {
+    result.message += ": " + std::to_string(result.neutral_directions) + " neutral direction" +
+                      (result.neutral_directions == 1 ? "" : "s");
+  }
   std::sort(result.contacts.begin(), result.contacts.end(),
             [](const ContactPart& a, const ContactPart& b) { return a.begin < b.begin; });
   for (const Load& load : problem.loads) {
@@ -189,11 +151,13 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
   for (std::size_t i = 0; i < placed.size(); ++i) {
     if (solutions[i]->x.size() == 0) continue;
     const PlacedSpan& place = *placed[i];
-    const double end = place.reversed ? place.start : place.start + place.span.length * l;
-    shapes.push_back(
-        {solutions[i]->model->shape(solutions[i]->x), place.reversed, place.start, end,
-         place.frame.transpose(), place.anchor_position,
-         place.span.has_material_directors() ? std::optional(place.ahead) : std::nullopt});
+    shapes.push_back(placed_shape(place, *solutions[i], l));
+    if (place.span.has_material_directors()) {
+      shapes.back().ahead = [ahead = place.ahead](double) { return ahead; };
+    }
+  }
+  if (shapes.size() == placed.size() && !has_material_directors(problem)) {
+    place_twisted_material(problem, solutions, shapes);
   }
   result.sample = [l, shapes = std::move(shapes)](std::span<const double> arc_lengths) {
     return sample(shapes, l, arc_lengths);

@@ -12,6 +12,7 @@
 #include "contact/mend.hpp"
 #include "contact/resting_polygon.hpp"
 #include "newton/trust_region.hpp"
+#include "search/search_log.hpp"
 #include "search/settle_lift_offs.hpp"
 #include "search/span_starts.hpp"
 #include "search/way_down.hpp"
@@ -29,6 +30,9 @@ constexpr int most_departures = 4;
 constexpr double flat = 1e-6;
 /// Polygons whose energies are this close, over 1 + energy, are the same.
 constexpr double same_polygon = 1e-6;
+
+constexpr const char* clear_of_obstacles = "shapes without obstacles that stay clear of them";
+constexpr const char* polygons_at_rest = "polygons at rest on the obstacles";
 
 class ContactSearch {
  public:
@@ -57,6 +61,8 @@ class ContactSearch {
   void search(std::vector<SpanSolution>& found) {
     SpanOptions without_start = options_;
     without_start.start = nullptr;
+    SearchLog without_obstacles;
+    if (options_.log != nullptr) without_start.log = &without_obstacles;
     std::vector<TangentField> starts;
     for (SpanSolution& solution : solve_span(span_, without_start, workspace_)) {
       spent_ += std::exchange(solution.evaluations, 0);
@@ -69,7 +75,13 @@ class ContactSearch {
         starts.push_back(field_of(std::move(shape)));
         continue;
       }
-      add(std::move(solution), found);
+      const bool is_new = add(std::move(solution), found);
+      if (options_.log == nullptr) continue;
+      options_.log->tried(clear_of_obstacles);
+      if (is_new) options_.log->found(clear_of_obstacles);
+    }
+    if (options_.log != nullptr) {
+      options_.log->add_starts(without_obstacles, ", as if there were no obstacles");
     }
     if (!options_.all && !found.empty() && succeeded(found.front().status)) return;
     for (TangentField& start : start_fields(span_)) starts.push_back(std::move(start));
@@ -79,8 +91,13 @@ class ContactSearch {
   /// What polygons lead to that come to rest from these shapes, the lowest first.
   void look_from(const std::vector<TangentField>& starts, std::vector<SpanSolution>& found) {
     for (const RestingPolygon& polygon : polygons_from(starts)) {
-      if (options_.deadline.passed() && !found.empty()) return;
-      add(from_polygon(polygon), found);
+      if (options_.deadline.passed() && !found.empty()) {
+        if (options_.log != nullptr) options_.log->leave_out("starts after the time limit");
+        return;
+      }
+      if (add(from_polygon(polygon), found) && options_.log != nullptr) {
+        options_.log->found(polygons_at_rest);
+      }
       if (!options_.all && succeeded(found.front().status)) return;
     }
   }
@@ -90,7 +107,11 @@ class ContactSearch {
     const std::size_t most = options_.all ? starts.size() : std::min(most_starts, starts.size());
     std::vector<RestingPolygon> polygons;
     for (std::size_t i = 0; i < most; ++i) {
-      if (options_.deadline.passed() && !polygons.empty()) break;
+      if (options_.deadline.passed() && !polygons.empty()) {
+        if (options_.log != nullptr) options_.log->leave_out("starts after the time limit");
+        break;
+      }
+      if (options_.log != nullptr) options_.log->tried(polygons_at_rest);
       RestingPolygon polygon = rest_on_obstacles(span_, starts[i], options_.deadline);
       spent_ += polygon.evaluations;
       const bool known = std::any_of(polygons.begin(), polygons.end(), [&](const auto& other) {
@@ -125,23 +146,26 @@ class ContactSearch {
     spent_ += search.spent_;
   }
 
-  void add(SpanSolution solution, std::vector<SpanSolution>& found) {
+  /// @return whether it is an equilibrium that was not known
+  bool add(SpanSolution solution, std::vector<SpanSolution>& found) {
     spent_ += std::exchange(solution.evaluations, 0);
     if (!found.empty()) {
-      if (!solution.is_equilibrium() && found.front().is_equilibrium()) return;
+      if (!solution.is_equilibrium() && found.front().is_equilibrium()) return false;
       const bool known = std::any_of(found.begin(), found.end(), [&](const SpanSolution& other) {
         return solution.is_equilibrium() && other.is_equilibrium() &&
                is_same_shape(solution, other);
       });
-      if (known) return;
+      if (known) return false;
       if (!found.front().is_equilibrium()) found.clear();
     }
+    const bool is_equilibrium = solution.is_equilibrium();
     found.push_back(std::move(solution));
     std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
       const bool a_stable = succeeded(a.status);
       const bool b_stable = succeeded(b.status);
       return a_stable != b_stable ? a_stable : a.energy < b.energy;
     });
+    return is_equilibrium;
   }
 
   /// The rod's own shape with a polygon's contacts, mended until they are right.

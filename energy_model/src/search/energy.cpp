@@ -14,7 +14,9 @@
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
 #include "search/contact_search.hpp"
+#include "search/known_shape.hpp"
 #include "search/polygon_fields.hpp"
+#include "search/search_log.hpp"
 #include "search/span_solver.hpp"
 #include "search/twist_path.hpp"
 
@@ -27,6 +29,10 @@ constexpr std::size_t most_combinations = 64;
 /// Turn of a clamp at once that may be followed on the same branch [rad].
 constexpr double largest_followed_turn = 1;
 
+constexpr const char* from_polygons = "lowest minima of coarse polygons, downhill";
+constexpr const char* turned_little_by_little =
+    "stable shapes without twist, turned little by little";
+
 void check(const EnergyOptions& options) {
   require(options.terms >= 0 && options.terms <= max_terms, "solve_energy", "terms", options.terms,
           "0 to " + std::to_string(max_terms));
@@ -36,32 +42,9 @@ void check(const EnergyOptions& options) {
           ">= 1");
 }
 
-/// Tangents of an equilibrium as a span sees them.
-TangentField field_of(const Equilibrium& start, const PlacedSpan& placed, double length) {
-  return [&start, &placed, length](const Eigen::VectorXd& s) {
-    std::vector<double> arc_lengths;
-    arc_lengths.reserve(static_cast<std::size_t>(s.size()));
-    for (const double at : s) {
-      const double arc = placed.start + (placed.reversed ? -at : at) * length;
-      arc_lengths.push_back(std::clamp(arc, 0.0, length));
-    }
-    const Samples samples = start.sample(arc_lengths);
-    StartShape shape((placed.reversed ? -1.0 : 1.0) * (placed.frame * samples.tangents));
-    if (placed.span.has_material_directors() && samples.d1.cols() > 0) {
-      shape.roll = roll_of(shape.tangents, placed.frame * samples.d1);
-    }
-    return shape;
-  };
-}
-
-/// An equilibrium of a span, and the frame that it is found in.
-struct PlacedSolution {
-  PlacedSpan placed;
-  SpanSolution solution;
-};
-
 std::vector<Equilibrium> combine(const Problem& problem,
-                                 const std::vector<std::vector<PlacedSolution>>& solutions) {
+                                 const std::vector<std::vector<PlacedSolution>>& solutions,
+                                 SearchLog& log) {
   if (solutions.size() == 1 && solutions.front().size() == 1) {
     const PlacedSolution& only = solutions.front().front();
     std::vector<Equilibrium> result;
@@ -97,6 +80,8 @@ std::vector<Equilibrium> combine(const Problem& problem,
   if (lowest.truncated) {
     result.back().message += "; the " + std::to_string(most_combinations) +
                              " lowest combinations of the spans' equilibria, there are more";
+    log.leave_out("combinations of the spans' equilibria beyond the " +
+                  std::to_string(most_combinations) + " lowest");
   }
   return result;
 }
@@ -110,6 +95,7 @@ class EnergySolver::State {
   std::vector<Equilibrium> solve(const Problem& problem, bool all, bool follow) {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
+    log_ = {};
     std::vector<PlacedSpan> placed = split(problem);
     for (PlacedSpan& span : placed) {
       // Contact is not looked for where clamps twist the rod; judge_penetration() tells of it.
@@ -128,6 +114,7 @@ class EnergySolver::State {
       options.max_evaluations = options_.max_evaluations;
       options.all = all;
       options.deadline = deadline;
+      if (all) options.log = &log_;
       if (placed[i].frames) {
         RememberedTwist& memory = twists_[i];
         solutions.push_back(twisted(placed[i], problem, options, warm, memory));
@@ -139,12 +126,15 @@ class EnergySolver::State {
       solutions.push_back(solve_placed(placed[i], problem, options, options_.start, last));
       remember(solutions.back().front(), remembered_[i]);
     }
-    std::vector<Equilibrium> result = combine(problem, solutions);
+    std::vector<Equilibrium> result = combine(problem, solutions, log_);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
     return result;
   }
+
+  /// Of the last solve().
+  [[nodiscard]] const SearchLog& log() const { return log_; }
 
  private:
   /// A span's last solution, to go on from.
@@ -177,15 +167,27 @@ class EnergySolver::State {
       to.placed.span.planar = false;
       return to;
     };
-    const TwistedPart* part = options.all ? nullptr : known_part(placed, problem.length);
+    // A shape that is followed may be one that a bifurcation leaves open.
+    const auto is_known = [](const SpanSolution& solution) {
+      return solution.is_equilibrium() || solution.is_left_open();
+    };
+    const bool starts = options_.start != nullptr && !options.all;
+    const TwistedPart* part =
+        starts ? known_twist(*options_.start, placed, problem.length) : nullptr;
     const std::optional<Eigen::Vector3d> known_d1 = known_end_d1(held, placed.span);
     if (part && known_d1) {
       PlacedSolution to =
           from_shape(field_of(*options_.start, placed, problem.length), part->angle, known_d1);
-      if (to.solution.is_equilibrium()) return one(std::move(to));
+      if (is_known(to.solution)) return one(std::move(to));
     }
     const Remembered* last = warm && memory.untwisted.model ? &memory.untwisted : nullptr;
-    std::vector<PlacedSolution> untwisted = solve_placed(placed, problem, options, nullptr, last);
+    // What is found without twist is no result.
+    SearchLog without_twist;
+    SpanOptions untwisted_options = options;
+    if (options.log != nullptr) untwisted_options.log = &without_twist;
+    std::vector<PlacedSolution> untwisted =
+        solve_placed(placed, problem, untwisted_options, nullptr, last);
+    if (options.log != nullptr) options.log->add_starts(without_twist, ", without twist");
     remember(untwisted.front(), memory.untwisted);
     if (!succeeded(untwisted.front().solution.status)) return untwisted;
     const EndFrame frame = end_frame(held, untwisted_shape(untwisted.front().solution, workspace_));
@@ -195,7 +197,7 @@ class EnergySolver::State {
       PlacedSolution to =
           from_shape(field_of(*options_.start, placed, problem.length), part->angle, frame.d1);
       to.solution.evaluations += untwisted.front().solution.evaluations;
-      if (to.solution.is_equilibrium()) return one(std::move(to));
+      if (is_known(to.solution)) return one(std::move(to));
     }
     if (warm && memory.twisted.model && std::abs(turned) < largest_followed_turn && !options.all) {
       const auto field = [&placed, &memory](const Eigen::VectorXd& s) {
@@ -203,10 +205,16 @@ class EnergySolver::State {
       };
       PlacedSolution to = from_shape(field, memory.twist + turned, frame.d1);
       to.solution.evaluations += untwisted.front().solution.evaluations;
-      if (to.solution.is_equilibrium()) return one(std::move(to));
+      if (is_known(to.solution)) return one(std::move(to));
     }
     std::vector<PlacedSolution> found;
     int spent = 0;
+    if (options.log != nullptr) {
+      options.log->leave_out("unstable twisted shapes, and those that no stable one is turned to");
+      if (!problem.obstacles.empty()) {
+        options.log->leave_out("contact of what clamps twist");
+      }
+    }
     for (const PlacedSolution& from : untwisted) {
       if (!succeeded(from.solution.status)) continue;
       PlacedSolution to = from;
@@ -217,20 +225,15 @@ class EnergySolver::State {
       const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
         return other.solution.is_equilibrium() && is_same(to, other);
       });
+      if (options.log != nullptr) {
+        options.log->tried(turned_little_by_little);
+        if (!known && to.solution.is_equilibrium()) options.log->found(turned_little_by_little);
+      }
       if (!known) found.push_back(std::move(to));
     }
     sort(found);
     found.front().solution.evaluations = spent;
     return found;
-  }
-
-  /// What the shape to start from says of the twist of a span; null: nothing.
-  [[nodiscard]] const TwistedPart* known_part(const PlacedSpan& placed, double length) const {
-    if (options_.start == nullptr) return nullptr;
-    for (const TwistedPart& part : options_.start->twists) {
-      if (std::abs(part.begin - placed.start) < 1e-9 * length) return &part;
-    }
-    return nullptr;
   }
 
   /// @param shape, last  to start from, the first of them that is there, or neither
@@ -253,7 +256,9 @@ class EnergySolver::State {
     if (start && !options.all) {
       PlacedSolution followed =
           from_field(placed, start, options, shape != nullptr || (last && !last->planar()));
-      if (followed.solution.is_equilibrium()) return one(std::move(followed));
+      if (followed.solution.is_equilibrium() || followed.solution.is_left_open()) {
+        return one(std::move(followed));
+      }
       // The branch has ended, or the step was too large for it.
       spent = followed.solution.evaluations;
       options.least_terms = 0;
@@ -294,20 +299,34 @@ class EnergySolver::State {
   void add_polygon_minima(const PlacedSpan& placed, const Problem& problem,
                           const SpanOptions& options, std::vector<PlacedSolution>& found,
                           int& spent) {
-    if (!problem.obstacles.empty()) return;
+    if (!problem.obstacles.empty()) {
+      if (options.log != nullptr) {
+        options.log->leave_out("minima of coarse polygons, which know no obstacles");
+      }
+      return;
+    }
     for (const TangentField& field : polygon_fields(problem, placed, options.deadline)) {
-      if (options.deadline.passed()) return;
+      if (options.deadline.passed()) {
+        if (options.log != nullptr) options.log->leave_out("starts after the time limit");
+        return;
+      }
+      if (options.log != nullptr) options.log->tried(from_polygons);
       SpanOptions own = options;
       own.approach = Approach::descend;
+      own.log = nullptr;
       PlacedSolution solution = from_field(placed, field, own, true);
       spent += solution.solution.evaluations;
-      if (!solution.solution.is_equilibrium()) continue;
+      const auto counts = [&](const SpanSolution& one) {
+        return one.is_equilibrium() || (options.all && one.is_left_open());
+      };
+      if (!counts(solution.solution)) continue;
       const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
-        return other.solution.is_equilibrium() && is_same(solution, other);
+        return counts(other.solution) && is_same(solution, other);
       });
       if (known) continue;
-      if (!found.front().solution.is_equilibrium()) found.clear();
+      if (!counts(found.front().solution)) found.clear();
       found.push_back(std::move(solution));
+      if (options.log != nullptr) options.log->found(from_polygons);
       if (!options.all && succeeded(found.back().solution.status)) return;
     }
   }
@@ -383,6 +402,7 @@ class EnergySolver::State {
   }
 
   EnergyOptions options_;
+  SearchLog log_;
   SpanWorkspace workspace_;
   std::vector<Remembered> remembered_;
   std::vector<RememberedTwist> twists_;
@@ -402,12 +422,24 @@ Equilibrium EnergySolver::follow(const Problem& problem) {
   return std::move(state_->solve(problem, false, true).front());
 }
 
+EnergySearch EnergySolver::search(const Problem& problem) {
+  EnergySearch result;
+  result.equilibria = state_->solve(problem, true, false);
+  result.looked_from = state_->log().looked_from();
+  result.not_looked = state_->log().not_looked();
+  return result;
+}
+
 std::vector<Equilibrium> EnergySolver::solve_all(const Problem& problem) {
   return state_->solve(problem, true, false);
 }
 
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options) {
   return EnergySolver(options).solve(problem);
+}
+
+EnergySearch search_energy(const Problem& problem, const EnergyOptions& options) {
+  return EnergySolver(options).search(problem);
 }
 
 std::vector<Equilibrium> all_energy(const Problem& problem, const EnergyOptions& options) {

@@ -13,6 +13,7 @@
 #include "newton/penalty_descent.hpp"
 #include "newton/trust_region.hpp"
 #include "problem/segments.hpp"
+#include "search/search_log.hpp"
 #include "search/span_starts.hpp"
 #include "search/way_down.hpp"
 
@@ -41,6 +42,17 @@ constexpr std::size_t most_saddles = 8;
 
 /// Coefficients that resolve a layer over six of its lengths.
 constexpr int layer_terms = 20;
+
+constexpr const char* left_downhill = "unstable equilibria, left downhill";
+constexpr const char* out_of_plane = "the same and others, out of the plane";
+
+/// What start_fields() and natural_fields() are, in words.
+std::string starts_of(const Span& span) {
+  const std::string plain = span.holds.empty() && span.start_direction
+                                ? "shapes of a soft rod below its clamp"
+                                : "arches, S-shapes and loops between grips";
+  return span.has_material_directors() ? "the free rod's shape, " + plain : plain;
+}
 
 /// Whether the lowest of the equilibria found can hold itself.
 bool has_stable_lowest(const std::vector<SpanSolution>& found) {
@@ -110,6 +122,7 @@ class Search {
         span_.has_material_directors() ? followed_natural_starts : followed_starts;
     const std::size_t followed = options_.all ? starts.size() : std::min(tried, starts.size());
     std::vector<SpanSolution> coarse;
+    const std::string kind = starts_of(span_);
     for (std::size_t i = 0; i < starts.size() && !out_of_time(); ++i) {
       // The other starts only where the first ones and what they lead to do not hold.
       if (i >= followed && has_stable_lowest(found)) break;
@@ -118,17 +131,39 @@ class Search {
       solution.evaluations = 0;
       if (!is_known(solution, coarse)) {
         coarse.push_back(solution);
-        add(refined(std::move(solution)), found);
+        note(kind + ", downhill", add(refined(std::move(solution)), found));
+      } else {
+        note(kind + ", downhill", false);
       }
       // Descending leaves unstable equilibria; Newton's method alone stays near them.
-      if (options_.all) add(refined(near_field(starts[i].field)), found);
+      if (options_.all) {
+        note(kind + ", by Newton's method", add(refined(near_field(starts[i].field)), found));
+      }
       if (i + 1 >= followed) leave_saddles(found);
     }
     if (span_.planar && span_.has_material_directors()) look_in_space(found);
+    if (options_.log != nullptr) tell_what_was_left_out(found);
     return sorted(std::move(found));
   }
 
  private:
+  /// Of one start.
+  void note(const std::string& strategy, bool is_new) const {
+    if (options_.log == nullptr) return;
+    options_.log->tried(strategy);
+    if (is_new) options_.log->found(strategy);
+  }
+
+  void tell_what_was_left_out(const std::vector<SpanSolution>& found) const {
+    if (out_of_time()) options_.log->leave_out("starts after the time limit");
+    const auto not_left = std::count_if(
+        found.begin() + static_cast<std::ptrdiff_t>(std::min(left_, found.size())), found.end(),
+        [](const SpanSolution& solution) { return solution.status == SolveStatus::saddle; });
+    if (left_ < most_saddles || not_left == 0) return;
+    options_.log->leave_out(std::to_string(not_left) + " unstable equilibria, beyond the first " +
+                            std::to_string(most_saddles) + " found, which were not left downhill");
+  }
+
   [[nodiscard]] int terms() const {
     if (options_.terms > 0) return options_.terms;
     const int layers = taut_ ? layer_terms : 0;
@@ -215,9 +250,17 @@ class Search {
     if (!options_.all && std::none_of(found.begin(), found.end(), is_saddle)) return;
     Span space = span_;
     space.planar = false;
-    for (SpanSolution& solution : Search(space, options_, workspace_).run()) {
-      add(std::move(solution), found);
+    SearchLog own;
+    SpanOptions options = options_;
+    if (options_.log != nullptr) options.log = &own;
+    int first = 0;
+    for (SpanSolution& solution : Search(space, options, workspace_).run()) {
+      if (add(std::move(solution), found)) ++first;
     }
+    if (options_.log == nullptr) return;
+    options_.log->tried(out_of_plane, own.starts());
+    options_.log->found(out_of_plane, first);
+    for (const std::string& what : own.not_looked()) options_.log->leave_out(what);
   }
 
   /// From a field to an equilibrium, with as many terms as it takes to meet the grips.
@@ -397,21 +440,29 @@ class Search {
   }
 
   /// Keeps an equilibrium that is not known yet, or the first failure until there is one.
-  void add(SpanSolution solution, std::vector<SpanSolution>& found) {
+  /// @return whether it is such an equilibrium
+  bool add(SpanSolution solution, std::vector<SpanSolution>& found) {
     spent_ += solution.evaluations;
     certify(solution, load_);
-    if (!solution.is_equilibrium()) {
+    if (!counts(solution)) {
       if (found.empty()) found.push_back(std::move(solution));
-      return;
+      return false;
     }
-    if (!found.empty() && !found.front().is_equilibrium()) found.clear();
-    if (!is_known(solution, found)) found.push_back(std::move(solution));
+    if (!found.empty() && !counts(found.front())) found.clear();
+    if (is_known(solution, found)) return false;
+    found.push_back(std::move(solution));
+    return true;
   }
 
-  [[nodiscard]] static bool is_known(const SpanSolution& solution,
-                                     const std::vector<SpanSolution>& found) {
+  /// Among all equilibria those that a fold or a bifurcation leaves open count too.
+  [[nodiscard]] bool counts(const SpanSolution& solution) const {
+    return solution.is_equilibrium() || (options_.all && solution.is_left_open());
+  }
+
+  [[nodiscard]] bool is_known(const SpanSolution& solution,
+                              const std::vector<SpanSolution>& found) const {
     return std::any_of(found.begin(), found.end(), [&](const SpanSolution& other) {
-      return other.is_equilibrium() && is_same_shape(solution, other);
+      return counts(other) && is_same_shape(solution, other);
     });
   }
 
@@ -421,7 +472,7 @@ class Search {
       if (!options_.all && has_stable_lowest(found)) return;
       if (found[left_].status != SolveStatus::saddle) continue;
       std::optional<SpanSolution> lower = leave_saddle(found[left_]);
-      if (lower) add(std::move(*lower), found);
+      if (lower) note(left_downhill, add(std::move(*lower), found));
     }
   }
 

@@ -13,6 +13,8 @@
 
 namespace dlo::energy_model {
 
+class SearchLog;
+
 /// Starts, in the order of their energy, that the search for the lowest minimum follows.
 inline constexpr std::size_t followed_starts = 2;
 /// The same of a rod with material directors, whose lowest shape is harder to guess.
@@ -47,6 +49,7 @@ struct SpanOptions {
   KnownShape known;                      ///< what `start` shows, if it is a span's solution
   int least_terms = 0;                   ///< what resolves the start
   Deadline deadline;                     ///< of the whole solve
+  SearchLog* log = nullptr;              ///< of a search for all, if it is asked for
 };
 
 /// Buffers that survive a solve: models that no solution holds any more are used again.

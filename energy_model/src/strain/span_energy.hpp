@@ -89,6 +89,15 @@ class SpanEnergy {
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
   [[nodiscard]] Energies energies(const Eigen::VectorXd& x);
 
+  [[nodiscard]] const Piece& piece(Eigen::Index index) const {
+    return pieces_[static_cast<std::size_t>(index)];
+  }
+  /// On which the nodes of each piece lie.
+  [[nodiscard]] const LegendreTable& table() const { return *table_; }
+  /// Derivatives of the tangents at the nodes by the unknowns but for the twist psi, at the point
+  /// of the last value(): components x, y and z, nodes x unknowns.
+  [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian();
+
   [[nodiscard]] bool has_soft_obstacles() const { return soft_contact_.any(); }
   [[nodiscard]] SoftContact& soft_contact() { return soft_contact_; }
   [[nodiscard]] const SoftContact& soft_contact() const { return soft_contact_; }
@@ -147,7 +156,6 @@ class SpanEnergy {
   void list_director_rows();
   [[nodiscard]] DirectorMiss miss_of(const DirectorRow& row) const;
   void add_twist_hessian(double factor, Eigen::MatrixXd& result);
-  [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian();
 
   Span span_;
   int terms_ = 0;

@@ -27,6 +27,8 @@ struct [[nodiscard]] SpanSolution {
   bool resolved = false;  ///< more terms would not change the shape, or the caller chose them
   /// Eigenvalue of the projected second variation, sideways included; NaN: not looked at.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
+  /// Of them, those that are zero to the tolerance and no free turn's; near_singular if any.
+  int neutral_directions = 0;
   std::shared_ptr<SpanEnergy> model;
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;
@@ -38,6 +40,10 @@ struct [[nodiscard]] SpanSolution {
   void fail(std::string why) {
     status = SolveStatus::failed;
     message = std::move(why);
+  }
+  /// A shape that a fold or a bifurcation leaves open, as certify() has found.
+  [[nodiscard]] bool is_left_open() const {
+    return status == SolveStatus::near_singular && neutral_directions > 0;
   }
   /// Why a shape that is not `resolved` is no result.
   [[nodiscard]] std::string too_few_terms() const {

@@ -177,7 +177,7 @@ TEST_F(CalibrateCommand, SaysThatErrorsAreCorrelatedInEveryFormat) {
   EXPECT_FALSE(not_said.at("errors_are_correlated").get<bool>());
   EXPECT_TRUE(not_said.at("correlation").is_null());
   EXPECT_NE(text(wave, "csv").find(",true,"), std::string::npos);
-  EXPECT_NE(text(noise, "csv").find(",false,,,,\n"), std::string::npos);
+  EXPECT_NE(text(noise, "csv").find(",false,,,,,,,\n"), std::string::npos);
 }
 
 TEST_F(CalibrateCommand, AColumnSInMetresBesideMillimetresIsRead) {
@@ -311,6 +311,27 @@ TEST_F(CalibrateCommand, EveryFormatIsWritten) {
               std::count(row.begin(), row.end(), ','));
     EXPECT_NE(run(words({arguments, "--format toml"})).out.find("# "), std::string::npos);
   }
+}
+
+// Shapes of a light wire tell GJ / EI, but neither of the two.
+TEST_F(CalibrateCommand, TellsHowStiffAWireIsAgainstTwist) {
+  const std::string scene = std::string(DLO_DATA) + "/scenes/twisted_wire.toml";
+  const std::string shape = path("seen.csv");
+  ASSERT_EQ(run(words({"solve", scene, "--samples 20 --format csv -o", shape})).status, 0);
+  const std::string fit =
+      words({"calibrate", scene, "--shape", shape, "--torsional-stiffness --noise \"0.2 mm\""});
+  const json document = json::parse(run(fit + " --format json").out);
+  EXPECT_TRUE(document.at("torsional_stiffness_Nm2").is_null());
+  EXPECT_EQ(document.at("torsional_stiffness_interval_95_Nm2").size(), 2U);
+  EXPECT_NEAR(document.at("torsional_over_bending_stiffness").get<double>(), 0.00793 / 0.0103084,
+              1e-4);
+  const std::string text = run(fit).out;
+  for (const char* part : {"GJ          not told, 95 %: ", "GJ / EI     0.76928, 95 %: "}) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  }
+  const std::string straight = scene_of("a.toml", "5 GPa", 0);
+  expect_error(words({"calibrate", straight, "--torsional-stiffness --shape", shape}), 2,
+               {"torsional stiffness", "two clamps"});
 }
 
 TEST_F(CalibrateCommand, BadInputIsOneLineAndStatusTwo) {

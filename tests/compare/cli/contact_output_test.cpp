@@ -44,7 +44,9 @@ TEST_F(ContactCommand, CompareSaysWhatTouchesAsSolveDoes) {
   EXPECT_EQ(contacts[0].at("kind"), "lying");
   EXPECT_NEAR(contacts[0].at("from_m").get<double>(),
               solved.at("contacts")[0].at("from_m").get<double>(), 1e-8);
+  EXPECT_GT(document.at("cases").at(0).at("budget").at("contact_m").get<double>(), 0);
   const Outcome text = run("compare --no-modulus " + lying());
+  EXPECT_NE(text.out.find("\n                  contact  "), std::string::npos) << text.out;
   EXPECT_NE(text.out.find("\n  contact         obstacle 2, lying from s = "), std::string::npos)
       << text.out;
 }

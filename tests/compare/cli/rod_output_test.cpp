@@ -5,6 +5,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "command_fixture.hpp"
@@ -44,6 +45,30 @@ TEST_F(RodCommand, SolveSaysThatTheTorsionalStiffnessIsAssumed) {
   }
   const json straight = json::parse(run("solve --format json " + by_stiffness("0.08")).out);
   EXPECT_FALSE(straight.contains("assumed"));
+}
+
+TEST_F(RodCommand, SolveShowsARodThatIsAboutToBuckleAndInHowManyDirectionsItIsLeftOpen) {
+  constexpr double self_buckling = 7.837347;
+  std::ostringstream upright;
+  upright.precision(17);
+  upright << "gravity = [0, -9.81, 0]\n[rod]\nlength = 1\nmass_per_length = 0.045\n"
+          << "bending_stiffness = " << 0.045 * 9.81 / (self_buckling * (1 - 1e-9))
+          << "\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = [0, 1, 0]\n";
+  const std::string file = scene(upright.str());
+  const Outcome text = run("solve " + file);
+  EXPECT_EQ(text.status, 3);
+  const std::string why = "next to a fold or bifurcation: 2 neutral directions";
+  EXPECT_NE(text.out.find("model      energy, " + why + "\n"), std::string::npos) << text.out;
+  EXPECT_NE(text.err.find(why), std::string::npos) << text.err;
+  const Outcome document = run("solve --format json " + file);
+  EXPECT_EQ(document.status, 3);
+  const json result = json::parse(document.out);
+  EXPECT_EQ(result.at("status"), "near_singular");
+  EXPECT_EQ(result.at("converged"), false);
+  EXPECT_EQ(result.at("neutral_directions"), 2);
+  EXPECT_GT(result.at("error_estimate_over_length").get<double>(), 0);
+  EXPECT_FALSE(json::parse(run("solve --format json " + by_stiffness("0.08")).out)
+                   .contains("neutral_directions"));
 }
 
 TEST_F(RodCommand, ComparesByTheStiffnessThatIsGiven) {

@@ -86,7 +86,15 @@ TEST_F(SceneOptions, OfTheSolversDoWhatTheySay) {
                                            "{ youngs_modulus = \"0.2 GPa\", density = 7850 }"));
   const Outcome all = run("solve " + soft + " --all --format json");
   ASSERT_EQ(all.status, 0) << all.err;
-  EXPECT_GT(json::parse(all.out).at("equilibria").size(), 1U) << all.out;
+  const json search = json::parse(all.out);
+  EXPECT_GT(search.at("equilibria").size(), 1U) << all.out;
+  // Each is the first find of one start.
+  std::size_t found_first = 0;
+  for (const json& strategy : search.at("looked_from")) {
+    found_first += strategy.at("found_first").get<std::size_t>();
+  }
+  EXPECT_EQ(found_first, search.at("equilibria").size());
+  EXPECT_TRUE(search.at("not_looked").empty()) << all.out;
   expect_error("solve " + soft + " --all --model chain", 2, {"--all", "energy"});
 }
 

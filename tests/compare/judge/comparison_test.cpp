@@ -296,7 +296,7 @@ TEST_P(BudgetOf, AddsUpToTheTotal) {
     const Comparison c = compare(scene);
     const Budget& b = c.budget;
     const double parts = b.law.share + b.bookkeeping.share + b.discretisation.share +
-                         b.stretch.share + b.not_at_rest.share;
+                         b.stretch.share + b.contact.share + b.not_at_rest.share;
     EXPECT_NEAR(parts + b.interaction.share, 1, 1e-9) << points;
     // The total of the budget is the deviation, on other arc lengths.
     EXPECT_NEAR(b.total_m, c.deviation.rms_m, 0.05 * c.deviation.rms_m) << points;
@@ -378,7 +378,7 @@ TEST(Comparison, TheBudgetBetweenTwoClampsAddsUp) {
   EXPECT_EQ(c.effective_modulus.why_none, "skipped");
   const Budget& b = c.budget;
   const double parts = b.law.share + b.bookkeeping.share + b.discretisation.share +
-                       b.stretch.share + b.not_at_rest.share;
+                       b.stretch.share + b.contact.share + b.not_at_rest.share;
   EXPECT_NEAR(parts + b.interaction.share, 1, 1e-9);
   EXPECT_NEAR(b.total_m, c.deviation.rms_m, 0.05 * c.deviation.rms_m);
   EXPECT_NEAR(parts, 1, 0.02);

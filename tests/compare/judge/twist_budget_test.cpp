@@ -28,7 +28,8 @@ Scene twisted_scene() {
 
 double sum_of_shares(const Budget& b) {
   return b.twist.share + b.natural_curvature.share + b.law.share + b.bookkeeping.share +
-         b.discretisation.share + b.stretch.share + b.not_at_rest.share + b.interaction.share;
+         b.discretisation.share + b.stretch.share + b.contact.share + b.not_at_rest.share +
+         b.interaction.share;
 }
 
 TEST(Budget, TellsWhatTwistThatIsLeftOutCosts) {

@@ -54,7 +54,11 @@ constexpr UnitCase unit_cases[] = {
     {Dimension::foundation, "N/m^2", 1, none},
     {Dimension::foundation, "N/mm^2", none, 1000.0 * 1000},
     {Dimension::section_stiffness, "N m^2", 1, none},
-    {Dimension::section_stiffness, "N mm^2", 1000.0 * 1000, none}};
+    {Dimension::section_stiffness, "N mm^2", 1000.0 * 1000, none},
+    {Dimension::joint_stiffness, "N m/rad", 1, none},
+    {Dimension::joint_stiffness, "N m", 1, none},
+    {Dimension::joint_stiffness, "N mm/rad", 1000, none},
+    {Dimension::joint_stiffness, "N mm", 1000, none}};
 
 TEST(Quantity, EveryUnitHasItsFactor) {
   std::map<Dimension, std::string> tested;
@@ -70,7 +74,7 @@ TEST(Quantity, EveryUnitHasItsFactor) {
   for (const Dimension dimension :
        {Dimension::number, Dimension::length, Dimension::angle, Dimension::pressure,
         Dimension::density, Dimension::force, Dimension::acceleration, Dimension::curvature,
-        Dimension::foundation, Dimension::section_stiffness}) {
+        Dimension::foundation, Dimension::section_stiffness, Dimension::joint_stiffness}) {
     EXPECT_EQ(tested[dimension], known_units(dimension));
   }
 }

@@ -111,6 +111,23 @@ TEST(ScenesRod, SaysWhatIsMissingOrTooMuch) {
       {"rod.bending_stiffness", "E A = inf"});
 }
 
+TEST(ScenesRod, TakesTheJointsOfAChain) {
+  const std::string chain = "[rod]\nlength = 2\nmass_per_length = \"20 g/m\"\n";
+  const Scene scene =
+      scene_of(chain + "joint_stiffness = \"30 N mm/rad\"\njoint_spacing = \"4 cm\"\n" + clamp);
+  EXPECT_DOUBLE_EQ(scene.bending_stiffness(), 1.2e-3);
+  EXPECT_EQ(scene.stiffness().name, std::string("EI"));
+  expect_message(chain + "joint_stiffness = 1\n" + clamp, {"rod.joint_spacing: missing", "both"});
+  expect_message(chain + "joint_spacing = 1\n" + clamp, {"rod.joint_stiffness: missing", "both"});
+  expect_message(chain + "joint_spacing = \"3 m\"\njoint_stiffness = 1\n" + clamp,
+                 {"rod.joint_spacing = ", "to 2 m"});
+  expect_message(
+      chain + "bending_stiffness = 1\njoint_spacing = 0.1\njoint_stiffness = 1\n" + clamp,
+      {"rod.bending_stiffness = 1", "EI is given twice"});
+  expect_message("[rod]\nlength = 2\njoint_spacing = 0.1\njoint_stiffness = 1\n" + clamp,
+                 {"rod.mass_per_length: missing", "beside joint_stiffness"});
+}
+
 const std::string sections_text = R"([[section]]
 from = "120 cm"
 to = 2

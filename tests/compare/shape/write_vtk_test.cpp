@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -59,6 +60,22 @@ TEST(VtkPolyline, IsReadBackExactly) {
             .points,
         shape.points);
   }
+}
+
+// Clamps that twist a straight rod show in its frame, which is where they hold it.
+TEST(VtkPolyline, HasTheFrameOfATwistedRod) {
+  Scene scene = loaded_arch();
+  scene.torsional_stiffness = scene.bending_stiffness();
+  for (Gripper& gripper : scene.grippers) {
+    gripper.frame = FrameHold{.d1 = Eigen::Vector3d::UnitZ()};
+  }
+  scene.grippers[1].frame->roll = 1;
+  const Solution twisted = solve(scene, Model::energy);
+  const std::string text = vtk_polyline(twisted.shape, fields_of(twisted), "arch");
+  EXPECT_NE(text.find("d1 3 101 double\n"), std::string::npos);
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ();
+  EXPECT_NEAR(twisted.d1.col(0).dot(z), 1, 1e-9);
+  EXPECT_NEAR(twisted.d1.rightCols<1>().dot(z), std::cos(1), 1e-9);
 }
 
 // A spring that hangs in space shows how it is turned; a straight rod has no frame to show.

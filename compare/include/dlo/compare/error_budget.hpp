@@ -24,10 +24,15 @@ struct BudgetPart {
 ///     discretisation  chain(hooke, consistent, rigid) - rod without what is left out
 ///     bookkeeping     chain(hooke, the scene's, rigid) - chain(hooke, consistent, rigid)
 ///     law             chain(the scene's, consistent, rigid) - chain(hooke, consistent, rigid)
-///     stretch         chain(the scene's, the scene's, c_c)
+///     stretch         chain(the scene's, the scene's, c_c), rigid obstacles as under "rigid"
 ///                     - chain(the scene's, the scene's, rigid)
+///     contact         chain(the scene's, the scene's, c_c)
+///                     - the same with rigid obstacles as under "rigid"
 ///     not at rest     force model - force model after Newton's step to rest
 ///     interaction     what is left of force model - rod
+/// A rigid obstacle gives way to a polygon by a stiffness that is c_c's (discretise), so a "rigid"
+/// chain is on obstacles of 100 AE, and the part `contact` is what the force model's own cost. That
+/// a polygon touches with its points and segments, not with a curve, is discretisation.
 /// Law and bookkeeping are switched from the better model, so that neither hides behind the other;
 /// what they do together beyond the sum of both is interaction, and so are the second order of
 /// "not at rest" and the net torque of the paper's law between unequal segments, which no potential
@@ -40,6 +45,7 @@ struct Budget {
   BudgetPart natural_curvature;
   BudgetPart discretisation;  ///< see above
   BudgetPart stretch;         ///< see above
+  BudgetPart contact;         ///< see above; zero where no rigid obstacle is touched
   BudgetPart not_at_rest;     ///< see above
   BudgetPart interaction;     ///< see above
   double total_m = 0;         ///< RMS of force model - rod

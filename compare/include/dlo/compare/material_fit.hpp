@@ -20,6 +20,8 @@ struct MaterialFitOptions {
   /// `automatic` is the file's own, else nearest points: chord lengths are not exact enough.
   ArcLengths arc_lengths = ArcLengths::automatic;
   bool density = false;  ///< fitted as well
+  /// GJ is fitted as well, of scenes that twist the rod.
+  bool torsional_stiffness = false;
   /// Terms of the natural curvature that are fitted as well, as Legendre's P_0, P_1, .. of
   /// 2 s/l - 1: 0 to 24. In a plane about its normal, else about d1 and d2.
   int natural_curvature_terms = 0;
@@ -103,6 +105,11 @@ struct MaterialFit {
   /// [kg/m^3], if it was asked for and could be fitted; of a rod that is given by its mass per
   /// length that [kg/m] (Scene::heaviness).
   std::optional<FittedValue> density;
+  /// GJ of the first scene [N m^2], if it was asked for.
+  std::optional<FittedValue> torsional_stiffness;
+  /// GJ / EI of the first scene [-], if GJ was asked for: shapes may tell it where weight is too
+  /// little to tell either; EI the mean of two.
+  std::optional<FittedValue> torsion_over_bending;
   /// What the shapes do not tell, and why; empty if all is told.
   std::string not_told;
   /// Why the fit is not to be believed: residuals far above the given noise (chance 1e-3), or above
@@ -160,11 +167,12 @@ struct MaterialFit {
 ///
 /// Between several grippers, equilibria are followed from one E to the next.
 ///
-/// With natural curvature, directions or positions to be fitted too, all numbers are found together
-/// by Gauss-Newton steps from that E, in generalised least squares under the errors' covariance;
-/// what is known before (the tolerances; of each term of natural curvature a standard deviation of
-/// 10 / l) counts as measured. The interval of E then is that of the profile likelihood in which
-/// the others' effect is linear about the optimum.
+/// With torsional stiffness, natural curvature, directions or positions to be fitted too, all
+/// numbers are found together by Gauss-Newton steps from that E, in generalised least squares under
+/// the errors' covariance; what is known before (the tolerances; of each term of natural curvature
+/// a standard deviation of 10 / l; of GJ / EI, where the scene's is a guess, a factor of ten)
+/// counts as measured. The interval of E then is that of the profile likelihood in which the
+/// others' effect is linear about the optimum, that of GJ is linear altogether.
 ///
 /// Two shapes or more are asked whether they agree on E within their errors; where they do not, the
 /// interval is that of their mean under a scatter between shapes (Paule and Mandel's estimate, with

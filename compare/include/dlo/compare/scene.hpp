@@ -39,6 +39,7 @@ struct Gripper {
 struct PointLoad {
   double at = 0;                                    ///< arc length [m]
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< [N]; of a mass in the file, its weight
+  double mass = 0;                                  ///< [kg], of what hangs there and would move
 
   /// In every field.
   bool operator==(const PointLoad&) const = default;
@@ -187,6 +188,8 @@ struct Scene {
   /// Multiplies E, and EI and GJ with it, those of sections too: their ratios are those of
   /// Poisson's ratio and of the sections' shapes.
   void scale_modulus(double factor);
+  /// Multiplies GJ, that of sections too; an assumed one is then given.
+  void scale_torsion(double factor);
   /// Multiplies the density, and all given masses per length with it.
   void scale_density(double factor);
 

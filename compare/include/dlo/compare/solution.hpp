@@ -37,7 +37,7 @@ struct SolveOptions {
   long max_steps = 20'000'000;   ///< of the force model
   double time_limit = 20;        ///< of each solve of a model [s], > 0
   double rest_tolerance = 1e-7;  ///< of the force model, share of the rod's length
-  /// Take a shape of the energy model whose status is `not_resolved`, to show it with that status;
+  /// Take a shape whose status is `not_resolved` or `near_singular`, to show it with that status;
   /// nothing may be concluded from it.
   bool accept_unresolved = false;
   /// Of the energy model: an equilibrium of a similar scene to follow, instead of the lowest.
@@ -65,11 +65,12 @@ struct GripperLoad {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
 };
 
-/// A shape and what it cost. Only converged shapes are returned, and those that are not resolved to
-/// whoever accepts them (SolveOptions::accept_unresolved).
+/// A shape and what it cost. Only converged shapes are returned, and those that are not resolved or
+/// near singular to whoever accepts them (SolveOptions::accept_unresolved).
 struct Solution {
   Model model = Model::energy;  ///< that solved it
-  /// `converged`, `roundoff_limited` or `not_resolved`; of solve_all() `saddle` too.
+  /// `converged`, `roundoff_limited`, `not_resolved` or `near_singular`; of solve_all() `saddle`
+  /// too.
   energy_model::SolveStatus status = energy_model::SolveStatus::converged;
   std::string message;     ///< how the solver ended
   double penetration = 0;  ///< of energy: Equilibrium::penetration [m]
@@ -93,6 +94,8 @@ struct Solution {
   std::vector<std::string> left_out;
   /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
+  /// Of a `near_singular` one of energy: directions in which a fold or bifurcation leaves it open.
+  int neutral_directions = 0;
   long evaluations = 0;   ///< of minimisers; shots of exact
   long steps = 0;         ///< of force
   int terms = 0;          ///< curvature coefficients of energy

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/energy_model/energy.hpp"
 
 namespace dlo::compare {
 
@@ -14,9 +16,16 @@ namespace dlo::compare {
 [[nodiscard]] Solution solve(const Scene& scene, Model model, const SolveOptions& options = {},
                              const std::vector<double>& arc_lengths = {});
 
-/// Every equilibrium that the energy model finds, stable ones first, by energy; an unstable one has
-/// a negative smallest_curvature. @throws InputError, ConvergenceError
-[[nodiscard]] std::vector<Solution> solve_all(const Scene& scene, const SolveOptions& options = {},
-                                              const std::vector<double>& arc_lengths = {});
+/// What a search for all equilibria has found, and as energy_model::EnergySearch from where.
+struct AllSolutions {
+  std::vector<Solution> solutions;                        ///< stable ones first, by energy
+  std::vector<energy_model::SearchStrategy> looked_from;  ///< each kind of start
+  std::vector<std::string> not_looked;                    ///< what was cut short or left out
+};
+
+/// Every equilibrium that the energy model finds; an unstable one has a negative
+/// smallest_curvature. @throws InputError, ConvergenceError
+[[nodiscard]] AllSolutions solve_all(const Scene& scene, const SolveOptions& options = {},
+                                     const std::vector<double>& arc_lengths = {});
 
 }  // namespace dlo::compare

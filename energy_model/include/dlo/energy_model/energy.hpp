@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "dlo/energy_model/equilibrium.hpp"
@@ -70,8 +71,29 @@ struct EnergyOptions {
 /// @throws std::invalid_argument if the problem or an option is out of range, with the numbers
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 
-/// Every equilibrium that the search's starts lead to, stable ones first, by energy; unstable ones
-/// have the status `saddle`. Never empty.
+/// A kind of start that a search for all equilibria has looked from.
+struct SearchStrategy {
+  std::string name;     ///< in words: the start, and how it is left
+  int tried = 0;        ///< starts
+  int found_first = 0;  ///< equilibria that no start before had led to
+};
+
+/// What a search for all equilibria has found, from where, and what it may have missed. A search
+/// proves nothing of what it has not found.
+struct EnergySearch {
+  /// Stable ones first, by energy; unstable ones have the status `saddle`, those at a fold or
+  /// bifurcation `near_singular`. Never empty.
+  std::vector<Equilibrium> equilibria;
+  /// In the order of their first use. Spans count each on their own; their equilibria are combined
+  /// to those of the rod.
+  std::vector<SearchStrategy> looked_from;
+  std::vector<std::string> not_looked;  ///< what was cut short or left out, and why; in words
+};
+
+/// Every equilibrium that the search's starts lead to, and what these were.
+[[nodiscard]] EnergySearch search_energy(const Problem& problem, const EnergyOptions& options = {});
+
+/// Its equilibria alone.
 [[nodiscard]] std::vector<Equilibrium> all_energy(const Problem& problem,
                                                   const EnergyOptions& options = {});
 
@@ -92,6 +114,8 @@ class EnergySolver {
   /// From the shape of the last call instead of a search, if it had one: for a gripper that has
   /// moved a little. Follows its branch, so that snapping shows where it ends.
   Equilibrium follow(const Problem& problem);
+  /// search_energy().
+  [[nodiscard]] EnergySearch search(const Problem& problem);
   /// all_energy().
   [[nodiscard]] std::vector<Equilibrium> solve_all(const Problem& problem);
 

@@ -125,7 +125,10 @@ struct Samples {
   Eigen::Matrix3Xd points;         ///< [m], 3 x M
   Eigen::Matrix3Xd tangents;       ///< unit, along growing arc length [-], 3 x M
   Eigen::Matrix3Xd curvature;      ///< derivative of the tangent by arc length [1/m], 3 x M
-  /// First director of a rod that has_material_directors(), 3 x M; empty of others.
+  /// First director of the rod's material, unit and across the tangent, 3 x M: of a rod that
+  /// has_material_directors(), and from solve_energy() of a round straight one that clamps twist.
+  /// Clamps that hold a frame have it where they hold it; what holds none is not twisted, and a
+  /// frame without d1 at the begin has any. Empty of others.
   Eigen::Matrix3Xd d1;
 };
 

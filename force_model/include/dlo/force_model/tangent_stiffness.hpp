@@ -7,6 +7,18 @@
 
 namespace dlo::force_model {
 
+/// Minus the derivative of the total forces on the free points by their positions, symmetric.
+struct StiffnessMatrix {
+  std::vector<Eigen::Index> points;  ///< that no rigid grip holds
+  Eigen::MatrixXd entries;           ///< x, y, z of each of these points in turn [N/m]
+};
+
+/// Of a rod without natural turns, with what tension, pressure and twist add. O(N^2) in memory.
+/// @param points  [m], 3 x rod.points()
+/// @throws std::invalid_argument if a shape or number is out of range, or the rod has natural turns
+[[nodiscard]] StiffnessMatrix tangent_stiffness(const Rod& rod,
+                                                const Eigen::Ref<const Eigen::Matrix3Xd>& points);
+
 /// What a shape's tangent stiffness says about its distance from equilibrium.
 struct [[nodiscard]] EquilibriumCheck {
   /// The stiffness of the free points is positive definite, by more than rounding, but for

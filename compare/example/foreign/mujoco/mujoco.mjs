@@ -1,0 +1,140 @@
+#!/usr/bin/env node
+// A scene as MuJoCo solves it, for dlo bench and dlo regress (compare/doc/protocol.md).
+//
+//     mujoco.mjs SCENE SHAPE [MODEL.XML]
+//
+// SCENE is what `dlo scene --format json` writes, SHAPE becomes a CSV file of the rod's axis; MODEL.XML, where it is
+// named, what MuJoCo was given. Needs MuJoCo as WebAssembly: `npm install` in this folder.
+//
+// Bodies are the segments of the scene's `force_model`, with ball joints of stiffness EI/h at its hinges; the first
+// segment is held, a second clamp is an equality constraint (weld) of the last. Only the shape at rest is asked for,
+// which masses have no part in: all bodies have the same, weight is a force on the points, and motion is stopped whenever
+// it has lost speed. A ball joint's spring turns back along the rotation vector with one stiffness for bending and
+// twist: for a rod with GJ < EI a hinge about the segment lies in series with it.
+
+import { readFileSync, writeFileSync } from 'node:fs';
+import load from '@mujoco/mujoco';
+
+const MASS = 1; // [kg] of each body
+const STEPS = 1e6;
+const AT_REST = 1e-13; // turn within a step [rad], at the moment of the highest speed
+
+const fail = (why) => {
+  console.error(`mujoco.mjs: ${why}`);
+  process.exit(1);
+};
+const minus = (a, b) => a.map((x, i) => x - b[i]);
+const cross = (a, b) => [0, 1, 2].map((i) => a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3]);
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const product = ([w, ...v], [u, ...r]) => {
+  const c = cross(v, r);
+  return [w * u - dot(v, r), ...v.map((x, i) => w * r[i] + u * x + c[i])];
+};
+const inverse = ([w, x, y, z]) => [w, -x, -y, -z];
+/** The shortest turn of direction a to direction b. */
+const shortestTurn = (a, b) => {
+  const scale = Math.hypot(...a) * Math.hypot(...b);
+  const w = Math.sqrt((1 + dot(a, b) / scale) / 2);
+  return [w, ...cross(a, b).map((x) => x / (2 * w * scale))];
+};
+
+function readChain(scene) {
+  const { force_model: model, grippers, rod } = scene;
+  const [first, second] = grippers;
+  if (model.refused) fail(model.refused);
+  if (grippers.length > 2 || grippers.some((grip) => grip.hold !== 'clamp') || first.at_m !== 0 ||
+      (second && (second.at_m !== rod.length_m || minus(second.direction, first.direction).some((x) => x))))
+    fail('only a clamp at arc length 0, and a second one, parallel to it, at the end');
+  if (rod.natural_curvature_per_m.length || scene.obstacles.length) fail('only straight rods without obstacles');
+  const roll = second?.frame ? second.frame.roll_rad - first.frame.roll_rad : 0;
+  const [EI, GJ] = [rod.bending_stiffness_Nm2[0], rod.torsional_stiffness_Nm2 ?? rod.bending_stiffness_Nm2[0]];
+  if (roll && (rod.sections.length || GJ > EI)) fail('twist only of a rod without sections, with GJ <= EI');
+  // The frame that does not twist along the polygon, and then the twist spread evenly.
+  const start = model.start_m;
+  let along = first.direction;
+  let frame = shortestTurn([1, 0, 0], along);
+  const frames = model.segment_m.map((_, i) => {
+    const next = minus(start[i + 1], start[i]);
+    frame = product(shortestTurn(along, next), frame);
+    along = next;
+    const half = (roll / 2) * (i / (model.segment_m.length - 1));
+    return product(frame, [Math.cos(half), Math.sin(half), 0, 0]);
+  });
+  const hinges = model.joint_stiffness_Nm.map((bend) => ({
+    bend,
+    series: roll && GJ < EI ? (bend * GJ) / (EI - GJ) : 0, // 1 / (EI/h) + 1 / series = 1 / (GJ/h)
+  }));
+  return { at: model.point_at_m, segment: model.segment_m, force: model.point_force_N, frames, hinges,
+    hinge: model.held[0].points_m[1], lastHinge: second && model.held[1].points_m[0],
+    origin: first.position_m, end: second?.position_m, length: rod.length_m };
+}
+
+/** No step may be longer than the fastest motion, in which hinges turn in zigzag, allows. */
+function timeStep({ segment: [h], hinges, force }) {
+  const stiffest = Math.max(...hinges.map(({ bend, series }) => Math.max(bend, series)));
+  const weight = force.reduce((sum, one) => sum + Math.hypot(...one), 0);
+  return 0.5 / Math.sqrt((16 * stiffest / h + 4 * weight) / (MASS * h));
+}
+
+function mjcf(chain) {
+  const list = (numbers) => numbers.join(' ');
+  const [h] = chain.segment;
+  const inertia = (MASS * h * h) / 4;
+  // Written straight, since springs are at rest where the model is written, and turned afterwards.
+  const bodies = chain.hinges.map(({ bend, series }, i) => `
+    <body name="segment${i + 1}" pos="${list(i === 0 ? chain.hinge : [chain.segment[i], 0, 0])}"
+        quat="${list(i === 0 ? chain.frames[0] : [1, 0, 0, 0])}">
+      ${series ? `<joint type="hinge" axis="1 0 0" stiffness="${series}" armature="${inertia}"/>` : ''}
+      <joint type="ball" stiffness="${bend}"/>
+      <inertial pos="${chain.segment[i + 1]} 0 0" mass="${MASS}" diaginertia="${list([inertia, inertia, inertia])}"/>`);
+  const weld = `<equality>
+    <weld body1="world" body2="segment${bodies.length}" anchor="0 0 0" solimp="0.9999 0.9999 0.001"
+        relpose="${list([...(chain.lastHinge ?? []), ...chain.frames.at(-1)])}"/>
+  </equality>`;
+  return `<mujoco>
+  <option timestep="${timeStep(chain)}" gravity="0 0 0" tolerance="1e-15"><flag contact="disable"/></option>
+  <worldbody>${bodies.join('')}${'</body>'.repeat(bodies.length)}
+  </worldbody>
+  ${chain.end ? weld : ''}
+</mujoco>
+`;
+}
+
+/** Places of the points from the first hinge on. */
+function solve(mujoco, chain, xml) {
+  const model = mujoco.MjModel.from_xml_string(xml);
+  const data = new mujoco.MjData(model);
+  const { qpos, qvel, xfrc_applied: applied } = data;
+  let at = 0;
+  chain.hinges.forEach(({ series }, i) => {
+    at += series ? 1 : 0;
+    qpos.set(product(inverse(chain.frames[i]), chain.frames[i + 1]), at);
+    at += 4;
+    applied.set(chain.force[i + 2], 6 * (i + 1)); // at the body's centre of mass, which is its end
+  });
+  const step = timeStep(chain);
+  for (let i = 0, before = 0, calm = 0; calm < 3; ++i) {
+    if (i === STEPS) fail('not at rest');
+    mujoco.mj_step(model, data);
+    let motion = 0;
+    for (const speed of qvel) motion += (speed * step) ** 2;
+    if (motion < before) {
+      qvel.fill(0);
+      calm = before < AT_REST ** 2 ? calm + 1 : 0;
+      motion = 0;
+    }
+    before = motion;
+  }
+  mujoco.mj_forward(model, data);
+  return [chain.hinge, ...chain.hinges.map((_, i) => [...data.xipos.subarray(3 * (i + 1), 3 * (i + 2))])];
+}
+
+const [scene, shape, model] = process.argv.slice(2);
+if (!shape) fail('usage: mujoco.mjs SCENE SHAPE [MODEL.XML]');
+const chain = readChain(JSON.parse(readFileSync(scene, 'utf8')));
+const xml = mjcf(chain);
+if (model) writeFileSync(model, xml);
+const points = solve(await load(), chain, xml).slice(0, chain.end ? -1 : undefined);
+const rows = [[...chain.origin, 0], ...points.map((point, i) => [...point, chain.at[i + 1]])];
+if (chain.end) rows.push([...chain.end, chain.length]);
+writeFileSync(shape, ['x,y,z,s', ...rows.map((row) => row.join(','))].join('\n') + '\n');

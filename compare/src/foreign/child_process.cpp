@@ -1,0 +1,139 @@
+#include "foreign/child_process.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <optional>
+#include <thread>
+
+#include "base/temporary_path.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// What posix_spawn is told: a group of its own, standard descriptors, signals as they are by
+/// default (this program ignores SIGXFSZ).
+class SpawnSettings {
+ public:
+  explicit SpawnSettings(const std::string& error_file) {
+    ::posix_spawnattr_init(&attributes_);
+    ::posix_spawn_file_actions_init(&actions_);
+    ::posix_spawnattr_setpgroup(&attributes_, 0);
+    sigset_t all;
+    ::sigfillset(&all);
+    ::posix_spawnattr_setsigdefault(&attributes_, &all);
+    sigset_t none;
+    ::sigemptyset(&none);
+    ::posix_spawnattr_setsigmask(&attributes_, &none);
+    ::posix_spawnattr_setflags(
+        &attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+    ::posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    ::posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    ::posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, error_file.c_str(),
+                                       O_WRONLY | O_CREAT | O_TRUNC, S_IRUSR | S_IWUSR);
+  }
+  ~SpawnSettings() {
+    ::posix_spawn_file_actions_destroy(&actions_);
+    ::posix_spawnattr_destroy(&attributes_);
+  }
+  SpawnSettings(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(const SpawnSettings&) = delete;
+  SpawnSettings(SpawnSettings&&) = delete;
+  SpawnSettings& operator=(SpawnSettings&&) = delete;
+
+  /// 0, or the error.
+  int spawn(const std::vector<std::string>& words, pid_t& process) const {
+    std::vector<std::string> copies = words;  // argv is not const
+    std::vector<char*> arguments;
+    arguments.reserve(copies.size() + 1);
+    for (std::string& word : copies) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    return ::posix_spawnp(&process, arguments.front(), &actions_, &attributes_, arguments.data(),
+                          environ);
+  }
+
+ private:
+  posix_spawnattr_t attributes_{};
+  posix_spawn_file_actions_t actions_{};
+};
+
+/// Holds all signals back.
+class SignalsHeld {
+ public:
+  SignalsHeld() {
+    sigset_t all;
+    ::sigfillset(&all);
+    ::pthread_sigmask(SIG_BLOCK, &all, &before_);
+  }
+  ~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  SignalsHeld(const SignalsHeld&) = delete;
+  SignalsHeld& operator=(const SignalsHeld&) = delete;
+  SignalsHeld(SignalsHeld&&) = delete;
+  SignalsHeld& operator=(SignalsHeld&&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
+/// Waits until a child has ended, which it keeps as it is; false at the time limit. Looks often at
+/// first, then every hundredth of the time so far, so that the wall time is right to a percent.
+bool ended_within(pid_t process, double time_limit, double& seconds) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  while (true) {
+    siginfo_t info{};
+    const int status =
+        ::waitid(P_PID, static_cast<id_t>(process), &info,
+                 static_cast<int>(WEXITED) | static_cast<int>(WNOHANG) | static_cast<int>(WNOWAIT));
+    seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    if (status == 0 && info.si_pid == process) return true;
+    if (seconds >= time_limit) return false;
+    const double pause = std::clamp(seconds / 100, 5e-5, 1e-2);
+    std::this_thread::sleep_for(std::chrono::duration<double>(pause));
+  }
+}
+
+std::string problem_of(int status) {
+  if (WIFSIGNALED(status)) {
+    return fmt::format("ended by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
+  }
+  return WEXITSTATUS(status) == 0 ? "" : fmt::format("exit status {}", WEXITSTATUS(status));
+}
+
+}  // namespace
+
+ChildOutcome run_child(const std::vector<std::string>& words, const std::string& error_file,
+                       double time_limit) {
+  ChildOutcome result;
+  pid_t process = 0;
+  std::optional<TemporaryGroup> group;
+  {
+    // A signal that ends this process in between would leave the child alone.
+    const SignalsHeld held;
+    const int error = SpawnSettings(error_file).spawn(words, process);
+    if (error != 0) {
+      result.problem = fmt::format("could not be started: {}", std::strerror(error));
+      return result;
+    }
+    group.emplace(process);
+  }
+  result.too_long = !ended_within(process, time_limit, result.seconds);
+  // Before the child is waited for, so that its number is still its own.
+  ::kill(-process, SIGKILL);
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0 && errno == EINTR) continue;
+  result.problem = result.too_long
+                       ? fmt::format("killed after the time limit of {:g} s", time_limit)
+                       : problem_of(status);
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace dlo::compare {
+
+/// How a program that was run ended.
+struct ChildOutcome {
+  double seconds = 0;     ///< wall time from its start to its end, to a percent [s]
+  std::string problem;    ///< why it did not end well: a clause without its own words; or empty
+  bool too_long = false;  ///< it was killed at the time limit
+};
+
+/// Runs a program, looked for in PATH, as a process group of its own and waits for it. Its standard
+/// input and output are /dev/null. When it has ended, or at the time limit, or when a signal ends
+/// this process, whatever is left of the group is killed.
+/// @param words       program and arguments, one or more
+/// @param error_file  what it writes to standard error goes into this file
+/// @param time_limit  [s], > 0
+[[nodiscard]] ChildOutcome run_child(const std::vector<std::string>& words,
+                                     const std::string& error_file, double time_limit);
+
+}  // namespace dlo::compare

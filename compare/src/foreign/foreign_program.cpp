@@ -1,0 +1,239 @@
+#include "foreign/foreign_program.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <set>
+#include <string_view>
+#include <system_error>
+
+#include "base/display.hpp"
+#include "base/input_file.hpp"
+#include "base/output_file.hpp"
+#include "base/quote.hpp"
+#include "base/temporary_path.hpp"
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/choice.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/solution.hpp"
+#include "foreign/child_process.hpp"
+#include "foreign/command_words.hpp"
+#include "foreign/scene_document.hpp"
+#include "shape/curve.hpp"
+#include "shape/shape_measure.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr std::string_view scene_place = "{scene}";
+constexpr std::string_view points_place = "{points}";
+constexpr std::string_view shape_place = "{shape}";
+
+bool is_mentioned(const std::vector<std::string>& words, std::string_view place) {
+  return std::any_of(words.begin(), words.end(), [place](const std::string& word) {
+    return word.find(place) != std::string::npos;
+  });
+}
+
+/// What is put in is not looked at again.
+std::string with_places(const std::string& word, const std::string& scene,
+                        const std::string& points, const std::string& shape) {
+  std::string result;
+  for (std::size_t at = 0; at < word.size();) {
+    const std::string_view rest = std::string_view(word).substr(at);
+    const auto take = [&](std::string_view place, const std::string& value) {
+      if (!rest.starts_with(place)) return false;
+      result += value;
+      at += place.size();
+      return true;
+    };
+    if (take(scene_place, scene) || take(points_place, points) || take(shape_place, shape)) {
+      continue;
+    }
+    result += word[at++];
+  }
+  return result;
+}
+
+/// A new folder that nobody else reads, gone with all that is in it at the end.
+class ProgramFolder {
+ public:
+  ProgramFolder() : path_(made()), at_signals_(path_) {}
+  ~ProgramFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  ProgramFolder(const ProgramFolder&) = delete;
+  ProgramFolder& operator=(const ProgramFolder&) = delete;
+  ProgramFolder(ProgramFolder&&) = delete;
+  ProgramFolder& operator=(ProgramFolder&&) = delete;
+
+  [[nodiscard]] std::string file(const char* name) const { return path_ + "/" + name; }
+
+  /// The file `shape`, or the only one that begins with "shape."; empty if there is none.
+  [[nodiscard]] std::string shape_file() const {
+    if (std::filesystem::exists(file("shape"))) return file("shape");
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(path_)) {
+      if (entry.path().filename().string().starts_with("shape.")) found.push_back(entry.path());
+    }
+    return found.size() == 1 ? found.front() : "";
+  }
+
+ private:
+  static std::string made() {
+    std::error_code unknown;
+    std::string path = std::filesystem::temp_directory_path(unknown);
+    path = (path.empty() ? "/tmp" : path) + "/dlo_foreign_XXXXXX";
+    if (::mkdtemp(path.data()) == nullptr) {
+      throw OutputError(fmt::format("{}: {}", path, std::strerror(errno)));
+    }
+    return path;
+  }
+
+  std::string path_;
+  TemporaryPath at_signals_;
+};
+
+/// The last line that is not blank, as a message shows it.
+std::string last_line(const std::string& text) {
+  constexpr std::size_t most = 200;
+  std::size_t end = text.find_last_not_of(" \t\r\n");
+  if (end == std::string::npos) return "";
+  const std::size_t before = text.find_last_of('\n', end);
+  const std::size_t begin = before == std::string::npos ? 0 : before + 1;
+  return display(text.substr(begin, std::min(end + 1 - begin, most)));
+}
+
+/// A program may have written anything, of any size.
+std::string last_words(const std::string& file) {
+  try {
+    const std::string line = last_line(read_file(file));
+    return line.empty() ? "" : ": " + line;
+  } catch (const InputError&) {
+    return "";
+  }
+}
+
+/// An end that a gripper holds is where that is. Only a file that says so has less than the rod.
+void require_end(const Scene& scene, const Alignment& alignment, bool at_start) {
+  constexpr double share = 0.01;
+  const Shape& laid = alignment.shape;
+  const double end = at_start ? 0 : scene.length;
+  const double outermost = at_start ? laid.arc_length.front() : laid.arc_length.back();
+  const bool told = alignment.arc_lengths == ArcLengths::file;
+  const double allowed = share * scene.length + (told ? std::abs(end - outermost) : 0);
+  const Eigen::Vector3d point = laid.points.col(at_start ? 0 : laid.points.cols() - 1);
+  for (const Gripper& gripper : scene.grippers) {
+    const double apart = (point - gripper.position).norm();
+    if (gripper.at != end || apart <= allowed) continue;
+    throw InputError(
+        fmt::format("wrong end: the shape is {:.3g} m from the gripper at s = {:g} m (allowed: "
+                    "{:.3g} m)",
+                    apart, end, allowed));
+  }
+}
+
+}  // namespace
+
+ForeignProgram parse_foreign_program(const std::string& text) {
+  const std::size_t equals = text.find('=');
+  const std::string name = text.substr(0, equals);
+  constexpr std::string_view letters =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_.-+";
+  const std::vector<std::string> models = names<Model>();
+  const bool ours = std::find(models.begin(), models.end(), name) != models.end();
+  if (equals == std::string::npos || name.empty() || ours ||
+      name.find_first_not_of(letters) != std::string::npos) {
+    throw InputError(
+        fmt::format("--with = {}: {} (allowed: NAME=COMMAND, NAME of letters, digits and _.-+, not "
+                    "energy, chain, exact or force)",
+                    quoted_piece(text),
+                    equals == std::string::npos ? "no NAME before an =" : "not such a NAME"));
+  }
+  ForeignProgram program{name, command_words(text.substr(equals + 1), "--with " + name)};
+  if (!is_mentioned(program.words, shape_place)) {
+    throw InputError(fmt::format(
+        "--with {}: no {{shape}} in the command (allowed: a command with {{shape}}, the file to "
+        "write, and where it has a use for them {{scene}}, the file to read, and {{points}}, their "
+        "number)",
+        name));
+  }
+  return program;
+}
+
+std::vector<ForeignProgram> parse_foreign_programs(const std::vector<std::string>& texts) {
+  std::vector<ForeignProgram> programs;
+  std::set<std::string> taken;
+  for (const std::string& text : texts) {
+    programs.push_back(parse_foreign_program(text));
+    if (taken.insert(programs.back().name).second) continue;
+    throw InputError(fmt::format("--with {}: given twice (allowed: a name of its own for each)",
+                                 programs.back().name));
+  }
+  return programs;
+}
+
+ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, double time_limit) {
+  scene.force_model.points = points;
+  const ProgramFolder folder;
+  OutputFile document(folder.file("scene.json"));
+  document.append(scene_document_text(scene));
+  document.finish();
+  std::vector<std::string> words;
+  words.reserve(program.words.size());
+  for (const std::string& word : program.words) {
+    words.push_back(with_places(word, folder.file("scene.json"), fmt::format("{}", points),
+                                folder.file("shape")));
+  }
+  const ChildOutcome outcome = run_child(words, folder.file("stderr"), time_limit);
+  ForeignRun result;
+  result.seconds = outcome.seconds;
+  result.too_long = outcome.too_long;
+  if (!outcome.problem.empty()) {
+    result.problem = outcome.problem + last_words(folder.file("stderr"));
+    return result;
+  }
+  const std::string file = folder.shape_file();
+  if (file.empty()) {
+    result.problem = "wrote no shape" + last_words(folder.file("stderr"));
+    return result;
+  }
+  try {
+    // The folder's name is gone when the message is read.
+    result.shape = parse_shape(read_file(file), "its shape");
+  } catch (const InputError& error) {
+    result.problem = error.what();
+  }
+  return result;
+}
+
+Deviation foreign_deviation(const Scene& scene, const MeasuredShape& shape,
+                            const Reference& reference) {
+  const Alignment alignment = align(shape, reference, scene.length);
+  const Shape& laid = alignment.shape;
+  for (const bool at_start : {true, false}) require_end(scene, alignment, at_start);
+  const double seen = (laid.arc_length.back() - laid.arc_length.front()) / scene.length;
+  if (seen < 0.5) {
+    throw InputError(fmt::format(
+        "the shape is {:.3g} % of the rod (allowed: the whole rod, or more than half of it)",
+        seen * 100));
+  }
+  const Measured measured = measure(alignment, reference, scene.length);
+  const WholeRod whole = whole_of(measured, alignment, reference, scene.length);
+  Deviation result;
+  result.rms_m = whole.rms_m;
+  result.max_m = whole.max_m;
+  result.rms_over_length = whole.rms_m / scene.length;
+  Eigen::Matrix3Xd ends(3, 2);
+  ends << laid.points.leftCols<1>(), laid.points.rightCols<1>();
+  result.tip_m = shape_deviation(scene, {{0, scene.length}, ends}, reference).tip_m;
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,73 @@
+#include "certify/free_turns.hpp"
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <vector>
+
+namespace dlo::energy_model {
+namespace {
+
+/// Sine up to which a vector is along an axis: input in decimals is right to rounding.
+constexpr double along = 1e-10;
+
+/// Directions that a turn has to keep, of length 1 or less.
+std::vector<Eigen::Vector3d> kept_vectors(const Span& span) {
+  std::vector<Eigen::Vector3d> kept;
+  const double load = std::max(span.total_load(), 1e-300);
+  kept.emplace_back(span.weight * span.length / load);
+  for (const Span::Part& part : span.parts) {
+    kept.emplace_back(part.weight * (part.end - part.begin) / load);
+  }
+  for (const Span::Load& at : span.loads) kept.emplace_back(at.force / load);
+  if (span.start_direction) kept.push_back(*span.start_direction);
+  if (span.end_direction) kept.push_back(*span.end_direction);
+  for (const Span::Hold& hold : span.holds) {
+    kept.emplace_back(hold.offset / span.length);
+    if (hold.direction) kept.push_back(*hold.direction);
+  }
+  return kept;
+}
+
+/// Axes, of those in the columns, about which a turn moves none of these vectors.
+Eigen::MatrixXd axes_that_keep(const std::vector<Eigen::Vector3d>& vectors,
+                               const Eigen::MatrixXd& axes) {
+  if (axes.cols() == 0 || vectors.empty()) return axes;
+  Eigen::MatrixXd moved(3 * static_cast<Eigen::Index>(vectors.size()), axes.cols());
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    for (Eigen::Index k = 0; k < axes.cols(); ++k) {
+      const Eigen::Vector3d axis = axes.col(k);
+      moved.col(k).segment<3>(3 * static_cast<Eigen::Index>(i)) = axis.cross(vectors[i]);
+    }
+  }
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(moved, Eigen::ComputeFullV);
+  const Eigen::Index lost = (svd.singularValues().array() > along).count();
+  return axes * svd.matrixV().rightCols(axes.cols() - lost);
+}
+
+/// Of these axes' turns those that move the shape.
+Eigen::Index moving(const Eigen::MatrixXd& axes, const std::vector<Eigen::Vector3d>& shape) {
+  return axes.cols() - axes_that_keep(shape, axes).cols();
+}
+
+}  // namespace
+
+FreeTurns free_turns(const Span& span, const Eigen::Matrix3Xd& tangents) {
+  // A clamp holds material directors against every turn. A round rod that is twisted spins about
+  // its own axis meanwhile, which costs nothing, so that its frames stay where they are held.
+  if (span.has_material_directors() && span.start_direction) return {};
+  const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  std::vector<Eigen::Vector3d> shape;
+  if (span.has_material_directors()) {
+    // A turn about the rod's own line moves its frame.
+    shape = {axes.col(0), axes.col(1), axes.col(2)};
+  } else {
+    for (Eigen::Index q = 0; q < tangents.cols(); ++q) shape.emplace_back(tangents.col(q));
+  }
+  const std::vector<Eigen::Vector3d> kept = kept_vectors(span);
+  if (!span.planar) return {.in_plane = moving(axes_that_keep(kept, axes), shape)};
+  return {.in_plane = moving(axes_that_keep(kept, axes.col(2)), shape),
+          .sideways = moving(axes_that_keep(kept, axes.leftCols(2)), shape)};
+}
+
+}  // namespace dlo::energy_model

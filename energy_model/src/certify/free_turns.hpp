@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "problem/span.hpp"
+
+namespace dlo::energy_model {
+
+/// Turns of a span's shape as a whole that its grips, weight and loads leave free and that move it:
+/// the shape goes through a circle (or a sphere) of equilibria of equal energy. Each is a zero of
+/// the second variation that is no fold and no bifurcation. A turn with the axis and rate omega is
+/// free if omega x v = 0 of every position and direction v that is held and of every force;
+/// obstacles are not asked.
+struct FreeTurns {
+  Eigen::Index in_plane = 0;  ///< of a planar span about its normal; in space all of them
+  Eigen::Index sideways = 0;  ///< of a planar span about axes in its plane
+
+  [[nodiscard]] Eigen::Index all() const { return in_plane + sideways; }
+};
+
+/// @param tangents  along the shape, 3 x M; a round rod that lies on the axis is not moved by a
+/// turn
+[[nodiscard]] FreeTurns free_turns(const Span& span, const Eigen::Matrix3Xd& tangents);
+
+}  // namespace dlo::energy_model

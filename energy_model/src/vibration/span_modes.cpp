@@ -1,0 +1,85 @@
+#include "vibration/span_modes.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+
+namespace dlo::energy_model {
+namespace {
+
+/// Orthonormal basis of what the constraints leave free, of which some may be no constraints to
+/// first order: the end of a straight rod cannot move along it.
+Eigen::MatrixXd directions_left(const Eigen::MatrixXd& jacobian) {
+  if (jacobian.rows() == 0) return Eigen::MatrixXd::Identity(jacobian.cols(), jacobian.cols());
+  constexpr double of_first_order = 1e-9;
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(of_first_order);
+  qr.compute(jacobian.transpose());
+  const Eigen::MatrixXd Q = qr.householderQ();
+  return Q.rightCols(jacobian.cols() - qr.rank());
+}
+
+/// Modes of one frequency are any two that span them; these are told apart by where they move.
+void separate(SpanModes& modes, const Eigen::MatrixXd& last) {
+  constexpr double same = 1e-7;
+  const Eigen::Index count = modes.lambdas.size();
+  for (Eigen::Index begin = 0; begin < count;) {
+    Eigen::Index end = begin + 1;
+    while (end < count &&
+           modes.lambdas[end] - modes.lambdas[begin] <= same * std::abs(modes.lambdas[end])) {
+      ++end;
+    }
+    if (end - begin > 1) {
+      auto equal = modes.shapes.middleCols(begin, end - begin);
+      const Eigen::MatrixXd outside = equal.transpose() * last * equal;
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turned(outside);
+      equal = (equal * turned.eigenvectors()).eval();
+    }
+    begin = end;
+  }
+}
+
+}  // namespace
+
+SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
+                     const std::array<Eigen::MatrixXd, 3>& masses, Eigen::Index count) {
+  const Eigen::MatrixXd free = directions_left(jacobian);
+  const Eigen::MatrixXd stiffness = free.transpose() * hessian * free;
+  const Eigen::MatrixXd mass = free.transpose() * (masses[0] + masses[1] + masses[2]) * free;
+  // 1 / (lambda + shift) are eigenvalues of M against H + shift M, which has to be definite: of an
+  // unstable shape, or one that turns for nothing, only with a shift. So the lowest come out best.
+  double shift = 1 / mass.trace();
+  Eigen::LLT<Eigen::MatrixXd> factor;
+  constexpr int most_shifts = 40;
+  for (int i = 0; i < most_shifts; ++i, shift *= 8) {
+    factor.compute(stiffness + shift * mass);
+    if (factor.info() == Eigen::Success) break;
+  }
+  SpanModes modes;
+  if (factor.info() != Eigen::Success) return modes;
+  Eigen::MatrixXd inverse = factor.matrixL().solve(mass);
+  inverse = factor.matrixL().solve(inverse.transpose()).eval();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(inverse);
+  const Eigen::VectorXd& values = solver.eigenvalues();  // growing
+  // What has no inertia follows at once.
+  constexpr double without_inertia = 1e-13;
+  Eigen::Index found = 0;
+  const Eigen::Index size = values.size();
+  while (found < std::min(count, size) &&
+         values[size - 1 - found] > without_inertia * values[size - 1]) {
+    ++found;
+  }
+  modes.lambdas = values.tail(found).reverse().cwiseInverse().array() - shift;
+  const Eigen::MatrixXd turned = solver.eigenvectors().rightCols(found).rowwise().reverse();
+  modes.shapes = free * factor.matrixU().solve(turned);
+  for (Eigen::Index k = 0; k < found; ++k) {
+    modes.shapes.col(k) *= std::sqrt(modes.lambdas[k] + shift);
+  }
+  separate(modes, masses[2]);
+  modes.outside = (modes.shapes.transpose() * masses[2] * modes.shapes).diagonal();
+  return modes;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,300 @@
+#include "dlo/energy_model/vibrations.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/deadline.hpp"
+#include "base/require.hpp"
+#include "base/sized_samples.hpp"
+#include "problem/rod_law.hpp"
+#include "search/known_shape.hpp"
+#include "vibration/span_modes.hpp"
+#include "vibration/span_motion.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// What a mode has of its kinetic energy elsewhere may be rounding.
+constexpr double rounding_share = 1e-9;
+/// Components of tangents across its plane that a planar shape may have.
+constexpr double plane_rounding = 1e-9;
+
+/// By which tangents of one equilibrium that was solved twice may differ.
+constexpr double found_again = 1e-6;
+/// Of omega_squared, over EI / (m l^3): what is less is a rod that turns for nothing, and rounding.
+constexpr double neutral_share = 1e-2;
+
+double total_mass(const Problem& problem, const Inertia& inertia) {
+  double mass = inertia.mass_per_length * problem.length;
+  for (std::size_t i = 0; i < problem.sections.size(); ++i) {
+    mass += (inertia.of_sections[i] - inertia.mass_per_length) *
+            (problem.sections[i].end - problem.sections[i].begin);
+  }
+  for (const PointMass& point : inertia.point_masses) mass += point.mass;
+  return mass;
+}
+
+void check_inertia(const Problem& problem, const Inertia& inertia,
+                   const VibrationOptions& options) {
+  const auto known = [](double mass) { return mass >= 0 && std::isfinite(mass); };
+  const char* where = "vibrations";
+  require(known(inertia.mass_per_length), where, "mass_per_length", inertia.mass_per_length,
+          ">= 0 and finite");
+  require(inertia.of_sections.size() == problem.sections.size(), where, "of_sections.size()",
+          static_cast<double>(inertia.of_sections.size()), "as many as sections");
+  for (const double mass : inertia.of_sections) {
+    require(known(mass), where, "of_sections", mass, ">= 0 and finite");
+  }
+  for (const PointMass& point : inertia.point_masses) {
+    require(known(point.mass), where, "point_masses", point.mass, ">= 0 and finite");
+    require(point.at >= 0 && point.at <= problem.length, where, "point_masses", point.at,
+            "on the rod");
+  }
+  const double total = total_mass(problem, inertia);
+  require(total > 0, where, "mass of the rod and what hangs on it", total, "> 0");
+  require(options.count > 0, where, "count", options.count, "> 0");
+  require(options.tolerance > 0, where, "tolerance", options.tolerance, "> 0");
+  require(options.time_limit > 0, where, "time_limit", options.time_limit, "> 0");
+}
+
+/// Axes of which the last one is across the plane of a shape.
+struct ShapeAxes {
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
+  bool flat = false;  ///< there is such a plane
+};
+
+/// @param tangents  3 x nodes
+ShapeAxes shape_axes(const Eigen::Matrix3Xd& tangents) {
+  ShapeAxes result;
+  result.flat = tangents.row(2).cwiseAbs().maxCoeff() < plane_rounding;
+  if (result.flat) return result;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tangents * tangents.transpose());
+  result.rows = solver.eigenvectors().rowwise().reverse().transpose();
+  result.flat = (result.rows.row(2) * tangents).cwiseAbs().maxCoeff() < plane_rounding;
+  return result;
+}
+
+/// One span with its modes.
+struct MovingSpan {
+  PlacedSpan placed;
+  std::shared_ptr<SpanEnergy> model;
+  SpanMotion motion;
+  SpanModes modes;
+  ShapeAxes axes;
+
+  [[nodiscard]] double begin(double length) const {
+    return placed.reversed ? placed.start - placed.span.length * length : placed.start;
+  }
+  [[nodiscard]] double end(double length) const {
+    return begin(length) + placed.span.length * length;
+  }
+};
+
+class RodVibrations {
+ public:
+  RodVibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
+                const VibrationOptions& options)
+      : problem_(problem),
+        inertia_(inertia),
+        known_(known),
+        count_(options.count),
+        deadline_(options.time_limit) {}
+
+  /// @return why there are none; empty: there are
+  [[nodiscard]] std::string find(int terms) {
+    spans_.clear();
+    farthest_ = 0;
+    for (PlacedSolution& found : spans_in_space(problem_, known_, terms, deadline_, workspace_)) {
+      SpanSolution& solution = found.solution;
+      if (!solution.is_equilibrium() && solution.status != SolveStatus::near_singular) {
+        return solution.message;
+      }
+      add(found);
+    }
+    return {};
+  }
+
+  /// Modes of all spans together, the slowest first.
+  [[nodiscard]] std::vector<VibrationMode> modes() const {
+    std::vector<VibrationMode> result;
+    for (const std::shared_ptr<const MovingSpan>& span : spans_) {
+      for (Eigen::Index k = 0; k < span->modes.lambdas.size(); ++k) {
+        result.push_back(mode(span, k));
+      }
+    }
+    std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
+      return a.omega_squared < b.omega_squared;
+    });
+    if (result.size() > static_cast<std::size_t>(count_)) {
+      result.resize(static_cast<std::size_t>(count_));
+    }
+    return result;
+  }
+
+  /// Whether the shape that vibrates is the known one: Newton's method may have gone to another,
+  /// and with few terms it is not resolved.
+  [[nodiscard]] bool is_known() const { return farthest_ <= found_again; }
+
+  /// Unknowns of the largest span.
+  [[nodiscard]] Eigen::Index unknowns() const {
+    Eigen::Index most = 0;
+    for (const auto& span : spans_) most = std::max(most, span->model->size());
+    return most;
+  }
+
+ private:
+  [[nodiscard]] double mass_per_length(double at) const {
+    for (std::size_t i = 0; i < problem_.sections.size(); ++i) {
+      if (at > problem_.sections[i].begin && at < problem_.sections[i].end) {
+        return inertia_.of_sections[i];
+      }
+    }
+    return inertia_.mass_per_length;
+  }
+
+  void add(const PlacedSolution& found) {
+    const PlacedSpan& placed = found.placed;
+    const std::shared_ptr<SpanEnergy>& model = found.solution.model;
+    Eigen::VectorXd gradient(model->size());
+    (void)model->value(found.solution.x, gradient);
+    const Eigen::Matrix3Xd known =
+        field_of(known_, placed, problem_.length)(model->nodes()).tangents;
+    farthest_ = std::max(farthest_, (known - model->tangents()).cwiseAbs().maxCoeff());
+    Eigen::VectorXd residual(model->constraints());
+    Eigen::MatrixXd jacobian(model->constraints(), model->size());
+    model->constraint(residual, jacobian);
+    Eigen::MatrixXd hessian;
+    model->hessian(found.solution.multipliers, hessian);
+    const ShapeAxes axes = shape_axes(model->tangents());
+    auto span = std::make_shared<MovingSpan>(
+        MovingSpan{placed, model, SpanMotion(*model, axes.rows), {}, axes});
+    const double l = problem_.length;
+    const auto per_length = [&](Eigen::Index e) {
+      const Piece& piece = model->piece(e);
+      const double middle = piece.begin + piece.length / 2;
+      return l * mass_per_length(placed.start + (placed.reversed ? -middle : middle) * l);
+    };
+    std::vector<SpanMass> points;
+    for (const PointMass& point : inertia_.point_masses) {
+      const double s = placed.s_of(point.at, l);
+      // One at a clamp between two spans stands, in whichever it is counted.
+      if (s >= 0 && s <= placed.span.length) points.push_back({s, point.mass});
+    }
+    span->modes = span_modes(hessian, jacobian, span->motion.masses(per_length, points), count_);
+    spans_.push_back(std::move(span));
+  }
+
+  [[nodiscard]] VibrationMode mode(const std::shared_ptr<const MovingSpan>& span,
+                                   Eigen::Index k) const {
+    const double l = problem_.length;
+    VibrationMode result;
+    result.omega_squared = span->modes.lambdas[k] * bending_unit(problem_) / (l * l * l);
+    const double outside = span->modes.outside[k];
+    if (span->axes.flat) {
+      result.plane = outside < rounding_share       ? ModePlane::in
+                     : outside > 1 - rounding_share ? ModePlane::out
+                                                    : ModePlane::mixed;
+    }
+    result.begin = span->begin(l);
+    result.end = span->end(l);
+    const auto moved = [span, l](double at, const Eigen::VectorXd& unknowns) {
+      const double s = std::clamp(span->placed.s_of(at, l), 0.0, span->placed.span.length);
+      const Eigen::Vector3d own = span->axes.rows.transpose() * (span->motion.at(s) * unknowns);
+      return Eigen::Vector3d(span->placed.frame.transpose() * own);
+    };
+    // Of the farthest of so many points.
+    constexpr int looks = 400;
+    const Eigen::VectorXd shape = span->modes.shapes.col(k);
+    Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
+    for (int i = 0; i <= looks; ++i) {
+      const Eigen::Vector3d here =
+          moved(result.begin + (result.end - result.begin) * i / looks, shape);
+      if (here.norm() > farthest.norm()) farthest = here;
+    }
+    Eigen::Index axis = 0;
+    farthest.cwiseAbs().maxCoeff(&axis);
+    const Eigen::VectorXd scaled = shape / std::copysign(farthest.norm(), farthest[axis]);
+    result.shape = [moved, scaled, l, begin = result.begin,
+                    end = result.end](std::span<const double> arc_lengths) {
+      Eigen::Matrix3Xd points = sized_samples(arc_lengths, l).points;
+      for (std::size_t i = 0; i < arc_lengths.size(); ++i) {
+        const bool on_span = arc_lengths[i] >= begin && arc_lengths[i] <= end;
+        points.col(static_cast<Eigen::Index>(i)) =
+            on_span ? moved(arc_lengths[i], scaled) : Eigen::Vector3d::Zero();
+      }
+      return points;
+    };
+    return result;
+  }
+
+  const Problem& problem_;
+  const Inertia& inertia_;
+  const Equilibrium& known_;
+  Eigen::Index count_;
+  Deadline deadline_;
+  SpanWorkspace workspace_;
+  std::vector<std::shared_ptr<const MovingSpan>> spans_;
+  double farthest_ = 0;  // component by which tangents are not the known shape's
+};
+
+}  // namespace
+
+double VibrationMode::omega() const { return std::sqrt(omega_squared); }
+
+Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
+                      const VibrationOptions& options) {
+  check(problem);
+  check_inertia(problem, inertia, options);
+  Vibrations result;
+  result.status = SolveStatus::failed;
+  if (!known.sample) {
+    result.message = "there is no equilibrium to vibrate about: " + known.message;
+    return result;
+  }
+  if (!known.contacts.empty()) {
+    result.message = "the rod touches a rigid obstacle, which it would leave as it vibrates";
+    return result;
+  }
+  RodVibrations rod(problem, inertia, known, options);
+  int terms = std::max(16, options.count + 8);
+  std::vector<double> last;
+  const double neutral_square = neutral_share * bending_unit(problem) /
+                                (total_mass(problem, inertia) * std::pow(problem.length, 3));
+  while (true) {
+    const std::string problem_found = rod.find(terms);
+    if (!problem_found.empty()) {
+      result.message = problem_found;
+      return result;
+    }
+    result.modes = rod.modes();
+    result.terms = terms;
+    const bool as_many = result.modes.size() == last.size();
+    double largest = 0;
+    for (std::size_t i = 0; i < result.modes.size() && i < last.size(); ++i) {
+      const double square = result.modes[i].omega_squared;
+      // d omega / omega is half of that of the square.
+      result.modes[i].error =
+          std::abs(square - last[i]) / (2 * std::max(std::abs(square), neutral_square));
+      largest = std::max(largest, result.modes[i].error);
+    }
+    if (as_many && largest <= options.tolerance && rod.is_known()) {
+      result.status = SolveStatus::converged;
+      result.message = to_string(result.status);
+      return result;
+    }
+    last.clear();
+    for (const VibrationMode& mode : result.modes) last.push_back(mode.omega_squared);
+    const int next = terms + std::max(6, terms / 2);
+    if (next > max_terms || rod.unknowns() * next > Eigen::Index{most_unknowns} * terms) break;
+    terms = next;
+  }
+  result.status = SolveStatus::not_resolved;
+  result.message = rod.is_known() ? "the slowest modes still change with the number of terms"
+                                  : "the shape is not found again with the terms of its modes";
+  return result;
+}
+
+}  // namespace dlo::energy_model

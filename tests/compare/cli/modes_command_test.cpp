@@ -1,0 +1,49 @@
+// The command modes as a user runs it.
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Command;
+using dlo::test::Outcome;
+using nlohmann::json;
+
+class ModesCommand : public Command {
+ protected:
+  static std::string cable() { return std::string(DLO_DATA) + "/scenes/cable.toml"; }
+};
+
+TEST_F(ModesCommand, TellsFrequenciesInEveryFormat) {
+  const std::string modes = words({"modes", cable(), "--count 3 --samples 11"});
+  const Outcome text = run(modes);
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("mode 1      0.608202 Hz, out; polygon 0.60"), std::string::npos);
+  EXPECT_NE(text.out.find("stable from"), std::string::npos);
+  const json document = json::parse(run(modes + " --format json").out);
+  EXPECT_EQ(document.at("schema"), "dlo/modes/1");
+  ASSERT_EQ(document.at("modes").size(), 3U);
+  const json& first = document.at("modes")[0];
+  EXPECT_EQ(first.at("plane"), "out");
+  EXPECT_LT(first.at("relative_error").get<double>(), 1e-8);
+  EXPECT_EQ(first.at("shape_m").size(), 11U);
+  EXPECT_TRUE(first.at("stepped").is_null());
+  const std::string csv = run(modes + " --format csv").out;
+  EXPECT_EQ(csv.substr(0, 18), "mode,frequency_Hz,");
+  const json stepped =
+      json::parse(run(modes + " --stepper dynamic --format json").out).at("modes")[0];
+  EXPECT_EQ(stepped.at("stepped").at("damping_ratio").get<double>(), 1);
+}
+
+TEST_F(ModesCommand, BadInputIsOneLineAndItsStatus) {
+  expect_error("modes", 2, {"SCENE"});
+  expect_error(words({"modes", cable(), "--count 0"}), 2, {"--count"});
+  expect_error(words({"modes", cable(), "--rate 0"}), 2, {"--rate"});
+  expect_error(words({"modes", cable(), "--damping 2"}), 2, {"--damping"});
+}
+
+}  // namespace

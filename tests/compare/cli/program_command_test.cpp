@@ -1,0 +1,110 @@
+// Other people's programs beside our models: dlo bench --with, dlo regress --with.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Outcome;
+using nlohmann::json;
+using testing::HasSubstr;
+
+class ProgramCommand : public dlo::test::Command {
+ protected:
+  static std::string cable() { return std::string(DLO_DATA) + "/scenes/cable.toml"; }
+  /// The example, a chain of hinges.
+  static std::string hinges(const std::string& name) {
+    return " --with " + name + "='/usr/bin/python3 " + DLO_DATA +
+           "/../compare/example/foreign/hinges.py {scene} {points} {shape}' ";
+  }
+  void SetUp() override {
+    Command::SetUp();
+    if (run_line("[ -x /usr/bin/python3 ]").status != 0) GTEST_SKIP() << "no python3";
+  }
+};
+
+TEST_F(ProgramCommand, BenchPutsAProgramBesideOurModels) {
+  const Outcome result =
+      run("bench --seconds 30 --repeats 1 --format json " + cable() + hinges("hinges") +
+          "--with no='sh -c \"echo why >&2; exit 7\" {shape}'");
+  ASSERT_EQ(result.status, 3) << result.err;
+  const json document = json::parse(result.out);
+  std::map<int, double> chain;
+  std::map<int, double> program;
+  for (const json& one : document.at("runs")) {
+    if (one.at("kind") != "static") continue;
+    std::map<int, double>& errors = one.at("model") == "chain" ? chain : program;
+    if (one.at("model") == "chain" && one.at("law") != "hooke") continue;
+    if (one.at("model") != "chain" && one.at("model") != "hinges") continue;
+    EXPECT_EQ(one.at("is_program"), one.at("model") == "hinges");
+    errors[one.at("size")] = one.at("rms_over_length");
+    EXPECT_GT(one.at("time_s").get<double>(), 0);
+  }
+  // The same hinges, and the same measure.
+  ASSERT_GE(program.size(), 2U) << result.out;
+  for (const auto& [points, error] : program) EXPECT_NEAR(error, chain.at(points), 1e-7) << points;
+  EXPECT_LT(program.at(16), program.at(8) / 3);  // second order
+  ASSERT_FALSE(document.at("failures").empty());
+  const json& failure = document.at("failures").at(0);
+  EXPECT_EQ(failure.at("program"), "no");
+  EXPECT_EQ(failure.at("problem"), "exit status 7: why");
+}
+
+TEST_F(ProgramCommand, BenchSaysFailuresInTextAndTables) {
+  const std::string arguments = "bench --seconds 0.3 --repeats 1 --time-limit 0.05 " + cable() +
+                                " --with slow='sh -c \"sleep 9\" {shape}' ";
+  const Outcome text = run(arguments);
+  EXPECT_EQ(text.status, 3);
+  EXPECT_THAT(text.out,
+              HasSubstr("\nfailed: cable: slow N = 8: killed after the time limit of 0.05 s\n"));
+  const Outcome table = run(arguments + "--format csv");
+  EXPECT_EQ(table.status, 3);
+  EXPECT_THAT(table.out,
+              HasSubstr("\ncable,static,slow,8,,,,,,,,,killed after the time limit of 0.05 s\n"));
+  expect_error("bench " + cable() + " --with sim", 2, {"--with", "NAME"});
+}
+
+TEST_F(ProgramCommand, RegressKeepsAProgramsErrorByItsName) {
+  const std::string arguments =
+      "regress --model chain --baseline " + path("b.toml") + " " + cable();
+  ASSERT_EQ(run(arguments + hinges("mine") + "--update").status, 0);
+  EXPECT_THAT(read(path("b.toml")), HasSubstr("program = \"mine\"\npoints = 16\n"));
+  const Outcome same = run(arguments + hinges("mine"));
+  EXPECT_EQ(same.status, 0) << same.out;
+  EXPECT_THAT(same.out, HasSubstr("same                 cable (mine, N = 16)\n"));
+  const Outcome changed = run(arguments + hinges("mine") + "--points 24");
+  EXPECT_EQ(changed.status, 1);
+  EXPECT_THAT(changed.out, HasSubstr("changed              cable (mine, N = 24)\n"));
+  EXPECT_EQ(run(arguments).status, 1);  // not measured
+  const Outcome failed = run(arguments + " --with mine='sh -c \"echo no >&2; exit 1\" {shape}'");
+  EXPECT_EQ(failed.status, 3);
+  EXPECT_THAT(failed.out, HasSubstr("exit status 1: no"));
+}
+
+TEST_F(ProgramCommand, ASignalKillsTheProgramAndRemovesItsFolder) {
+  const std::string line = "mkdir " + path("t") + "; TMPDIR=" + path("t") + " " + DLO_COMMAND +
+                           " bench --seconds 60 " + cable() + " --with slow='sh -c \"touch " +
+                           path("runs") + "; sleep 2; touch " + path("late") +
+                           "\" {shape}' >/dev/null 2>&1 & p=$!; while [ ! -e " + path("runs") +
+                           " ]; do sleep 0.05; done; kill $p; wait $p; echo $?; ls " + path("t") +
+                           "; sleep 2.5; ls " + path("late");
+  EXPECT_EQ(run_line("sh -c '" +
+                     [&] {
+                       std::string quoted;
+                       for (const char c : line)
+                         quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+                       return quoted;
+                     }() +
+                     "'")
+                .out,
+            "143\n");
+}
+
+}  // namespace

@@ -1,0 +1,144 @@
+#include "foreign/foreign_program.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/reference.hpp"
+#include "dlo/compare/scene_file.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+Scene soft_cable() { return load_scene(std::string(DLO_DATA) + "/scenes/cable.toml"); }
+
+/// A line of sh, in which $0 is the scene, $1 N and $2 the shape.
+ForeignRun run_shell(const std::string& line, double time_limit = 20) {
+  return run_foreign({"sh", {"sh", "-c", line, "{scene}", "N={points}", "{shape}"}}, soft_cable(),
+                     24, time_limit);
+}
+
+std::string refusal_of(const std::string& with) {
+  try {
+    (void)parse_foreign_program(with);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// Runs with a temporary folder of its own, to see what stays in it.
+class ForeignFolder : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::filesystem::create_directories(folder_);
+    ::setenv("TMPDIR", folder_.c_str(), 1);
+  }
+  void TearDown() override {
+    EXPECT_TRUE(std::filesystem::is_empty(folder_));
+    ::unsetenv("TMPDIR");
+    std::filesystem::remove_all(folder_);
+  }
+
+ private:
+  std::string folder_ =
+      std::filesystem::temp_directory_path() / ("dlo_foreign_test_" + std::to_string(::getpid()));
+};
+
+TEST(ForeignProgram, IsANameAndTheWordsOfACommand) {
+  const ForeignProgram program = parse_foreign_program("my-sim_2=sim --in={scene} '{shape}' a=b");
+  EXPECT_EQ(program.name, "my-sim_2");
+  EXPECT_THAT(program.words, ElementsAre("sim", "--in={scene}", "{shape}", "a=b"));
+}
+
+TEST(ForeignProgram, BadOnesAreRefused) {
+  EXPECT_THAT(refusal_of("sim {shape}"), HasSubstr("no NAME before an ="));
+  for (const char* text : {"=sim {shape}", "a b=sim {shape}", "force=sim {shape}"}) {
+    EXPECT_THAT(refusal_of(text), HasSubstr("not such a NAME")) << text;
+  }
+  EXPECT_THAT(refusal_of("a=sim {scene}"), HasSubstr("no {shape} in the command"));
+  EXPECT_THAT(refusal_of("a='sim {shape}"), HasSubstr("is not closed"));
+  EXPECT_THROW((void)parse_foreign_programs({"a=b {shape}", "a=c {shape}"}), InputError);
+}
+
+TEST_F(ForeignFolder, IsGivenTheSceneAndTheNumberOfPoints) {
+  const ForeignRun run = run_shell(
+      "grep -q '\"schema\": \"dlo/scene/1\"' $0 && grep -q '\"points\": 24' $0 && "
+      "[ $1 = N=24 ] && printf '0,0,0\\n1,0,0\\n' > $2.csv");
+  EXPECT_EQ(run.problem, "");
+  ASSERT_TRUE(run.shape);
+  EXPECT_EQ(run.shape->points.cols(), 2);
+  EXPECT_GT(run.seconds, 0);
+}
+
+TEST_F(ForeignFolder, SaysWhatFailedWithTheLastLineOfItsStandardError) {
+  EXPECT_EQ(run_shell("echo one >&2; echo two >&2; echo three; exit 4").problem,
+            "exit status 4: two");
+  EXPECT_EQ(run_shell("true").problem, "wrote no shape");
+  EXPECT_THAT(run_shell("kill -9 $$").problem, StartsWith("ended by signal 9"));
+  EXPECT_THAT(run_shell("echo hello > $2").problem, HasSubstr("its shape:1: unknown column"));
+  EXPECT_THAT(run_shell("mkdir $2").problem, HasSubstr("shape"));
+  EXPECT_THAT(run_shell("touch $2.csv $2.vtk").problem, HasSubstr("wrote no shape"));
+  EXPECT_THAT(run_foreign({"none", {"no such program", "{shape}"}}, soft_cable(), 16, 20).problem,
+              StartsWith("could not be started: "));
+}
+
+TEST_F(ForeignFolder, IsKilledAtTheTimeLimitWithAllThatItStarted) {
+  const std::string mark = std::filesystem::temp_directory_path().string() + "_alive";
+  const auto begin = std::chrono::steady_clock::now();
+  const ForeignRun run = run_shell("trap '' TERM; (sleep 1; touch " + mark + ") & sleep 60", 0.2);
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
+  EXPECT_TRUE(run.too_long);
+  EXPECT_EQ(run.problem, "killed after the time limit of 0.2 s");
+  EXPECT_LT(took.count(), 10);
+  (void)std::system("sleep 1.5");
+  EXPECT_FALSE(std::filesystem::exists(mark));
+}
+
+TEST_F(ForeignFolder, WhatItLeavesRunningIsKilledToo) {
+  const std::string mark = std::filesystem::temp_directory_path().string() + "_left";
+  EXPECT_EQ(run_shell("(sleep 1; touch " + mark + ") & exit 3").problem, "exit status 3");
+  (void)std::system("sleep 1.5");
+  EXPECT_FALSE(std::filesystem::exists(mark));
+}
+
+TEST(ForeignDeviation, OfTheReferenceItselfIsZeroAndOfAMovedShapeTheWay) {
+  const Scene scene = soft_cable();
+  const energy_model::Equilibrium rod = solve_reference(scene, Model::energy);
+  const std::vector<double> s = equal_arc_lengths(scene.length, 201);
+  MeasuredShape shape{"shape", rod.sample(s).points, s};
+  EXPECT_LT(foreign_deviation(scene, shape, rod.sample).rms_over_length, 1e-12);
+  shape.points.row(2).array() += 0.005;
+  const Deviation moved = foreign_deviation(scene, shape, rod.sample);
+  EXPECT_NEAR(moved.rms_over_length, 0.005, 1e-12);
+  EXPECT_NEAR(moved.max_m, 0.005, 1e-12);
+  EXPECT_NEAR(moved.tip_m, 0.005, 1e-12);
+  // Either direction of the file, with or without arc lengths.
+  shape.points = shape.points.rowwise().reverse().eval();
+  shape.arc_length.clear();
+  EXPECT_NEAR(foreign_deviation(scene, shape, rod.sample).rms_over_length, 0.005, 1e-5);
+}
+
+TEST(ForeignDeviation, AShapeThatIsNotHeldOrNotTheRodIsRefused) {
+  const Scene scene = soft_cable();
+  const energy_model::Equilibrium rod = solve_reference(scene, Model::energy);
+  const std::vector<double> s = equal_arc_lengths(scene.length, 201);
+  MeasuredShape shape{"shape", rod.sample(s).points, {}};
+  shape.points.row(0).array() += 0.02;
+  EXPECT_THROW((void)foreign_deviation(scene, shape, rod.sample), InputError);
+  const MeasuredShape part{"shape", rod.sample(equal_arc_lengths(0.4, 81)).points, {}};
+  EXPECT_THROW((void)foreign_deviation(scene, part, rod.sample), InputError);
+}
+
+}  // namespace
+}  // namespace dlo::compare

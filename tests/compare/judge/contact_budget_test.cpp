@@ -1,0 +1,99 @@
+// What of a deviation is the force model's rigid obstacles', which give way by a stiffness that is
+// c_c's, and that it is nothing where nothing rigid is touched.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "dlo/compare/error_budget.hpp"
+#include "dlo/compare/force.hpp"
+#include "dlo/compare/reference.hpp"
+#include "scenes.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using test::heavy_scene;
+
+/// A rod that leaves its clamp level at this height over a floor.
+Scene over_a_floor(double gamma, double height) {
+  Scene scene = heavy_scene(gamma, 0);
+  scene.grippers.front().position.y() = height;
+  Obstacle floor;
+  floor.body = obstacle::Body::half_space(Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitY());
+  scene.obstacles = {floor};
+  scene.force_model.law = BendingLaw::hooke;
+  scene.force_model.bookkeeping = Bookkeeping::consistent;
+  scene.force_model.c_c = scene.axial_stiffness() / 100;
+  return scene;
+}
+
+struct FloorBudget {
+  Budget budget;
+  double segment_length = 0;  ///< [m]
+};
+
+FloorBudget floor_budget(const Scene& scene) {
+  const Solution force = solve_force(scene, scene.force_model);
+  const energy_model::Equilibrium rod = solve_reference(scene, Model::energy);
+  const Budget b = error_budget(scene, force, rod.sample);
+  const double parts = b.twist.share + b.natural_curvature.share + b.law.share +
+                       b.bookkeeping.share + b.discretisation.share + b.stretch.share +
+                       b.contact.share + b.not_at_rest.share;
+  EXPECT_NEAR(parts + b.interaction.share, 1, 1e-9);
+  // Of the better law and bookkeeping only not being at rest has a second order.
+  EXPECT_LT(b.interaction.rms_m, 1e-9 * scene.length);
+  return {b, force.parameters.segment_length};
+}
+
+// A rod that a clamp holds level on a floor of stiffness k = c_c / L^2 per length sinks in by
+//     y = w/k (1 - e^(-x) (cos x + sin x)),  x = s (k / 4EI)^(1/4)  (beam on an elastic foundation)
+// whose mean square is (w/k)^2 (1 - 5/4 / x(l)). A rigid floor leaves it straight, so that this is
+// all that is wrong. The polygon's last point stands on the floor's L with half of L's weight,
+// which is of first order in L.
+TEST(ContactBudget, IsWhatABeamSinksIntoAnElasticFoundation) {
+  for (const int points : {16, 32, 64}) {
+    Scene scene = over_a_floor(200, 0);
+    scene.force_model.points = points;
+    const double finer = points / 16.0;
+    scene.force_model.c_c = scene.axial_stiffness() / 1e4 / (finer * finer);
+    const auto [b, L] = floor_budget(scene);
+    const double k = *scene.force_model.c_c / (L * L);
+    const double end = std::pow(k / (4 * scene.bending_stiffness()), 0.25) * scene.length;
+    const double law = scene.weight_per_length().norm() / k * std::sqrt(1 - 1.25 / end);
+    EXPECT_NEAR(b.contact.rms_m / law, 1, 0.5 * L / scene.length) << points;
+    EXPECT_NEAR(b.contact.share, 1, 1e-4) << points;
+  }
+}
+
+// As 1/c_c - 1/(100 AE), but for the second order in the depth, which a tenth of the depth makes a
+// tenth: where the rod lifts off moves.
+TEST(ContactBudget, IsInverseToTheStiffnessOfObstacles) {
+  Scene scene = over_a_floor(200, 0.02);
+  const double stiffest = scene.axial_stiffness() / 10;
+  scene.force_model.c_c = stiffest;
+  const double first = floor_budget(scene).budget.contact.rms_m;
+  EXPECT_GT(first, 1e-6 * scene.length);
+  for (const double softer : {2, 4}) {
+    Scene soft = scene;
+    soft.force_model.c_c = stiffest / softer;
+    EXPECT_NEAR(floor_budget(soft).budget.contact.rms_m / first, softer, 2e-3 * softer) << softer;
+  }
+  // As stiff as what stands for rigid: the depth is none of the model's.
+  scene.force_model.c_c = 100 * scene.axial_stiffness();
+  EXPECT_LT(floor_budget(scene).budget.contact.rms_m, 1e-9 * scene.length);
+}
+
+TEST(ContactBudget, IsNothingWhereNothingRigidIsTouched) {
+  const Scene out_of_reach = over_a_floor(2, 2);
+  EXPECT_EQ(floor_budget(out_of_reach).budget.contact.rms_m, 0);
+  const Scene above = over_a_floor(0.1, 0.9);
+  EXPECT_EQ(floor_budget(above).budget.contact.rms_m, 0);
+  // What yields does so to the rod itself.
+  Scene yielding = over_a_floor(200, 0.02);
+  yielding.obstacles.front().stiffness = 1e3 * yielding.weight_per_length().norm();
+  EXPECT_EQ(floor_budget(yielding).budget.contact.rms_m, 0);
+}
+
+}  // namespace
+}  // namespace dlo::compare

@@ -1,0 +1,141 @@
+// Shapes next to a fold or a bifurcation say in how many directions they are open; turns of the rod
+// as a whole are none of them.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "dlo/energy_model/energy.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using test::heavy_cantilever;
+using test::two_clamps;
+
+using std::numbers::pi;
+
+/// Short of self-buckling, at Gamma = 7.8373474, by this share and 6e-8.
+Problem upright(double below) { return heavy_cantilever(7.837347 * (1 - below), 90); }
+
+Problem strip(Problem problem, double about_d1, double about_d2, double torsion) {
+  problem.bending_stiffness = about_d1;
+  problem.bending_stiffness_2 = about_d2;
+  problem.torsional_stiffness = torsion;
+  return problem;
+}
+
+void expect_open(const Equilibrium& found, int directions) {
+  EXPECT_EQ(found.status, SolveStatus::near_singular) << found.message;
+  EXPECT_EQ(found.neutral_directions, directions) << found.smallest_curvature;
+  EXPECT_NE(found.message.find(std::to_string(directions) + " neutral direction"),
+            std::string::npos)
+      << found.message;
+}
+
+void expect_determined(const Equilibrium& found) {
+  EXPECT_EQ(found.status, SolveStatus::converged) << found.message;
+  EXPECT_EQ(found.neutral_directions, 0);
+}
+
+TEST(NeutralDirections, AnUprightRoundRodHasTwoNextToBuckling) {
+  // A plain cantilever, and one with a section like the rest of it, which is solved in another way.
+  for (const bool plain : {true, false}) {
+    const auto solved = [&](double below) {
+      Problem problem = upright(below);
+      if (!plain) problem.sections = {{0.4, 0.7, 1, 0, problem.weight_per_length}};
+      return solve_energy(problem);
+    };
+    SCOPED_TRACE(plain);
+    for (const double below : {1e-8, 1e-9}) expect_open(solved(below), 2);
+    for (const double below : {1e-3, 1e-6}) expect_determined(solved(below));
+  }
+}
+
+TEST(NeutralDirections, AStripHasOneWhicheverWayItIsWeak) {
+  // The weak direction is in the plane that the solver works in, or across it.
+  expect_open(solve_energy(strip(upright(1e-9), 4, 1, 1)), 1);
+  expect_open(solve_energy(strip(upright(1e-9), 1, 4, 1)), 1);
+  expect_determined(solve_energy(strip(upright(1e-6), 1, 4, 1)));
+}
+
+TEST(NeutralDirections, EulersColumnHasTwoAtItsLoadAndIsNoBetterDeterminedThere) {
+  // Smallest eigenvalue 1 - P / (pi/2)^2, so that half of the gap to `neutral` is still neutral.
+  const auto column = [](double below) {
+    Problem problem = heavy_cantilever(0, 90);
+    problem.grips[0].direction = Eigen::Vector3d::UnitX();
+    problem.loads = {{1, {-pi * pi / 4 * (1 - below), 0, 0}}};
+    return solve_energy(problem);
+  };
+  for (const double below : {0.0, 1e-12, 5e-8}) expect_open(column(below), 2);
+  expect_determined(column(2e-7));
+}
+
+TEST(NeutralDirections, AnArchThatSnapsHasOneAtItsFold) {
+  // Stiff sideways; the load is off the middle, so that it turns back at a fold, where the smallest
+  // eigenvalue is as the root of what the load lacks.
+  const auto arch = [](double force) {
+    Problem problem = strip(two_clamps(0, 0.9), 50, 1, 50);
+    problem.loads = {{0.45, {0, -force, 0}}};
+    return problem;
+  };
+  const auto height = [](const Equilibrium& equilibrium) {
+    const std::vector<double> middle = {0.5};
+    return equilibrium.sample ? equilibrium.sample(middle).points(1, 0) : -1;
+  };
+  const std::vector<Equilibrium> all = all_energy(arch(20));
+  const auto up = std::find_if(all.begin(), all.end(), [&](const Equilibrium& found) {
+    return succeeded(found.status) && height(found) > 0;
+  });
+  ASSERT_NE(up, all.end());
+  Equilibrium on_branch = *up;
+  double low = 20;
+  double high = 40;
+  while (succeeded(on_branch.status)) {
+    const double force = (low + high) / 2;
+    ASSERT_TRUE(low < force && force < high) << "no shape between the last stable one and none";
+    Equilibrium next = solve_energy(arch(force), {.start = &on_branch});
+    const bool holds = next.status != SolveStatus::saddle && height(next) > 0.1;
+    (holds ? low : high) = force;
+    if (holds) on_branch = std::move(next);
+  }
+  expect_open(on_branch, 1);
+  EXPECT_NEAR(on_branch.smallest_curvature, 0, 1e-6);
+}
+
+TEST(NeutralDirections, FreeTurnsAreNotCounted) {
+  for (const double gamma : {0.0, 1.0, 30.0}) {
+    // Between pins above each other, and between clamps along that line; twisted too.
+    Problem problem = heavy_cantilever(gamma, 0);
+    problem.torsional_stiffness = 0.8;
+    for (const int kind : {0, 1, 2}) {
+      SCOPED_TRACE(testing::Message() << "Gamma " << gamma << ", " << kind);
+      const Eigen::Vector3d down = -Eigen::Vector3d::UnitY();
+      problem.grips = {{0, {0, 0, 0}}, {1, 0.7 * down}};
+      for (Grip& grip : problem.grips) {
+        if (kind > 0) grip.direction = down;
+      }
+      if (kind == 2) {
+        problem.grips[0].frame = FrameHold{};
+        problem.grips[1].frame = FrameHold{.roll = 1};
+      }
+      const Equilibrium found = solve_energy(problem);
+      expect_determined(found);
+      EXPECT_NEAR(found.smallest_curvature, 0, 1e-9);
+      EXPECT_LT(found.error_estimate, 1e-6);
+    }
+  }
+  // A rod of two pins that cannot turn for its weight has no zero.
+  Problem across = heavy_cantilever(10, 0);
+  across.grips = {{0, {0, 0, 0}}, {1, {0.7, 0, 0}}};
+  EXPECT_GT(solve_energy(across).smallest_curvature, 1e-3);
+  // Nor is one held by a straight line of its own a turn of anything.
+  expect_determined(solve_energy(heavy_cantilever(3, -90)));
+}
+
+}  // namespace
+}  // namespace dlo::energy_model

@@ -1,0 +1,88 @@
+// A search for all equilibria tells where it has looked and what it has left out.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "dlo/energy_model/energy.hpp"
+#include "problems.hpp"
+#include "random_problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using test::heavy_cantilever;
+using test::two_clamps;
+
+int found_first(const EnergySearch& search) {
+  int sum = 0;
+  for (const SearchStrategy& strategy : search.looked_from) sum += strategy.found_first;
+  return sum;
+}
+
+std::string left_out(const EnergySearch& search) {
+  std::string all;
+  for (const std::string& what : search.not_looked) all += what + "\n";
+  return all;
+}
+
+/// Every equilibrium of a rod of one span is the first find of one start.
+void expect_accounted(const Problem& problem) {
+  const EnergySearch search = search_energy(problem);
+  ASSERT_FALSE(search.looked_from.empty());
+  const bool any = search.equilibria.front().status != SolveStatus::failed;
+  EXPECT_EQ(found_first(search), any ? static_cast<int>(search.equilibria.size()) : 0);
+  for (const SearchStrategy& strategy : search.looked_from) {
+    EXPECT_GE(strategy.tried, strategy.found_first) << strategy.name;
+    EXPECT_GT(strategy.tried, 0) << strategy.name;
+  }
+  EXPECT_EQ(search.equilibria.size(), all_energy(problem).size());
+}
+
+TEST(SearchLog, AccountsForEveryEquilibriumOfOneSpan) {
+  expect_accounted(heavy_cantilever(1, 0));
+  expect_accounted(heavy_cantilever(60, 0));
+  expect_accounted(two_clamps(10, 0.6));
+  Problem pins = heavy_cantilever(10, 0);
+  pins.grips = {{0, {0, 0, 0}}, {1, {0.3, 0.1, 0}}};
+  expect_accounted(pins);
+  Problem curved = heavy_cantilever(20, -90);
+  curved.natural_strains = {{0, 6, 0}};
+  curved.torsional_stiffness = 0.7;
+  expect_accounted(curved);
+  Problem twisted = two_clamps(1, 0.7);
+  twisted.torsional_stiffness = 0.7;
+  twisted.grips[0].frame = FrameHold{};
+  twisted.grips[1].frame = FrameHold{.roll = 2};
+  expect_accounted(twisted);
+}
+
+TEST(SearchLog, TellsWhatAFloorLeavesOutAndAccountsForWhatLiesOnIt) {
+  Problem problem = heavy_cantilever(50, 0);
+  problem.obstacles = {{obstacle::Body::half_space({0, -0.1, 0}, {0, 1, 0})}};
+  expect_accounted(problem);
+  EXPECT_NE(left_out(search_energy(problem)).find("polygons"), std::string::npos);
+}
+
+TEST(SearchLog, TellsThatTheTimeLimitCutItShort) {
+  const EnergySearch search = search_energy(two_clamps(10, 0.6), {.time_limit = 1e-6});
+  EXPECT_NE(left_out(search).find("time limit"), std::string::npos) << left_out(search);
+  const EnergySearch whole = search_energy(two_clamps(10, 0.6));
+  EXPECT_EQ(left_out(whole).find("time limit"), std::string::npos) << left_out(whole);
+}
+
+TEST(SearchLog, TellsThatThereAreMoreCombinationsThanItLists) {
+  // Five clamps: four spans of several equilibria each.
+  Problem problem = heavy_cantilever(10, 0);
+  for (int i = 1; i < 5; ++i) {
+    problem.grips.push_back({0.25 * i, {0.15 * i, 0, 0}, Eigen::Vector3d::UnitX()});
+  }
+  const EnergySearch search = search_energy(problem);
+  EXPECT_EQ(search.equilibria.size(), 64U);
+  EXPECT_NE(left_out(search).find("combinations"), std::string::npos) << left_out(search);
+  EXPECT_TRUE(left_out(search_energy(heavy_cantilever(1, 0))).empty());
+}
+
+}  // namespace
+}  // namespace dlo::energy_model

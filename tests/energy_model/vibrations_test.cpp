@@ -1,0 +1,260 @@
+// Free vibrations against closed forms, and about heavy shapes against the linearised equations of
+// a rod in space, shot from the tip.
+
+#include "dlo/energy_model/vibrations.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A rod with EI = l = rho A = 1.
+Problem unit_rod(const Vector3d& weight, std::vector<Grip> grips) {
+  Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.weight_per_length = weight;
+  problem.grips = std::move(grips);
+  return problem;
+}
+
+Grip clamped(double at, const Vector3d& position, const Vector3d& direction) {
+  return {.at = at, .position = position, .direction = direction, .frame = {}};
+}
+
+Vibrations modes_of(const Problem& problem, int count, std::vector<PointMass> points = {}) {
+  const Equilibrium shape = solve_energy(problem);
+  EXPECT_TRUE(succeeded(shape.status)) << shape.message;
+  Inertia inertia;
+  inertia.mass_per_length = 1;
+  inertia.of_sections.assign(problem.sections.size(), 1);
+  inertia.point_masses = std::move(points);
+  Vibrations found = vibrations(problem, inertia, shape, {.count = count});
+  EXPECT_EQ(found.status, SolveStatus::converged) << found.message;
+  return found;
+}
+
+// (beta l)^2 with cos(beta l) cosh(beta l) = -1, each in and out of the plane.
+TEST(Vibrations, OfAStraightCantileverAreThoseOfABeam) {
+  const Vibrations found =
+      modes_of(unit_rod(Vector3d::Zero(), {clamped(0, Vector3d::Zero(), Vector3d::UnitX())}), 6);
+  ASSERT_EQ(found.modes.size(), 6U);
+  const std::array<double, 3> roots = {1.8751040687119612, 4.694091132974175, 7.854757438237613};
+  for (std::size_t k = 0; k < 6; ++k) {
+    const double exact = roots[k / 2] * roots[k / 2];
+    EXPECT_NEAR(found.modes[k].omega() / exact, 1, 1e-9) << k;
+    EXPECT_LT(found.modes[k].error, 1e-9);
+    EXPECT_EQ(found.modes[k].plane, k % 2 == 0 ? ModePlane::in : ModePlane::out);
+  }
+  const std::vector<double> ends = {0, 1};
+  const Eigen::Matrix3Xd moved = found.modes[0].shape(ends);
+  EXPECT_NEAR(moved.col(0).norm(), 0, 1e-14);
+  EXPECT_NEAR(moved.col(1).norm(), 1, 1e-12);
+}
+
+// Next to straight a rod between two clamps is pressed by 4 pi^2 EI/l^2, at which it buckles. Then
+// w_ssss + 4 pi^2 w_ss = omega^2 w; what is odd about the middle has w = sin(a x) and sinh(b x)
+// with a^2 - b^2 = 4 pi^2, a b = omega, and is clamped where a cot(a/2) = b coth(b/2). To turn
+// about the line between the clamps costs nothing.
+TEST(Vibrations, OfAHardlyBuckledRodAreThoseOfAPressedBeam) {
+  const double slack = 1e-6;
+  const Vibrations found =
+      modes_of(unit_rod(Vector3d::Zero(), {clamped(0, Vector3d::Zero(), Vector3d::UnitX()),
+                                           clamped(1, {1 - slack, 0, 0}, Vector3d::UnitX())}),
+               3);
+  ASSERT_EQ(found.modes.size(), 3U);
+  EXPECT_NEAR(found.modes[0].omega_squared, 0, 1e-6);
+  for (const std::size_t k : {1U, 2U}) {
+    const double square = found.modes[k].omega_squared;
+    const double half = 2 * std::numbers::pi * std::numbers::pi;
+    const double root = std::sqrt(half * half + square);
+    const double a = std::sqrt(half + root);
+    const double b = std::sqrt(root - half);
+    EXPECT_NEAR(a / std::tan(a / 2) / (b / std::tanh(b / 2)), 1, 100 * slack) << square;
+  }
+}
+
+// A mass M at the tip of a beam: 1 + cos cosh + beta M (cos sinh - sin cosh) = 0.
+TEST(Vibrations, OfACantileverWithAMassAtItsTip) {
+  const double mass = 0.7;
+  const Vibrations found =
+      modes_of(unit_rod(Vector3d::Zero(), {clamped(0, Vector3d::Zero(), Vector3d::UnitX())}), 4,
+               {{1, mass}});
+  for (const VibrationMode& mode : found.modes) {
+    const double b = std::sqrt(mode.omega());
+    const double miss = 1 + std::cos(b) * std::cosh(b) +
+                        b * mass * (std::cos(b) * std::sinh(b) - std::sin(b) * std::cosh(b));
+    EXPECT_NEAR(miss / std::cosh(b), 0, 1e-8);
+  }
+}
+
+// Bessel's zero j_0 / 2 = 1.2024127788 of a chain; a stiff layer of (EI/w)^(1/2) at the clamp makes
+// a rod as much shorter, to first order: omega = 1.2024 (g / l)^(1/2) (1 + c Gamma^(-1/2) + ..).
+TEST(Vibrations, OfAHangingRodComeToThoseOfAChain) {
+  const double chain = 1.2024127788;
+  std::array<double, 3> over{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double gamma = std::pow(100.0, static_cast<double>(i + 2));
+    const Vibrations found =
+        modes_of(unit_rod({0, -gamma, 0}, {clamped(0, Vector3d::Zero(), -Vector3d::UnitY())}), 1);
+    over[i] = (found.modes[0].omega() / (chain * std::sqrt(gamma)) - 1) * std::sqrt(gamma);
+  }
+  // Half a layer's length, as the period goes with the root of the length.
+  EXPECT_NEAR(over[2], 0.5, 0.01);
+  EXPECT_NEAR(over[2] - over[1], (over[1] - over[0]) / 10, 0.3 * std::abs(over[1] - over[0]) / 10);
+}
+
+/// A rod's state along it, and how it changes in a vibration: points r, tangents t, moments m and
+/// forces n of what lies beyond; r' = t, m = t x t', m' = n x t, n' = -w - omega^2 dr.
+struct RodState {
+  Vector3d r, t, m, n, dr, dt, dm, dn;
+};
+
+RodState state_slope(const RodState& y, const Vector3d& weight, double omega_squared) {
+  RodState d;
+  d.r = y.t;
+  d.t = y.m.cross(y.t);
+  d.m = y.n.cross(y.t);
+  d.n = -weight;
+  d.dr = y.dt;
+  d.dt = y.dm.cross(y.t) + y.m.cross(y.dt);
+  // The moment has no part about the tangent: dm . t + m . dt = 0 keeps itself.
+  d.dm = y.dn.cross(y.t) + y.n.cross(y.dt);
+  d.dn = -omega_squared * y.dr;
+  return d;
+}
+
+RodState advanced(const RodState& y, const RodState& d, double h) {
+  return {y.r + h * d.r,   y.t + h * d.t,   y.m + h * d.m,   y.n + h * d.n,
+          y.dr + h * d.dr, y.dt + h * d.dt, y.dm + h * d.dm, y.dn + h * d.dn};
+}
+
+/// From the tip to the clamp, by the classical Runge-Kutta method.
+RodState at_clamp(RodState y, const Vector3d& weight, double omega_squared) {
+  constexpr int steps = 4000;
+  const double h = -1.0 / steps;
+  for (int i = 0; i < steps; ++i) {
+    const RodState a = state_slope(y, weight, omega_squared);
+    const RodState b = state_slope(advanced(y, a, h / 2), weight, omega_squared);
+    const RodState c = state_slope(advanced(y, b, h / 2), weight, omega_squared);
+    const RodState d = state_slope(advanced(y, c, h), weight, omega_squared);
+    y = advanced(advanced(advanced(advanced(y, a, h / 6), b, h / 3), c, h / 3), d, h / 6);
+  }
+  return y;
+}
+
+/// Zero at a frequency: of five movements of the tip that leave it free, what they do at the clamp.
+double miss_at_clamp(const Vector3d& tip, const Vector3d& tangent, const Vector3d& clamp_direction,
+                     const Vector3d& weight, double omega_squared) {
+  const Vector3d across = tangent.unitOrthogonal();
+  const Vector3d beside = tangent.cross(across);
+  const Vector3d here = clamp_direction.unitOrthogonal();
+  Eigen::Matrix<double, 5, 5> at;
+  for (Eigen::Index k = 0; k < 5; ++k) {
+    RodState y{tip,
+               tangent,
+               Vector3d::Zero(),
+               Vector3d::Zero(),
+               k < 3 ? Vector3d(Vector3d::Unit(k)) : Vector3d(Vector3d::Zero()),
+               k < 3 ? Vector3d(Vector3d::Zero()) : (k == 3 ? across : beside),
+               Vector3d::Zero(),
+               Vector3d::Zero()};
+    y = at_clamp(y, weight, omega_squared);
+    at.col(k) << y.dr, here.dot(y.dt), clamp_direction.cross(here).dot(y.dt);
+  }
+  return at.determinant();
+}
+
+// An independent way, on the tip of `exact`: at each mode's frequency, and at none between, the
+// determinant changes its sign.
+TEST(Vibrations, AboutHeavyShapesMeetTheLinearisedEquations) {
+  for (const double gamma : {3.0, 30.0, 200.0}) {
+    const Vector3d weight(0, -gamma, 0);
+    const Vector3d direction = Vector3d(std::cos(0.4), std::sin(0.4), 0);
+    const Problem problem = unit_rod(weight, {clamped(0, Vector3d::Zero(), direction)});
+    const Equilibrium shape = solve_exact(problem);
+    ASSERT_TRUE(succeeded(shape.status));
+    const std::vector<double> end = {1};
+    const Samples tip = shape.sample(end);
+    const auto miss = [&](double omega) {
+      return miss_at_clamp(tip.points.col(0), tip.tangents.col(0), direction, weight,
+                           omega * omega);
+    };
+    const Vibrations found = modes_of(problem, 6);
+    double before = 0.5 * found.modes[0].omega();
+    for (const VibrationMode& mode : found.modes) {
+      const double omega = mode.omega();
+      EXPECT_LT(miss(omega * (1 - 1e-7)) * miss(omega * (1 + 1e-7)), 0) << gamma << " " << omega;
+      EXPECT_GT(miss(before) * miss(omega * (1 - 1e-7)), 0) << gamma << " " << omega;
+      before = omega * (1 + 1e-7);
+      EXPECT_NE(mode.plane, ModePlane::mixed);
+    }
+  }
+}
+
+// Upright beyond self-buckling the straight rod falls; short of it, slower and slower.
+TEST(Vibrations, OfAnUprightRodStopWhereItBuckles) {
+  const double buckles = self_buckling_gamma();
+  double before = 1e9;
+  for (const double share : {0.5, 0.9, 0.99}) {
+    const Vibrations found = modes_of(
+        unit_rod({0, -share * buckles, 0}, {clamped(0, Vector3d::Zero(), Vector3d::UnitY())}), 1);
+    EXPECT_GT(found.modes[0].omega_squared, 0);
+    EXPECT_LT(found.modes[0].omega_squared, before);
+    before = found.modes[0].omega_squared;
+  }
+  const Problem problem =
+      unit_rod({0, -1.05 * buckles, 0}, {clamped(0, Vector3d::Zero(), Vector3d::UnitY())});
+  for (const Equilibrium& shape : all_energy(problem)) {
+    if (shape.status != SolveStatus::saddle) continue;
+    const Vibrations found =
+        vibrations(problem, {.mass_per_length = 1, .of_sections = {}, .point_masses = {}}, shape);
+    EXPECT_LT(found.modes.front().omega_squared, 0);
+    EXPECT_TRUE(std::isnan(found.modes.front().omega()));
+    return;
+  }
+  FAIL() << "the upright shape was not found";
+}
+
+// The clamp in the middle parts them: each half vibrates alone, at four times the frequency.
+TEST(Vibrations, OfSpansBetweenClampsAreTheirOwn) {
+  const Vibrations found =
+      modes_of(unit_rod(Vector3d::Zero(), {clamped(0.5, Vector3d::Zero(), Vector3d::UnitX())}), 4);
+  for (const VibrationMode& mode : found.modes) {
+    EXPECT_NEAR(mode.omega() / (4 * std::pow(1.8751040687119612, 2)), 1, 1e-9);
+    EXPECT_DOUBLE_EQ(mode.end - mode.begin, 0.5);
+  }
+  const std::vector<double> at = {0.0, 0.25, 0.75, 1.0};
+  const Eigen::Matrix3Xd shape = found.modes[0].shape(at);
+  const bool first = found.modes[0].begin == 0;
+  EXPECT_EQ(shape.col(first ? 3 : 0).norm(), 0);
+  EXPECT_NEAR(shape.col(first ? 0 : 3).norm(), 1, 1e-9);
+}
+
+TEST(Vibrations, RefuseContactAndMassesThatAreNone) {
+  Problem problem = unit_rod({0, -50, 0}, {clamped(0, Vector3d(0, 0.1, 0), Vector3d::UnitX())});
+  const Inertia inertia{.mass_per_length = 1, .of_sections = {}, .point_masses = {}};
+  problem.obstacles.push_back({obstacle::Body::half_space({0, 0, 0}, {0, 1, 0})});
+  const Equilibrium lying = solve_energy(problem);
+  ASSERT_FALSE(lying.contacts.empty());
+  const Vibrations refused = vibrations(problem, inertia, lying);
+  EXPECT_EQ(refused.status, SolveStatus::failed);
+  EXPECT_NE(refused.message.find("touches"), std::string::npos);
+  EXPECT_THROW((void)vibrations(problem, {}, lying), std::invalid_argument);
+  EXPECT_THROW((void)vibrations(problem, inertia, lying, {.count = 0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
