@@ -57,8 +57,8 @@ struct VibrationMode {
   /// over the root of that.
   double error = std::numeric_limits<double>::infinity();
   ModePlane plane = ModePlane::spatial;  ///< of the movement, about the plane of the shape
-  double begin = 0;  ///< of the part between clamps that moves, arc length [m]
-  double end = 0;    ///< its end [m]
+  double begin = 0;                      ///< of the part between clamps that moves, arc length [m]
+  double end = 0;                        ///< its end [m]
   /// Displacements at arc lengths within [0, length], 3 x M [m], of the movement in which the
   /// farthest point goes 1 m.
   std::function<Eigen::Matrix3Xd(std::span<const double>)> shape;
