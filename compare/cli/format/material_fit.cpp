@@ -98,6 +98,10 @@ std::string chains_text(const MaterialReport& report) {
            chain.stiffness, chain.over_rod);
     append(out, "            ({:.4g} mm from the rod on {}, RMS)\n", chain.rms_m * 1e3,
            compare::display(chain.scene));
+    for (const compare::SimulatorParameter& parameter : compare::simulator_parameters(chain)) {
+      append(out, "              {:<10} {} = {:.5g} {}\n", parameter.simulator, parameter.name,
+             parameter.value, parameter.unit);
+    }
   }
   return out;
 }
@@ -111,7 +115,14 @@ Json chains_json(const compare::MaterialFit& fit) {
                       {"segment_length_m", chain.segment_length},
                       {"joint_stiffness_Nm_per_rad", chain.stiffness},
                       {"over_bending_stiffness_per_length", chain.over_rod},
-                      {"rms_m", chain.rms_m}});
+                      {"rms_m", chain.rms_m},
+                      {"parameters", Json::array()}});
+    for (const compare::SimulatorParameter& parameter : compare::simulator_parameters(chain)) {
+      result.back()["parameters"].push_back({{"simulator", parameter.simulator},
+                                             {"name", parameter.name},
+                                             {"unit", parameter.unit},
+                                             {"value", parameter.value}});
+    }
   }
   return result;
 }

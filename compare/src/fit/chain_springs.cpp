@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "dlo/compare/reference.hpp"
 #include "explain/own_polygon.hpp"
@@ -47,6 +49,7 @@ std::vector<ChainSprings> chain_springs(const Scene& scene, int segments,
   Eigen::VectorXd halved = whole;
   if (has_clamp_at(scene, 0)) halved[0] = 0.5;
   if (has_clamp_at(scene, scene.length)) halved[segments - 1] = 0.5;
+  const double second_moment = std::numbers::pi * std::pow(scene.diameter, 4) / 64;
   std::vector<ChainSprings> found;
   for (const bool held_in_middle : {false, true}) {
     const Eigen::VectorXd& shares = held_in_middle ? halved : whole;
@@ -61,9 +64,30 @@ std::vector<ChainSprings> chain_springs(const Scene& scene, int segments,
                        .stiffness = chain.stiffness * scene.bending_stiffness() / h,
                        .over_rod = chain.stiffness,
                        .rms_m = chain.rms_m});
+      if (second_moment > 0) {
+        found.back().equivalent_modulus = found.back().stiffness * h / second_moment;
+      }
     }
   }
   return found;
+}
+
+std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain) {
+  const double joint = chain.stiffness;
+  const double rod = chain.stiffness * chain.segment_length;
+  std::vector<SimulatorParameter> all = {
+      {"MuJoCo", "joint stiffness", "N m/rad", joint},
+      {"Bullet", "btGeneric6DofSpring2Constraint::setStiffness", "N m/rad", joint},
+      {"Newton", "add_rod bend_stiffness", "N m^2", rod},
+      {"Newton", "add_joint_cable bend_stiffness", "N m/rad", joint}};
+  if (chain.equivalent_modulus > 0) {
+    all.push_back({"MuJoCo", "cable plugin bend", "Pa", chain.equivalent_modulus});
+    // Its first element is held whole, as that of a welded chain.
+    if (chain.clamp == ChainClamp::welded) {
+      all.push_back({"PyElastica", "youngs_modulus", "Pa", chain.equivalent_modulus});
+    }
+  }
+  return all;
 }
 
 }  // namespace dlo::compare

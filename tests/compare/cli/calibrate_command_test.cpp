@@ -100,8 +100,10 @@ TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
   EXPECT_EQ(chains[0].at("clamp"), "hinge");
   EXPECT_EQ(chains[2].at("clamp"), "middle");
   EXPECT_NEAR(chains[2].at("over_bending_stiffness_per_length").get<double>(), 1, 0.02);
-  EXPECT_NE(run(chain).out.find("12 segments of 0.08333 m, a hinge at the clamp"),
-            std::string::npos);
+  EXPECT_EQ(chains[1].at("parameters")[2].at("name"), "add_rod bend_stiffness");
+  const std::string text = run(chain).out;
+  EXPECT_NE(text.find("12 segments of 0.08333 m, a hinge at the clamp"), std::string::npos);
+  EXPECT_NE(text.find("PyElastica youngs_modulus = "), std::string::npos);
   expect_error(words({"calibrate", a, "--shape", path("a.csv"), "--segments 3"}), 2,
                {"--segments", "3"});
 }

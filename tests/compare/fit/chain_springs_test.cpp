@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <string>
+#include <string_view>
 
 #include "dlo/compare/material_fit.hpp"
 #include "measured_shapes.hpp"
@@ -75,6 +78,34 @@ TEST(ChainSprings, BetweenTwoClampsBothEndsAreHeldAlike) {
   const auto chains = springs_of(scene, 24);
   EXPECT_NEAR(chains.at(ChainClamp::middle).segment_length, 1.0 / 23, 1e-15);
   EXPECT_LT(chains.at(ChainClamp::middle).rms_m, 2e-3);
+}
+
+// What each simulator makes of its number is the joint that was meant: MuJoCo's plugin takes
+// E pi r^4 / 4 / h, Newton's add_rod divides by h.
+TEST(ChainSprings, SimulatorsTakeTheSameJointEachByItsOwnNumber) {
+  const Scene scene = test::heavy_scene(5, 0);
+  for (const auto& [clamp, chain] : springs_of(scene, 24)) {
+    std::map<std::string, double> joints;
+    for (const SimulatorParameter& parameter : simulator_parameters(chain)) {
+      const double per_unit =
+          std::string_view(parameter.unit) == "Pa"
+              ? std::numbers::pi * std::pow(scene.diameter / 2, 4) / 4 / chain.segment_length
+          : std::string_view(parameter.unit) == "N m^2" ? 1 / chain.segment_length
+                                                        : 1;
+      joints[std::string(parameter.simulator) + parameter.name] = parameter.value * per_unit;
+    }
+    EXPECT_EQ(joints.size(), clamp == ChainClamp::welded ? 6U : 5U);
+    for (const auto& [name, joint] : joints) {
+      EXPECT_NEAR(joint / chain.stiffness, 1, 1e-12) << name << ' ' << to_string(clamp);
+    }
+    EXPECT_NEAR(chain.equivalent_modulus / scene.material.youngs_modulus, chain.over_rod, 1e-9);
+  }
+}
+
+TEST(ChainSprings, WithoutADiameterNoSimulatorTakesAModulus) {
+  for (const SimulatorParameter& parameter : simulator_parameters({.stiffness = 1})) {
+    EXPECT_STRNE(parameter.unit, "Pa");
+  }
 }
 
 // Twist, sections and the like are not in a plain chain.

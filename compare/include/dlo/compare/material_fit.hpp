@@ -80,7 +80,25 @@ struct ChainSprings {
   double stiffness = 0;                  ///< of one joint [N m/rad], its moment over 2 tan(angle/2)
   double over_rod = 1;                   ///< that over EI / h
   double rms_m = 0;                      ///< of its points from the rod
+  /// Young's modulus of a solid round rod of the scene's diameter with EI / h of one joint [Pa]; 0
+  /// without a diameter.
+  double equivalent_modulus = 0;
 };
+
+/// One number of a simulator's chain, by the name that it has there.
+struct SimulatorParameter {
+  const char* simulator = "";  ///< MuJoCo, Bullet, PyElastica or Newton
+  const char* name = "";       ///< what takes it
+  const char* unit = "";       ///< in which it is taken
+  double value = 0;            ///< in that unit
+};
+
+/// The springs of a chain as the parameters of simulators that have such chains: MuJoCo 3 (joints,
+/// and its plugin `mujoco.elasticity.cable`, which divides E I by h itself), Bullet 3, PyElastica
+/// 0.3 (E of a rod whose first element is held), Newton (`ModelBuilder.add_rod`, which divides by
+/// h, and `add_joint_cable`, which does not). Those that take a modulus only if the diameter is
+/// known.
+[[nodiscard]] std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain);
 
 /// How one shape was laid on the rod of the fitted modulus.
 struct FittedShape {
