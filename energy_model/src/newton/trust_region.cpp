@@ -8,24 +8,13 @@
 #include <cmath>
 
 #include "base/free_directions.hpp"
+#include "newton/restore.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 /// A region this small moves the shape by less than rounding does.
 constexpr double smallest_radius = 1e-10;
-/// Gap at the grips from which a start is taken.
-constexpr double loosest_gap = 1e-5;
-/// A start with a larger gap may be bent to close it; closer to the end that would lead away.
-constexpr double largest_bent_gap = 1e-3;
-
-/// Energy, its derivatives and the constraints at a point.
-struct PointOnSpan {
-  Eigen::VectorXd x, gradient, residual;
-  Eigen::MatrixXd jacobian;
-  double energy = 0;
-};
-
 /// Solution of min g.p + p.diag(d) p / 2 in |p| <= radius for the eigenvalues d, growing.
 Eigen::VectorXd step_in_region(const Eigen::VectorXd& d, const Eigen::VectorXd& g, double radius) {
   const auto step = [&](double shift) {
@@ -66,8 +55,8 @@ class TrustRegionDescent {
   void run() {
     PointOnSpan here;
     here.x = solution_.x;
-    evaluate(here);
-    if (!restore(here, loosest_gap)) {
+    evaluate(solution_, here);
+    if (!restore(solution_, here, loosest_gap)) {
       solution_.multipliers = multipliers_;
       return solution_.fail("the grips' positions could not be met from this start");
     }
@@ -94,67 +83,6 @@ class TrustRegionDescent {
   }
 
  private:
-  void evaluate(PointOnSpan& point) {
-    point.gradient.resize(model_.size());
-    point.residual.resize(model_.constraints());
-    point.jacobian.resize(model_.constraints(), model_.size());
-    point.energy = model_.value(point.x, point.gradient);
-    model_.constraint(point.residual, point.jacobian);
-    ++solution_.evaluations;
-  }
-
-  /// Steps to |c| <= gap, each of which has to make it smaller: Levenberg and Marquardt's, which
-  /// are Gauss-Newton's near the end,
-  ///     -J^T (J J^T + mu)^-1 c.
-  /// Where the Jacobian loses rank (a straight rod that has to become shorter) they stop short; a
-  /// small bend in all unknowns then leads on.
-  [[nodiscard]] bool restore(PointOnSpan& point, double gap) {
-    if (model_.constraints() == 0) return std::isfinite(point.energy);
-    constexpr int most_steps = 60;
-    constexpr double longest = 1;  // of a step
-    constexpr int most_bends = 3;
-    const Eigen::Index m = model_.constraints();
-    PointOnSpan trial;
-    int bends = 0;
-    double mu = 1e-12;
-    for (int i = 0; i < most_steps; ++i) {
-      const double size = point.residual.norm();
-      if (!std::isfinite(size)) return false;
-      if (size <= gap) return true;
-      Eigen::MatrixXd normal = point.jacobian * point.jacobian.transpose();
-      const double scale = normal.diagonal().maxCoeff();
-      bool shorter = false;
-      for (; mu < 1e3 && !shorter; mu *= 10) {
-        normal = point.jacobian * point.jacobian.transpose();
-        normal += mu * scale * Eigen::MatrixXd::Identity(m, m);
-        const Eigen::VectorXd step =
-            -point.jacobian.transpose() * normal.ldlt().solve(point.residual);
-        if (!(step.norm() <= longest)) continue;
-        trial.x = point.x + step;
-        evaluate(trial);
-        shorter = trial.residual.norm() < 0.99 * size;
-      }
-      if (shorter) {
-        std::swap(point, trial);
-        mu = std::max(1e-15, mu * 1e-3);
-        continue;
-      }
-      if (size < largest_bent_gap || bends++ == most_bends) return false;
-      bend(point, bends);
-      mu = 1e-3;
-    }
-    return point.residual.norm() <= gap;
-  }
-
-  /// Anything without a symmetry, in the lower coefficients of every piece.
-  void bend(PointOnSpan& point, int which) {
-    for (Eigen::Index k = 0; k < point.x.size(); ++k) {
-      const auto order = static_cast<double>(k % model_.terms());
-      point.x[k] += 0.3 * std::sin(which + 1.7 * static_cast<double>(k)) / (1 + order * order);
-    }
-    evaluate(point);
-  }
-
   /// Multipliers, null space, projected gradient and Hessian at a point.
   void linearise(const PointOnSpan& here) {
     const Eigen::Index n = model_.size();
@@ -206,9 +134,9 @@ class TrustRegionDescent {
   [[nodiscard]] double try_step(PointOnSpan& here, const Eigen::VectorXd& step, double radius) {
     PointOnSpan trial;
     trial.x = here.x + step;
-    evaluate(trial);
+    evaluate(solution_, trial);
     const double gap = std::min(loosest_gap, std::max(1e-13, 1e-2 * length_ * length_));
-    if (!restore(trial, gap)) return std::min(radius, length_) / 4;
+    if (!restore(solution_, trial, gap)) return std::min(radius, length_) / 4;
     const double before = here.energy - multipliers_.dot(here.residual);
     const double after = trial.energy - multipliers_.dot(trial.residual);
     const double rounding = 1e-14 * (1 + std::abs(before) + multipliers_.norm());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "certify/certify.hpp"
 #include "certify/enough_terms.hpp"
 #include "newton/penalty_descent.hpp"
+#include "newton/restore.hpp"
 #include "newton/trust_region.hpp"
 #include "problem/segments.hpp"
 #include "search/search_log.hpp"
@@ -19,6 +21,8 @@
 
 namespace dlo::energy_model {
 namespace {
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
 
 /// Above this sum of weight and loads (in EI/l^2) a rod is nearer to its soft limit than to
 /// straight.
@@ -71,10 +75,10 @@ std::vector<SpanSolution> list_of(SpanSolution solution) {
   return result;
 }
 
-/// A shape to start from and, in space, what it was fitted with when starts were ranked.
+/// A shape to start from and, where starts were ranked, its unknowns in the model of the ranking.
 struct Start {
   TangentField field;
-  int terms = 0;
+  std::shared_ptr<const SpanEnergy> model;
   Eigen::VectorXd x;
 };
 
@@ -118,28 +122,25 @@ class Search {
       add(std::move(solution), found);
     }
     const std::vector<Start> starts = ranked_starts();
-    const std::size_t tried =
-        span_.has_material_directors() ? followed_natural_starts : followed_starts;
-    const std::size_t followed = options_.all ? starts.size() : std::min(tried, starts.size());
+    const std::size_t first = options_.all ? starts.size() : std::min(followed(), starts.size());
     std::vector<SpanSolution> coarse;
-    const std::string kind = starts_of(span_);
+    const std::string kind = options_.log != nullptr ? starts_of(span_) : std::string();
     for (std::size_t i = 0; i < starts.size() && !out_of_time(); ++i) {
       // The other starts only where the first ones and what they lead to do not hold.
-      if (i >= followed && has_stable_lowest(found)) break;
+      if (i >= first && has_stable_lowest(found)) break;
       SpanSolution solution = from_start(starts[i]);
       spent_ += solution.evaluations;
       solution.evaluations = 0;
-      if (!is_known(solution, coarse)) {
-        coarse.push_back(solution);
-        note(kind + ", downhill", add(refined(std::move(solution)), found));
-      } else {
-        note(kind + ", downhill", false);
-      }
-      // Descending leaves unstable equilibria; Newton's method alone stays near them.
+      const bool known = is_known(solution, coarse);
+      if (!known) coarse.push_back(std::move(solution));
       if (options_.all) {
+        note(kind + ", downhill", !known && add(refined(coarse.back()), found));
+        // Descending leaves unstable equilibria; Newton's method alone stays near them.
         note(kind + ", by Newton's method", add(refined(near_field(starts[i].field)), found));
       }
-      if (i + 1 >= followed) leave_saddles(found);
+      if (i + 1 < first) continue;
+      if (!options_.all) refine_lowest(std::exchange(coarse, {}), found);
+      leave_saddles(found);
     }
     if (span_.planar && span_.has_material_directors()) look_in_space(found);
     if (options_.log != nullptr) tell_what_was_left_out(found);
@@ -147,6 +148,24 @@ class Search {
   }
 
  private:
+  /// Adds those of the coarse equilibria that may be the lowest one, with all of their terms,
+  /// lowest first. More terms lower the energy, of one shape about as much as of another; of a
+  /// mirror image by as much.
+  void refine_lowest(std::vector<SpanSolution> coarse, std::vector<SpanSolution>& found) {
+    std::stable_sort(coarse.begin(), coarse.end(), [](const auto& a, const auto& b) {
+      return a.is_equilibrium() != b.is_equilibrium() ? a.is_equilibrium() : a.energy < b.energy;
+    });
+    for (SpanSolution& solution : coarse) {
+      const double above = solution.energy - lowest_coarse_;
+      const bool higher = above >= fall_ || std::abs(above) <= 1e-8 * (1 + load_);
+      if (has_stable_lowest(found) && (higher || !solution.is_equilibrium())) continue;
+      SpanSolution fine = refined(solution);
+      lowest_coarse_ = solution.energy;
+      fall_ = std::max(0.0, solution.energy - fine.energy);
+      (void)add(std::move(fine), found);
+    }
+  }
+
   /// Of one start.
   void note(const std::string& strategy, bool is_new) const {
     if (options_.log == nullptr) return;
@@ -204,41 +223,81 @@ class Search {
       if (solution.status != SolveStatus::saddle) return solution;
       spent = solution.evaluations;
     }
-    SpanSolution solution = refined(from_start({soft_field(span_), 0, {}}));
+    SpanSolution solution = refined(from_start({soft_field(span_), nullptr, {}}));
     solution.evaluations += spent;
     return solution;
   }
+
+  /// Starts that are descended from in any case.
+  [[nodiscard]] std::size_t followed() const {
+    return span_.has_material_directors() ? followed_natural_starts : followed_starts;
+  }
+
+  /// A start and what it costs.
+  struct Ranked {
+    double energy = 0;
+    std::size_t start = 0;
+
+    bool operator<(const Ranked& other) const { return energy < other.energy; }
+  };
 
   [[nodiscard]] std::vector<Start> ranked_starts() {
     std::vector<Start> starts;
     for (TangentField& field :
          span_.has_material_directors() ? natural_fields(span_) : start_fields(span_)) {
-      starts.push_back({std::move(field), 0, {}});
+      starts.push_back({std::move(field), nullptr, {}});
     }
     if (options_.all) return starts;
     const std::shared_ptr<SpanEnergy> model =
         workspace_.model(span_, std::max(8, std::min(natural_terms_, coarse_terms())));
-    std::vector<std::pair<double, std::size_t>> ranks;
-    Eigen::VectorXd gradient(model->size());
-    Eigen::VectorXd missed(model->constraints());
-    Eigen::MatrixXd jacobian(model->constraints(), model->size());
+    SpanSolution looked;
+    looked.model = model;
+    const bool grips = model->constraints() > 0;
+    // Where the rod is taut, springs at the grips as stiff as it is between them; else as a descent
+    // by penalty begins with.
+    const double kappa = taut_ ? stiffness_ : 100 * (1 + load_);
+    std::vector<Ranked> ranks(starts.size());
+    PointOnSpan point;
     for (std::size_t i = 0; i < starts.size(); ++i) {
-      const Eigen::VectorXd x = model->fit(starts[i].field(model->nodes()));
-      const double energy = model->value(x, gradient);
-      model->constraint(missed, jacobian);
-      // Where the rod is taut, springs at the grips as stiff as it is between them.
-      ranks.emplace_back(energy + stiffness_ / 2 * missed.squaredNorm(), i);
-      // In the plane a fit also tells the clamps' winding.
-      if (span_.planar) continue;
-      starts[i].terms = model->terms();
-      starts[i].x = x;
+      point.x = model->fit(starts[i].field(model->nodes()));
+      evaluate(looked, point);
+      ranks[i] = {point.energy + kappa / 2 * point.residual.squaredNorm(), i};
+      starts[i].model = model;
+      starts[i].x = point.x;
     }
-    std::stable_sort(ranks.begin(), ranks.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(ranks.begin(), ranks.end());
+    if (grips && !taut_ && !model->has_soft_obstacles()) meet_grips(looked, starts, ranks);
+    spent_ += looked.evaluations;
     std::vector<Start> ordered;
     ordered.reserve(ranks.size());
-    for (const auto& rank : ranks) ordered.push_back(std::move(starts[rank.second]));
+    for (const Ranked& rank : ranks) ordered.push_back(std::move(starts[rank.start]));
     return ordered;
+  }
+
+  /// A gap that is left makes a shape cheaper than any that closes it: starts are ranked by what
+  /// they cost once it is closed. What has become dearer than those that are followed anyway is
+  /// left where it is.
+  void meet_grips(SpanSolution& looked, std::vector<Start>& starts, std::vector<Ranked>& ranks) {
+    std::vector<double> energies;  // of those that meet the grips, the lowest ones
+    PointOnSpan point;
+    for (Ranked& rank : ranks) {
+      if (out_of_time()) return;
+      Start& start = starts[rank.start];
+      const double most = energies.size() < followed() ? infinite : energies.back();
+      point.x = start.x;
+      looked.model->wind_to(point.x);
+      evaluate(looked, point);
+      if (!restore(looked, point, loosest_gap, most)) {
+        rank.energy = std::max(rank.energy, most);
+        continue;
+      }
+      start.x = point.x;
+      rank.energy = point.energy;
+      energies.insert(std::upper_bound(energies.begin(), energies.end(), point.energy),
+                      point.energy);
+      if (energies.size() > followed()) energies.pop_back();
+    }
+    std::stable_sort(ranks.begin(), ranks.end());
   }
 
   /// A curved rod, or a strip, that gives way out of its plane twists far: it has shapes of its own
@@ -263,14 +322,21 @@ class Search {
     for (const std::string& what : own.not_looked()) options_.log->leave_out(what);
   }
 
+  /// Those of a ranked start.
+  [[nodiscard]] static Eigen::VectorXd unknowns_of(const Start& start, SpanEnergy& model) {
+    Eigen::VectorXd x = model.adopt(*start.model, start.x);
+    model.wind_to(x);
+    return x;
+  }
+
   /// From a field to an equilibrium, with as many terms as it takes to meet the grips.
   [[nodiscard]] SpanSolution from_start(const Start& from) {
     SpanSolution solution;
     int spent = 0;
     for (int count = coarse_terms();; count *= 2) {
       solution = empty_solution(std::min(count, max_terms));
-      const bool fitted = from.terms == solution.terms;
-      solution.x = fitted ? from.x : solution.model->fit(from.field(solution.model->nodes()));
+      solution.x = from.model ? unknowns_of(from, *solution.model)
+                              : solution.model->fit(from.field(solution.model->nodes()));
       const Eigen::VectorXd start = solution.x;
       // Where the rod is taut such a start is near to the shape already.
       if (taut_ && !solution.model->has_soft_obstacles()) {
@@ -305,10 +371,10 @@ class Search {
   [[nodiscard]] SpanSolution from_given_start() {
     const bool follow = options_.approach == Approach::follow;
     SpanSolution solution =
-        follow ? near_field(options_.start) : from_start({options_.start, 0, {}});
+        follow ? near_field(options_.start) : from_start({options_.start, nullptr, {}});
     if (succeeded(solution.status)) return solution;
     const int spent = solution.evaluations;
-    solution = follow ? from_start({options_.start, 0, {}}) : near_field(options_.start);
+    solution = follow ? from_start({options_.start, nullptr, {}}) : near_field(options_.start);
     solution.evaluations += spent;
     return solution;
   }
@@ -522,8 +588,11 @@ class Search {
   int natural_terms_ = 0;  // that the free rod's own strains take
   bool taut_ = false;      // pieces end where the layers at taut segments' ends have decayed
   double stiffness_ = 0;   // of the tautest segment along its chord
-  int spent_ = 0;          // evaluations of everything that was looked at
-  std::size_t left_ = 0;   // how many of the equilibria found have been looked at for a way down
+  // Of the last equilibrium that was refined, and by how much its energy fell.
+  double lowest_coarse_ = infinite;
+  double fall_ = 0;
+  int spent_ = 0;         // evaluations of everything that was looked at
+  std::size_t left_ = 0;  // how many of the equilibria found have been looked at for a way down
 };
 
 }  // namespace

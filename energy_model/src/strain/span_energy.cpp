@@ -562,6 +562,14 @@ Eigen::VectorXd SpanEnergy::fit(const StartShape& shape) {
   return x;
 }
 
+void SpanEnergy::wind_to(const Eigen::Ref<const Eigen::VectorXd>& x) {
+  if (!span_.planar) return;
+  for (std::size_t i = 0; i < director_rows_.size(); ++i) {
+    const double angle = start_theta_ + held_angle_.row(static_cast<Eigen::Index>(i)).dot(x);
+    director_rows_[i].angle = nearest_turn(director_rows_[i].angle, angle);
+  }
+}
+
 Eigen::VectorXd SpanEnergy::adopt(const SpanEnergy& other, const Eigen::VectorXd& x) {
   for (std::size_t i = 0; i < director_rows_.size() && other.span_.planar && span_.planar; ++i) {
     director_rows_[i].angle = other.director_rows_[i].angle;

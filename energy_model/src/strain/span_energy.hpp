@@ -64,6 +64,9 @@ class SpanEnergy {
   /// winding of these tangents.
   [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape);
 
+  /// Turns the clamps' angles to the winding of these unknowns.
+  void wind_to(const Eigen::Ref<const Eigen::VectorXd>& x);
+
   /// Unknowns of a shape that was found with another number of terms, or in the plane.
   [[nodiscard]] Eigen::VectorXd adopt(const SpanEnergy& other, const Eigen::VectorXd& x);
 

@@ -1,0 +1,73 @@
+#include "newton/restore.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace dlo::energy_model {
+namespace {
+
+/// A start with a larger gap may be bent to close it; closer to the end that would lead away.
+constexpr double largest_bent_gap = 1e-3;
+
+/// Anything without a symmetry, in the lower coefficients of every piece.
+void bend(SpanSolution& solution, PointOnSpan& point, int which) {
+  for (Eigen::Index k = 0; k < point.x.size(); ++k) {
+    const auto order = static_cast<double>(k % solution.model->terms());
+    point.x[k] += 0.3 * std::sin(which + 1.7 * static_cast<double>(k)) / (1 + order * order);
+  }
+  evaluate(solution, point);
+}
+
+}  // namespace
+
+void evaluate(SpanSolution& solution, PointOnSpan& point) {
+  SpanEnergy& model = *solution.model;
+  point.gradient.resize(model.size());
+  point.residual.resize(model.constraints());
+  point.jacobian.resize(model.constraints(), model.size());
+  point.energy = model.value(point.x, point.gradient);
+  model.constraint(point.residual, point.jacobian);
+  ++solution.evaluations;
+}
+
+bool restore(SpanSolution& solution, PointOnSpan& point, double gap, double most_energy) {
+  if (solution.model->constraints() == 0) return std::isfinite(point.energy);
+  constexpr int most_steps = 60;
+  constexpr double longest = 1;  // of a step
+  constexpr int most_bends = 3;
+  PointOnSpan trial;
+  Eigen::MatrixXd normal;
+  int bends = 0;
+  double mu = 1e-12;
+  for (int i = 0; i < most_steps; ++i) {
+    const double size = point.residual.norm();
+    if (!std::isfinite(size) || point.energy > most_energy) return false;
+    if (size <= gap) return true;
+    const Eigen::MatrixXd square = point.jacobian * point.jacobian.transpose();
+    const double scale = square.diagonal().maxCoeff();
+    bool shorter = false;
+    for (; mu < 1e3 && !shorter; mu *= 10) {
+      normal = square;
+      normal.diagonal().array() += mu * scale;
+      const Eigen::VectorXd step =
+          -point.jacobian.transpose() * normal.ldlt().solve(point.residual);
+      if (!(step.norm() <= longest)) continue;
+      trial.x = point.x + step;
+      evaluate(solution, trial);
+      shorter = trial.residual.norm() < 0.99 * size;
+    }
+    if (shorter) {
+      std::swap(point, trial);
+      mu = std::max(1e-15, mu * 1e-3);
+      continue;
+    }
+    if (size < largest_bent_gap || bends++ == most_bends) return false;
+    bend(solution, point, bends);
+    mu = 1e-3;
+  }
+  return point.residual.norm() <= gap;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <limits>
+
+#include "strain/span_solution.hpp"
+
+namespace dlo::energy_model {
+
+/// Gap at the grips from which a descent starts, and the most that it leaves on its way.
+inline constexpr double loosest_gap = 1e-5;
+
+/// Energy, its derivatives and the constraints at a point.
+struct PointOnSpan {
+  Eigen::VectorXd x, gradient, residual;
+  Eigen::MatrixXd jacobian;
+  double energy = 0;
+};
+
+/// Evaluates a solution's model at a point, and counts it.
+void evaluate(SpanSolution& solution, PointOnSpan& point);
+
+/// Steps to |c| <= gap, each of which has to make it smaller: Levenberg and Marquardt's, which are
+/// Gauss-Newton's near the end,
+///     -J^T (J J^T + mu)^-1 c.
+/// Where the Jacobian loses rank (a straight rod that has to become shorter) they stop short; a
+/// small bend in all unknowns then leads on.
+/// @param[in,out] point  evaluated
+/// @param most_energy    above which nobody asks how it goes on
+/// @return whether the gap is closed
+[[nodiscard]] bool restore(SpanSolution& solution, PointOnSpan& point, double gap,
+                           double most_energy = std::numeric_limits<double>::infinity());
+
+}  // namespace dlo::energy_model
