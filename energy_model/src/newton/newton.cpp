@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace dlo::energy_model {
 namespace {
@@ -11,10 +13,9 @@ namespace {
 /// Relative residual at which rounding may be what is left of it.
 constexpr double last_residual = 1e-8;
 
-/// Newton's step, of which the shape's error is a part, at which it need not go on, and above which
-/// a residual that does not fall any more is not taken for a solution [rad].
+/// Newton's step, of which the shape's error is a part, at which it need not go
+/// on [rad].
 constexpr double finest_step = 1e-11;
-constexpr double coarsest_step = 1e-8;
 
 /// Steps that become shorter by this with a factor of another point's need no new one.
 constexpr double fast_contraction = 0.1;
@@ -53,14 +54,39 @@ double Newton::evaluate(SpanSolution& solution) {
 
 void Newton::factor(SpanSolution& solution) {
   solution.model->hessian(solution.multipliers, hessian_);
-  const Eigen::Index n = hessian_.rows();
-  const Eigen::Index m = jacobian_.rows();
+  prolonged_ = false;
   definite_ = false;
-  if (m == 0) {
+  if (jacobian_.rows() == 0) {
     llt_.compute(hessian_);
     definite_ = llt_.info() == Eigen::Success;
     if (definite_) return;
   }
+  factor_system();
+  if (!stands_still_) return;
+  pull_ = 1 + load_ + solution.multipliers.norm();
+  find_neutral();
+}
+
+/// In terms beyond those of the last Hessian bending outweighs what forces add,
+/// with the square of the order.
+void Newton::prolong(const SpanEnergy& model, const SpanEnergy& fewer) {
+  const std::vector<Eigen::Index> places = model.places_of(fewer);
+  system_ = hessian_;
+  hessian_.setIdentity(model.size(), model.size());
+  for (std::size_t j = 0; j < places.size(); ++j) {
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      hessian_(places[i], places[j]) =
+          system_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  }
+  prolonged_ = true;
+  prolong_next_ = true;
+  definite_ = false;
+}
+
+void Newton::factor_system() {
+  const Eigen::Index n = hessian_.rows();
+  const Eigen::Index m = jacobian_.rows();
   system_.resize(n + m, n + m);
   system_.topLeftCorner(n, n) = hessian_;
   system_.topRightCorner(n, m) = -jacobian_.transpose();
@@ -68,9 +94,6 @@ void Newton::factor(SpanSolution& solution) {
   system_.bottomRightCorner(m, m).setZero();
   lu_.compute(system_);
   across_.reset();
-  if (!stands_still_) return;
-  pull_ = 1 + load_ + solution.multipliers.norm();
-  find_neutral();
 }
 
 /// Into neutral_: orthonormal vectors that the system makes shorter than `neutral`, by inverse
@@ -230,6 +253,12 @@ void Newton::polish_along_branch(SpanSolution& solution, double load) {
   stands_still_ = false;
 }
 
+void Newton::polish_roughly(SpanSolution& solution, double load) {
+  rough_ = true;
+  polish(solution, load);
+  rough_ = false;
+}
+
 void Newton::polish(SpanSolution& solution, double load) {
   const SpanEnergy& model = *solution.model;
   if (model.constraints() == 0 || model.has_soft_obstacles()) return run(solution, load);
@@ -240,6 +269,16 @@ void Newton::polish(SpanSolution& solution, double load) {
   solution.x = x;
   solution.multipliers = multipliers;
   polish_along_branch(solution, load);
+}
+
+void Newton::polish_with_more_terms(SpanSolution& solution, const SpanSolution& fewer,
+                                    double load) {
+  const SpanEnergy& model = *solution.model;
+  if (model.constraints() > 0 && !model.has_soft_obstacles() && !stands_still_ &&
+      hessian_.rows() == fewer.model->size()) {
+    prolong(model, *fewer.model);
+  }
+  polish(solution, load);
 }
 
 void Newton::run(SpanSolution& solution, double load) {
@@ -265,7 +304,12 @@ void Newton::run(SpanSolution& solution, double load) {
       solution.residual = size;
       return solution.finish(SolveStatus::time_limit);
     }
-    if (!factored) factor(solution);
+    if (std::exchange(prolong_next_, false)) {
+      factor_system();
+      factored = true;
+    } else if (!factored) {
+      factor(solution);
+    }
     solve();
     const double moved = step_.head(gradient_.size()).norm();
     solution.next_step = moved;
@@ -298,12 +342,15 @@ void Newton::run(SpanSolution& solution, double load) {
       return solution.finish(SolveStatus::near_singular);
     }
     const double scale = 1 + load + solution.multipliers.norm();
+    if (!obstacles && rough_ && size <= rough_step * scale && solution.next_step <= rough_step) {
+      return finish();
+    }
     if (!obstacles && size <= last_residual * scale && solution.next_step <= finest_step) {
       return finish();
     }
     // Between grips the caller looks at the second variation; without, the factor has to tell it.
     const bool near = moved * (1 + load) <= factor_reach;
-    factored = !obstacles && (near || (shrinks && jacobian_.rows() > 0));
+    factored = !obstacles && ((near && !prolonged_) || (shrinks && jacobian_.rows() > 0));
   }
   solution.residual = size;
   solution.fail("Newton's method did not reduce the residual to rounding");

@@ -15,8 +15,17 @@ namespace dlo::energy_model {
 /// are measured against them.
 inline constexpr double largest_pull = 1e10;
 
-/// Newton's method on the gradient of E - mu . c and on the constraints, with its buffers. Without
-/// constraints and obstacles it allocates nothing once they have their size.
+/// Newton's next step above which a residual that does not fall any more is not
+/// taken for a solution [rad].
+inline constexpr double coarsest_step = 1e-8;
+
+/// Newton's next step from what is only roughly polished [rad]: its energy, of
+/// which the square is a part, is right to rounding in what tells shapes apart.
+inline constexpr double rough_step = 1e-5;
+
+/// Newton's method on the gradient of E - mu . c and on the constraints, with
+/// its buffers. Without constraints and obstacles it allocates nothing once
+/// they have their size.
 class Newton {
  public:
   /// From now on: what has not come to its end by then ends as `time_limit`.
@@ -29,15 +38,26 @@ class Newton {
   /// polish_along_branch().
   /// @param load  sum of weight and loads, the scale of the residuals
   void polish(SpanSolution& solution, double load);
-  /// The same, standing still in directions in which the rod moves for next to nothing, where
-  /// rounding would make any step: for one of many steps along a branch.
+  /// The same to where Newton's next step is below `rough_step`, for a shape
+  /// that is given more terms anyway.
+  void polish_roughly(SpanSolution& solution, double load);
+  /// The same, standing still in directions in which the rod moves for next to
+  /// nothing, where rounding would make any step: for one of many steps along a
+  /// branch.
   void polish_along_branch(SpanSolution& solution, double load);
+  /// The same between grips for the solution of the last polish() with more
+  /// terms: the first steps with its Hessian and, in the new terms, that of
+  /// bending alone.
+  /// @param fewer  that solution
+  void polish_with_more_terms(SpanSolution& solution, const SpanSolution& fewer, double load);
 
  private:
   void run(SpanSolution& solution, double load);
   void begin(SpanSolution& solution);
   [[nodiscard]] double evaluate(SpanSolution& solution);
   void factor(SpanSolution& solution);
+  void factor_system();
+  void prolong(const SpanEnergy& model, const SpanEnergy& fewer);
   void find_neutral();
   void stand_still();
   void solve();
@@ -53,12 +73,15 @@ class Newton {
   Deadline deadline_;
   double load_ = 0;
   bool stands_still_ = false;
+  bool rough_ = false;
   double pull_ = 1;  // scale of forces
   Eigen::VectorXd gradient_, residual_, right_, step_, first_step_;
   Eigen::MatrixXd jacobian_, hessian_, system_, neutral_;
   Eigen::LLT<Eigen::MatrixXd> llt_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   std::optional<AcrossNeutral> across_;  // of system_, once it was asked for
+  bool prolonged_ = false;               // hessian_ is that of fewer terms
+  bool prolong_next_ = false;            // and what the next step begins with
   bool definite_ = false;                // llt_ is what the system is solved with
   Eigen::VectorXd trial_x_, trial_multipliers_, trial_gradient_, soft_;
 };

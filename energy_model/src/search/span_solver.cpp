@@ -80,6 +80,11 @@ struct Start {
   TangentField field;
   std::shared_ptr<const SpanEnergy> model;
   Eigen::VectorXd x;
+  double cost = 0;  // energy and that of springs at the grips, or without a gap
+  // At the nodes of the ranking, before a fit, and the least that it may cost
+  // without a gap.
+  StartShape shape = {};
+  double least = 0;
 };
 
 class Search {
@@ -223,7 +228,7 @@ class Search {
       if (solution.status != SolveStatus::saddle) return solution;
       spent = solution.evaluations;
     }
-    SpanSolution solution = refined(from_start({soft_field(span_), nullptr, {}}));
+    SpanSolution solution = refined(from_start(Start{soft_field(span_)}));
     solution.evaluations += spent;
     return solution;
   }
@@ -233,71 +238,76 @@ class Search {
     return span_.has_material_directors() ? followed_natural_starts : followed_starts;
   }
 
-  /// A start and what it costs.
-  struct Ranked {
-    double energy = 0;
-    std::size_t start = 0;
-
-    bool operator<(const Ranked& other) const { return energy < other.energy; }
-  };
-
   [[nodiscard]] std::vector<Start> ranked_starts() {
     std::vector<Start> starts;
     for (TangentField& field :
          span_.has_material_directors() ? natural_fields(span_) : start_fields(span_)) {
-      starts.push_back({std::move(field), nullptr, {}});
+      starts.emplace_back().field = std::move(field);
     }
     if (options_.all) return starts;
     const std::shared_ptr<SpanEnergy> model =
         workspace_.model(span_, std::max(8, std::min(natural_terms_, coarse_terms())));
     SpanSolution looked;
     looked.model = model;
-    const bool grips = model->constraints() > 0;
-    // Where the rod is taut, springs at the grips as stiff as it is between them; else as a descent
-    // by penalty begins with.
-    const double kappa = taut_ ? stiffness_ : 100 * (1 + load_);
-    std::vector<Ranked> ranks(starts.size());
-    PointOnSpan point;
-    for (std::size_t i = 0; i < starts.size(); ++i) {
-      point.x = model->fit(starts[i].field(model->nodes()));
-      evaluate(looked, point);
-      ranks[i] = {point.energy + kappa / 2 * point.residual.squaredNorm(), i};
-      starts[i].model = model;
-      starts[i].x = point.x;
+    if (model->constraints() > 0 && !taut_ && !model->has_soft_obstacles() &&
+        !span_.has_material_directors()) {
+      meet_grips(looked, starts);
+    } else {
+      PointOnSpan point;
+      for (Start& start : starts) {
+        point.x = model->fit(start.field(model->nodes()));
+        if (model->terms() == coarse_terms()) {
+          start.model = model;
+          start.x = point.x;
+        }
+        evaluate(looked, point);
+        // Where the rod is taut, springs at the grips as stiff as it is between
+        // them.
+        start.cost = point.energy + stiffness_ / 2 * point.residual.squaredNorm();
+      }
     }
-    std::stable_sort(ranks.begin(), ranks.end());
-    if (grips && !taut_ && !model->has_soft_obstacles()) meet_grips(looked, starts, ranks);
     spent_ += looked.evaluations;
-    std::vector<Start> ordered;
-    ordered.reserve(ranks.size());
-    for (const Ranked& rank : ranks) ordered.push_back(std::move(starts[rank.start]));
-    return ordered;
+    std::stable_sort(starts.begin(), starts.end(), is_cheaper);
+    return starts;
   }
 
-  /// A gap that is left makes a shape cheaper than any that closes it: starts are ranked by what
-  /// they cost once it is closed. What has become dearer than those that are followed anyway is
-  /// left where it is.
-  void meet_grips(SpanSolution& looked, std::vector<Start>& starts, std::vector<Ranked>& ranks) {
+  static bool is_cheaper(const Start& a, const Start& b) { return a.cost < b.cost; }
+
+  /// A gap that is left makes a shape cheaper than any that closes it: starts
+  /// are ranked by what they cost once it is closed, as far as they can still
+  /// be among those that are followed anyway.
+  void meet_grips(SpanSolution& looked, std::vector<Start>& starts) {
+    // Springs at the grips: as a descent by penalty begins with, and what a gap
+    // costs at least.
+    const double kappa = 100 * (1 + load_);
+    SpanEnergy& model = *looked.model;
+    for (Start& start : starts) {
+      start.shape = start.field(model.nodes());
+      const SpanEnergy::Estimate seen = model.estimate(start.shape.tangents);
+      start.cost = seen.energy + kappa / 2 * seen.gap * seen.gap;
+      // A fit in few terms is smoother, and closing a gap may straighten it.
+      start.least = seen.energy - seen.bending / 2;
+    }
+    std::stable_sort(starts.begin(), starts.end(), is_cheaper);
     std::vector<double> energies;  // of those that meet the grips, the lowest ones
     PointOnSpan point;
-    for (Ranked& rank : ranks) {
+    for (Start& start : starts) {
       if (out_of_time()) return;
-      Start& start = starts[rank.start];
       const double most = energies.size() < followed() ? infinite : energies.back();
-      point.x = start.x;
-      looked.model->wind_to(point.x);
+      if (start.least > most) continue;
+      point.x = model.fit(start.shape);
       evaluate(looked, point);
       if (!restore(looked, point, loosest_gap, most)) {
-        rank.energy = std::max(rank.energy, most);
+        start.cost = std::max(start.cost, most);
         continue;
       }
+      start.model = looked.model;
       start.x = point.x;
-      rank.energy = point.energy;
+      start.cost = point.energy;
       energies.insert(std::upper_bound(energies.begin(), energies.end(), point.energy),
                       point.energy);
       if (energies.size() > followed()) energies.pop_back();
     }
-    std::stable_sort(ranks.begin(), ranks.end());
   }
 
   /// A curved rod, or a strip, that gives way out of its plane twists far: it has shapes of its own
@@ -370,11 +380,10 @@ class Search {
   /// From the caller's own start.
   [[nodiscard]] SpanSolution from_given_start() {
     const bool follow = options_.approach == Approach::follow;
-    SpanSolution solution =
-        follow ? near_field(options_.start) : from_start({options_.start, nullptr, {}});
+    SpanSolution solution = follow ? near_field(options_.start) : from_start(Start{options_.start});
     if (succeeded(solution.status)) return solution;
     const int spent = solution.evaluations;
-    solution = follow ? from_start({options_.start, nullptr, {}}) : near_field(options_.start);
+    solution = follow ? from_start(Start{options_.start}) : near_field(options_.start);
     solution.evaluations += spent;
     return solution;
   }
@@ -408,7 +417,19 @@ class Search {
     if (!succeeded(solution.status)) return;
     // A cantilever is polished once it has all its terms.
     if (span_.is_plain_cantilever() && solution.terms < terms()) return;
-    workspace_.newton().polish(solution, load_);
+    if (solution.terms < terms()) {
+      polish_before_more_terms(solution);
+    } else {
+      workspace_.newton().polish(solution, load_);
+    }
+  }
+
+  void polish_before_more_terms(SpanSolution& solution) {
+    if (options_.all || options_.terms > 0 || solution.model->constraints() == 0) {
+      workspace_.newton().polish(solution, load_);
+    } else {
+      workspace_.newton().polish_roughly(solution, load_);
+    }
   }
 
   void minimise(SpanSolution& solution) const {
@@ -439,8 +460,16 @@ class Search {
     constexpr int most_with_soft_obstacles = 64;
     const int most_terms =
         std::min(affordable, span_.soft_obstacles.empty() ? max_terms : most_with_soft_obstacles);
+    Tail before;
+    bool polished = false;
+    bool raised = false;  // Newton's last Hessian is this solution's
     while (solution.is_equilibrium()) {
       solution.resolved = options_.terms > 0 || resolved(solution);
+      if (solution.resolved && solution.next_step > coarsest_step && !polished) {
+        workspace_.newton().polish(solution, load_);
+        polished = true;
+        continue;
+      }
       if (solution.resolved) break;
       if (out_of_time()) {
         solution.finish(SolveStatus::time_limit);
@@ -452,23 +481,49 @@ class Search {
         solution.fail(solution.too_few_terms());
         break;
       }
-      int more =
-          solution.terms < terms() ? terms() : solution.terms + std::max(2, solution.terms / 4);
+      int more = solution.terms < terms() ? terms() : terms_by_decay(solution, before);
       // Grips may pull harder than weight and loads do.
       if (solution.multipliers.size() > 0 && !taut_) {
         more =
             std::max(more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), longest_piece_));
       }
-      solution = with_terms(solution, std::min(most_terms, more));
+      before = {solution.terms, solution.model->tail(solution.x)};
+      solution = with_terms(solution, std::min(most_terms, more), raised);
+      raised = true;
     }
     return solution;
   }
 
-  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) {
+  /// Last coefficients of a shape with so many terms.
+  struct Tail {
+    int terms = 0;
+    double size = 0;
+  };
+
+  /// Terms with which the last ones will be small enough, if they go on falling
+  /// exponentially as from those before; a quarter more where nothing is known.
+  [[nodiscard]] int terms_by_decay(const SpanSolution& solution, const Tail& before) const {
+    const int K = solution.terms;
+    const double now = solution.model->tail(solution.x);
+    const double wanted = options_.tolerance * 4 * K * K;
+    int more = std::max(2, K / 4);
+    if (before.terms > 0 && now < before.size && now > wanted) {
+      const double rate = std::log(before.size / now) / (K - before.terms);
+      more = std::clamp(static_cast<int>(std::ceil(std::log(now / wanted) / rate)), 2, 2 * more);
+    }
+    return K + more;
+  }
+
+  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms,
+                                        bool hessian_known) {
     SpanSolution finer = empty_solution(terms);
     finer.x = finer.model->adopt(*solution.model, solution.x);
     finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
-    workspace_.newton().polish(finer, load_);
+    if (hessian_known) {
+      workspace_.newton().polish_with_more_terms(finer, solution, load_);
+    } else {
+      polish_before_more_terms(finer);
+    }
     const bool descends = finer.model->size() <= most_descended;
     if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles())) descend(finer);
     if (!finer.is_equilibrium() && !finer.model->has_soft_obstacles()) {
@@ -490,10 +545,11 @@ class Search {
     return residual_with_more_terms(solution) < largest_residual * (1 + load_);
   }
 
-  /// Gradient of the shape in twice as many terms, with the quadrature of these.
+  /// Gradient of the shape in half as many terms more, with the quadrature of
+  /// these.
   [[nodiscard]] double residual_with_more_terms(const SpanSolution& solution) {
     const std::shared_ptr<SpanEnergy> model =
-        workspace_.model(span_, std::min(max_terms, 2 * solution.terms));
+        workspace_.model(span_, std::min(max_terms, 3 * solution.terms / 2));
     const Eigen::VectorXd x = model->adopt(*solution.model, solution.x);
     Eigen::VectorXd gradient(model->size());
     (void)model->value(x, gradient);

@@ -21,8 +21,8 @@ namespace {
 using std::numbers::pi;
 
 /// Turns of the end in one step [rad].
-constexpr double first_turn = 0.25;
-constexpr double longest_turn = 1.5;
+constexpr double first_turn = 1.6;
+constexpr double longest_turn = 1.6;
 constexpr double least_turn = 1e-4;
 /// A shape that has lost its stability is left from this near to where it did.
 constexpr double turn_at_loss = 0.02;
@@ -43,8 +43,13 @@ constexpr int most_leaps = 60;
 constexpr double first_push = 0.1;
 constexpr int most_pushes = 4;
 
-/// Coefficients up to this of the angle that they turn are left for the end of the path.
-constexpr double coarse_tolerance = 1e-6;
+/// Coefficients up to this of the angle that they turn are left for the end of
+/// the path, and where that leads to nothing.
+constexpr double coarse_tolerance = 1e-5;
+constexpr double fine_tolerance = 1e-6;
+
+/// The fewest coefficients of a path.
+constexpr int least_path_terms = 8;
 
 /// Coefficients that a twisted shape of which nothing else is known is first given.
 constexpr int unknown_terms = 24;
@@ -60,17 +65,20 @@ double angle_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& a,
 
 class TwistPath {
  public:
+  /// @param tolerance  coefficients up to this of the angle that they turn are
+  /// left out
   TwistPath(const Span& span, double stiffness, const UntwistedShape& untwisted,
-            const SpanOptions& options, SpanWorkspace& workspace)
+            const SpanOptions& options, double tolerance, SpanWorkspace& workspace)
       : span_(span),
         options_(options),
         workspace_(workspace),
+        tolerance_(tolerance),
         load_(span.total_load()),
         first_d1_(untwisted.end_d1) {
     workspace_.newton().limit(options.deadline);
     span_.planar = false;
     span_.twist = Span::Twist{stiffness, first_d1_};
-    here_ = with_terms(untwisted.solution, untwisted.solution.terms);
+    here_ = with_terms(untwisted.solution, terms_needed(untwisted.solution));
     here_.multipliers.resize(0);
     turn_clamp(here_, 0);
   }
@@ -113,6 +121,24 @@ class TwistPath {
   }
 
  private:
+  /// Of the coefficients of a shape, those that are not left out.
+  [[nodiscard]] int terms_needed(const SpanSolution& solution) const {
+    const SpanEnergy& model = *solution.model;
+    int terms = solution.terms;
+    if (options_.terms > 0) return terms;
+    while (terms > least_path_terms && model.tail(solution.x, terms - 1) < tail_left(terms - 1)) {
+      --terms;
+    }
+    return terms;
+  }
+
+  /// The angle that the last of K coefficients adds is a_K / (2K); positions
+  /// feel it as little again.
+  [[nodiscard]] double tail_left(int terms) const {
+    const double K = terms;
+    return tolerance_ * 4 * K * K;
+  }
+
   /// Turns the end's clamp from where the untwisted rod has it.
   void turn_clamp(SpanSolution& solution, double angle) const {
     const Eigen::AngleAxisd about(angle, *span_.end_direction);
@@ -174,9 +200,8 @@ class TwistPath {
 
   /// More terms, where the shape needs them. @return whether it has got some
   bool resolve() {
-    const double K = here_.terms;
     const bool affordable = here_.model->size() * 5 / 4 < most_unknowns;
-    const bool resolved = here_.model->tail(here_.x) < coarse_tolerance * 4 * K * K &&
+    const bool resolved = here_.model->tail(here_.x) < tail_left(here_.terms) &&
                           here_.terms >= terms_under_twist(here_);
     if (resolved || !affordable) return false;
     here_ = with_terms(here_, std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
@@ -244,6 +269,7 @@ class TwistPath {
   Span span_;
   const SpanOptions& options_;
   SpanWorkspace& workspace_;
+  double tolerance_;
   double load_;
   Eigen::Vector3d first_d1_;  // of the end, untwisted
   SpanSolution here_;
@@ -291,10 +317,18 @@ SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
                       SpanWorkspace& workspace) {
   const double least = angle_about(*span.end_direction, untwisted.end_d1, frame.d1);
   const double angle = least + 2 * pi * std::round((frame.twist - least) / (2 * pi));
-  SpanSolution solution = TwistPath(span, stiffness, untwisted, options, workspace).run(angle);
-  if (!solution.is_equilibrium()) return solution;
-  const Span twisted = solution.model->span();
-  return finish_span(twisted, options, workspace, std::move(solution));
+  SpanSolution solution;
+  int spent = 0;
+  for (const double tolerance : {coarse_tolerance, fine_tolerance}) {
+    solution = TwistPath(span, stiffness, untwisted, options, tolerance, workspace).run(angle);
+    if (solution.is_equilibrium()) {
+      const Span twisted = solution.model->span();
+      solution = finish_span(twisted, options, workspace, std::move(solution));
+    }
+    solution.evaluations += std::exchange(spent, spent + solution.evaluations);
+    if (succeeded(solution.status) || options.deadline.passed()) break;
+  }
+  return solution;
 }
 
 SpanSolution twist_from(const TangentField& field, double twist,

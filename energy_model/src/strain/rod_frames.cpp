@@ -203,7 +203,9 @@ void RodFrames::moments(const Panel& panel, const FrameGradient& f, const Eigen:
     const Eigen::Vector3d g = f.nodes->row(node - turn_nodes_);
     couples.row(r) = t.cross(g);
   }
-  moments.noalias() += panel.length * (panel.table->integration.transpose() * couples);
+  auto beyond = state.levers.topRows(Q);
+  multiply_transposed(panel.table->integration, couples, beyond);
+  moments += panel.length * beyond;
 }
 
 void RodFrames::pull(const FrameGradient& f, double sense, State& state,
@@ -223,6 +225,21 @@ void RodFrames::pull(const FrameGradient& f, double sense, State& state,
           scale * (panel->table->values.leftCols(panel->terms).transpose() * along);
     }
     later += state.couples.topRows(Q).colwise().sum().transpose();
+  }
+}
+
+void RodFrames::turn_ends(State& state) const {
+  for (const Panel& panel : panels_) end_spins(panel, state);
+}
+
+void RodFrames::pull_couple(Eigen::Index piece, const Eigen::Vector3d& couple, const State& state,
+                            Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const {
+  const Panel& last = panels_[panels_.size() - pieces_ + static_cast<std::size_t>(piece)];
+  const Eigen::Index count = last.column + last.terms;
+  row.setZero();
+  for (Eigen::Index field = 0; field < fields_; ++field) {
+    row.segment(field * columns_, count).noalias() =
+        couple.transpose() * state.ends.middleCols(field * columns_, count);
   }
 }
 
@@ -246,9 +263,10 @@ void RodFrames::pull_position(const std::vector<double>& signs, State& state,
         const Eigen::Vector3d own = v.row(r);
         levers.row(r) = d.cross(own);
       }
-      auto rows = jacobian.middleCols(field * columns_ + panel->column, panel->terms);
-      multiply_transposed(levers, panel->table->values.leftCols(panel->terms), rows);
-      rows *= panel->strain[static_cast<std::size_t>(field)];
+      auto columns = state.product.topLeftCorner(panel->terms, 3);
+      multiply_transposed(panel->table->values.leftCols(panel->terms), levers, columns);
+      jacobian.middleCols(field * columns_ + panel->column, panel->terms) =
+          panel->strain[static_cast<std::size_t>(field)] * columns.transpose();
     }
     const auto t = state.t.middleRows(panel->node, Q);
     beyond += sign * length * (t.transpose() * panel->table->weights);
@@ -278,9 +296,10 @@ void RodFrames::end_spins(const Panel& panel, State& state) const {
   for (Eigen::Index field = 0; field < fields_; ++field) {
     const auto d = director(state, field).middleRows(panel.node, Q);
     weighted.noalias() = panel.table->weights.asDiagonal() * d;
-    auto ends = state.ends.middleCols(field * columns_ + panel.column, panel.terms);
-    multiply_transposed(weighted, panel.table->values.leftCols(panel.terms), ends);
-    ends *= panel.length * panel.strain[static_cast<std::size_t>(field)];
+    auto columns = state.product.topLeftCorner(panel.terms, 3);
+    multiply_transposed(panel.table->values.leftCols(panel.terms), weighted, columns);
+    state.ends.middleCols(field * columns_ + panel.column, panel.terms) =
+        panel.length * panel.strain[static_cast<std::size_t>(field)] * columns.transpose();
   }
 }
 
@@ -301,7 +320,7 @@ void RodFrames::weigh_spins(const Panel& panel, State& state) const {
 
 void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matrix3d> curvatures,
                             State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
-  for (const Panel& panel : panels_) end_spins(panel, state);
+  turn_ends(state);
   Eigen::Matrix3d later_curvature = Eigen::Matrix3d::Zero();
   Eigen::Vector3d later = Eigen::Vector3d::Zero();
   std::size_t piece = pieces_;
@@ -361,9 +380,9 @@ void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matri
       product *= half;
       own.middleRows(field * K, K) += product;
       own.middleCols(field * K, K) += product.transpose();
-      auto turned = state.turned.leftCols(K);
-      multiply_transposed(lever, values, turned);
-      beside.middleCols(field * K, K) += half * turned;
+      auto turned = state.product.topLeftCorner(K, 3);
+      multiply_transposed(values, lever, turned);
+      beside.middleCols(field * K, K) += half * turned.transpose();
     }
     for (Eigen::Index field = 0; field < fields_; ++field) {
       const auto ends = state.ends.middleCols(field * columns_ + panel->column, K);

@@ -44,7 +44,8 @@ class RodFrames {
     /// Weighted int_s^end t within each piece, in lengths of the piece, at the nodes.
     Eigen::MatrixX3d tails;
     std::vector<Eigen::Quaterniond> panel_ends;  ///< frames; of a free start's turn first
-    /// Derivatives of the turn of the end's frame by x, 3 x unknowns, of the last add_hessian().
+    /// Derivatives of the turn of the end's frame by x, 3 x unknowns, of the
+    /// last turn_ends() or add_hessian().
     Eigen::Matrix3Xd ends;
 
     // Scratch, of a piece
@@ -91,8 +92,15 @@ class RodFrames {
   void pull(const FrameGradient& f, double sense, State& state,
             Eigen::Ref<Eigen::VectorXd> gradient) const;
 
-  /// Derivatives by x of sum_e sign_e int_e t ds over the pieces e, which is where a grip is seen
-  /// from the anchor, into 3 x unknowns.
+  /// Into state.ends.
+  void turn_ends(State& state) const;
+  /// Derivatives by x of the work of a couple on the turn of the frame at a
+  /// piece's end, from state.ends.
+  void pull_couple(Eigen::Index piece, const Eigen::Vector3d& couple, const State& state,
+                   Eigen::Ref<Eigen::RowVectorXd, 0, Eigen::InnerStride<>> row) const;
+
+  /// Derivatives by x of sum_e sign_e int_e t ds over the pieces e, which is
+  /// where a grip is seen from the anchor, into 3 x unknowns.
   void pull_position(const std::vector<double>& signs, State& state,
                      Eigen::Ref<Eigen::MatrixXd> jacobian) const;
 

@@ -342,19 +342,17 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
     }
     return;
   }
+  if (!director_rows_.empty()) frames_.turn_ends(state_);
   for (const DirectorRow& held : director_rows_) {
     const DirectorMiss miss = miss_of(held);
     residual[row] = miss.value;
-    pulled_.setZero();
-    Eigen::Vector3d& couple = couples_[static_cast<std::size_t>(held.piece)];
-    couple = miss.couple;
-    frames_.pull({nullptr, couples_}, 1, state_, pulled_);
-    couple.setZero();
+    frames_.pull_couple(held.piece, miss.couple, state_, jacobian.row(row).head(strains()));
     // Twist turns d1 about the tangent.
-    if (held.of_d1 && has_psi()) {
-      pulled_[strains()] = miss.couple.dot(state_.end_frame().col(2)) / twist_root_;
+    if (has_psi()) {
+      jacobian(row, strains()) =
+          held.of_d1 ? miss.couple.dot(state_.end_frame().col(2)) / twist_root_ : 0;
     }
-    jacobian.row(row++) = pulled_.transpose();
+    ++row;
   }
 }
 
@@ -532,6 +530,42 @@ void SpanEnergy::sideways_with_twist(Eigen::MatrixXd& hessian, Eigen::MatrixXd& 
   }
 }
 
+SpanEnergy::Estimate SpanEnergy::estimate(const Eigen::Matrix3Xd& tangents) const {
+  Estimate result;
+  const Eigen::Index Q = table_->nodes.size();
+  for (Eigen::Index q = 0; q + 1 < s_.size(); ++q) {
+    // A jump between pieces is one that a fit has to smooth in some way of its
+    // own.
+    if ((q + 1) % Q == 0) continue;
+    const double turned = (tangents.col(q + 1) - tangents.col(q)).squaredNorm();
+    result.bending += turned / (2 * (s_[q + 1] - s_[q]));
+  }
+  result.energy = result.bending - force_.transpose().cwiseProduct(tangents).sum();
+  double squared = 0;
+  for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
+    const Span::Hold& hold = span_.holds[static_cast<std::size_t>(j)];
+    squared += (tangents * reach_.col(j) - hold.offset).squaredNorm();
+  }
+  result.gap = std::sqrt(squared);
+  return result;
+}
+
+std::vector<Eigen::Index> SpanEnergy::places_of(const SpanEnergy& other) const {
+  std::vector<Eigen::Index> places;
+  places.reserve(static_cast<std::size_t>(other.size()));
+  for (Eigen::Index field = 0; field < fields(); ++field) {
+    const Eigen::Index first = field * columns_;
+    if (free_start_ == 1) places.push_back(first);
+    for (Eigen::Index e = 0; e < pieces(); ++e) {
+      for (Eigen::Index k = 0; k < other.terms_; ++k) {
+        places.push_back(first + free_start_ + e * terms_ + k);
+      }
+    }
+  }
+  if (has_psi()) places.push_back(strains());
+  return places;
+}
+
 Eigen::VectorXd SpanEnergy::fit(const StartShape& shape) {
   const Eigen::Matrix3Xd& tangents = shape.tangents;
   if (!span_.planar) {
@@ -612,13 +646,13 @@ double SpanEnergy::longest_piece() const {
   return longest;
 }
 
-double SpanEnergy::tail(const Eigen::VectorXd& x) const {
-  const Eigen::Index last = std::min(terms_, 2);
+double SpanEnergy::tail(const Eigen::VectorXd& x, int terms) const {
+  const Eigen::Index last = std::min(terms, 2);
   double tail = 0;
   for (Eigen::Index field = 0; field < fields(); ++field) {
     for (std::size_t e = 0; e < pieces_.size(); ++e) {
       const Eigen::Index end =
-          field * columns_ + free_start_ + (static_cast<Eigen::Index>(e) + 1) * terms_;
+          field * columns_ + free_start_ + static_cast<Eigen::Index>(e) * terms_ + terms;
       const double turn = pieces_[e].angle(field);
       tail = std::max(tail, turn * x.segment(end - last, last).cwiseAbs().maxCoeff());
     }

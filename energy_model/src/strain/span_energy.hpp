@@ -64,18 +64,34 @@ class SpanEnergy {
   /// winding of these tangents.
   [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape);
 
+  /// What tangents at the nodes would cost a round rod that is straight by
+  /// nature, and how far from the holds they would end, before they are fitted.
+  struct Estimate {
+    double energy = 0;
+    double bending = 0;  // of it
+    double gap = 0;
+  };
+  [[nodiscard]] Estimate estimate(const Eigen::Matrix3Xd& tangents) const;
+
   /// Turns the clamps' angles to the winding of these unknowns.
   void wind_to(const Eigen::Ref<const Eigen::VectorXd>& x);
 
   /// Unknowns of a shape that was found with another number of terms, or in the plane.
   [[nodiscard]] Eigen::VectorXd adopt(const SpanEnergy& other, const Eigen::VectorXd& x);
 
-  /// Multipliers of the same span's constraints, found with another number of terms.
+  /// Where the unknowns of the same span with no more terms are among these.
+  [[nodiscard]] std::vector<Eigen::Index> places_of(const SpanEnergy& other) const;
+
+  /// Multipliers of the same span's constraints, found with another number of
+  /// terms.
   [[nodiscard]] Eigen::VectorXd adopt_multipliers(const SpanEnergy& other,
                                                   const Eigen::VectorXd& multipliers) const;
 
-  /// Size of the last coefficients, which tells whether the curvature is resolved.
-  [[nodiscard]] double tail(const Eigen::VectorXd& x) const;
+  /// Size of the last coefficients, which tells whether the curvature is
+  /// resolved.
+  [[nodiscard]] double tail(const Eigen::VectorXd& x) const { return tail(x, terms_); }
+  /// The same of the last of the first `terms` coefficients.
+  [[nodiscard]] double tail(const Eigen::VectorXd& x, int terms) const;
   /// The rod's twist, end ahead of start [rad]; 0 where nothing holds it.
   [[nodiscard]] double twist(const Eigen::VectorXd& x) const;
   /// What the clamp at the end turns it with, about the tangent.
