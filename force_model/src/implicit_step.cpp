@@ -16,8 +16,14 @@ namespace {
 constexpr int most_newton_steps = 64;
 /// Largest turn of a segment by one Newton step, as the tangent of the angle [-].
 constexpr double largest_turn = 1;
-/// Of c_c: more compression than this is a start's, not a rod's, and has no part in the stiffness
-/// across the segment, which it would make indefinite.
+/// Share of its rest length below which a segment's turn is counted as that of one so long: it has
+/// no direction to speak of.
+constexpr double shortest_turned = 0.25;
+/// Segments without a length are opened by this share of their rest length, so that they have a
+/// direction.
+constexpr double opened = 1e-3;
+/// Of c_c / L: more compression than this is a start's, not a rod's, and has no part in the
+/// stiffness across the segment, which it would make indefinite.
 constexpr double most_pressed = 0.01;
 /// Armijo's share of the decrease that the slope promises.
 constexpr double sufficient = 0.05;
@@ -68,6 +74,7 @@ ImplicitStep::ImplicitStep(const Rod& rod, const Eigen::Matrix3Xd& points,
                                     [](const Grip& grip) { return grip.d1.has_value(); });
   require(framed < 2, "Simulation", "number of grips with d1", static_cast<double>(framed),
           "0 or 1 with implicit steps, which leave twist out");
+  open_segments(rod);
   const double slowest = mode_bounds(rod, points).slowest;
   unit_ = slowest;
   energy_unit_ =
@@ -76,6 +83,23 @@ ImplicitStep::ImplicitStep(const Rod& rod, const Eigen::Matrix3Xd& points,
   require_masses(rod, is_free_);
   masses_ = rod.masses / time_step_;
   inertia_ = masses_ * (1 + damping_rate_ * time_step_) / time_step_;
+}
+
+/// Along the chord of its neighbours, as contraction forces push; what follows comes along, to the
+/// next point that is held.
+void ImplicitStep::open_segments(const Rod& rod) {
+  const Eigen::Index last = points_.cols() - 1;
+  for (Eigen::Index i = 0; i < last; ++i) {
+    const double least = opened * rod.rest_lengths[i];
+    if ((points_.col(i + 1) - points_.col(i)).norm() >= least) continue;
+    const Eigen::Vector3d chord =
+        points_.col(std::min(i + 2, last)) - points_.col(std::max<Eigen::Index>(i - 1, 0));
+    const Eigen::Vector3d way = chord.norm() > 0 ? Eigen::Vector3d(least / chord.norm() * chord)
+                                                 : Eigen::Vector3d(least, 0, 0);
+    for (Eigen::Index k = i + 1; k <= last && is_free_[static_cast<std::size_t>(k)] != 0; ++k) {
+      points_.col(k) += way;
+    }
+  }
 }
 
 /// With inertia: E + sum of m (1 + c dt) |P - P_0|^2 / (2 dt^2) - m v.(P - P_0) / dt.
@@ -171,10 +195,10 @@ double ImplicitStep::search(const Rod& rod, bool gripper_moves) {
   for (Eigen::Index i = 0; i + 1 < points_.cols(); ++i) {
     const Eigen::Vector3d a = points_.col(i + 1) - points_.col(i);
     const Eigen::Vector3d d = movement_.col(i + 1) - movement_.col(i);
-    const double square =
-        std::max(a.squaredNorm(), 1e-6 * rod.rest_lengths[i] * rod.rest_lengths[i]);
-    const double along = a.dot(d) / square;
-    turn = std::max(turn, (d - along * a).squaredNorm() / square);
+    const double square = a.squaredNorm();
+    const Eigen::Vector3d across = square > 0 ? Eigen::Vector3d(d - a.dot(d) / square * a) : d;
+    const double L = shortest_turned * rod.rest_lengths[i];
+    turn = std::max(turn, across.squaredNorm() / std::max(square, L * L));
   }
   double share = std::min(1.0, largest_turn / std::sqrt(std::max(turn, 1e-300)));
   if (!energy_known_) energy_ = potential(rod, points_);

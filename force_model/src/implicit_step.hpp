@@ -36,6 +36,7 @@ class ImplicitStep {
   [[nodiscard]] double momentum() const;
 
  private:
+  void open_segments(const Rod& rod);
   /// movement_ of the held points: to where the grips are now; 0 of the others.
   void lead_held_points(const Rod& rod);
   /// Into trial_. @return the share of Newton's movement that was made; 0: none, nothing helps

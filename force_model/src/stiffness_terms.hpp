@@ -13,7 +13,9 @@
 namespace dlo::force_model {
 
 /// Contraction: c_c/L along the segment, and across it what its tension resists.
-/// @param most_pressed  compression beyond this share of c_c counts as this only [-]
+/// @param most_pressed  compression takes no more than this share of c_c/L from the stiffness
+/// across
+///                      a segment [-]
 template <typename Stiffness>
 void add_segments(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                   double most_pressed, Stiffness& stiffness) {
@@ -24,10 +26,11 @@ void add_segments(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& poin
     const Eigen::Vector3d segment = points.col(i + 1) - points.col(i);
     const double length = std::max(segment.norm(), no_length * L);
     const Eigen::Vector3d u = segment / length;
-    const double tension = rod.c_c * std::max((length - L) / L, -most_pressed);
+    const double across =
+        std::max(rod.c_c * (length - L) / L / length, -most_pressed * rod.c_c / L);
     const Eigen::Matrix3d along = u * u.transpose();
     const Eigen::Matrix3d block =
-        rod.c_c / L * along + tension / length * (Eigen::Matrix3d::Identity() - along);
+        rod.c_c / L * along + across * (Eigen::Matrix3d::Identity() - along);
     stiffness.add(i, i, block);
     stiffness.add(i + 1, i + 1, block);
     stiffness.add(i, i + 1, -block);
