@@ -22,7 +22,7 @@ namespace {
 using std::numbers::pi;
 using test::SteelRod;
 
-const StepOptions implicit{.policy = policy(Stepper::implicit)};
+const StepOptions implicit_options{.policy = policy(Stepper::implicit)};
 
 /// Steel a hundred times softer, with its own stretch stiffness: Gamma = 18.
 struct SoftRod : SteelRod {
@@ -34,7 +34,7 @@ struct SoftRod : SteelRod {
   [[nodiscard]] Rod rod() const { return SteelRod::rod({BendingLaw::hooke, EI}, AE); }
 };
 
-double rms_distance(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+double rms_between(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
   return (a - b).norm() / std::sqrt(static_cast<double>(a.cols()));
 }
 
@@ -43,16 +43,16 @@ Wall floor_at(double height, double stiffness) {
 }
 
 /// A rod, where it starts, and what is special about it.
-struct Case {
+struct ImplicitCase {
   std::string name;
   Rod rod;
   Eigen::Matrix3Xd start;
 };
 
-std::vector<Case> cases() {
+std::vector<ImplicitCase> implicit_cases() {
   const SteelRod steel;
   const Rod hooke = steel.rod({BendingLaw::hooke, steel.EI}, steel.AE);
-  std::vector<Case> result;
+  std::vector<ImplicitCase> result;
   result.push_back({"hooke, c_c = AE", hooke, steel.straight()});
   result.push_back(
       {"paper, c_c = 660", steel.rod({BendingLaw::paper, 3574.96}, 660), steel.straight()});
@@ -81,8 +81,8 @@ std::vector<Case> cases() {
 }
 
 TEST(ImplicitStepper, RestsWhereTheAutomaticStepperDoes) {
-  for (const Case& one : cases()) {
-    Simulation simulation(one.rod, one.start, implicit);
+  for (const ImplicitCase& one : implicit_cases()) {
+    Simulation simulation(one.rod, one.start, implicit_options);
     const RelaxResult result = simulation.relax({.tolerance = 1e-9});
     ASSERT_EQ(result.status, RelaxStatus::at_rest) << one.name << ": " << result.message;
     EXPECT_LT(result.remaining_error, 1e-9 * one.rod.length()) << one.name;
@@ -91,7 +91,7 @@ TEST(ImplicitStepper, RestsWhereTheAutomaticStepperDoes) {
                          {});
     const RelaxResult other = automatic.relax({.tolerance = 1e-8});
     ASSERT_EQ(other.status, RelaxStatus::at_rest) << one.name;
-    EXPECT_LT(rms_distance(simulation.points(), automatic.points()),
+    EXPECT_LT(rms_between(simulation.points(), automatic.points()),
               other.remaining_error + result.remaining_error + 1e-13)
         << one.name;
   }
@@ -100,15 +100,15 @@ TEST(ImplicitStepper, RestsWhereTheAutomaticStepperDoes) {
 TEST(ImplicitStepper, BringsASoftRodToRestInTenSolvesWhateverItsPoints) {
   for (const int points : {16, 32, 200}) {
     const SoftRod soft(points);
-    Simulation reference(soft.rod(), soft.straight(), implicit);
+    Simulation reference(soft.rod(), soft.straight(), implicit_options);
     const RelaxResult rest = reference.relax({.tolerance = 1e-9});
     ASSERT_EQ(rest.status, RelaxStatus::at_rest);
     EXPECT_LE(rest.steps, 10) << points;
-    Simulation simulation(soft.rod(), soft.straight(), implicit);
+    Simulation simulation(soft.rod(), soft.straight(), implicit_options);
     while (simulation.steps() < 5) ASSERT_EQ(simulation.step().status, StepStatus::good);
-    EXPECT_LT(rms_distance(simulation.points(), reference.points()), 1e-3 * soft.length) << points;
+    EXPECT_LT(rms_between(simulation.points(), reference.points()), 1e-3 * soft.length) << points;
     while (simulation.steps() < 7) ASSERT_EQ(simulation.step().status, StepStatus::good);
-    EXPECT_LT(rms_distance(simulation.points(), reference.points()), 1e-7 * soft.length) << points;
+    EXPECT_LT(rms_between(simulation.points(), reference.points()), 1e-7 * soft.length) << points;
   }
 }
 
@@ -119,7 +119,7 @@ TEST(ImplicitStepper, DoesTheSameInEveryFrameOfReference) {
   const auto moved = [&](const Eigen::Matrix3Xd& points) -> Eigen::Matrix3Xd {
     return (turn * points).colwise() + shift;
   };
-  for (const Case& one : cases()) {
+  for (const ImplicitCase& one : implicit_cases()) {
     if (!one.rod.solids.empty()) continue;
     Rod rod = one.rod;
     rod.loads = turn * rod.loads;
@@ -128,17 +128,17 @@ TEST(ImplicitStepper, DoesTheSameInEveryFrameOfReference) {
       wall.point = moved(wall.point);
       wall.normal = turn * wall.normal;
     }
-    Simulation here(one.rod, one.start, implicit);
-    Simulation there(rod, moved(one.start), implicit);
+    Simulation here(one.rod, one.start, implicit_options);
+    Simulation there(rod, moved(one.start), implicit_options);
     ASSERT_EQ(here.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest) << one.name;
     ASSERT_EQ(there.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest) << one.name;
-    EXPECT_LT(rms_distance(moved(here.points()), there.points()), 1e-9) << one.name;
+    EXPECT_LT(rms_between(moved(here.points()), there.points()), 1e-9) << one.name;
   }
 }
 
 TEST(ImplicitStepper, MovesARestingRodWithItsGripperInOneSolve) {
   const SoftRod soft(32);
-  Simulation simulation(soft.rod(), soft.straight(), implicit);
+  Simulation simulation(soft.rod(), soft.straight(), implicit_options);
   ASSERT_EQ(simulation.relax({.tolerance = 1e-10}).status, RelaxStatus::at_rest);
   const Eigen::Matrix3Xd rest = simulation.points();
   const Eigen::Vector3d way(0.3, 0.4, -1.2);
@@ -150,7 +150,7 @@ TEST(ImplicitStepper, MovesARestingRodWithItsGripperInOneSolve) {
   // What the positions' rounding moves the slowest mode by, at either place.
   const double rounding = check_equilibrium(simulation.rod(), simulation.points()).rounding_error;
   EXPECT_LT(rounding, 1e-7 * soft.length);
-  EXPECT_LT(rms_distance(simulation.points(), rest.colwise() + way),
+  EXPECT_LT(rms_between(simulation.points(), rest.colwise() + way),
             1e-10 * soft.length + 2 * rounding);
 }
 
@@ -158,7 +158,7 @@ TEST(ImplicitStepper, MovesARestingRodWithItsGripperInOneSolve) {
 /// length.
 TEST(ImplicitStepper, FollowsAGripperWithinAMillionthOfTheLengthByOneSolveAFrame) {
   const SoftRod soft(32);
-  Simulation simulation(soft.rod(), soft.straight(), implicit);
+  Simulation simulation(soft.rod(), soft.straight(), implicit_options);
   ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest);
   const long before = simulation.steps();
   constexpr int frames = 100;
@@ -173,14 +173,14 @@ TEST(ImplicitStepper, FollowsAGripperWithinAMillionthOfTheLengthByOneSolveAFrame
     if (frame % 20 != 0) continue;
     Simulation rest = simulation;
     ASSERT_EQ(rest.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest);
-    EXPECT_LT(rms_distance(simulation.points(), rest.points()), 1e-6 * soft.length) << frame;
+    EXPECT_LT(rms_between(simulation.points(), rest.points()), 1e-6 * soft.length) << frame;
   }
   EXPECT_EQ(simulation.steps() - before, frames);
 }
 
 TEST(ImplicitStepper, ArrivesWithAGripperThatJumpsAndTurnsRound) {
   const SoftRod soft(16);
-  Simulation simulation(soft.rod(), soft.straight(), implicit);
+  Simulation simulation(soft.rod(), soft.straight(), implicit_options);
   ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest);
   const Eigen::Matrix3Xd targets =
       grip_targets({0, 0.5, 0}, {-1, 0, 0}, soft.segment(), soft.segment() / 2);
@@ -194,9 +194,9 @@ TEST(ImplicitStepper, ArrivesWithAGripperThatJumpsAndTurnsRound) {
   Eigen::Matrix3Xd straight = soft.straight();
   straight.row(0) *= -1;
   straight.row(1).array() += 0.5;
-  Simulation direct(turned, straight, implicit);
+  Simulation direct(turned, straight, implicit_options);
   ASSERT_EQ(direct.relax().status, RelaxStatus::at_rest);
-  EXPECT_LT(rms_distance(simulation.points(), direct.points()), 2e-7 * soft.length);
+  EXPECT_LT(rms_between(simulation.points(), direct.points()), 2e-7 * soft.length);
 }
 
 TEST(ImplicitStepper, LeavesABalancedRodStandingOnlyWhereItIsStable) {
@@ -206,7 +206,7 @@ TEST(ImplicitStepper, LeavesABalancedRodStandingOnlyWhereItIsStable) {
     steel.angle = pi / 2;
     steel.weight_per_length = gamma * steel.EI / std::pow(steel.length, 3);
     Simulation simulation(steel.rod({BendingLaw::hooke, steel.EI}, steel.AE), steel.straight(),
-                          implicit);
+                          implicit_options);
     ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest) << gamma;
     const double aside = std::abs(simulation.points()(0, 15)) / steel.length;
     if (gamma < 8) {
@@ -231,7 +231,7 @@ TEST(ImplicitStepper, StaysStableWithTimeStepsFarBeyondTheFastestMode) {
   Rod rod = soft.rod();
   rod.masses = -rod.loads.row(1).transpose() / 9.81;
   rod.walls = {floor_at(-0.2, soft.AE / soft.segment())};
-  StepOptions options = implicit;
+  StepOptions options = implicit_options;
   options.time_step = 0.01;
   options.damping_rate = 10;
   Simulation simulation(rod, soft.straight(), options);
@@ -242,20 +242,20 @@ TEST(ImplicitStepper, StaysStableWithTimeStepsFarBeyondTheFastestMode) {
   }
   EXPECT_GT(fell, -0.205);
   ASSERT_EQ(simulation.relax({.tolerance = 1e-6}).status, RelaxStatus::at_rest);
-  Simulation rest(rod, soft.straight(), implicit);
+  Simulation rest(rod, soft.straight(), implicit_options);
   ASSERT_EQ(rest.relax().status, RelaxStatus::at_rest);
-  EXPECT_LT(rms_distance(simulation.points(), rest.points()), 2e-6 * soft.length);
+  EXPECT_LT(rms_between(simulation.points(), rest.points()), 2e-6 * soft.length);
 }
 
 TEST(ImplicitStepper, RefusesWhatItCannotDo) {
   const SteelRod steel;
   const Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
-  EXPECT_THROW(Batch({{rod, steel.straight(), implicit}}), std::invalid_argument);
-  StepOptions in_time = implicit;
+  EXPECT_THROW(Batch({{rod, steel.straight(), implicit_options}}), std::invalid_argument);
+  StepOptions in_time = implicit_options;
   in_time.time_step = 1e-3;
   EXPECT_THROW(Simulation(rod, steel.straight(), in_time), std::invalid_argument);  // no masses
   for (const double wrong : {0.0, -1.0, std::nan("")}) {
-    StepOptions options = implicit;
+    StepOptions options = implicit_options;
     options.time_step = wrong;
     EXPECT_THROW(Simulation(rod, steel.straight(), options), std::invalid_argument) << wrong;
     options = in_time;
@@ -264,7 +264,7 @@ TEST(ImplicitStepper, RefusesWhatItCannotDo) {
   }
   test::TwistedRod twisted;
   twisted.turn = 1;
-  EXPECT_THROW(Simulation(twisted.rod(), twisted.arch(), implicit), std::invalid_argument);
+  EXPECT_THROW(Simulation(twisted.rod(), twisted.arch(), implicit_options), std::invalid_argument);
 }
 
 }  // namespace
