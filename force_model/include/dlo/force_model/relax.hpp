@@ -16,11 +16,11 @@ struct RelaxOptions {
 
 /// How a search for rest ended.
 enum class RelaxStatus {
-  diverged,
-  step_limit,
-  time_limit,
-  at_rest,
-  stalled,  ///< implicit steps only: none lowers the energy, nor proves rest
+  diverged,    ///< a step was not finite
+  step_limit,  ///< RelaxOptions::max_steps
+  time_limit,  ///< RelaxOptions::time_limit
+  at_rest,     ///< proved
+  stalled,     ///< implicit steps only: none lowers the energy, nor proves rest
 };
 
 /// In words, for messages.

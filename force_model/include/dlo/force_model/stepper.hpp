@@ -41,11 +41,14 @@ enum class Integration {
   ///     - dP turns segments, and lengthens them by its part along them, so that a large turn does
   ///       not stretch them; between two grips the gap that this leaves is spread and lengths are
   ///       restored;
-  ///     - dP is shortened so that no segment turns by more than a radian, and until the potential
-  ///       energy (with dt that of M and C too) is no more than the quadratic model promises;
+  ///     - which points walls press is part of what is solved (an active set);
+  ///     - dP is shortened so that no segment turns by more than 45 degrees, and until the
+  ///     potential
+  ///       energy (with dt that of M and C too) falls by a share of what the quadratic model
+  ///       promises, or while a gripper moves is not far above it;
   ///     - held points that a gripper has moved since the last step are part of dP; a movement that
   ///       had to be shortened is made in as many Newton steps as it takes, in the same step.
-  /// Ends of a twisted rod are refused, and so are rods in lockstep.
+  /// A rod that clamps twist is refused, and so are rods in lockstep.
   implicit_euler,
 };
 
@@ -95,7 +98,7 @@ struct StepResult {
   StepStatus status = StepStatus::diverged;  ///< how it ended
   double c_m = 0;                            ///< scaling of this step (Formulas 17, 18, 20) [-]
   double movement = 0;                       ///< d_m: largest movement compared with l_s [m]
-  bool limited = false;                      ///< d_m was larger than l_s
+  bool limited = false;  ///< d_m was larger than l_s; of implicit steps: dP was shortened
 };
 
 }  // namespace dlo::force_model
