@@ -29,6 +29,10 @@ std::vector<Rod> checked_rods(std::span<const BatchRod> start, bool together) {
   std::vector<Rod> rods;
   for (const BatchRod& one : start) {
     check(one.rod);
+    const Integration integration = one.options.policy.integration;
+    require(!together || integration == Integration::along_force, "Batch", "integration of a rod",
+            static_cast<double>(integration),
+            "0 (along_force): rods in lockstep have neither velocities nor implicit steps");
     const Eigen::Index twisted = count_twisted(one.rod);
     require(!together || twisted == 0, "Batch", "number of grips with d1",
             static_cast<double>(twisted + 1), "0 or 1: rods in lockstep have no twist");
@@ -71,6 +75,13 @@ Lockstep::Lockstep(std::span<const BatchRod> start, bool together)
   points_.resize(3, rods_.front().points());
   forces_.resize(3, rods_.front().points());
   for (std::size_t rod = 0; rod < start.size(); ++rod) update_rounding(rod);
+  const StepOptions& options = start.front().options;
+  copy_points(0, points_);
+  if (options.policy.integration == Integration::implicit_euler) {
+    implicit_.emplace(rods_.front(), points_, options);
+  } else if (options.policy.integration == Integration::verlet) {
+    verlet_.emplace(rods_.front(), options);
+  }
 }
 
 void Lockstep::update_rounding(std::size_t rod) {
@@ -109,9 +120,34 @@ void Lockstep::look_at_modes() {
   }
 }
 
+StepResult Lockstep::step_implicitly() {
+  const StepResult result = implicit_->step(rods_.front());
+  controls_.front().count(result, implicit_->newton_steps());
+  if (result.status == StepStatus::good) block_.set(positions, 0, implicit_->points());
+  return result;
+}
+
+StepResult Lockstep::step_by_velocities() {
+  StepResult result;
+  copy_points(0, points_);
+  forces_ = block_.view(forces, 0);
+  verlet_->step(forces_, points_, result);
+  controls_.front().count(result, 1);
+  if (result.status == StepStatus::good) block_.set(positions, 0, points_);
+  return result;
+}
+
 void Lockstep::step(std::span<StepResult> results) {
+  if (implicit_) {
+    if (active(0)) results[0] = step_implicitly();
+    return;
+  }
   compute_forces();
   look_at_modes();
+  if (verlet_) {
+    if (active(0)) results[0] = step_by_velocities();
+    return;
+  }
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {
     kept_.lane[rod] = controls_[rod].kept() * c_m_.lane[rod];
   }
@@ -133,6 +169,8 @@ void Lockstep::step(std::span<StepResult> results) {
 MovingShape Lockstep::shape(std::size_t rod) {
   points_ = block_.view(positions, rod);
   forces_ = block_.view(forces, rod);
+  if (implicit_) return {points_, forces_, implicit_->momentum()};
+  if (verlet_) return {points_, forces_, verlet_->momentum()};
   const double momentum = c_m_.lane[rod] * block_.last_proposals(rod).norm() /
                           (1 - controls_[rod].kept()) /
                           std::sqrt(static_cast<double>(points_.cols()));
@@ -143,9 +181,43 @@ void Lockstep::nudge(std::size_t rod, const Eigen::Matrix3Xd& direction) {
   constexpr double share = 1e-6;  // of the length: far below any tolerance
   block_.set(positions, rod, block_.view(positions, rod) + share * rods_[rod].length() * direction);
   block_.update_dimension(rods_);
+  if (!implicit_) return;
+  copy_points(rod, points_);
+  implicit_->set_points(points_);
+}
+
+RelaxResult Lockstep::relax_implicitly(const RelaxOptions& options) {
+  RestSearch search(rods_.front(), controls_.front().estimate(), options);
+  const auto measurable_shape = [this] {
+    block_.update_dimension(rods_);
+    compute_forces();
+    return shape(0);
+  };
+  // Newton's step squares the distance d: of a rod, about 2 d^2 / l are left, measured from
+  // straight to Gamma = 18. What that promises too early is promised again after a step ten times
+  // shorter.
+  const double length = rods_.front().length();
+  double promising = std::sqrt(options.tolerance / 4) * length;
+  while (search.open()) {
+    const StepResult result = step_implicitly();
+    search.count_newton_steps(result, implicit_->newton_steps());
+    if (!search.open()) break;
+    const double moved = std::max(implicit_->movement(), implicit_->momentum());
+    const bool converges = implicit_->pure() && moved < promising;
+    if (!converges && !(moved < options.tolerance * length)) continue;
+    const Eigen::Matrix3Xd falling = search.judge(measurable_shape());
+    if (falling.cols() > 0) {
+      nudge(0, falling);
+    } else if (search.open() && moved == 0) {
+      search.stall();
+    }
+    promising = std::min(promising, moved) / 10;
+  }
+  return search.finish(measurable_shape());
 }
 
 std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
+  if (implicit_) return {relax_implicitly(options)};
   std::vector<RestSearch> searches;
   searches.reserve(rods_.size());
   for (std::size_t rod = 0; rod < rods_.size(); ++rod) {

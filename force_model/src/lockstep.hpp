@@ -1,13 +1,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "dlo/force_model/batch.hpp"
+#include "implicit_step.hpp"
 #include "rest_search.hpp"
 #include "rod_block.hpp"
 #include "step_control.hpp"
+#include "verlet_step.hpp"
 
 namespace dlo::force_model {
 
@@ -53,6 +56,9 @@ class Lockstep {
  private:
   void compute_forces();
   void look_at_modes();
+  [[nodiscard]] StepResult step_implicitly();
+  [[nodiscard]] StepResult step_by_velocities();
+  RelaxResult relax_implicitly(const RelaxOptions& options);
   void update_rounding(std::size_t rod);
   MovingShape shape(std::size_t rod);
   void nudge(std::size_t rod, const Eigen::Matrix3Xd& direction);
@@ -65,6 +71,8 @@ class Lockstep {
   PerLane kept_;  // c_h c_m
   PerLane active_;
   PerLane rounding_squared_;  // of the smallest movement that counts as oscillation [m^2]
+  std::optional<ImplicitStep> implicit_;  // a single rod's, as its policy asks for
+  std::optional<VerletStep> verlet_;
   ProposedStep proposed_;
   ModeLook look_;
   Eigen::Matrix3Xd points_;  // of the rod that is looked at

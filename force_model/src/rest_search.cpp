@@ -24,6 +24,8 @@ const char* to_string(RelaxStatus status) {
       return "step limit";
     case RelaxStatus::time_limit:
       return "time limit";
+    case RelaxStatus::stalled:
+      return "no step lowers the energy";
     case RelaxStatus::diverged:
       break;
   }
@@ -49,11 +51,29 @@ bool RestSearch::count(const StepResult& step) {
     return false;
   }
   ++result_.steps;
-  if (result_.steps % clock_steps == 0 && std::isfinite(options_.time_limit)) {
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin_;
-    if (taken.count() > options_.time_limit) result_.status = RelaxStatus::time_limit;
-  }
+  if (result_.steps % clock_steps == 0) look_at_clock();
   return result_.steps % block_steps == 0 && result_.steps >= next_check_;
+}
+
+void RestSearch::look_at_clock() {
+  if (!std::isfinite(options_.time_limit)) return;
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin_;
+  if (taken.count() > options_.time_limit) result_.status = RelaxStatus::time_limit;
+}
+
+void RestSearch::count_newton_steps(const StepResult& step, long solves) {
+  if (step.status == StepStatus::diverged) {
+    result_.status = RelaxStatus::diverged;
+    return;
+  }
+  result_.steps += solves;
+  look_at_clock();
+}
+
+Eigen::Matrix3Xd RestSearch::judge(const MovingShape& shape) {
+  EquilibriumCheck check = measure(shape);
+  if (rests(check)) result_.status = RelaxStatus::at_rest;
+  return rests(check) ? Eigen::Matrix3Xd() : std::move(check.falling_direction);
 }
 
 bool RestSearch::rests(const EquilibriumCheck& check) const {
@@ -105,7 +125,7 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
 }
 
 RelaxResult RestSearch::finish(const MovingShape& shape) {
-  if (result_.status == RelaxStatus::step_limit || result_.status == RelaxStatus::time_limit) {
+  if (result_.status != RelaxStatus::diverged && result_.status != RelaxStatus::at_rest) {
     const EquilibriumCheck check = measure(shape);
     if (rests(check)) result_.status = RelaxStatus::at_rest;
   }

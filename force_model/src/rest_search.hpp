@@ -29,6 +29,15 @@ class RestSearch {
   /// Takes note of a step. @return whether look() is due
   [[nodiscard]] bool count(const StepResult& step);
 
+  /// Takes note of a step that took so many solves.
+  void count_newton_steps(const StepResult& step, long solves);
+
+  /// Measures the shape and ends the search if it rests. @return as look()
+  [[nodiscard]] Eigen::Matrix3Xd judge(const MovingShape& shape);
+
+  /// Ends the search: no step changes anything any more.
+  void stall() { result_.status = RelaxStatus::stalled; }
+
   /// Ends the search if the shape rests. @return for an equilibrium that does not hold the movement
   /// in which it gives way, see EquilibriumCheck; else nothing, 3 x 0
   [[nodiscard]] Eigen::Matrix3Xd look(const MovingShape& shape);
@@ -42,6 +51,7 @@ class RestSearch {
   [[nodiscard]] RelaxResult finish(const MovingShape& shape);
 
  private:
+  void look_at_clock();
   EquilibriumCheck measure(const MovingShape& shape);
   /// Of the shape that was measured last.
   [[nodiscard]] bool rests(const EquilibriumCheck& check) const;

@@ -152,6 +152,9 @@ void check(const Rod& rod) {
   require(rod.loads.cols() == rod.points(), "Rod", "columns of loads",
           static_cast<double>(rod.loads.cols()), "the number of points");
   require(rod.loads.allFinite(), "Rod", "loads", rod.loads.norm(), "finite");
+  require(rod.masses.size() == 0 || rod.masses.size() == rod.points(), "Rod", "number of masses",
+          static_cast<double>(rod.masses.size()), "0 or the number of points");
+  for (const double mass : rod.masses) require_not_negative("Rod", "mass of a point", mass);
   for (const Wall& wall : rod.walls) check(wall);
   for (const Solid& solid : rod.solids) check(solid);
   for (const Grip& grip : rod.grips) check_grip(grip, rod.points());

@@ -10,7 +10,13 @@ namespace {
 
 const StepOptions& checked(const StepOptions& options) {
   const StepPolicy& policy = options.policy;
-  if (!policy.automatic) {
+  if (policy.integration != Integration::along_force) {
+    const bool timeless =
+        policy.integration == Integration::implicit_euler && std::isinf(options.time_step);
+    require(options.time_step > 0 && (timeless || std::isfinite(options.time_step)), "Simulation",
+            "time_step", options.time_step, timeless ? "> 0" : "finite and > 0");
+    require_not_negative("Simulation", "damping_rate", options.damping_rate);
+  } else if (!policy.automatic) {
     require_positive("Simulation", "c_F", options.c_F);
     if (policy.limit != StepLimit::none) require_positive("Simulation", "l_s", options.l_s);
     if (policy.momentum) {
@@ -77,6 +83,12 @@ void StepControl::decide(double largest_squared, double sum_squared, double osci
   }
   ++steps_;
   if (c_s_ > 1) ++damped_steps_;
+}
+
+void StepControl::count(const StepResult& result, long evaluations) {
+  if (result.status == StepStatus::diverged) return;
+  steps_ += evaluations;
+  if (result.limited) ++limited_steps_;
 }
 
 }  // namespace dlo::force_model

@@ -40,6 +40,9 @@ class StepControl {
   /// @param[out] result      of the step
   void decide(double largest_squared, double sum_squared, double oscillating, StepResult& result);
 
+  /// Takes note of a step that was decided elsewhere. @param evaluations  that it took
+  void count(const StepResult& result, long evaluations);
+
   /// c_h, or 0 for policies without momentum.
   [[nodiscard]] double kept() const { return options_.policy.momentum ? options_.c_h : 0; }
   [[nodiscard]] bool relative() const { return options_.policy.limit == StepLimit::relative; }

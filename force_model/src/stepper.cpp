@@ -12,6 +12,10 @@ StepPolicy policy(Stepper stepper) {
       return {.limit = StepLimit::relative, .damping = true};
     case Stepper::dynamic:
       return {.limit = StepLimit::relative, .momentum = true, .damping = true};
+    case Stepper::verlet:
+      return {.integration = Integration::verlet};
+    case Stepper::implicit:
+      return {.integration = Integration::implicit_euler};
     case Stepper::automatic:
       break;
   }

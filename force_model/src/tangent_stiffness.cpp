@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "require.hpp"
-#include "solid_looks.hpp"
 #include "stiffness_factor.hpp"
+#include "stiffness_terms.hpp"
 #include "twisted_spans.hpp"
 
 namespace dlo::force_model {
@@ -69,17 +69,6 @@ class TangentStiffness {
     }
   }
 
-  /// A joint's second derivatives by its segments a = P_i - P_{i-1} and b = P_{i+1} - P_i.
-  void add_joint(Eigen::Index i, const Eigen::Matrix3d& A, const Eigen::Matrix3d& AB,
-                 const Eigen::Matrix3d& B) {
-    add(i - 1, i - 1, A);
-    add(i, i, A + B - AB - AB.transpose());
-    add(i + 1, i + 1, B);
-    add(i - 1, i, AB - A);
-    add(i - 1, i + 1, -AB);
-    add(i, i + 1, AB - B);
-  }
-
   /// Adds g g^T. @param g  of all points
   void add_column(const Eigen::Matrix3Xd& g) {
     columns_.conservativeResize(3 * count_, columns_.cols() + 1);
@@ -135,118 +124,6 @@ Eigen::Matrix3Xd falling_direction(const Eigen::VectorXd& movement,
   return direction;
 }
 
-/// Contraction: c_c/L along the segment, and across it what its tension resists.
-void add_segments(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
-                  TangentStiffness& stiffness) {
-  // A segment without length is pushed apart in any direction: it gives way to all.
-  constexpr double no_length = 1e-9;
-  for (Eigen::Index i = 0; i < rod.rest_lengths.size(); ++i) {
-    const double L = rod.rest_lengths[i];
-    const Eigen::Vector3d segment = points.col(i + 1) - points.col(i);
-    const double length = std::max(segment.norm(), no_length * L);
-    const Eigen::Vector3d u = segment / length;
-    const double tension = rod.c_c * (length - L) / L;
-    const Eigen::Matrix3d along = u * u.transpose();
-    const Eigen::Matrix3d block =
-        rod.c_c / L * along + tension / length * (Eigen::Matrix3d::Identity() - along);
-    stiffness.add(i, i, block);
-    stiffness.add(i + 1, i + 1, block);
-    stiffness.add(i, i + 1, -block);
-  }
-}
-
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-
-/// Both laws' forces by the two segments a, b of a joint are S dc/d(a, b), with c the cosine of
-/// its angle. S and its derivative by (a, b):
-///     hooke:  S = 2 (EI/L) / (1 + c),              beyond the fold angle M / sin(alpha)
-///     paper:  S = c_b (1 - c) |a| |b| / |a + b|
-struct JointFactor {
-  double S = 0;
-  Vector6d slope = Vector6d::Zero();
-};
-
-JointFactor joint_factor(const Bending& bending, double L, const Eigen::Vector3d& a,
-                         const Eigen::Vector3d& b, double c, const Vector6d& slope_of_c) {
-  JointFactor factor;
-  if (bending.law == BendingLaw::paper) {
-    const double a_length = a.norm();
-    const double b_length = b.norm();
-    const Eigen::Vector3d chord = a + b;
-    const double ratio = a_length * b_length / chord.norm();
-    Vector6d slope;
-    slope.head<3>() = a / (a_length * a_length) - chord / chord.squaredNorm();
-    slope.tail<3>() = b / (b_length * b_length) - chord / chord.squaredNorm();
-    factor.S = bending.stiffness * (1 - c) * ratio;
-    factor.slope = factor.S * slope - bending.stiffness * ratio * slope_of_c;
-    return factor;
-  }
-  static const double fold_cosine = std::cos(hooke_fold_angle);
-  if (c >= fold_cosine) {
-    factor.S = 2 * bending.stiffness / L / (1 + c);
-    factor.slope = -factor.S / (1 + c) * slope_of_c;
-    return factor;
-  }
-  const double sine_squared = std::max(0.0, 1 - c * c);
-  factor.S = 2 * bending.stiffness / L * std::tan(hooke_fold_angle / 2) / std::sqrt(sine_squared);
-  factor.slope = factor.S * c / sine_squared * slope_of_c;
-  return factor;
-}
-
-/// Second derivative by s of the angle of s in the plane z = 0.
-Eigen::Matrix3d second_of_direction_angle(const Eigen::Vector3d& s) {
-  const double square = s.head<2>().squaredNorm();
-  const double xy = 2 * s.x() * s.y();
-  const double difference = s.y() * s.y() - s.x() * s.x();
-  Eigen::Matrix3d result = Eigen::Matrix3d::Zero();
-  result.topLeftCorner<2, 2>() << xy, difference, difference, -xy;
-  return result / (square * square);
-}
-
-void add_joints(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
-                TangentStiffness& stiffness) {
-  const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
-  for (Eigen::Index i = 1; i < rod.rest_lengths.size(); ++i) {
-    const Eigen::Vector3d a = points.col(i) - points.col(i - 1);
-    const Eigen::Vector3d b = points.col(i + 1) - points.col(i);
-    const double a_length = a.norm();
-    const double b_length = b.norm();
-    if (!(a_length > 0 && b_length > 0)) continue;
-    const Eigen::Vector3d u = a / a_length;
-    const Eigen::Vector3d v = b / b_length;
-    const double c = u.dot(v);
-    const Eigen::Vector3d by_a = v - c * u;  // |a| dc/da
-    const Eigen::Vector3d by_b = u - c * v;  // |b| dc/db
-    Vector6d slope;
-    slope << by_a / a_length, by_b / b_length;
-    const Eigen::Matrix3d aa = by_a * u.transpose();
-    const Eigen::Matrix3d bb = by_b * v.transpose();
-    Matrix6d second;  // of c
-    second.topLeftCorner<3, 3>() =
-        -(aa + aa.transpose() + c * (one - u * u.transpose())) / (a_length * a_length);
-    second.bottomRightCorner<3, 3>() =
-        -(bb + bb.transpose() + c * (one - v * v.transpose())) / (b_length * b_length);
-    second.topRightCorner<3, 3>() =
-        (one - v * v.transpose() - u * by_b.transpose()) / (a_length * b_length);
-    second.bottomLeftCorner<3, 3>() = second.topRightCorner<3, 3>().transpose();
-    const double L = (rod.rest_lengths[i - 1] + rod.rest_lengths[i]) / 2;
-    const JointFactor factor = joint_factor(bending_at(rod.bending, i), L, a, b, c, slope);
-    const Matrix6d turning = slope * factor.slope.transpose();
-    const Matrix6d by_segments = -(turning + turning.transpose()) / 2 - factor.S * second;
-    Eigen::Matrix3d A = by_segments.topLeftCorner<3, 3>();
-    Eigen::Matrix3d B = by_segments.bottomRightCorner<3, 3>();
-    if (rod.bending.natural_turns.size() > 0) {
-      // Its potential is -C (angle of b - angle of a).
-      const double couple = natural_moment(rod.bending, i, L);
-      A += couple * second_of_direction_angle(a);
-      B -= couple * second_of_direction_angle(b);
-    }
-    const Eigen::Matrix3d AB = by_segments.topRightCorner<3, 3>();
-    stiffness.add_joint(i, A, AB, B);
-  }
-}
-
 /// Second derivative of E = theta^2 / (2 C) by the points: with g that of theta, g g^T / C and M
 /// times that of theta, whose first one (TwistedSpan) is of neighbours only. Of a joint's part of
 /// it
@@ -278,49 +155,19 @@ void add_twist(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
       Eigen::Matrix3d across;  // [u]x
       across << 0, -u.z(), u.y(), u.z(), 0, -u.x(), -u.y(), u.x(), 0;
       const Eigen::Matrix3d ab = (2 / opening * across - kb * t.transpose()) / (2 * a * b);
-      stiffness.add_joint(i, moment * (aa + aa.transpose()), moment * ab,
-                          moment * (bb + bb.transpose()));
+      add_joint(i, moment * (aa + aa.transpose()), moment * ab, moment * (bb + bb.transpose()),
+                stiffness);
     }
   };
   for_each_twisted_span(rod, of_span);
 }
 
-void add_springs(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
-                 TangentStiffness& stiffness) {
-  for (const Wall& wall : rod.walls) {
-    const Eigen::Matrix3d block = wall.stiffness * wall.normal * wall.normal.transpose();
-    for (Eigen::Index i = 0; i < points.cols(); ++i) {
-      if ((wall.point - points.col(i)).dot(wall.normal) > 0) stiffness.add(i, i, block);
-    }
-  }
-  const auto at = [&points](Eigen::Index i) -> Eigen::Vector3d { return points.col(i); };
-  for (const Solid& solid : rod.solids) {
-    for_each_push(solid, points.cols(), at, [&](const SolidPush& push) {
-      const Eigen::Vector3d& normal = push.gap.gradient;
-      const Eigen::Matrix3d block =
-          solid.stiffness / solid.looks *
-          (normal * normal.transpose() + push.gap.value * push.gap.hessian);
-      const double own = 1 - push.share;
-      stiffness.add(push.point, push.point, own * own * block);
-      if (push.share == 0) return;
-      stiffness.add(push.point + 1, push.point + 1, push.share * push.share * block);
-      stiffness.add(push.point, push.point + 1, own * push.share * block);
-    });
-  }
-  for (const Grip& grip : rod.grips) {
-    if (grip.hold == GripHold::rigid) continue;
-    const Eigen::Matrix3d block = grip.stiffness * Eigen::Matrix3d::Identity();
-    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
-      stiffness.add(grip.first_point + k, grip.first_point + k, block);
-    }
-  }
-}
-
 /// Of all that makes forces.
 void add_all(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
              TangentStiffness& stiffness) {
-  add_segments(rod, points, stiffness);
+  add_segments(rod, points, std::numeric_limits<double>::infinity(), stiffness);
   add_joints(rod, points, stiffness);
+  add_walls(rod, points, stiffness);
   add_springs(rod, points, stiffness);
   add_twist(rod, points, stiffness);
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -54,6 +55,37 @@ TEST(Simulation, StepsDoNotAllocate) {
   const Eigen::VectorXd vector = Eigen::VectorXd::Zero(steel.points);
   EXPECT_EQ(vector.size(), steel.points);
   EXPECT_GT(allocations, before);
+}
+
+TEST(Simulation, StepsInTimeAndImplicitOnesDoNotAllocate) {
+  const test::SteelRod steel;
+  Rod rod = steel.rod({BendingLaw::hooke, steel.EI / 100}, 6600);
+  rod.masses.setConstant(steel.points, 1e-3);
+  rod.walls = {{.point = {0, -0.01, 0}, .normal = {0, 1, 0}, .stiffness = 100}};
+  rod.solids = {
+      {.body = obstacle::Body::sphere({0.3, -0.05, 0}, 0.045), .stiffness = 100, .looks = 2}};
+  struct Steps {
+    Stepper stepper;
+    double time_step;
+  };
+  for (const Steps& steps : {Steps{Stepper::verlet, 1e-5}, Steps{Stepper::implicit, 1e-2},
+                             Steps{Stepper::implicit, INFINITY}}) {
+    StepOptions options;
+    options.policy = policy(steps.stepper);
+    options.time_step = steps.time_step;
+    options.damping_rate = 1;
+    Simulation simulation(rod, steel.straight(), options);
+    Eigen::Matrix3Xd targets = rod.grips[0].targets;
+    const long before = allocations;
+    bool good = true;
+    for (int i = 0; i < 50; ++i) {
+      targets.row(1).array() += 1e-4;
+      simulation.move_grip(0, targets, {0, 0, 0});
+      good = good && simulation.step().status == StepStatus::good;
+    }
+    EXPECT_EQ(allocations, before) << "stepper " << static_cast<int>(steps.stepper);
+    EXPECT_TRUE(good);
+  }
 }
 
 TEST(Simulation, StepsAndTurnsOfATwistedRodDoNotAllocate) {

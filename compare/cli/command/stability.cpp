@@ -34,10 +34,11 @@ struct StabilityOptions {
   OutputOptions output;
 };
 
-/// The paper's steppers may fail, `auto` may not.
-bool auto_fails(const StabilityResult& result) {
-  return result.stepper == compare::Stepper::automatic && result.outcome != Outcome::pass &&
-         result.outcome != Outcome::refused;
+/// The paper's steppers may fail, `auto` and `implicit` may not.
+bool fails(const StabilityResult& result) {
+  const bool may_not =
+      result.stepper == compare::Stepper::automatic || result.stepper == compare::Stepper::implicit;
+  return may_not && result.outcome != Outcome::pass && result.outcome != Outcome::refused;
 }
 
 void run_map(StabilityOptions& options) {
@@ -74,7 +75,7 @@ void run_cases(StabilityOptions& options) {
   write_output(options.output, {.text = [&] { return hard_cases_text(results, steppers); },
                                 .json = [&] { return json_text(hard_cases_json(results)); },
                                 .csv = [&] { return hard_cases_csv(results); }});
-  if (std::any_of(results.begin(), results.end(), auto_fails)) {
+  if (std::any_of(results.begin(), results.end(), fails)) {
     end_with(ExitStatus::outside_tolerance);
   }
 }
@@ -101,15 +102,19 @@ void add_stability(CLI::App& app) {
       ->check(CLI::IsMember(compare::names<compare::Stepper>()))
       ->group(table);
   const auto steps = CLI::Range(1L, 1000000000000L);
-  command->add_option("--max-steps", options->cases.max_steps, "of the paper's steppers")
+  command->add_option("--max-steps", options->cases.max_steps, "of the paper's steppers and verlet")
       ->check(steps)
       ->capture_default_str()
       ->group(table);
-  command->add_option("--max-steps-auto", options->cases.max_steps_auto, "of stepper auto")
+  command
+      ->add_option("--max-steps-auto", options->cases.max_steps_auto,
+                   "of steppers auto and implicit")
       ->check(steps)
       ->capture_default_str()
       ->group(table);
-  command->add_option("--steps-at-rest", options->cases.steps_at_rest, "of the case at rest")
+  command
+      ->add_option("--steps-at-rest", options->cases.steps_at_rest,
+                   "of the case at rest; implicit: a hundredth")
       ->check(steps)
       ->capture_default_str()
       ->group(table);
@@ -128,7 +133,7 @@ void add_stability(CLI::App& app) {
       ->group(map);
   add_output_options(*command, options->output);
   command->footer(
-      "Exit status 1: stepper auto does not pass a case.\n"
+      "Exit status 1: stepper auto or implicit does not pass a case.\n"
       "Examples:\n  dlo stability --case folded\n  dlo stability --map cF-cc --columns 8");
   command->callback([options] {
     if (!options->map.empty()) return run_map(*options);

@@ -69,8 +69,11 @@ Json parameters_json(const compare::Solution& force, const compare::ForceModelSe
   }
   if (force.steps > 0) {
     result["stepper"] = compare::to_string(settings.stepper);
-    result["c_F"] = force.c_F;
-    result["c_h"] = force.c_h;
+    // Steps in time and Newton's have neither.
+    if (force.c_F > 0) {
+      result["c_F"] = force.c_F;
+      result["c_h"] = force.c_h;
+    }
   }
   return result;
 }

@@ -110,8 +110,10 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   append(out, "Gamma      {:.6g}   (w l^3 / EI)\n", scene.gamma());
   if (scene.assumes_torsion()) append(out, "assumed    {}\n", assumption_text(scene));
   if (solution.steps > 0) {
-    append(out, "steps      {}   c_F {:.4g} m/N, c_h {:.6f}\n", solution.steps, solution.c_F,
-           solution.c_h);
+    append(out, "steps      {}", solution.steps);
+    // Steps in time and Newton's have neither.
+    if (solution.c_F > 0) append(out, "   c_F {:.4g} m/N, c_h {:.6f}", solution.c_F, solution.c_h);
+    append(out, "\n");
   } else {
     append(out, "work       {} evaluations", solution.evaluations);
     if (solution.terms > 0) append(out, ", {} terms", solution.terms);

@@ -140,7 +140,8 @@ void SceneOptions::add_force_model_to(CLI::App& command) {
       ->group(group);
   command.add_option("--c-b", c_b_, "bending stiffness of the paper's law [N]")->group(group);
   command.add_option("--c-c", c_c_, "stretch stiffness [N], default A E")->group(group);
-  command.add_option("--c-F", c_F_, "step factor [m/N], not for stepper auto")->group(group);
+  command.add_option("--c-F", c_F_, "step factor [m/N], not for stepper auto, verlet, implicit")
+      ->group(group);
   command.add_option("--c-h", c_h_, "share of the last movement [-], stepper dynamic")
       ->group(group);
   command.add_option("--l-s", l_s_, "largest movement per step [m]")->group(group);

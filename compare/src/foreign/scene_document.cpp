@@ -149,7 +149,8 @@ void add_polygon(const Scene& scene, const ForceModelSettings& settings, Documen
   result["c_c"] = parameters.c_c;
   result["c_b"] = paper ? Document(parameters.c_b) : Document();
   const force_model::StepOptions steps = step_options(settings, polygon);
-  const bool chosen = settings.stepper == Stepper::automatic;
+  const bool chosen =
+      steps.policy.automatic || steps.policy.integration != force_model::Integration::along_force;
   result["c_F"] = chosen ? Document() : Document(steps.c_F);
   result["c_h"] = settings.stepper == Stepper::dynamic ? Document(steps.c_h) : Document();
   result["l_s_m"] = chosen ? Document() : Document(steps.l_s);

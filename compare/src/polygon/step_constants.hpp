@@ -16,9 +16,20 @@ inline constexpr double table_1_limit_share = 0.6;
 /// c_h of the stepper `dynamic`, which the paper leaves open.
 inline constexpr double dynamic_share = 0.9;
 
-/// The stepper a scene asks for; what it does not give is in Table 1's proportions. @throws
-/// InputError if it lacks a constant that its stepper needs
+/// Time step of the stepper `verlet` as a share of the largest stable one, 2/omega_max, of the rod
+/// where it starts: bent joints and compressed segments are stiffer than straight ones.
+inline constexpr double verlet_step_share = 0.5;
+
+/// The stepper a scene asks for; what it does not give is in Table 1's proportions. That of
+/// `verlet` takes verlet_step_share and damps the slowest mode, as mode_bounds estimates it,
+/// critically; `implicit` takes no masses. @throws InputError if it lacks a constant that its
+/// stepper needs
 [[nodiscard]] force_model::StepOptions step_options(const ForceModelSettings& settings,
                                                     const Discretisation& discretisation);
+
+/// Gives the rod of a discretisation its points' masses, if the stepper asks for them.
+/// @throws InputError as discretise()
+void set_masses(const Scene& scene, const ForceModelSettings& settings,
+                Discretisation& discretisation);
 
 }  // namespace dlo::compare

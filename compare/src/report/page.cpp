@@ -255,7 +255,8 @@ void add_stability(const Report& report, Page& page) {
   if (report.hard_cases.empty()) return page.paragraph("They were left out, or not computed.");
   const StabilityOptions options = report.options.hard_cases.value_or(StabilityOptions{});
   page.paragraph(fmt::format(
-      "The paper's four steppers ({}, l_s = {} L, c_h = {}; {} steps) and auto (at most {}). ✓: "
+      "The paper's four steppers ({}, l_s = {} L, c_h = {}; {} steps), verlet (as many), auto and "
+      "implicit (at most {}). ✓: "
       "within {} of the length of an equilibrium that no step has a part in. "
       "Creeping: still on the way, though it may look at rest. At rest: {} steps.",
       table_1_step_formula, table_1_limit_share, dynamic_share, options.max_steps,

@@ -16,11 +16,16 @@ void check(const ForceModelSettings& settings, const std::string& where) {
   };
   const bool automatic = settings.stepper == Stepper::automatic;
   const bool dynamic = settings.stepper == Stepper::dynamic;
+  const bool masses_or_newton =
+      settings.stepper == Stepper::verlet || settings.stepper == Stepper::implicit;
   if (settings.c_F && automatic) refuse("c_F", "a stepper other than auto, which chooses its own");
+  if (settings.c_F && masses_or_newton)
+    refuse("c_F", "stepper basic, limited, relative or dynamic");
   if (settings.c_h && !dynamic) refuse("c_h", "stepper dynamic");
   if (settings.l_s && settings.stepper == Stepper::basic) {
     refuse("l_s", "a stepper other than basic");
   }
+  if (settings.l_s && masses_or_newton) refuse("l_s", "stepper limited, relative, dynamic or auto");
   if (settings.c_b && settings.law == BendingLaw::hooke) refuse("c_b", "law paper");
   if (settings.point_weight && settings.bookkeeping != Bookkeeping::paper) {
     refuse("point_weight", "bookkeeping paper");

@@ -160,9 +160,9 @@ std::string optional_part(const Scene& scene) {
 #   bending_rule     {bending_rules}, law paper
 #   design_curvature [1/m]  k of the bending rule
 #   point_weight     [N]    weight of every point, bookkeeping paper
-#   c_F              [m/N]  step factor, not with stepper auto
+#   c_F              [m/N]  step factor, stepper basic, limited, relative or dynamic
 #   c_h              [-]    share of the last movement, 0 <= c_h < 1, stepper dynamic
-#   l_s              [m]    largest movement per step, not with stepper basic
+#   l_s              [m]    largest movement per step, stepper limited, relative, dynamic or auto
 )",
       fmt::arg("torsion", scene.bending_stiffness() / 1.3), fmt::arg("length", l),
       fmt::arg("section_from", 0.4 * l), fmt::arg("section_to", 0.45 * l),

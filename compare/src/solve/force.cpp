@@ -68,7 +68,8 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   if (const std::optional<PlaneTurn> turn = turn_into_plane(scene, settings)) {
     return turned_back(solve_force(turn->laid(scene), settings, options), *turn);
   }
-  const Discretisation discretisation = discretise(scene, settings);
+  Discretisation discretisation = discretise(scene, settings);
+  set_masses(scene, settings, discretisation);
   const SimulationStart start = simulation_start(scene, settings, discretisation, options);
   const auto begin = std::chrono::steady_clock::now();
   const auto simulation_from = [&](const Eigen::Matrix3Xd& points) {
@@ -100,7 +101,7 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
         "(stepper {}, c_F = {:.4g} m/N, c_c = {:.4g} N{})",
         scene.file, result.message, result.steps, result.remaining_error,
         to_string(settings.stepper), simulation.options().c_F, discretisation.parameters.c_c,
-        settings.stepper == Stepper::automatic
+        settings.stepper == Stepper::automatic || settings.stepper == Stepper::implicit
             ? ""
             : "; stepper auto chooses its constants, a lower c_c lets the others take larger "
               "steps"));

@@ -123,16 +123,16 @@ void mark_front(std::vector<BenchmarkRun>& runs);
 /// Times every model on every scene, one thread. The smallest K or N of every model comes first,
 /// then the tracking runs, then the other sizes in turn, so that a small budget leaves some runs of
 /// each model. Static: `exact`, `energy` over K, `chain` over N,
-/// `force` over N, laws, steppers (auto, and dynamic with the paper's constants) and c_c (AE and
-/// AE/1000, which the paper used), each from straight, or from its own start, to rest. Times are of
-/// the solver with the scene's set-up, as a caller sees it. The rest tolerance of `force` is a
-/// tenth of the error that its N is good for. Programs are asked for the same N.
+/// `force` over N, laws, steppers (auto, implicit, and dynamic with the paper's constants) and c_c
+/// (AE and AE/1000, which the paper used), each from straight, or from its own start, to rest.
+/// Times are of the solver with the scene's set-up, as a caller sees it. The rest tolerance of
+/// `force` is a tenth of the error that its N is good for. Programs are asked for the same N.
 ///
 /// Tracking: after the rod has come to rest all grippers move along +x at the given speed v and
 /// turn as one body about z by v/l, which changes the shape. Each frame of 1 ms the energy model
 /// follows, and the force model makes the steps that fit a frame on this machine (measured before;
-/// at least one). The error, of every tenth frame, is against the quasi-static shape by the
-/// reference model.
+/// at least one), or, with stepper implicit, one. The error, of every tenth frame, is against the
+/// quasi-static shape by the reference model.
 /// @param progress  called with what is being done
 /// @throws std::invalid_argument if an option is out of range, InputError, ConvergenceError
 [[nodiscard]] BenchmarkReport run_benchmark(const std::vector<Scene>& scenes,

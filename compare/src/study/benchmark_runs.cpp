@@ -122,7 +122,9 @@ StaticRuns::StaticRuns(const Scene& scene, const ReferenceShape& reference,
   if (reference.model == Model::exact) add(Model::exact, {}, {0});
   add(Model::energy, {}, {2, 3, 4, 6, 8, 12, 16, 24, 0});
   for (const ForceVariant& variant : {hooke, paper_chain}) add(Model::chain, variant, points);
-  for (const ForceVariant& variant : {soft, hooke, dynamic, paper_law}) {
+  ForceVariant implicit;
+  implicit.stepper = Stepper::implicit;
+  for (const ForceVariant& variant : {soft, hooke, implicit, dynamic, paper_law}) {
     add(Model::force, variant, points);
   }
   for (const ForeignProgram& program : options.programs) {

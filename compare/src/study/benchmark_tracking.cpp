@@ -127,7 +127,7 @@ BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int po
   force_model::Simulation simulation(discretisation.rod, discretisation.starts.front(),
                                      step_options(settings, discretisation));
   (void)simulation.relax({.tolerance = 1e-5});
-  const long steps = frame_steps(simulation);
+  const long steps = variant.stepper == Stepper::implicit ? 1 : frame_steps(simulation);
   Frames frames;
   for (int frame = 0; frame < options.frames; ++frame) {
     const Discretisation now = discretise(moved(scene, options, frame), settings);
@@ -172,16 +172,14 @@ std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape
     add(name_of({.model = Model::energy, .size = terms}), predicted, runs,
         [&] { return track_energy(scene, terms, track, options); });
   };
-  // Of c_c = AE/1000 and AE.
-  constexpr std::array<double, 2> shares = {1e-3, 1.0};
-  std::array<std::vector<BenchmarkRun>, shares.size()> force_runs;
+  const std::array<ForceVariant, 3> variants = {ForceVariant{.stretch_share = 1e-3}, ForceVariant{},
+                                                ForceVariant{.stepper = Stepper::implicit}};
+  std::array<std::vector<BenchmarkRun>, variants.size()> force_runs;
   const auto add_force = [&](int points) {
-    for (std::size_t i = 0; i < shares.size(); ++i) {
-      ForceVariant variant;
-      variant.stretch_share = shares[i];
-      add(name_of({.model = Model::force, .size = points, .variant = variant}),
+    for (std::size_t i = 0; i < variants.size(); ++i) {
+      add(name_of({.model = Model::force, .size = points, .variant = variants[i]}),
           options.frames * frame_s, force_runs[i],
-          [&] { return track_force(scene, variant, points, track, options); });
+          [&] { return track_force(scene, variants[i], points, track, options); });
     }
   };
   // The cheapest of both models first.
@@ -189,8 +187,8 @@ std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape
   add_force(8);
   for (const int terms : {6, 12, 0}) add_energy(terms);
   for (const int points : {16, 32}) add_force(points);
-  for (const std::vector<BenchmarkRun>& of_share : force_runs) {
-    runs.insert(runs.end(), of_share.begin(), of_share.end());
+  for (const std::vector<BenchmarkRun>& of_variant : force_runs) {
+    runs.insert(runs.end(), of_variant.begin(), of_variant.end());
   }
   return runs;
 }

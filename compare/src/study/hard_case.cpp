@@ -13,6 +13,7 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/energy_model/polygon.hpp"
 #include "polygon/energy_problems.hpp"
+#include "polygon/step_constants.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -63,6 +64,9 @@ HardCase make(std::string name, std::string what, const Scene& scene,
   result.name = std::move(name);
   result.what = std::move(what);
   result.discretisation = discretise(scene, settings);
+  ForceModelSettings with_masses = settings;
+  with_masses.stepper = Stepper::verlet;
+  set_masses(scene, with_masses, result.discretisation);
   result.start = result.discretisation.starts.front();
   return result;
 }
@@ -147,6 +151,7 @@ HardCase unequal_segments() {
     result.start.col(i + 1) = result.start.col(i) + lengths[i] * Eigen::Vector3d::UnitX();
   }
   unequal.rod.loads.rightCols<1>() = lengths.tail<1>()[0] / 2 * scene.weight_per_length();
+  unequal.rod.masses = unequal.rod.loads.colwise().norm() / scene.gravity.norm();
   unequal.starts = {result.start};
   return result;
 }

@@ -114,12 +114,15 @@ StabilityResult run_against(const energy_model::PolygonResult& reference, const 
   StabilityResult result{.name = hard.name, .what = hard.what, .stepper = stepper};
   const force_model::Rod rod = hard.rod(1);
   force_model::Simulation simulation(hard.rod(0), hard.start, options_for(hard, stepper));
-  const long budget = stepper == Stepper::automatic ? options.max_steps_auto : options.max_steps;
+  const bool tells = stepper == Stepper::automatic || stepper == Stepper::implicit;
+  const long budget = tells ? options.max_steps_auto : options.max_steps;
   const bool rests = hard.steps_at_rest > 0;
+  // An implicit step costs as much as a hundred others.
+  const long at_rest_steps =
+      stepper == Stepper::implicit ? std::max(1L, hard.steps_at_rest / 100) : hard.steps_at_rest;
   Trajectory trajectory;
   if (move_gripper(hard, simulation)) {
-    trajectory =
-        rests ? stay_at_rest(simulation, hard.steps_at_rest) : come_to_rest(simulation, budget);
+    trajectory = rests ? stay_at_rest(simulation, at_rest_steps) : come_to_rest(simulation, budget);
   } else {
     trajectory.late.push_back(simulation.points());
   }

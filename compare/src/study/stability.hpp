@@ -12,11 +12,11 @@ namespace dlo::compare {
 
 /// What dlo stability runs.
 struct StabilityOptions {
-  /// Steps for the paper's four steppers: 10 s of a loop at 20000 steps/s.
+  /// Steps for the paper's steppers and `verlet`: 10 s of a loop at 20000 steps/s.
   long max_steps = 200'000;
-  /// Steps for stepper `auto`, which says itself when it is done.
+  /// Steps for the steppers `auto` and `implicit`, which say themselves when they are done.
   long max_steps_auto = 20'000'000;
-  long steps_at_rest = 10'000'000;  ///< of the case that stays at rest
+  long steps_at_rest = 10'000'000;  ///< of the case that stays at rest; `implicit`: a hundredth
   double tolerance = 1e-3;          ///< of a pass: largest distance of a point over the length [-]
   int threads = 1;                  ///< at most; 0: as many as the machine has
   /// What to run: cases whose name contains this, with these steppers.
@@ -42,7 +42,7 @@ struct StabilityResult {
 };
 
 /// Runs a case with a stepper. c_F = 0.86 L/(2 c_c), l_s = 0.6 L, c_h = 0.9 for the paper's
-/// steppers, see step_options.
+/// steppers, see step_options, as for `verlet`.
 ///
 /// The reference is the equilibrium that solve_polygon finds for the same parameters from the
 /// scene's own start. A simulation that rests elsewhere is held against the equilibrium that

@@ -297,18 +297,22 @@ TEST_F(Command, PaperPrintsTablesShapesAndTheModulus) {
   }
 }
 
-TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAuto) {
+TEST_F(Command, StabilityWritesTheContractsJsonAndFailsForNothingButAutoAndImplicit) {
   const Outcome result = run("stability --case crossed --max-steps 2000 --format json");
   ASSERT_EQ(result.status, 0) << result.err;
   const json document = json::parse(result.out);
   EXPECT_EQ(document.at("schema"), "dlo/stability/1");
-  ASSERT_EQ(document.at("cases").size(), 5U);
+  ASSERT_EQ(document.at("cases").size(), 7U);
   const json& last = document.at("cases")[4];
   EXPECT_EQ(last.at("case"), "points crossed");
   EXPECT_EQ(last.at("stepper"), "auto");
   EXPECT_EQ(last.at("outcome"), "pass");
   EXPECT_LT(last.at("error_over_length").get<double>(), 1e-5);
   EXPECT_GT(last.at("steps").get<long>(), 100);
+  EXPECT_EQ(document.at("cases")[5].at("stepper"), "verlet");
+  EXPECT_EQ(document.at("cases")[6].at("stepper"), "implicit");
+  EXPECT_EQ(document.at("cases")[6].at("outcome"), "pass");
+  EXPECT_LT(document.at("cases")[6].at("steps").get<long>(), 100);
   EXPECT_EQ(run("stability --case crossed --stepper auto --max-steps-auto 100").status, 1);
   const Outcome refused = run("stability --case \"pulled too far\" --stepper auto");
   const Outcome no_number = run("stability --case \"pulled too far\" --stepper auto --format csv");

@@ -45,7 +45,9 @@ struct Choices<Stepper> {
       {Stepper::limited, "limited", "no point further than l_s"},
       {Stepper::relative, "relative", "or than l_s against its neighbour"},
       {Stepper::dynamic, "dynamic", "relative, plus c_h of the last movement"},
-      {Stepper::automatic, "auto", "finds its own constants"}};
+      {Stepper::automatic, "auto", "finds its own constants"},
+      {Stepper::verlet, "verlet", "velocities and real masses"},
+      {Stepper::implicit, "implicit", "Newton's steps, seldom more than thirty"}};
 };
 
 /// Settings of the force model. What is not given is derived from the scene.

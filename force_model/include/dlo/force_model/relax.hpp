@@ -15,7 +15,13 @@ struct RelaxOptions {
 };
 
 /// How a search for rest ended.
-enum class RelaxStatus { diverged, step_limit, time_limit, at_rest };
+enum class RelaxStatus {
+  diverged,    ///< a step was not finite
+  step_limit,  ///< RelaxOptions::max_steps
+  time_limit,  ///< RelaxOptions::time_limit
+  at_rest,     ///< proved
+  stalled,     ///< implicit steps only: none lowers the energy, nor proves rest
+};
 
 /// In words, for messages.
 [[nodiscard]] const char* to_string(RelaxStatus status);

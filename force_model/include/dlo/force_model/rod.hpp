@@ -22,6 +22,9 @@ struct Rod {
   std::vector<Grip> grips;         ///< rigid ones hold points of their own
   Twist twist = {};                ///< of use between grips that hold frames
   std::vector<Solid> solids = {};  ///< obstacles that are not planes
+  /// Of the points [kg], each >= 0; only steps in real time (Integration) ask for them, and then
+  /// for > 0 where no rigid grip holds the point. Empty: none.
+  Eigen::VectorXd masses = {};
 
   /// Whether there are walls or solids.
   [[nodiscard]] bool touches_anything() const { return !walls.empty() || !solids.empty(); }

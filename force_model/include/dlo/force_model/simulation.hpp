@@ -74,10 +74,10 @@ class Simulation {
   [[nodiscard]] const StepOptions& options() const;
 
   // Counters since construction (paper, Tables 2 to 4).
-  /// Model evaluations.
+  /// Model evaluations; of implicit steps linear solves.
   [[nodiscard]] long steps() const;
   [[nodiscard]] long damped_steps() const;   ///< c_s was not 1
-  [[nodiscard]] long limited_steps() const;  ///< d_m was above l_s
+  [[nodiscard]] long limited_steps() const;  ///< d_m was above l_s, or StepResult::limited
 
  private:
   std::unique_ptr<Lockstep> lockstep_;

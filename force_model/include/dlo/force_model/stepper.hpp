@@ -1,27 +1,64 @@
 #pragma once
 
+#include <limits>
+
 #include "dlo/force_model/instruction_set.hpp"
 
 namespace dlo::force_model {
 
 /// The paper's variants of one simulation step, and ours.
 enum class Stepper {
-  basic,     ///< dP = c_F F (Formula 7)
-  limited,   ///< and no point moves further than l_s (Formulas 16, 17)
-  relative,  ///< and no point moves further than l_s against its neighbour (Formula 18)
-  dynamic,   ///< `relative`, with a part c_h of the last movement added (Formulas 19, 20)
-  automatic  ///< `dynamic` with c_F and c_h chosen from the stiffness of the modes, no damping c_s
+  basic,      ///< dP = c_F F (Formula 7)
+  limited,    ///< and no point moves further than l_s (Formulas 16, 17)
+  relative,   ///< and no point moves further than l_s against its neighbour (Formula 18)
+  dynamic,    ///< `relative`, with a part c_h of the last movement added (Formulas 19, 20)
+  automatic,  ///< `dynamic` with c_F and c_h chosen from the stiffness of the modes, no damping c_s
+  verlet,     ///< velocities and real masses, see Integration::verlet
+  implicit    ///< Newton's step on the tangent stiffness, see Integration::implicit_euler
 };
 
 /// What bounds the movement of one step.
 enum class StepLimit { none, absolute, relative };
 
+/// What a step solves, F the total forces on the points.
+enum class Integration {
+  /// A movement along F (Formula 7) and what the other policies make of it.
+  along_force,
+  /// The paper's alternative (last paragraph of its section II): each point has a velocity v, which
+  /// the forces change, and v moves it. It leaves open what divides the force and how the damping
+  /// goes; filled in are the points' real masses m (Rod::masses), a damping rate c = damping_rate,
+  /// the same for all, and Stoermer's and Verlet's staggered steps of dt = time_step,
+  ///     v(t + dt/2) = ((1 - c dt/2) v(t - dt/2) + dt F/m) / (1 + c dt/2),  P += dt v(t + dt/2)
+  /// from rest, v(dt/2) = dt F / (2 m): second order in dt. Stable for dt < 2/omega_max, omega_max
+  /// the angular frequency of the fastest mode. All of its movement is made: no limit, no c_s.
+  verlet,
+  /// Implicit Euler with one Newton step (M = diag m, C = c M, K the tangent stiffness):
+  ///     (M/dt^2 + C/dt + K) dP = F + M v/dt,   v = dP/dt
+  /// first order in dt. With time_step = infinity, the default, there are neither masses nor
+  /// velocities: K dP = F, Newton's step to the equilibrium. O(N) by a block-banded Cholesky
+  /// factor. Filled in, since K may be indefinite and segments are stiff:
+  ///     - a multiple of the identity is added until all pivots are positive;
+  ///     - dP turns segments, and lengthens them by its part along them, so that a large turn does
+  ///       not stretch them; between two grips the gap that this leaves is spread and lengths are
+  ///       restored;
+  ///     - which points walls press is part of what is solved (an active set);
+  ///     - dP is shortened so that no segment turns by more than 45 degrees, and until the
+  ///     potential
+  ///       energy (with dt that of M and C too) falls by a share of what the quadratic model
+  ///       promises, or while a gripper moves is not far above it;
+  ///     - held points that a gripper has moved since the last step are part of dP; a movement that
+  ///       had to be shortened is made in as many Newton steps as it takes, in the same step.
+  /// A rod that clamps twist is refused, and so are rods in lockstep.
+  implicit_euler,
+};
+
 /// A step as policies; the steppers above are the combinations that the paper tries.
 struct StepPolicy {
-  StepLimit limit = StepLimit::none;  ///< with l_s
-  bool momentum = false;              ///< adds c_h times the last movement
-  bool damping = false;               ///< divides by c_s once points oscillate
-  bool automatic = false;             ///< overwrites c_F and c_h
+  StepLimit limit = StepLimit::none;                   ///< with l_s
+  bool momentum = false;                               ///< adds c_h times the last movement
+  bool damping = false;                                ///< divides by c_s once points oscillate
+  bool automatic = false;                              ///< overwrites c_F and c_h
+  Integration integration = Integration::along_force;  ///< others leave the policies above unused
 
   /// Equal in every part.
   bool operator==(const StepPolicy&) const = default;
@@ -41,6 +78,10 @@ struct StepOptions {
   /// after each step without such a point, to no less than 1 [-]. Movements of rounding size do not
   /// count: a rod at rest would seem to oscillate.
   double c_s_change = 0.1;
+  /// dt of a step in real time [s], > 0; infinity: without masses and time, Integration's
+  /// implicit_euler only.
+  double time_step = std::numeric_limits<double>::infinity();
+  double damping_rate = 0;  ///< c of a step in real time [1/s], >= 0
   /// What the steps run on; any other than the fastest serves tests and measurements only.
   InstructionSet instruction_set = fastest_instruction_set();
 };
@@ -57,7 +98,7 @@ struct StepResult {
   StepStatus status = StepStatus::diverged;  ///< how it ended
   double c_m = 0;                            ///< scaling of this step (Formulas 17, 18, 20) [-]
   double movement = 0;                       ///< d_m: largest movement compared with l_s [m]
-  bool limited = false;                      ///< d_m was larger than l_s
+  bool limited = false;  ///< d_m was larger than l_s; of implicit steps: dP was shortened
 };
 
 }  // namespace dlo::force_model

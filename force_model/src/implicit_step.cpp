@@ -1,0 +1,293 @@
+#include "implicit_step.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dlo/force_model/step_size.hpp"
+#include "point_masses.hpp"
+#include "require.hpp"
+#include "stiffness_terms.hpp"
+
+namespace dlo::force_model {
+namespace {
+
+/// Newton steps to follow a gripper in one step; then its points are put where it is.
+constexpr int most_newton_steps = 64;
+/// Largest turn of a segment by one Newton step, as the tangent of the angle [-].
+constexpr double largest_turn = 1;
+/// Share of its rest length below which a segment's turn is counted as that of one so long: it has
+/// no direction to speak of.
+constexpr double shortest_turned = 0.25;
+/// Segments without a length are opened by this share of their rest length, so that they have a
+/// direction.
+constexpr double opened = 1e-3;
+/// Of c_c / L: more compression than this is a start's, not a rod's, and has no part in the
+/// stiffness across the segment, which it would make indefinite.
+constexpr double most_pressed = 0.01;
+/// Armijo's share of the decrease that the slope promises.
+constexpr double sufficient = 0.05;
+/// Solves for which points touch walls; a set that is not found is left as it is, for the next
+/// step.
+constexpr int most_looks = 30;
+/// Halvings of a movement before a larger shift is tried.
+constexpr int most_halvings = 6;
+/// Shifts that are tried, each shift_growth times the last, from the stiffness of the slowest mode:
+/// 8^40 = 1e36 times that is beyond any segment's.
+constexpr int most_shifts = 40;
+/// By which the shift grows when it was not enough, and falls after each step that it was.
+constexpr double shift_growth = 8;
+/// Rounding of an energy of stiff segments, as a share of its parts.
+constexpr double energy_rounding = 1e-12;
+
+/// Points that grips hold, on springs too.
+std::vector<char> anchors_of(const Rod& rod) {
+  std::vector<char> anchors(static_cast<std::size_t>(rod.points()), 0);
+  for (const Grip& grip : rod.grips) {
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) {
+      anchors[static_cast<std::size_t>(grip.first_point + k)] = 1;
+    }
+  }
+  return anchors;
+}
+
+}  // namespace
+
+ImplicitStep::ImplicitStep(const Rod& rod, const Eigen::Matrix3Xd& points,
+                           const StepOptions& options)
+    : is_free_(free_points(rod)),
+      in_plane_(rod.bending.natural_turns.size() > 0),
+      time_step_(options.time_step),
+      damping_rate_(options.damping_rate),
+      points_(points),
+      start_(points),
+      velocities_(Eigen::Matrix3Xd::Zero(3, points.cols())),
+      trial_(points),
+      forces_(3, points.cols()),
+      movement_(3, points.cols()),
+      product_(3, points.cols()),
+      stiffness_(points.cols()),
+      factor_(points.cols()),
+      retraction_(anchors_of(rod)),
+      touches_(rod.walls.size() * static_cast<std::size_t>(rod.points()), 0) {
+  const auto framed = std::count_if(rod.grips.begin(), rod.grips.end(),
+                                    [](const Grip& grip) { return grip.d1.has_value(); });
+  require(framed < 2, "Simulation", "number of grips with d1", static_cast<double>(framed),
+          "0 or 1 with implicit steps, which leave twist out");
+  open_segments(rod);
+  const double slowest = mode_bounds(rod, points).slowest;
+  unit_ = slowest;
+  energy_unit_ =
+      slowest * rod.length() * rod.length() + rod.loads.colwise().norm().sum() * rod.length();
+  if (!std::isfinite(options.time_step)) return;
+  require_masses(rod, is_free_);
+  masses_ = rod.masses / time_step_;
+  inertia_ = masses_ * (1 + damping_rate_ * time_step_) / time_step_;
+}
+
+/// Along the chord of its neighbours, as contraction forces push; what follows comes along, to the
+/// next point that is held.
+void ImplicitStep::open_segments(const Rod& rod) {
+  const Eigen::Index last = points_.cols() - 1;
+  for (Eigen::Index i = 0; i < last; ++i) {
+    const double least = opened * rod.rest_lengths[i];
+    if ((points_.col(i + 1) - points_.col(i)).norm() >= least) continue;
+    const Eigen::Vector3d chord =
+        points_.col(std::min(i + 2, last)) - points_.col(std::max<Eigen::Index>(i - 1, 0));
+    const Eigen::Vector3d way = chord.norm() > 0 ? Eigen::Vector3d(least / chord.norm() * chord)
+                                                 : Eigen::Vector3d(least, 0, 0);
+    for (Eigen::Index k = i + 1; k <= last && is_free_[static_cast<std::size_t>(k)] != 0; ++k) {
+      points_.col(k) += way;
+    }
+  }
+}
+
+/// With inertia: E + sum of m (1 + c dt) |P - P_0|^2 / (2 dt^2) - m v.(P - P_0) / dt.
+double ImplicitStep::potential(const Rod& rod, const Eigen::Matrix3Xd& points) const {
+  double result = energy(rod, points).total();
+  for (Eigen::Index i = 0; i < inertia_.size(); ++i) {
+    if (is_free_[static_cast<std::size_t>(i)] == 0) continue;
+    const Eigen::Vector3d way = points.col(i) - start_.col(i);
+    result += inertia_[i] / 2 * way.squaredNorm() - masses_[i] * velocities_.col(i).dot(way);
+  }
+  return result;
+}
+
+/// Walls are left to solve().
+void ImplicitStep::assemble(const Rod& rod) {
+  total_forces(rod, points_, forces_);
+  for (const Wall& wall : rod.walls) {
+    for (Eigen::Index i = 0; i < points_.cols(); ++i) {
+      forces_.col(i) -= wall_force(wall, points_.col(i));
+    }
+  }
+  stiffness_.set_zero();
+  add_segments(rod, points_, most_pressed, stiffness_);
+  add_joints(rod, points_, stiffness_);
+  add_springs(rod, points_, stiffness_);
+  for (Eigen::Index i = 0; i < inertia_.size(); ++i) {
+    if (is_free_[static_cast<std::size_t>(i)] == 0) continue;
+    stiffness_.add_to_diagonal(i, inertia_[i]);
+    forces_.col(i) +=
+        masses_[i] * velocities_.col(i) - inertia_[i] * (points_.col(i) - start_.col(i));
+  }
+}
+
+/// With the way of the held points in movement_, solves for that of the others.
+bool ImplicitStep::solve_linear() {
+  product_ = movement_;
+  stiffness_.multiply(product_, movement_);  // K_fh dP_h
+  movement_ = forces_ - movement_;
+  for (Eigen::Index i = 0; i < points_.cols(); ++i) {
+    if (is_free_[static_cast<std::size_t>(i)] == 0) movement_.col(i).setZero();
+  }
+  if (in_plane_) movement_.row(2).setZero();
+  factor_.solve(movement_);
+  if (in_plane_) movement_.row(2).setZero();
+  for (Eigen::Index i = 0; i < points_.cols(); ++i) {
+    if (is_free_[static_cast<std::size_t>(i)] == 0) movement_.col(i) = product_.col(i);
+  }
+  return movement_.allFinite();
+}
+
+/// A wall's energy is c_e s^2 / 2 where the depth s = d - n.dP of a point is > 0, d where it is
+/// now. Which points those are is found by an active set: solve, look, solve again.
+bool ImplicitStep::solve(const Rod& rod) {
+  walls_energy_ = 0;
+  for_each_wall_point(rod, [this](const Wall& wall, Eigen::Index i, char& touches) {
+    const double depth = (wall.point - points_.col(i)).dot(wall.normal);
+    touches = depth > 0 ? 1 : 0;
+    if (depth > 0) press(wall, i, depth, 1);
+  });
+  walls_energy_ = 0;  // that of now is part of energy_
+  for (int look = 0; look < most_looks; ++look) {
+    ++newton_steps_;
+    lead_held_points(rod);
+    if (!factor_.compute(stiffness_, is_free_, shift_) || !solve_linear()) return false;
+    bool changed = false;
+    for_each_wall_point(rod, [&](const Wall& wall, Eigen::Index i, char& touches) {
+      const double depth = (wall.point - points_.col(i)).dot(wall.normal);
+      const char will = depth - wall.normal.dot(movement_.col(i)) > 0 ? 1 : 0;
+      if (will == touches) return;
+      touches = will;
+      changed = true;
+      press(wall, i, depth, will != 0 ? 1 : -1);
+    });
+    if (!changed) break;
+  }
+  return true;
+}
+
+/// Adds a wall's part in the quadratic model of a point, or takes it away (sign = -1).
+void ImplicitStep::press(const Wall& wall, Eigen::Index i, double depth, double sign) {
+  const double stiffness = sign * wall.stiffness;
+  stiffness_.add(i, i, stiffness * wall.normal * wall.normal.transpose());
+  forces_.col(i) += stiffness * depth * wall.normal;
+  walls_energy_ += stiffness * depth * depth / 2;
+}
+
+double ImplicitStep::search(const Rod& rod, bool gripper_moves) {
+  // The quadratic model: E + walls_energy - share slope + share^2 curvature / 2.
+  stiffness_.multiply(movement_, product_);
+  const double slope = forces_.cwiseProduct(movement_).sum();
+  const double curvature = movement_.cwiseProduct(product_).sum();
+  double turn = 0;
+  for (Eigen::Index i = 0; i + 1 < points_.cols(); ++i) {
+    const Eigen::Vector3d a = points_.col(i + 1) - points_.col(i);
+    const Eigen::Vector3d d = movement_.col(i + 1) - movement_.col(i);
+    const double square = a.squaredNorm();
+    const Eigen::Vector3d across = square > 0 ? Eigen::Vector3d(d - a.dot(d) / square * a) : d;
+    const double L = shortest_turned * rod.rest_lengths[i];
+    turn = std::max(turn, across.squaredNorm() / std::max(square, L * L));
+  }
+  double share = std::min(1.0, largest_turn / std::sqrt(std::max(turn, 1e-300)));
+  if (!energy_known_) energy_ = potential(rod, points_);
+  for (int halving = 0; halving <= most_halvings; ++halving, share /= 2) {
+    retraction_.move(points_, movement_, share, trial_);
+    const double moved = potential(rod, trial_);
+    const double promised = energy_ + share * (walls_energy_ - slope + share / 2 * curvature);
+    const double rounding = energy_rounding * (std::abs(energy_) + energy_unit_);
+    // Without a gripper's movement the model's decrease is half of `decrease`; walls, where it is
+    // exact at 0 and 1 only, make it a convex function, whose chord is above it.
+    const double decrease = slope - walls_energy_ - share / 2 * curvature;
+    const double slack = gripper_moves ? std::abs(curvature) / 2 * share + 1e-3 * energy_unit_
+                                       : share * (1 - sufficient) * decrease;
+    if (moved <= promised + std::max(slack, 0.0) + rounding) {
+      energy_ = moved;
+      return share;
+    }
+  }
+  return 0;
+}
+
+void ImplicitStep::lead_held_points(const Rod& rod) {
+  movement_.setZero();
+  for_each_held_point(rod, [this](const Grip& grip, Eigen::Index k) {
+    const Eigen::Index i = grip.first_point + k;
+    movement_.col(i) = grip.targets.col(k) - points_.col(i);
+  });
+}
+
+double ImplicitStep::newton_step(const Rod& rod, bool gripper_moves) {
+  pure_ = true;
+  for (int attempt = 0; attempt < most_shifts; ++attempt) {
+    assemble(rod);
+    if (!forces_.allFinite()) break;
+    if (solve(rod)) {
+      const double share = search(rod, gripper_moves);
+      if (share > 0) {
+        pure_ = pure_ && shift_ == 0 && share == 1;
+        shift_ = shift_ > unit_ ? shift_ / shift_growth : 0;
+        return share;
+      }
+    }
+    shift_ = std::max(shift_growth * shift_, unit_);
+  }
+  shift_ = 0;
+  pure_ = false;
+  return 0;
+}
+
+StepResult ImplicitStep::step(const Rod& rod) {
+  StepResult result;
+  start_ = points_;
+  newton_steps_ = 0;
+  energy_known_ = false;
+  lead_held_points(rod);
+  const bool gripper_moves = !movement_.isZero(0);
+  double share = 0;
+  while (share < 1 && newton_steps_ < most_newton_steps) {
+    share = newton_step(rod, gripper_moves);
+    if (share == 0) break;
+    points_.swap(trial_);
+    energy_known_ = true;
+    if (!gripper_moves) break;
+  }
+  for_each_held_point(rod, [this](const Grip& grip, Eigen::Index k) {
+    points_.col(grip.first_point + k) = grip.targets.col(k);
+  });
+  movement_ = points_ - start_;
+  if (!movement_.allFinite() || !forces_.allFinite()) {
+    points_ = start_;
+    return result;
+  }
+  result.movement = std::sqrt(movement_.colwise().squaredNorm().maxCoeff());
+  movement_rms_ = movement_.norm() / std::sqrt(static_cast<double>(points_.cols()));
+  if (in_time()) velocities_ = movement_ / time_step_;
+  result.c_m = share;
+  result.limited = share < 1;
+  result.status = StepStatus::good;
+  return result;
+}
+
+double ImplicitStep::momentum() const {
+  if (!in_time()) return 0;
+  double squares = 0;
+  for (Eigen::Index i = 0; i < points_.cols(); ++i) {
+    if (is_free_[static_cast<std::size_t>(i)] != 0) squares += velocities_.col(i).squaredNorm();
+  }
+  const double speed = std::sqrt(squares / static_cast<double>(points_.cols()));
+  return speed > 0 ? speed / damping_rate_ : 0;
+}
+
+}  // namespace dlo::force_model

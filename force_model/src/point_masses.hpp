@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "dlo/force_model/rod.hpp"
+
+namespace dlo::force_model {
+
+/// 1 for points that no rigid grip holds, else 0.
+[[nodiscard]] std::vector<char> free_points(const Rod& rod);
+
+/// Calls action(grip, k) for each point, the k-th of its grip, that is held rigidly.
+template <typename Action>
+void for_each_held_point(const Rod& rod, const Action& action) {
+  for (const Grip& grip : rod.grips) {
+    if (grip.hold == GripHold::spring) continue;
+    for (Eigen::Index k = 0; k < grip.targets.cols(); ++k) action(grip, k);
+  }
+}
+
+/// @throws std::invalid_argument unless each free point has a mass > 0
+void require_masses(const Rod& rod, const std::vector<char>& is_free);
+
+}  // namespace dlo::force_model

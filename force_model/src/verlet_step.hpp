@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dlo/force_model/rod.hpp"
+#include "dlo/force_model/stepper.hpp"
+
+namespace dlo::force_model {
+
+/// The steps of Integration::verlet. Only the constructor allocates.
+class VerletStep {
+ public:
+  /// @throws std::invalid_argument if a free point has no mass
+  VerletStep(const Rod& rod, const StepOptions& options);
+
+  /// @param forces  on the free points, 0 on rigidly held ones [N]
+  /// @param[in,out] points  left alone if the step diverges [m]; both 3 x N
+  void step(const Eigen::Matrix3Xd& forces, Eigen::Matrix3Xd& points, StepResult& result);
+
+  /// RMS of the movements that the velocities still bring about, v/c [m].
+  [[nodiscard]] double momentum() const;
+
+ private:
+  double time_step_ = 0;
+  double damping_rate_ = 0;
+  bool started_ = false;
+  Eigen::VectorXd inverse_masses_;  // 0 of rigidly held points [1/kg]
+  Eigen::Matrix3Xd velocities_;     // half a step before the points' time [m/s]
+  Eigen::Matrix3Xd next_;
+};
+
+}  // namespace dlo::force_model
