@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/quote.hpp"
+#include "figure/comparison_figure.hpp"
 #include "polygon/step_constants.hpp"
 #include "report/again.hpp"
 #include "report/html.hpp"
