@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
@@ -18,7 +19,7 @@ constexpr const char* file_colour = "#B34700";
 /// From each point of the rod to the file's.
 Series whiskers(const Shape& file, const Shape& rod) {
   Series series{.id = "whisker",
-                .title = "their distances from the rod",
+                .title = "distances of the file's points",
                 .style = "with lines linecolor rgb '#0059A8' linewidth 1 dashtype 1"};
   const Eigen::Index count = file.points.cols();
   series.points.resize(3, 3 * count);
@@ -55,15 +56,20 @@ Figure distance_figure(const Scene& scene, const ShapeCheck& check,
   }
   fmt::format_to(std::back_inserter(figure.csv), "worst,{},{}\n",
                  csv_number(check.deviation.max_at_m), csv_number(check.deviation.max_m));
+  // A tolerance far above all distances would flatten them: it is then in words only.
+  constexpr double far = 5;
+  const double largest = check.deviation.max_m;
+  const bool level = allowed_m && *allowed_m < far * largest;
+  const double top = 1.1 * std::max({largest, level ? *allowed_m : 0, 1e-9 * scene.length});
   Panel panel{.height = 280,
               .x_label = "arc length s [m]",
               .y_label = "distance from the rod [mm]",
               .key_rows = 3};
   panel.script = fmt::format(
-      "set xrange [0:{:.6g}]\nset yrange [0:*]\nplot {} title "
+      "set xrange [0:{:.6g}]\nset yrange [0:{:.6g}]\nplot {} title "
       "'points of the file' with impulses linecolor rgb '#0059A8' linewidth "
       "1.5",
-      scene.length, series_data(figure.csv_file, "distance", "$2", "($3*1e3)"));
+      scene.length, top * 1e3, series_data(figure.csv_file, "distance", "$2", "($3*1e3)"));
   fmt::format_to(std::back_inserter(panel.script),
                  ", \\\n  {} notitle with points linecolor rgb '{}' pointtype 7 pointsize 0.5"
                  ", \\\n  {} title 'the worst' with points linecolor rgb '#A00000' linewidth 2 "

@@ -110,7 +110,7 @@ std::vector<Series> gripper_series(const Scene& scene) {
     grips.arc_length.push_back(gripper.at);
     if (!gripper.direction) continue;
     Series clamp{.id = fmt::format("clamp_{}", i + 1),
-                 .style = "with lines linecolor rgb 'black' linewidth 5 dashtype 1"};
+                 .style = "with lines linecolor rgb '#909090' linewidth 6 dashtype 1"};
     const Eigen::Vector3d along = stub * scene.length * *gripper.direction;
     clamp.points.resize(3, 2);
     clamp.points << gripper.position - along, gripper.position + along;

@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "base/quote.hpp"
+#include "figure/budget_figure.hpp"
 #include "figure/comparison_figure.hpp"
 #include "figure/front_figure.hpp"
 #include "figure/map_figure.hpp"
@@ -64,7 +65,8 @@ std::vector<Figure> scene_figures(const SceneReport& scene, std::size_t number) 
   if (command.empty()) command = "dlo compare scenes/" + scene.file.name;
   ComparisonFigures all = comparison_figures(scene.file.scene, scene.comparisons, number);
   std::vector<Figure> figures = {std::move(all.shapes), std::move(all.curvature),
-                                 std::move(all.deviation)};
+                                 std::move(all.deviation),
+                                 budget_figure(scene.comparisons, number)};
   for (Figure& figure : figures) {
     figure.command = command + " --format json";
     figure.given = "distances and points";
