@@ -42,13 +42,15 @@ std::vector<std::pair<const char*, const BudgetPart*>> shown_parts(const Compari
 Figure budget_figure(const std::vector<Comparison>& comparisons, std::size_t number) {
   Figure figure{.name = fmt::format("budget_{}", number),
                 .section = "budget",
-                .title = comparisons.front().scene + ": error budget",
+                .title = fmt::format("{}: error budget of {:.4g} mm", comparisons.front().scene,
+                                     comparisons.front().budget.total_m * 1e3),
                 .description =
                     "Bars for each part's share of the total deviation, with sign; beside its name "
                     "its own RMS. Shares add up to 100 %, millimetres do not.",
                 .csv_file = fmt::format("budget_{}.csv", number),
                 .csv = "series,row,from_percent,to_percent,rms_m,label\n"};
-  Panel panel{.x_label = "share of the total, with sign [%]", .y_label = ""};
+  Panel panel{.x_label = "share of the total, with sign [%]",
+              .y_label = "part: its own RMS; its share"};
   double least = 0;
   double most = 0;
   int row = 0;
@@ -70,16 +72,15 @@ Figure budget_figure(const std::vector<Comparison>& comparisons, std::size_t num
         std::back_inserter(plots),
         ", \\\n  {} title {} with boxxyerror linecolor rgb '{}' fillstyle {}",
         series_data(figure.csv_file, id, "($3+$4)/2", "(-$2+0.28):3:4:(-$2+0.14):(-$2+0.42)"),
-        gnuplot_string(
-            fmt::format("{}: {:.4g} mm", setting_name(c.settings), c.budget.total_m * 1e3)),
-        curve_colour(i == 0 ? 1 : 0), i == 0 ? "solid 0.9" : "pattern 2");
+        gnuplot_string(setting_name(c.settings)), curve_colour(i == 0 ? 1 : 0),
+        i == 0 ? "solid 0.9" : "pattern 2");
     ++panel.key_rows;
   }
   panel.height = row_pixels * row + row_pixels / 4;
   const double margin = 0.06 * std::max(most - least, 1.0);
   panel.script = fmt::format(
       "set xrange [{:.6g}:{:.6g}]\nset yrange [{:.6g}:0]\nunset ytics\nset grid noytics\n"
-      "set arrow 1 from 0,graph 0 to 0,graph 1 nohead linecolor rgb 'black'\n"
+      "set arrow 1 from 0,graph 0 to 0,graph 1 nohead back linecolor rgb '#B0B0B0'\n"
       "plot '{}' skip 1 using ({:.6g}):(-$2+0.68):6 notitle with labels left",
       least - margin, most + margin, -row - 0.25, figure.csv_file, least - margin / 2);
   panel.script += plots + "\n";

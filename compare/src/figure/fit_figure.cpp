@@ -49,8 +49,11 @@ Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {
               .x_label = fmt::format("{} [{}]", stiffness.name, stiffness.unit),
               .y_label = "excess of squares over that at the 95 % limit",
               .key_rows = 3};
-  panel.script =
-      "set yrange [0:4]\nset xtics autofreq\nset format x '%.4g'\nset xtics rotate by -30\n";
+  const double from = fit.profile.front().stiffness;
+  const double to = fit.profile.back().stiffness;
+  panel.script = fmt::format(
+      "set xrange [{:.10g}:{:.10g}]\nset yrange [0:4]\nset xtics {:g}\nset format x '%.3g'\n", from,
+      to, 2 * tic_step(to - from));
   const FittedValue& value = fit.youngs_modulus;
   // Behind the curve: the interval, open sides to the plot's edge.
   const auto edge = [](const std::optional<double>& end, const char* open) {

@@ -58,14 +58,13 @@ std::string plot_lines(const std::vector<Series>& all, const std::string& csv_fi
   return out + "\n";
 }
 
-/// 1, 2 or 5 times a power of ten, such that five to nine fit into a range.
+}  // namespace
+
 double tic_step(double range) {
   const double power = std::pow(10, std::floor(std::log10(range)));
   const double leading = range / power;
   return power * (leading >= 5 ? 1 : leading >= 2 ? 0.5 : 0.2);
 }
-
-}  // namespace
 
 std::string series_data(const std::string& csv_file, const std::string& id, const std::string& x,
                         const std::string& y) {

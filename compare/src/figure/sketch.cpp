@@ -101,8 +101,11 @@ std::string sketch(const std::vector<SketchLine>& lines, int columns, int rows, 
   const Eigen::Vector2d extent = high - low;
   const Cell cell = cell_of(marks);
   // Dots are as far apart across as down in both kinds of character.
-  const double scale =
-      std::min((columns * cell.across - 1) / extent.x(), (rows * cell.down - 1) / extent.y());
+  const auto fitting = [](double room, double length) {
+    return length > 0 ? room / length : HUGE_VAL;
+  };
+  const double scale = std::min(fitting(columns * cell.across - 1, extent.x()),
+                                fitting(rows * cell.down - 1, extent.y()));
   const auto characters = [&](double dots, int each) {
     return std::isfinite(dots) ? static_cast<int>(std::lround(dots)) / each + 1 : 1;
   };

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <iterator>
 
 #include "base/number.hpp"
@@ -55,17 +57,40 @@ Panel lines_panel(const std::vector<SweptField>& fields, const std::string& file
   return panel;
 }
 
-Panel map_panel(const std::vector<SweptField>& fields, const std::string& file, int z) {
+/// Least and largest number of a column; fields before it have no commas in a map.
+std::array<double, 2> range_of(const std::vector<std::string>& rows, int column) {
+  std::array<double, 2> range = {HUGE_VAL, -HUGE_VAL};
+  for (const std::string& row : rows) {
+    std::size_t at = 0;
+    for (int i = 1; i < column && at != std::string::npos; ++i) at = row.find(',', at) + 1;
+    const auto value = as_number<double>(row.substr(at, row.find(',', at) - at));
+    if (!value) continue;
+    range[0] = std::min(range[0], *value);
+    range[1] = std::max(range[1], *value);
+  }
+  return range;
+}
+
+Panel map_panel(const std::vector<SweptField>& fields, const std::string& file, int z,
+                const std::vector<std::string>& rows) {
   Panel panel;
   for (std::size_t i = 0; i < 2; ++i) {
     if (!fields[i].logarithmic) continue;
     fmt::format_to(std::back_inserter(panel.script), "set logscale {0}\nset format {0} '%g'\n",
                    i == 0 ? 'x' : 'y');
   }
+  const std::array<double, 2> range = range_of(rows, z);
+  if (range[0] < range[1]) {
+    fmt::format_to(std::back_inserter(panel.script),
+                   "set cbrange [{0:.10g}:{1:.10g}]\n"
+                   "set cbtics ('{0:.3g}' {0:.10g}, '{2:.3g}' {2:.10g}, '{1:.3g}' {1:.10g})\n",
+                   range[0], range[1], (range[0] + range[1]) / 2);
+  }
   // Light to dark: told without colours too.
   fmt::format_to(std::back_inserter(panel.script),
                  "set palette defined (0 '#F2F0E6', 0.5 '#5B9BC8', 1 '#0B2D5B')\n"
-                 "set colorbox user horizontal origin graph 0,-0.42 size graph 1,0.05\n"
+                 "set colorbox user horizontal origin graph 0,-0.28 size graph 1,0.04\n"
+                 "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
                  "plot '{}' skip 1 using 2:3:{} notitle with points pointtype 5 pointsize 2 "
                  "linecolor palette\n",
                  file, z);
@@ -94,8 +119,8 @@ Picture sweep_picture(const std::vector<SweptField>& fields, const std::string& 
   PictureRow columns;
   for (const std::string& result : results) {
     const int column = column_of(header, result);
-    Panel panel =
-        lines ? lines_panel(fields, "sweep.csv", column) : map_panel(fields, "sweep.csv", column);
+    Panel panel = lines ? lines_panel(fields, "sweep.csv", column)
+                        : map_panel(fields, "sweep.csv", column, rows);
     panel.x_label = fields.front().column;
     panel.y_label = lines ? result : fields[1].column;
     columns.push_back({{.name = result,

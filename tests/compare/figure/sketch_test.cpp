@@ -50,7 +50,10 @@ TEST(Sketch, HasOneScaleForBothDirections) {
 TEST(Sketch, FitsIntoItsBoxAndKeepsUpUp) {
   SketchLine arc;
   arc.points.resize(2, 50);
-  for (int i = 0; i < 50; ++i) arc.points.col(i) << std::cos(i * 0.06), std::sin(i * 0.06);
+  for (int i = 0; i < 50; ++i) {
+    const double angle = i * std::acos(-1.0) / 49;
+    arc.points.col(i) << std::cos(angle), std::sin(angle);
+  }
   const auto lines = lines_of(sketch({arc}, 31, 9, SketchMarks::ascii));
   ASSERT_LE(lines.size(), 9U);
   for (const std::string& text : lines) EXPECT_LE(text.size(), 31U);
