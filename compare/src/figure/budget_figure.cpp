@@ -73,7 +73,7 @@ Figure budget_figure(const std::vector<Comparison>& comparisons, std::size_t num
         ", \\\n  {} title {} with boxxyerror linecolor rgb '{}' fillstyle {}",
         series_data(figure.csv_file, id, "($3+$4)/2", "(-$2+0.28):3:4:(-$2+0.14):(-$2+0.42)"),
         gnuplot_string(setting_name(c.settings)), curve_colour(i == 0 ? 1 : 0),
-        i == 0 ? "solid 0.9" : "pattern 2");
+        i == 0 ? "solid 0.9" : "solid 0.35");
     ++panel.key_rows;
   }
   panel.height = row_pixels * row + row_pixels / 4;
