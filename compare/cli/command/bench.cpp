@@ -3,11 +3,13 @@
 #include "command/commands.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
+#include "figure/front_figure.hpp"
 #include "format/benchmark.hpp"
 #include "format/json.hpp"
 #include "option/exit_status.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
+#include "option/plot.hpp"
 #include "option/program_options.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
@@ -21,9 +23,11 @@ struct BenchOptions {
   std::vector<std::string> programs;
   compare::BenchmarkOptions benchmark;
   OutputOptions output;
+  PlotOptions plot;
 };
 
 void run(const BenchOptions& options) {
+  options.plot.require_drawable(options.output);
   compare::BenchmarkOptions benchmark = options.benchmark;
   benchmark.programs = compare::parse_foreign_programs(options.programs);
   std::vector<compare::Scene> scenes;
@@ -41,6 +45,15 @@ void run(const BenchOptions& options) {
   write_output(options.output, {.text = [&] { return benchmark_text(report); },
                                 .json = [&] { return json_text(benchmark_json(report)); },
                                 .csv = [&] { return benchmark_csv(report); }});
+  options.plot.draw([&] {
+    compare::PictureRow fronts;
+    for (const compare::SceneBenchmark& scene : report.scenes) {
+      if (compare::has_run(scene.runs)) {
+        fronts.push_back({compare::front_figure(scene, fronts.size() + 1)});
+      }
+    }
+    return compare::Picture{{fronts}};
+  });
   if (!report.failures.empty()) end_with(ExitStatus::not_converged);
 }
 
@@ -67,9 +80,10 @@ void add_bench(CLI::App& app) {
       ->check(number_between(1e-3, 1e9))
       ->capture_default_str();
   add_output_options(*command, options->output);
+  options->plot.add_to(*command, "error against time, with the front,", Sketches::none);
   command->footer(
       "Examples:\n"
-      "  dlo bench data/scenes/spring_steel_175.toml --seconds 2\n"
+      "  dlo bench data/scenes/spring_steel_175.toml --seconds 2 --plot front.svg\n"
       "  dlo bench data/scenes/cable.toml --seconds 2 --with mine='dlo solve "
       "data/scenes/cable.toml --model chain --points {points} --format csv -o {shape}'");
   command->callback([options] { run(*options); });

@@ -7,11 +7,13 @@
 #include "command/commands.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
+#include "figure/fit_figure.hpp"
 #include "format/force_model_fit.hpp"
 #include "format/json.hpp"
 #include "format/material_fit.hpp"
 #include "option/exit_status.hpp"
 #include "option/output.hpp"
+#include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
@@ -36,6 +38,7 @@ struct CalibrateOptions {
   ShapeOptions shape_options;
   SceneOptions overrides;
   OutputOptions output;
+  PlotOptions plot;
 };
 
 /// A quantity > 0 that an option has, if it is given.
@@ -87,6 +90,8 @@ void write_report(const Report& report, OutputOptions output, bool format_is_giv
 }
 
 void run_material(const CalibrateOptions& options, bool format_is_given) {
+  constexpr int profile_points = 41;
+  options.plot.require_drawable(options.output);
   MaterialReport report;
   report.scenes = load_all(options.scenes, options.overrides);
   std::vector<compare::MeasuredShape> shapes;
@@ -111,6 +116,7 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
       .position_tolerance =
           quantity_of("--clamp-positions", options.clamp_positions, Dimension::length).value_or(0),
       .chain_segments = options.segments,
+      .profile_points = options.plot.draws() ? profile_points : 0,
       .noise = quantity_of("--noise", options.noise, Dimension::length),
       .solve = options.overrides.solve()};
   report.fit = [&] {
@@ -122,6 +128,7 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
                 .toml = [&] { return material_toml(report); },
                 .json = [&] { return material_json(report); }},
                options.output, format_is_given);
+  options.plot.draw([&] { return compare::fit_picture(report.scenes, report.fit); });
 }
 
 void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
@@ -215,6 +222,10 @@ void add_calibrate(CLI::App& app) {
       ->check(CLI::Range(4, 200))
       ->needs(shape)
       ->group(measured);
+  options->plot
+      .add_to(*command, "points on the fitted rod, and E's profile likelihood,", Sketches::none)
+      ->needs(shape)
+      ->group(measured);
   options->shape_options.add_to(*command, ChordLengths::not_exact_enough);
   options->overrides.add_to(*command);
   std::vector<std::string> formats = compare::names<Format>();
@@ -232,7 +243,8 @@ void add_calibrate(CLI::App& app) {
       "Examples:\n  dlo calibrate data/scenes/spring_steel_135.toml --law hooke --bookkeeping "
       "consistent --target 0.1% --holdout data/scenes/spring_steel_215.toml -o params.toml\n  dlo "
       "solve data/scenes/spring_steel_135.toml --model exact --samples 12 --format csv -o "
-      "seen.csv\n  dlo calibrate data/scenes/spring_steel_135.toml --shape seen.csv");
+      "seen.csv\n  dlo calibrate data/scenes/spring_steel_135.toml --shape seen.csv --plot "
+      "fit.svg");
   command->callback([options, command] {
     const bool format_is_given = command->count("--format") > 0;
     if (options->shapes.empty()) {

@@ -9,10 +9,12 @@
 #include "dlo/compare/explanation.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_verdict.hpp"
+#include "figure/check_figure.hpp"
 #include "format/json.hpp"
 #include "format/shape_check.hpp"
 #include "option/exit_status.hpp"
 #include "option/output.hpp"
+#include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
@@ -32,6 +34,7 @@ struct CheckOptions {
   ShapeOptions shapes;
   SceneOptions overrides;
   OutputOptions output;
+  PlotOptions plot;
 };
 
 /// "1%" or 0.01 of the rod's length, or a length with a unit.
@@ -59,7 +62,24 @@ double tolerance_m(const std::string& text, double length) {
       text));
 }
 
+void plot(const CheckOptions& options, const ShapeCheckReport& report) {
+  const compare::Scene& scene = report.scene;
+  options.plot.draw([&] {
+    const auto allowed =
+        report.verdict ? std::optional(report.verdict->tolerance.allowed_m) : std::nullopt;
+    return compare::check_picture(scene, report.check, allowed);
+  });
+  options.plot.sketch(scene, [&] {
+    constexpr int samples = 201;
+    const std::vector<double> s = compare::equal_arc_lengths(scene.length, samples);
+    return std::vector<compare::SpatialLine>{
+        {.points = report.check.rod.sample(s).points},
+        {.points = report.check.alignment.shape.points, .joined = false}};
+  });
+}
+
 void run(const CheckOptions& options) {
+  options.plot.require_drawable(options.output);
   ShapeCheckReport report;
   report.scene = options.overrides.load(options.scene);
   const compare::MeasuredShape shape = options.shapes.load(options.shape);
@@ -96,6 +116,7 @@ void run(const CheckOptions& options) {
   write_output(options.output, {.text = [&] { return shape_check_text(report); },
                                 .json = [&] { return json_text(shape_check_json(report)); },
                                 .csv = [&] { return shape_check_csv(report); }});
+  plot(options, report);
   if (verdict && !verdict->judgement.pass) end_with(ExitStatus::outside_tolerance);
 }
 
@@ -129,10 +150,12 @@ void add_check(CLI::App& app) {
   options->shapes.add_to(*command, ChordLengths::offered);
   options->overrides.add_solvers_to(*command);
   add_output_options(*command, options->output);
+  options->plot.add_to(*command, "the points on the rod, and their distances along it",
+                       Sketches::offered);
   command->footer(
       "Example, with dlo in place of your simulator:\n"
       "  dlo solve data/scenes/cable.toml --model force --points 32 --format csv -o mine.csv\n"
-      "  dlo check data/scenes/cable.toml --shape mine.csv --tolerance 1%");
+      "  dlo check data/scenes/cable.toml --shape mine.csv --tolerance 1% --plot check.svg");
   command->callback([options] { run(*options); });
 }
 

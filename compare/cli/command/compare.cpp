@@ -5,10 +5,13 @@
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
+#include "figure/budget_figure.hpp"
+#include "figure/comparison_figure.hpp"
 #include "format/comparison.hpp"
 #include "format/json.hpp"
 #include "format/plan.hpp"
 #include "option/output.hpp"
+#include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
 
@@ -21,9 +24,25 @@ struct CompareOptions {
   SceneOptions overrides;
   PlanOptions plan;
   OutputOptions output;
+  PlotOptions plot;
 };
 
+/// Of each scene a row: shapes and budget, beside curvature and deviation along the rod.
+compare::Picture comparison_picture(const std::vector<compare::Scene>& scenes,
+                                    const std::vector<compare::Comparison>& comparisons) {
+  compare::Picture picture;
+  for (std::size_t i = 0; i < scenes.size(); ++i) {
+    const std::vector<compare::Comparison> one = {comparisons[i]};
+    compare::ComparisonFigures figures = compare::comparison_figures(scenes[i], one, i + 1);
+    picture.rows.push_back({{figures.shapes, compare::budget_figure(one, i + 1)},
+                            {figures.curvature, figures.deviation}});
+  }
+  return picture;
+}
+
 void run(const CompareOptions& options) {
+  options.plot.require_drawable(options.output);
+  std::vector<compare::Scene> scenes;
   std::vector<compare::Comparison> comparisons;
   std::string plans;
   std::string unresolved;
@@ -35,7 +54,7 @@ void run(const CompareOptions& options) {
   {
     ProgressBar bar("compare");
     for (const std::string& path : options.scenes) {
-      const compare::Scene scene = options.overrides.load(path);
+      const compare::Scene& scene = scenes.emplace_back(options.overrides.load(path));
       if (options.output.is(Format::csv)) warn_of_polygons(scene);
       comparisons.push_back(compare::compare(
           scene, solve, plan,
@@ -60,6 +79,7 @@ void run(const CompareOptions& options) {
                                     },
                                 .json = [&] { return json_text(comparisons_json(comparisons)); },
                                 .csv = [&] { return comparisons_csv(comparisons); }});
+  options.plot.draw([&] { return comparison_picture(scenes, comparisons); });
   if (!unresolved.empty()) throw compare::ConvergenceError(unresolved);
 }
 
@@ -74,9 +94,11 @@ void add_compare(CLI::App& app) {
   options->overrides.add_to(*command);
   options->plan.add_to(*command);
   add_output_options(*command, options->output);
+  options->plot.add_to(*command, "both shapes, curvature, deviation along the rod and its budget",
+                       Sketches::none);
   command->footer(
-      "Example:\n  dlo compare data/scenes/spring_steel_175.toml --law hooke --bookkeeping "
-      "consistent");
+      "Examples:\n  dlo compare data/scenes/spring_steel_175.toml --law hooke --bookkeeping "
+      "consistent\n  dlo compare data/scenes/spring_steel_175.toml --plot both.svg");
   command->callback([options] { run(*options); });
 }
 

@@ -7,10 +7,12 @@
 
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "figure/solution_figure.hpp"
 #include "format/json.hpp"
 #include "format/plan.hpp"
 #include "format/solution.hpp"
 #include "option/output.hpp"
+#include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "shape/write_vtk.hpp"
 
@@ -25,6 +27,7 @@ struct SolveOptions {
   SceneOptions overrides;
   PlanOptions plan;
   OutputOptions output;
+  PlotOptions plot;
 };
 
 /// What a format cannot say is not left out in silence.
@@ -64,8 +67,39 @@ void require_resolved(const compare::Solution& solution, const compare::Scene& s
       "{}: the {} model: {}", scene.file, compare::to_string(solution.model), solution.message));
 }
 
+/// What is drawn: what was solved, of a rod at enough points for a smooth line.
+std::vector<compare::Solution> drawn_solutions(const SolveOptions& options,
+                                               const compare::SolveOptions& solve,
+                                               const compare::Scene& scene,
+                                               const std::vector<compare::Solution>& solved) {
+  constexpr std::size_t enough = 101;
+  const compare::Solution& first = solved.front();
+  const bool continuous =
+      first.model == compare::Model::energy || first.model == compare::Model::exact;
+  if (!continuous || first.shape.arc_length.size() >= enough) return solved;
+  constexpr int samples = 201;
+  const std::vector<double> s = compare::equal_arc_lengths(scene.length, samples);
+  if (options.all) return compare::solve_all(scene, solve, s).solutions;
+  return {compare::solve(scene, first.model, solve, s)};
+}
+
+void plot(const SolveOptions& options, const compare::SolveOptions& solve,
+          const compare::Scene& scene, const std::vector<compare::Solution>& solved) {
+  options.plot.draw([&] {
+    return compare::solution_picture(scene, drawn_solutions(options, solve, scene, solved));
+  });
+  options.plot.sketch(scene, [&] {
+    std::vector<compare::SpatialLine> lines;
+    for (const compare::Solution& solution : drawn_solutions(options, solve, scene, solved)) {
+      lines.push_back({.points = solution.shape.points});
+    }
+    return lines;
+  });
+}
+
 void run(const SolveOptions& options) {
   require_format_for(options);
+  options.plot.require_drawable(options.output);
   const compare::Scene scene = options.overrides.load(options.scene);
   const auto model = compare::from_name<compare::Model>(options.model);
   constexpr int text_samples = 11;
@@ -94,6 +128,7 @@ void run(const SolveOptions& options) {
                                                         .tension = solution.tension,
                                                         .d1 = solution.d1},
                                                        scene.name));
+    plot(options, solve, scene, all.solutions);
     return require_resolved(solution, scene);
   }
   const auto plan = [&] {
@@ -114,6 +149,7 @@ void run(const SolveOptions& options) {
                                                    : solution_json(solution, scene, plan()));
                     },
                 .csv = [&] { return solution_csv(solution); }});
+  plot(options, solve, scene, all.solutions);
   require_resolved(solution, scene);
 }
 
@@ -134,10 +170,13 @@ void add_solve(CLI::App& app) {
   std::vector<std::string> formats = compare::names<Format>();
   formats.emplace_back("vtk");
   add_output_options(*command, options->output, formats);
+  options->plot.add_to(*command, "shape and curvature (with --all: of every equilibrium)",
+                       Sketches::offered);
   command->footer(
       "Examples:\n"
       "  dlo solve data/scenes/spring_steel_175.toml --model exact --samples 5\n"
-      "  dlo solve data/scenes/cable.toml --format vtk -o cable.vtk   # for ParaView");
+      "  dlo solve data/scenes/cable.toml --format vtk -o cable.vtk   # for ParaView\n"
+      "  dlo solve data/scenes/cable.toml --plot cable.svg");
   command->callback([options] { run(*options); });
 }
 

@@ -9,10 +9,12 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "figure/map_figure.hpp"
 #include "format/json.hpp"
 #include "format/stability.hpp"
 #include "option/exit_status.hpp"
 #include "option/output.hpp"
+#include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
 #include "study/hard_case.hpp"
@@ -32,6 +34,7 @@ struct StabilityOptions {
   compare::StabilityMapOptions grid;
   int threads = 0;
   OutputOptions output;
+  PlotOptions plot;
 };
 
 /// The paper's steppers may fail, `auto` and `implicit` may not.
@@ -42,6 +45,7 @@ bool fails(const StabilityResult& result) {
 }
 
 void run_map(StabilityOptions& options) {
+  options.plot.require_drawable(options.output);
   options.grid.axis = options.map == "cF-cc" ? compare::MapAxis::c_c : compare::MapAxis::c_h;
   options.grid.threads = options.threads;
   const compare::Scene scene =
@@ -56,6 +60,7 @@ void run_map(StabilityOptions& options) {
   write_output(options.output, {.text = [&] { return stability_map_text(map); },
                                 .json = [&] { return json_text(stability_map_json(map)); },
                                 .csv = [&] { return stability_map_csv(map); }});
+  options.plot.draw([&] { return compare::Picture{{{{compare::map_figure(map)}}}}; });
 }
 
 void run_cases(StabilityOptions& options) {
@@ -88,10 +93,11 @@ void add_stability(CLI::App& app) {
   const auto options = std::make_shared<StabilityOptions>();
   command->add_option("SCENE", options->scene,
                       "scene file (TOML) of a map; without it the hard cases' rod");
-  command
-      ->add_option("--map", options->map,
-                   "cF-cc or cF-ch: where steps stop being stable, predicted and measured")
-      ->check(CLI::IsMember({"cF-cc", "cF-ch"}));
+  CLI::Option* map_option =
+      command
+          ->add_option("--map", options->map,
+                       "cF-cc or cF-ch: where steps stop being stable, predicted and measured")
+          ->check(CLI::IsMember({"cF-cc", "cF-ch"}));
   command->add_option("--threads", options->threads, "at most; 0: as many as the machine has")
       ->check(CLI::Range(0, 1024))
       ->capture_default_str();
@@ -132,9 +138,11 @@ void add_stability(CLI::App& app) {
       ->capture_default_str()
       ->group(map);
   add_output_options(*command, options->output);
+  options->plot.add_to(*command, "the map", Sketches::none)->needs(map_option)->group(map);
   command->footer(
       "Exit status 1: stepper auto or implicit does not pass a case.\n"
-      "Examples:\n  dlo stability --case folded\n  dlo stability --map cF-cc --columns 8");
+      "Examples:\n  dlo stability --case folded\n  dlo stability --map cF-cc --columns 8 --plot "
+      "map.svg");
   command->callback([options] {
     if (!options->map.empty()) return run_map(*options);
     if (!options->scene.empty()) {

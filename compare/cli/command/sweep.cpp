@@ -3,12 +3,15 @@
 #include <cstdlib>
 #include <memory>
 
+#include "base/input_file.hpp"
 #include "base/output_file.hpp"
 #include "batch/sweep_file.hpp"
 #include "batch/sweep_merge.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
+#include "figure/sweep_figure.hpp"
 #include "option/output.hpp"
+#include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
 #include "polygon/natural_plane.hpp"
@@ -28,7 +31,43 @@ struct SweepOptions {
   bool restart = false;
   bool merge = false;
   SceneOptions scene;
+  PlotOptions plot;
 };
+
+/// What a sweep's picture shows of its results.
+std::vector<std::string> drawn_results(const std::string& model) {
+  if (model.starts_with("compare")) return {"rms_over_length", "effective_modulus_ratio"};
+  return {"tip_x_m", "tip_y_m", "energy_J"};
+}
+
+void plot(const SweepOptions& options, const compare::Sweep& sweep,
+          const std::vector<std::string>& rows) {
+  options.plot.draw([&] {
+    std::vector<compare::SweptField> fields;
+    for (const compare::Axis& axis : sweep.grid().axes()) {
+      compare::SweptField field{.column = axis.column(),
+                                .values = {},
+                                .logarithmic = axis.spacing == compare::Spacing::logarithmic};
+      for (std::int64_t i = 0; i < axis.count; ++i) field.values.push_back(axis.number(i));
+      fields.push_back(std::move(field));
+    }
+    return compare::sweep_picture(fields, sweep.header(), rows, drawn_results(options.model));
+  });
+}
+
+/// Rows of a finished sweep's file, behind its header.
+std::vector<std::string> rows_of_file(const std::string& path, const std::string& header) {
+  const std::string text = compare::read_file(path);
+  std::vector<std::string> rows;
+  const std::size_t begin = text.find(header);
+  if (begin == std::string::npos) return rows;
+  for (std::size_t at = begin + header.size(); at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size() - 1);
+    rows.push_back(text.substr(at, end + 1 - at));
+    at = end + 1;
+  }
+  return rows;
+}
 
 std::optional<compare::Shard> chosen_shard(const std::string& text) {
   if (text == "none") return std::nullopt;
@@ -82,19 +121,22 @@ void warn_of_unresolved(const compare::SweepOutcome& outcome, const std::string&
       outcome.rows);
 }
 
-void print_sweep(const compare::Sweep& sweep, const std::optional<compare::Shard>& shard,
-                 int threads) {
+void print_sweep(const SweepOptions& options, const compare::Sweep& sweep,
+                 const std::optional<compare::Shard>& shard) {
   if (shard) write_standard_output(compare::sweep_identity(sweep, shard));
   write_standard_output(sweep.header());
   const std::int64_t rows = sweep.grid().size();
   compare::SweepOutcome outcome;
+  std::vector<std::string> drawn;
   const auto print_row = [&](const std::string& line) {
     write_standard_output(line);
+    if (options.plot.draws()) drawn.push_back(line);
     ++outcome.rows;
     if (!line.ends_with(",ok\n")) ++outcome.unresolved;
   };
-  sweep.run(shard ? compare::rows_of(*shard, rows) : compare::RowRange{0, rows}, threads,
+  sweep.run(shard ? compare::rows_of(*shard, rows) : compare::RowRange{0, rows}, options.threads,
             print_row);
+  plot(options, sweep, drawn);
   warn_of_unresolved(outcome, "sweep");
 }
 
@@ -115,9 +157,26 @@ void sort_words(SweepOptions& options) {
   options.files.erase(fields, options.files.end());
 }
 
+/// What a picture cannot be made of, before anything is computed.
+void require_drawable(const SweepOptions& options) {
+  options.plot.require_drawable({.format = "csv"});
+  if (!options.plot.draws()) return;
+  if (options.merge) {
+    throw compare::InputError("--plot: not with --merge (allowed: with the sweep itself)");
+  }
+  if (options.vary.size() > 2) {
+    throw compare::InputError(
+        fmt::format("--plot: {} fields are varied (allowed: one or two)", options.vary.size()));
+  }
+}
+
 void run(SweepOptions options, const std::vector<std::string>& inputs) {
-  if (options.merge) return run_merge(options);
+  if (options.merge) {
+    require_drawable(options);
+    return run_merge(options);
+  }
   if (!options.vary.empty()) sort_words(options);
+  require_drawable(options);
   if (options.files.size() != 1) {
     throw compare::InputError(
         fmt::format("sweep: {} scene files given (allowed: 1)", options.files.size()));
@@ -129,7 +188,11 @@ void run(SweepOptions options, const std::vector<std::string>& inputs) {
   const compare::Sweep sweep = sweep_of(options);
   warn_of_polygons_in(sweep, options.model);
   const std::optional<compare::Shard> shard = chosen_shard(options.shard);
-  if (options.output.empty()) return print_sweep(sweep, shard, options.threads);
+  if (shard && options.plot.draws()) {
+    throw compare::InputError(fmt::format(
+        "--plot: shard {} has a part of the rows (allowed: the whole sweep)", shard->name()));
+  }
+  if (options.output.empty()) return print_sweep(options, sweep, shard);
   const std::string path = output_path(options.output, shard);
   check_output("--output", path, inputs);
   const compare::OutputTarget target = compare::output_target(path);
@@ -158,6 +221,7 @@ void run(SweepOptions options, const std::vector<std::string>& inputs) {
     say("{}: finished already, {} rows", path, outcome.rows);
   }
   warn_of_unresolved(outcome, path);
+  if (options.plot.draws()) plot(options, sweep, rows_of_file(path, sweep.header()));
 }
 
 }  // namespace
@@ -197,13 +261,14 @@ void add_sweep(CLI::App& app) {
                    "OMPI_COMM_WORLD_RANK say")
       ->type_name("i/n");
   command->add_flag("--merge", options->merge, "put finished shards together");
+  options->plot.add_to(*command, "the results over one field, or over two,", Sketches::none);
   options->scene.add_solvers_to(*command);
   command->footer(
       "Exit status is 0 also if rows have no result: a line on standard error counts them, their\n"
       "column status says why.\n"
       "Example:\n"
       "  dlo sweep data/scenes/spring_steel_175.toml --vary gamma=log:0.1:10:5 \\\n"
-      "      --vary gripper.0.direction=\"-90 deg\",\"0 deg\" -o map.csv\n"
+      "      --vary gripper.0.direction=\"-90 deg\",\"0 deg\" -o map.csv --plot map.svg\n"
       "In parts, then merged (mpirun and Slurm arrays choose --shard by themselves):\n"
       "  dlo sweep data/scenes/cable.toml --vary gamma=log:1:10:9 --shard 1/2 -o "
       "'part.{shard}.csv'\n"

@@ -2,43 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "base/display.hpp"
 #include "dlo/compare/deviation.hpp"
+#include "figure/budget_figure.hpp"
 #include "format/plan.hpp"
 #include "format/solution.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {
-
 namespace {
 
-bool leaves_out(const compare::Comparison& comparison, const char* what) {
-  const std::vector<std::string>& left_out = comparison.force.left_out;
-  return std::find(left_out.begin(), left_out.end(), what) != left_out.end();
-}
-
 void add_budget(std::string& out, const compare::Comparison& comparison) {
-  const compare::Budget& b = comparison.budget;
   // A share is a part's projection on the total, so that the shares add up; a part across the total
   // has millimetres but no share.
   append(out, "  error budget    RMS, and share of the total {:.4g} mm with sign\n",
-         b.total_m * 1e3);
-  const std::pair<const char*, const compare::BudgetPart*> parts[] = {
-      {"twist", &b.twist},
-      {"natural curvature", &b.natural_curvature},
-      {"law", &b.law},
-      {"bookkeeping", &b.bookkeeping},
-      {"discretisation", &b.discretisation},
-      {"stretch", &b.stretch},
-      {"contact", &b.contact},
-      {"not at rest", &b.not_at_rest},
-      {"interaction", &b.interaction}};
-  for (const auto& [name, part] : parts) {
-    if (part == &b.twist && !leaves_out(comparison, "twist")) continue;
-    if (part == &b.natural_curvature && !leaves_out(comparison, "natural curvature")) continue;
-    if (part == &b.contact && b.contact.rms_m == 0) continue;
+         comparison.budget.total_m * 1e3);
+  for (const auto& [name, part] : compare::shown_parts(comparison)) {
     append(out, "                  {:<17}{:>9.4g} mm {:>9.2f} %\n", name, part->rms_m * 1e3,
            part->share * 100 + 0.0);
   }
@@ -83,6 +63,7 @@ void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, dou
     append(out, ": {}* explains {:.4g} % of the mean square", of.name,
            std::floor(modulus.explained_share * 1e4) / 100);
   }
+  if (modulus.rms_m > movement_m) out += ", but leaves more than the rod moved";
   out += ")\n";
 }
 

@@ -22,10 +22,10 @@ std::string_view environment(const char* name) {
 
 bool is_terminal(int file) { return ::isatty(file) == 1 && environment("TERM") != "dumb"; }
 
-std::size_t columns_of_terminal() {
+std::size_t columns_of_terminal(int file) {
   winsize size{};
   constexpr std::size_t usual = 80;
-  const bool known = ::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  const bool known = ::ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return known ? size.ws_col : usual;
 }
 
@@ -61,10 +61,22 @@ void ProgressBar::remark(const std::string& line) {
 
 void ProgressBar::draw(const std::string& line) {
   // A line that wraps could not be erased.
-  std::string shown = compare::valid_utf8(line.substr(0, columns_of_terminal() - 1));
+  std::string shown = compare::valid_utf8(line.substr(0, columns_of_terminal(STDERR_FILENO) - 1));
   if (shown == drawn_) return;
   drawn_ = std::move(shown);
   write_standard_error(fmt::format("\r{}\x1b[K", drawn_));
+}
+
+int columns_of_standard_output() { return static_cast<int>(columns_of_terminal(STDOUT_FILENO)); }
+
+bool is_utf8_locale() {
+  std::string_view locale;
+  for (const char* name : {"LC_ALL", "LC_CTYPE", "LANG"}) {
+    if (locale.empty()) locale = environment(name);
+  }
+  std::string lower(locale);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower.find("utf-8") != std::string::npos || lower.find("utf8") != std::string::npos;
 }
 
 std::string verdict_word(const std::string& word, bool good, const std::string& file) {

@@ -18,6 +18,18 @@ constexpr double far_above = 100;
 
 }  // namespace
 
+std::vector<double> drawn_logarithms(const std::optional<double>& low, double best,
+                                     const std::optional<double>& high, int count) {
+  const double from = low.value_or(best - std::log(2.0));
+  const double to = high.value_or(best + std::log(2.0));
+  const double beyond = (to - from) / 2;
+  std::vector<double> result;
+  for (int i = 0; i < count; ++i) {
+    result.push_back(from - beyond + (to - from + 2 * beyond) * i / std::max(1, count - 1));
+  }
+  return result;
+}
+
 LogProfile::LogProfile(Function function, double low, double high)
     : function_(std::move(function)),
       first_(static_cast<int>(std::floor(low / profile_step))),

@@ -8,6 +8,11 @@
 
 namespace dlo::compare {
 
+/// Where a profile is drawn: `count` logarithms, equally spaced, from half an interval's width
+/// below the interval to as far above; an open side goes to a factor of two from `best`.
+[[nodiscard]] std::vector<double> drawn_logarithms(const std::optional<double>& low, double best,
+                                                   const std::optional<double>& high, int count);
+
 /// A sum of squares over the logarithm of a parameter: its minima, and where it is below a level.
 class LogProfile {
  public:

@@ -25,6 +25,8 @@ namespace {
 constexpr double least_noise = 1e-8;
 /// Searches for another state between several grippers, at the optimum of the one followed.
 constexpr int most_other_states = 2;
+/// Of a fitted rod that is to be drawn.
+constexpr int drawn_samples = 201;
 
 /// A number that was fitted, for messages.
 struct Name {
@@ -221,8 +223,9 @@ class MaterialFitter {
     result_.warning = warning_of(least, points, freedom(), scenes_.front().length, options_.noise);
     const std::vector<Alignment> alignments = misfit_.alignments(best);
     for (std::size_t i = 0; i < alignments.size(); ++i) {
-      result_.shapes.push_back({scenes_[i].name, alignments[i]});
+      result_.shapes.push_back({scenes_[i].name, alignments[i], {}});
     }
+    if (options_.profile_points > 0) draw_profile(found, best, least);
     return std::move(result_);
   }
 
@@ -238,6 +241,18 @@ class MaterialFitter {
                                scenes_.front().length, std::nullopt);
     }
     return fit;
+  }
+
+  void draw_profile(const Finding& found, const MaterialPoint& best, double least) {
+    const double limit = level(least, 0) - least;
+    const double unit = scenes_.front().stiffness().value;
+    for (const double x : drawn_logarithms(found.interval.low, best.log_modulus,
+                                           found.interval.high, options_.profile_points)) {
+      const double squares = both_ ? over_density(x).value : misfit_({x, 0});
+      result_.profile.push_back({unit * std::exp(x), (squares - least) / limit});
+    }
+    const std::vector<Shape> rods = misfit_.rods(best, drawn_samples);
+    for (std::size_t i = 0; i < rods.size(); ++i) result_.shapes[i].rod = rods[i];
   }
 
   [[nodiscard]] double freedom() const { return result_.degrees_of_freedom; }

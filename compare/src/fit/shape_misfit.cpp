@@ -244,6 +244,17 @@ std::vector<Alignment> ShapeMisfit::alignments(const MaterialPoint& material) {
   return result;
 }
 
+std::vector<Shape> ShapeMisfit::rods(const MaterialPoint& material, int samples) {
+  std::vector<Shape> result;
+  for (std::size_t i = 0; i < scenes_.size(); ++i) {
+    const std::shared_ptr<const Solved> shape = solved(i, material);
+    if (!shape) break;
+    const std::vector<double> s = equal_arc_lengths(scenes_[i].length, samples);
+    result.push_back({.arc_length = s, .points = shape->equilibrium.sample(s).points});
+  }
+  return result;
+}
+
 std::vector<ResidualSeries> ShapeMisfit::residuals(const MaterialPoint& material, bool both) {
   std::vector<MaterialPoint> beside = {
       {material.log_modulus + derivative_step, material.log_density}};

@@ -59,6 +59,9 @@ class ShapeMisfit {
   /// How the shapes lie at a material where there is a shape.
   [[nodiscard]] std::vector<Alignment> alignments(const MaterialPoint& material);
 
+  /// The rods at a material where there is a shape, at equal arc lengths.
+  [[nodiscard]] std::vector<Shape> rods(const MaterialPoint& material, int samples);
+
   /// Residuals at a material where there is a shape, with their derivatives by each shape's free
   /// coordinates, then by log modulus (by log density too, if `both`). With given arc lengths a
   /// series for each coordinate, else for each of the directions across the rod; none out of the

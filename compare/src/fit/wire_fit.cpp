@@ -11,6 +11,7 @@
 #include "dlo/compare/error.hpp"
 #include "fit/between_shapes.hpp"
 #include "fit/linear_fit.hpp"
+#include "fit/log_profile.hpp"
 #include "fit/wire_numbers.hpp"
 #include "fit/wire_shapes.hpp"
 
@@ -307,6 +308,30 @@ class WireFitter {
     return times;
   }
 
+  /// @param widening  of the interval beside what the deviance alone gives
+  void draw_profile(MaterialFit& fit, double widening) {
+    constexpr int drawn_samples = 201;
+    const WireShapes::Rods rods = shapes_.rods();
+    for (std::size_t i = 0; i < fit.shapes.size() && i < rods.size(); ++i) {
+      if (!rods[i]) continue;
+      const std::vector<double> s = equal_arc_lengths(scenes_[i].length, drawn_samples);
+      fit.shapes[i].rod = {.arc_length = s, .points = rods[i]->sample(s).points};
+    }
+    const double unit = scenes_.front().stiffness().value;
+    const auto logarithm = [unit](const std::optional<double>& value) {
+      return value ? std::optional(std::log(*value / unit)) : std::nullopt;
+    };
+    const double least = linear_.residual.squaredNorm() / variance_ + penalty(values_);
+    for (const double x :
+         drawn_logarithms(logarithm(fit.youngs_modulus.low), values_[0],
+                          logarithm(fit.youngs_modulus.high), options_.profile_points)) {
+      shapes_.go_on_from(optimum_);
+      // The interval's ends are `widening` times as far away as where the deviance has its limit.
+      const double excess = profile(values_[0] + (x - values_[0]) / widening) - least;
+      fit.profile.push_back({unit * std::exp(x), excess / (quantile() * quantile())});
+    }
+  }
+
   [[nodiscard]] MaterialFit result() {
     MaterialFit fit;
     const double times_noise = misfit(fit);
@@ -373,8 +398,9 @@ class WireFitter {
       const Eigen::Index count = alignments[i].shape.points.cols();
       squares += alignments[i].mean_square * static_cast<double>(count);
       points += count;
-      fit.shapes.push_back({scenes_[i].name, alignments[i]});
+      fit.shapes.push_back({scenes_[i].name, alignments[i], {}});
     }
+    if (options_.profile_points > 0) draw_profile(fit, widening);
     fit.rms_m = std::sqrt(squares / static_cast<double>(std::max<Eigen::Index>(1, points)));
     fit.equilibria = shapes_.solves();
     fit.evaluations = shapes_.evaluations();

@@ -84,6 +84,9 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   }
   result.residual_over_movement =
       result.deviation.rms_over_movement / result.deviation.rms_m * result.effective_modulus.rms_m;
+  // The same movement as is told, at the force model's points.
+  result.effective_modulus.optimum = without_small_movement(
+      result.effective_modulus, result.effective_modulus.rms_m / result.residual_over_movement);
   result.budget = error_budget(scene, result.force, energy.sample, options);
   return result;
 }

@@ -154,6 +154,14 @@ EffectiveModulus no_modulus(std::string why) {
   return result;
 }
 
+/// RMS way of an equilibrium from the straight rod [m]; NaN if there is none.
+double movement_of(const Scene& scene, const energy_model::Equilibrium& state) {
+  constexpr int samples = 101;
+  const std::vector<double> s = equal_arc_lengths(scene.length, samples);
+  const auto straight = straight_rod(scene, s);
+  return straight ? rms(s, *straight - state.sample(s).points) : NAN;
+}
+
 EffectiveModulus search(FollowedState& mean_square, double resolution) {
   const Scan values = scan_both_ways(mean_square, resolution);
   const std::size_t best = values.best();
@@ -199,6 +207,11 @@ EffectiveModulus search(FollowedState& mean_square, double resolution) {
 
 }  // namespace
 
+Optimum without_small_movement(const EffectiveModulus& modulus, double movement_m) {
+  const bool leaves_more = modulus.rms_m > movement_m;
+  return modulus.optimum == Optimum::clear && leaves_more ? Optimum::partial : modulus.optimum;
+}
+
 ShapeDistance distance_from(const Shape& shape) {
   return [shape](const energy_model::Equilibrium& reference) {
     return distance(shape, reference.sample);
@@ -222,6 +235,7 @@ EffectiveModulus fit_effective_modulus(const Scene& scene, const ShapeDistance& 
     result = no_modulus(fmt::format("time limit of {:g} s reached", options.time_limit));
   }
   result.solves = mean_square.solves();
+  result.optimum = without_small_movement(result, movement_of(scene, state));
   return result;
 }
 

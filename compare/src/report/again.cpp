@@ -7,11 +7,6 @@
 
 namespace dlo::compare {
 
-std::string setting_name(const ForceModelSettings& settings) {
-  return fmt::format("law {}, bookkeeping {}, N = {}", to_string(settings.law),
-                     to_string(settings.bookkeeping), settings.points);
-}
-
 std::string compare_command(const SceneFile& file, const Comparison& comparison) {
   const ForceModelSettings& own = file.scene.force_model;
   const ForceModelSettings& settings = comparison.settings;

@@ -2,13 +2,9 @@
 
 #include <string>
 
-#include "dlo/compare/force_model_settings.hpp"
 #include "report/report.hpp"
 
 namespace dlo::compare {
-
-/// "law paper, bookkeeping paper, N = 16".
-[[nodiscard]] std::string setting_name(const ForceModelSettings& settings);
 
 /// Commands that give a part's numbers again, run in the report's folder. compare_command is empty
 /// where the scene names a number that dlo compare refuses with the other law or bookkeeping.

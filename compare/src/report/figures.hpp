@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "report/gnuplot.hpp"
+#include "figure/layout.hpp"
 #include "report/report.hpp"
 
 namespace dlo::compare {

@@ -18,6 +18,7 @@
 #include "base/output_file.hpp"
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
+#include "figure/gnuplot.hpp"
 #include "report/figures.hpp"
 #include "report/page.hpp"
 
@@ -173,11 +174,11 @@ void check_replaceable(const std::string& folder, const fs::path& path) {
 
 PageFigure draw_into(TemporaryFolder& folder, Figure figure) {
   if (!figure.csv.empty()) folder.write(figure.csv_file, figure.csv);
-  folder.write(figure.name + ".gp", figure.script);
+  folder.write(figure.name + ".gp", figure_script(figure));
   PageFigure result;
-  result.failure = draw(figure, folder.report());
+  const std::string file = figure.name + ".svg";
+  result.failure = run_script(figure.name + ".gp", file, folder.report());
   if (result.failure.empty()) {
-    const std::string file = figure.name + ".svg";
     folder.list(file);
     result.svg = inline_svg(read_file((folder.report() / file).string()), figure);
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/quote.hpp"
+#include "figure/comparison_figure.hpp"
 #include "polygon/step_constants.hpp"
 #include "report/again.hpp"
 #include "report/html.hpp"
@@ -174,6 +175,7 @@ void add_shapes(const Report& report, Page& page) {
       "says it, unless it says just this: the same with law hooke and bookkeeping consistent.");
   page.figures("shapes");
   page.section("deviation", "How far apart");
+  page.figures("deviation");
   page.table(deviation_table(report));
   std::vector<std::string> commands;
   for (const SceneReport& scene : report.scenes) {
@@ -196,6 +198,7 @@ void add_shapes(const Report& report, Page& page) {
       "Each part is found by switching one thing. Parts are vectors along the rod: their "
       "millimetres do not add up, their shares of the total (projections, with sign) do, to 100 %. "
       "Interaction is what law and bookkeeping do together beyond the sum of both.");
+  page.figures("budget");
   page.table(budget_table(report));
 }
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "figure/layout.hpp"
 #include "report/folder.hpp"
-#include "report/gnuplot.hpp"
 #include "report/report.hpp"
 
 namespace dlo::compare {

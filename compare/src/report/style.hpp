@@ -19,7 +19,6 @@ body { margin: 0 auto; padding: 1rem; max-width: 76rem; background: var(--back);
 h1 { font-size: 1.6rem; line-height: 1.25; margin: 0.5rem 0; }
 h2 { font-size: 1.25rem; margin: 2.2rem 0 0.6rem; padding-top: 0.6rem; border-top: 1px solid var(--line); }
 h3 { font-size: 1.05rem; margin: 1.4rem 0 0.4rem; }
-p, li { max-width: 46rem; }
 a { color: var(--accent); }
 nav ul { list-style: none; margin: 0.8rem 0 0; padding: 0; display: flex; flex-wrap: wrap; gap: 0.2rem 1rem; }
 nav a { display: inline-block; padding: 0.3rem 0; }
@@ -31,7 +30,7 @@ nav a { display: inline-block; padding: 0.3rem 0; }
 .figures { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 28rem), 1fr)); gap: 1.2rem; }
 figure { margin: 0; min-width: 0; }
 figure svg { display: block; width: 100%; max-width: 32rem; height: auto; }
-figcaption { margin-top: 0.4rem; max-width: 46rem; }
+figcaption { margin-top: 0.4rem; }
 figcaption strong { color: var(--text); }
 .missing { border: 1px dashed var(--line); padding: 1rem; }
 .table { overflow-x: auto; margin: 0.8rem 0; max-width: 100%; }

@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/solution.hpp"
+#include "figure/budget_figure.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -17,11 +19,6 @@ std::string millimetres(double metres) { return page_number(metres * 1e3); }
 std::string setting_of(const Comparison& c) {
   return fmt::format("{}, {}, {}", to_string(c.settings.law), to_string(c.settings.bookkeeping),
                      c.settings.points);
-}
-
-/// With one decimal, never -0.0.
-std::string tenths(double value) {
-  return fmt::format("{:.1f}", std::round(value * 10) / 10 + 0.0);
 }
 
 const char* const setting_head = "law, bookkeeping, N";
@@ -139,29 +136,21 @@ HtmlTable state_table(const Report& report) {
 }
 
 HtmlTable budget_table(const Report& report) {
-  HtmlTable table{.caption = "Error budget: RMS [mm], and share of the total with sign",
-                  .columns = {{"scene", HtmlCell::text},
-                              {setting_head, HtmlCell::word},
-                              {"total"},
-                              {"twist"},
-                              {"natural curvature"},
-                              {"law"},
-                              {"bookkeeping"},
-                              {"discretisation"},
-                              {"stretch"},
-                              {"contact"},
-                              {"not at rest"},
-                              {"interaction"}}};
+  HtmlTable table{
+      .caption = "What the budgets split: RMS of force model - rod, and the largest part",
+      .columns = {{"scene", HtmlCell::text},
+                  {setting_head, HtmlCell::word},
+                  {"total [mm]"},
+                  {"largest part", HtmlCell::word},
+                  {"its share of the total"}}};
   for_each_comparison(report, [&](const Comparison& c) {
-    const Budget& b = c.budget;
-    std::vector<std::string> row = {c.scene, setting_of(c), millimetres(b.total_m)};
-    for (const BudgetPart* part :
-         {&b.twist, &b.natural_curvature, &b.law, &b.bookkeeping, &b.discretisation, &b.stretch,
-          &b.contact, &b.not_at_rest, &b.interaction}) {
-      row.push_back(
-          fmt::format("{} ({}\u00a0%)", millimetres(part->rms_m), tenths(part->share * 100)));
-    }
-    table.rows.push_back(std::move(row));
+    const auto parts = shown_parts(c);
+    const auto largest =
+        std::max_element(parts.begin(), parts.end(), [](const auto& a, const auto& b) {
+          return std::abs(a.second->share) < std::abs(b.second->share);
+        });
+    table.rows.push_back({c.scene, setting_of(c), millimetres(c.budget.total_m), largest->first,
+                          page_percent(largest->second->share)});
   });
   return table;
 }

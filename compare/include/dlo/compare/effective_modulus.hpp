@@ -17,7 +17,8 @@ namespace dlo::compare {
 enum class Optimum {
   none,       ///< there is no E*, see EffectiveModulus::why_none
   clear,      ///< E* is told, and it explains the deviation
-  partial,    ///< E* is told, but it explains less than `clear_share` of the mean square deviation
+  partial,    ///< E* is told, but it explains less than `clear_share` of the mean square deviation,
+              ///< or leaves more than the rod's own way from straight (without_small_movement)
   flat,       ///< a modulus twice or half as large fits less than 10 % worse, or no worse than the
               ///< energy model's own error
   one_sided,  ///< the fit still improves where the search ended: at the end of the range, or where
@@ -55,6 +56,11 @@ struct EffectiveModulus {
   std::string why_none = "skipped";  ///< why there is no E*; empty if there is one
   int solves = 0;                    ///< of the energy model
 };
+
+/// What an optimum is worth beside the RMS way of the rod from straight [m] (NaN: it has no
+/// straight shape): one that is `clear` but leaves more than that is `partial`, since a rod that
+/// does not bend at all is then as near. fit_effective_modulus() has applied it.
+[[nodiscard]] Optimum without_small_movement(const EffectiveModulus& modulus, double movement_m);
 
 /// Range of E*/E that is searched.
 inline constexpr double smallest_modulus_ratio = 1e-4;

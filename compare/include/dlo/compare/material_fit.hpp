@@ -31,6 +31,7 @@ struct MaterialFitOptions {
   /// The same of the grippers' positions along each axis [m].
   double position_tolerance = 0;
   int chain_segments = 0;        ///< of a chain of hinges that is to be as stiff; 0: of none
+  int profile_points = 0;        ///< of MaterialFit::profile; 0: of none
   std::optional<double> noise;   ///< standard deviation of one coordinate [m]; else estimated
   double smallest_ratio = 1e-4;  ///< of the modulus to the scene's, where it is looked for
   double largest_ratio = 1e4;    ///< the upper end of that range
@@ -104,6 +105,16 @@ struct SimulatorParameter {
 struct FittedShape {
   std::string scene;    ///< its name
   Alignment alignment;  ///< of the shape on the fitted rod
+  Shape rod;  ///< the fitted rod at 201 equal arc lengths; empty unless there is a profile
+};
+
+/// A point of the profile likelihood.
+struct ProfilePoint {
+  double stiffness = 0;  ///< as MaterialFit::youngs_modulus
+  /// The sum of squares over that of the best fit, minimised over all else, as a share of what it
+  /// may be at the ends of the interval: 0 at the best fit, 1 at the ends [-]. Infinite where the
+  /// energy model has no shape.
+  double excess_over_limit = 0;
 };
 
 /// Errors of neighbouring points that belong together.
@@ -156,6 +167,9 @@ struct MaterialFit {
   long equilibria = 0;              ///< of the energy model that were solved
   long evaluations = 0;             ///< of its objective for these
   std::vector<FittedShape> shapes;  ///< in the order given
+  /// Of Young's modulus, from half an interval's width below it to as far above, equally spaced in
+  /// its logarithm.
+  std::vector<ProfilePoint> profile;
 };
 
 /// Young's modulus, one for all scenes, from a measured shape of each: least squares on the energy

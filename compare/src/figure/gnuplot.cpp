@@ -1,4 +1,4 @@
-#include "report/gnuplot.hpp"
+#include "figure/gnuplot.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -16,9 +16,6 @@
 
 namespace dlo::compare {
 namespace {
-
-constexpr int axis_pixels = 78;  // numbers and name of the horizontal axis
-constexpr int key_row_pixels = 24;
 
 /// A child process's end.
 struct Child {
@@ -76,51 +73,6 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 
 }  // namespace
 
-std::string gnuplot_string(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      result += "''";
-    } else {
-      result += static_cast<unsigned char>(c) < ' ' || c == '`' ? ' ' : c;
-    }
-  }
-  return result + "'";
-}
-
-int height_besides_plot(int key_rows) {
-  return top_margin + axis_pixels + key_rows * key_row_pixels;
-}
-
-std::string figure_head(const std::string& name, const std::string& csv_file, int height,
-                        int key_rows) {
-  const double key = static_cast<double>(key_rows * key_row_pixels) / height;
-  return fmt::format(
-      "# gnuplot {0}.gp draws {0}.svg from {1}\n"
-      "set terminal svg size {2},{3} dynamic noenhanced font 'sans-serif,16' linewidth 1.3\n"
-      "set encoding utf8\n"
-      "set output '{0}.svg'\n"
-      "set datafile separator comma\n"
-      "set grid linecolor rgb '#808080'\n"
-      "set lmargin at screen {4:.4f}\n"
-      "set rmargin at screen {5:.4f}\n"
-      "set tmargin at screen {6:.4f}\n"
-      "set bmargin at screen {7:.4f}\n"
-      "set key at screen 0.02,{8:.4f} left top vertical maxcols 1 Left reverse samplen 2.5\n",
-      name, csv_file, figure_width, height, static_cast<double>(left_margin) / figure_width,
-      1 - static_cast<double>(right_margin) / figure_width,
-      1 - static_cast<double>(top_margin) / height, key + static_cast<double>(axis_pixels) / height,
-      key);
-}
-
-std::string axis_labels(const std::string& x, const std::string& y, int height, double top) {
-  constexpr double from_the_left = 8;
-  constexpr double above = 20;
-  return fmt::format("set xlabel {}\nset label 1 {} at screen {:.4f},{:.4f} left\n",
-                     gnuplot_string(x), gnuplot_string(y), from_the_left / figure_width,
-                     1 - (top - above) / height);
-}
-
 std::string gnuplot_version(const std::filesystem::path& folder) {
   const std::string out = "gnuplot_version.out";
   const Child child = run_gnuplot(folder, "--version", out, "/dev/null");
@@ -130,19 +82,21 @@ std::string gnuplot_version(const std::filesystem::path& folder) {
   return version;
 }
 
-std::string draw(const Figure& figure, const std::filesystem::path& folder) {
-  const std::string messages = figure.name + ".err";
-  const Child child = run_gnuplot(folder, figure.name + ".gp", "/dev/null", messages);
+std::string run_script(const std::string& script, const std::string& output,
+                       const std::filesystem::path& folder) {
+  const std::string messages = script + ".err";
+  const Child child = run_gnuplot(folder, script, "/dev/null", messages);
   const std::string message = joined_lines(text_of(folder / messages));
   std::error_code ignored;
   std::filesystem::remove(folder / messages, ignored);
   if (child.error != 0) {
     return fmt::format("gnuplot cannot be started ({})", std::strerror(child.error));
   }
-  const bool drawn = child.status == 0 &&
-                     text_of(folder / (figure.name + ".svg")).find("</svg>") != std::string::npos;
-  if (drawn) return {};
-  std::filesystem::remove(folder / (figure.name + ".svg"), ignored);
+  const std::string drawn = text_of(folder / output);
+  const bool whole =
+      output.ends_with(".svg") ? drawn.find("</svg>") != std::string::npos : !drawn.empty();
+  if (child.status == 0 && whole) return {};
+  std::filesystem::remove(folder / output, ignored);
   return "gnuplot failed: " + (message.empty() ? "it does not say why" : message);
 }
 

@@ -1,4 +1,4 @@
-#include "report/scene_series.hpp"
+#include "figure/series.hpp"
 
 #include <fmt/format.h>
 
@@ -12,14 +12,12 @@
 #include "base/quote.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/obstacle/outline.hpp"
-#include "report/again.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
 
 constexpr int drawn_samples = 201;
-constexpr double same_curve = 1e-6;  // of the length
 
 /// Sense of turning, where there is one: the plane's normal.
 double signed_curvature(const std::optional<Eigen::Vector3d>& normal,
@@ -37,12 +35,38 @@ std::optional<Eigen::Vector3d> normal_to_reader(const Scene& scene, const View& 
   return normal;
 }
 
-Series reference_series(const Comparison& comparison, const Scene& scene, const View& view) {
+}  // namespace
+
+std::vector<View> views_of(const Scene& scene, const Eigen::Matrix3Xd& points) {
+  Eigen::Index gravity = 1;
+  if (scene.gravity.norm() > 0) scene.gravity.cwiseAbs().maxCoeff(&gravity);
+  const int up = static_cast<int>(gravity);
+  if (const auto normal = scene.plane_normal()) {
+    Eigen::Index along = 0;
+    const double largest = normal->cwiseAbs().maxCoeff(&along);
+    if (largest > 1 - 1e-12) {
+      const int across = static_cast<int>(along);
+      if (across != up) return {{3 - across - up, up}};
+      return {across == 0 ? View{1, 2} : View{0, 3 - across}};
+    }
+  }
+  std::array<int, 2> others = {(up + 1) % 3, (up + 2) % 3};
+  const Eigen::Vector3d extents =
+      points.rowwise().maxCoeff() - Eigen::Vector3d(points.rowwise().minCoeff());
+  if (extents[others[1]] > extents[others[0]]) std::swap(others[0], others[1]);
+  return {{others[0], up}, {others[0], others[1]}};
+}
+
+std::vector<double> drawn_arc_lengths(double length) {
+  return equal_arc_lengths(length, drawn_samples);
+}
+
+Series rod_series(const Reference& rod, const Scene& scene, const View& view) {
   Series series{.id = "energy",
                 .title = "energy model (the rod itself)",
                 .style = "with lines linecolor rgb 'black' linewidth 2 dashtype 1"};
-  series.arc_length = equal_arc_lengths(scene.length, drawn_samples);
-  const energy_model::Samples samples = comparison.reference_rod(series.arc_length);
+  series.arc_length = drawn_arc_lengths(scene.length);
+  const energy_model::Samples samples = rod(series.arc_length);
   series.points = samples.points;
   const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view);
   for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
@@ -53,68 +77,57 @@ Series reference_series(const Comparison& comparison, const Scene& scene, const 
   return series;
 }
 
-/// Turning angle of each inner point over its joint's length.
-std::vector<double> polygon_curvature(const Shape& shape, const Scene& scene, const View& view) {
+Series polygon_series(const Shape& shape, const Scene& scene, const View& view) {
+  Series series{.id = "force", .points = shape.points, .arc_length = shape.arc_length};
   const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view);
-  std::vector<double> curvature(shape.arc_length.size(), NAN);
-  for (std::size_t i = 1; i + 1 < curvature.size(); ++i) {
-    curvature[i] = signed_curvature(normal, joint_curvature(shape, i));
+  series.curvature.assign(shape.arc_length.size(), NAN);
+  for (std::size_t i = 1; i + 1 < series.curvature.size(); ++i) {
+    series.curvature[i] = signed_curvature(normal, joint_curvature(shape, i));
   }
-  return curvature;
+  return series;
 }
 
-std::vector<Series> rods_of(const SceneReport& report, const View& view) {
-  const Scene& scene = report.file.scene;
-  const std::vector<Comparison>& comparisons = report.comparisons;
-  std::vector<Series> all = {reference_series(comparisons.front(), scene, view)};
-  if (comparisons.size() > 1) {
-    Series other = reference_series(comparisons.back(), scene, view);
-    if ((other.points - all.front().points).colwise().norm().maxCoeff() >
-        same_curve * scene.length) {
-      other.id = "energy_of_hooke";
-      other.title = "energy model, the state that law hooke is in";
-      other.style = "with lines linecolor rgb '#606060' linewidth 2 dashtype 4";
-      all.push_back(other);
-    }
-  }
-  for (std::size_t i = 0; i < comparisons.size(); ++i) {
-    const Comparison& c = comparisons[i];
-    all.push_back({.id = i == 0 ? "force" : "force_hooke_consistent",
-                   .title = setting_name(c.settings),
-                   .style = i == 0 ? "with linespoints linecolor rgb '#B34700' dashtype 2 "
-                                     "pointtype 5 pointsize 0.6"
-                                   : "with linespoints linecolor rgb '#0059A8' dashtype 3 "
-                                     "pointtype 6 pointsize 0.9",
-                   .points = c.force.shape.points,
-                   .arc_length = c.force.shape.arc_length,
-                   .curvature = polygon_curvature(c.force.shape, scene, view)});
-  }
-  if (const auto straight = straight_rod(scene, {0, scene.length})) {
-    all.push_back({.id = "unbent",
-                   .title = "the unbent rod",
-                   .style = "with lines linecolor rgb '#808080' linewidth 1 dashtype 4",
-                   .points = *straight,
-                   .arc_length = {0, scene.length}});
-  }
+std::optional<Series> unbent_series(const Scene& scene) {
+  const auto straight = straight_rod(scene, {0, scene.length});
+  if (!straight) return std::nullopt;
+  return Series{.id = "unbent",
+                .title = "the unbent rod",
+                .style = "with lines linecolor rgb '#808080' linewidth 1 dashtype 4",
+                .points = *straight,
+                .arc_length = {0, scene.length}};
+}
+
+std::vector<Series> gripper_series(const Scene& scene) {
+  constexpr double stub = 0.04;  // of the length
+  std::vector<Series> all;
   Series grips{.id = "gripper",
                .title = scene.grippers.size() == 1 ? "gripper" : "grippers",
                .style = "with points linecolor rgb 'black' pointtype 2 pointsize 1.2"};
   grips.points.resize(3, static_cast<Eigen::Index>(scene.grippers.size()));
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
-    grips.points.col(static_cast<Eigen::Index>(i)) = scene.grippers[i].position;
-    grips.arc_length.push_back(scene.grippers[i].at);
+    const Gripper& gripper = scene.grippers[i];
+    grips.points.col(static_cast<Eigen::Index>(i)) = gripper.position;
+    grips.arc_length.push_back(gripper.at);
+    if (!gripper.direction) continue;
+    Series clamp{.id = fmt::format("clamp_{}", i + 1),
+                 .style = "with lines linecolor rgb '#909090' linewidth 6 dashtype 1"};
+    const Eigen::Vector3d along = stub * scene.length * *gripper.direction;
+    clamp.points.resize(3, 2);
+    clamp.points << gripper.position - along, gripper.position + along;
+    clamp.arc_length = {gripper.at, gripper.at};
+    all.push_back(std::move(clamp));
   }
-  all.push_back(grips);
+  all.push_back(std::move(grips));
   return all;
 }
 
-/// What touches the rod as the energy model has it: points of what lies, and single ones.
-std::optional<Series> contact_series(const Comparison& comparison, double length) {
+std::optional<Series> contact_series(const std::vector<energy_model::ContactPart>& contacts,
+                                     const RodPoints& rod, double length) {
   constexpr double between = 1.0 / 150;  // of the length
   Series series{.id = "contact",
                 .title = "where the rod itself touches",
                 .style = "with points linecolor rgb '#207A34' pointtype 7 pointsize 0.45"};
-  for (const energy_model::ContactPart& contact : comparison.contacts) {
+  for (const energy_model::ContactPart& contact : contacts) {
     const double lies = contact.end - contact.begin;
     const int steps = static_cast<int>(std::ceil(lies / (between * length)));
     for (int i = 0; i <= steps; ++i) {
@@ -122,13 +135,10 @@ std::optional<Series> contact_series(const Comparison& comparison, double length
     }
   }
   if (series.arc_length.empty()) return std::nullopt;
-  series.points = comparison.reference_rod(series.arc_length).points;
+  series.points = rod(series.arc_length);
   return series;
 }
 
-/// Outlines of the obstacles in reach in each view, to be drawn behind everything: what the rod's
-/// axis stays out of.
-/// @param rod  points of what else is drawn
 std::vector<Series> obstacle_series(const Scene& scene, const std::vector<View>& views,
                                     const Eigen::Matrix3Xd& rod) {
   std::vector<Series> all;
@@ -159,44 +169,15 @@ std::vector<Series> obstacle_series(const Scene& scene, const std::vector<View>&
   return all;
 }
 
-}  // namespace
-
-std::vector<View> views_of(const Scene& scene, const Eigen::Matrix3Xd& points) {
-  Eigen::Index gravity = 1;
-  if (scene.gravity.norm() > 0) scene.gravity.cwiseAbs().maxCoeff(&gravity);
-  const int up = static_cast<int>(gravity);
-  if (const auto normal = scene.plane_normal()) {
-    Eigen::Index along = 0;
-    const double largest = normal->cwiseAbs().maxCoeff(&along);
-    if (largest > 1 - 1e-12) {
-      const int across = static_cast<int>(along);
-      if (across != up) return {{3 - across - up, up}};
-      return {across == 0 ? View{1, 2} : View{0, 3 - across}};
-    }
-  }
-  std::array<int, 2> others = {(up + 1) % 3, (up + 2) % 3};
-  const Eigen::Vector3d extents =
-      points.rowwise().maxCoeff() - Eigen::Vector3d(points.rowwise().minCoeff());
-  if (extents[others[1]] > extents[others[0]]) std::swap(others[0], others[1]);
-  return {{others[0], up}, {others[0], others[1]}};
-}
-
-std::vector<Series> series_of(const SceneReport& report, const std::vector<View>& views) {
-  const Scene& scene = report.file.scene;
-  const std::vector<Series> rods = rods_of(report, views.front());
-  std::vector<Series> all = obstacle_series(scene, views, rods.front().points);
-  all.insert(all.end(), rods.begin(), rods.end());
-  if (auto contact = contact_series(report.comparisons.front(), scene.length)) {
-    all.push_back(std::move(*contact));
-  }
-  return all;
-}
-
-std::string scene_csv(const std::vector<Series>& all) {
+std::string series_csv(const std::vector<Series>& all) {
   std::string csv = "series,s_m,x_m,y_m,z_m,curvature_per_m\n";
   for (const Series& series : all) {
     for (std::size_t i = 0; i < series.arc_length.size(); ++i) {
       const Eigen::Vector3d point = series.points.col(static_cast<Eigen::Index>(i));
+      if (point.hasNaN()) {
+        csv += '\n';  // where gnuplot ends a line
+        continue;
+      }
       csv += fmt::format("{},{},{},{},{},{}\n", series.id, csv_number(series.arc_length[i]),
                          csv_number(point.x()), csv_number(point.y()), csv_number(point.z()),
                          series.curvature.empty() ? "" : csv_number(series.curvature[i]));

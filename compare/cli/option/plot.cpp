@@ -1,0 +1,138 @@
+#include "option/plot.hpp"
+
+#include <fmt/format.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is not in cstdlib
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <optional>
+
+#include "base/input_file.hpp"
+#include "base/output_file.hpp"
+#include "base/temporary_path.hpp"
+#include "dlo/compare/error.hpp"
+#include "figure/gnuplot.hpp"
+#include "option/terminal.hpp"
+
+namespace dlo::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A new folder for nobody else, gone when it is left.
+class DrawingFolder {
+ public:
+  DrawingFolder() {
+    // What mkdtemp replaces by letters that are not taken.
+    std::string name = (fs::temp_directory_path() / "dlo_plot.XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr) {
+      throw compare::OutputError(
+          fmt::format("--plot: no folder to draw in: {} ({})", name, std::strerror(errno)));
+    }
+    path_ = name;
+    temporary_ = std::make_unique<compare::TemporaryPath>(name);
+  }
+  ~DrawingFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  DrawingFolder(const DrawingFolder&) = delete;
+  DrawingFolder& operator=(const DrawingFolder&) = delete;
+  DrawingFolder(DrawingFolder&&) = delete;
+  DrawingFolder& operator=(DrawingFolder&&) = delete;
+
+  void write(const std::string& name, const std::string& content) const {
+    std::ofstream stream(path_ / name, std::ios::binary);
+    stream << content;
+    stream.close();
+    if (!stream) {
+      throw compare::OutputError(
+          fmt::format("--plot: {}: cannot be written", (path_ / name).string()));
+    }
+  }
+  [[nodiscard]] const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+  std::unique_ptr<compare::TemporaryPath> temporary_;
+};
+
+std::optional<compare::PictureFormat> format_of(const std::string& file) {
+  const std::string ending = fs::path(file).extension().string();
+  if (ending == ".svg") return compare::PictureFormat::svg;
+  if (ending == ".png") return compare::PictureFormat::png;
+  if (ending == ".pdf") return compare::PictureFormat::pdf;
+  return std::nullopt;
+}
+
+}  // namespace
+
+CLI::Option* PlotOptions::add_to(CLI::App& command, const std::string& what, Sketches sketches) {
+  offers_sketch_ = sketches == Sketches::offered;
+  return command
+      .add_option("--plot", file_,
+                  "draw " + what + " into FILE.svg, FILE.png or FILE.pdf (by gnuplot)" +
+                      (offers_sketch_ ? "; -: sketch the shape in characters" : ""))
+      ->type_name("FILE");
+}
+
+void PlotOptions::require_drawable(const OutputOptions& output) const {
+  if (sketches() && output.file.empty() && !output.is(Format::text)) {
+    throw compare::InputError(
+        fmt::format("--plot -: standard output has the format {} (allowed: a sketch with --format "
+                    "text or with -o FILE, or --plot FILE.svg, .png or .pdf)",
+                    output.format));
+  }
+  if (!draws()) return;
+  if (!format_of(file_)) {
+    throw compare::InputError(
+        fmt::format("--plot {}: a picture of unknown format (allowed: a file that ends with .svg, "
+                    ".png or .pdf{})",
+                    file_, offers_sketch_ ? ", or - for a sketch" : ""));
+  }
+  if (compare::gnuplot_version(DrawingFolder().path()).empty()) {
+    throw compare::InputError(
+        fmt::format("--plot {}: needs the program gnuplot, which is not found (Debian: "
+                    "gnuplot-nox){}",
+                    file_, offers_sketch_ ? "; --plot - sketches without it" : ""));
+  }
+}
+
+void PlotOptions::draw(const std::function<compare::Picture()>& picture) const {
+  if (!draws()) return;
+  const compare::PictureFormat format = *format_of(file_);
+  const compare::Picture drawn = picture();
+  const DrawingFolder folder;
+  for (const compare::PictureRow& row : drawn.rows) {
+    for (const std::vector<compare::Figure>& column : row) {
+      for (const compare::Figure& figure : column) {
+        if (!figure.csv.empty()) folder.write(figure.csv_file, figure.csv);
+      }
+    }
+  }
+  const std::string output = "plot" + fs::path(file_).extension().string();
+  folder.write("plot.gp", compare::picture_script(drawn, format, output));
+  const std::string failure = compare::run_script("plot.gp", output, folder.path());
+  if (!failure.empty()) {
+    throw compare::OutputError(fmt::format("--plot {}: {}", file_, failure));
+  }
+  compare::OutputFile file(file_);
+  file.append(compare::read_file((folder.path() / output).string()));
+  file.finish();
+}
+
+void PlotOptions::sketch(const compare::Scene& scene,
+                         const std::function<std::vector<compare::SpatialLine>()>& lines) const {
+  if (!sketches()) return;
+  constexpr int widest = 72;
+  constexpr int highest = 20;  // leaves room for text on 24 lines
+  const int columns = std::min(widest, columns_of_standard_output());
+  write_standard_output(compare::sketch_of(
+      scene, lines(), columns, highest,
+      is_utf8_locale() ? compare::SketchMarks::braille : compare::SketchMarks::ascii));
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "dlo/compare/comparison.hpp"
+#include "figure/layout.hpp"
+
+namespace dlo::compare {
+
+/// Whether the force model left something out that the scene has (Solution::left_out).
+[[nodiscard]] bool leaves_out(const Comparison& comparison, const char* what);
+
+/// The parts of a comparison's error budget that are told, by name: without those that its scene
+/// has not. They point into the comparison.
+[[nodiscard]] std::vector<std::pair<const char*, const BudgetPart*>> shown_parts(
+    const Comparison& comparison);
+
+/// The error budgets of a scene's comparisons as bars, a part below the other: their share of the
+/// total with sign, and their RMS in words; `number` (from 1) is part of its name.
+[[nodiscard]] Figure budget_figure(const std::vector<Comparison>& comparisons, std::size_t number);
+
+}  // namespace dlo::compare

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape_check.hpp"
+#include "figure/layout.hpp"
+
+namespace dlo::compare {
+
+/// A measured shape on the rod of its scene, distances as whiskers from the rod to the points, the
+/// worst point circled; beside it the distances along the rod.
+/// @param allowed_m  a tolerance, drawn as a level
+[[nodiscard]] Picture check_picture(const Scene& scene, const ShapeCheck& check,
+                                    std::optional<double> allowed_m = std::nullopt);
+
+}  // namespace dlo::compare

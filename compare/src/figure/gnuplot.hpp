@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "figure/layout.hpp"
+
+namespace dlo::compare {
+
+/// Version of the gnuplot that would draw, as it says it; empty if there is none.
+/// @param folder  the report's own, where nobody else has files, to run it in
+[[nodiscard]] std::string gnuplot_version(const std::filesystem::path& folder);
+
+/// Runs a script in the folder of its CSV files, where it draws a file.
+/// @return why not, in one line; empty if it is drawn
+[[nodiscard]] std::string run_script(const std::string& script, const std::string& output,
+                                     const std::filesystem::path& folder);
+
+/// An SVG file as an element of a page: without prolog, with the figure's title and description,
+/// identifiers beginning with its name.
+/// @throws std::invalid_argument if there is no svg element
+[[nodiscard]] std::string inline_svg(const std::string& svg, const Figure& figure);
+
+}  // namespace dlo::compare

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
+
+namespace dlo::compare {
+
+/// Names of a plot's axes, by the numbers that View has.
+inline constexpr const char* axis_names = "xyz";
+
+/// One shape of a figure.
+struct Series {
+  std::string id;           ///< in the CSV
+  std::string title;        ///< in the key; empty: not there
+  std::string style;        ///< gnuplot's
+  Eigen::Matrix3Xd points;  ///< [m]; a column of NaN: a line ends before it, the next begins after
+  std::vector<double> arc_length;
+  std::vector<double> curvature;  ///< empty: none to show; NaN at the ends of polygons
+  int view = -1;                  ///< the only one that shows it, which it does not widen; or all
+};
+
+/// Which axes a plot has, to the right and up.
+struct View {
+  int right = 0;
+  int up = 1;
+};
+
+/// The plane itself if it is a coordinate plane; else two projections that share an axis, the first
+/// with gravity upright.
+/// @param points  of the rod [m]
+[[nodiscard]] std::vector<View> views_of(const Scene& scene, const Eigen::Matrix3Xd& points);
+
+/// Arc lengths [m] at which continuous rods are drawn.
+[[nodiscard]] std::vector<double> drawn_arc_lengths(double length);
+
+/// A rod as a line, with its curvature; in a plane that turns to the left is positive.
+[[nodiscard]] Series rod_series(const Reference& rod, const Scene& scene, const View& view);
+
+/// A polygon, with the curvature of its joints.
+[[nodiscard]] Series polygon_series(const Shape& shape, const Scene& scene, const View& view);
+
+/// The straight rod of a scene with a single clamp; of another nothing.
+[[nodiscard]] std::optional<Series> unbent_series(const Scene& scene);
+
+/// Grippers as points, and of each clamp a stub along its direction.
+[[nodiscard]] std::vector<Series> gripper_series(const Scene& scene);
+
+/// Points of a rod at arc lengths [m], 3 x M.
+using RodPoints = std::function<Eigen::Matrix3Xd(const std::vector<double>&)>;
+
+/// What touches a rod: points of what lies, and single ones; nothing if nothing does.
+/// @param rod  its points at arc lengths;  @param length  of the rod [m]
+[[nodiscard]] std::optional<Series> contact_series(
+    const std::vector<energy_model::ContactPart>& contacts, const RodPoints& rod, double length);
+
+/// Outlines of the obstacles in reach in each view, to be drawn behind everything: what the rod's
+/// axis stays out of.
+/// @param rod  points of what else is drawn
+[[nodiscard]] std::vector<Series> obstacle_series(const Scene& scene,
+                                                  const std::vector<View>& views,
+                                                  const Eigen::Matrix3Xd& rod);
+
+/// Series as a CSV file.
+[[nodiscard]] std::string series_csv(const std::vector<Series>& all);
+
+}  // namespace dlo::compare

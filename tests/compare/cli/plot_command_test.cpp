@@ -1,0 +1,150 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "command_fixture.hpp"
+
+namespace dlo {
+namespace {
+
+using test::Outcome;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+class PlotCommand : public test::Command {
+ protected:
+  /// Runs with --plot into an SVG or PNG; standard output is what it is without.
+  void expect_picture(const std::string& arguments, const std::string& file) const {
+    const Outcome plain = run(arguments);
+    const Outcome drawn = run(arguments + " --plot " + path(file));
+    EXPECT_EQ(drawn.status, plain.status) << drawn.err;
+    EXPECT_EQ(drawn.out, plain.out) << arguments;
+    expect_drawn(file);
+  }
+  void expect_drawn(const std::string& file) const {
+    const std::string picture = read(path(file));
+    if (file.ends_with(".svg")) {
+      EXPECT_THAT(picture, HasSubstr("</svg>")) << file;
+    } else if (file.ends_with(".png")) {
+      EXPECT_THAT(picture, StartsWith("\x89PNG")) << file;
+    } else {
+      EXPECT_THAT(picture, StartsWith("%PDF")) << file;
+    }
+    EXPECT_GT(picture.size(), 2000U) << file;
+  }
+  void SetUp() override {
+    Command::SetUp();
+    if (run_line("gnuplot --version").status != 0) GTEST_SKIP() << "there is no gnuplot";
+  }
+};
+
+TEST_F(PlotCommand, SolveDraws) {
+  const std::string solve = "solve " + steel() + " --format csv --samples 5";
+  expect_picture(solve, "a.svg");
+  expect_picture(solve, "a.png");
+  expect_picture(solve, "a.pdf");
+}
+
+TEST_F(PlotCommand, CheckDrawsAndKeepsItsVerdict) {
+  ASSERT_EQ(
+      run("solve " + steel() + " --model chain --law hooke --format csv -o " + path("mine.csv"))
+          .status,
+      0);
+  const std::string check =
+      "check " + steel() + " --no-modulus --shape " + path("mine.csv") + " --format csv";
+  expect_picture(check, "a.svg");
+  const Outcome failed =
+      run(check + " --no-explanation --tolerance 0.0001% --plot " + path("b.png"));
+  EXPECT_EQ(failed.status, 1);
+  expect_drawn("b.png");
+}
+
+TEST_F(PlotCommand, CompareDrawsEachScene) {
+  const std::string other = std::string(DLO_DATA) + "/scenes/spring_steel_135.toml";
+  for (const char* file : {"a.svg", "a.png"}) {
+    const Outcome drawn =
+        run("compare --no-modulus " + steel() + " " + other + " --plot " + path(file));
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    expect_drawn(file);
+  }
+  EXPECT_THAT(read(path("a.svg")), HasSubstr("135"));
+}
+
+TEST_F(PlotCommand, CalibrateDraws) {
+  ASSERT_EQ(run("solve " + steel() + " --samples 8 --format csv -o " + path("s.csv")).status, 0);
+  for (const char* file : {"a.svg", "a.png"}) {
+    const Outcome drawn = run("calibrate " + steel() + " --noise '1 mm' --shape " + path("s.csv") +
+                              " --plot " + path(file));
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    expect_drawn(file);
+  }
+  EXPECT_THAT(read(path("a.svg")), HasSubstr("95 % interval"));
+  expect_error("calibrate " + steel() + " --plot " + path("c.svg"), 2, {"--plot", "--shape"});
+}
+
+TEST_F(PlotCommand, BenchDraws) {
+  for (const char* file : {"a.svg", "a.png"}) {
+    const Outcome drawn =
+        run("bench " + steel() + " --seconds 0.1 --repeats 1 --plot " + path(file));
+    EXPECT_EQ(drawn.status, 0) << drawn.err;
+    expect_drawn(file);
+  }
+}
+
+TEST_F(PlotCommand, SweepDrawsLinesAndMaps) {
+  const std::string sweep = "sweep " + steel();
+  expect_picture(sweep + " --vary gamma=log:0.1:10:3", "a.svg");
+  expect_picture(sweep + " --vary gamma=log:0.1:10:3 --vary rod.length=lin:0.4:0.6:7", "b.png");
+  const Outcome filed =
+      run(sweep + " --vary gamma=1,2 -o " + path("s.csv") + " --plot " + path("c.svg"));
+  EXPECT_EQ(filed.status, 0) << filed.err;
+  expect_drawn("c.svg");
+  expect_error(
+      sweep + " --vary gamma=1 --vary rod.length=1 --vary gripper.0.at=0 --plot " + path("d.svg"),
+      2, {"--plot", "3 fields", "allowed: one or two"});
+  expect_error(sweep + " --vary gamma=1 --shard 1/2 --plot " + path("d.svg"), 2,
+               {"--plot", "shard 1/2", "allowed"});
+}
+
+TEST_F(PlotCommand, StabilityDrawsItsMap) {
+  const std::string map = "stability " + steel() + " --columns 2 --rows 3 --map-steps 50 --map ";
+  expect_picture(map + "cF-cc", "a.svg");
+  expect_picture(map + "cF-ch", "a.png");
+  expect_error("stability --case folded --plot " + path("b.svg"), 2, {"--plot", "--map"});
+}
+
+TEST_F(PlotCommand, RefusesBeforeItComputes) {
+  const std::string solve = "solve " + steel() + " --plot ";
+  expect_error(solve + path("a.jpg"), 2, {"a.jpg", "allowed", ".svg", ".png", ".pdf"});
+  expect_error(solve + path("none/a.svg"), 2, {"none/a.svg"});
+  expect_error(solve + path("a.svg") + " -o " + path("a.svg"), 2, {"written twice"});
+  expect_error("compare " + steel() + " --plot -", 2, {"--plot", "allowed"});
+  expect_error(solve + "- --format json", 2, {"--plot -", "json", "allowed"});
+  EXPECT_FALSE(std::filesystem::exists(path("a.jpg")));
+}
+
+TEST_F(PlotCommand, WithoutGnuplotSaysWhatIsMissingAndWritesNothing) {
+  const Outcome result = run_line("PATH=/nowhere " + std::string(DLO_COMMAND) + " solve " +
+                                  steel() + " --plot " + path("a.svg"));
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_THAT(result.err, HasSubstr("needs the program gnuplot"));
+  EXPECT_FALSE(std::filesystem::exists(path("a.svg")));
+}
+
+TEST_F(PlotCommand, SketchesInTheCharactersOfTheLocale) {
+  const std::string solve = std::string(DLO_COMMAND) + " solve " + steel() + " --plot -";
+  const Outcome plain = run("solve " + steel());
+  const Outcome braille = run_line("LC_ALL=C.UTF-8 " + solve);
+  const Outcome ascii = run_line("LC_ALL=C " + solve);
+  EXPECT_THAT(braille.out, StartsWith(plain.out));
+  EXPECT_THAT(braille.out, HasSubstr("\xE2\xA0"));
+  EXPECT_THAT(ascii.out, StartsWith(plain.out));
+  EXPECT_EQ(ascii.out.find('\xE2'), std::string::npos);
+  EXPECT_GT(ascii.out.size(), plain.out.size() + 60);
+}
+
+}  // namespace
+}  // namespace dlo
