@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "paper/moving.hpp"
+#include "paper/moving_reference.hpp"
 
 namespace dlo::compare {
 
@@ -23,6 +23,7 @@ struct MovingRow {
   MovingExperiment experiment;              ///< what was run
   std::optional<PrintedMovingRow> printed;  ///< none for `basic`, which has no row of its own
   MovingRun run;                            ///< what came out
+  std::optional<MovingError> error;  ///< against the moving energy model; none: not looked at
 };
 
 /// How near runs come to the printed rows.
@@ -49,10 +50,11 @@ struct MovingScanEntry {
 
 /// Tables 2 to 4, and how they depend on what the paper leaves open.
 struct MovingReport {
-  MovingChoices choices;                      ///< of `rows`
-  std::vector<MovingRow> rows;                ///< one per experiment
-  MovingDistance distance;                    ///< of `rows` from the print
-  std::vector<MovingScanEntry> scan;          ///< rows of Tables 2 and 4
+  MovingChoices choices;              ///< of `rows`
+  std::vector<MovingRow> rows;        ///< one per experiment
+  MovingDistance distance;            ///< of `rows` from the print
+  double reference_energy_error = 0;  ///< largest of the moving energy model, of its largest energy
+  std::vector<MovingScanEntry> scan;  ///< rows of Tables 2 and 4
   std::vector<MovingScanEntry> table_3_scan;  ///< rows of Table 3 against the distance
   std::vector<std::string> findings;  ///< what can be reproduced, what cannot, what was filled in
 };
