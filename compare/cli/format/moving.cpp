@@ -67,8 +67,7 @@ void add_errors(std::string& out, const compare::MovingReport& report) {
          "table", "", "shape RMS", "largest", "force RMS", "largest", "m*", "damping");
   for (const MovingRow& row : report.rows) {
     if (!row.error) continue;
-    const compare::PointReading reading =
-        compare::point_reading(row.experiment.variant, report.choices);
+    const compare::PointReading reading = compare::point_reading(row.run.c_F, row.run.c_h);
     append(out,
            "  {:<5} {:<42} {:>7.2f} % {:>7.2f} % {:>8.4f} N {:>8.4f} N {:>6.3f} g {:>7.0f} 1/s\n",
            row.printed ? row.printed->table : "-", name(row), 100 * row.error->shape_rms,
@@ -126,7 +125,7 @@ Json moving_json(const compare::MovingDistance& distance) {
           {"counters", distance.counters}};
 }
 
-Json moving_json(const std::vector<MovingRow>& rows, const MovingChoices& choices) {
+Json moving_json(const std::vector<MovingRow>& rows) {
   Json result = Json::array();
   for (const MovingRow& row : rows) {
     const compare::MovingRun& run = row.run;
@@ -147,7 +146,7 @@ Json moving_json(const std::vector<MovingRow>& rows, const MovingChoices& choice
                           {"d_m_above_l_s", row.printed->limited_steps},
                           {"average_force_N", row.printed->average_force}};
     }
-    const compare::PointReading reading = compare::point_reading(row.experiment.variant, choices);
+    const compare::PointReading reading = compare::point_reading(row.run.c_F, row.run.c_h);
     entry["reading"] = {{"point_mass_kg", reading.mass},
                         {"damping_rate_per_s", reading.damping_rate},
                         {"drag_N_s_per_m", reading.drag}};
@@ -169,7 +168,7 @@ Json moving_json(const std::vector<compare::MovingScanEntry>& scan) {
     result.push_back({{"varied", entry.varied},
                       {"choices", moving_json(entry.choices)},
                       {"distance", moving_json(entry.distance)},
-                      {"rows", moving_json(entry.rows, entry.choices)}});
+                      {"rows", moving_json(entry.rows)}});
   }
   return result;
 }
@@ -216,8 +215,7 @@ std::string moving_csv(const compare::MovingReport& report) {
       add(item, "average_force_N", row.run.average_force);
       if (row.printed) add(item, "printed_average_force_N", row.printed->average_force);
       if (!row.error) continue;
-      const compare::PointReading reading =
-          compare::point_reading(row.experiment.variant, report.choices);
+      const compare::PointReading reading = compare::point_reading(row.run.c_F, row.run.c_h);
       add(item, "point_mass_kg", reading.mass);
       add(item, "damping_rate_per_s", reading.damping_rate);
       add(item, "shape_rms_over_length", row.error->shape_rms);
@@ -238,7 +236,7 @@ std::string moving_csv(const compare::MovingReport& report) {
 Json moving_json(const compare::MovingReport& report) {
   return {{"choices", moving_json(report.choices)},
           {"nominal_steps", compare::nominal_moving_steps},
-          {"rows", moving_json(report.rows, report.choices)},
+          {"rows", moving_json(report.rows)},
           {"distance", moving_json(report.distance)},
           {"reference",
            {{"bending_stiffness_N_m2", compare::reference_bending_stiffness()},

@@ -94,9 +94,11 @@ MovingPose moving_pose(const MovingExperiment& experiment, const MovingChoices& 
 force_model::StepOptions moving_step_options(MovingVariant variant, const MovingChoices& choices) {
   using force_model::Stepper;
   force_model::StepOptions options;
-  options.policy = policy(variant == MovingVariant::basic      ? Stepper::basic
-                          : variant == MovingVariant::relative ? Stepper::relative
-                                                               : Stepper::dynamic);
+  options.policy = policy(variant == MovingVariant::basic       ? Stepper::basic
+                          : variant == MovingVariant::limited   ? Stepper::limited
+                          : variant == MovingVariant::relative  ? Stepper::relative
+                          : variant == MovingVariant::automatic ? Stepper::automatic
+                                                                : Stepper::dynamic);
   if (variant == MovingVariant::dynamic_absolute) {
     options.policy.limit = force_model::StepLimit::absolute;
   }
@@ -128,6 +130,8 @@ MovingRun run_moving_experiment(const MovingExperiment& experiment, const Moving
   }
   run.average_force /= done;
   run.average_net_force /= done;
+  run.c_F = simulation.options().c_F;
+  run.c_h = simulation.options().policy.momentum ? simulation.options().c_h : 0;
   run.steps = simulation.steps();
   run.damped_steps = simulation.damped_steps();
   run.limited_steps = simulation.limited_steps();

@@ -19,10 +19,12 @@ enum class Movement {
 
 /// How the rod is stepped.
 enum class MovingVariant {
-  basic,            ///< Formula 7
-  relative,         ///< Formula 18: the tables' rows without "dynamic"
-  dynamic,          ///< Formula 20
-  dynamic_absolute  ///< Formulas 17 and 19: "dynamic no rel. limit"
+  basic,             ///< Formula 7
+  relative,          ///< Formula 18: the tables' rows without "dynamic"
+  dynamic,           ///< Formula 20
+  dynamic_absolute,  ///< Formulas 17 and 19: "dynamic no rel. limit"
+  limited,           ///< Formula 17
+  automatic          ///< Formula 20 with c_F and c_h from linear stability
 };
 
 /// In words, for tables.
@@ -42,7 +44,9 @@ struct Choices<MovingVariant> {
       {MovingVariant::basic, "basic", ""},
       {MovingVariant::relative, "relative", ""},
       {MovingVariant::dynamic, "dynamic", ""},
-      {MovingVariant::dynamic_absolute, "dynamic no rel. limit", ""}};
+      {MovingVariant::dynamic_absolute, "dynamic no rel. limit", ""},
+      {MovingVariant::limited, "limited", ""},
+      {MovingVariant::automatic, "auto", ""}};
 };
 
 /// One row of Tables 2 to 4.
@@ -90,6 +94,8 @@ struct [[nodiscard]] MovingRun {
   double average_net_force = 0;  ///< magnitude of the spring forces' sum [N]
   double final_force = 0;        ///< as average_force, in the last frame [N]
   double final_net_force = 0;    ///< as average_net_force, in the last frame [N]
+  double c_F = 0;                ///< of the last step [m/N]
+  double c_h = 0;                ///< of the last step; 0 without dynamics [-]
 };
 
 /// Nominal steps of every experiment: 28 s at 4000 steps/s.

@@ -61,11 +61,10 @@ energy_model::MovingRod reference_rod(const MovingExperiment& experiment,
 
 }  // namespace
 
-PointReading point_reading(MovingVariant variant, const MovingChoices& choices) {
-  const force_model::StepOptions options = moving_step_options(variant, choices);
+PointReading point_reading(double c_F, double c_h) {
   PointReading result;
-  result.mass = time_step * time_step / options.c_F;
-  result.damping_rate = (1 - (options.policy.momentum ? options.c_h : 0)) / time_step;
+  result.mass = time_step * time_step / c_F;
+  result.damping_rate = (1 - c_h) / time_step;
   result.drag = result.mass * result.damping_rate;
   return result;
 }

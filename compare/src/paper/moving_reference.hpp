@@ -19,8 +19,9 @@ struct PointReading {
   double drag = 0;
 };
 
-/// Of a variant's steps, nominal_moving_steps in 28 s.
-[[nodiscard]] PointReading point_reading(MovingVariant variant, const MovingChoices& choices);
+/// Of steps with these constants, nominal_moving_steps in 28 s.
+/// @param c_F  [m/N], > 0; @param c_h  0 without dynamics [-]
+[[nodiscard]] PointReading point_reading(double c_F, double c_h);
 
 /// Share of critical damping that the reference has in its first mode, from its material: the
 /// paper says nothing of damping [-].

@@ -152,8 +152,9 @@ void add_errors(MovingReport& report) {
 }
 
 std::string reading_verdict(const MovingChoices& choices) {
-  const PointReading dynamic = point_reading(MovingVariant::dynamic, choices);
-  const PointReading without = point_reading(MovingVariant::relative, choices);
+  const double c_F = table_1().c_F * choices.length_unit;
+  const PointReading dynamic = point_reading(c_F, choices.c_h);
+  const PointReading without = point_reading(c_F, 0);
   const double points = static_cast<double>(table_1().points);
   const double real = table_1().mass / points;
   return fmt::format(
@@ -241,10 +242,13 @@ MovingDistance moving_distance(const std::vector<MovingRow>& rows) {
 
 std::vector<MovingRow> moving_rows() {
   std::vector<MovingRow> rows = read_printed_rows();
-  rows.push_back({.experiment = {Movement::rotation, false, MovingVariant::basic}});
-  for (const Movement movement : {Movement::uniform, Movement::accelerated}) {
-    for (const bool horizontal : {true, false}) {
-      rows.push_back({.experiment = {movement, horizontal, MovingVariant::basic}});
+  for (const MovingVariant variant :
+       {MovingVariant::basic, MovingVariant::limited, MovingVariant::automatic}) {
+    rows.push_back({.experiment = {Movement::rotation, false, variant}});
+    for (const Movement movement : {Movement::uniform, Movement::accelerated}) {
+      for (const bool horizontal : {true, false}) {
+        rows.push_back({.experiment = {movement, horizontal, variant}});
+      }
     }
   }
   return rows;

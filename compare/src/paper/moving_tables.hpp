@@ -21,7 +21,7 @@ struct PrintedMovingRow {
 /// An experiment as run, beside its printed row.
 struct MovingRow {
   MovingExperiment experiment;              ///< what was run
-  std::optional<PrintedMovingRow> printed;  ///< none for `basic`, which has no row of its own
+  std::optional<PrintedMovingRow> printed;  ///< none of variants without a row
   MovingRun run;                            ///< what came out
   std::optional<MovingError> error;  ///< against the moving energy model; none: not looked at
 };
@@ -59,7 +59,8 @@ struct MovingReport {
   std::vector<std::string> findings;  ///< what can be reproduced, what cannot, what was filled in
 };
 
-/// Every experiment of Section III, not yet run: the printed rows, and `basic` for each movement.
+/// Every experiment of Section III, not yet run: the printed rows, and for each movement the
+/// variants that have no row of their own.
 [[nodiscard]] std::vector<MovingRow> moving_rows();
 
 /// Runs them with the default choices, and the printed ones with each choice varied.
