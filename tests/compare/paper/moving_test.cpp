@@ -146,7 +146,7 @@ TEST(MovingReading, IsAnIdentityOnTheForceModelsSteps) {
     moved = (now - start).cwiseAbs().maxCoeff();
     ASSERT_LT((simulation.points() - now).cwiseAbs().maxCoeff(), 1e-10 * table.length) << step;
   }
-  EXPECT_GT(moved, 0.1 * table.length);
+  EXPECT_GT(moved, 0.01 * table.length);
   EXPECT_NEAR(1e3 * reading.mass, 1.513, 1e-3);
   EXPECT_NEAR(reading.damping_rate, 200, 1e-9);
   EXPECT_NEAR(point_reading(options.c_F, 0).damping_rate, 4000, 1e-9);
@@ -158,9 +158,12 @@ TEST(MovingReference, HoldsTheWeightBeforeAndAfterTheMovement) {
   EXPECT_LT(reference.energy_error, 1e-3);
   ASSERT_EQ(reference.frames.size(), reference.points.size());
   EXPECT_LT((reference.forces.back() - Eigen::Vector3d(0, moving_weight(), 0)).norm(), 1e-5);
-  // The gripper has gone its way, and the hanging rod with it.
+  // The hanging rod has gone where the gripper has.
   const Eigen::Matrix3Xd gone = reference.points.back() - reference.points.front();
-  EXPECT_LT((gone.row(0).array() - MovingChoices{}.distance).abs().maxCoeff(), 1e-4);
+  const double before =
+      moving_pose({Movement::uniform, false, {}}, {}, reference.frames.front() / 1000.0)
+          .position.x();
+  EXPECT_LT((gone.row(0).array() - MovingChoices{}.distance + before).abs().maxCoeff(), 5e-5);
   const MovingError relative =
       moving_error({Movement::uniform, false, MovingVariant::relative}, {}, reference);
   const MovingError dynamic =
