@@ -15,7 +15,7 @@ constexpr double time_step = 28.0 / nominal_moving_steps;
 /// Frames that are looked at. Where the gripper starts or stops at once the force on a rod has no
 /// bound, so none is at the begin or the end of the movement.
 constexpr int frame_stride = 50;
-constexpr int first_frame = static_cast<int>(movement_begins * 1000) + frame_stride / 2;
+constexpr int first_seen_frame = static_cast<int>(movement_begins * 1000) + frame_stride / 2;
 
 /// The clamp is half a segment ahead of the third point.
 double clamp_lead() { return table_1().segment() / 2; }
@@ -83,7 +83,7 @@ MovingReference moving_reference(const MovingExperiment& experiment, const Movin
     return result;
   }
   std::vector<double> times;
-  for (int frame = first_frame; frame < moving_frames; frame += frame_stride) {
+  for (int frame = first_seen_frame; frame < moving_frames; frame += frame_stride) {
     result.frames.push_back(frame);
     times.push_back(frame / 1000.0);
   }

@@ -17,7 +17,7 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr const char* where = "simulate";
+constexpr const char* simulate_name = "simulate";
 
 /// Each grip with a motion, and the problem as it is at the begin, cut at point masses too.
 MovingRod completed(MovingRod rod, double begin) {
@@ -36,19 +36,19 @@ MovingRod completed(MovingRod rod, double begin) {
 
 void check_rod(const MovingRod& rod) {
   check(rod.problem);
-  check(rod.problem, rod.inertia, where);
-  require(rod.motions.size() <= rod.problem.grips.size(), where, "motions.size()",
+  check(rod.problem, rod.inertia, simulate_name);
+  require(rod.motions.size() <= rod.problem.grips.size(), simulate_name, "motions.size()",
           static_cast<double>(rod.motions.size()), "no more than grips");
   const auto known = [](double x) { return x >= 0 && std::isfinite(x); };
-  require(known(rod.material_damping), where, "material_damping", rod.material_damping,
+  require(known(rod.material_damping), simulate_name, "material_damping", rod.material_damping,
           ">= 0 and finite");
-  require(known(rod.air_drag), where, "air_drag", rod.air_drag, ">= 0 and finite");
+  require(known(rod.air_drag), simulate_name, "air_drag", rod.air_drag, ">= 0 and finite");
   for (const double time : rod.breaks) {
-    require(std::isfinite(time), where, "breaks", time, "finite");
+    require(std::isfinite(time), simulate_name, "breaks", time, "finite");
   }
   for (const Obstacle& obstacle : rod.problem.obstacles) {
-    require(std::isfinite(obstacle.stiffness), where, "Obstacle::stiffness", obstacle.stiffness,
-            "finite: a moving rod meets obstacles that yield");
+    require(std::isfinite(obstacle.stiffness), simulate_name, "Obstacle::stiffness",
+            obstacle.stiffness, "finite: a moving rod meets obstacles that yield");
   }
   if (has_material_directors(rod.problem)) {
     throw std::invalid_argument(
@@ -56,21 +56,21 @@ void check_rod(const MovingRod& rod) {
         "because the twist of others has no inertia here");
   }
   for (const Grip& grip : rod.problem.grips) {
-    require(!grip.frame, where, "Grip::frame of the grip at", grip.at,
+    require(!grip.frame, simulate_name, "Grip::frame of the grip at", grip.at,
             "none: the twist of a rod has no inertia here");
   }
 }
 
 void check_options(std::span<const double> times, const DynamicsOptions& options) {
-  require(options.terms > 0 && options.terms <= max_terms, where, "terms", options.terms,
+  require(options.terms > 0 && options.terms <= max_terms, simulate_name, "terms", options.terms,
           "1 to 128");
-  require_positive(where, "tolerance", options.tolerance);
-  require(options.step >= 0 && std::isfinite(options.step), where, "step", options.step,
+  require_positive(simulate_name, "tolerance", options.tolerance);
+  require(options.step >= 0 && std::isfinite(options.step), simulate_name, "step", options.step,
           ">= 0 and finite");
-  require(options.time_limit > 0, where, "time_limit", options.time_limit, "> 0");
+  require(options.time_limit > 0, simulate_name, "time_limit", options.time_limit, "> 0");
   for (std::size_t i = 0; i < times.size(); ++i) {
-    require(std::isfinite(times[i]), where, "times", times[i], "finite");
-    require(i == 0 || times[i] > times[i - 1], where, "times", times[i], "growing");
+    require(std::isfinite(times[i]), simulate_name, "times", times[i], "finite");
+    require(i == 0 || times[i] > times[i - 1], simulate_name, "times", times[i], "growing");
   }
 }
 

@@ -10,8 +10,6 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr const char* where = "interpolated";
-
 /// Second derivatives of the cubic spline at its rows, at whose ends it stands.
 Eigen::MatrixX3d spline_curvatures(const std::vector<TimedPose>& poses) {
   const auto n = static_cast<Eigen::Index>(poses.size());
@@ -95,9 +93,10 @@ std::function<MotionValue(double)> smooth_step(double begin, double end, double 
 }
 
 GripMotion interpolated(std::vector<TimedPose> poses) {
-  require(poses.size() >= 2, where, "poses.size()", static_cast<double>(poses.size()), ">= 2");
+  require(poses.size() >= 2, "interpolated", "poses.size()", static_cast<double>(poses.size()),
+          ">= 2");
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    require(poses[i].time > poses[i - 1].time, where, "time", poses[i].time, "growing");
+    require(poses[i].time > poses[i - 1].time, "interpolated", "time", poses[i].time, "growing");
   }
   const Eigen::MatrixX3d curvatures = spline_curvatures(poses);
   return [poses = std::move(poses), curvatures](double time) {

@@ -11,7 +11,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Components across its plane that a planar span may be given, over its own units.
-constexpr double plane_rounding = 1e-10;
+constexpr double motion_plane_rounding = 1e-10;
 
 Moving turned(const Eigen::Matrix3d& by, const Moving& moving) {
   return {by * moving.value, by * moving.rate, by * moving.acceleration};
@@ -64,10 +64,10 @@ SpanDrive MovingSpan::drive(double time, bool planar, bool& left_plane) const {
     result.holds.push_back(position_of(pose(grip, seconds)));
   }
   const auto out = [&](const Eigen::Vector3d& along) {
-    return std::abs(along.z()) > plane_rounding * std::max(1.0, along.norm());
+    return std::abs(along.z()) > motion_plane_rounding * std::max(1.0, along.norm());
   };
   const auto leans = [&](const Eigen::Vector3d& about) {
-    return about.head<2>().norm() > plane_rounding * std::max(1.0, about.norm());
+    return about.head<2>().norm() > motion_plane_rounding * std::max(1.0, about.norm());
   };
   if (placed_.span.end_direction) {
     const GripPose end = pose(placed_.hold_grips.back(), seconds);
@@ -172,7 +172,7 @@ SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>
   const Eigen::Vector3d first = tangents(start, Eigen::VectorXd::Zero(1)).col(0);
   SpanDynamics model(placed_.span, pieces, options.terms, planar, first, inertia(pieces, masses));
   const Eigen::Matrix3Xd directions = tangents(start, model.nodes());
-  if (planar && directions.row(2).cwiseAbs().maxCoeff() > plane_rounding) {
+  if (planar && directions.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
     result.left_plane = true;
     return result;
   }

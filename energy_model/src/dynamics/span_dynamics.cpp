@@ -11,7 +11,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Row by row.
-Eigen::MatrixX3d cross(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b) {
+Eigen::MatrixX3d cross_rows(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b) {
   Eigen::MatrixX3d result(a.rows(), 3);
   result.col(0) = a.col(1).cwiseProduct(b.col(2)) - a.col(2).cwiseProduct(b.col(1));
   result.col(1) = a.col(2).cwiseProduct(b.col(0)) - a.col(0).cwiseProduct(b.col(2));
@@ -121,7 +121,7 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
     omega_.middleRows(row, rows).rowwise() += omega;
     omega += length * (table.weights.transpose() * spun.middleRows(row, rows));
     spun_on.middleRows(row, rows) +=
-        cross(omega_.middleRows(row, rows), spun.middleRows(row, rows));
+        cross_rows(omega_.middleRows(row, rows), spun.middleRows(row, rows));
     alpha_.middleRows(row, rows) = length * (table.integration * spun_on.middleRows(row, rows));
     alpha_.middleRows(row, rows).rowwise() += alpha;
     alpha += length * (table.weights.transpose() * spun_on.middleRows(row, rows));
@@ -133,8 +133,9 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   const Eigen::Index nodes = s_.size();
   const Eigen::MatrixX3d t = state_.t.bottomRows(nodes);
   const Eigen::MatrixX3d w = omega_.bottomRows(nodes);
-  const Eigen::MatrixX3d t_rate = cross(w, t);
-  const Eigen::MatrixX3d t_acceleration = cross(alpha_.bottomRows(nodes), t) + cross(w, t_rate);
+  const Eigen::MatrixX3d t_rate = cross_rows(w, t);
+  const Eigen::MatrixX3d t_acceleration =
+      cross_rows(alpha_.bottomRows(nodes), t) + cross_rows(w, t_rate);
   end_tangent_.value = state_.end_frame().col(2);
   end_tangent_.rate = Eigen::Vector3d(omega.transpose()).cross(end_tangent_.value);
   end_tangent_.acceleration = Eigen::Vector3d(alpha.transpose()).cross(end_tangent_.value) +

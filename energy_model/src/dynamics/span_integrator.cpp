@@ -8,7 +8,7 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr int stages = 4;
+constexpr int stage_count = 4;
 /// Newton's method ends where what a correction moves is below this share of the tolerance of a
 /// step, and of the length in any case: energy may not drift by it.
 constexpr double newton_share = 1e-4;
@@ -33,7 +33,7 @@ SpanIntegrator::SpanIntegrator(SpanDynamics& span, std::function<SpanDrive(doubl
     : span_(span),
       drive_(std::move(drive)),
       options_(options),
-      rule_(options.damped ? radau_rule(stages) : gauss_rule(stages)) {}
+      rule_(options.damped ? radau_rule(stage_count) : gauss_rule(stage_count)) {}
 
 void SpanIntegrator::take_mass(const SpanInstant& at) {
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
@@ -61,9 +61,9 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
   const Eigen::Index m = span_.constraints();
   const Eigen::MatrixXd damping = span_.damping(mass_);
   const Eigen::VectorXd stiffness = span_.stiffness();
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(stages * (n + m), stages * (n + m));
-  for (Eigen::Index i = 0; i < stages; ++i) {
-    for (Eigen::Index j = 0; j < stages; ++j) {
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(stage_count * (n + m), stage_count * (n + m));
+  for (Eigen::Index i = 0; i < stage_count; ++i) {
+    for (Eigen::Index j = 0; j < stage_count; ++j) {
       auto block = matrix.block(i * (n + m), j * (n + m), n, n);
       block = step * rule_.inner(i, j) * damping;
       block.diagonal() += step * step * rule_.twice(i, j) * stiffness;
@@ -81,15 +81,15 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
 Eigen::MatrixXd SpanIntegrator::predicted(const SpanInstant& at, double step,
                                           const Stages& known) const {
   if (!(known.step > 0) || known.end != at.time) {
-    return Eigen::MatrixXd::Zero(span_.size() + span_.constraints(), stages);
+    return Eigen::MatrixXd::Zero(span_.size() + span_.constraints(), stage_count);
   }
   return known.values * rule_.extrapolation(step / known.step).transpose();
 }
 
 /// At the points of one step, by those of two that halve it.
 Eigen::MatrixXd SpanIntegrator::joined(const Stages& first, const Stages& second) const {
-  Eigen::MatrixXd result(first.values.rows(), stages);
-  for (Eigen::Index i = 0; i < stages; ++i) {
+  Eigen::MatrixXd result(first.values.rows(), stage_count);
+  for (Eigen::Index i = 0; i < stage_count; ++i) {
     const double at = 2 * rule_.nodes[i];
     result.col(i) = at < 1 ? first.values * rule_.interpolation(at).transpose()
                            : second.values * rule_.interpolation(at - 1).transpose();
@@ -103,21 +103,21 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
   const Eigen::Index m = span_.constraints();
   ++steps_;
   std::vector<SpanDrive> drives;
-  for (Eigen::Index i = 0; i < stages; ++i) {
+  for (Eigen::Index i = 0; i < stage_count; ++i) {
     drives.push_back(drive_(at.time + rule_.nodes[i] * step));
   }
   for (const bool renew : {false, true}) {
     Factor& newton = factor(at, step, renew);
     found.values = guess;
     Eigen::MatrixXd& values = found.values;
-    std::array<SpanPower, stages> powers;
-    Eigen::VectorXd residual(stages * (n + m));
+    std::array<SpanPower, stage_count> powers;
+    Eigen::VectorXd residual(stage_count * (n + m));
     double before = std::numeric_limits<double>::infinity();
     for (int correction = 0; correction < most_corrections; ++correction) {
       const Eigen::MatrixXd v =
           (step * values.topRows(n) * rule_.inner.transpose()).colwise() + at.state.v;
       const Eigen::MatrixXd x = (step * v * rule_.inner.transpose()).colwise() + at.state.x;
-      for (Eigen::Index i = 0; i < stages; ++i) {
+      for (Eigen::Index i = 0; i < stage_count; ++i) {
         const auto stage = static_cast<std::size_t>(i);
         span_.move(drives[stage], x.col(i), v.col(i), values.col(i).head(n));
         residual.segment(i * (n + m), n) = span_.residual(values.col(i).tail(m));
@@ -125,7 +125,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
         powers[stage] = span_.power(span_.reactions(values.col(i).tail(m)));
       }
       const Eigen::VectorXd corrected = newton.lu.solve(residual);
-      const Eigen::Map<const Eigen::MatrixXd> change(corrected.data(), n + m, stages);
+      const Eigen::Map<const Eigen::MatrixXd> change(corrected.data(), n + m, stage_count);
       // Of velocities, root mean square, and of strains.
       const Eigen::MatrixXd moved = change.topRows(n);
       const double size =
@@ -139,7 +139,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
             step * at.state.v + step * step * (values.topRows(n) * rule_.last.transpose());
         at.state.v += step * (values.topRows(n) * rule_.weights);
         at.time += step;
-        for (std::size_t i = 0; i < stages; ++i) {
+        for (std::size_t i = 0; i < stage_count; ++i) {
           const double weight = step * rule_.weights[static_cast<Eigen::Index>(i)];
           at.work += weight * powers[i].grips;
           at.dissipated += weight * powers[i].dissipated;
@@ -189,7 +189,7 @@ std::string SpanIntegrator::project(SpanInstant& at) {
 
 std::string SpanIntegrator::advance(SpanInstant& at, double until,
                                     const std::function<bool()>& expired) {
-  const double order = 2 * stages + 1;
+  const double order = 2 * stage_count + 1;
   const double enough = std::clamp(newton_share * options_.tolerance, newton_least, newton_most);
   while (at.time < until) {
     if (expired()) return "time limit";

@@ -53,7 +53,7 @@ ShapeAxes shape_axes(const Eigen::Matrix3Xd& tangents) {
 }
 
 /// One span with its modes.
-struct MovingSpan {
+struct VibratingSpan {
   PlacedSpan placed;
   std::shared_ptr<SpanEnergy> model;
   SpanMotion motion;
@@ -95,7 +95,7 @@ class RodVibrations {
   /// Modes of all spans together, the slowest first.
   [[nodiscard]] std::vector<VibrationMode> modes() const {
     std::vector<VibrationMode> result;
-    for (const std::shared_ptr<const MovingSpan>& span : spans_) {
+    for (const std::shared_ptr<const VibratingSpan>& span : spans_) {
       for (Eigen::Index k = 0; k < span->modes.lambdas.size(); ++k) {
         result.push_back(mode(span, k));
       }
@@ -135,8 +135,8 @@ class RodVibrations {
     Eigen::MatrixXd hessian;
     model->hessian(found.solution.multipliers, hessian);
     const ShapeAxes axes = shape_axes(model->tangents());
-    auto span = std::make_shared<MovingSpan>(
-        MovingSpan{placed, model, SpanMotion(*model, axes.rows), {}, axes});
+    auto span = std::make_shared<VibratingSpan>(
+        VibratingSpan{placed, model, SpanMotion(*model, axes.rows), {}, axes});
     const double l = problem_.length;
     const auto per_length = [&](Eigen::Index e) {
       const Piece& piece = model->piece(e);
@@ -154,7 +154,7 @@ class RodVibrations {
     spans_.push_back(std::move(span));
   }
 
-  [[nodiscard]] VibrationMode mode(const std::shared_ptr<const MovingSpan>& span,
+  [[nodiscard]] VibrationMode mode(const std::shared_ptr<const VibratingSpan>& span,
                                    Eigen::Index k) const {
     const double l = problem_.length;
     VibrationMode result;
@@ -203,7 +203,7 @@ class RodVibrations {
   Eigen::Index count_;
   Deadline deadline_;
   SpanWorkspace workspace_;
-  std::vector<std::shared_ptr<const MovingSpan>> spans_;
+  std::vector<std::shared_ptr<const VibratingSpan>> spans_;
   double farthest_ = 0;  // component by which tangents are not the known shape's
 };
 
