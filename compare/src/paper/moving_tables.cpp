@@ -155,7 +155,7 @@ std::string reading_verdict(const MovingChoices& choices) {
   const double c_F = table_1().c_F * choices.length_unit;
   const PointReading dynamic = point_reading(c_F, choices.c_h);
   const PointReading without = point_reading(c_F, 0);
-  const double points = static_cast<double>(table_1().points);
+  const auto points = static_cast<double>(table_1().points);
   const double real = table_1().mass / points;
   return fmt::format(
       "Formula 19 is Stoermer-Verlet for points of mass m* = dt^2/c_F with damping rate (1 - "
