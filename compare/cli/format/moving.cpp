@@ -59,6 +59,23 @@ void add_rows(std::string& out, const std::vector<MovingRow>& rows) {
   }
 }
 
+/// Against the moving energy model, and what the points are, read as physics.
+void add_errors(std::string& out, const compare::MovingReport& report) {
+  append(out,
+         "\nAgainst the moving energy model, and Formula 19 read as points of mass m* = dt^2/c_F\n"
+         "  {:<5} {:<42} {:>9} {:>9} {:>10} {:>10} {:>8} {:>11}\n",
+         "table", "", "shape RMS", "largest", "force RMS", "largest", "m*", "damping");
+  for (const MovingRow& row : report.rows) {
+    if (!row.error) continue;
+    const compare::PointReading reading = compare::point_reading(row.run.c_F, row.run.c_h);
+    append(out,
+           "  {:<5} {:<42} {:>7.2f} % {:>7.2f} % {:>8.4f} N {:>8.4f} N {:>6.3f} g {:>7.0f} 1/s\n",
+           row.printed ? row.printed->table : "-", name(row), 100 * row.error->shape_rms,
+           100 * row.error->shape_max, row.error->force_rms, row.error->force_max,
+           1e3 * reading.mass, reading.damping_rate);
+  }
+}
+
 std::string factor(const compare::MovingDistance& distance) {
   return std::isfinite(distance.force_factor) ? fmt::format("{:.3f}", distance.force_factor)
                                               : std::string("no end");
@@ -129,6 +146,17 @@ Json moving_json(const std::vector<MovingRow>& rows) {
                           {"d_m_above_l_s", row.printed->limited_steps},
                           {"average_force_N", row.printed->average_force}};
     }
+    const compare::PointReading reading = compare::point_reading(row.run.c_F, row.run.c_h);
+    entry["reading"] = {{"point_mass_kg", reading.mass},
+                        {"damping_rate_per_s", reading.damping_rate},
+                        {"drag_N_s_per_m", reading.drag}};
+    if (row.error) {
+      // Errors that are not finite become null.
+      entry["error"] = {{"shape_rms_over_length", row.error->shape_rms},
+                        {"shape_max_over_length", row.error->shape_max},
+                        {"force_rms_N", row.error->force_rms},
+                        {"force_max_N", row.error->force_max}};
+    }
     result.push_back(std::move(entry));
   }
   return result;
@@ -159,6 +187,7 @@ std::string moving_text(const compare::MovingReport& report) {
          choices.distance * 100, choices.c_h, choices.c_s_change, choices.length_unit,
          choices.grip_force);
   add_rows(out, report.rows);
+  add_errors(out, report);
   append(out,
          "\nAverage forces are off by a factor {}, {} of {} counters are within 10 % of the print."
          "\n\nOne choice varied at a time, Tables 2 and 4: average force and steps beyond the "
@@ -185,6 +214,14 @@ std::string moving_csv(const compare::MovingReport& report) {
       add(item, "d_m_above_l_s", static_cast<double>(row.run.limited_steps));
       add(item, "average_force_N", row.run.average_force);
       if (row.printed) add(item, "printed_average_force_N", row.printed->average_force);
+      if (!row.error) continue;
+      const compare::PointReading reading = compare::point_reading(row.run.c_F, row.run.c_h);
+      add(item, "point_mass_kg", reading.mass);
+      add(item, "damping_rate_per_s", reading.damping_rate);
+      add(item, "shape_rms_over_length", row.error->shape_rms);
+      add(item, "shape_max_over_length", row.error->shape_max);
+      add(item, "force_rms_N", row.error->force_rms);
+      add(item, "force_max_N", row.error->force_max);
     }
   };
   add_rows("none", report.rows);
@@ -201,6 +238,12 @@ Json moving_json(const compare::MovingReport& report) {
           {"nominal_steps", compare::nominal_moving_steps},
           {"rows", moving_json(report.rows)},
           {"distance", moving_json(report.distance)},
+          {"reference",
+           {{"bending_stiffness_N_m2", compare::reference_bending_stiffness()},
+            {"mass_kg", compare::table_1().mass},
+            {"weight_N", compare::moving_weight()},
+            {"damping_ratio", compare::reference_damping_ratio},
+            {"energy_error", report.reference_energy_error}}},
           {"scan", moving_json(report.scan)},
           {"table_3_scan", moving_json(report.table_3_scan)},
           {"findings", report.findings}};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <functional>
 #include <numbers>
 
 #include "dlo/compare/choice.hpp"
@@ -17,10 +19,12 @@ enum class Movement {
 
 /// How the rod is stepped.
 enum class MovingVariant {
-  basic,            ///< Formula 7
-  relative,         ///< Formula 18: the tables' rows without "dynamic"
-  dynamic,          ///< Formula 20
-  dynamic_absolute  ///< Formulas 17 and 19: "dynamic no rel. limit"
+  basic,             ///< Formula 7
+  relative,          ///< Formula 18: the tables' rows without "dynamic"
+  dynamic,           ///< Formula 20
+  dynamic_absolute,  ///< Formulas 17 and 19: "dynamic no rel. limit"
+  limited,           ///< Formula 17
+  automatic          ///< Formula 20 with c_F and c_h from linear stability
 };
 
 /// In words, for tables.
@@ -40,7 +44,9 @@ struct Choices<MovingVariant> {
       {MovingVariant::basic, "basic", ""},
       {MovingVariant::relative, "relative", ""},
       {MovingVariant::dynamic, "dynamic", ""},
-      {MovingVariant::dynamic_absolute, "dynamic no rel. limit", ""}};
+      {MovingVariant::dynamic_absolute, "dynamic no rel. limit", ""},
+      {MovingVariant::limited, "limited", ""},
+      {MovingVariant::automatic, "auto", ""}};
 };
 
 /// One row of Tables 2 to 4.
@@ -88,10 +94,41 @@ struct [[nodiscard]] MovingRun {
   double average_net_force = 0;  ///< magnitude of the spring forces' sum [N]
   double final_force = 0;        ///< as average_force, in the last frame [N]
   double final_net_force = 0;    ///< as average_net_force, in the last frame [N]
+  double c_F = 0;                ///< of the last step [m/N]
+  double c_h = 0;                ///< of the last step; 0 without dynamics [-]
 };
 
 /// Nominal steps of every experiment: 28 s at 4000 steps/s.
 inline constexpr long nominal_moving_steps = 112000;
+
+/// Where the gripper is, and along which direction it holds the rod, with rates by time.
+struct MovingPose {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();      ///< of the third point [m]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      ///< [m/s]
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< [m/s^2]
+  double angle = 0;                                        ///< of the direction, from +x [rad]
+  double angle_rate = 0;                                   ///< [rad/s]
+
+  /// Along growing arc length, unit [-].
+  [[nodiscard]] Eigen::Vector3d direction() const;
+};
+
+/// The gripper's pose; at the begin and the end of the movement with the rates after them.
+/// @param time  [s]
+[[nodiscard]] MovingPose moving_pose(const MovingExperiment& experiment,
+                                     const MovingChoices& choices, double time);
+
+inline constexpr double movement_begins = 5;  ///< [s]
+inline constexpr double movement_ends = 13;   ///< [s]
+inline constexpr int moving_frames = 28000;   ///< at 1 kHz, Section II.B
+inline constexpr int gripped_point = 2;       ///< index of the third point
+
+/// The rod's loads and masses, Table 1's: w l [N], as N points of the printed weight.
+[[nodiscard]] double moving_weight();
+
+/// A frame of a run: its number, points [m] (3 x N), and the spring forces' sum [N].
+using MovingObserver =
+    std::function<void(int frame, const Eigen::Matrix3Xd& points, const Eigen::Vector3d& force)>;
 
 /// Constants of one step for a variant: Table 1's, with what the choices fill in.
 [[nodiscard]] force_model::StepOptions moving_step_options(MovingVariant variant,
@@ -101,7 +138,9 @@ inline constexpr long nominal_moving_steps = 112000;
 /// loop of Text 1. A spring grip holds the third and the fourth point: the third alone could not
 /// turn the rod. A run that needs 5/4 of the nominal steps is given up; its averages are over the
 /// frames that it reached.
+/// @param observe  sees every frame after its steps; null: nothing
 /// @throws std::invalid_argument if a choice is out of range
-MovingRun run_moving_experiment(const MovingExperiment& experiment, const MovingChoices& choices);
+MovingRun run_moving_experiment(const MovingExperiment& experiment, const MovingChoices& choices,
+                                const MovingObserver& observe = {});
 
 }  // namespace dlo::compare

@@ -11,6 +11,7 @@
 #include "base/sized_samples.hpp"
 #include "problem/rod_law.hpp"
 #include "search/known_shape.hpp"
+#include "vibration/inertia.hpp"
 #include "vibration/span_modes.hpp"
 #include "vibration/span_motion.hpp"
 
@@ -27,34 +28,8 @@ constexpr double found_again = 1e-6;
 /// Of omega_squared, over EI / (m l^3): what is less is a rod that turns for nothing, and rounding.
 constexpr double neutral_share = 1e-2;
 
-double total_mass(const Problem& problem, const Inertia& inertia) {
-  double mass = inertia.mass_per_length * problem.length;
-  for (std::size_t i = 0; i < problem.sections.size(); ++i) {
-    mass += (inertia.of_sections[i] - inertia.mass_per_length) *
-            (problem.sections[i].end - problem.sections[i].begin);
-  }
-  for (const PointMass& point : inertia.point_masses) mass += point.mass;
-  return mass;
-}
-
-void check_inertia(const Problem& problem, const Inertia& inertia,
-                   const VibrationOptions& options) {
-  const auto known = [](double mass) { return mass >= 0 && std::isfinite(mass); };
+void check_options(const VibrationOptions& options) {
   const char* where = "vibrations";
-  require(known(inertia.mass_per_length), where, "mass_per_length", inertia.mass_per_length,
-          ">= 0 and finite");
-  require(inertia.of_sections.size() == problem.sections.size(), where, "of_sections.size()",
-          static_cast<double>(inertia.of_sections.size()), "as many as sections");
-  for (const double mass : inertia.of_sections) {
-    require(known(mass), where, "of_sections", mass, ">= 0 and finite");
-  }
-  for (const PointMass& point : inertia.point_masses) {
-    require(known(point.mass), where, "point_masses", point.mass, ">= 0 and finite");
-    require(point.at >= 0 && point.at <= problem.length, where, "point_masses", point.at,
-            "on the rod");
-  }
-  const double total = total_mass(problem, inertia);
-  require(total > 0, where, "mass of the rod and what hangs on it", total, "> 0");
   require(options.count > 0, where, "count", options.count, "> 0");
   require(options.tolerance > 0, where, "tolerance", options.tolerance, "> 0");
   require(options.time_limit > 0, where, "time_limit", options.time_limit, "> 0");
@@ -78,7 +53,7 @@ ShapeAxes shape_axes(const Eigen::Matrix3Xd& tangents) {
 }
 
 /// One span with its modes.
-struct MovingSpan {
+struct VibratingSpan {
   PlacedSpan placed;
   std::shared_ptr<SpanEnergy> model;
   SpanMotion motion;
@@ -120,7 +95,7 @@ class RodVibrations {
   /// Modes of all spans together, the slowest first.
   [[nodiscard]] std::vector<VibrationMode> modes() const {
     std::vector<VibrationMode> result;
-    for (const std::shared_ptr<const MovingSpan>& span : spans_) {
+    for (const std::shared_ptr<const VibratingSpan>& span : spans_) {
       for (Eigen::Index k = 0; k < span->modes.lambdas.size(); ++k) {
         result.push_back(mode(span, k));
       }
@@ -146,15 +121,6 @@ class RodVibrations {
   }
 
  private:
-  [[nodiscard]] double mass_per_length(double at) const {
-    for (std::size_t i = 0; i < problem_.sections.size(); ++i) {
-      if (at > problem_.sections[i].begin && at < problem_.sections[i].end) {
-        return inertia_.of_sections[i];
-      }
-    }
-    return inertia_.mass_per_length;
-  }
-
   void add(const PlacedSolution& found) {
     const PlacedSpan& placed = found.placed;
     const std::shared_ptr<SpanEnergy>& model = found.solution.model;
@@ -169,13 +135,14 @@ class RodVibrations {
     Eigen::MatrixXd hessian;
     model->hessian(found.solution.multipliers, hessian);
     const ShapeAxes axes = shape_axes(model->tangents());
-    auto span = std::make_shared<MovingSpan>(
-        MovingSpan{placed, model, SpanMotion(*model, axes.rows), {}, axes});
+    auto span = std::make_shared<VibratingSpan>(
+        VibratingSpan{placed, model, SpanMotion(*model, axes.rows), {}, axes});
     const double l = problem_.length;
     const auto per_length = [&](Eigen::Index e) {
       const Piece& piece = model->piece(e);
       const double middle = piece.begin + piece.length / 2;
-      return l * mass_per_length(placed.start + (placed.reversed ? -middle : middle) * l);
+      const double at = placed.start + (placed.reversed ? -middle : middle) * l;
+      return l * mass_per_length(problem_, inertia_, at);
     };
     std::vector<SpanMass> points;
     for (const PointMass& point : inertia_.point_masses) {
@@ -187,7 +154,7 @@ class RodVibrations {
     spans_.push_back(std::move(span));
   }
 
-  [[nodiscard]] VibrationMode mode(const std::shared_ptr<const MovingSpan>& span,
+  [[nodiscard]] VibrationMode mode(const std::shared_ptr<const VibratingSpan>& span,
                                    Eigen::Index k) const {
     const double l = problem_.length;
     VibrationMode result;
@@ -236,7 +203,7 @@ class RodVibrations {
   Eigen::Index count_;
   Deadline deadline_;
   SpanWorkspace workspace_;
-  std::vector<std::shared_ptr<const MovingSpan>> spans_;
+  std::vector<std::shared_ptr<const VibratingSpan>> spans_;
   double farthest_ = 0;  // component by which tangents are not the known shape's
 };
 
@@ -247,7 +214,8 @@ double VibrationMode::omega() const { return std::sqrt(omega_squared); }
 Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
                       const VibrationOptions& options) {
   check(problem);
-  check_inertia(problem, inertia, options);
+  check(problem, inertia, "vibrations");
+  check_options(options);
   Vibrations result;
   result.status = SolveStatus::failed;
   if (!known.sample) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dlo/force_model/simulation.hpp"
+#include "paper/moving_reference.hpp"
 #include "paper/moving_tables.hpp"
 
 namespace dlo::compare {
@@ -105,12 +107,75 @@ TEST(MovingExperiment, IsUnstableWithTable1InMetres) {
   EXPECT_EQ(metres.status, MovingStatus::diverged);
 }
 
+// Formula 19 is Stoermer-Verlet for points of mass m* with damping rate (1 - c_h)/dt: the steps of
+// the force model against that method, by the model's forces alone.
+TEST(MovingReading, IsAnIdentityOnTheForceModelsSteps) {
+  force_model::Rod rod;
+  const Table1& table = table_1();
+  rod.rest_lengths = Eigen::VectorXd::Constant(table.points - 1, table.segment());
+  rod.c_c = table.c_c;
+  rod.bending = {force_model::BendingLaw::paper, table.c_b};
+  rod.loads.setZero(3, table.points);
+  rod.loads.row(1).setConstant(-table.point_weight);
+  Eigen::Matrix3Xd start = Eigen::Matrix3Xd::Zero(3, table.points);
+  for (Eigen::Index i = 0; i < table.points; ++i) {
+    const auto at = static_cast<double>(i);
+    start.col(i) << 0.98 * table.segment() * at, 1e-3 * std::sin(at), 5e-4 * std::cos(2 * at);
+  }
+  const MovingChoices choices;
+  force_model::StepOptions options = moving_step_options(MovingVariant::dynamic, choices);
+  options.policy.limit = force_model::StepLimit::none;
+  options.policy.damping = false;
+  force_model::Simulation simulation(rod, start, options);
+  const PointReading reading = point_reading(options.c_F, options.c_h);
+  const double dt = 1.0 / 4000;
+  Eigen::Matrix3Xd before = start;
+  Eigen::Matrix3Xd now = start;
+  Eigen::Matrix3Xd forces(3, table.points);
+  double moved = 0;
+  for (int step = 0; step < 200; ++step) {
+    (void)simulation.step();
+    forces.setZero();
+    force_model::total_forces(rod, now, forces);
+    const Eigen::Matrix3Xd velocity = (now - before) / dt;
+    const Eigen::Matrix3Xd acceleration =
+        (forces - reading.mass * reading.damping_rate * velocity) / reading.mass;
+    const Eigen::Matrix3Xd next = 2 * now - before + dt * dt * acceleration;
+    before = now;
+    now = next;
+    moved = (now - start).cwiseAbs().maxCoeff();
+    ASSERT_LT((simulation.points() - now).cwiseAbs().maxCoeff(), 1e-10 * table.length) << step;
+  }
+  EXPECT_GT(moved, 0.01 * table.length);
+  EXPECT_NEAR(1e3 * reading.mass, 1.513, 1e-3);
+  EXPECT_NEAR(reading.damping_rate, 200, 1e-9);
+  EXPECT_NEAR(point_reading(options.c_F, 0).damping_rate, 4000, 1e-9);
+}
+
+TEST(MovingReference, HoldsTheWeightBeforeAndAfterTheMovement) {
+  const MovingReference reference = moving_reference({Movement::uniform, false, {}}, {});
+  ASSERT_TRUE(reference.converged) << reference.message;
+  EXPECT_LT(reference.energy_error, 1e-3);
+  ASSERT_EQ(reference.frames.size(), reference.points.size());
+  EXPECT_LT((reference.forces.back() - Eigen::Vector3d(0, moving_weight(), 0)).norm(), 1e-5);
+  // The hanging rod has gone where the gripper has.
+  const Eigen::RowVectorXd across = reference.points.back().row(0);
+  EXPECT_LT((across.array() - MovingChoices{}.distance).abs().maxCoeff(), 1e-5);
+  const MovingError relative =
+      moving_error({Movement::uniform, false, MovingVariant::relative}, {}, reference);
+  const MovingError dynamic =
+      moving_error({Movement::uniform, false, MovingVariant::dynamic}, {}, reference);
+  EXPECT_LT(dynamic.shape_rms, relative.shape_rms);
+  EXPECT_LT(dynamic.force_rms, relative.force_rms);
+  EXPECT_LE(dynamic.shape_rms, dynamic.shape_max);
+}
+
 TEST(MovingReport, PutsPrintedNumbersBesideItsOwn) {
   std::vector<MovingRow> rows = moving_rows();
   const auto printed =
       std::count_if(rows.begin(), rows.end(), [](const auto& row) { return row.printed; });
   EXPECT_EQ(printed, 11);
-  EXPECT_EQ(rows.size(), 16U);
+  EXPECT_EQ(rows.size(), 26U);
   EXPECT_EQ(rows[0].printed->steps, 116121);
   EXPECT_EQ(rows[2].experiment.variant, MovingVariant::dynamic_absolute);
   // What is printed is at no distance from itself.

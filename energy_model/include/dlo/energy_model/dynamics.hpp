@@ -1,0 +1,112 @@
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "dlo/energy_model/grip_motion.hpp"
+#include "dlo/energy_model/problem.hpp"
+#include "dlo/energy_model/status.hpp"
+#include "dlo/energy_model/vibrations.hpp"
+
+namespace dlo::energy_model {
+
+/// A rod that moves: what Problem says of it at rest, its masses, what its grips do, and what takes
+/// energy from it. Its points obey
+///     rho A r'' + c r' = w + N_s,   M_s + t x N = 0,   M = t x (EI t_s + tau EI t_s')
+/// (primes: by time, s: by arc length), |t| = 1.
+struct MovingRod {
+  Problem problem;  ///< loads and weight stay; poses of grips that have a motion are those of it
+  Inertia inertia;  ///< what `problem`'s weights do not say
+  std::vector<GripMotion> motions;  ///< by grip; empty, or null for one: it stands
+  double material_damping = 0;      ///< tau of Kelvin-Voigt [s], >= 0
+  double air_drag = 0;              ///< c, force per length and velocity [N s/m^2], >= 0
+  std::vector<double> breaks;       ///< times at which a motion is not smooth [s]
+};
+
+/// The shape that motion begins with: samples at arc lengths, of which the tangents count.
+/// Equilibrium::sample is one. Grips have to hold it nearly: it is moved to where they do.
+using StartingShape = std::function<Samples(std::span<const double>)>;
+
+/// A straight rod along a direction, to start from.
+[[nodiscard]] StartingShape straight_rod(const Eigen::Vector3d& direction);
+
+/// What a moving rod has and has done, up to one time [J].
+struct EnergyBalance {
+  double kinetic = 0;    ///< of the points' movement
+  double bending = 0;    ///< int 1/2 EI kappa^2 ds
+  double gravity = 0;    ///< of the rod's weight; zero where points sit at the first grip at time 0
+  double load = 0;       ///< of dead loads, the same
+  double obstacles = 0;  ///< of the springs of what yields
+  double dissipated = 0;  ///< since the begin, in the material and in the air
+  double work = 0;        ///< since the begin, of the grips on the rod
+
+  /// kinetic + bending + gravity + load + obstacles.
+  [[nodiscard]] double total() const { return kinetic + bending + gravity + load + obstacles; }
+};
+
+/// A rod at one time.
+struct MovingFrame {
+  double time = 0;                         ///< [s]
+  EnergyBalance energy;                    ///< of all of the rod
+  std::vector<Reaction> grips;             ///< in the order of Problem::grips
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each obstacle on the rod [N]
+  /// The shape at arc lengths within [0, length] [m].
+  std::function<Samples(std::span<const double>)> sample;
+};
+
+/// Outcome of a simulation.
+struct [[nodiscard]] Dynamics {
+  SolveStatus status = SolveStatus::not_run;  ///< `converged`: to the last time, as asked
+  std::string message = "never ran";          ///< the same in words
+  std::vector<MovingFrame> frames;            ///< at the times that were asked for and reached
+  int terms = 0;                              ///< of each piece and field
+  long steps = 0;                             ///< of the integrator, all spans, those repeated too
+  double smallest_step = std::numeric_limits<double>::infinity();  ///< [s]
+  /// Sum over the steps of what halving a step changed: root mean square of the points'
+  /// displacement over the length. NaN with a fixed step, which is not halved.
+  double error_estimate = std::numeric_limits<double>::quiet_NaN();
+  /// Largest |total - total at the begin + dissipated - work| of the frames, over
+  /// `largest_energy`.
+  double energy_error = std::numeric_limits<double>::infinity();
+  /// Of the frames: the largest kinetic, bending, obstacles', dissipated energy or work, or change
+  /// of gravity and load [J].
+  double largest_energy = 0;
+};
+
+/// How exact a simulation is.
+struct DynamicsOptions {
+  int terms = 12;  ///< of each piece and field, > 0; converged if more do not change the result
+  /// Of one step: root mean square of the displacement by which a step differs from two of half the
+  /// size, over the length, and what the energy balance of the two misses, over the largest energy
+  /// so far. The two are kept, and their displacement is better by orders of magnitude.
+  double tolerance = 1e-7;
+  /// [s]; 0: chosen by the tolerance. A fixed one keeps the method symmetric in time, so that an
+  /// undamped rod's energy does not drift.
+  double step = 0;
+  bool spatial = false;  ///< whether a rod whose grips and forces share a plane may leave it
+  double time_limit = std::numeric_limits<double>::infinity();  ///< wall time [s], > 0
+};
+
+/// Motion of an inextensible round straight rod from a shape at rest, whose strains do not change
+/// at first: its grips carry it along.
+///
+/// Unknowns: strains in orthonormal Legendre polynomials on each piece between grips, loads, point
+/// masses and sections, as in solve_energy(), in axes that turn with the clamp that a span begins
+/// at, with which the material turns. By time: collocation at the four points of Gauss' rule (order
+/// eight, symmetric, A-stable), or with damping of the material Radau's IIA (order seven,
+/// L-stable), its equations solved by Newton's method. Other grips of a span are
+/// constraints, which hold for accelerations at the points of the rule, and by projection for
+/// positions and velocities after each step. Cross-sections have no inertia, so that twist does
+/// nothing.
+/// @param times  to give frames at [s], growing, the first one >= 0; motion begins at 0 or, if the
+/// first one is below zero, there
+/// @throws std::invalid_argument if something is out of range; if the problem has rigid obstacles
+/// (give them a stiffness), frames that clamps hold, natural strains or two bending stiffnesses,
+/// whose twist has no inertia here
+Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<const double> times,
+                  const DynamicsOptions& options = {});
+
+}  // namespace dlo::energy_model

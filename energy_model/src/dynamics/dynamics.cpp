@@ -1,0 +1,219 @@
+#include "dlo/energy_model/dynamics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+#include "base/legendre.hpp"
+#include "base/require.hpp"
+#include "base/sized_samples.hpp"
+#include "dynamics/moving_span.hpp"
+#include "problem/ordered_grips.hpp"
+#include "problem/rod_law.hpp"
+#include "vibration/inertia.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr const char* simulate_name = "simulate";
+
+/// Each grip with a motion, and the problem as it is at the begin, cut at point masses too.
+MovingRod completed(MovingRod rod, double begin) {
+  Problem& problem = rod.problem;
+  rod.motions.resize(problem.grips.size());
+  for (std::size_t i = 0; i < problem.grips.size(); ++i) {
+    Grip& grip = problem.grips[i];
+    if (!rod.motions[i]) rod.motions[i] = standing(grip.position);
+    const GripPose pose = rod.motions[i](begin);
+    grip.position = pose.position;
+    if (grip.direction) grip.direction = (pose.turn.normalized() * *grip.direction).eval();
+  }
+  for (const PointMass& mass : rod.inertia.point_masses) problem.loads.push_back({mass.at});
+  return rod;
+}
+
+void check_rod(const MovingRod& rod) {
+  check(rod.problem);
+  check(rod.problem, rod.inertia, simulate_name);
+  require(rod.motions.size() <= rod.problem.grips.size(), simulate_name, "motions.size()",
+          static_cast<double>(rod.motions.size()), "no more than grips");
+  const auto known = [](double x) { return x >= 0 && std::isfinite(x); };
+  require(known(rod.material_damping), simulate_name, "material_damping", rod.material_damping,
+          ">= 0 and finite");
+  require(known(rod.air_drag), simulate_name, "air_drag", rod.air_drag, ">= 0 and finite");
+  for (const double time : rod.breaks) {
+    require(std::isfinite(time), simulate_name, "breaks", time, "finite");
+  }
+  for (const Obstacle& obstacle : rod.problem.obstacles) {
+    require(std::isfinite(obstacle.stiffness), simulate_name, "Obstacle::stiffness",
+            obstacle.stiffness, "finite: a moving rod meets obstacles that yield");
+  }
+  if (has_material_directors(rod.problem)) {
+    throw std::invalid_argument(
+        "simulate: natural_strains or bending_stiffness_2 given, must be a round straight rod, "
+        "because the twist of others has no inertia here");
+  }
+  for (const Grip& grip : rod.problem.grips) {
+    require(!grip.frame, simulate_name, "Grip::frame of the grip at", grip.at,
+            "none: the twist of a rod has no inertia here");
+  }
+}
+
+void check_options(std::span<const double> times, const DynamicsOptions& options) {
+  require(options.terms > 0 && options.terms <= max_terms, simulate_name, "terms", options.terms,
+          "1 to 128");
+  require_positive(simulate_name, "tolerance", options.tolerance);
+  require(options.step >= 0 && std::isfinite(options.step), simulate_name, "step", options.step,
+          ">= 0 and finite");
+  require(options.time_limit > 0, simulate_name, "time_limit", options.time_limit, "> 0");
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    require(std::isfinite(times[i]), simulate_name, "times", times[i], "finite");
+    require(i == 0 || times[i] > times[i - 1], simulate_name, "times", times[i], "growing");
+  }
+}
+
+/// The point masses of each span; one at a clamp between two is in the first of them.
+std::vector<std::vector<PointMass>> masses_by_span(const MovingRod& rod,
+                                                   const std::vector<PlacedSpan>& spans) {
+  std::vector<std::vector<PointMass>> result(spans.size());
+  for (const PointMass& mass : rod.inertia.point_masses) {
+    for (std::size_t i = 0; i < spans.size(); ++i) {
+      const double s = spans[i].s_of(mass.at, rod.problem.length);
+      constexpr double rounding = 1e-9;
+      if (s < -rounding || s > spans[i].span.length + rounding) continue;
+      result[i].push_back(mass);
+      break;
+    }
+  }
+  return result;
+}
+
+void add(const EnergyBalance& of, EnergyBalance& to) {
+  to.kinetic += of.kinetic;
+  to.bending += of.bending;
+  to.gravity += of.gravity;
+  to.load += of.load;
+  to.obstacles += of.obstacles;
+  to.dissipated += of.dissipated;
+  to.work += of.work;
+}
+
+/// Spans count gravity and loads from their own anchors.
+void move_zero(const MovingRod& rod, const std::vector<PlacedSpan>& spans, EnergyBalance& energy) {
+  const double l = rod.problem.length;
+  const double force = bending_unit(rod.problem) / (l * l);
+  for (const PlacedSpan& placed : spans) {
+    const Eigen::Vector3d apart =
+        placed.frame * (placed.anchor_position - spans.front().anchor_position);
+    energy.gravity -= force * apart.dot(placed.span.weight_between(0, placed.span.length));
+    for (const Span::Load& load : placed.span.loads) energy.load -= force * apart.dot(load.force);
+  }
+}
+
+/// What hangs on a clamp itself is carried by nothing else.
+void add_loads_on_clamps(const MovingRod& rod, double begin, MovingFrame& frame) {
+  for (const Load& load : rod.problem.loads) {
+    const std::optional<std::size_t> clamp = clamp_under(rod.problem, load);
+    if (!clamp) continue;
+    const Eigen::Vector3d moved =
+        rod.motions[*clamp](frame.time).position - rod.motions[*clamp](begin).position;
+    frame.grips[*clamp].force -= load.force;
+    frame.energy.load -= load.force.dot(moved);
+    frame.energy.work -= load.force.dot(moved);
+  }
+}
+
+double of_largest(const EnergyBalance& energy, const EnergyBalance& first) {
+  return std::max({energy.kinetic, energy.bending, energy.obstacles, energy.dissipated,
+                   std::abs(energy.work), std::abs(energy.gravity - first.gravity),
+                   std::abs(energy.load - first.load)});
+}
+
+}  // namespace
+
+StartingShape straight_rod(const Eigen::Vector3d& direction) {
+  require_positive("straight_rod", "direction's length", direction.norm());
+  return [unit = direction.normalized().eval()](std::span<const double> arc_lengths) {
+    Samples samples;
+    samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
+    const auto count = static_cast<Eigen::Index>(arc_lengths.size());
+    samples.points.resize(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      samples.points.col(i) = arc_lengths[static_cast<std::size_t>(i)] * unit;
+    }
+    samples.tangents = unit.replicate(1, count);
+    samples.curvature = Eigen::Matrix3Xd::Zero(3, count);
+    return samples;
+  };
+}
+
+Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<const double> times,
+                  const DynamicsOptions& options) {
+  check_rod(rod);
+  check_options(times, options);
+  const Deadline deadline(options.time_limit);
+  const double begin = times.empty() ? 0 : std::min(0.0, times.front());
+  const MovingRod complete = completed(rod, begin);
+  const std::vector<PlacedSpan> spans = split(complete.problem);
+  const std::vector<std::vector<PointMass>> masses = masses_by_span(complete, spans);
+
+  Dynamics result;
+  result.terms = options.terms;
+  result.status = SolveStatus::converged;
+  result.message = to_string(result.status);
+  result.error_estimate = 0;
+  std::vector<SpanRun> runs;
+  for (std::size_t i = 0; i < spans.size(); ++i) {
+    const MovingSpan span(complete, spans[i], begin);
+    const bool planar = span.may_be_planar() && !options.spatial;
+    SpanRun run = span.run(start, masses[i], times, options, planar, deadline);
+    if (run.left_plane) run = span.run(start, masses[i], times, options, false, deadline);
+    result.steps += run.steps;
+    result.smallest_step = std::min(result.smallest_step, run.smallest_step);
+    result.error_estimate += run.error;
+    if (run.status != SolveStatus::converged) {
+      result.status = run.status;
+      result.message = run.message;
+    }
+    runs.push_back(std::move(run));
+  }
+  if (options.step > 0) result.error_estimate = std::numeric_limits<double>::quiet_NaN();
+  std::size_t reached = times.size() + 1;
+  for (const SpanRun& run : runs) reached = std::min(reached, run.frames.size());
+  EnergyBalance first;
+  double largest_miss = 0;
+  for (std::size_t k = 0; k < reached; ++k) {
+    MovingFrame frame;
+    frame.time = k == 0 ? begin : times[k - 1];
+    frame.grips.resize(complete.problem.grips.size());
+    frame.obstacles.assign(complete.problem.obstacles.size(), Eigen::Vector3d::Zero());
+    auto shapes = std::make_shared<std::vector<PlacedShape>>();
+    for (const SpanRun& run : runs) {
+      const SpanFrame& of = run.frames[k];
+      add(of.energy, frame.energy);
+      for (const auto& [grip, reaction] : of.grips) {
+        frame.grips[grip].force += reaction.force;
+        frame.grips[grip].torque += reaction.torque;
+      }
+      for (const auto& [obstacle, force] : of.obstacles) frame.obstacles[obstacle] += force;
+      shapes->push_back(of.shape);
+    }
+    move_zero(complete, spans, frame.energy);
+    add_loads_on_clamps(complete, begin, frame);
+    frame.sample = [shapes, l = complete.problem.length](std::span<const double> arc_lengths) {
+      return energy_model::sample(*shapes, l, arc_lengths);
+    };
+    if (k == 0) first = frame.energy;
+    const EnergyBalance& energy = frame.energy;
+    largest_miss = std::max(
+        largest_miss, std::abs(energy.total() - first.total() + energy.dissipated - energy.work));
+    result.largest_energy = std::max(result.largest_energy, of_largest(energy, first));
+    if (k > 0) result.frames.push_back(std::move(frame));
+  }
+  result.energy_error = result.largest_energy > 0 ? largest_miss / result.largest_energy : 0;
+  return result;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,134 @@
+#include "dlo/energy_model/grip_motion.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/require.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Second derivatives of the cubic spline at its rows, at whose ends it stands.
+Eigen::MatrixX3d spline_curvatures(const std::vector<TimedPose>& poses) {
+  const auto n = static_cast<Eigen::Index>(poses.size());
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(n, 3);
+  for (Eigen::Index i = 1; i + 1 < n; ++i) {
+    const auto k = static_cast<std::size_t>(i);
+    const double before = poses[k].time - poses[k - 1].time;
+    const double after = poses[k + 1].time - poses[k].time;
+    matrix.row(i).segment<3>(i - 1) << before / 6, (before + after) / 3, after / 6;
+    right.row(i) = ((poses[k + 1].position - poses[k].position) / after -
+                    (poses[k].position - poses[k - 1].position) / before)
+                       .transpose();
+  }
+  const auto end = [&](Eigen::Index row, Eigen::Index beside) {
+    const auto a = static_cast<std::size_t>(row);
+    const auto b = static_cast<std::size_t>(beside);
+    const double h = std::abs(poses[b].time - poses[a].time);
+    matrix(row, row) = h / 3;
+    matrix(row, beside) = h / 6;
+    right.row(row) = ((poses[b].position - poses[a].position) / h).transpose();
+  };
+  end(0, 1);
+  end(n - 1, n - 2);
+  return matrix.partialPivLu().solve(right);
+}
+
+/// 10 x^3 - 15 x^4 + 6 x^5 with its derivatives by x.
+MotionValue quintic(double x) {
+  return {x * x * x * (10 + x * (6 * x - 15)), 30 * x * x * (1 - x) * (1 - x),
+          60 * x * (1 - x) * (1 - 2 * x)};
+}
+
+}  // namespace
+
+GripMotion standing(const Eigen::Vector3d& position) {
+  return [position](double) {
+    GripPose pose;
+    pose.position = position;
+    return pose;
+  };
+}
+
+GripMotion moving(const Eigen::Vector3d& position, const Eigen::Vector3d& along,
+                  std::function<MotionValue(double)> distance, const Eigen::Vector3d& about,
+                  std::function<MotionValue(double)> angle) {
+  if (distance) require_positive("moving", "length of along", along.norm());
+  if (angle) require_positive("moving", "length of about", about.norm());
+  return [position, axis = along.normalized().eval(), distance = std::move(distance),
+          pivot = about.normalized().eval(), angle = std::move(angle)](double time) {
+    GripPose pose;
+    pose.position = position;
+    if (distance) {
+      const MotionValue gone = distance(time);
+      pose.position += gone.value * axis;
+      pose.velocity = gone.rate * axis;
+      pose.acceleration = gone.acceleration * axis;
+    }
+    if (angle) {
+      const MotionValue turned = angle(time);
+      pose.turn = Eigen::AngleAxisd(turned.value, pivot);
+      pose.angular_velocity = turned.rate * pivot;
+      pose.angular_acceleration = turned.acceleration * pivot;
+    }
+    return pose;
+  };
+}
+
+std::function<MotionValue(double)> smooth_step(double begin, double end, double size) {
+  require(begin < end, "smooth_step", "end", end, "> begin");
+  return [begin, takes = end - begin, size](double time) {
+    const double x = std::clamp((time - begin) / takes, 0.0, 1.0);
+    const double y = 1 - x;
+    // 35 x^4 - 84 x^5 + 70 x^6 - 20 x^7, whose derivative is 140 x^3 (1 - x)^3
+    MotionValue result;
+    result.value = size * std::pow(x, 4) * (35 + x * (-84 + x * (70 - 20 * x)));
+    result.rate = size * 140 * std::pow(x * y, 3) / takes;
+    result.acceleration = size * 420 * std::pow(x * y, 2) * (1 - 2 * x) / (takes * takes);
+    return result;
+  };
+}
+
+GripMotion interpolated(std::vector<TimedPose> poses) {
+  require(poses.size() >= 2, "interpolated", "poses.size()", static_cast<double>(poses.size()),
+          ">= 2");
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    require(poses[i].time > poses[i - 1].time, "interpolated", "time", poses[i].time, "growing");
+  }
+  const Eigen::MatrixX3d curvatures = spline_curvatures(poses);
+  return [poses = std::move(poses), curvatures](double time) {
+    GripPose pose;
+    if (time <= poses.front().time || time >= poses.back().time) {
+      const TimedPose& end = time <= poses.front().time ? poses.front() : poses.back();
+      pose.position = end.position;
+      pose.turn = end.turn;
+      return pose;
+    }
+    std::size_t i = 0;
+    while (time >= poses[i + 1].time) ++i;
+    const auto row = static_cast<Eigen::Index>(i);
+    const double h = poses[i + 1].time - poses[i].time;
+    const double x = (time - poses[i].time) / h;
+    const double y = 1 - x;
+    const Eigen::Vector3d first = curvatures.row(row).transpose();
+    const Eigen::Vector3d second = curvatures.row(row + 1).transpose();
+    pose.position = y * poses[i].position + x * poses[i + 1].position +
+                    h * h / 6 * ((y * y * y - y) * first + (x * x * x - x) * second);
+    pose.velocity = (poses[i + 1].position - poses[i].position) / h +
+                    h / 6 * ((1 - 3 * y * y) * first + (3 * x * x - 1) * second);
+    pose.acceleration = y * first + x * second;
+    const Eigen::Quaterniond from = poses[i].turn.normalized();
+    const Eigen::AngleAxisd apart(poses[i + 1].turn.normalized() * from.conjugate());
+    const MotionValue share = quintic(x);
+    pose.turn =
+        Eigen::Quaterniond(Eigen::AngleAxisd(share.value * apart.angle(), apart.axis())) * from;
+    pose.angular_velocity = apart.angle() * share.rate / h * apart.axis();
+    pose.angular_acceleration = apart.angle() * share.acceleration / (h * h) * apart.axis();
+    return pose;
+  };
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,212 @@
+#include "dynamics/moving_span.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "problem/rod_law.hpp"
+#include "vibration/inertia.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Components across its plane that a planar span may be given, over its own units.
+constexpr double motion_plane_rounding = 1e-10;
+
+Moving turned(const Eigen::Matrix3d& by, const Moving& moving) {
+  return {by * moving.value, by * moving.rate, by * moving.acceleration};
+}
+
+}  // namespace
+
+MovingSpan::MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin)
+    : rod_(rod),
+      placed_(std::move(placed)),
+      begin_(begin),
+      length_(rod.problem.length),
+      force_(bending_unit(rod.problem) / (length_ * length_)),
+      mass_(total_mass(rod.problem, rod.inertia)) {
+  time_ = std::sqrt(mass_ * length_ / force_);
+  for (const GripMotion& motion : rod_.motions) {
+    first_turns_.push_back(motion(begin).turn.normalized());
+  }
+}
+
+GripPose MovingSpan::pose(std::size_t grip, double time) const {
+  GripPose result = rod_.motions[grip](time);
+  result.turn = result.turn.normalized() * first_turns_[grip].conjugate();
+  return result;
+}
+
+/// From space to the axes of the clamp at the start.
+Eigen::Matrix3d MovingSpan::to_axes(double time) const {
+  if (!placed_.span.start_direction) return placed_.frame;
+  return placed_.frame * pose(placed_.anchor_grip, time).turn.conjugate().toRotationMatrix();
+}
+
+SpanDrive MovingSpan::drive(double time, bool planar, bool& left_plane) const {
+  const double seconds = time * time_;
+  const GripPose anchor = pose(placed_.anchor_grip, seconds);
+  const Eigen::Matrix3d axes = to_axes(seconds);
+  const auto position_of = [&](const GripPose& pose) {
+    return turned(
+        axes, {(pose.position - placed_.anchor_position) / length_,
+               pose.velocity * (time_ / length_), pose.acceleration * (time_ * time_ / length_)});
+  };
+  SpanDrive result;
+  result.turn = axes * placed_.frame.transpose();
+  result.anchor = position_of(anchor);
+  if (placed_.span.start_direction) {
+    result.spin = axes * anchor.angular_velocity * time_;
+    result.spin_rate = axes * anchor.angular_acceleration * (time_ * time_);
+  }
+  for (const std::size_t grip : placed_.hold_grips) {
+    result.holds.push_back(position_of(pose(grip, seconds)));
+  }
+  const auto out = [&](const Eigen::Vector3d& along) {
+    return std::abs(along.z()) > motion_plane_rounding * std::max(1.0, along.norm());
+  };
+  const auto leans = [&](const Eigen::Vector3d& about) {
+    return about.head<2>().norm() > motion_plane_rounding * std::max(1.0, about.norm());
+  };
+  if (placed_.span.end_direction) {
+    const GripPose end = pose(placed_.hold_grips.back(), seconds);
+    const Eigen::Matrix3d turn = axes * end.turn.toRotationMatrix() * placed_.frame.transpose();
+    result.end_spin = axes * end.angular_velocity * time_;
+    const Eigen::Vector3d spin_rate = axes * end.angular_acceleration * (time_ * time_);
+    const Eigen::Vector3d direction = *placed_.span.end_direction;
+    const Eigen::Vector3d first = planar ? Eigen::Vector3d::UnitZ().cross(direction).eval()
+                                         : direction.unitOrthogonal().eval();
+    std::vector<Eigen::Vector3d> across = {first};
+    if (!planar) across.emplace_back(direction.cross(first));
+    for (const Eigen::Vector3d& e : across) {
+      Moving moving;
+      moving.value = turn * e;
+      moving.rate = result.end_spin.cross(moving.value);
+      moving.acceleration = spin_rate.cross(moving.value) + result.end_spin.cross(moving.rate);
+      result.across_end.push_back(moving);
+    }
+    left_plane = left_plane || leans(result.end_spin);
+  }
+  left_plane = left_plane || leans(result.spin) || out(result.anchor.value) ||
+               out(result.anchor.rate) || out(result.anchor.acceleration);
+  for (const Moving& hold : result.holds) left_plane = left_plane || out(hold.rate);
+  return result;
+}
+
+SpanInertia MovingSpan::inertia(const std::vector<Piece>& pieces,
+                                const std::vector<PointMass>& masses) const {
+  SpanInertia result;
+  for (const Piece& piece : pieces) {
+    const double middle = piece.begin + piece.length / 2;
+    const double at = placed_.start + (placed_.reversed ? -middle : middle) * length_;
+    result.per_length.push_back(mass_per_length(rod_.problem, rod_.inertia, at) * length_ / mass_);
+  }
+  result.at_stations.assign(pieces.size() + 1, 0);
+  for (const PointMass& point : masses) {
+    const double s = placed_.s_of(point.at, length_);
+    std::size_t nearest = 0;
+    for (std::size_t k = 1; k <= pieces.size(); ++k) {
+      const double before = nearest == 0 ? 0 : pieces[nearest - 1].end();
+      if (std::abs(pieces[k - 1].end() - s) < std::abs(before - s)) nearest = k;
+    }
+    result.at_stations[nearest] += point.mass / mass_;
+  }
+  result.material_damping = rod_.material_damping / time_;
+  result.drag = rod_.air_drag * time_ * length_ / mass_;
+  return result;
+}
+
+Eigen::Matrix3Xd MovingSpan::tangents(const StartingShape& start, const Eigen::VectorXd& s) const {
+  std::vector<double> arc_lengths;
+  for (const double at : s) {
+    const double arc = placed_.start + (placed_.reversed ? -at : at) * length_;
+    arc_lengths.push_back(std::clamp(arc, 0.0, length_));
+  }
+  return (placed_.reversed ? -1.0 : 1.0) * (placed_.frame * start(arc_lengths).tangents);
+}
+
+SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
+                            const SpanInstant& at) const {
+  SpanFrame result;
+  const Eigen::VectorXd multipliers = integrator.settle(at);
+  const SpanReactions reactions = model.reactions(multipliers);
+  const SpanEnergies energies = model.energies();
+  const double seconds = at.time * time_;
+  const Eigen::Matrix3d to_space = to_axes(seconds).transpose();
+  const double unit = force_ * length_;
+  result.energy = {energies.kinetic * unit, energies.bending * unit,   energies.gravity * unit,
+                   energies.load * unit,    energies.obstacles * unit, at.dissipated * unit,
+                   at.work * unit};
+  const auto add = [&](std::size_t grip, const Eigen::Vector3d& force,
+                       const Eigen::Vector3d& torque) {
+    result.grips.emplace_back(grip, Reaction{to_space * force * force_, to_space * torque * unit});
+  };
+  add(placed_.anchor_grip, reactions.anchor_force, reactions.anchor_torque);
+  for (std::size_t k = 0; k < placed_.hold_grips.size(); ++k) {
+    const bool last = placed_.span.end_direction && k + 1 == placed_.hold_grips.size();
+    add(placed_.hold_grips[k], reactions.hold_forces[k],
+        last ? reactions.end_torque : Eigen::Vector3d::Zero().eval());
+  }
+  for (std::size_t i = 0; i < model.obstacle_forces().size(); ++i) {
+    result.obstacles.emplace_back(placed_.span.soft_obstacles[i].index,
+                                  to_space * model.obstacle_forces()[i] * force_);
+  }
+  const double end =
+      placed_.reversed ? placed_.start : placed_.start + placed_.span.length * length_;
+  result.shape = {model.shape(at.state.x),
+                  placed_.reversed,
+                  placed_.start,
+                  end,
+                  to_space,
+                  pose(placed_.anchor_grip, seconds).position,
+                  {}};
+  return result;
+}
+
+SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>& masses,
+                        std::span<const double> times, const DynamicsOptions& options, bool planar,
+                        const Deadline& deadline) const {
+  SpanRun result;
+  const std::vector<Piece> pieces = pieces_of(placed_.span);
+  const Eigen::Vector3d first = tangents(start, Eigen::VectorXd::Zero(1)).col(0);
+  SpanDynamics model(placed_.span, pieces, options.terms, planar, first, inertia(pieces, masses));
+  const Eigen::Matrix3Xd directions = tangents(start, model.nodes());
+  if (planar && directions.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
+    result.left_plane = true;
+    return result;
+  }
+  bool left_plane = false;
+  SpanIntegrator integrator(model, [&](double time) { return drive(time, planar, left_plane); },
+                            {options.tolerance, options.step / time_, rod_.material_damping > 0});
+  SpanInstant at;
+  at.time = begin_ / time_;
+  at.state.x = model.fit(directions);
+  at.state.v = Eigen::VectorXd::Zero(model.size());
+  result.message = integrator.project(at);
+  const auto stopped = [&] { return !result.message.empty() || (planar && left_plane); };
+  if (!stopped()) result.frames.push_back(frame(integrator, model, at));
+  const auto expired = [&] { return deadline.passed() || (planar && left_plane); };
+  std::vector<double> breaks = rod_.breaks;
+  std::sort(breaks.begin(), breaks.end());
+  auto next_break = std::upper_bound(breaks.begin(), breaks.end(), begin_);
+  for (const double time : times) {
+    for (; next_break != breaks.end() && *next_break <= time && !stopped(); ++next_break) {
+      result.message = integrator.advance(at, *next_break / time_, expired);
+      if (!stopped()) integrator.strike(at);
+    }
+    if (!stopped()) result.message = integrator.advance(at, time / time_, expired);
+    if (stopped()) break;
+    result.frames.push_back(frame(integrator, model, at));
+  }
+  result.left_plane = planar && left_plane;
+  result.steps = integrator.steps();
+  result.smallest_step = integrator.smallest_step() * time_;
+  result.error = integrator.error();
+  result.status = result.message.empty() ? SolveStatus::converged
+                  : deadline.passed()    ? SolveStatus::time_limit
+                                         : SolveStatus::failed;
+  return result;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/deadline.hpp"
+#include "dlo/energy_model/dynamics.hpp"
+#include "dynamics/span_integrator.hpp"
+#include "problem/split.hpp"
+#include "search/placed_shape.hpp"
+
+namespace dlo::energy_model {
+
+/// What one span does at one time, SI units.
+struct SpanFrame {
+  EnergyBalance energy;
+  std::vector<std::pair<std::size_t, Reaction>> grips;             ///< by index of the grip
+  std::vector<std::pair<std::size_t, Eigen::Vector3d>> obstacles;  ///< by index
+  PlacedShape shape;
+};
+
+/// How it went with one span.
+struct SpanRun {
+  std::vector<SpanFrame> frames;  ///< at the begin, and at the times that were reached
+  SolveStatus status = SolveStatus::failed;
+  std::string message;
+  bool left_plane = false;  ///< a planar span has been asked to leave its plane
+  long steps = 0;
+  double smallest_step = std::numeric_limits<double>::infinity();  ///< [s]
+  double error = 0;                                                ///< of the length
+};
+
+/// A span between clamps that move.
+class MovingSpan {
+ public:
+  /// @param rod    of which Problem::grips are where they are at the begin, and each has a motion
+  /// @param begin  [s]
+  MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin);
+
+  [[nodiscard]] bool may_be_planar() const { return placed_.span.planar; }
+  /// @param masses  point masses that no other span carries
+  [[nodiscard]] SpanRun run(const StartingShape& start, const std::vector<PointMass>& masses,
+                            std::span<const double> times, const DynamicsOptions& options,
+                            bool planar, const Deadline& deadline) const;
+
+ private:
+  [[nodiscard]] SpanInertia inertia(const std::vector<Piece>& pieces,
+                                    const std::vector<PointMass>& masses) const;
+  [[nodiscard]] Eigen::Matrix3d to_axes(double time) const;
+  [[nodiscard]] SpanDrive drive(double time, bool planar, bool& left_plane) const;
+  [[nodiscard]] Eigen::Matrix3Xd tangents(const StartingShape& start,
+                                          const Eigen::VectorXd& s) const;
+  [[nodiscard]] SpanFrame frame(SpanIntegrator& integrator, SpanDynamics& model,
+                                const SpanInstant& at) const;
+  [[nodiscard]] GripPose pose(std::size_t grip, double time) const;
+
+  const MovingRod& rod_;
+  PlacedSpan placed_;
+  double begin_;
+  double length_, force_, time_, mass_;  // units
+  std::vector<Eigen::Quaterniond> first_turns_;
+};
+
+}  // namespace dlo::energy_model

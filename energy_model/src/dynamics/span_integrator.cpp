@@ -1,0 +1,309 @@
+#include "dynamics/span_integrator.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr int stage_count = 4;
+/// Newton's method ends where what a correction moves is below this share of the tolerance of a
+/// step, and of the length in any case: energy may not drift by it.
+constexpr double newton_share = 1e-4;
+constexpr double newton_most = 1e-11;
+constexpr double newton_least = 1e-14;
+constexpr int most_corrections = 40;
+/// Corrections above which the next one is made with a matrix of its own.
+constexpr int slow = 8;
+/// A step is as good as impossible below this share of the time in which the rod's slowest
+/// vibration changes.
+constexpr double least_step = 1e-9;
+
+/// At a break a motion has two velocities: that of a step's end is the one before, that of its
+/// begin the one after.
+double just_before(double time) { return time - 1e-12 * std::max(1.0, std::abs(time)); }
+double just_after(double time) { return time + 1e-12 * std::max(1.0, std::abs(time)); }
+
+}  // namespace
+
+SpanIntegrator::SpanIntegrator(SpanDynamics& span, std::function<SpanDrive(double)> drive,
+                               const IntegratorOptions& options)
+    : span_(span),
+      drive_(std::move(drive)),
+      options_(options),
+      rule_(options.damped ? radau_rule(stage_count) : gauss_rule(stage_count)) {}
+
+void SpanIntegrator::take_mass(const SpanInstant& at) {
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
+  span_.move(drive_(at.time), at.state.x, at.state.v, zero);
+  mass_ = span_.mass_matrix();
+  jacobian_ = span_.jacobian();
+}
+
+SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double step, bool renew) {
+  // Steps that differ by rounding of the times are one.
+  constexpr double same = 1e-9;
+  auto found = std::find_if(factors_.begin(), factors_.end(), [&](const Factor& known) {
+    return std::abs(known.step - step) <= same * step;
+  });
+  if (found == factors_.end()) {
+    constexpr std::size_t most_factors = 6;
+    if (factors_.size() == most_factors) factors_.erase(factors_.begin());
+    factors_.push_back({step, -1, {}});
+    found = factors_.end() - 1;
+  } else if (!renew) {
+    return *found;
+  }
+  take_mass(at);
+  const Eigen::Index n = span_.size();
+  const Eigen::Index m = span_.constraints();
+  const Eigen::MatrixXd damping = span_.damping(mass_);
+  const Eigen::VectorXd stiffness = span_.stiffness();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(stage_count * (n + m), stage_count * (n + m));
+  for (Eigen::Index i = 0; i < stage_count; ++i) {
+    for (Eigen::Index j = 0; j < stage_count; ++j) {
+      auto block = matrix.block(i * (n + m), j * (n + m), n, n);
+      block = step * rule_.inner(i, j) * damping;
+      block.diagonal() += step * step * rule_.twice(i, j) * stiffness;
+      if (i == j) block += mass_;
+    }
+    matrix.block(i * (n + m), i * (n + m) + n, n, m) = -jacobian_.transpose();
+    matrix.block(i * (n + m) + n, i * (n + m), m, n) = jacobian_;
+  }
+  found->lu.compute(matrix);
+  found->made = steps_;
+  return *found;
+}
+
+/// Of a step after the last one: by its polynomials.
+Eigen::MatrixXd SpanIntegrator::predicted(const SpanInstant& at, double step,
+                                          const Stages& known) const {
+  if (!(known.step > 0) || known.end != at.time) {
+    return Eigen::MatrixXd::Zero(span_.size() + span_.constraints(), stage_count);
+  }
+  return known.values * rule_.extrapolation(step / known.step).transpose();
+}
+
+/// At the points of one step, by those of two that halve it.
+Eigen::MatrixXd SpanIntegrator::joined(const Stages& first, const Stages& second) const {
+  Eigen::MatrixXd result(first.values.rows(), stage_count);
+  for (Eigen::Index i = 0; i < stage_count; ++i) {
+    const double at = 2 * rule_.nodes[i];
+    result.col(i) = at < 1 ? first.values * rule_.interpolation(at).transpose()
+                           : second.values * rule_.interpolation(at - 1).transpose();
+  }
+  return result;
+}
+
+bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixXd& guess,
+                              double enough, Stages& found) {
+  const Eigen::Index n = span_.size();
+  const Eigen::Index m = span_.constraints();
+  ++steps_;
+  std::vector<SpanDrive> drives;
+  for (Eigen::Index i = 0; i < stage_count; ++i) {
+    drives.push_back(drive_(at.time + rule_.nodes[i] * step));
+  }
+  for (const bool renew : {false, true}) {
+    Factor& newton = factor(at, step, renew);
+    found.values = guess;
+    Eigen::MatrixXd& values = found.values;
+    std::array<SpanPower, stage_count> powers;
+    Eigen::VectorXd residual(stage_count * (n + m));
+    double before = std::numeric_limits<double>::infinity();
+    for (int correction = 0; correction < most_corrections; ++correction) {
+      const Eigen::MatrixXd v =
+          (step * values.topRows(n) * rule_.inner.transpose()).colwise() + at.state.v;
+      const Eigen::MatrixXd x = (step * v * rule_.inner.transpose()).colwise() + at.state.x;
+      for (Eigen::Index i = 0; i < stage_count; ++i) {
+        const auto stage = static_cast<std::size_t>(i);
+        span_.move(drives[stage], x.col(i), v.col(i), values.col(i).head(n));
+        residual.segment(i * (n + m), n) = span_.residual(values.col(i).tail(m));
+        residual.segment(i * (n + m) + n, m) = span_.misses().col(2);
+        powers[stage] = span_.power(span_.reactions(values.col(i).tail(m)));
+      }
+      const Eigen::VectorXd corrected = newton.lu.solve(residual);
+      const Eigen::Map<const Eigen::MatrixXd> change(corrected.data(), n + m, stage_count);
+      // Of velocities, root mean square, and of strains.
+      const Eigen::MatrixXd moved = change.topRows(n);
+      const double size =
+          step * std::sqrt(std::max(0.0, (mass_ * moved).cwiseProduct(moved).sum())) +
+          step * step * moved.norm();
+      if (!std::isfinite(size)) break;
+      values -= change;
+      const bool stalled = size >= before && size < 1e3 * enough;
+      if (size < enough || stalled) {
+        at.state.x +=
+            step * at.state.v + step * step * (values.topRows(n) * rule_.last.transpose());
+        at.state.v += step * (values.topRows(n) * rule_.weights);
+        at.time += step;
+        for (std::size_t i = 0; i < stage_count; ++i) {
+          const double weight = step * rule_.weights[static_cast<Eigen::Index>(i)];
+          at.work += weight * powers[i].grips;
+          at.dissipated += weight * powers[i].dissipated;
+        }
+        found.step = step;
+        found.end = at.time;
+        if (correction > slow) newton.step = -1;
+        return m == 0 || project(at).empty();
+      }
+      if (size > 2 * before && correction > 3) break;
+      before = size;
+    }
+  }
+  return false;
+}
+
+std::string SpanIntegrator::project(SpanInstant& at) {
+  if (span_.constraints() == 0) return {};
+  if (mass_.size() == 0) take_mass(at);
+  const Eigen::LLT<Eigen::MatrixXd> mass(mass_);
+  const SpanDrive drive = drive_(just_before(at.time));
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
+  constexpr int most_projections = 30;
+  constexpr double held = 1e-13;
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < most_projections; ++i) {
+    span_.move(drive, at.state.x, at.state.v, zero);
+    const Eigen::MatrixX3d misses = span_.misses();
+    const Eigen::MatrixXd jacobian = span_.jacobian();
+    const Eigen::MatrixXd yields = mass.solve(jacobian.transpose());
+    const Eigen::MatrixXd held_by = jacobian * yields;
+    const Eigen::LDLT<Eigen::MatrixXd> solver(held_by);
+    const double missed = misses.col(0).norm();
+    if (missed < held || (missed >= before && missed < 1e3 * held)) {
+      at.state.v -= yields * solver.solve(misses.col(1));
+      return {};
+    }
+    Eigen::VectorXd step = yields * solver.solve(misses.col(0));
+    if (!step.allFinite()) break;
+    constexpr double longest = 0.5;
+    if (step.norm() > longest) step *= longest / step.norm();
+    at.state.x -= step;
+    before = missed;
+  }
+  return "the grips cannot be reached by the rod, or hold it straight between them";
+}
+
+std::string SpanIntegrator::advance(SpanInstant& at, double until,
+                                    const std::function<bool()>& expired) {
+  const double order = 2 * stage_count + 1;
+  const double enough = std::clamp(newton_share * options_.tolerance, newton_least, newton_most);
+  while (at.time < until) {
+    if (expired()) return "time limit";
+    const double left = until - at.time;
+    if (!std::isfinite(energy_) && options_.step == 0) {
+      energy_ = take_energy(just_after(at.time), at);
+    }
+    if (options_.step > 0) {
+      const double count = std::ceil(left / options_.step * (1 - 1e-9));
+      const double step = left / count;
+      smallest_step_ = std::min(smallest_step_, step);
+      Stages next;
+      if (!try_step(at, step, predicted(at, step, last_), enough, next)) {
+        return "the equations of a step are not solved";
+      }
+      last_ = std::move(next);
+      if (count <= 1) at.time = until;
+      last_.end = at.time;
+      continue;
+    }
+    if (!(next_ > 0)) next_ = 1e-3;
+    const double step = left / std::ceil(left / next_ * (1 - 1e-9));
+    if (step < least_step) return "steps have become too small";
+    // One step against two of half the size, which say where it begins and by much less than its
+    // own error what it comes to.
+    SpanInstant once = at;
+    SpanInstant twice = at;
+    Stages first, second, whole;
+    const bool solved =
+        try_step(twice, step / 2, predicted(at, step / 2, last_), enough, first) &&
+        try_step(twice, step / 2, predicted(twice, step / 2, first), enough, second) &&
+        try_step(once, step, joined(first, second), 1e-2 * options_.tolerance, whole);
+    double apart = 0;
+    double error = std::numeric_limits<double>::infinity();
+    if (solved) {
+      const Eigen::VectorXd change = once.state.x - twice.state.x;
+      apart = std::sqrt(std::max(0.0, change.dot(mass_ * change)));
+      error = apart;
+    }
+    double energy = 0;
+    if (solved) {
+      energy = take_energy(just_before(twice.time), twice);
+      const double missed =
+          energy - energy_ + twice.dissipated - at.dissipated - (twice.work - at.work);
+      error = std::max(error, std::abs(missed) / largest_energy_);
+    }
+    const double better =
+        solved ? 0.9 * std::pow(options_.tolerance / std::max(error, 1e-300), 1 / order) : 0.3;
+    const double grown = std::clamp(better, 0.25, 2.0);
+    if (!(error <= options_.tolerance)) {
+      next_ = step * std::min(0.7, grown);
+      continue;
+    }
+    energy_ = energy;
+    error_ += apart;
+    smallest_step_ = std::min(smallest_step_, step / 2);
+    const bool reached = step >= left * (1 - 1e-9);
+    at = std::move(twice);
+    if (reached) at.time = until;
+    last_ = std::move(second);
+    last_.end = at.time;
+    if (grown > 1.4 || grown < 0.9) next_ = step * grown;
+  }
+  return {};
+}
+
+/// Energy at an instant; the largest one so far is kept.
+double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
+  span_.move(drive_(time), at.state.x, at.state.v, Eigen::VectorXd::Zero(span_.size()));
+  const SpanEnergies energies = span_.energies();
+  largest_energy_ = std::max({largest_energy_, energies.kinetic, energies.bending,
+                              energies.obstacles, options_.tolerance});
+  return energies.kinetic + energies.bending + energies.gravity + energies.load +
+         energies.obstacles;
+}
+
+void SpanIntegrator::strike(SpanInstant& at) {
+  last_ = {};
+  energy_ = std::numeric_limits<double>::quiet_NaN();
+  next_ = 0;
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
+  span_.move(drive_(just_before(at.time)), at.state.x, at.state.v, zero);
+  const SpanVelocities before = span_.velocities();
+  const double kinetic = span_.energies().kinetic;
+  at.state.v += accelerated(just_after(at.time), at.state, &before).head(span_.size());
+  span_.move(drive_(just_after(at.time)), at.state.x, at.state.v, zero);
+  at.work += span_.energies().kinetic - kinetic;
+}
+
+/// Accelerations and multipliers that obey the equations of motion; from velocities before a
+/// strike, what v changes by and the impulses of the grips.
+Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanState& state,
+                                            const SpanVelocities* before) {
+  const Eigen::Index n = span_.size();
+  const Eigen::Index m = span_.constraints();
+  span_.move(drive_(time), state.x, state.v, Eigen::VectorXd::Zero(n));
+  mass_ = span_.mass_matrix();
+  jacobian_ = span_.jacobian();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
+  matrix.topLeftCorner(n, n) = mass_;
+  matrix.topRightCorner(n, m) = -jacobian_.transpose();
+  matrix.bottomLeftCorner(m, n) = jacobian_;
+  Eigen::VectorXd residual(n + m);
+  residual.head(n) =
+      before != nullptr ? span_.impulse(*before) : span_.residual(Eigen::VectorXd::Zero(m));
+  residual.tail(m) = span_.misses().col(before != nullptr ? 1 : 2);
+  return -matrix.partialPivLu().solve(residual);
+}
+
+Eigen::VectorXd SpanIntegrator::settle(const SpanInstant& at) {
+  const double time = just_after(at.time);
+  const Eigen::VectorXd found = accelerated(time, at.state, nullptr);
+  span_.move(drive_(time), at.state.x, at.state.v, found.head(span_.size()));
+  return found.tail(span_.constraints());
+}
+
+}  // namespace dlo::energy_model

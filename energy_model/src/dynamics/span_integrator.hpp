@@ -1,0 +1,99 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "dynamics/collocation_rule.hpp"
+#include "dynamics/span_dynamics.hpp"
+
+namespace dlo::energy_model {
+
+/// A span at one time, with what has been done to it since the begin. Own units.
+struct SpanInstant {
+  double time = 0;
+  SpanState state;
+  double work = 0;        ///< of the grips
+  double dissipated = 0;  ///< in the material and the air
+};
+
+struct IntegratorOptions {
+  double tolerance = 1e-7;  ///< of a step, as DynamicsOptions::tolerance
+  double step = 0;          ///< fixed; 0: by the tolerance
+  bool damped = false;      ///< what decays fast
+};
+
+/// Collocation by Gauss' rule of four points of
+///     x' = v,  M(x) v' = f(t, x, v) + G^T mu,  d^2 c / dt^2 = 0,
+/// by accelerations at the rule's points, so that of M only products are needed: Newton's method
+/// has M of an earlier step in its matrix. Where a span has constraints c, x and v are moved to
+/// them after each step by the least kinetic energy.
+class SpanIntegrator {
+ public:
+  SpanIntegrator(SpanDynamics& span, std::function<SpanDrive(double)> drive,
+                 const IntegratorOptions& options);
+
+  /// Moves positions and velocities to the constraints. @return why not; empty: done
+  [[nodiscard]] std::string project(SpanInstant& at);
+  /// Goes on to a time. @param expired  asked after each step. @return why not; empty: done
+  [[nodiscard]] std::string advance(SpanInstant& at, double until,
+                                    const std::function<bool()>& expired);
+
+  /// Brings SpanDynamics to an instant, with its accelerations. @return the grips' multipliers
+  [[nodiscard]] Eigen::VectorXd settle(const SpanInstant& at);
+
+  /// What comes is not smooth after what was: grips may have other velocities, which strikes the
+  /// span. Its points keep their momentum but for the grips' impulses, whose work is what the
+  /// kinetic energy changes by.
+  void strike(SpanInstant& at);
+
+  [[nodiscard]] long steps() const { return steps_; }
+  [[nodiscard]] double smallest_step() const { return smallest_step_; }
+  [[nodiscard]] double error() const { return error_; }
+
+ private:
+  /// Newton's matrix for one size of step.
+  struct Factor {
+    double step = 0;
+    long made = -1;  // when
+    Eigen::PartialPivLU<Eigen::MatrixXd> lu;
+  };
+  /// Accelerations and multipliers at the rule's points of a step.
+  struct Stages {
+    double step = 0;
+    double end = 0;  // time
+    Eigen::MatrixXd values;
+  };
+
+  [[nodiscard]] Eigen::MatrixXd predicted(const SpanInstant& at, double step,
+                                          const Stages& known) const;
+  [[nodiscard]] Eigen::MatrixXd joined(const Stages& first, const Stages& second) const;
+  [[nodiscard]] bool try_step(SpanInstant& at, double step, const Eigen::MatrixXd& guess,
+                              double enough, Stages& found);
+  [[nodiscard]] Factor& factor(const SpanInstant& at, double step, bool renew);
+  void take_mass(const SpanInstant& at);
+  [[nodiscard]] double take_energy(double time, const SpanInstant& at);
+  [[nodiscard]] Eigen::VectorXd accelerated(double time, const SpanState& state,
+                                            const SpanVelocities* before);
+
+  SpanDynamics& span_;
+  std::function<SpanDrive(double)> drive_;
+  IntegratorOptions options_;
+  CollocationRule rule_;
+  Eigen::MatrixXd mass_;
+  Eigen::MatrixXd jacobian_;
+  std::vector<Factor> factors_;
+  Stages last_;
+  double next_ = 0;
+  double energy_ = std::numeric_limits<double>::quiet_NaN();  // where the last step ended
+  double largest_energy_ = 0;
+  long steps_ = 0;
+  double smallest_step_ = std::numeric_limits<double>::infinity();
+  double error_ = 0;
+};
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,419 @@
+// The moving rod against its own energy, a polygon of rigid segments that is integrated otherwise,
+// vibrations, pendulums, and the shapes at rest that slow motion comes to.
+
+#include "dlo/energy_model/dynamics.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "problems.hpp"
+#include "rigid_polygon.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Eigen::Vector3d;
+using std::numbers::pi;
+
+constexpr double first_beta = 1.8751040687119612;
+/// Period of a cantilever with EI = l = rho A = 1.
+constexpr double first_period = 2 * pi / (first_beta * first_beta);
+
+MovingRod moving_cantilever(double gamma) {
+  MovingRod rod;
+  rod.problem = test::heavy_cantilever(gamma, 0);
+  rod.inertia.mass_per_length = 1;
+  return rod;
+}
+
+/// Two clamps or pins that do not hold the rod straight.
+MovingRod closed_rod(double gamma) {
+  MovingRod rod;
+  rod.problem = test::two_clamps(gamma, 0.8);
+  rod.inertia.mass_per_length = 1;
+  return rod;
+}
+
+std::vector<double> equal_times(int count, double step) {
+  std::vector<double> times;
+  for (int i = 1; i <= count; ++i) times.push_back(step * i);
+  return times;
+}
+
+Vector3d tip(const MovingFrame& frame) {
+  return frame.sample(std::vector<double>{1.0}).points.col(0);
+}
+
+Dynamics run(const MovingRod& rod, const StartingShape& start, const std::vector<double>& times,
+             const DynamicsOptions& options = {}) {
+  Dynamics result = simulate(rod, start, times, options);
+  EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
+  EXPECT_EQ(result.frames.size(), times.size());
+  return result;
+}
+
+/// [rad] or [l], of time: size sin(omega t)
+std::function<MotionValue(double)> swinging(double size, double omega) {
+  return [=](double time) {
+    return MotionValue{size * std::sin(omega * time), size * omega * std::cos(omega * time),
+                       -size * omega * omega * std::sin(omega * time)};
+  };
+}
+
+TEST(Dynamics, KeepsTheEnergyOverAHundredPeriods) {
+  DynamicsOptions options;
+  options.terms = 6;
+  options.step = first_period / 30;
+  const Dynamics result = run(moving_cantilever(1), straight_rod(Vector3d::UnitX()),
+                              equal_times(50, 2 * first_period), options);
+  EXPECT_LT(result.energy_error, 1e-6);
+  EXPECT_TRUE(std::isnan(result.error_estimate));
+}
+
+// With (90, 135, 180) segments the limit of three is met to 1.1e-6 (Gamma 1) and 1.0e-5 (Gamma 10).
+TEST(Dynamics, ReleasedCantileverMovesAsAPolygonAndAsWithMoreTermsAndSmallerSteps) {
+  const std::vector<double> times = equal_times(10, 0.1);
+  for (const auto& [gamma, allowed] : {std::pair(1.0, 1e-5), std::pair(10.0, 4e-5)}) {
+    const Dynamics rod =
+        run(moving_cantilever(gamma), straight_rod(Vector3d::UnitX()), times, {.terms = 14});
+    const Dynamics fine = run(moving_cantilever(gamma), straight_rod(Vector3d::UnitX()), times,
+                              {.terms = 18, .tolerance = 7e-8});
+    EXPECT_LT(rod.energy_error, 1e-9);
+    EXPECT_GT(fine.steps, rod.steps);
+    const Eigen::Matrix2Xd coarse = test::RigidPolygon(40, gamma).tips(times);
+    const Eigen::Matrix2Xd finer = test::RigidPolygon(80, gamma).tips(times);
+    const double ratio = std::pow(80.5 / 40.5, 2);
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const auto column = static_cast<Eigen::Index>(k);
+      const Eigen::Vector2d limit =
+          finer.col(column) + (finer.col(column) - coarse.col(column)) / (ratio - 1);
+      EXPECT_LT((tip(rod.frames[k]).head<2>() - limit).norm(), allowed) << gamma << " " << k;
+      EXPECT_LT((tip(rod.frames[k]) - tip(fine.frames[k])).norm(), 1e-5) << gamma << " " << k;
+    }
+  }
+}
+
+// Starts from a mode's shape at rest and is there again after its period, but for the square of its
+// size; with damping it decays as exp(-zeta omega t), zeta = tau omega / 2 + c / (2 rho A omega).
+TEST(Dynamics, SmallMotionsAreVibrationsThatDecay) {
+  MovingRod rod = moving_cantilever(3);
+  const Equilibrium shape = solve_energy(rod.problem);
+  const Vibrations modes = vibrations(rod.problem, rod.inertia, shape);
+  ASSERT_EQ(modes.status, SolveStatus::converged) << modes.message;
+  for (const std::size_t k : {0U, 1U, 2U}) {
+    const VibrationMode& mode = modes.modes[k];
+    const double size = 1e-4;
+    const auto displaced = [&](std::span<const double> at) {
+      Samples samples = shape.sample(at);
+      const double h = 1e-5;
+      std::vector<double> before(at.begin(), at.end());
+      std::vector<double> after = before;
+      for (double& s : before) s = std::max(0.0, s - h);
+      for (double& s : after) s = std::min(1.0, s + h);
+      const Eigen::Matrix3Xd slope = mode.shape(after) - mode.shape(before);
+      for (Eigen::Index i = 0; i < slope.cols(); ++i) {
+        const auto point = static_cast<std::size_t>(i);
+        samples.tangents.col(i) += size * slope.col(i) / (after[point] - before[point]);
+        samples.tangents.col(i).normalize();
+      }
+      return samples;
+    };
+    const Vector3d rest = shape.sample(std::vector<double>{1.0}).points.col(0);
+    const double period = 2 * pi / mode.omega();
+    rod.material_damping = 0;
+    rod.air_drag = 0;
+    const Dynamics free = run(rod, displaced, {period / 2, period}, {.tolerance = 1e-9});
+    const Vector3d moved = size * mode.shape(std::vector<double>{1.0}).col(0);
+    EXPECT_LT((tip(free.frames[0]) - rest + moved).norm(), 1e-2 * size) << k;
+    EXPECT_LT((tip(free.frames[1]) - rest - moved).norm(), 1e-2 * size) << k;
+    rod.air_drag = 0.02 * mode.omega();
+    const Dynamics dragged = run(rod, displaced, {period}, {.tolerance = 1e-9});
+    const double left = (tip(dragged.frames[0]) - rest).dot(moved) / moved.squaredNorm();
+    EXPECT_NEAR(std::log(left), -0.02 * pi, 2e-3) << k;
+    EXPECT_LT(dragged.energy_error, 1e-5);
+  }
+}
+
+// Of a straight beam every mode has zeta = tau omega / 2.
+TEST(Dynamics, MaterialDampingIsKelvinsAndVoigts) {
+  MovingRod rod = moving_cantilever(0.001);
+  rod.material_damping = 0.01;
+  const double omega = first_beta * first_beta;
+  const double zeta = rod.material_damping * omega / 2;
+  const double period = first_period / std::sqrt(1 - zeta * zeta);
+  // What else there is of modes has gone by then.
+  const Dynamics result = run(rod, straight_rod(Vector3d::UnitX()), {2 * period, 4 * period});
+  const double rest = solve_energy(rod.problem).sample(std::vector<double>{1.0}).points(1, 0);
+  const double ratio = (tip(result.frames[1]).y() - rest) / (tip(result.frames[0]).y() - rest);
+  EXPECT_NEAR(std::log(ratio) / (-2 * omega * zeta * period), 1, 1e-3);
+  EXPECT_LT(result.energy_error, 1e-5);
+  EXPECT_GT(result.frames[0].energy.dissipated, 0);
+}
+
+TEST(Dynamics, GripsDoTheWorkThatTheEnergyTakes) {
+  // A clamp that shakes and turns, in the plane and out of it.
+  MovingRod rod = moving_cantilever(5);
+  rod.air_drag = 0.5;
+  rod.inertia.point_masses = {{0.6, 0.3}};
+  rod.problem.loads = {{1, {0, -1, 0}}};
+  for (const bool spatial : {false, true}) {
+    // In space it would resist as a bent shaft that is turned about itself.
+    rod.material_damping = spatial ? 0 : 0.01;
+    rod.motions = {moving(Vector3d::Zero(), Vector3d(1, 1, spatial ? 1 : 0), swinging(0.1, 5),
+                          spatial ? Vector3d(1, 2, 2) : Vector3d(0, 0, 1), swinging(0.4, 4))};
+    const Dynamics result = run(rod, solve_energy(rod.problem).sample, equal_times(2, 0.4),
+                                {.terms = 8, .tolerance = 1e-6});
+    EXPECT_LT(result.energy_error, 1e-7) << spatial;
+    EXPECT_GT(std::abs(result.frames.back().energy.work), 0.01);
+    // A round rod that may turn about itself cannot pass a torque on to its clamp.
+    const MovingFrame& last = result.frames.back();
+    const Vector3d direction = last.sample(std::vector<double>{0.0}).tangents.col(0);
+    EXPECT_NEAR(last.grips[0].torque.dot(direction), 0, 1e-9 * last.grips[0].torque.norm());
+    EXPECT_EQ(std::abs(tip(last).z()) > 1e-3, spatial);
+  }
+}
+
+TEST(Dynamics, SectionsMassesAndWhatHangsOnTheClampAreInTheBalance) {
+  MovingRod rod = moving_cantilever(5);
+  rod.problem.sections = {
+      {.begin = 0.3, .end = 0.6, .bending_stiffness = 3, .weight_per_length = {0, -9, 0}}};
+  rod.inertia.of_sections = {2};
+  rod.inertia.point_masses = {{0, 1}, {0.5, 0.2}};
+  rod.problem.loads = {{0, {1, 2, 0}}, {0.7, {0, -1, 0}}};
+  rod.motions = {moving(Vector3d::Zero(), Vector3d(1, 1, 0), swinging(0.2, 3), Vector3d::UnitZ(),
+                        swinging(0.3, 2))};
+  const Dynamics result =
+      run(rod, solve_energy(rod.problem).sample, {0.3, 0.6}, {.terms = 8, .tolerance = 1e-6});
+  EXPECT_LT(result.energy_error, 1e-8);
+}
+
+TEST(Dynamics, APinThatMovesInSpaceTurnsNothing) {
+  MovingRod rod = moving_cantilever(5);
+  rod.problem.grips[0].direction.reset();
+  rod.motions = {
+      moving(Vector3d::Zero(), Vector3d(1, 0, 1), swinging(0.2, 3), Vector3d::UnitZ(), {})};
+  const Dynamics result =
+      run(rod, straight_rod({0.2, -1, 0}), {0.3, 0.6}, {.terms = 8, .tolerance = 1e-6});
+  EXPECT_LT(result.energy_error, 1e-8);
+  EXPECT_GT(std::abs(tip(result.frames[1]).z()), 1e-3);
+  EXPECT_LT(result.frames[1].grips[0].torque.norm(), 1e-10);
+}
+
+TEST(Dynamics, ClampsAtBothEndsMoveTheRodAndHoldIt) {
+  for (const bool spatial : {false, true}) {
+    MovingRod rod = closed_rod(5);
+    rod.material_damping = 0.003;
+    const Vector3d about = spatial ? Vector3d(1, 2, 2) : Vector3d(0, 0, 1);
+    rod.motions = {standing(Vector3d::Zero()), moving({0.8, 0, 0}, Vector3d(-1, 1, spatial ? 1 : 0),
+                                                      swinging(0.1, 4), about, swinging(0.5, 3))};
+    const Dynamics result =
+        run(rod, solve_energy(rod.problem).sample, equal_times(2, 0.3), {.tolerance = 1e-6});
+    EXPECT_LT(result.energy_error, 1e-6) << spatial;
+    for (const MovingFrame& frame : result.frames) {
+      const GripPose pose = rod.motions[1](frame.time);
+      const Samples end = frame.sample(std::vector<double>{1.0});
+      EXPECT_LT((end.points.col(0) - pose.position).norm(), 1e-10);
+      // At an end the tangent is extrapolated from the nodes.
+      EXPECT_LT((end.tangents.col(0) - pose.turn * Vector3d::UnitX()).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(Dynamics, DampedGripsComeToHoldWhatTheyHoldInEquilibrium) {
+  for (const bool pinned : {false, true}) {
+    MovingRod rod = closed_rod(20);
+    rod.material_damping = 0.02;
+    if (pinned) rod.problem.grips[1].direction.reset();
+    const Equilibrium rest = solve_energy(rod.problem);
+    ASSERT_TRUE(succeeded(rest.status)) << rest.message;
+    const Dynamics result = run(rod, rest.sample, {10}, {.terms = 16, .tolerance = 1e-6});
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Reaction& has = result.frames[0].grips[i];
+      EXPECT_LT((has.force - rest.grips[i].force).norm(), 1e-5) << pinned << " " << i;
+      EXPECT_LT((has.torque - rest.grips[i].torque).norm(), 1e-5) << pinned << " " << i;
+    }
+    EXPECT_NEAR(result.frames[0].energy.bending, rest.energy.bending, 1e-7);
+    EXPECT_LT(result.frames[0].energy.kinetic, 1e-10);
+  }
+}
+
+TEST(Dynamics, AFrameThatMovesEvenlyChangesNothing) {
+  const std::vector<double> times = equal_times(2, 0.1);
+  MovingRod rod = moving_cantilever(5);
+  const StartingShape start = straight_rod(Vector3d::UnitX());
+  const Dynamics stands = run(rod, start, times);
+  const Vector3d velocity(3, -2, 1);
+  rod.motions = {[velocity](double time) {
+    GripPose pose;
+    pose.position = time * velocity;
+    pose.velocity = velocity;
+    return pose;
+  }};
+  // The whole rod has the velocity at the begin.
+  const Dynamics moves = run(rod, start, times);
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const Vector3d apart = tip(moves.frames[k]) - tip(stands.frames[k]) - times[k] * velocity;
+    EXPECT_LT(apart.norm(), 1e-6);
+    EXPECT_LT((moves.frames[k].grips[0].force - stands.frames[k].grips[0].force).norm(), 1e-3);
+  }
+  EXPECT_LT(moves.energy_error, 1e-8);
+}
+
+// A stiff rod on a pin is a physical pendulum: from level to level in twice
+// 2 K(sin(45 deg)) (2 l / 3 g)^(1/2), and held by 5/2 of its weight at the lowest point.
+TEST(Dynamics, AStiffRodOnAPinIsAPendulum) {
+  MovingRod rod;
+  rod.problem = test::heavy_cantilever(1, 0);
+  rod.problem.grips[0].direction.reset();
+  rod.problem.bending_stiffness = 1e4;
+  rod.inertia.mass_per_length = 1;
+  const double quarter = 1.8540746773013719 * std::sqrt(2.0 / 3);
+  const Dynamics result =
+      run(rod, straight_rod(Vector3d::UnitX()), {quarter, 2 * quarter}, {.terms = 4, .step = 0.02});
+  EXPECT_LT((tip(result.frames[0]) - Vector3d(0, -1, 0)).norm(), 1e-4);
+  EXPECT_LT((tip(result.frames[1]) - Vector3d(-1, 0, 0)).norm(), 1e-4);
+  EXPECT_NEAR(result.frames[0].grips[0].force.y(), 2.5, 1e-2);
+  EXPECT_LT(result.frames[0].grips[0].torque.norm(), 1e-6);
+}
+
+TEST(Dynamics, AClampThatStartsAtOnceStrikesTheRod) {
+  MovingRod rod = moving_cantilever(0);
+  const Vector3d velocity(0, 0.2, 0);
+  rod.motions = {[velocity](double time) {
+    GripPose pose;
+    pose.position = std::max(0.0, time - 0.1) * velocity;
+    if (time >= 0.1) pose.velocity = velocity;
+    return pose;
+  }};
+  rod.breaks = {0.1};
+  const Dynamics result =
+      run(rod, straight_rod(Vector3d::UnitX()), {0.1, 0.101, 0.2}, {.terms = 8});
+  // Only the clamp's end has moved.
+  EXPECT_LT(result.frames[0].energy.kinetic, 0.05 * 0.5 * velocity.squaredNorm());
+  EXPECT_LT(std::abs(tip(result.frames[1]).y()), 1e-4);
+  EXPECT_LT(result.energy_error, 1e-6);
+  // The far end first goes back.
+  EXPECT_LT(tip(result.frames[2]).y(), -1e-3);
+}
+
+// Made slower, a damped motion comes to the shapes at rest at first order in its speed.
+TEST(Dynamics, SlowMotionComesToRestingShapes) {
+  MovingRod rod = moving_cantilever(5);
+  rod.material_damping = 0.05;
+  rod.air_drag = 2;
+  std::array<double, 4> apart{};
+  for (std::size_t k = 0; k < apart.size(); ++k) {
+    const double takes = 20 * std::pow(10.0, static_cast<double>(k));
+    rod.motions = {moving(Vector3d::Zero(), Vector3d::UnitX(), {}, Vector3d::UnitZ(),
+                          smooth_step(0, takes, 1.0))};
+    const Equilibrium begin = solve_energy(rod.problem);
+    const Dynamics result = run(rod, begin.sample, {takes / 2}, {.tolerance = 1e-6});
+    Problem turned = rod.problem;
+    turned.grips[0].direction = rod.motions[0](takes / 2).turn * Vector3d::UnitX();
+    const Vector3d rest = solve_energy(turned).sample(std::vector<double>{1.0}).points.col(0);
+    apart[k] = (tip(result.frames[0]) - rest).norm();
+  }
+  EXPECT_GT(apart[0], 1e-3);
+  for (std::size_t k = 1; k < apart.size(); ++k) {
+    EXPECT_NEAR(apart[k - 1] / apart[k], 10, k == 1 ? 1 : 0.2) << apart[k];
+  }
+}
+
+TEST(Dynamics, ARodThatFallsOnAFloorThatYieldsKeepsItsEnergy) {
+  MovingRod rod = moving_cantilever(10);
+  rod.problem.obstacles = {{obstacle::Body::half_space({0, -0.2, 0}, {0, 1, 0}), 1e3}};
+  const Dynamics result =
+      run(rod, straight_rod(Vector3d::UnitX()), {0.3, 0.4, 0.5, 1}, {.tolerance = 1e-6});
+  double pushed = 0;
+  for (const MovingFrame& frame : result.frames) {
+    pushed = std::max(pushed, frame.obstacles[0].y());
+    EXPECT_LT(std::abs(frame.obstacles[0].x()), 1e-12);
+  }
+  EXPECT_GT(pushed, 1);
+  // The force of a node that comes into the floor has a kink in time.
+  EXPECT_LT(result.energy_error, 1e-4);
+}
+
+// The clamp in the middle: two spans, of which one runs against the arc length.
+TEST(Dynamics, BothSidesOfAClampMoveAlike) {
+  MovingRod rod = moving_cantilever(8);
+  rod.problem.grips[0].at = 0.5;
+  const Dynamics result = run(rod, straight_rod(Vector3d::UnitX()), {0.1, 0.2});
+  for (const MovingFrame& frame : result.frames) {
+    const Samples ends = frame.sample(std::vector<double>{0, 1});
+    EXPECT_NEAR(ends.points(0, 0), -ends.points(0, 1), 1e-12);
+    EXPECT_NEAR(ends.points(1, 0), ends.points(1, 1), 1e-12);
+    EXPECT_LT(frame.grips[0].torque.norm(), 1e-9);
+  }
+}
+
+TEST(Dynamics, RefusesWhatItDoesNotKnow) {
+  const StartingShape start = straight_rod(Vector3d::UnitX());
+  const std::vector<double> times = {1};
+  MovingRod rigid = moving_cantilever(1);
+  rigid.problem.obstacles = {{obstacle::Body::half_space({0, -1, 0}, {0, 1, 0})}};
+  EXPECT_THROW((void)simulate(rigid, start, times), std::invalid_argument);
+  MovingRod framed = moving_cantilever(1);
+  framed.problem.grips[0].frame = FrameHold{};
+  EXPECT_THROW((void)simulate(framed, start, times), std::invalid_argument);
+  MovingRod curved = moving_cantilever(1);
+  curved.problem.natural_strains = {{0, 1, 0}};
+  curved.problem.torsional_stiffness = 1;
+  EXPECT_THROW((void)simulate(curved, start, times), std::invalid_argument);
+  MovingRod damped = moving_cantilever(1);
+  damped.material_damping = -1;
+  EXPECT_THROW((void)simulate(damped, start, times), std::invalid_argument);
+  EXPECT_THROW((void)simulate(moving_cantilever(1), start, std::vector<double>{2, 1}),
+               std::invalid_argument);
+  EXPECT_THROW((void)straight_rod(Vector3d::Zero()), std::invalid_argument);
+}
+
+TEST(Dynamics, GripsThatPartFartherThanTheRodEndTheRunWithWhatCameBefore) {
+  MovingRod rod = closed_rod(1);
+  rod.motions = {standing(Vector3d::Zero()), moving({0.8, 0, 0}, Vector3d::UnitX(),
+                                                    smooth_step(0, 1, 0.5), Vector3d::UnitZ(), {})};
+  const Dynamics result = simulate(rod, solve_energy(rod.problem).sample, equal_times(10, 0.1),
+                                   {.terms = 8, .tolerance = 1e-5});
+  EXPECT_EQ(result.status, SolveStatus::failed);
+  EXPECT_FALSE(result.frames.empty());
+  EXPECT_LT(result.frames.back().time, 0.6);
+}
+
+TEST(GripMotion, RatesAreThoseOfPoses) {
+  const std::vector<TimedPose> table = {
+      {0, {0, 0, 0}, Eigen::Quaterniond::Identity()},
+      {1, {1, 0, 0.5}, Eigen::Quaterniond(Eigen::AngleAxisd(1, Vector3d::UnitZ()))},
+      {3, {1, 1, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(2, Vector3d::UnitX()))}};
+  const std::vector<GripMotion> motions = {
+      interpolated(table),
+      moving({1, 2, 3}, {1, 1, 0}, smooth_step(0, 3, 2), {0, 1, 1}, swinging(0.5, 2))};
+  const double h = 1e-5;
+  for (const GripMotion& motion : motions) {
+    for (const double time : {0.3, 0.9, 1.7, 2.6}) {
+      const GripPose before = motion(time - h);
+      const GripPose here = motion(time);
+      const GripPose after = motion(time + h);
+      EXPECT_LT(((after.position - before.position) / (2 * h) - here.velocity).norm(), 1e-8);
+      EXPECT_LT(((after.velocity - before.velocity) / (2 * h) - here.acceleration).norm(), 1e-7);
+      const Eigen::AngleAxisd turned(after.turn * before.turn.conjugate());
+      EXPECT_LT((turned.angle() * turned.axis() / (2 * h) - here.angular_velocity).norm(), 1e-6);
+      EXPECT_LT(
+          ((after.angular_velocity - before.angular_velocity) / (2 * h) - here.angular_acceleration)
+              .norm(),
+          1e-6);
+    }
+  }
+  EXPECT_LT((motions[0](1).position - table[1].position).norm(), 1e-14);
+  EXPECT_LT(motions[0](1e-9).velocity.norm(), 1e-7);
+  EXPECT_THROW((void)interpolated(std::vector<TimedPose>(1)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model

@@ -1,0 +1,126 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+#include <vector>
+
+namespace dlo::test {
+
+/// A cantilever (EI = l = rho A = 1) under its weight along -y as a polygon of rigid segments with
+/// point masses and springs at its joints, released at rest from straight along +x: Stoermer's and
+/// Verlet's method with the segments' lengths as constraints (SHAKE). Nothing of it is the energy
+/// model's. Of second order in the segments: the clamp holds the middle of the first one, the last
+/// point has half a mass; steps are as the square of a segment.
+class RigidPolygon {
+ public:
+  RigidPolygon(int free_points, double gamma)
+      : count_(free_points),
+        segment_(1 / (free_points + 0.5)),
+        step_(0.25 * segment_ * segment_),
+        gamma_(gamma),
+        points_(Eigen::Matrix2Xd::Zero(2, free_points + 2)),
+        inverse_mass_(Eigen::VectorXd::Constant(free_points + 2, 1 / segment_)) {
+    for (Eigen::Index i = 0; i < points_.cols(); ++i) {
+      points_(0, i) = (static_cast<double>(i) - 0.5) * segment_;
+    }
+    inverse_mass_.head(2).setZero();
+    inverse_mass_[free_points + 1] *= 2;
+  }
+
+  /// Tip at times that grow.
+  [[nodiscard]] Eigen::Matrix2Xd tips(const std::vector<double>& times) {
+    Eigen::Matrix2Xd result(2, static_cast<Eigen::Index>(times.size()));
+    double last = 0;
+    Eigen::Matrix2Xd velocity = Eigen::Matrix2Xd::Zero(2, points_.cols());
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      const double count = std::ceil((times[k] - last) / step_);
+      const double dt = (times[k] - last) / count;
+      for (int i = 0; i < static_cast<int>(count); ++i) advance(dt, velocity);
+      result.col(static_cast<Eigen::Index>(k)) = points_.rightCols(1);
+      last = times[k];
+    }
+    return result;
+  }
+
+ private:
+  void advance(double dt, Eigen::Matrix2Xd& velocity) {
+    velocity += dt / 2 * accelerations();
+    const Eigen::Matrix2Xd before = points_;
+    points_ += dt * velocity;
+    hold_lengths(before);
+    velocity = (points_ - before) / dt;
+    velocity += dt / 2 * accelerations();
+    hold_velocities(velocity);
+  }
+
+  [[nodiscard]] Eigen::Matrix2Xd accelerations() const {
+    Eigen::Matrix2Xd forces = Eigen::Matrix2Xd::Zero(2, points_.cols());
+    for (Eigen::Index i = 1; i + 1 < points_.cols(); ++i) {
+      const Eigen::Vector2d a = points_.col(i) - points_.col(i - 1);
+      const Eigen::Vector2d b = points_.col(i + 1) - points_.col(i);
+      const double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+      const double moment = angle / segment_;
+      const Eigen::Vector2d on_a = moment / a.squaredNorm() * Eigen::Vector2d(-a.y(), a.x());
+      const Eigen::Vector2d on_b = moment / b.squaredNorm() * Eigen::Vector2d(-b.y(), b.x());
+      // The joint turns a on and b back.
+      forces.col(i) += on_a + on_b;
+      forces.col(i - 1) -= on_a;
+      forces.col(i + 1) -= on_b;
+    }
+    Eigen::Matrix2Xd result = forces * inverse_mass_.asDiagonal();
+    result.row(1).rightCols(count_).array() -= gamma_;
+    return result;
+  }
+
+  /// Solves the tridiagonal equations for what moves points along the segments of `along`.
+  void correct(Eigen::Matrix2Xd& moved, const Eigen::Matrix2Xd& along, const Eigen::Matrix2Xd& by,
+               const Eigen::VectorXd& misses) const {
+    const Eigen::Index n = count_;
+    Eigen::VectorXd diagonal(n), upper(n), lower(n), right = misses;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      diagonal[i] = along.col(i).dot(by.col(i)) * (inverse_mass_[i + 1] + inverse_mass_[i + 2]);
+      if (i > 0) lower[i] = -along.col(i).dot(by.col(i - 1)) * inverse_mass_[i + 1];
+      if (i + 1 < n) upper[i] = -along.col(i).dot(by.col(i + 1)) * inverse_mass_[i + 2];
+    }
+    for (Eigen::Index i = 1; i < n; ++i) {
+      const double factor = lower[i] / diagonal[i - 1];
+      diagonal[i] -= factor * upper[i - 1];
+      right[i] -= factor * right[i - 1];
+    }
+    for (Eigen::Index i = n - 1; i >= 0; --i) {
+      if (i + 1 < n) right[i] -= upper[i] * right[i + 1];
+      right[i] /= diagonal[i];
+    }
+    for (Eigen::Index i = 0; i < n; ++i) {
+      moved.col(i + 1) += inverse_mass_[i + 1] * right[i] * by.col(i);
+      moved.col(i + 2) -= inverse_mass_[i + 2] * right[i] * by.col(i);
+    }
+  }
+
+  [[nodiscard]] Eigen::Matrix2Xd segments(const Eigen::Matrix2Xd& points) const {
+    return points.rightCols(count_) - points.middleCols(1, count_);
+  }
+
+  void hold_lengths(const Eigen::Matrix2Xd& before) {
+    const Eigen::Matrix2Xd old = segments(before);
+    for (int i = 0; i < 10; ++i) {
+      const Eigen::Matrix2Xd now = segments(points_);
+      const Eigen::VectorXd misses =
+          (now.colwise().squaredNorm().array() - segment_ * segment_).matrix().transpose() / 2;
+      if (misses.cwiseAbs().maxCoeff() < 1e-14 * segment_) return;
+      correct(points_, now, old, misses);
+    }
+  }
+
+  void hold_velocities(Eigen::Matrix2Xd& velocity) const {
+    const Eigen::Matrix2Xd now = segments(points_);
+    correct(velocity, now, now, now.cwiseProduct(segments(velocity)).colwise().sum().transpose());
+  }
+
+  Eigen::Index count_;
+  double segment_, step_, gamma_;
+  Eigen::Matrix2Xd points_;
+  Eigen::VectorXd inverse_mass_;
+};
+
+}  // namespace dlo::test
