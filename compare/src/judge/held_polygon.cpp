@@ -158,10 +158,10 @@ void HeldPolygon::linearise(const std::vector<NodeForce>& forces) {
     add_diagonal(joint.second, along);
     const Eigen::MatrixXd block =
         joint.stiffness * basis(joint.first).transpose() * basis(joint.second);
-    const Eigen::Index row = joint.first * turns();
-    const Eigen::Index column = joint.second * turns();
-    matrix.block(row, column, turns(), turns()) -= block;
-    matrix.block(column, row, turns(), turns()) -= block.transpose();
+    const Eigen::Index at = joint.first * turns();
+    const Eigen::Index beside = joint.second * turns();
+    matrix.block(at, beside, turns(), turns()) -= block;
+    matrix.block(beside, at, turns(), turns()) -= block.transpose();
   }
   for (Eigen::Index j = 0; j < held; ++j) {
     for (Eigen::Index axis = 0; axis < d; ++axis) {
