@@ -40,6 +40,37 @@ void expect_accounted(const Problem& problem) {
   EXPECT_EQ(search.equilibria.size(), all_energy(problem).size());
 }
 
+TEST(SearchLog, AShapeThatTurnsFreelyIsListedOnce) {
+  // About the line through its pins, on which its weight, if any, is too.
+  for (const double gamma : {0.0, 10.0, 40.0}) {
+    SCOPED_TRACE(gamma);
+    Problem pins = heavy_cantilever(gamma, 0);
+    pins.grips = {{0, {0, 0, 0}}, {1, {0, -0.6, 0}}};
+    const std::vector<Equilibrium> all = all_energy(pins);
+    EXPECT_GE(all.size(), 2U);
+    const std::vector<double> s = {0.1, 0.3, 0.5, 0.7, 0.9};
+    const auto distances = [&](const Equilibrium& of) {
+      // From the line, and along it: what a turn about it keeps.
+      const Eigen::Matrix3Xd points = of.sample(s).points;
+      Eigen::Matrix2Xd kept(2, points.cols());
+      kept << points.row(1),
+          Eigen::VectorXd((points.row(0).array().square() + points.row(2).array().square()).sqrt())
+              .transpose();
+      return kept;
+    };
+    const auto leaves_plane = [&](const Equilibrium& of) {
+      return of.sample(s).points.row(2).cwiseAbs().maxCoeff() > 1e-6;
+    };
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        // Bent to the left and to the right in one plane both count.
+        if (!leaves_plane(all[i]) && !leaves_plane(all[j])) continue;
+        EXPECT_GT((distances(all[i]) - distances(all[j])).norm(), 1e-5) << i << ", " << j;
+      }
+    }
+  }
+}
+
 TEST(SearchLog, AccountsForEveryEquilibriumOfOneSpan) {
   expect_accounted(heavy_cantilever(1, 0));
   expect_accounted(heavy_cantilever(60, 0));

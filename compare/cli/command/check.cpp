@@ -7,6 +7,7 @@
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/explanation.hpp"
+#include "dlo/compare/friction_check.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_verdict.hpp"
 #include "figure/check_figure.hpp"
@@ -18,6 +19,7 @@
 #include "option/scene_options.hpp"
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
+#include "scene/reach.hpp"
 #include "toml/quantity.hpp"
 
 namespace dlo::cli {
@@ -98,6 +100,9 @@ void run(const CheckOptions& options) {
       .modulus = options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes,
       .solve = options.overrides.solve()};
   report.check = compare::check_shape(report.scene, shape, check_options);
+  if (compare::friction_in_reach(report.scene)) {
+    report.friction = compare::check_friction(report.scene, report.check);
+  }
   if (verdict) {
     verdict->judgement = compare::judge(report.check, verdict->tolerance);
     if (!verdict->judgement.pass && !options.no_explanation) {

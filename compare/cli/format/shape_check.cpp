@@ -11,7 +11,6 @@
 #include "format/comparison.hpp"
 #include "option/output.hpp"
 #include "option/terminal.hpp"
-#include "scene/reach.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -27,6 +26,47 @@ const char* rule_text(compare::ArcLengths rule) {
       break;
   }
   return "nearest points, so differences along the rod do not show";
+}
+
+void add_friction(std::string& out, const compare::FrictionCheck& friction) {
+  append(out, "  left out        friction that the scene has: all above is without it\n");
+  const auto needed = [&] {
+    std::string text =
+        fmt::format("{:.3g} +- {:.2g} times the scene's", friction.factor, friction.factor_error);
+    if (std::isfinite(friction.coefficient)) {
+      append(text, ", a coefficient of {:.3g}", friction.coefficient);
+    }
+    return text;
+  };
+  switch (friction.verdict) {
+    case compare::FrictionVerdict::none_needed:
+      append(out, "  friction        none is needed: an equilibrium without it is {:.3g} mm away\n",
+             friction.rms_m * 1e3);
+      return;
+    case compare::FrictionVerdict::inside:
+      append(out, "  friction        can hold this shape: it needs {}\n", needed());
+      return;
+    case compare::FrictionVerdict::outside:
+      append(out, "  friction        cannot hold this shape: it needs {}\n", needed());
+      return;
+    case compare::FrictionVerdict::not_told:
+      break;
+  }
+  append(out, "  friction        not told: {}\n", friction.reason);
+  if (std::isfinite(friction.factor)) {
+    append(out, "                  (between {:.3g} and {:.3g} times the scene's, each +- {:.2g})\n",
+           friction.least_factor, friction.factor, friction.factor_error);
+  }
+}
+
+Json friction_json(const compare::FrictionCheck& friction) {
+  return {{"verdict", compare::to_string(friction.verdict)},
+          {"reason", friction.reason.empty() ? Json() : Json(friction.reason)},
+          {"factor", friction.factor},
+          {"least_factor", friction.least_factor},
+          {"factor_error", friction.factor_error},
+          {"coefficient", friction.coefficient},
+          {"rms_m", friction.rms_m}};
 }
 
 }  // namespace
@@ -88,11 +128,7 @@ std::string shape_check_text(const ShapeCheckReport& report) {
   }
   add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
   add_state(out, c.state, scene.length, "the shape");
-  if (compare::friction_in_reach(scene)) {
-    append(out,
-           "  left out        friction that the scene has: whether it could hold this shape is not "
-           "told\n");
-  }
+  if (report.friction) add_friction(out, *report.friction);
   constexpr std::size_t most_explanations = 3;
   for (std::size_t i = 0; i < std::min(most_explanations, report.explanations.size()); ++i) {
     const compare::Explanation& explanation = report.explanations[i];
@@ -155,7 +191,10 @@ Json shape_check_json(const ShapeCheckReport& report) {
                                       {"rms_m", explanation.rms_m}});
   }
   result["state"] = to_json(c.state);
-  if (compare::friction_in_reach(report.scene)) result["left_out"] = {"friction"};
+  if (report.friction) {
+    result["left_out"] = {"friction"};
+    result["friction"] = friction_json(*report.friction);
+  }
   result["arc_length_m"] = s;
   result["points_m"] = points_json(c.alignment.shape.points);
   result["reference_points_m"] = points_json(c.reference.points);
@@ -170,7 +209,7 @@ std::string shape_check_csv(const ShapeCheckReport& report) {
       "scene,shape,gamma,points,reversed,arc_lengths,from_m,to_m,rms_m,rms_over_length,"
       "rms_over_movement,max_m,max_at_m,worst_point,tip_m,movement_m,effective_modulus_ratio,"
       "rms_at_effective_modulus_m,optimum,tolerance_m,verdict,seen_share,reason,whole_rms_m,"
-      "whole_max_m\n";
+      "whole_max_m,friction,friction_factor\n";
   const std::vector<double>& s = c.reference.arc_length;
   const bool has_modulus = c.effective_modulus.optimum != compare::Optimum::none;
   const std::string fields[] = {csv_field(c.scene),
@@ -197,7 +236,9 @@ std::string shape_check_csv(const ShapeCheckReport& report) {
                                 csv_number(c.seen_share),
                                 verdict ? csv_field(verdict->judgement.reason) : "",
                                 csv_number(c.whole_rms_m),
-                                csv_number(c.whole_max_m)};
+                                csv_number(c.whole_max_m),
+                                report.friction ? compare::to_string(report.friction->verdict) : "",
+                                report.friction ? csv_number(report.friction->factor) : ""};
   append(out, "{}\n", fmt::join(fields, ","));
   return out;
 }

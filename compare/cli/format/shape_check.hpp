@@ -6,6 +6,7 @@
 
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/explanation.hpp"
+#include "dlo/compare/friction_check.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_verdict.hpp"
@@ -28,6 +29,8 @@ struct ShapeCheckReport {
   std::optional<Verdict> verdict;  ///< without a tolerance none
   /// Of a shape that fails, the best first.
   std::vector<compare::Explanation> explanations = {};
+  /// Where an obstacle in reach has friction.
+  std::optional<compare::FrictionCheck> friction = std::nullopt;
   compare::PoseFreedom pose = compare::PoseFreedom::known;
   std::string unit_hint;  ///< where the check itself has none
   std::string file;       ///< of the text; empty: standard output, which may be a terminal

@@ -1,9 +1,12 @@
 #include "solve/states.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <vector>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/reference.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -24,14 +27,44 @@ double shapes_apart(const Scene& scene, const Equilibrium& a, const Equilibrium&
   return rms(s, a.sample(s).points - b.sample(s).points);
 }
 
+/// d1 of the mirror image of a material frame (d1, d2 = t x d1) that keeps what is across the plane
+/// at the first clamp: with d1 = a n + b t x n there, e = a d1 - b d2 is the material direction of
+/// the normal n and p = b d1 + a d2 the other one. An image that is right-handed and held alike has
+/// -M e and M p for them, so that its strains are those of the same rod: about the normal as they
+/// were, about the other axis and of twist with the other sign.
+Eigen::Matrix3Xd mirrored_d1(const energy_model::Samples& samples, const Eigen::Matrix3d& mirror,
+                             double a, double b) {
+  Eigen::Matrix3Xd result(3, samples.d1.cols());
+  for (Eigen::Index i = 0; i < samples.d1.cols(); ++i) {
+    const Eigen::Vector3d d1 = samples.d1.col(i);
+    const Eigen::Vector3d t = samples.tangents.col(i);
+    result.col(i) = mirror * ((b * b - a * a) * d1 + 2 * a * b * t.cross(d1));
+  }
+  return result;
+}
+
 /// The mirror image in the plane through the first gripper.
 Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::Vector3d& normal) {
   const Eigen::Matrix3d mirror = Eigen::Matrix3d::Identity() - 2 * normal * normal.transpose();
   const Eigen::Vector3d origin = scene.grippers.front().position;
   Equilibrium result = state;
-  result.sample = [mirror, origin, sample = state.sample](std::span<const double> s) {
+  // Where the clamp holds d1, if the shape has one.
+  double a = 0;
+  double b = 1;
+  const std::vector<const Gripper*> along = grippers_along(scene);
+  const auto clamp = std::find_if(along.begin(), along.end(),
+                                  [](const Gripper* gripper) { return gripper->direction; });
+  if (clamp != along.end()) {
+    const energy_model::Samples held = state.sample(std::vector<double>{(*clamp)->at});
+    if (held.d1.cols() > 0) {
+      a = normal.dot(held.d1.col(0));
+      b = held.tangents.col(0).cross(normal).dot(held.d1.col(0));
+    }
+  }
+  result.sample = [mirror, origin, a, b, sample = state.sample](std::span<const double> s) {
     energy_model::Samples samples = sample(s);
     samples.points = ((mirror * (samples.points.colwise() - origin)).colwise() + origin).eval();
+    samples.d1 = mirrored_d1(samples, mirror, a, b);
     samples.tangents = (mirror * samples.tangents).eval();
     samples.curvature = (mirror * samples.curvature).eval();
     return samples;
@@ -43,6 +76,10 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
   for (energy_model::Reaction& grip : result.grips) {
     grip.force = (mirror * grip.force).eval();
     grip.torque = (-(mirror * grip.torque)).eval();  // an axial vector
+  }
+  for (energy_model::TwistedPart& twist : result.twists) {
+    twist.angle = -twist.angle;
+    twist.torque = -twist.torque;
   }
   return result;
 }

@@ -5,7 +5,9 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 namespace dlo::energy_model {
 
@@ -85,6 +87,18 @@ Eigen::VectorXd eigenvalues_by_size(const Eigen::MatrixXd& hessian,
   std::sort(found.begin(), found.end(),
             [](double a, double b) { return std::abs(a) < std::abs(b); });
   return found;
+}
+
+Eigen::VectorXd direction_by_size(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
+                                  Eigen::Index index) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(on_free_directions(hessian, jacobian));
+  std::vector<Eigen::Index> order(static_cast<std::size_t>(eigen.eigenvalues().size()));
+  std::iota(order.begin(), order.end(), Eigen::Index{0});
+  std::stable_sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
+    return std::abs(eigen.eigenvalues()[a]) < std::abs(eigen.eigenvalues()[b]);
+  });
+  return free_directions(jacobian, hessian.rows()) *
+         eigen.eigenvectors().col(order.at(static_cast<std::size_t>(index)));
 }
 
 bool is_minimum(const Eigen::MatrixXd& hessian) {

@@ -16,6 +16,19 @@ namespace {
 /// the rod's length.
 constexpr double largest_next_step = 1e-8;
 
+/// No point of a held rod can be off by more, in lengths.
+constexpr double largest_error = 2;
+
+/// h = |dlambda| / lambda along what the coefficients may be off by, up to which there is an
+/// equilibrium there. Kantorovich: Newton's method from a point with the step eta, the inverse
+/// 1/lambda and second derivatives below kappa has a solution if h = eta kappa / lambda <= 1/2,
+/// not further than 2 / (1 + (1 - 2h)^(1/2)) eta; half of it is kept for what is estimated in h.
+constexpr double largest_h = 0.25;
+
+/// Third derivatives of E - mu . c along a unit direction of strains are forces times angles of 1
+/// or less, those of positions three times counted, over the scale of forces.
+constexpr double largest_third_derivative = 4;
+
 /// Norm of Newton's step from here; in neutral directions it stands still.
 double newton_step(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
                    const Eigen::VectorXd& gradient, const Eigen::VectorXd& residual) {
@@ -41,28 +54,32 @@ double scale_of(const SpanSolution& solution, double load) {
 /// Rounding of forces, whose scale is this.
 double rounding_of(double scale) { return 8 * std::numeric_limits<double>::epsilon() * scale; }
 
-/// What the points of a shape may be away from those of an equilibrium, of the length: what
-/// Newton's method would still move them by, and what rounding and the modes that are left out push
-/// along the softest direction. The coefficients of strains bound what positions move by; no point
-/// of a held rod can be off by more than twice its length. NaN with soft obstacles, which make
-/// kinks inside pieces.
-double error_estimate(const SpanSolution& solution, double load) {
-  const SpanEnergy& model = *solution.model;
-  if (model.has_soft_obstacles()) return std::numeric_limits<double>::quiet_NaN();
+/// By which the coefficients may be off along the softest direction if the second variation stays
+/// what it is: what Newton's method would still move them by, and what rounding and the modes that
+/// are left out push, divided by the eigenvalue nearest to zero.
+double linear_error(const SpanSolution& solution, double load) {
   const double scale = scale_of(solution, load);
   // The angle that the last coefficient adds is a_K / (2K); forces feel it as little again.
   const double K = solution.terms;
-  const double angle = model.tail(solution.x) / (2 * K);
+  const double angle = solution.model->tail(solution.x) / (2 * K);
   const double softest = std::min(solution.softest, 1.0);
+  return solution.next_step + (rounding_of(scale) + scale * angle / (2 * K)) / softest;
+}
+
+/// What the points of a shape may be away from those of an equilibrium, of the length. The
+/// coefficients of strains bound what positions move by; no point of a held rod can be off by more
+/// than twice its length. NaN with soft obstacles, which make kinks inside pieces.
+/// @param moved  by which the coefficients may be off
+double error_estimate(const SpanSolution& solution, double moved) {
+  const SpanEnergy& model = *solution.model;
+  if (model.has_soft_obstacles()) return std::numeric_limits<double>::quiet_NaN();
   // The unit is the rod's smaller bending stiffness.
   double softest_section = 1;
   for (const Span::Part& part : model.span().parts) {
     softest_section = std::min(softest_section, part.stiffness.head<2>().minCoeff());
   }
-  const double moved =
-      (solution.next_step + (rounding_of(scale) + scale * angle / (2 * K)) / softest) /
-      std::sqrt(softest_section);
-  return std::min(moved + angle, 2.0);
+  const double angle = model.tail(solution.x) / (2.0 * solution.terms);
+  return std::min(moved / std::sqrt(softest_section) + angle, largest_error);
 }
 
 /// Eigenvalues of the second variation in some directions, as far as they were looked at.
@@ -70,6 +87,7 @@ struct Softness {
   double smallest = 0;         // eigenvalue
   double nearest_zero = 0;     // size of the eigenvalue nearest to zero that is no free turn's
   int neutral_directions = 0;  // that are no free turns
+  Eigen::Index zero = 0;       // those that are free, or zero whatever they are
 };
 
 /// @param bound    size up to which an eigenvalue counts as neutral
@@ -83,11 +101,65 @@ Softness softness(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobia
   // A factor proves that none is much smaller than a smallest one that is positive.
   if (result.smallest > 2 * bound) return result;
   const Eigen::VectorXd sizes = eigenvalues_by_size(hessian, jacobian).cwiseAbs();
-  const Eigen::Index zero = std::max(std::min(free, (sizes.array() <= bound).count()),
-                                     (sizes.array() <= nothing).count());
-  result.neutral_directions = static_cast<int>((sizes.array() <= bound).count() - zero);
-  result.nearest_zero = zero < sizes.size() ? sizes[zero] : 1;
+  result.zero = std::max(std::min(free, (sizes.array() <= bound).count()),
+                         (sizes.array() <= nothing).count());
+  result.neutral_directions = static_cast<int>((sizes.array() <= bound).count() - result.zero);
+  result.nearest_zero = result.zero < sizes.size() ? sizes[result.zero] : 1;
   return result;
+}
+
+/// The direction of the eigenvalue nearest to zero but for `free` of them, with the multipliers
+/// that go with it: a vector v = (z, nu) of the system of Newton's method with |z| = 1.
+struct SoftMode {
+  Eigen::VectorXd direction, multipliers;
+};
+
+SoftMode soft_mode(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
+                   Eigen::Index free) {
+  SoftMode mode;
+  mode.direction = direction_by_size(hessian, jacobian, free);
+  mode.multipliers = Eigen::VectorXd::Zero(jacobian.rows());
+  if (jacobian.rows() > 0) {
+    mode.multipliers = jacobian.transpose().householderQr().solve(hessian * mode.direction);
+  }
+  return mode;
+}
+
+/// First and second derivative of v . F'(y + t v) v by t, with Newton's map F and y = (x, mu): how
+/// the eigenvalue changes along its own direction, to second order with what the constraints and
+/// the stiff directions do to it. The first is the coefficient of a fold, zero by symmetry at a
+/// bifurcation.
+struct Softening {
+  double first = 0, second = 0;
+};
+
+Softening softening(SpanSolution& solution, const SoftMode& mode) {
+  constexpr double step = 1e-3;  // error step^2, rounding eps / step and eps / step^2
+  SpanEnergy& model = *solution.model;
+  Eigen::VectorXd gradient(model.size());
+  Eigen::VectorXd residual(model.constraints());
+  Eigen::MatrixXd jacobian(model.constraints(), model.size());
+  Eigen::MatrixXd hessian;
+  const auto curvature = [&](double t) {
+    (void)model.value(solution.x + t * mode.direction, gradient);
+    model.constraint(residual, jacobian);
+    model.hessian(solution.multipliers + t * mode.multipliers, hessian);
+    ++solution.evaluations;
+    return mode.direction.dot(hessian * mode.direction) -
+           2 * mode.multipliers.dot(jacobian * mode.direction);
+  };
+  const double ahead = curvature(step);
+  const double behind = curvature(-step);
+  // Last, so that the model is left where the solution is.
+  const double here = curvature(0);
+  return {(ahead - behind) / (2 * step), (ahead - 2 * here + behind) / (step * step)};
+}
+
+/// Whether the second variation might change so much within `eta` that h is above its limit; false
+/// where the largest forces there are could not do it.
+bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
+  return !(eta * largest_third_derivative * scale_of(solution, load) <=
+           largest_h * solution.softest);
 }
 
 }  // namespace
@@ -125,25 +197,41 @@ void certify(SpanSolution& solution, double load) {
   Softness found = softness(hessian, jacobian, bound, free.in_plane, nothing);
   solution.smallest_curvature = found.smallest;
   solution.softest = found.nearest_zero;
-  solution.error = error_estimate(solution, load);
+  const double eta = linear_error(solution, load);
+  double moved = eta;
+  bool at_fold = false;
   solution.neutral_directions = found.neutral_directions;
+  if (!model.has_soft_obstacles() && may_be_at_fold(solution, load, eta)) {
+    const SoftMode mode = soft_mode(hessian, jacobian, found.zero);
+    const Softening change = softening(solution, mode);
+    const double kappa = std::abs(change.first) + std::abs(change.second) * eta;
+    const double h = eta * kappa / solution.softest;
+    moved = h <= 0.5 ? 2 * eta / (1 + std::sqrt(1 - 2 * h)) : largest_error;
+    at_fold = h > largest_h;
+    if (at_fold) solution.neutral_directions = std::max(1, solution.neutral_directions);
+  }
+  solution.error = error_estimate(solution, moved);
   if (model.span().planar) {
     model.sideways(solution.multipliers, hessian, jacobian);
     found = softness(hessian, jacobian, bound, free.sideways, nothing);
     solution.smallest_curvature = std::min(solution.smallest_curvature, found.smallest);
     solution.neutral_directions += found.neutral_directions;
   }
-  if (undetermined || !small_step) return solution.finish(SolveStatus::near_singular);
+  if (undetermined || !small_step || at_fold) return solution.finish(SolveStatus::near_singular);
   if (solution.smallest_curvature < -neutral) return solution.finish(SolveStatus::saddle);
   solution.finish(solution.neutral_directions > 0 ? SolveStatus::near_singular
                                                   : SolveStatus::converged);
 }
 
 void certify_sideways(SpanSolution& solution, double load) {
-  const bool unsure = solution.is_equilibrium() && solution.softest <= neutral;
+  const double eta = linear_error(solution, load);
+  // Of what is no minimum in the plane the factor tells nothing.
+  const bool looked_at = solution.is_equilibrium() && !std::isnan(solution.softest);
+  const bool unsure =
+      looked_at && (solution.softest <= neutral || may_be_at_fold(solution, load, eta));
   if (unsure || solution.status == SolveStatus::near_singular) return certify(solution, load);
   if (!solution.is_equilibrium()) return;
-  solution.error = error_estimate(solution, load);
+  solution.error = error_estimate(solution, eta);
   if (solution.status != SolveStatus::converged) return;
   if (!solution.model->resists_sideways()) solution.finish(SolveStatus::saddle);
 }

@@ -9,8 +9,9 @@ namespace dlo::energy_model {
 /// eigenvalues of the second variation in all directions that the constraints leave, those out of a
 /// span's plane included. A negative one makes it a `saddle`; a step that is no small one, or an
 /// eigenvalue that is zero to `neutral` in a direction that is no free turn (free_turns.hpp), makes
-/// it `near_singular`, with the number of such directions. Either way it gets its error. What had
-/// failed before stays as it is.
+/// it `near_singular`, with the number of such directions. So does a positive one that may change
+/// to its double or to zero within what the shape may be off by, as at a fold (Kantorovich's
+/// condition). Either way it gets its error. What had failed before stays as it is.
 /// @param load  sum of weight and loads, the scale of the residuals
 void certify(SpanSolution& solution, double load);
 

@@ -70,4 +70,23 @@ FreeTurns free_turns(const Span& span, const Eigen::Matrix3Xd& tangents) {
           .sideways = moving(axes_that_keep(kept, axes.leftCols(2)), shape)};
 }
 
+bool is_turned_copy(const Span& span, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  constexpr double same = 1e-6;
+  if (span.has_material_directors()) return false;
+  const std::vector<Eigen::Vector3d> kept = kept_vectors(span);
+  const auto count = static_cast<Eigen::Index>(kept.size());
+  Eigen::Matrix3Xd from(3, count + a.cols());
+  for (Eigen::Index i = 0; i < count; ++i) from.col(i) = kept[static_cast<std::size_t>(i)];
+  from.rightCols(a.cols()) = a / span.length;
+  Eigen::Matrix3Xd to = from;
+  to.rightCols(b.cols()) = b / span.length;
+  // Kabsch's rotation: the nearest there is.
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(to * from.transpose(),
+                                              Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Vector3d signs = Eigen::Vector3d::Ones();
+  signs[2] = svd.matrixU().determinant() * svd.matrixV().determinant() < 0 ? -1 : 1;
+  const Eigen::Matrix3d turn = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  return (turn * from - to).norm() < same;
+}
+
 }  // namespace dlo::energy_model

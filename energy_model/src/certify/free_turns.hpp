@@ -22,4 +22,10 @@ struct FreeTurns {
 /// turn
 [[nodiscard]] FreeTurns free_turns(const Span& span, const Eigen::Matrix3Xd& tangents);
 
+/// Whether one shape is another one of such a circle: a proper rotation takes all of its points,
+/// from the anchor, to the other's and keeps what is held and every force.
+/// @param a, b  points of both at the same arc lengths, 3 x M
+[[nodiscard]] bool is_turned_copy(const Span& span, const Eigen::Matrix3Xd& a,
+                                  const Eigen::Matrix3Xd& b);
+
 }  // namespace dlo::energy_model

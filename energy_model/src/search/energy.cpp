@@ -10,6 +10,7 @@
 #include "base/legendre.hpp"
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
+#include "certify/free_turns.hpp"
 #include "contact/penetration.hpp"
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
@@ -340,7 +341,14 @@ class EnergySolver::State {
       const SpanSamples samples = p.solution.model->shape(p.solution.x).sample(s);
       return Eigen::Matrix3Xd(p.placed.frame.transpose() * samples.points);
     };
-    return (points(a) - points(b)).norm() < 1e-6 * length;
+    const Eigen::Matrix3Xd of_a = points(a);
+    const Eigen::Matrix3Xd of_b = points(b);
+    const Eigen::Matrix3d& frame = a.placed.frame;
+    if ((of_a - of_b).norm() < 1e-6 * length) return true;
+    // In its plane a shape and the one turned over are both told, as one that is bent to the left
+    // and one to the right.
+    const bool planar = a.solution.model->span().planar && b.solution.model->span().planar;
+    return !planar && is_turned_copy(a.placed.span, frame * of_a, frame * of_b);
   }
 
   /// From tangents in the span's frame; out of its plane if they are and may be.

@@ -11,6 +11,7 @@
 #include "base/minimise.hpp"
 #include "certify/certify.hpp"
 #include "certify/enough_terms.hpp"
+#include "certify/free_turns.hpp"
 #include "newton/penalty_descent.hpp"
 #include "newton/restore.hpp"
 #include "newton/trust_region.hpp"
@@ -668,9 +669,11 @@ bool is_same_shape(const SpanSolution& a, const SpanSolution& b) {
   const Span& span = a.model->span();
   if (std::abs(a.energy - b.energy) > 1e-8 * (1 + span.total_load())) return false;
   const std::vector<double> s = {0.3 * span.length, 0.6 * span.length, span.length};
-  const Eigen::Matrix3Xd difference =
-      a.model->shape(a.x).sample(s).points - b.model->shape(b.x).sample(s).points;
-  return difference.norm() < 1e-6 * span.length;
+  const Eigen::Matrix3Xd of_a = a.model->shape(a.x).sample(s).points;
+  const Eigen::Matrix3Xd of_b = b.model->shape(b.x).sample(s).points;
+  if ((of_a - of_b).norm() < 1e-6 * span.length) return true;
+  const bool planar = span.planar && b.model->span().planar;
+  return !planar && is_turned_copy(span, of_a, of_b);
 }
 
 std::vector<SpanSolution> solve_span(const Span& span, const SpanOptions& options,

@@ -63,7 +63,7 @@ class SpanWorkspace {
   Newton newton_;
 };
 
-/// Two equilibria of one span that are the same but for rounding.
+/// Two equilibria of one span that are the same but for rounding and, in space, for free turns.
 [[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b);
 
 /// Equilibria of a span, lowest energy first: the search's best one, or all of them. Never empty; a

@@ -89,7 +89,7 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
 }
 
 // A shape that friction may hold is held against the one without: it fails or passes as any other.
-TEST_F(ContactCommand, CheckSaysThatItKnowsNoFriction) {
+TEST_F(ContactCommand, CheckSaysWhatFrictionAShapeNeeds) {
   const std::string smooth = lying();
   std::ifstream file(smooth);
   const std::string rough = scene(
@@ -102,9 +102,19 @@ TEST_F(ContactCommand, CheckSaysThatItKnowsNoFriction) {
   EXPECT_NE(with.out.find("\n  left out        friction that the scene has"), std::string::npos)
       << with.out;
   EXPECT_EQ(run("check " + smooth + rest).out.find("friction"), std::string::npos);
-  EXPECT_EQ(json::parse(run("check --format json " + rough + rest).out).at("left_out"),
-            json({"friction"}));
-  EXPECT_NE(run("check --format csv " + rough + rest).err.find("has friction"), std::string::npos);
+  const json document = json::parse(run("check --format json " + rough + rest).out);
+  EXPECT_EQ(document.at("left_out"), json({"friction"}));
+  const Outcome row = run("check --format csv " + rough + rest);
+  EXPECT_NE(row.err.find("has friction"), std::string::npos);
+  // Whether friction could hold the shape is told apart: this one needs none.
+  EXPECT_NE(with.out.find("\n  friction        none is needed: an equilibrium without it"),
+            std::string::npos)
+      << with.out;
+  const json& friction = document.at("friction");
+  EXPECT_EQ(friction.at("verdict"), "none_needed");
+  EXPECT_EQ(friction.at("factor"), 0);
+  EXPECT_NE(row.out.find(",friction,friction_factor\n"), std::string::npos);
+  EXPECT_NE(row.out.find(",none_needed,0\n"), std::string::npos) << row.out;
 }
 
 // A cable that hangs beside a peg, a ball or a box: all models know the same bodies.

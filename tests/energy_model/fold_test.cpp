@@ -1,0 +1,179 @@
+// What is said of shapes that come near a fold, against the elastica shot from its tip in long
+// double.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <span>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using test::heavy_cantilever;
+using Real = long double;
+
+/// Clamped along x and stiff out of the plane of its weight.
+Problem ribbon(Real gamma) {
+  Problem problem = heavy_cantilever(static_cast<double>(gamma), 0);
+  problem.bending_stiffness = 50;
+  problem.bending_stiffness_2 = 1;
+  problem.torsional_stiffness = 50;
+  return problem;
+}
+
+/// theta'' = Gamma s cos(theta) from the tip, s = 0, where theta' = 0; with the derivative by
+/// theta(0) and what lies between the tip and here.
+using State = std::array<Real, 6>;  // theta, theta', their derivatives, x, y
+
+State rate(Real gamma, Real s, const State& u) {
+  return {u[1],           gamma * s * std::cos(u[0]),
+          u[3],           -gamma * s * std::sin(u[0]) * u[2],
+          std::cos(u[0]), std::sin(u[0])};
+}
+
+/// By Runge and Kutta's method, at equally spaced s from the tip to the clamp.
+std::vector<State> shot(Real gamma, Real tip_angle, int steps) {
+  const Real h = Real(1) / static_cast<Real>(steps);
+  std::vector<State> states = {{tip_angle, 0, 1, 0, 0, 0}};
+  const auto moved = [](const State& u, Real by, const State& along) {
+    State result = u;
+    for (std::size_t i = 0; i < result.size(); ++i) result.at(i) += by * along.at(i);
+    return result;
+  };
+  for (int i = 0; i < steps; ++i) {
+    const Real s = static_cast<Real>(i) * h;
+    const State& u = states.back();
+    const State k1 = rate(gamma, s, u);
+    const State k2 = rate(gamma, s + h / 2, moved(u, h / 2, k1));
+    const State k3 = rate(gamma, s + h / 2, moved(u, h / 2, k2));
+    const State k4 = rate(gamma, s + h, moved(u, h, k3));
+    states.push_back(moved(moved(moved(moved(u, h / 6, k1), h / 3, k2), h / 3, k3), h / 6, k4));
+  }
+  return states;
+}
+
+/// At the clamp, extrapolated twice: to 1e-15.
+State at_clamp(Real gamma, Real tip_angle) {
+  constexpr int steps = 200;
+  const State a = shot(gamma, tip_angle, steps).back();
+  const State b = shot(gamma, tip_angle, 2 * steps).back();
+  const State c = shot(gamma, tip_angle, 4 * steps).back();
+  State result = c;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const Real coarse = b.at(i) + (b.at(i) - a.at(i)) / 15;
+    const Real fine = c.at(i) + (c.at(i) - b.at(i)) / 15;
+    result.at(i) = fine + (fine - coarse) / 31;
+  }
+  return result;
+}
+
+struct Fold {
+  Real gamma, tip_angle;
+};
+
+/// Where the angle at the clamp and its derivative by that at the tip are zero, by Newton's method.
+Fold thrown_back_fold() {
+  Fold fold = {41.4L, 4.0L};
+  for (int i = 0; i < 8; ++i) {
+    constexpr Real step = 1e-6L;
+    const State here = at_clamp(fold.gamma, fold.tip_angle);
+    const State heavier = at_clamp(fold.gamma + step, fold.tip_angle);
+    const State turned = at_clamp(fold.gamma, fold.tip_angle + step);
+    const Real a = (heavier[0] - here[0]) / step;
+    const Real b = here[2];
+    const Real c = (heavier[2] - here[2]) / step;
+    const Real d = (turned[2] - here[2]) / step;
+    const Real determinant = a * d - b * c;
+    fold.gamma -= (d * here[0] - b * here[2]) / determinant;
+    fold.tip_angle -= (a * here[2] - c * here[0]) / determinant;
+  }
+  return fold;
+}
+
+/// The shape that comes from this tip, to start a solve from.
+Equilibrium shape_of(Real gamma, Real tip_angle) {
+  constexpr int steps = 2000;
+  const std::vector<State> states = shot(gamma, tip_angle, steps);
+  Equilibrium shape;
+  shape.sample = [states](std::span<const double> arc_lengths) {
+    Samples samples;
+    samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
+    const auto count = static_cast<Eigen::Index>(arc_lengths.size());
+    samples.tangents.setZero(3, count);
+    samples.d1.setZero(3, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const double s = samples.arc_length[static_cast<std::size_t>(i)];
+      const auto at = static_cast<std::size_t>(std::lround((1 - s) * steps));
+      const auto theta = static_cast<double>(states[at][0]);
+      samples.tangents.col(i) << std::cos(theta), std::sin(theta), 0;
+      samples.d1.col(i) << -std::sin(theta), std::cos(theta), 0;
+    }
+    return samples;
+  };
+  return shape;
+}
+
+Eigen::Vector2d tip_of(const Equilibrium& equilibrium) {
+  return equilibrium.sample(std::vector<double>{1}).points.col(0).head<2>();
+}
+
+TEST(Fold, WhatIsCalledConvergedIsAsNearAsItsErrorSays) {
+  const Fold fold = thrown_back_fold();
+  ASSERT_NEAR(static_cast<double>(fold.gamma), 41.4, 0.01);
+  const Equilibrium start = shape_of(fold.gamma, fold.tip_angle + 0.05L);
+  int open = 0;
+  double softest = 1;
+  Real angle = fold.tip_angle + 0.3L;
+  for (int exponent = 2; exponent <= 14; ++exponent) {
+    SCOPED_TRACE(testing::Message() << "1e-" << exponent << " above the fold");
+    const Real gamma = static_cast<double>(fold.gamma * (1 + std::pow(10.0L, -exponent)));
+    const Equilibrium found = solve_energy(ribbon(gamma), {.start = &start});
+    // The lighter the rod the nearer the two shapes; Newton's method comes from the far side.
+    for (int i = 0; i < 60; ++i) {
+      const State here = at_clamp(gamma, angle);
+      angle -= here[0] / here[2];
+      if (std::abs(here[0] / here[2]) < 1e-15L) break;
+    }
+    const State exact = at_clamp(gamma, angle);
+    const double error = (tip_of(found) - Eigen::Vector2d(static_cast<double>(exact[4]),
+                                                          static_cast<double>(exact[5])))
+                             .norm();
+    EXPECT_LE(error, found.error_estimate);
+    // Its square is as what the weight is above the fold's.
+    if (exponent >= 5 && exponent <= 9) {
+      EXPECT_NEAR(found.smallest_curvature / softest, std::sqrt(0.1), 0.002);
+    }
+    if (exponent <= 9) {
+      EXPECT_EQ(found.status, SolveStatus::converged) << found.message;
+      EXPECT_LT(found.error_estimate, 1e-5);
+      softest = found.smallest_curvature;
+    }
+    if (exponent < 12) continue;
+    // That there is a shape at all is a matter of the terms left out.
+    EXPECT_EQ(found.status, SolveStatus::near_singular) << found.message;
+    EXPECT_EQ(found.neutral_directions, 1);
+    if (found.smallest_curvature > 1e-7) ++open;
+  }
+  EXPECT_GE(open, 1) << "all are singular by their eigenvalue alone";
+  EXPECT_LT(softest, 1e-4);
+}
+
+TEST(Fold, BelowItNothingOfTheBranchIsCalledConverged) {
+  const Fold fold = thrown_back_fold();
+  const Equilibrium start = shape_of(fold.gamma, fold.tip_angle);
+  for (int exponent = 4; exponent <= 15; ++exponent) {
+    const Real gamma = fold.gamma * (1 - std::pow(10.0L, -exponent));
+    const Equilibrium found = solve_energy(ribbon(gamma), {.start = &start});
+    // What hangs on the other side is the only one there is.
+    const bool thrown_back = tip_of(found).x() < 0;
+    EXPECT_FALSE(thrown_back && succeeded(found.status)) << exponent << ": " << found.message;
+  }
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
