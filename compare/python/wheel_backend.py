@@ -14,6 +14,7 @@ import shutil
 import subprocess
 import sys
 import sysconfig
+import tempfile
 import tomllib
 import zipfile
 
@@ -60,16 +61,20 @@ def _run(*command):
     subprocess.run([str(word) for word in command], check=True, stdout=sys.stderr)
 
 
-def _build(folder):
-    """Compiles the module; what an earlier call has compiled is kept in build/wheel."""
-    build = ROOT / "build/wheel"
-    _run(
-        "cmake", "-G", "Ninja", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release",
-        "-DDLO_TESTS=OFF", "-DDLO_PYTHON=ON", f"-DDLO_PYTHON_EXECUTABLE={sys.executable}",
-        "-DDLO_PYTHON_DIR=.", "-DDLO_PYTHON_WHEEL=ON",
-    )
+def _build(folder, settings):
+    """Compiles the module into the folder; what an earlier call has compiled is kept."""
+    build = (settings or {}).get("build-dir")
+    if build is None:
+        build = ROOT / "build/wheel"
+        _run(
+            "cmake", "-G", "Ninja", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release",
+            "-DDLO_TESTS=OFF", "-DDLO_PYTHON=ON", f"-DDLO_PYTHON_EXECUTABLE={sys.executable}",
+        )
     _run("cmake", "--build", build, "--target", "dlo_python")
-    _run("cmake", "--install", build, "--component", "python", "--prefix", folder, "--strip")
+    with tempfile.TemporaryDirectory() as installed:
+        _run("cmake", "--install", build, "--component", "python", "--prefix", installed, "--strip")
+        (extension,) = pathlib.Path(installed).rglob("_dlo.*.so")
+        shutil.copytree(extension.parent, folder / "dlo")
 
 
 def _bring_libraries(folder):
@@ -100,19 +105,20 @@ def _pack(folder, wheel, info):
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    """PEP 517: the wheel's file name, in that directory."""
+    """PEP 517: the wheel's file name, in that directory. Setting build-dir: a folder in which CMake
+    has been configured with DLO_PYTHON for the same Python, to be used instead of build/wheel."""
     project = _project()
     info = f"{project['name']}-{project['version']}.dist-info"
-    folder = ROOT / "build/wheel/package"
-    shutil.rmtree(folder, ignore_errors=True)
-    _build(folder)
-    _bring_libraries(folder)
-    (folder / info).mkdir()
-    (folder / info / "METADATA").write_text(_metadata())
-    (folder / info / "WHEEL").write_text(_wheel())
-    shutil.copy(ROOT / "LICENSE", folder / info / "LICENSE")
     name = f"{project['name']}-{project['version']}-{_tag()}.whl"
-    _pack(folder, os.path.join(wheel_directory, name), info)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = pathlib.Path(temporary)
+        _build(folder, config_settings)
+        _bring_libraries(folder)
+        (folder / info).mkdir()
+        (folder / info / "METADATA").write_text(_metadata())
+        (folder / info / "WHEEL").write_text(_wheel())
+        shutil.copy(ROOT / "LICENSE", folder / info / "LICENSE")
+        _pack(folder, os.path.join(wheel_directory, name), info)
     return name
 
 

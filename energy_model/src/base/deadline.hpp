@@ -8,7 +8,8 @@
 
 namespace dlo::energy_model {
 
-/// When a solve has to end: at a time, or as soon as its thread is interrupted. Solvers ask between evaluations, so they overrun it by one at most.
+/// When a solve has to end: at a time, or as soon as its thread is interrupted. Solvers ask between
+/// evaluations, so they overrun it by one at most.
 class Deadline {
  public:
   /// @param seconds  from now on, > 0; infinity never passes
