@@ -63,15 +63,20 @@ double quantity(const std::string& text, const std::string& dimension) {
 
 py::dict settings_of(const SceneData& data) {
   const compare::ForceModelSettings& settings = data.scene.force_model;
-  using namespace py::literals;  // NOLINT(google-build-using-namespace): of names alone
-  return py::dict("points"_a = settings.points, "law"_a = compare::to_string(settings.law),
-                  "bookkeeping"_a = compare::to_string(settings.bookkeeping),
-                  "stepper"_a = compare::to_string(settings.stepper),
-                  "bending_rule"_a = compare::to_string(settings.bending_rule),
-                  "design_curvature"_a = settings.design_curvature,
-                  "point_weight"_a = settings.point_weight, "c_b"_a = settings.c_b,
-                  "c_c"_a = settings.c_c, "c_F"_a = settings.c_F, "c_h"_a = settings.c_h,
-                  "l_s"_a = settings.l_s);
+  py::dict result;
+  result["points"] = settings.points;
+  result["law"] = compare::to_string(settings.law);
+  result["bookkeeping"] = compare::to_string(settings.bookkeeping);
+  result["stepper"] = compare::to_string(settings.stepper);
+  result["bending_rule"] = compare::to_string(settings.bending_rule);
+  result["design_curvature"] = settings.design_curvature;
+  result["point_weight"] = settings.point_weight;
+  result["c_b"] = settings.c_b;
+  result["c_c"] = settings.c_c;
+  result["c_F"] = settings.c_F;
+  result["c_h"] = settings.c_h;
+  result["l_s"] = settings.l_s;
+  return result;
 }
 
 py::list material_list() {
