@@ -144,6 +144,7 @@ Documents calibrate_material(const std::vector<SharedScene>& scenes, const py::l
       .natural_curvature_terms = what["natural_curvature_terms"].cast<int>(),
       .direction_tolerance = what["clamp_angles"].cast<double>(),
       .position_tolerance = what["clamp_positions"].cast<double>(),
+      .chain_segments = what["segments"].cast<int>(),
       .noise = what["noise"].cast<std::optional<double>>(),
       .solve = solve};
   report.frame_was_found = options.pose != compare::PoseFreedom::known;

@@ -112,6 +112,7 @@ def calibrate(
     clamp_angles: Quantity = 0.0,
     clamp_positions: Quantity = 0.0,
     noise: Optional[Quantity] = None,
+    segments: int = 0,
     **limits: Any,
 ) -> Union[MaterialFit, ForceModelFit]:
     """Young's modulus from measured shapes, or the force model's parameters: `dlo calibrate`.
@@ -120,7 +121,8 @@ def calibrate(
     [m], or a pair of points and their arc lengths. density, torsional_stiffness: fit these as well;
     natural_curvature: so many terms of it. clamp_angles, clamp_positions: how well the clamps are
     known (standard deviations, "5 deg", "2 mm"); each shape's own are then fitted. noise: standard
-    deviation of one coordinate; None: estimated. pose, arc_lengths: as of check().
+    deviation of one coordinate; None: estimated. segments: of your simulator's chain, whose springs are
+    then found too ("chains" of the document). pose, arc_lengths: as of check().
 
     Without: a ForceModelFit of the scenes. holdout: scenes that only judge. target: RMS deviation
     wanted over the length (0.001 if not given). points: N; None: as the target needs.
@@ -138,6 +140,7 @@ def calibrate(
         "natural_curvature_terms": natural_curvature,
         "clamp_angles": _si(clamp_angles, "angle"),
         "clamp_positions": _si(clamp_positions, "length"),
+        "segments": segments,
         "noise": None if noise is None else _si(noise, "length"),
     }
     return MaterialFit(*_dlo.calibrate_material(data, pairs, what, limits))
