@@ -63,7 +63,7 @@ toml::table to_toml(const py::dict& document, const std::string& path) {
   for (const auto& [key, value] : document) {
     if (value.is_none()) continue;
     const auto name = key.cast<std::string>();
-    place_value(value, path.empty() ? name : path + "." + name,
+    place_value(value, path.empty() ? name : fmt::format("{}.{}", path, name),
                 [&](auto&& placed) { table.insert_or_assign(name, placed); });
   }
   return table;

@@ -40,7 +40,7 @@ struct SolvedStates {
 
 template <typename Number>
 Number positive(const std::string& name, py::handle value) {
-  const double number = value.cast<double>();
+  const auto number = value.cast<double>();
   if (!(number > 0) || !(number <= 1e12)) {
     throw compare::InputError(
         fmt::format("{} = {:g}: out of range (allowed: > 0, up to 1e12)", name, number));

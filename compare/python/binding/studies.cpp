@@ -107,6 +107,7 @@ Documents stability_map(const std::optional<SharedScene>& scene, const std::stri
 
 Documents bench(const std::vector<SharedScene>& shared, double seconds, int repeats) {
   std::vector<compare::Scene> scenes;
+  scenes.reserve(shared.size());
   for (const SharedScene& scene : shared) scenes.push_back(scene->scene);
   if (scenes.empty()) scenes = compare::benchmark_scenes();
   return run_long([&](Signals& signals) {

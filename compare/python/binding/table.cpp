@@ -20,10 +20,12 @@ void each_field(const std::string& line, const std::function<void(const std::str
   for (std::size_t i = 0; i < line.size() && (quoted || line[i] != '\n'); ++i) {
     const char c = line[i];
     if (c == '"') {
-      if (quoted && i + 1 < line.size() && line[i + 1] == '"')
+      const bool is_doubled = quoted && i + 1 < line.size() && line[i + 1] == '"';
+      if (is_doubled) {
         field += line[++i];
-      else
+      } else {
         quoted = !quoted;
+      }
     } else if (c == ',' && !quoted) {
       take(field);
       field.clear();
