@@ -1,6 +1,6 @@
-# cpack -G DEB makes three Debian packages of a build with static libraries: libdlo-force-model-dev
-# for programs that embed the force model, libdlo-dev for the other two libraries, and the command
-# dlo, for which dpkg-shlibdeps finds the libraries that it needs. Whoever gives them to others sets
+# cpack -G DEB makes Debian packages of a build with static libraries: libdlo-force-model-dev for
+# programs that embed the force model, libdlo-dev for the other two libraries, the command dlo, and
+# python3-dlo where the Python module is built; dpkg-shlibdeps finds the libraries that these two need. Whoever gives them to others sets
 # CPACK_PACKAGE_CONTACT to an address that answers.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "the dlo authors <dlo@localhost>" CACHE STRING "Maintainer of the packages")
@@ -67,5 +67,19 @@ model and with the rod's bending and gravity energy, says how far the shapes
 are apart, why, and at what cost, checks the shapes of other simulators and
 calibrates their parameters.")
 set(CPACK_DEBIAN_DLO_PACKAGE_SHLIBDEPS ON)
+if(TARGET dlo_python)
+  # Of the Python that it was compiled for, and of no later one.
+  string(REGEX MATCH "^([0-9]+)\\.([0-9]+)" python_version "${PYTHON_VERSION_STRING}")
+  math(EXPR next_minor "${CMAKE_MATCH_2} + 1")
+  dlo_debian(python3-dlo COMPONENTS python SECTION python
+    DEPENDS "python3 (>= ${python_version})" "python3 (<< ${CMAKE_MATCH_1}.${next_minor})"
+      "python3-numpy"
+    DESCRIPTION "compares fast models of rods, wires and cables with physics, in Python
+The module dlo: scenes from files or built in code, shapes, checks of other
+simulators' points and calibration with NumPy arrays, and the force model in a
+loop of one's own.")
+  set(CPACK_DEBIAN_PYTHON3_DLO_PACKAGE_SHLIBDEPS ON)
+  set(CPACK_DEBIAN_PYTHON3_DLO_PACKAGE_SUGGESTS python3-matplotlib)
+endif()
 
 include(CPack)

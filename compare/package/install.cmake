@@ -60,10 +60,12 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/dloConfig.cmake
   DESTINATION ${dlo_cmake_dir} COMPONENT force_model)
 
 install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)
-foreach(folder obstacle force_model energy_model compare data tests)  # to which README.md leads
+foreach(folder obstacle force_model energy_model compare compare/python data tests)  # to which README.md leads
   install(FILES ${folder}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT command)
 endforeach()
 install(DIRECTORY compare/doc DESTINATION ${CMAKE_INSTALL_DOCDIR}/compare COMPONENT command)
+install(DIRECTORY compare/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/compare/python
+  COMPONENT command)
 install(FILES data/materials.toml data/effective_modulus.csv
   DESTINATION ${dlo_data_dir} COMPONENT command)
 install(DIRECTORY data/scenes data/shapes DESTINATION ${dlo_data_dir} COMPONENT command)

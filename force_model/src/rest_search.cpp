@@ -56,9 +56,9 @@ bool RestSearch::count(const StepResult& step) {
 }
 
 void RestSearch::look_at_clock() {
-  if (!std::isfinite(options_.time_limit)) return;
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin_;
-  if (taken.count() > options_.time_limit) result_.status = RelaxStatus::time_limit;
+  const bool stopped = options_.interrupted != nullptr && options_.interrupted();
+  if (stopped || taken.count() > options_.time_limit) result_.status = RelaxStatus::time_limit;
 }
 
 void RestSearch::count_newton_steps(const StepResult& step, long solves) {

@@ -180,6 +180,9 @@ TEST(Relax, StopsAtItsLimitOfTimeAndSaysSo) {
   EXPECT_EQ(result.message, "time limit");
   EXPECT_EQ(result.steps, simulation.steps());
   EXPECT_GE(result.remaining_error, 0);
+  const RelaxResult interrupted = simulation.relax({.interrupted = [] { return true; }});
+  EXPECT_EQ(interrupted.status, RelaxStatus::time_limit);
+  EXPECT_EQ(interrupted.steps, 64);
   EXPECT_THROW((void)simulation.relax({.time_limit = 0}), std::invalid_argument);
   EXPECT_THROW((void)simulation.relax({.time_limit = NAN}), std::invalid_argument);
 }

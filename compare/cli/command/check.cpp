@@ -6,7 +6,6 @@
 #include "command/commands.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
-#include "dlo/compare/explanation.hpp"
 #include "dlo/compare/friction_check.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_verdict.hpp"
@@ -20,7 +19,6 @@
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
 #include "scene/reach.hpp"
-#include "toml/quantity.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -38,31 +36,6 @@ struct CheckOptions {
   OutputOptions output;
   PlotOptions plot;
 };
-
-/// "1%" or 0.01 of the rod's length, or a length with a unit.
-double tolerance_m(const std::string& text, double length) {
-  const bool percent = text.ends_with('%');
-  const std::string number = percent ? text.substr(0, text.size() - 1) : text;
-  double value = 0;
-  try {
-    value = compare::parse_quantity(number, compare::Dimension::number) / (percent ? 100 : 1);
-    if (value > 0 && value < 1) return value * length;
-  } catch (const compare::InputError&) {
-    try {
-      value = percent ? 0 : compare::parse_quantity(text, compare::Dimension::length);
-    } catch (const compare::InputError&) {
-      throw compare::InputError(fmt::format(
-          "--tolerance = {}: neither a share of the length nor a length (allowed: such as 1%, 0.01 "
-          "or \"2 mm\")",
-          text));
-    }
-    if (value > 0) return value;
-  }
-  throw compare::InputError(fmt::format(
-      "--tolerance = {}: out of range (allowed: above 0, a share of the length below 1, a length "
-      "with its unit)",
-      text));
-}
 
 void plot(const CheckOptions& options, const ShapeCheckReport& report) {
   const compare::Scene& scene = report.scene;
@@ -88,9 +61,10 @@ void run(const CheckOptions& options) {
   std::optional<Verdict>& verdict = report.verdict;
   if (!options.tolerance.empty()) {
     verdict.emplace();
-    verdict->tolerance = {.allowed_m = tolerance_m(options.tolerance, report.scene.length),
-                          .largest = options.measure == "max",
-                          .part = options.min_seen.has_value()};
+    verdict->tolerance = {
+        .allowed_m = tolerance_m("--tolerance", options.tolerance, report.scene.length),
+        .largest = options.measure == "max",
+        .part = options.min_seen.has_value()};
     if (options.min_seen) verdict->tolerance.least_seen_share = *options.min_seen;
   }
   report.pose = options.shapes.pose();
@@ -104,16 +78,7 @@ void run(const CheckOptions& options) {
     report.friction = compare::check_friction(report.scene, report.check);
   }
   if (verdict) {
-    verdict->judgement = compare::judge(report.check, verdict->tolerance);
-    if (!verdict->judgement.pass && !options.no_explanation) {
-      report.explanations =
-          compare::explain_shape(report.scene, shape, report.check, check_options);
-      verdict->judgement =
-          compare::judge_explained(report.check, verdict->tolerance, report.explanations);
-      if (compare::better_than_stiffness(report.check, report.explanations)) {
-        report.check.effective_modulus.optimum = compare::Optimum::outdone;
-      }
-    }
+    judge(report, shape, check_options, options.no_explanation ? Explaining::no : Explaining::yes);
   }
   report.unit_hint = options.shapes.unit_hint(report.check.polyline_length_m, report.scene.length);
   report.file = options.output.file;

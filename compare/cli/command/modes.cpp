@@ -1,12 +1,9 @@
+#include "format/modes.hpp"
+
 #include <fmt/format.h>
 
-#include <cmath>
-#include <limits>
 #include <memory>
-#include <numbers>
 
-#include "base/display.hpp"
-#include "base/quote.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
@@ -18,7 +15,6 @@
 namespace dlo::cli {
 namespace {
 
-using compare::SceneMode;
 using compare::SceneModes;
 
 struct ModesOptions {
@@ -29,130 +25,18 @@ struct ModesOptions {
   OutputOptions output;
 };
 
-double hertz(double omega) { return omega / (2 * std::numbers::pi); }
-
-std::string frequency_text(const energy_model::VibrationMode& mode) {
-  if (mode.omega_squared >= 0) return fmt::format("{:.6g} Hz", hertz(mode.omega()));
-  return fmt::format("falls, e-fold in {:.3g} s", 1 / std::sqrt(-mode.omega_squared));
-}
-
-std::string line_of(const SceneMode& mode, std::size_t number) {
-  std::string out = fmt::format("mode {:<6} {}, {}", number + 1, frequency_text(mode.rod),
-                                to_string(mode.rod.plane));
-  const double omega = mode.rod.omega();
-  if (mode.polygon_omega) {
-    append(out, "; polygon {:.6g} Hz ({:+.3g} %)", hertz(*mode.polygon_omega),
-           (*mode.polygon_omega / omega - 1) * 100);
-    constexpr double alike = 0.9;
-    if (mode.polygon_likeness < alike) {
-      append(out, ", moves {:.0f} % like it", mode.polygon_likeness * 100);
-    }
-  }
-  if (!mode.stepped) return out + "\n";
-  if (mode.stepped->omega > 0) {
-    append(out, "; as it steps {:.4g} Hz ({:.4g} times), damping ratio {:.3g}",
-           hertz(mode.stepped->omega), mode.stepped->omega / omega, mode.stepped->damping);
-  } else {
-    out += "; as it steps it does not swing";
-  }
-  return out + (mode.stepped->is_stable ? "\n" : ", unstable\n");
-}
-
-std::string modes_text(const SceneModes& modes, const compare::Scene& scene, double rate) {
-  std::string out = fmt::format("scene       {}\n", compare::display(scene.name));
-  for (std::size_t i = 0; i < modes.modes.size(); ++i) out += line_of(modes.modes[i], i);
-  if (!modes.no_polygon.empty()) {
-    append(out, "polygon     none: {}\n", modes.no_polygon);
-    return out;
-  }
-  const compare::PhysicalSteps& physical = *modes.physical;
-  append(out, "points      {:.4g} kg each in the mean ({} of them)\n", physical.point_mass,
-         scene.force_model.points);
-  if (modes.mass_of_steps) {
-    append(out, "stepper     m* = {:.4g} kg at {:g} steps a second, {:.3g} times the points'\n",
-           *modes.mass_of_steps, rate, *modes.mass_of_steps / physical.point_mass);
-  }
-  const bool stable = rate >= physical.least_rate;
-  append(out, "physical    c_F = {:.4g} m/N, c_h = {:.9g} at {:g} steps a second: {}\n",
-         physical.c_F, physical.c_h, rate, stable ? "stable" : "unstable");
-  append(out, "            (stable from {:.4g} steps a second on)\n", physical.least_rate);
-  return out;
-}
-
-Json mode_json(const SceneMode& mode, const std::vector<double>& s) {
-  const bool swings = mode.rod.omega_squared >= 0;
-  const double omega = mode.rod.omega();
-  Json result = {{"frequency_Hz", swings ? Json(hertz(omega)) : Json(nullptr)},
-                 {"omega_rad_s", swings ? Json(omega) : Json(nullptr)},
-                 {"omega_squared_per_s2", mode.rod.omega_squared},
-                 {"relative_error", mode.rod.error},
-                 {"plane", to_string(mode.rod.plane)},
-                 {"from_m", mode.rod.begin},
-                 {"to_m", mode.rod.end}};
-  result["polygon_frequency_Hz"] =
-      mode.polygon_omega ? Json(hertz(*mode.polygon_omega)) : Json(nullptr);
-  result["polygon_likeness"] = mode.polygon_omega ? Json(mode.polygon_likeness) : Json(nullptr);
-  if (mode.stepped) {
-    result["stepped"] = {{"frequency_Hz", hertz(mode.stepped->omega)},
-                         {"damping_ratio", mode.stepped->damping},
-                         {"stable", mode.stepped->is_stable}};
-  } else {
-    result["stepped"] = nullptr;
-  }
-  result["shape_m"] = points_json(mode.rod.shape(s));
-  return result;
-}
-
-Json modes_json(const SceneModes& modes, const compare::Scene& scene, const ModesOptions& options) {
-  const std::vector<double> s = energy_model::equal_arc_lengths(scene.length, options.samples);
-  Json list = Json::array();
-  for (const SceneMode& mode : modes.modes) list.push_back(mode_json(mode, s));
-  Json result = {{"schema", "dlo/modes/1"},
-                 {"scene", scene.name},
-                 {"model", "energy"},
-                 {"status", to_string(modes.status)},
-                 {"steps_per_second", options.modes.rate},
-                 {"arc_length_m", s},
-                 {"modes", std::move(list)}};
-  result["no_polygon"] = modes.no_polygon.empty() ? Json(nullptr) : Json(modes.no_polygon);
-  result["mass_of_steps_kg"] = modes.mass_of_steps ? Json(*modes.mass_of_steps) : Json(nullptr);
-  if (modes.physical) {
-    result["physical"] = {{"point_mass_kg", modes.physical->point_mass},
-                          {"c_F_m_per_N", modes.physical->c_F},
-                          {"c_h", modes.physical->c_h},
-                          {"least_steps_per_second", modes.physical->least_rate}};
-  } else {
-    result["physical"] = nullptr;
-  }
-  return result;
-}
-
-std::string modes_csv(const SceneModes& modes) {
-  std::string out =
-      "mode,frequency_Hz,omega_squared_per_s2,plane,from_m,to_m,polygon_frequency_Hz,"
-      "stepped_frequency_Hz,stepped_damping_ratio\n";
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  for (std::size_t i = 0; i < modes.modes.size(); ++i) {
-    const SceneMode& mode = modes.modes[i];
-    append_csv(out, "{},{:.10g},{:.10g},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}\n", i + 1,
-               hertz(mode.rod.omega()), mode.rod.omega_squared, to_string(mode.rod.plane),
-               mode.rod.begin, mode.rod.end, mode.polygon_omega ? hertz(*mode.polygon_omega) : none,
-               mode.stepped ? hertz(mode.stepped->omega) : none,
-               mode.stepped ? mode.stepped->damping : none);
-  }
-  return out;
-}
-
 void run(const ModesOptions& options) {
   const compare::Scene scene = options.overrides.load(options.scene);
   warn_of_friction(scene);
   compare::ModeOptions mode_options = options.modes;
   mode_options.solve = options.overrides.solve();
   const SceneModes modes = compare::scene_modes(scene, mode_options);
-  write_output(options.output,
-               {.text = [&] { return modes_text(modes, scene, options.modes.rate); },
-                .json = [&] { return json_text(modes_json(modes, scene, options)); },
-                .csv = [&] { return modes_csv(modes); }});
+  write_output(
+      options.output,
+      {.text = [&] { return modes_text(modes, scene, options.modes.rate); },
+       .json =
+           [&] { return json_text(modes_json(modes, scene, options.modes.rate, options.samples)); },
+       .csv = [&] { return modes_csv(modes); }});
   if (!succeeded(modes.status)) {
     throw compare::ConvergenceError(fmt::format("{}: {}", scene.file, modes.message));
   }

@@ -71,6 +71,19 @@ Json friction_json(const compare::FrictionCheck& friction) {
 
 }  // namespace
 
+void judge(ShapeCheckReport& report, const compare::MeasuredShape& shape,
+           const compare::ShapeCheckOptions& options, Explaining explaining) {
+  Verdict& verdict = report.verdict.value();
+  verdict.judgement = compare::judge(report.check, verdict.tolerance);
+  if (verdict.judgement.pass || explaining == Explaining::no) return;
+  report.explanations = compare::explain_shape(report.scene, shape, report.check, options);
+  verdict.judgement =
+      compare::judge_explained(report.check, verdict.tolerance, report.explanations);
+  if (compare::better_than_stiffness(report.check, report.explanations)) {
+    report.check.effective_modulus.optimum = compare::Optimum::outdone;
+  }
+}
+
 std::string shape_check_text(const ShapeCheckReport& report) {
   const compare::ShapeCheck& c = report.check;
   const compare::Scene& scene = report.scene;

@@ -36,6 +36,14 @@ struct ShapeCheckReport {
   std::string file;       ///< of the text; empty: standard output, which may be a terminal
 };
 
+/// Whether it is looked for what would make a shape right that fails.
+enum class Explaining { yes, no };
+
+/// Judges a report's check by its verdict's tolerance and, where the shape fails, looks for what
+/// would make it right.
+void judge(ShapeCheckReport& report, const compare::MeasuredShape& shape,
+           const compare::ShapeCheckOptions& options, Explaining explaining);
+
 [[nodiscard]] std::string shape_check_text(const ShapeCheckReport& report);
 
 [[nodiscard]] Json shape_check_json(const ShapeCheckReport& report);

@@ -19,23 +19,6 @@ std::string coordinate(double value) {
   return fmt::format("{:.8f}", std::abs(value) < 0.5e-8 ? 0.0 : value);
 }
 
-const char* status_name(energy_model::SolveStatus status) {
-  switch (status) {
-    case energy_model::SolveStatus::converged:
-      return "converged";
-    case energy_model::SolveStatus::roundoff_limited:
-      return "roundoff_limited";
-    case energy_model::SolveStatus::saddle:
-      return "saddle";
-    case energy_model::SolveStatus::near_singular:
-      return "near_singular";
-    case energy_model::SolveStatus::not_resolved:
-      return "not_resolved";
-    default:
-      return "failed";
-  }
-}
-
 Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
   double total = 0;
   Json parts = Json::array();
@@ -66,6 +49,23 @@ bool lacks(const compare::Solution& solution, const char* what) {
 }
 
 }  // namespace
+
+const char* status_name(energy_model::SolveStatus status) {
+  switch (status) {
+    case energy_model::SolveStatus::converged:
+      return "converged";
+    case energy_model::SolveStatus::roundoff_limited:
+      return "roundoff_limited";
+    case energy_model::SolveStatus::saddle:
+      return "saddle";
+    case energy_model::SolveStatus::near_singular:
+      return "near_singular";
+    case energy_model::SolveStatus::not_resolved:
+      return "not_resolved";
+    default:
+      return "failed";
+  }
+}
 
 std::string contact_text(const energy_model::ContactPart& contact) {
   std::string out;

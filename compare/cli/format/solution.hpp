@@ -18,6 +18,9 @@ namespace dlo::cli {
 /// The same of all, by arc length; obstacles count from zero.
 [[nodiscard]] Json contacts_json(const std::vector<energy_model::ContactPart>& contacts);
 
+/// A status as documents spell it.
+[[nodiscard]] const char* status_name(energy_model::SolveStatus status);
+
 /// A shape as a person reads it.
 [[nodiscard]] std::string solution_text(const compare::Solution& solution,
                                         const compare::Scene& scene);

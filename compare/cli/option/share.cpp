@@ -51,4 +51,28 @@ CLI::Validator share_up_to(double high) {
                     fmt::format("1% or 0.01, 0 to {:g}", high));
 }
 
+double tolerance_m(const std::string& name, const std::string& text, double length) {
+  const bool percent = text.ends_with('%');
+  const std::string number = percent ? text.substr(0, text.size() - 1) : text;
+  double value = 0;
+  try {
+    value = compare::parse_quantity(number, compare::Dimension::number) / (percent ? 100 : 1);
+    if (value > 0 && value < 1) return value * length;
+  } catch (const compare::InputError&) {
+    try {
+      value = percent ? 0 : compare::parse_quantity(text, compare::Dimension::length);
+    } catch (const compare::InputError&) {
+      throw compare::InputError(fmt::format(
+          "{} = {}: neither a share of the length nor a length (allowed: such as 1%, 0.01 "
+          "or \"2 mm\")",
+          name, text));
+    }
+    if (value > 0) return value;
+  }
+  throw compare::InputError(fmt::format(
+      "{} = {}: out of range (allowed: above 0, a share of the length below 1, a length "
+      "with its unit)",
+      name, text));
+}
+
 }  // namespace dlo::cli

@@ -109,10 +109,8 @@ RawShape read_any_shape(std::string_view text, const std::string& file, double u
   return read_csv_shape(text, file);
 }
 
-}  // namespace
-
-MeasuredShape parse_shape(const std::string& text, const std::string& file, double unit) {
-  const RawShape raw = read_any_shape(text, file, unit);
+/// @param unit  what the numbers are in, unless they are metres [m]
+MeasuredShape checked(const RawShape& raw, const std::string& file, double unit) {
   const double metres = raw.in_metres ? 1 : unit;
   require_points(raw, file, metres);
   require_arc_lengths(raw, file, metres);
@@ -126,6 +124,27 @@ MeasuredShape parse_shape(const std::string& text, const std::string& file, doub
   const double arc_metres = arc_length_unit(raw, file, metres);
   for (const double s : raw.arc_length) shape.arc_length.push_back(arc_metres * s);
   return shape;
+}
+
+}  // namespace
+
+MeasuredShape parse_shape(const std::string& text, const std::string& file, double unit) {
+  return checked(read_any_shape(text, file, unit), file, unit);
+}
+
+MeasuredShape shape_of(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                       const std::vector<double>& arc_length, const std::string& name) {
+  require_point_count(static_cast<std::size_t>(points.cols()), name);
+  RawShape raw;
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    raw.points.push_back({points(0, i), points(1, i), points(2, i)});
+  }
+  if (!arc_length.empty() && arc_length.size() != raw.points.size()) {
+    throw InputError(fmt::format("{}: {} arc lengths of {} points (allowed: as many, or none)",
+                                 name, arc_length.size(), raw.points.size()));
+  }
+  raw.arc_length = arc_length;
+  return checked(raw, name, 1);
 }
 
 MeasuredShape load_shape(const std::string& path, double unit) {

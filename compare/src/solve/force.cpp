@@ -10,6 +10,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/energy_model/interrupt.hpp"
 #include "dlo/force_model/simulation.hpp"
 #include "dlo/force_model/tangent_stiffness.hpp"
 #include "polygon/natural_plane.hpp"
@@ -81,7 +82,8 @@ Solution solve_force(const Scene& scene, const ForceModelSettings& settings,
   };
   const force_model::RelaxOptions limits{.tolerance = options.rest_tolerance,
                                          .max_steps = options.max_steps,
-                                         .time_limit = options.time_limit};
+                                         .time_limit = options.time_limit,
+                                         .interrupted = energy_model::interrupted};
   force_model::Simulation simulation = simulation_from(start.points);
   force_model::RelaxResult result = simulation.relax(limits);
   const auto strayed = [&] {

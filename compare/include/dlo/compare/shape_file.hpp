@@ -34,6 +34,13 @@ inline constexpr long most_shape_points = 100'000;
 [[nodiscard]] MeasuredShape parse_shape(const std::string& text, const std::string& file,
                                         double unit = 1);
 
+/// A shape from a program's own numbers, held to the same as those of a file.
+/// @param points  [m], 3 x M;  @param arc_length  growing or falling [m], M; empty without
+/// @param name  what messages call it;  @throws InputError as parse_shape
+[[nodiscard]] MeasuredShape shape_of(const Eigen::Ref<const Eigen::Matrix3Xd>& points,
+                                     const std::vector<double>& arc_length,
+                                     const std::string& name);
+
 /// Reads a shape file. @throws InputError as parse_shape, or if it cannot be read
 [[nodiscard]] MeasuredShape load_shape(const std::string& path, double unit = 1);
 

@@ -12,6 +12,8 @@ struct RelaxOptions {
   double tolerance = 1e-7;
   long max_steps = 2'000'000;                                   ///< gives up after so many
   double time_limit = std::numeric_limits<double>::infinity();  ///< gives up after so long [s], > 0
+  bool (*interrupted)() =
+      nullptr;  ///< asked every so many steps; yes ends it as the time limit does
 };
 
 /// How a search for rest ended.

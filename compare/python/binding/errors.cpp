@@ -1,0 +1,42 @@
+#include "errors.hpp"
+
+#include <exception>
+#include <stdexcept>
+
+#include "dlo/compare/error.hpp"
+#include "module.hpp"
+
+namespace dlo::python {
+namespace {
+
+py::object error_class(const char* name) { return py::module_::import("dlo._errors").attr(name); }
+
+void set_error(const char* name, const py::tuple& arguments) {
+  const py::object type = error_class(name);
+  const py::object value = type(*arguments);
+  PyErr_SetObject(type.ptr(), value.ptr());
+}
+
+}  // namespace
+
+void raise_convergence(const std::string& message, const py::object& result) {
+  set_error("ConvergenceError", py::make_tuple(message, result));
+  throw py::error_already_set();
+}
+
+void bind_errors(py::module_& /*module*/) {
+  // NOLINTNEXTLINE(performance-unnecessary-value-param): the type is pybind11's
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const compare::InputError& error) {
+      set_error("InputError", py::make_tuple(error.what(), error.key(), error.problem()));
+    } catch (const compare::ConvergenceError& error) {
+      set_error("ConvergenceError", py::make_tuple(error.what()));
+    } catch (const std::invalid_argument& error) {
+      set_error("InputError", py::make_tuple(error.what()));
+    }
+  });
+}
+
+}  // namespace dlo::python

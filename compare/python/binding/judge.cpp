@@ -1,0 +1,286 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "array.hpp"
+#include "dlo/compare/comparison.hpp"
+#include "dlo/compare/force_model_fit.hpp"
+#include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/shape_check.hpp"
+#include "dlo/compare/shape_file.hpp"
+#include "errors.hpp"
+#include "format/comparison.hpp"
+#include "format/force_model_fit.hpp"
+#include "format/json.hpp"
+#include "format/material_fit.hpp"
+#include "format/shape_check.hpp"
+#include "long_call.hpp"
+#include "module.hpp"
+#include "option/share.hpp"
+#include "result.hpp"
+#include "scene.hpp"
+#include "solve_options.hpp"
+
+namespace dlo::python {
+namespace {
+
+using cli::ShapeCheckReport;
+using compare::Comparison;
+
+py::dict deviation_of(const compare::Deviation& deviation) {
+  using namespace py::literals;  // NOLINT(google-build-using-namespace): of names alone
+  return py::dict("rms_m"_a = deviation.rms_m, "max_m"_a = deviation.max_m,
+                  "max_at_m"_a = deviation.max_at_m, "tip_m"_a = deviation.tip_m,
+                  "rms_over_length"_a = deviation.rms_over_length,
+                  "rms_over_movement"_a = deviation.rms_over_movement,
+                  "angle_rms_rad"_a = deviation.angle_rms_rad,
+                  "curvature_rms_per_m"_a = deviation.curvature_rms_per_m);
+}
+
+compare::MeasuredShape measured(const py::object& points, const py::object& arc_length,
+                                const std::string& name) {
+  return compare::shape_of(
+      points_from(points, name),
+      arc_length.is_none() ? std::vector<double>{} : values_from(arc_length, "arc_length"), name);
+}
+
+struct Tolerance {
+  std::optional<std::string> allowed;
+  std::string measure;
+  std::optional<double> min_seen;
+  bool explain;
+};
+
+std::optional<cli::Verdict> open_verdict(const Tolerance& tolerance, double length) {
+  if (!tolerance.allowed) return std::nullopt;
+  if (tolerance.measure != "rms" && tolerance.measure != "max") {
+    compare::refuse_choice(tolerance.measure, {"rms", "max"});
+  }
+  cli::Verdict verdict;
+  verdict.tolerance = {.allowed_m = cli::tolerance_m("tolerance", *tolerance.allowed, length),
+                       .largest = tolerance.measure == "max",
+                       .part = tolerance.min_seen.has_value()};
+  if (tolerance.min_seen) verdict.tolerance.least_seen_share = *tolerance.min_seen;
+  return verdict;
+}
+
+std::shared_ptr<ShapeCheckReport> check(const SharedScene& scene, const py::object& points,
+                                        const py::object& arc_length, const py::tuple& tolerance,
+                                        const std::string& pose, const std::string& arc_lengths,
+                                        bool modulus, const py::dict& limits) {
+  const compare::MeasuredShape shape = measured(points, arc_length, "points");
+  auto report = std::make_shared<ShapeCheckReport>();
+  report->scene = scene->scene;
+  report->pose = compare::from_name<compare::PoseFreedom>(pose);
+  const Tolerance asked{tolerance[0].cast<std::optional<std::string>>(),
+                        tolerance[1].cast<std::string>(),
+                        tolerance[2].cast<std::optional<double>>(), tolerance[3].cast<bool>()};
+  report->verdict = open_verdict(asked, scene->scene.length);
+  const compare::ShapeCheckOptions options{
+      .pose = report->pose,
+      .arc_lengths = compare::from_name<compare::ArcLengths>(arc_lengths),
+      .modulus = modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no,
+      .solve = [&limits] {
+        compare::SolveOptions solve = solve_options(limits);
+        solve.accept_unresolved = false;
+        return solve;
+      }()};
+  run_long([&](Signals& /*signals*/) {
+    report->check = compare::check_shape(scene->scene, shape, options);
+    if (report->verdict) {
+      cli::judge(*report, shape, options,
+                 asked.explain ? cli::Explaining::yes : cli::Explaining::no);
+    }
+    return true;
+  });
+  return report;
+}
+
+py::object compare_scene(const SharedScene& scene, bool modulus, const py::dict& limits) {
+  const compare::SolveOptions options = solve_options(limits);
+  auto comparison = std::make_shared<Comparison>(run_long([&](Signals& /*signals*/) {
+    return compare::compare(scene->scene, options, compare::PlanOptions{},
+                            modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no);
+  }));
+  py::object result = py::cast(comparison);
+  if (!comparison->unresolved.empty()) {
+    raise_convergence(
+        fmt::format("{}: the energy model: {}", scene->scene.file, comparison->unresolved), result);
+  }
+  return result;
+}
+
+std::vector<compare::Scene> scenes_of(const std::vector<SharedScene>& shared) {
+  std::vector<compare::Scene> scenes;
+  scenes.reserve(shared.size());
+  for (const SharedScene& scene : shared) scenes.push_back(scene->scene);
+  return scenes;
+}
+
+using Documents = std::tuple<std::string, std::string, std::string>;  // text, JSON, TOML
+
+Documents calibrate_material(const std::vector<SharedScene>& scenes, const py::list& shapes,
+                             const py::dict& what, const py::dict& limits) {
+  cli::MaterialReport report;
+  report.scenes = scenes_of(scenes);
+  std::vector<compare::MeasuredShape> measured_shapes;
+  for (const py::handle& entry : shapes) {
+    const auto pair = entry.cast<py::tuple>();
+    report.files.push_back(fmt::format("shapes[{}]", measured_shapes.size()));
+    measured_shapes.push_back(measured(pair[0], pair[1], report.files.back()));
+  }
+  if (report.scenes.size() == 1) report.scenes.resize(measured_shapes.size(), report.scenes[0]);
+  compare::SolveOptions solve = solve_options(limits);
+  solve.accept_unresolved = false;
+  const compare::MaterialFitOptions options{
+      .pose = compare::from_name<compare::PoseFreedom>(what["pose"].cast<std::string>()),
+      .arc_lengths =
+          compare::from_name<compare::ArcLengths>(what["arc_lengths"].cast<std::string>()),
+      .density = what["density"].cast<bool>(),
+      .torsional_stiffness = what["torsional_stiffness"].cast<bool>(),
+      .natural_curvature_terms = what["natural_curvature_terms"].cast<int>(),
+      .direction_tolerance = what["clamp_angles"].cast<double>(),
+      .position_tolerance = what["clamp_positions"].cast<double>(),
+      .chain_segments = what["segments"].cast<int>(),
+      .noise = what["noise"].cast<std::optional<double>>(),
+      .solve = solve};
+  report.frame_was_found = options.pose != compare::PoseFreedom::known;
+  report.fit = run_long([&](Signals& /*signals*/) {
+    return compare::fit_material(report.scenes, measured_shapes, options);
+  });
+  const bool told = report.fit.youngs_modulus.value.has_value();
+  return {cli::material_text(report), cli::json_text(cli::material_json(report)),
+          told ? cli::material_toml(report) : std::string()};
+}
+
+Documents calibrate_force_model(const std::vector<SharedScene>& scenes,
+                                const std::vector<SharedScene>& holdouts, std::optional<int> points,
+                                std::optional<double> target, const py::dict& limits) {
+  compare::ForceModelFitOptions options;
+  options.points = points;
+  options.target = target.value_or(options.target);
+  options.solve = solve_options(limits);
+  options.solve.accept_unresolved = false;
+  const compare::ForceModelFit fit = run_long([&](Signals& signals) {
+    options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
+    return compare::fit_force_model(scenes_of(scenes), scenes_of(holdouts), options);
+  });
+  return {cli::force_model_text(fit, target.has_value()),
+          cli::json_text(cli::force_model_json(fit)), cli::force_model_toml(fit)};
+}
+
+void bind_check(py::module_& module) {
+  const auto of = [](auto get) { return [get](const ShapeCheckReport& r) { return get(r); }; };
+  using Report = ShapeCheckReport;
+  py::class_<Report, std::shared_ptr<Report>> bound(
+      module, "Check", "A shape against its scene's energy model; of check(). Arrays are views.");
+  bind_result(bound);
+  bound
+      .def_property_readonly(
+          "passed",
+          [](const Report& report) -> py::object {
+            if (!report.verdict) return py::none();
+            return py::bool_(report.verdict->judgement.pass);
+          },
+          "Whether the shape is within the tolerance; None without one.")
+      .def_property_readonly("reason", of([](const Report& r) {
+                               return r.verdict ? r.verdict->judgement.reason : std::string();
+                             }),
+                             "Why, in words; \"\" without a tolerance.")
+      .def_property_readonly("rms", of([](const Report& r) { return r.check.deviation.rms_m; }),
+                             "RMS distance of the points from the rod [m].")
+      .def_property_readonly("largest", of([](const Report& r) { return r.check.deviation.max_m; }),
+                             "Largest distance of a point [m].")
+      .def_property_readonly("worst_point", of([](const Report& r) { return r.check.worst_point; }),
+                             "Number of that point, from 1.")
+      .def_property_readonly("deviation",
+                             of([](const Report& r) { return deviation_of(r.check.deviation); }),
+                             "All deviations by name, in the names' units.")
+      .def_property_readonly(
+          "modulus_ratio", of([](const Report& r) { return r.check.effective_modulus.ratio; }),
+          "E*/E at which the energy model comes nearest to the points; NaN without one.")
+      .def_property_readonly(
+          "explanations", of([](const Report& r) {
+            std::vector<std::pair<std::string, double>> list;
+            for (const compare::Explanation& e : r.explanations)
+              list.emplace_back(e.cause, e.rms_m);
+            return list;
+          }),
+          "Of a shape that fails: (cause, RMS distance were it so [m]), the best first.")
+      .def_property_readonly(
+          "arc_length",
+          [](const py::object& self) {
+            return values_view(self.cast<const Report&>().check.reference.arc_length, self);
+          },
+          "Where the points are along the rod [m], shape (M,), read only.")
+      .def_property_readonly(
+          "points",
+          [](const py::object& self) {
+            return points_view(self.cast<const Report&>().check.alignment.shape.points, self);
+          },
+          "The points as laid on the rod, by arc length [m], shape (M, 3), read only.")
+      .def_property_readonly(
+          "reference",
+          [](const py::object& self) {
+            return points_view(self.cast<const Report&>().check.reference.points, self);
+          },
+          "The energy model there [m], shape (M, 3), read only.")
+      .def("to_json", of([](const Report& r) { return cli::json_text(cli::shape_check_json(r)); }),
+           "The document of `dlo check --format json`, as text.")
+      .def("__str__", of([](const Report& r) { return cli::shape_check_text(r); }));
+}
+
+void bind_comparison(py::module_& module) {
+  py::class_<Comparison, std::shared_ptr<Comparison>> bound(
+      module, "Comparison", "Force model and energy model of a scene; of compare().");
+  bind_result(bound);
+  bound
+      .def_property_readonly(
+          "deviation", [](const Comparison& c) { return deviation_of(c.deviation); },
+          "Deviations by name, in the names' units.")
+      .def_property_readonly(
+          "modulus_ratio", [](const Comparison& c) { return c.effective_modulus.ratio; },
+          "E*/E; NaN without one.")
+      .def_property_readonly(
+          "arc_length",
+          [](const py::object& self) {
+            return values_view(self.cast<const Comparison&>().reference.arc_length, self);
+          },
+          "Arc lengths of the force model's points [m], shape (N,), read only.")
+      .def_property_readonly(
+          "force_points",
+          [](const py::object& self) {
+            return points_view(self.cast<const Comparison&>().force.shape.points, self);
+          },
+          "The force model at rest [m], shape (N, 3), read only.")
+      .def_property_readonly(
+          "energy_points",
+          [](const py::object& self) {
+            return points_view(self.cast<const Comparison&>().reference.points, self);
+          },
+          "The energy model there [m], shape (N, 3), read only.")
+      .def(
+          "to_json", [](const Comparison& c) { return cli::json_text(cli::comparisons_json({c})); },
+          "The document of `dlo compare --format json`, as text.")
+      .def("__str__", &cli::comparison_text);
+}
+
+}  // namespace
+
+void bind_judge(py::module_& module) {
+  bind_check(module);
+  bind_comparison(module);
+  module.def("check", &check, py::arg("scene"), py::arg("points"), py::arg("arc_length"),
+             py::arg("tolerance"), py::arg("pose"), py::arg("arc_lengths"), py::arg("modulus"),
+             py::arg("limits"));
+  module.def("compare", &compare_scene, py::arg("scene"), py::arg("modulus"), py::arg("limits"));
+  module.def("calibrate_material", &calibrate_material, py::arg("scenes"), py::arg("shapes"),
+             py::arg("what"), py::arg("limits"));
+  module.def("calibrate_force_model", &calibrate_force_model, py::arg("scenes"),
+             py::arg("holdouts"), py::arg("points"), py::arg("target"), py::arg("limits"));
+}
+
+}  // namespace dlo::python

@@ -1,0 +1,15 @@
+#include "module.hpp"
+
+PYBIND11_MODULE(_dlo, module) {
+  module.doc() = "What dlo computes, in C++; import dlo instead.";
+  module.attr("__version__") = DLO_VERSION;
+  pybind11::options options;
+  options.disable_function_signatures();
+  dlo::python::bind_errors(module);
+  dlo::python::bind_scene(module);
+  dlo::python::bind_solve(module);
+  dlo::python::bind_judge(module);
+  dlo::python::bind_studies(module);
+  dlo::python::bind_force_model(module);
+  dlo::python::bind_batch(module);
+}

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+
+namespace dlo::python {
+
+/// A scene as the reader has it, and never changed: a call that works on it without the GIL has it
+/// to itself.
+struct SceneData {
+  compare::Scene scene;
+  /// By which each obstacle's body is larger than what its point says: the rod's radius, or 0 where
+  /// the axis touches [m].
+  std::vector<double> obstacle_offsets;
+};
+
+using SharedScene = std::shared_ptr<SceneData>;
+
+}  // namespace dlo::python

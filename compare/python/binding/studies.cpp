@@ -1,0 +1,154 @@
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <utility>
+
+#include "batch/sweep.hpp"
+#include "dlo/compare/error.hpp"
+#include "errors.hpp"
+#include "format/benchmark.hpp"
+#include "format/json.hpp"
+#include "format/modes.hpp"
+#include "format/stability.hpp"
+#include "long_call.hpp"
+#include "module.hpp"
+#include "motion/scene_modes.hpp"
+#include "scene.hpp"
+#include "solve_options.hpp"
+#include "study/benchmark.hpp"
+#include "study/hard_case.hpp"
+#include "study/stability.hpp"
+#include "study/stability_map.hpp"
+#include "table.hpp"
+
+namespace dlo::python {
+namespace {
+
+using Documents = std::pair<std::string, std::string>;  // text and JSON
+
+/// @param fields  of each axis the field, and either its values as a scene file spells them or what
+/// --vary takes
+compare::Grid grid_of(
+    const std::vector<std::pair<std::string, std::variant<std::vector<std::string>, std::string>>>&
+        fields) {
+  std::vector<compare::Axis> axes;
+  for (const auto& [field, values] : fields) {
+    if (const auto* text = std::get_if<std::string>(&values)) {
+      axes.push_back(compare::parse_axis(field + "=" + *text));
+      continue;
+    }
+    const auto& list = std::get<std::vector<std::string>>(values);
+    if (list.empty()) throw compare::InputError(field + ": no values (allowed: one or more)");
+    compare::Axis axis{.field = field, .values = list};
+    axis.count = static_cast<std::int64_t>(list.size());
+    axes.push_back(std::move(axis));
+  }
+  return compare::Grid(std::move(axes));
+}
+
+py::dict sweep(
+    const std::string& text, const std::string& file,
+    const std::vector<std::pair<std::string, std::variant<std::vector<std::string>, std::string>>>&
+        fields,
+    const std::string& model, int threads, const py::dict& limits) {
+  compare::SolveOptions options = solve_options(limits);
+  options.accept_unresolved = false;
+  const Table table = run_long([&](Signals& signals) {
+    const compare::Sweep sweep(compare::SceneTemplate(text, file), grid_of(fields),
+                               compare::from_name<compare::SweepModel>(model), options);
+    Table rows(sweep.header());
+    sweep.run({0, sweep.grid().size()}, threads, [&](const std::string& line) {
+      signals.throw_if_stopped();
+      rows.add(line);
+    });
+    return rows;
+  });
+  return table.arrays();
+}
+
+Documents hard_cases(const std::string& name_contains, const std::vector<std::string>& steppers,
+                     std::optional<long> max_steps, int threads) {
+  compare::StabilityOptions options;
+  options.name_contains = name_contains;
+  options.threads = threads;
+  if (max_steps) {
+    options.max_steps = *max_steps;
+    options.max_steps_auto = *max_steps;
+    options.steps_at_rest = *max_steps;
+  }
+  if (!steppers.empty()) options.steppers.clear();
+  for (const std::string& name : steppers) {
+    options.steppers.push_back(compare::from_name<compare::Stepper>(name));
+  }
+  return run_long([&](Signals& signals) {
+    options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
+    const std::vector<compare::StabilityResult> results = compare::stability(options);
+    return Documents(cli::hard_cases_text(results, options.steppers.size()),
+                     cli::json_text(cli::hard_cases_json(results)));
+  });
+}
+
+Documents stability_map(const std::optional<SharedScene>& scene, const std::string& axis,
+                        int columns, int rows, long steps, int threads) {
+  if (axis != "cF-cc" && axis != "cF-ch") compare::refuse_choice(axis, {"cF-cc", "cF-ch"});
+  compare::StabilityMapOptions options{
+      .axis = axis == "cF-cc" ? compare::MapAxis::c_c : compare::MapAxis::c_h,
+      .columns = columns,
+      .rows = rows,
+      .steps = steps,
+      .threads = threads};
+  return run_long([&](Signals& signals) {
+    options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
+    const compare::StabilityMap map =
+        compare::stability_map(scene ? (*scene)->scene : compare::hard_case_scene(), options);
+    return Documents(cli::stability_map_text(map), cli::json_text(cli::stability_map_json(map)));
+  });
+}
+
+Documents bench(const std::vector<SharedScene>& shared, double seconds, int repeats) {
+  std::vector<compare::Scene> scenes;
+  scenes.reserve(shared.size());
+  for (const SharedScene& scene : shared) scenes.push_back(scene->scene);
+  if (scenes.empty()) scenes = compare::benchmark_scenes();
+  return run_long([&](Signals& signals) {
+    const compare::BenchmarkReport report =
+        compare::run_benchmark(scenes, {.budget_s = seconds, .repeats = repeats},
+                               [&signals](const auto&) { signals.throw_if_stopped(); });
+    return Documents(cli::benchmark_text(report), cli::json_text(cli::benchmark_json(report)));
+  });
+}
+
+py::object modes(const SharedScene& scene, int count, double rate, double damping, int samples,
+                 const py::object& make_result, const py::dict& limits) {
+  if (count < 1 || !(rate > 0) || !(damping > 0 && damping <= 1) || samples < 2) {
+    throw compare::InputError(
+        "modes: out of range (allowed: count >= 1, rate > 0, 0 < damping <= 1, samples >= 2)");
+  }
+  const compare::ModeOptions options{
+      .count = count, .rate = rate, .damping = damping, .solve = solve_options(limits)};
+  const compare::SceneModes found =
+      run_long([&](Signals& /*signals*/) { return compare::scene_modes(scene->scene, options); });
+  py::object result =
+      make_result(cli::modes_text(found, scene->scene, rate),
+                  cli::json_text(cli::modes_json(found, scene->scene, rate, samples)));
+  if (!succeeded(found.status)) {
+    raise_convergence(scene->scene.file + ": " + found.message, result);
+  }
+  return result;
+}
+
+}  // namespace
+
+void bind_studies(py::module_& module) {
+  module.def("sweep", &sweep, py::arg("text"), py::arg("file"), py::arg("fields"), py::arg("model"),
+             py::arg("threads"), py::arg("limits"));
+  module.def("hard_cases", &hard_cases, py::arg("name_contains"), py::arg("steppers"),
+             py::arg("max_steps"), py::arg("threads"));
+  module.def("stability_map", &stability_map, py::arg("scene"), py::arg("axis"), py::arg("columns"),
+             py::arg("rows"), py::arg("steps"), py::arg("threads"));
+  module.def("bench", &bench, py::arg("scenes"), py::arg("seconds"), py::arg("repeats"));
+  module.def("modes", &modes, py::arg("scene"), py::arg("count"), py::arg("rate"),
+             py::arg("damping"), py::arg("samples"), py::arg("make_result"), py::arg("limits"));
+}
+
+}  // namespace dlo::python

@@ -1,0 +1,97 @@
+"""Is the shape that your rod simulator draws the shape that the material would take?
+
+    import dlo
+    scene = dlo.Scene(length="2 m", diameter="6 mm", material="silicone",
+                      grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction="30 deg")])
+    print(dlo.check(scene, points, tolerance="1%"))      # points: an array of shape (M, 3), in m
+
+Scenes       Scene, clamp, pin, load, obstacle, section, materials
+One shape    solve, solve_all, check, compare, plan, calibrate
+Many         sweep, bench, stability, modes
+In a loop    ForceModel, Batch
+Errors       InputError (a ValueError), ConvergenceError (a RuntimeError)
+
+Numbers are in SI units, or text with a unit. Wherever a scene is asked for, the name of a scene file
+will do. Results have NumPy arrays, json (the document of the command dlo), to_json(), str() (its
+text), and those with a shape plot(). Long calls let other threads run, and Ctrl-C ends them.
+"""
+
+from ._dlo import Check, Comparison, Equilibria, Solution, __version__
+from ._documents import (
+    Benchmark,
+    Document,
+    ForceModelFit,
+    MaterialFit,
+    Modes,
+    Plan,
+    Stability,
+)
+from ._errors import ConvergenceError, InputError
+from ._functions import (
+    bench,
+    calibrate,
+    check,
+    compare,
+    modes,
+    plan,
+    solve,
+    solve_all,
+    stability,
+    sweep,
+)
+from ._loops import Batch, ForceModel
+from ._scene import (
+    ForceModelSettings,
+    Gripper,
+    Load,
+    Obstacle,
+    Scene,
+    Section,
+    clamp,
+    load,
+    materials,
+    obstacle,
+    pin,
+    section,
+)
+
+__all__ = [
+    "Batch",
+    "Benchmark",
+    "Check",
+    "Comparison",
+    "ConvergenceError",
+    "Document",
+    "Equilibria",
+    "ForceModel",
+    "ForceModelFit",
+    "ForceModelSettings",
+    "Gripper",
+    "InputError",
+    "Load",
+    "MaterialFit",
+    "Modes",
+    "Obstacle",
+    "Plan",
+    "Scene",
+    "Section",
+    "Solution",
+    "Stability",
+    "__version__",
+    "bench",
+    "calibrate",
+    "check",
+    "clamp",
+    "compare",
+    "load",
+    "materials",
+    "modes",
+    "obstacle",
+    "pin",
+    "plan",
+    "section",
+    "solve",
+    "solve_all",
+    "stability",
+    "sweep",
+]

@@ -1,0 +1,48 @@
+"""The force model, step by step."""
+
+from __future__ import annotations
+
+from typing import Iterable, Optional
+
+from numpy.typing import ArrayLike
+
+from . import _dlo
+from ._scene import SceneLike, as_scene
+
+
+class ForceModel(_dlo.ForceModel):
+    """A scene's force model in a loop of your own: step, move grippers and walls, read points.
+
+        loop = dlo.ForceModel(scene)
+        points = numpy.empty((len(loop), 3))
+        while True:
+            loop.move_gripper(0, position=hand())
+            loop.step(30)
+            loop.points(out=points)
+
+    points: where it starts [m], shape (N, 3); None: straight from one gripper, between several where
+    its polygon rests. grip_stiffness: of springs that hold the points instead of rigid grips, as a
+    haptic device feels them [N/m]; None: rigid. N, law and stepper are scene.force_model's.
+
+    Threads may share one: each call has it to itself. step() lets others run meanwhile.
+    """
+
+    def __init__(
+        self,
+        scene: SceneLike,
+        points: Optional[ArrayLike] = None,
+        *,
+        grip_stiffness: Optional[float] = None,
+    ) -> None:
+        super().__init__(as_scene(scene)._data, points, grip_stiffness)
+
+
+class Batch(_dlo.Batch):
+    """Many rods at once, eight in lockstep, on several threads: for tables of simulations.
+
+    All scenes have the same force_model.points, law and stepper, and start as a ForceModel of each.
+    threads: 0: all cores.
+    """
+
+    def __init__(self, scenes: Iterable[SceneLike], *, threads: int = 0) -> None:
+        super().__init__([as_scene(scene)._data for scene in scenes], threads)

@@ -1,0 +1,142 @@
+"""Errors, signals and threads."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy
+import pytest
+
+import dlo
+
+
+def test_points_that_are_none_are_input_errors(cable):
+    for points, words in [
+        (numpy.zeros((3,)), r"shape \(3,\)"),
+        ([["a", "b", "c"]], "no array of numbers"),
+        (numpy.zeros((4, 3)), "the same as the point before"),
+        ([[0, 0, 0]], r"1 point \(allowed: 2"),
+        ([[0, 0, 0], [0, numpy.nan, 0]], "point 2: y = nan"),
+    ]:
+        with pytest.raises(dlo.InputError, match=words):
+            dlo.check(cable, points)
+    with pytest.raises(dlo.InputError, match="energies"):
+        dlo.solve(cable, model="energies")
+    with pytest.raises(dlo.InputError, match="time_limt"):
+        dlo.solve(cable, time_limt=1)
+
+
+def test_what_does_not_converge_says_so(cable):
+    with pytest.raises(dlo.ConvergenceError) as caught:
+        dlo.solve(cable, model="force", max_steps=10)
+    assert isinstance(caught.value, RuntimeError)
+    assert "did not come to rest" in str(caught.value)
+
+
+def test_a_shape_that_is_left_open_is_part_of_the_error():
+    # Straight up at the load at which it buckles: Gamma = 7.8373474389.
+    scene = dlo.Scene(
+        length=1,
+        bending_stiffness=1,
+        mass_per_length=7.8373474389 / 9.81,
+        grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=(0, 1, 0))],
+    )
+    with pytest.raises(dlo.ConvergenceError) as caught:
+        dlo.solve(scene, samples=11)
+    assert caught.value.result.points.shape == (11, 3)
+    assert caught.value.result.status == "near_singular"
+
+
+INTERRUPTED = """
+import os, signal, sys, threading, time
+import dlo
+scene = dlo.Scene(length=1, diameter="5 mm", material="silicone",
+                  grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=0.0)],
+                  force_model={"points": 2000, "law": "hooke"})
+threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()
+begin = time.monotonic()
+try:
+    WHAT
+except KeyboardInterrupt:
+    print("interrupted", time.monotonic() - begin < 10)
+"""
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        "dlo.solve(scene, model='force', time_limit=60, rest_tolerance=1e-9)",
+        "dlo.ForceModel(scene).step(10**9)",
+        "dlo.sweep(scene, {'gamma': 'lin:1:2:100000000'})",
+        "dlo.bench(scene, seconds=600, repeats=1000)",
+    ],
+)
+def test_ctrl_c_ends_long_calls(what):
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED.replace("WHAT", what)], capture_output=True, text=True
+    )
+    assert done.stdout == "interrupted True\n", done.stderr
+
+
+def test_other_threads_run_meanwhile(cable):
+    counted = 0
+    done = threading.Event()
+
+    def count():
+        nonlocal counted
+        while not done.is_set():
+            counted += 1
+            time.sleep(0.001)
+
+    counter = threading.Thread(target=count)
+    loop = dlo.ForceModel(cable)
+    counter.start()
+    loop.step(300_000)
+    done.set()
+    counter.join()
+    assert counted > 3
+
+
+def test_threads_get_what_one_gets(cable):
+    expected = dlo.solve(cable, samples=11).points
+    loop = dlo.ForceModel(cable)
+    seen = []
+
+    def work():
+        for _ in range(20):
+            seen.append(numpy.array_equal(dlo.solve(cable, samples=11).points, expected))
+            loop.step(100)
+            loop.points()
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert seen == [True] * 80
+    assert loop.steps == 8000
+
+
+def resident():
+    """Memory of this process [bytes]."""
+    with open("/proc/self/statm", encoding="ascii") as statm:
+        return int(statm.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def test_memory_does_not_grow(steel):
+    def work(times):
+        for _ in range(times):
+            dlo.solve(steel, samples=11)
+            with pytest.raises(dlo.InputError):
+                dlo.solve(steel, model="none")
+            with pytest.raises(dlo.InputError):
+                steel.length = -1
+
+    work(300)
+    before = resident()
+    work(1500)
+    # A hundredth of what one solution of eleven points has, each time, would be 40 kB.
+    assert resident() - before < 500_000

@@ -1,0 +1,176 @@
+"""Results: arrays that are views, and the command's own documents."""
+
+import json
+import subprocess
+
+import numpy
+import pytest
+
+import dlo
+
+
+def command_json(command, *arguments):
+    done = subprocess.run(
+        [command, *map(str, arguments), "--format", "json"], capture_output=True, text=True
+    )
+    assert done.returncode in (0, 1), done.stderr
+    return json.loads(done.stdout)
+
+
+def without_times(document):
+    """But for what the clock has measured."""
+    if isinstance(document, dict):
+        times = ("wall_s", "force_s", "energy_s")
+        return {k: without_times(v) for k, v in document.items() if k not in times}
+    if isinstance(document, list):
+        return [without_times(value) for value in document]
+    return document
+
+
+def test_solve_is_the_commands(root, command):
+    scene = root / "data/scenes/spring_steel_175.toml"
+    solution = dlo.solve(scene, samples=9)
+    assert without_times(solution.json) == without_times(
+        command_json(command, "solve", scene, "--samples", 9)
+    )
+    assert json.loads(solution.to_json())["schema"] == "dlo/solve/1"
+    assert "energy, converged" in str(solution)
+
+
+def test_check_is_the_commands(root, command):
+    scene = root / "data/scenes/cable.toml"
+    shape = root / "data/shapes/cable.csv"
+    points = numpy.loadtxt(shape, delimiter=",", skiprows=3)
+    check = dlo.check(scene, points, tolerance="1%")
+    expected = command_json(
+        command, "check", scene, "--shape", shape, "--tolerance", "1%", "--arc-lengths", "nearest"
+    )
+    document = check.json
+    assert document.pop("shape") == "points"
+    expected.pop("shape")
+    assert document == expected
+    assert check.passed == (expected["verdict"] == "pass")
+
+
+def test_compare_is_the_commands(root, command):
+    scene = dlo.Scene.from_file(root / "data/scenes/spring_steel_175.toml")
+    scene.force_model = {"points": 16, "law": "hooke", "bookkeeping": "consistent"}
+    comparison = dlo.compare(scene)
+    expected = command_json(
+        command, "compare", root / "data/scenes/spring_steel_175.toml", "--law", "hooke",
+        "--bookkeeping", "consistent",
+    )
+    assert comparison.json["schema"] == expected["schema"]
+    assert comparison.deviation["rms_m"] == expected["cases"][0]["deviation"]["rms_m"]
+    assert comparison.force_points.shape == comparison.energy_points.shape == (16, 3)
+
+
+def test_arrays_are_views_that_keep_the_result_alive(cable):
+    solution = dlo.solve(cable, samples=33)
+    points, s = solution.points, solution.arc_length
+    assert points.shape == (33, 3) and s.shape == (33,)
+    assert points.flags.c_contiguous and not points.flags.owndata and not points.flags.writeable
+    assert points.ctypes.data == solution.points.ctypes.data
+    with pytest.raises(ValueError):
+        points[0, 0] = 1
+    del solution
+    # Chords of 1/32 m are shorter than their arcs, most where the rod bends at the clamp.
+    assert 0.99 < numpy.linalg.norm(numpy.diff(points, axis=0), axis=1).sum() < 1
+    assert s[-1] == 1
+
+
+def test_grippers_bear_the_weight(cable):
+    solution = dlo.solve(cable)
+    weight = -cable.mass * cable.gravity
+    numpy.testing.assert_allclose(solution.gripper_forces, [weight], atol=1e-9 * weight[1])
+    # The torque about the clamp is that of the weight at the rod's centre.
+    s, points = solution.arc_length, dlo.solve(cable, samples=2001).points
+    centre = (points[1:] + points[:-1]).mean(axis=0) / 2
+    numpy.testing.assert_allclose(
+        solution.gripper_torques[0], numpy.cross(-centre, -weight), atol=1e-6 * weight[1]
+    )
+    assert solution.tension.shape == solution.curvature.shape == s.shape
+
+
+def test_every_equilibrium_is_found(root):
+    states = dlo.solve_all(
+        dlo.Scene(
+            length="2 m",
+            diameter="1 mm",
+            material="copper",
+            grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=0.0)],
+        ),
+        samples=2,
+    )
+    assert len(states) == 2
+    assert [state.smallest_curvature > 0 for state in states] == [True, False]
+    assert len(states.json["equilibria"]) == 2
+
+
+def test_calibrate_finds_the_modulus_it_was_given(cable):
+    exact = dlo.solve(cable, model="exact", samples=15)
+    guess = cable.replace(material={"youngs_modulus": "1 MPa", "density": 1150})
+    fit = dlo.calibrate(guess, [(exact.points, exact.arc_length)])
+    assert fit.youngs_modulus == pytest.approx(5e6, rel=1e-6)
+    low, high = fit.interval
+    assert low <= 5e6 <= high
+    assert "calibrated" in fit.to_toml()
+
+
+def test_calibrate_gives_parameters_that_a_scene_takes(steel):
+    fit = dlo.calibrate(steel, target=1e-3)
+    assert fit["reached"]
+    names = ("law", "bookkeeping", "points", "c_c", "stepper", "c_F", "c_h", "l_s")
+    steel.force_model = {name: fit.parameters[name] for name in names}
+    assert dlo.compare(steel, modulus=False).deviation["rms_over_length"] <= 1e-3
+
+
+def test_plan_and_modes(steel):
+    assert dlo.plan(steel)["geometry"] == "planar"
+    modes = dlo.modes(steel, count=2, samples=5)
+    assert modes.shapes.shape == (2, 5, 3)
+    # In and out of its plane a rod that hardly bends swings as a straight one:
+    # omega = 1.8751^2 sqrt(EI / (rho A l^4)), but for its sag of some per cent.
+    slow = 1.8751**2 * (steel.bending_stiffness / steel.mass_per_length) ** 0.5 / steel.length**2
+    numpy.testing.assert_allclose(modes.frequencies * 2 * numpy.pi, slow, rtol=0.02)
+
+
+def test_sweep_has_the_rows_of_the_command(root, command):
+    scene = root / "data/scenes/spring_steel_175.toml"
+    columns = dlo.sweep(scene, {"gamma": [0.1, 1], "gripper.0.direction": ["-90 deg", "0 deg"]})
+    done = subprocess.run(
+        [command, "sweep", str(scene), "--vary", "gamma=0.1,1", "--vary",
+         "gripper.0.direction=-90 deg,0 deg"],
+        capture_output=True, text=True, check=True,
+    )
+    header, *rows = [line.split(",") for line in done.stdout.splitlines()]
+    assert columns["row"].tolist() == [0, 1, 2, 3]
+    for name in ("gamma", "tip_x_m", "tip_y_m", "energy_J", "terms"):
+        expected = [float(row[header.index(name)]) for row in rows]
+        assert columns[name].tolist() == expected
+    assert columns["status"].tolist() == ["ok"] * 4
+
+
+def test_sweep_takes_arrays_and_says_what_is_no_scene(cable):
+    columns = dlo.sweep(cable, {"rod.length": numpy.array([0.5, -1]), "gravity": [(0, -9.81, 0)]})
+    assert columns["status"][0] == "ok"
+    assert "rod.length" in columns["status"][1]
+    assert numpy.isnan(columns["energy_J"][1])
+
+
+def test_stability_and_bench(steel):
+    table = dlo.stability(case="folded", steppers=["auto"], threads=1)
+    assert table["cases"][0]["outcome"] == "pass"
+    runs = dlo.bench(steel, seconds=0.3, repeats=1)["runs"]
+    assert {run["model"] for run in runs} >= {"energy", "chain"}
+
+
+def test_plots(steel):
+    matplotlib = pytest.importorskip("matplotlib.pyplot")
+    solution = dlo.solve(steel)
+    ax = solution.plot()
+    numpy.testing.assert_array_equal(ax.lines[0].get_xydata(), solution.points[:, :2])
+    check = dlo.check(steel, solution.points[::10])
+    assert len(check.plot(ax=matplotlib.figure().add_subplot()).lines) == 2 + len(check.points)
+    dlo.compare(steel, modulus=False).plot()
+    matplotlib.close("all")
