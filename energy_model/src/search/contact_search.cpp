@@ -43,8 +43,16 @@ class ContactSearch {
 
   [[nodiscard]] std::vector<SpanSolution> run() {
     std::vector<SpanSolution> found;
-    if (options_.start && !options_.all) look_from({options_.start}, found);
-    if (found.empty() || !succeeded(found.front().status)) search(found);
+    if (options_.known.model && options_.start && !options_.all) {
+      SpanSolution followed = follow();
+      if (followed.is_equilibrium() || followed.is_left_open()) {
+        found.push_back(std::move(followed));
+      }
+    }
+    if (found.empty()) {
+      if (options_.start && !options_.all) look_from({options_.start}, found);
+      if (found.empty() || !succeeded(found.front().status)) search(found);
+    }
     for (int i = 0; i < most_departures && found.front().status == SolveStatus::saddle; ++i) {
       const double energy = found.front().energy;
       leave(found);
@@ -56,6 +64,38 @@ class ContactSearch {
   }
 
  private:
+  /// From a known shape with its contacts, which are mended as they change; no polygon.
+  [[nodiscard]] SpanSolution follow() {
+    const KnownShape& known = options_.known;
+    Span span = span_;
+    span.planar = span_.planar && known.model->span().planar;
+    span.contacts = known.model->span().contacts;
+    for (Span::Contact& contact : span.contacts) {
+      const auto moved = std::find_if(
+          span.rigid_obstacles.begin(), span.rigid_obstacles.end(),
+          [&](const Span::Obstacle& other) { return other.index == contact.obstacle.index; });
+      if (moved == span.rigid_obstacles.end()) return {};
+      contact.obstacle = *moved;
+    }
+    SpanSolution solution;
+    solution.terms = known.model->terms();
+    solution.model = workspace_.model(span, solution.terms);
+    SpanEnergy& model = *solution.model;
+    if (model.pieces() != known.model->pieces()) return {};
+    const StartShape start = options_.start(model.nodes());
+    solution.x = span.planar || span.has_material_directors() ? model.fit(start)
+                                                              : model.adopt(*known.model, known.x);
+    if (known.multipliers.size() == model.constraints()) solution.multipliers = known.multipliers;
+    workspace_.newton().polish(solution, load_);
+    if (!solution.is_equilibrium()) return solution;
+    const Eigen::Matrix3Xd turned = model.tangents() - start.tangents;
+    if (!(turned.cwiseAbs().maxCoeff() < followed_tangents)) return {};
+    spent_ += std::exchange(solution.evaluations, 0);
+    solution = with_right_contacts(std::move(span), {}, std::move(solution));
+    solution.followed = succeeded(solution.status) || solution.is_left_open();
+    return solution;
+  }
+
   /// From the rod without obstacles, which may stay clear of them, and from the starts of all
   /// searches.
   void search(std::vector<SpanSolution>& found) {
@@ -173,10 +213,16 @@ class ContactSearch {
     Span span = span_;
     span.contacts = polygon.contacts;
     if (polygon.tangents.row(2).cwiseAbs().maxCoeff() > flat) span.planar = false;
-    TangentField near = polygon.field();
-    SpanSolution solution;
+    return with_right_contacts(std::move(span), polygon.field(), {});
+  }
+
+  /// Contacts mended until they are right. @param solution  with the span's, if there is one; else
+  /// from `near`
+  [[nodiscard]] SpanSolution with_right_contacts(Span span, TangentField near,
+                                                 SpanSolution solution) {
     for (int round = 0; round < most_rounds; ++round) {
-      solution = near_field(span, near);
+      const bool found_already = round == 0 && solution.is_equilibrium();
+      if (!found_already) solution = near_field(span, near);
       if (!solution.is_equilibrium() && hold_points(span)) solution = near_field(span, near);
       if (!solution.is_equilibrium()) break;
       spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
