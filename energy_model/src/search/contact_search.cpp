@@ -292,7 +292,9 @@ class ContactSearch {
     constexpr int fewest = 12;  // beside a kink
     double longest = 0;
     for (const Piece& piece : pieces_of(span)) longest = std::max(longest, piece.length);
-    return std::max(fewest, first_terms(load_, longest));
+    // What is followed takes about as many as it has taken before.
+    const int known = options_.known.model ? options_.least_terms : 0;
+    return std::max({fewest, first_terms(load_, longest), known});
   }
 
   /// As many terms as the shape takes, and as what lies takes to be on its obstacle; certified.
