@@ -60,7 +60,8 @@ std::string event_text(const Track& track, const TrackEvent& event) {
     }
     out += "\n";
   } else if (std::isfinite(event.released)) {
-    append(out, "{:.4g} J released (+- {:.2g} J)\n", event.released, event.released_bound);
+    append(out, "{:.4g} J released (+- {:.2g} J); smallest curvature before {:.3g}\n",
+           event.released, event.released_bound, before.smallest_curvature);
   } else {
     out += "the shape is another one\n";
   }
@@ -162,6 +163,7 @@ Json frame_json(const TrackFrame& frame, const compare::Scene& scene, bool point
   const compare::SceneEnergies& energy = frame.energy;
   Json result = {{"time_s", frame.time},
                  {"followed", frame.followed},
+                 {"smallest_curvature", frame.smallest_curvature},
                  {"grippers", std::move(grippers)},
                  {"contacts", contacts_json(frame.contacts)},
                  {"energy_J",

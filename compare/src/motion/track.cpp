@@ -233,6 +233,7 @@ class Tracker {
     TrackFrame frame;
     frame.time = time;
     frame.followed = index == 0 || solver_.followed();
+    frame.smallest_curvature = now.rod.smallest_curvature;
     frame.seconds = seconds;
     frame.points = std::move(points);
     frame.energy = energies_of(now.scene, now.rod);

@@ -27,6 +27,8 @@ struct TrackOptions {
 struct TrackFrame {
   double time = 0;        ///< [s]
   bool followed = false;  ///< next to the frame before, by Newton's method alone
+  /// As Solution's: it comes to zero where a branch ends at a fold [-].
+  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   /// Of the shape; gravity and loads are zero at the origin, which does not move [J].
   SceneEnergies energy;
   double work = 0;  ///< of grippers and obstacles on the rod, since the first frame [J]

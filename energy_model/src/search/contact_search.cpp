@@ -77,22 +77,70 @@ class ContactSearch {
       if (moved == span.rigid_obstacles.end()) return {};
       contact.obstacle = *moved;
     }
+    const double share = goes_on_like_before() ? 1 : 0;
+    SpanSolution solution = next_to_known(span, share);
+    if (share > 0 && !solution.is_equilibrium()) solution = next_to_known(span, 0);
+    if (!solution.is_equilibrium()) return solution;
+    const Eigen::Matrix3Xd turned =
+        solution.model->tangents() - options_.start(solution.model->nodes()).tangents;
+    if (!(turned.cwiseAbs().maxCoeff() < followed_tangents)) return {};
+    spent_ += std::exchange(solution.evaluations, 0);
+    solution = with_right_contacts(solution.model->span(), {}, std::move(solution));
+    solution.followed = succeeded(solution.status) || solution.is_left_open();
+    return solution;
+  }
+
+  /// Whether the last two shapes have the same unknowns and contacts, so that a third may be looked
+  /// for where they lead.
+  [[nodiscard]] bool goes_on_like_before() const {
+    const KnownShape& known = options_.known;
+    const KnownShape& before = options_.before;
+    if (!before.model || before.x.size() != known.x.size() ||
+        before.model->terms() != known.model->terms() ||
+        before.multipliers.size() != known.multipliers.size()) {
+      return false;
+    }
+    const std::vector<Span::Contact>& a = before.model->span().contacts;
+    const std::vector<Span::Contact>& b = known.model->span().contacts;
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+      return x.obstacle.index == y.obstacle.index && x.lies() == y.lies();
+    });
+  }
+
+  /// An equilibrium with the known contacts, by Newton's method from where the last two shapes
+  /// lead.
+  /// @param share  of the way from the one before to the known one that is gone on
+  [[nodiscard]] SpanSolution next_to_known(Span span, double share) {
+    const KnownShape& known = options_.known;
+    const KnownShape& before = options_.before;
+    for (std::size_t i = 0; share > 0 && i < span.contacts.size(); ++i) {
+      const Span::Contact& last = before.model->span().contacts[i];
+      const Span::Contact at = span.contacts[i];
+      // The ends of the rod are no places from where a contact comes.
+      const bool inside = at.begin > 0 && at.end < span.length;
+      const double begin = at.begin + share * (at.begin - last.begin);
+      const double end = at.end + share * (at.end - last.end);
+      const bool ordered = (i == 0 || begin > span.contacts[i - 1].end) && begin <= end &&
+                           begin > 0 && end < span.length;
+      if (!inside || !ordered) continue;
+      span.contacts[i].begin = begin;
+      span.contacts[i].end = at.lies() ? end : begin;
+    }
     SpanSolution solution;
     solution.terms = known.model->terms();
     solution.model = workspace_.model(span, solution.terms);
     SpanEnergy& model = *solution.model;
     if (model.pieces() != known.model->pieces()) return {};
-    const StartShape start = options_.start(model.nodes());
-    solution.x = span.planar || span.has_material_directors() ? model.fit(start)
-                                                              : model.adopt(*known.model, known.x);
+    const bool fits = span.planar || span.has_material_directors();
+    // The fit also says how often the clamps are wound.
+    solution.x =
+        fits ? model.fit(options_.start(model.nodes())) : model.adopt(*known.model, known.x);
     if (known.multipliers.size() == model.constraints()) solution.multipliers = known.multipliers;
+    if (share > 0 && known.x.size() == solution.x.size()) {
+      solution.x = known.x + share * (known.x - before.x);
+      solution.multipliers += share * (known.multipliers - before.multipliers);
+    }
     workspace_.newton().polish(solution, load_);
-    if (!solution.is_equilibrium()) return solution;
-    const Eigen::Matrix3Xd turned = model.tangents() - start.tangents;
-    if (!(turned.cwiseAbs().maxCoeff() < followed_tangents)) return {};
-    spent_ += std::exchange(solution.evaluations, 0);
-    solution = with_right_contacts(std::move(span), {}, std::move(solution));
-    solution.followed = succeeded(solution.status) || solution.is_left_open();
     return solution;
   }
 

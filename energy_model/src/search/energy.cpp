@@ -146,6 +146,7 @@ class EnergySolver::State {
   struct Remembered {
     std::shared_ptr<const SpanEnergy> model;  // none after a failure
     Eigen::VectorXd x, multipliers;
+    KnownShape before;  // the one before it
     Eigen::Matrix3d frame;
 
     [[nodiscard]] bool planar() const { return !model || model->span().planar; }
@@ -254,6 +255,7 @@ class EnergySolver::State {
     } else if (last != nullptr && last->model) {
       options.least_terms = last->model->terms();
       options.known = {last->model, last->x, last->multipliers};
+      options.before = last->before;
       start = [&placed, last = *last](const Eigen::VectorXd& s) {
         return follow_field(placed, last, s);
       };
@@ -269,6 +271,7 @@ class EnergySolver::State {
       spent = followed.solution.evaluations;
       options.least_terms = 0;
       options.known = {};
+      options.before = {};
     }
     std::vector<PlacedSolution> found = search(placed, options);
     spent += found.front().solution.evaluations;
@@ -403,7 +406,8 @@ class EnergySolver::State {
 
   static void remember(const PlacedSolution& found, Remembered& last) {
     const bool is_known = succeeded(found.solution.status) || found.solution.is_left_open();
-    last.model = is_known ? found.solution.model : nullptr;
+    last.before = {std::exchange(last.model, is_known ? found.solution.model : nullptr),
+                   std::move(last.x), std::move(last.multipliers)};
     last.x = found.solution.x;
     last.multipliers = found.solution.multipliers;
     last.frame = found.placed.frame;

@@ -51,6 +51,7 @@ struct SpanOptions {
   bool all = false;                      ///< every equilibrium that the starts lead to
   TangentField start;                    ///< instead of the search
   Approach approach = Approach::follow;  ///< from `start`
+  KnownShape before;                     ///< the shape known before that one, on the same way
   KnownShape known;                      ///< what `start` shows, if it is a span's solution that
                                          ///< is followed: where it gives way it is left
   int least_terms = 0;                   ///< what resolves the start
