@@ -85,7 +85,8 @@ class ContactSearch {
         solution.model->tangents() - options_.start(solution.model->nodes()).tangents;
     if (!(turned.cwiseAbs().maxCoeff() < followed_tangents)) return {};
     spent_ += std::exchange(solution.evaluations, 0);
-    solution = with_right_contacts(solution.model->span(), {}, std::move(solution));
+    span = solution.model->span();
+    solution = with_right_contacts(std::move(span), {}, std::move(solution));
     solution.followed = succeeded(solution.status) || solution.is_left_open();
     return solution;
   }
