@@ -108,6 +108,24 @@ class ContactSearch {
     });
   }
 
+  /// Fewer than the known shape has, where the last ones are for nothing: a contact that has just
+  /// begun takes many for a while. Of rods in the plane.
+  [[nodiscard]] int enough_terms_of_known() const {
+    const SpanEnergy& model = *options_.known.model;
+    const int many = model.terms();
+    const int fewer = std::max(terms_of_load(model.span()), many - std::max(2, many / 5));
+    if (!model.span().planar || options_.terms > 0 || fewer >= many) return many;
+    // As finish_span() has it, with a margin.
+    constexpr double margin = 0.1;
+    const double most = margin * options_.tolerance * 4 * fewer * fewer;
+    const Eigen::Index first = model.size() - static_cast<Eigen::Index>(model.pieces()) * many;
+    for (Eigen::Index e = 0; e < model.pieces(); ++e) {
+      const auto last = options_.known.x.segment(first + e * many + fewer - 2, many - fewer + 2);
+      if (model.piece(e).angle(0) * last.cwiseAbs().maxCoeff() > most) return many;
+    }
+    return fewer;
+  }
+
   /// An equilibrium with the known contacts, by Newton's method from where the last two shapes
   /// lead.
   /// @param share  of the way from the one before to the known one that is gone on
@@ -128,7 +146,7 @@ class ContactSearch {
       span.contacts[i].end = at.lies() ? end : begin;
     }
     SpanSolution solution;
-    solution.terms = known.model->terms();
+    solution.terms = share > 0 ? enough_terms_of_known() : known.model->terms();
     solution.model = workspace_.model(span, solution.terms);
     SpanEnergy& model = *solution.model;
     if (model.pieces() != known.model->pieces()) return {};
@@ -137,7 +155,8 @@ class ContactSearch {
     solution.x =
         fits ? model.fit(options_.start(model.nodes())) : model.adopt(*known.model, known.x);
     if (known.multipliers.size() == model.constraints()) solution.multipliers = known.multipliers;
-    if (share > 0 && known.x.size() == solution.x.size()) {
+    const bool as_many = solution.terms == known.model->terms();
+    if (share > 0 && as_many && known.x.size() == solution.x.size()) {
       solution.x = known.x + share * (known.x - before.x);
       solution.multipliers += share * (known.multipliers - before.multipliers);
     }
@@ -338,12 +357,16 @@ class ContactSearch {
 
   [[nodiscard]] int terms(const Span& span) const {
     if (options_.terms > 0) return options_.terms;
+    // What is followed takes about as many as it has taken before.
+    const int known = options_.known.model ? options_.least_terms : 0;
+    return std::max(terms_of_load(span), known);
+  }
+
+  [[nodiscard]] int terms_of_load(const Span& span) const {
     constexpr int fewest = 12;  // beside a kink
     double longest = 0;
     for (const Piece& piece : pieces_of(span)) longest = std::max(longest, piece.length);
-    // What is followed takes about as many as it has taken before.
-    const int known = options_.known.model ? options_.least_terms : 0;
-    return std::max({fewest, first_terms(load_, longest), known});
+    return std::max(fewest, first_terms(load_, longest));
   }
 
   /// As many terms as the shape takes, and as what lies takes to be on its obstacle; certified.
