@@ -132,16 +132,29 @@ Eigen::Vector3d turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d&
 }
 
 /// What is done on the rod between two frames: with the mean of the forces, and what other forces
-/// between those of both could make of it.
-struct Work {
-  double done = 0;
-  double bound = 0;
+/// could make of it that are between those of both, or beyond by as much as they have changed in
+/// the frame before (where a force has its largest value they are the same on either side of it).
+class Work {
+ public:
+  /// @param changes  of the forces along their ways in the frame before, one for each add(); empty:
+  ///                 there is none. Becomes those of this one.
+  explicit Work(std::vector<Eigen::Vector3d>& changes) : changes_(changes) {}
 
   void add(const Eigen::Vector3d& before, const Eigen::Vector3d& after,
            const Eigen::Vector3d& moved) {
+    if (next_ == changes_.size()) changes_.emplace_back(Eigen::Vector3d::Zero());
+    Eigen::Vector3d& last = changes_[next_++];
     done += (before + after).dot(moved) / 2;
-    bound += std::abs((after - before).dot(moved)) / 2;
+    bound += std::max(std::abs((after - before).dot(moved)), last.norm() * moved.norm()) / 2;
+    last = after - before;
   }
+
+  double done = 0;   ///< [J]
+  double bound = 0;  ///< [J]
+
+ private:
+  std::vector<Eigen::Vector3d>& changes_;
+  std::size_t next_ = 0;
 };
 
 /// One frame's scene and what the energy model says of it.
@@ -151,8 +164,9 @@ struct Moment {
 };
 
 Work work_between(const Moment& before, const Moment& after,
-                  const std::vector<std::size_t>& obstacles) {
-  Work work;
+                  const std::vector<std::size_t>& obstacles,
+                  std::vector<Eigen::Vector3d>& changes) {
+  Work work(changes);
   for (std::size_t i = 0; i < after.scene.grippers.size(); ++i) {
     const Gripper& from = before.scene.grippers[i];
     const Gripper& to = after.scene.grippers[i];
@@ -261,7 +275,7 @@ class Tracker {
   /// @return whether the shape is where the work can have brought it
   bool add_balance(const Moment& now, TrackFrame& frame) {
     const TrackFrame& before = result_.frames.back();
-    const Work work = work_between(last_, now, obstacles_);
+    const Work work = work_between(last_, now, obstacles_, changes_);
     frame.work = before.work + work.done;
     frame.released = work.done - (frame.energy.total() - before.energy.total());
     frame.released_bound = work.bound + noise_;
@@ -369,6 +383,7 @@ class Tracker {
   bool balances_ = true;
   double noise_ = 0;
   Moment last_;
+  std::vector<Eigen::Vector3d> changes_;  // of forces, in the last frame
   std::unique_ptr<ForceTrack> force_;
   std::vector<double> force_seconds_;
   Track result_;

@@ -39,16 +39,16 @@ Scene swung() {
       "swung.toml");
 }
 
-/// Two clamps that turn an arch down until it falls through.
-Scene arch() {
-  const auto pose = [](int time, const char* position, int degrees) {
-    return "[[gripper.pose]]\ntime = " + std::to_string(time) + "\nposition = " + position +
-           "\ndirection = \"" + std::to_string(degrees) + " deg\"\n";
-  };
-  return parse_scene("gravity = [0, 0, 0]\n" + wire + pose(0, "[0, 0, 0]", 50) +
-                         pose(1, "[0, 0, 0]", -70) + "[[gripper]]\nat = 1\n" +
-                         pose(0, "[0.8, 0, 0]", -50) + pose(1, "[0.8, 0, 0]", 75),
-                     "arch.toml");
+/// A rod that comes to rest on a peg, from which its clamp draws it until its tip falls off.
+Scene drawn_off() {
+  return parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 1\n[[gripper]]\nat = 0\n"
+      "direction = \"20 deg\"\n[[gripper.pose]]\ntime = 0\nposition = [0, 0.5, 0]\n"
+      "[[gripper.pose]]\ntime = 0.4\nposition = [0, 0, 0]\n"
+      "[[gripper.pose]]\ntime = 1\nposition = [-0.8, 0, 0]\n[[obstacle]]\n"
+      "shape = \"cylinder\"\npoint = [0.5, 0, 0]\naxis = [0, 0, 1]\nradius = 0.05\n"
+      "touches = \"axis\"\n",
+      "peg.toml");
 }
 
 double missed(const Scene& scene, double rate) {
@@ -62,7 +62,7 @@ double missed(const Scene& scene, double rate) {
 TEST(Track, EnergyGrowsByTheWorkOfWhatMoves) {
   const double coarse = missed(swung(), 10);
   const double fine = missed(swung(), 20);
-  EXPECT_LT(coarse, 2e-3);
+  EXPECT_LT(coarse, 8e-3);
   EXPECT_NEAR(coarse / fine, 4, 0.4);
 }
 
@@ -112,11 +112,11 @@ TEST(Track, FindsEveryContactChangeAgainAtTwiceTheRate) {
   }
 }
 
-// An arch that is turned inside out falls once; the energy that it releases is what is missing of
+// It falls once; the energy that it releases is what is missing of
 // the work, and comes out the same at twice the rate, to the bounds that both give.
 TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
   const auto snap_of = [](double rate) {
-    const Track result = track(arch(), at_rate(rate));
+    const Track result = track(drawn_off(), at_rate(rate));
     EXPECT_FALSE(result.stopped) << result.stopped->why;
     std::vector<TrackEvent> snaps;
     for (const TrackEvent& event : result.events) {
@@ -125,13 +125,14 @@ TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
     EXPECT_EQ(snaps.size(), 1U);
     const TrackFrame& after = result.frames[snaps.at(0).frame];
     EXPECT_FALSE(after.followed);
-    EXPECT_LT(after.points.row(1).minCoeff(), -0.1);
+    EXPECT_LT(after.points.row(1).minCoeff(), -0.4);
+    EXPECT_TRUE(after.contacts.empty());
     return std::pair(snaps.at(0), after.time);
   };
   const auto [slow, slow_time] = snap_of(30);
   const auto [fast, fast_time] = snap_of(60);
   EXPECT_LE(std::abs(slow_time - fast_time), 1.0 / 30 + 1e-12);
-  EXPECT_GT(slow.released, 1);
+  EXPECT_GT(slow.released, 0.9);
   EXPECT_LE(std::abs(slow.released - fast.released), slow.released_bound + fast.released_bound);
   EXPECT_LT(fast.released_bound, slow.released_bound);
 }
