@@ -229,12 +229,9 @@ std::string track_text(const Track& track, const compare::Scene& scene,
                                  : "");
   append(out, "energy      {:.3g} ms a frame (median): {:.4g} frames a second\n",
          track.median_seconds * 1e3, 1 / track.median_seconds);
-  if (track.lost > 0) {
-    append(out,
-           "            Newton's method lost its branch in {} of them; energy tells whether the "
-           "rod fell\n",
-           track.lost);
-  }
+  append(out,
+         "branch      lost by Newton's method in {} of them; energy tells whether the rod fell\n",
+         track.lost);
   double released = 0;
   for (const TrackEvent& event : track.events) {
     if (event.kind == TrackEvent::Kind::snap) released += event.released;

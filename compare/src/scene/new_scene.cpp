@@ -118,13 +118,13 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
 #position = [{x:.4g}, {y:.4g}, {z:.4g}]
 #hold = "pin"
 
-# A gripper, or an [[obstacle]], may move: in place of position and direction (of an obstacle: point)
-# it has two poses or more, and dlo track follows the rod. All else takes the first, or --time T.
-#[[gripper.pose]]
-#time = 0  # s, ms, min
-#position = [{x:.4g}, {y:.4g}, {z:.4g}]
-#direction = {direction}  # of a clamp; none: the gripper's own stays
-# Or trajectory = "way.csv" beside this file: a header time,x,y,z[,dx,dy,dz], in s and m.
+# A gripper, or an [[obstacle]], may move, and dlo track follows the rod. In place of position and
+# direction (of an obstacle: point) it has two poses or more; all else takes the first, or --time T:
+#   [[gripper.pose]]
+#   time = 0                  s, ms, min
+#   position = [{x:.4g}, {y:.4g}, {z:.4g}]
+#   direction = {direction}   of a clamp; in no pose: the gripper's own stays
+# or trajectory = "way.csv" beside this file: a header time,x,y,z[,dx,dy,dz], in s and m.
 
 # A part of the rod that is another one, such as a connector; one [[section]] for each. What it does
 # not say is the rod's own; torsional_stiffness too, where the rod has one.
