@@ -11,12 +11,12 @@ namespace {
 
 using energy_model::ContactKind;
 using energy_model::ContactPart;
-using Parts = std::vector<const ContactPart*>;
+using PartList = std::vector<const ContactPart*>;
 
-double middle(const ContactPart& part) { return (part.begin + part.end) / 2; }
+double middle_of(const ContactPart& part) { return (part.begin + part.end) / 2; }
 
-Parts parts_on(std::size_t obstacle, const std::vector<ContactPart>& contacts) {
-  Parts parts;
+PartList parts_on(std::size_t obstacle, const std::vector<ContactPart>& contacts) {
+  PartList parts;
   for (const ContactPart& contact : contacts) {
     if (contact.obstacle == obstacle) parts.push_back(&contact);
   }
@@ -25,7 +25,7 @@ Parts parts_on(std::size_t obstacle, const std::vector<ContactPart>& contacts) {
 
 /// Which of `more` are left when each of `fewer` has one, in the same order and nearest in all: by
 /// the least sum of distances.
-std::vector<bool> paired(const Parts& fewer, const Parts& more) {
+std::vector<bool> paired(const PartList& fewer, const PartList& more) {
   const std::size_t n = fewer.size();
   const std::size_t m = more.size();
   // least[i][j]: of the first i among the first j.
@@ -35,7 +35,7 @@ std::vector<bool> paired(const Parts& fewer, const Parts& more) {
   for (std::size_t i = 1; i <= n; ++i) {
     for (std::size_t j = i; j <= m; ++j) {
       const double pair =
-          least[i - 1][j - 1] + std::abs(middle(*fewer[i - 1]) - middle(*more[j - 1]));
+          least[i - 1][j - 1] + std::abs(middle_of(*fewer[i - 1]) - middle_of(*more[j - 1]));
       least[i][j] = std::min(least[i][j - 1], pair);
     }
   }
@@ -64,11 +64,11 @@ std::vector<ContactChange> contact_changes(const std::vector<ContactPart>& befor
   for (const ContactPart& part : after) obstacles.insert(part.obstacle);
   std::vector<ContactChange> changes;
   for (const std::size_t obstacle : obstacles) {
-    const Parts old_parts = parts_on(obstacle, before);
-    const Parts new_parts = parts_on(obstacle, after);
+    const PartList old_parts = parts_on(obstacle, before);
+    const PartList new_parts = parts_on(obstacle, after);
     const bool begins = new_parts.size() > old_parts.size();
-    const Parts& fewer = begins ? old_parts : new_parts;
-    const Parts& more = begins ? new_parts : old_parts;
+    const PartList& fewer = begins ? old_parts : new_parts;
+    const PartList& more = begins ? new_parts : old_parts;
     const std::vector<bool> has_pair = paired(fewer, more);
     std::size_t next = 0;
     for (std::size_t j = 0; j < more.size(); ++j) {

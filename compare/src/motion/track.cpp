@@ -26,9 +26,9 @@ using energy_model::Equilibrium;
 constexpr double energy_noise = 1e-8;
 
 /// When the frames are.
-class Clock {
+class FrameClock {
  public:
-  Clock(const Scene& scene, const TrackOptions& options) {
+  FrameClock(const Scene& scene, const TrackOptions& options) {
     const std::optional<TimeSpan> motion = motion_of(scene);
     if (!motion) {
       throw InputError(fmt::format(
@@ -75,7 +75,7 @@ class Clock {
 };
 
 /// Those that are in reach at any of the frames.
-std::vector<std::size_t> obstacles_ever_in_reach(const Scene& scene, const Clock& clock) {
+std::vector<std::size_t> obstacles_ever_in_reach(const Scene& scene, const FrameClock& clock) {
   std::vector<bool> reached(scene.obstacles.size(), false);
   for (std::size_t frame = 0; frame < clock.frames() && !scene.obstacles.empty(); ++frame) {
     const Scene now = clock.scene(scene, frame);
@@ -89,7 +89,7 @@ std::vector<std::size_t> obstacles_ever_in_reach(const Scene& scene, const Clock
 }
 
 /// Of the same obstacles in all frames.
-energy_model::Problem problem_of(const Scene& now, const std::vector<std::size_t>& obstacles) {
+energy_model::Problem frame_problem(const Scene& now, const std::vector<std::size_t>& obstacles) {
   energy_model::Problem problem = energy_problem(now);
   problem.obstacles.clear();
   for (const std::size_t i : obstacles) {
@@ -226,7 +226,7 @@ class Tracker {
     Eigen::Matrix3Xd points;
     try {
       require_clear(now.scene);
-      const energy_model::Problem problem = problem_of(now.scene, obstacles_);
+      const energy_model::Problem problem = frame_problem(now.scene, obstacles_);
       now.rod = index == 0 ? solver_.solve(problem) : solver_.follow(problem);
       if (now.rod.sample) points = now.rod.sample(result_.arc_length).points;
     } catch (const std::invalid_argument& error) {
@@ -377,7 +377,7 @@ class Tracker {
 
   const Scene& scene_;
   const TrackOptions& options_;
-  Clock clock_;
+  FrameClock clock_;
   std::vector<std::size_t> obstacles_;
   energy_model::EnergySolver solver_;
   bool balances_ = true;

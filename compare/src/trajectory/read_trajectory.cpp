@@ -29,7 +29,7 @@ constexpr const char* pose_columns_allowed =
     "(allowed: a header of time,x,y,z or time,x,y,z,dx,dy,dz in any order)";
 
 /// What Trajectory says of a pose, without its own name.
-std::string problem_of(const std::invalid_argument& error) {
+std::string problem_in(const std::invalid_argument& error) {
   const std::string_view message = error.what();
   const std::size_t name = message.find(": ");
   return std::string(message.substr(name == std::string_view::npos ? 0 : name + 2));
@@ -136,7 +136,7 @@ Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const P
   try {
     return Trajectory(std::move(poses));
   } catch (const std::invalid_argument& error) {
-    table.fail("pose", problem_of(error));
+    table.fail("pose", problem_in(error));
   }
 }
 
@@ -169,7 +169,7 @@ Trajectory parse_trajectory(std::string_view text, const std::string& file) {
   try {
     return Trajectory(std::move(poses));
   } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", file, problem_of(error)));
+    throw InputError(fmt::format("{}: {}", file, problem_in(error)));
   }
 }
 

@@ -28,7 +28,7 @@ Hermite hermite(double u) {
 }
 
 /// No faster than three times the slower side.
-double limit(double speed, double before, double after) {
+double speed_share(double speed, double before, double after) {
   const double most = 3 * std::min(before, after);
   return speed > most ? most / speed : 1;
 }
@@ -53,7 +53,7 @@ double turning_rate(const GreatCircle& before, const GreatCircle& after, double 
   const double s_before = before.angle / h_before;
   const double s_after = after.angle / h_after;
   const double rate = (h_after * s_before + h_before * s_after) / (h_before + h_after);
-  return rate * limit(rate, s_before, s_after);
+  return rate * speed_share(rate, s_before, s_after);
 }
 
 Eigen::Vector3d velocity_between(const Pose& a, const Pose& b, const Pose& c) {
@@ -63,7 +63,7 @@ Eigen::Vector3d velocity_between(const Pose& a, const Pose& b, const Pose& c) {
   const Eigen::Vector3d after = (c.position - b.position) / h_after;
   if (!(before.dot(after) > 0)) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d v = (h_after * before + h_before * after) / (h_before + h_after);
-  return v * limit(v.norm(), before.norm(), after.norm());
+  return v * speed_share(v.norm(), before.norm(), after.norm());
 }
 
 void require(bool holds, std::size_t pose, const char* what) {

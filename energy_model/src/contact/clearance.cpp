@@ -17,7 +17,7 @@ constexpr std::size_t coarse_stride = 20;
 constexpr int refinements = 6;
 
 /// Of points that are not looked at, since nothing near them is as low.
-constexpr double far = std::numeric_limits<double>::infinity();
+constexpr double not_looked_at = std::numeric_limits<double>::infinity();
 
 /// Points of the grid `s` whose clearance may be below `below` or hardly above it, with their
 /// neighbours, by growing s: along the rod the clearance changes by no more than the way, so that
@@ -27,7 +27,7 @@ std::vector<std::size_t> near_obstacles(const Span& span, const SpanShape& shape
   std::vector<double> coarse;
   for (std::size_t i = 0; i < s.size(); i += coarse_stride) coarse.push_back(s[i]);
   const SpanSamples samples = shape.sample(coarse);
-  Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), far);
+  Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), not_looked_at);
   for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
     least = least.cwiseMin(obstacle.body.clearances(samples.points));
   }
@@ -68,7 +68,7 @@ std::vector<Lowest> lowest_points(const Span& span, const SpanShape& shape, doub
   for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
     // Between two points of the grid it may be lower by this.
     const double sag = h * h / 8 * (bent + 1 / obstacle.body.smallest_radius());
-    Eigen::VectorXd clearance = Eigen::VectorXd::Constant(grid_points, far);
+    Eigen::VectorXd clearance = Eigen::VectorXd::Constant(grid_points, not_looked_at);
     const Eigen::VectorXd found_near = obstacle.body.clearances(grid.points);
     for (std::size_t k = 0; k < looked_at.size(); ++k) {
       clearance[static_cast<Eigen::Index>(looked_at[k])] = found_near[static_cast<Eigen::Index>(k)];

@@ -26,13 +26,13 @@ TrackOptions at_rate(double rate) {
 
 Scene corner() { return load_scene(std::string(DLO_DATA) + "/scenes/corner_routing.toml"); }
 
-const std::string wire =
+const std::string light_wire =
     "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n";
 
 /// A clamp that rises and turns down.
 Scene swung() {
   return parse_scene(
-      wire +
+      light_wire +
           "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\ndirection = \"60 deg\"\n"
           "[[gripper.pose]]\ntime = 1\nposition = [0.3, 0.5, 0]\n"
           "direction = \"-20 deg\"\n",
@@ -69,7 +69,8 @@ TEST(Track, EnergyGrowsByTheWorkOfWhatMoves) {
 // A floor that rises under a rod: the work is the floor's.
 TEST(Track, CountsTheWorkOfAnObstacleThatMoves) {
   const Scene scene = parse_scene(
-      wire + "position = [0, 0, 0]\ndirection = \"0 deg\"\n[[obstacle]]\nnormal = [0, 1, 0]\n" +
+      light_wire +
+          "position = [0, 0, 0]\ndirection = \"0 deg\"\n[[obstacle]]\nnormal = [0, 1, 0]\n" +
           "touches = \"axis\"\n[[obstacle.pose]]\ntime = 0\npoint = [0, -0.7, 0]\n" +
           "[[obstacle.pose]]\ntime = 1\npoint = [0, -0.2, 0]\n",
       "floor.toml");
@@ -139,7 +140,7 @@ TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
 
 TEST(Track, StopsWhereGrippersAreFartherApartThanTheRod) {
   const Scene scene = parse_scene(
-      wire + "position = [0, 0, 0]\nhold = \"pin\"\n[[gripper]]\nat = 1\nhold = \"pin\"\n" +
+      light_wire + "position = [0, 0, 0]\nhold = \"pin\"\n[[gripper]]\nat = 1\nhold = \"pin\"\n" +
           "[[gripper.pose]]\ntime = 0\nposition = [0.8, 0, 0]\n" +
           "[[gripper.pose]]\ntime = 1\nposition = [1.2, 0, 0]\n",
       "apart.toml");
@@ -154,7 +155,7 @@ TEST(Track, StopsWhereGrippersAreFartherApartThanTheRod) {
 
 TEST(Track, RefusesWhatDoesNotMove) {
   const Scene scene =
-      parse_scene(wire + "position = [0, 0, 0]\ndirection = \"0 deg\"\n", "standing.toml");
+      parse_scene(light_wire + "position = [0, 0, 0]\ndirection = \"0 deg\"\n", "standing.toml");
   EXPECT_THROW((void)track(scene, {}), InputError);
   TrackOptions options = at_rate(10);
   options.from = 1;

@@ -12,9 +12,9 @@
 namespace dlo::compare {
 namespace {
 
-const std::string rod =
+const std::string held_rod =
     "[rod]\nlength = 1\ndiameter = 0.02\nmaterial = \"silicone\"\n[[gripper]]\nat = 0\n";
-const std::string moved =
+const std::string two_poses =
     "[[gripper.pose]]\ntime = 1\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n"
     "[[gripper.pose]]\ntime = \"3000 ms\"\nposition = [\"20 cm\", 0, 0]\n"
     "direction = \"90 deg\"\n";
@@ -29,7 +29,7 @@ std::string error_of(const std::string& text) {
 }
 
 TEST(MovingScene, IsAtItsFirstPoseUnlessATimeIsAskedFor) {
-  const Scene scene = parse_scene(rod + moved, "my.toml");
+  const Scene scene = parse_scene(held_rod + two_poses, "my.toml");
   EXPECT_EQ(scene.grippers[0].position, Eigen::Vector3d::Zero());
   EXPECT_EQ(motion_of(scene)->begin, 1);
   EXPECT_EQ(motion_of(scene)->end, 3);
@@ -41,10 +41,10 @@ TEST(MovingScene, IsAtItsFirstPoseUnlessATimeIsAskedFor) {
 }
 
 TEST(MovingScene, MovesObstaclesByTheirOwnTime) {
-  const Scene scene =
-      parse_scene(rod + moved + "[[obstacle]]\nnormal = [0, 1, 0]\n[[obstacle.pose]]\ntime = 0\n" +
-                      "point = [0, -1, 0]\n[[obstacle.pose]]\ntime = 2\npoint = [0, -0.5, 0]\n",
-                  "my.toml");
+  const Scene scene = parse_scene(
+      held_rod + two_poses + "[[obstacle]]\nnormal = [0, 1, 0]\n[[obstacle.pose]]\ntime = 0\n" +
+          "point = [0, -1, 0]\n[[obstacle.pose]]\ntime = 2\npoint = [0, -0.5, 0]\n",
+      "my.toml");
   const auto height = [&](double time, double obstacle_time) {
     return scene_at(scene, time, obstacle_time).obstacles[0].body.clearance({0, 0, 0});
   };
@@ -55,14 +55,15 @@ TEST(MovingScene, MovesObstaclesByTheirOwnTime) {
 
 TEST(MovingScene, KeepsADirectionThatNoPoseHas) {
   const Scene scene = parse_scene(
-      rod + "direction = [0, 1, 0]\n[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n", "my.toml");
+      held_rod + "direction = [0, 1, 0]\n[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n",
+      "my.toml");
   EXPECT_EQ(*scene_at(scene, 5).grippers[0].direction, Eigen::Vector3d::UnitY());
 }
 
 TEST(MovingScene, ReadsPosesFromAFileBesideIt) {
   const std::string folder = testing::TempDir();
   std::ofstream(folder + "way.csv") << "time,x,y,z\n0,0,0,0\n1,0.5,0,0\n";
-  const std::string text = rod + "hold = \"pin\"\ntrajectory = \"way.csv\"\n";
+  const std::string text = held_rod + "hold = \"pin\"\ntrajectory = \"way.csv\"\n";
   const Scene scene = parse_scene(text, folder + "my.toml");
   EXPECT_EQ(scene_at(scene, 1).grippers[0].position.x(), 0.5);
   std::ofstream(folder + "way.csv") << "time,x,y,z\n0,0,0,nowhere\n";
@@ -83,20 +84,23 @@ TEST(MovingScene, SaysWhatIsWrongWithAPose) {
     EXPECT_NE(error_of(text).find(part), std::string::npos) << error_of(text);
   };
   const std::string first = "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n";
-  expect_error(rod + "position = [0, 0, 0]\n" + moved,
+  expect_error(held_rod + "position = [0, 0, 0]\n" + two_poses,
                "my.toml:7: gripper.position = [ 0, 0, 0 ]: given besides poses");
-  expect_error(rod + "direction = \"0 deg\"\n" + moved, "given besides poses with directions");
-  expect_error(rod + first, "gripper.direction: missing");
-  expect_error(rod + moved + first, "gripper.pose.time = 0: not above that of the pose before");
-  expect_error(rod + moved + "[[gripper.pose]]\ntime = 4\nposition = [0, 0, 0]\n",
+  expect_error(held_rod + "direction = \"0 deg\"\n" + two_poses,
+               "given besides poses with directions");
+  expect_error(held_rod + first, "gripper.direction: missing");
+  expect_error(held_rod + two_poses + first,
+               "gripper.pose.time = 0: not above that of the pose before");
+  expect_error(held_rod + two_poses + "[[gripper.pose]]\ntime = 4\nposition = [0, 0, 0]\n",
                "given for some poses only");
-  expect_error(rod + moved + "[[gripper.pose]]\ntime = \"4 h\"\nposition = [0, 0, 0]\n",
+  expect_error(held_rod + two_poses + "[[gripper.pose]]\ntime = \"4 h\"\nposition = [0, 0, 0]\n",
                "unknown unit \"h\" in \"4 h\" (allowed: s, ms, min)");
-  expect_error(rod + "hold = \"pin\"\n" + moved, "unknown key");
-  expect_error(rod + "trajectory = \"none.csv\"\n", "no such file beside the scene");
-  expect_error(rod + "trajectory = \"none.csv\"\n" + moved, "given besides poses");
-  expect_error(rod + moved + "[track]\nframe_rate = 0\n", "track.frame_rate = 0: out of range");
-  expect_error(rod + moved + "[track]\nrate = 5\n", "unknown key");
+  expect_error(held_rod + "hold = \"pin\"\n" + two_poses, "unknown key");
+  expect_error(held_rod + "trajectory = \"none.csv\"\n", "no such file beside the scene");
+  expect_error(held_rod + "trajectory = \"none.csv\"\n" + two_poses, "given besides poses");
+  expect_error(held_rod + two_poses + "[track]\nframe_rate = 0\n",
+               "track.frame_rate = 0: out of range");
+  expect_error(held_rod + two_poses + "[track]\nrate = 5\n", "unknown key");
 }
 
 }  // namespace
