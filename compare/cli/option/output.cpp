@@ -77,7 +77,7 @@ std::vector<std::string> input_files_but(const CLI::App& command, const CLI::Opt
 }
 
 bool is_written(const CLI::App& command, const CLI::Option& option) {
-  if (has_long_name(option, {"output", "junit"})) return true;
+  if (has_long_name(option, {"output", "junit", "paraview"})) return true;
   // "-" is standard output.
   if (has_long_name(option, {"plot"})) return option.results() != std::vector<std::string>{"-"};
   return has_long_name(option, {"baseline"}) && command.count("--update") > 0;
