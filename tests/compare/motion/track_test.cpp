@@ -206,18 +206,18 @@ ContactPart part(std::size_t obstacle, ContactKind kind, double begin, double en
 }
 
 TEST(ContactChanges, PairTheNearestPartsOfAnObstacle) {
-  const std::vector<ContactPart> before = {part(0, ContactKind::touching, 0.2, 0.2),
-                                           part(0, ContactKind::lying, 0.6, 0.8),
-                                           part(1, ContactKind::tip, 1, 1)};
-  const std::vector<ContactPart> after = {part(0, ContactKind::lying, 0.58, 0.83),
+  const std::vector<ContactPart> three = {part(0, ContactKind::touching, 0.2, 0.2),
+                                          part(0, ContactKind::lying, 0.6, 0.8),
                                           part(1, ContactKind::tip, 1, 1)};
-  EXPECT_TRUE(contact_changes(before, before).empty());
-  const std::vector<ContactChange> gone = contact_changes(before, after);
+  const std::vector<ContactPart> two = {part(0, ContactKind::lying, 0.58, 0.83),
+                                        part(1, ContactKind::tip, 1, 1)};
+  EXPECT_TRUE(contact_changes(three, three).empty());
+  const std::vector<ContactChange> gone = contact_changes(three, two);
   ASSERT_EQ(gone.size(), 1U);
   EXPECT_FALSE(gone[0].begins);
   EXPECT_FALSE(gone[0].goes_on);
   EXPECT_EQ(gone[0].part.begin, 0.2);
-  const std::vector<ContactChange> come = contact_changes(after, before);
+  const std::vector<ContactChange> come = contact_changes(two, three);
   ASSERT_EQ(come.size(), 1U);
   EXPECT_TRUE(come[0].begins);
   EXPECT_EQ(come[0].part.begin, 0.2);
