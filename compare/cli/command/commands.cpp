@@ -10,7 +10,7 @@ const std::vector<Task>& tasks() {
       {"Get parameters", {add_calibrate}},
       {"How far is the force model from physics, and why?", {add_compare, add_report, add_paper}},
       {"What does accuracy cost?", {add_bench, add_stability}},
-      {"How does it move?", {add_modes}},
+      {"How does it move?", {add_track, add_modes}},
       {"Many scenes", {add_sweep}},
       {"Keep it from getting worse", {add_regress}},
   };

@@ -104,11 +104,25 @@ void PlanOptions::add_to(CLI::App& command) {
 }
 
 void SceneOptions::add_to(CLI::App& command) {
+  add_time_to(command);
+  add_moving_to(command);
+}
+
+void SceneOptions::add_moving_to(CLI::App& command) {
   add_force_model_to(command);
   add_solvers_to(command);
 }
 
+void SceneOptions::add_time_to(CLI::App& command) {
+  const double most = std::numeric_limits<double>::max();
+  command
+      .add_option("--time", time_,
+                  "of a scene that moves: as it is at this time [s], default the first pose's")
+      ->check(number_between(-most, most));
+}
+
 void SceneOptions::add_settings_to(CLI::App& command) {
+  add_time_to(command);
   add_force_model_to(command);
   add_materials_to(command);
 }
@@ -222,7 +236,14 @@ std::vector<compare::Material> SceneOptions::materials() const {
 compare::Scene SceneOptions::load(const std::string& path) const {
   compare::Scene scene = compare::load_scene(path, materials());
   apply(scene);
-  return scene;
+  if (!time_) return scene;
+  if (!compare::motion_of(scene)) {
+    throw InputError(fmt::format(
+        "{}: --time {:g}: nothing moves (allowed: no --time, or a scene with [[gripper.pose]] or "
+        "[[obstacle.pose]])",
+        scene.file, *time_));
+  }
+  return compare::scene_at(scene, *time_);
 }
 
 }  // namespace dlo::cli

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 
 #include "dlo/compare/plan.hpp"
@@ -15,6 +16,8 @@ namespace dlo::cli {
 class SceneOptions {
  public:
   void add_to(CLI::App& command);
+  /// The same for a scene that is looked at while it moves: no --time.
+  void add_moving_to(CLI::App& command);
   /// Only those that override [force_model], and --materials.
   void add_settings_to(CLI::App& command);
   /// Only those that steer the solvers, and --materials.
@@ -28,6 +31,7 @@ class SceneOptions {
   [[nodiscard]] std::string force_model_options() const;
 
  private:
+  void add_time_to(CLI::App& command);
   void add_force_model_to(CLI::App& command);
   void add_materials_to(CLI::App& command);
   void apply(compare::Scene& scene) const;
@@ -37,6 +41,7 @@ class SceneOptions {
   int points_ = 0;
   std::string law_, bookkeeping_, stepper_, bending_rule_;
   std::string c_b_, c_c_, c_F_, c_h_, l_s_, design_curvature_;
+  std::optional<double> time_;
   compare::SolveOptions solve_;
 };
 

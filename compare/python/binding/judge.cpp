@@ -8,6 +8,7 @@
 #include "array.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/force_model_fit.hpp"
+#include "dlo/compare/friction_check.hpp"
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_file.hpp"
@@ -22,6 +23,7 @@
 #include "option/share.hpp"
 #include "result.hpp"
 #include "scene.hpp"
+#include "scene/reach.hpp"
 #include "solve_options.hpp"
 
 namespace dlo::python {
@@ -90,6 +92,9 @@ std::shared_ptr<ShapeCheckReport> check(const SharedScene& scene, const py::obje
       }()};
   run_long([&](Signals& /*signals*/) {
     report->check = compare::check_shape(scene->scene, shape, options);
+    if (compare::friction_in_reach(scene->scene)) {
+      report->friction = compare::check_friction(scene->scene, report->check);
+    }
     if (report->verdict) {
       cli::judge(*report, shape, options,
                  asked.explain ? cli::Explaining::yes : cli::Explaining::no);

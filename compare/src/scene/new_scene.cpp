@@ -97,7 +97,7 @@ std::string toml_choices(Meaning meaning) {
 }
 
 /// Examples that fit the rod: a pin at its end, a small force, a floor in its reach.
-std::string optional_part(const Scene& scene) {
+std::string optional_part(const SceneChoices& choices, const Scene& scene) {
   const double l = scene.length;
   const Eigen::Vector3d pin = 0.7 * l * scene.grippers.front().direction.value();
   const double weight = scene.mass() * scene.gravity.norm();
@@ -117,6 +117,14 @@ std::string optional_part(const Scene& scene) {
 #at = {length:.4g}
 #position = [{x:.4g}, {y:.4g}, {z:.4g}]
 #hold = "pin"
+
+# A gripper, or an [[obstacle]], may move, and dlo track follows the rod. In place of position and
+# direction (of an obstacle: point) it has two poses or more; all else takes the first, or --time T:
+#   [[gripper.pose]]
+#   time = 0                  s, ms, min
+#   position = [{x:.4g}, {y:.4g}, {z:.4g}]
+#   direction = {direction}   of a clamp; in no pose: the gripper's own stays
+# or trajectory = "way.csv" beside this file: a header time,x,y,z[,dx,dy,dz], in s and m.
 
 # A part of the rod that is another one, such as a connector; one [[section]] for each. What it does
 # not say is the rod's own; torsional_stiffness too, where the rod has one.
@@ -147,6 +155,12 @@ std::string optional_part(const Scene& scene) {
 # Coulomb's coefficient. No model has friction, and what solves the scene says so where it counts.
 #friction = 0.3
 
+# How dlo track looks at what moves.
+#[track]
+#frame_rate = "{frames:g} Hz"  # Hz, kHz
+#obstacle_rate = "25 Hz"  # how often obstacles move; without it with every frame
+#step_rate = "{steps:g} Hz"  # steps of the force model a second
+
 # The force model, which dlo compare, calibrate and solve --model force use; these are the defaults.
 # dlo calibrate FILE -o params.toml finds the parameters.
 #[force_model]
@@ -171,7 +185,9 @@ std::string optional_part(const Scene& scene) {
       fmt::arg("y", pin.y()), fmt::arg("z", pin.z()), fmt::arg("middle", l / 2),
       fmt::arg("force", -0.1 * force), fmt::arg("floor", std::min(pin.y(), 0.0) - 0.1 * l),
       fmt::arg("stiffness", 1e3 * force / (l * l)), fmt::arg("c_c", scene.axial_stiffness()),
-      fmt::arg("points", defaults.points), fmt::arg("law", to_string(defaults.law)),
+      fmt::arg("direction", toml_value(choices.direction)), fmt::arg("frames", scene.track.frames),
+      fmt::arg("steps", scene.track.steps), fmt::arg("points", defaults.points),
+      fmt::arg("law", to_string(defaults.law)),
       fmt::arg("laws", toml_choices<BendingLaw>(Meaning::said)),
       fmt::arg("bookkeeping", to_string(defaults.bookkeeping)),
       fmt::arg("bookkeepings", toml_choices<Bookkeeping>(Meaning::said)),
@@ -190,7 +206,7 @@ std::string scene_text(const SceneChoices& choices, const std::vector<Material>&
                      fmt::format(" = {}: thicker than long (allowed: at most the length, {:g} m)",
                                  choices.diameter, scene.length));
   }
-  return text + optional_part(scene);
+  return text + optional_part(choices, scene);
 }
 
 }  // namespace dlo::compare

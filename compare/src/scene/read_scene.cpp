@@ -13,6 +13,7 @@
 #include "scene/read_force_model.hpp"
 #include "scene/read_rod.hpp"
 #include "toml/strict_table.hpp"
+#include "trajectory/read_trajectory.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -75,7 +76,15 @@ std::optional<Eigen::Matrix3d> read_directors(StrictTable& table) {
 }
 
 /// Direction and frame of a clamp: the frame is a roll, or three directors, and there may be none.
-void read_clamp(StrictTable& table, Gripper& gripper) {
+/// @param moving_direction  of the first of poses that have one
+void read_clamp(StrictTable& table, const std::optional<Eigen::Vector3d>& moving_direction,
+                Gripper& gripper) {
+  for (const char* key : {"direction", "frame", "quaternion"}) {
+    if (!moving_direction || !table.has(key)) continue;
+    table.fail(key, fmt::format("given besides poses with directions (allowed: poses without "
+                                "directions, or no {})",
+                                key));
+  }
   const char* given = nullptr;
   for (const char* key : {"roll", "frame", "quaternion"}) {
     if (!table.has(key)) continue;
@@ -93,8 +102,9 @@ void read_clamp(StrictTable& table, Gripper& gripper) {
   }
   if (roll) gripper.frame = FrameHold{.d1 = std::nullopt, .roll = *roll};
   const Eigen::Vector3d d3 = directors ? directors->col(2).normalized() : Eigen::Vector3d::Zero();
-  const Eigen::Vector3d direction =
-      directors && !table.has("direction") ? d3 : read_direction(table);
+  const Eigen::Vector3d direction = moving_direction                       ? *moving_direction
+                                    : directors && !table.has("direction") ? d3
+                                                                           : read_direction(table);
   gripper.direction = direction;
   if (!directors) return;
   if (!((direction - d3).norm() <= rotation_tolerance)) {
@@ -111,13 +121,29 @@ double read_arc_length(StrictTable& table, double length) {
   return table.number("at", Dimension::length, Range::between(0, length, " m, the rod's length"));
 }
 
-Gripper read_gripper(StrictTable& table, double length) {
+/// Where something is whose poses, if it has any, say so too: the first of them is where it is.
+Eigen::Vector3d read_place(StrictTable& table, const char* key, const Trajectory& trajectory) {
+  if (trajectory.empty()) return table.vector(key, Dimension::length);
+  if (table.has(key)) {
+    table.fail(key,
+               fmt::format("given besides poses, which say where it is (allowed: no {})", key));
+  }
+  return trajectory.poses().front().position;
+}
+
+Gripper read_gripper(StrictTable& table, double length, const std::string& file) {
   Gripper gripper;
   gripper.at = read_arc_length(table, length);
-  gripper.position = table.vector("position", Dimension::length);
   const std::string hold = table.has("hold") ? table.choice("hold", {"clamp", "pin"}) : "clamp";
+  PoseKeys keys;
+  if (hold == "clamp") keys.direction = read_direction;
+  gripper.trajectory = read_trajectory(table, keys, file);
+  gripper.position = read_place(table, "position", gripper.trajectory);
   if (hold == "clamp") {
-    read_clamp(table, gripper);
+    read_clamp(
+        table,
+        gripper.trajectory.empty() ? std::nullopt : gripper.trajectory.poses().front().direction,
+        gripper);
   } else {
     if (table.has("direction")) {
       table.fail("direction",
@@ -215,15 +241,16 @@ obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
 }
 
 /// @param radius  of the rod [m]
-Obstacle read_obstacle(StrictTable& table, double radius) {
-  const Eigen::Vector3d point = table.vector("point", Dimension::length);
+Obstacle read_obstacle(StrictTable& table, double radius, const std::string& file) {
+  Obstacle obstacle;
+  obstacle.trajectory = read_trajectory(table, {.position = "point", .direction = nullptr}, file);
+  const Eigen::Vector3d point = read_place(table, "point", obstacle.trajectory);
   const std::string shape =
       table.has("shape") ? table.choice("shape", {"plane", "sphere", "cylinder", "capsule", "box"})
                          : "plane";
   const auto length_of = [&table](const char* key) {
     return table.number(key, Dimension::length, Range::positive());
   };
-  Obstacle obstacle;
   if (shape == "plane") {
     obstacle.body = obstacle::Body::half_space(point, unit_vector(table, "normal"));
   } else if (shape == "sphere") {
@@ -306,11 +333,11 @@ Scene read_scene(const toml::table& root, const std::string& file,
   read_rod(rod, sections, known_materials, scene);
 
   for (StrictTable& entry : bounded_tables(table, "obstacle", most_obstacles)) {
-    scene.obstacles.push_back(read_obstacle(entry, scene.diameter / 2));
+    scene.obstacles.push_back(read_obstacle(entry, scene.diameter / 2, file));
   }
   std::vector<StrictTable> grippers = bounded_tables(table, "gripper", most_grippers);
   for (StrictTable& entry : grippers) {
-    scene.grippers.push_back(read_gripper(entry, scene.length));
+    scene.grippers.push_back(read_gripper(entry, scene.length, file));
     require_clear(scene, entry);
   }
   if (scene.grippers.empty()) {
@@ -326,6 +353,15 @@ Scene read_scene(const toml::table& root, const std::string& file,
   if (auto settings = table.optional_table("force_model")) {
     scene.force_model = read_force_model(*settings);
     check(scene.force_model, settings->where());
+  }
+  if (auto rates = table.optional_table("track")) {
+    const auto rate = [&rates](const char* key) {
+      return rates->optional_number(key, Dimension::frequency, Range::positive());
+    };
+    scene.track.frames = rate("frame_rate").value_or(scene.track.frames);
+    scene.track.obstacles = rate("obstacle_rate");
+    scene.track.steps = rate("step_rate").value_or(scene.track.steps);
+    rates->finish();
   }
   table.finish();
   return scene;

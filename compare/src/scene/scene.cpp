@@ -300,4 +300,38 @@ int Scene::spans() const {
   return count;
 }
 
+std::optional<TimeSpan> motion_of(const Scene& scene) {
+  std::optional<TimeSpan> span;
+  const auto add = [&span](const Trajectory& trajectory) {
+    if (trajectory.empty()) return;
+    if (!span) span = {trajectory.begin(), trajectory.end()};
+    span->begin = std::min(span->begin, trajectory.begin());
+    span->end = std::max(span->end, trajectory.end());
+  };
+  for (const Gripper& gripper : scene.grippers) add(gripper.trajectory);
+  for (const Obstacle& obstacle : scene.obstacles) add(obstacle.trajectory);
+  return span;
+}
+
+Scene scene_at(const Scene& scene, double time, double obstacle_time) {
+  Scene result = scene;
+  for (Gripper& gripper : result.grippers) {
+    if (gripper.trajectory.empty()) continue;
+    const Pose pose = gripper.trajectory.pose_at(time);
+    gripper.position = pose.position;
+    if (pose.direction) gripper.direction = pose.direction;
+    gripper.trajectory = {};
+  }
+  for (Obstacle& obstacle : result.obstacles) {
+    if (obstacle.trajectory.empty()) continue;
+    const Eigen::Vector3d moved = obstacle.trajectory.pose_at(obstacle_time).position -
+                                  obstacle.trajectory.poses().front().position;
+    obstacle.body = obstacle.body.seen_from(-moved, Eigen::Matrix3d::Identity(), 1);
+    obstacle.trajectory = {};
+  }
+  return result;
+}
+
+Scene scene_at(const Scene& scene, double time) { return scene_at(scene, time, time); }
+
 }  // namespace dlo::compare

@@ -20,7 +20,7 @@ bool goes_to_and_fro(const std::vector<Eigen::Matrix3Xd>& shapes, double thresho
   return path > 3 * net && path > threshold * root_points;
 }
 
-Outcome classify(const Trajectory& trajectory, const Eigen::Matrix3Xd& reference, double length,
+Outcome classify(const SimulationEnd& trajectory, const Eigen::Matrix3Xd& reference, double length,
                  double tolerance) {
   constexpr double reach = 10;  // lengths
   if (!trajectory.finite || trajectory.late.empty()) return Outcome::diverges;

@@ -28,7 +28,7 @@ struct Choices<Outcome> {
 };
 
 /// What is known of a simulation's end.
-struct Trajectory {
+struct SimulationEnd {
   bool finite = false;   ///< no step diverged
   bool at_rest = false;  ///< proved, see force_model::Simulation::relax
   /// Shapes at equal distances over the last half of the steps, the end last [m], 3 x N each; the
@@ -50,7 +50,7 @@ struct Trajectory {
 /// late or last shapes go to and fro by more than the tolerance; else `wrong`.
 /// @param reference  the right shape [m], 3 x N
 /// @param length     of the rod [m], > 0;  @param tolerance  share of the length [-], > 0
-[[nodiscard]] Outcome classify(const Trajectory& trajectory, const Eigen::Matrix3Xd& reference,
+[[nodiscard]] Outcome classify(const SimulationEnd& trajectory, const Eigen::Matrix3Xd& reference,
                                double length, double tolerance);
 
 }  // namespace dlo::compare

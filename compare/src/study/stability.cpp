@@ -42,8 +42,8 @@ bool move_gripper(const HardCase& hard, force_model::Simulation& simulation) {
 }
 
 /// Leaves the rod to itself until it rests or the steps are used up.
-Trajectory come_to_rest(force_model::Simulation& simulation, long max_steps) {
-  Trajectory trajectory{.finite = true};
+SimulationEnd come_to_rest(force_model::Simulation& simulation, long max_steps) {
+  SimulationEnd trajectory{.finite = true};
   const force_model::RelaxOptions part{.tolerance = 1e-6,
                                        .max_steps = std::max(1L, (max_steps - looks) / looks)};
   for (int look = 0; look < looks && trajectory.finite && !trajectory.at_rest; ++look) {
@@ -61,8 +61,8 @@ Trajectory come_to_rest(force_model::Simulation& simulation, long max_steps) {
 }
 
 /// Steps on from rest; every look counts.
-Trajectory stay_at_rest(force_model::Simulation& simulation, long steps) {
-  Trajectory trajectory{.finite = true};
+SimulationEnd stay_at_rest(force_model::Simulation& simulation, long steps) {
+  SimulationEnd trajectory{.finite = true};
   for (long step = 1; step <= steps && trajectory.finite; ++step) {
     trajectory.finite = simulation.step().status != force_model::StepStatus::diverged;
     if (step % std::max(1L, steps / looks) == 0) trajectory.late.push_back(simulation.points());
@@ -83,7 +83,7 @@ energy_model::PolygonResult reference_of(const HardCase& hard) {
 }
 
 /// A stable equilibrium that is not the reference is as good: says so if this is one.
-void try_other_equilibrium(const force_model::Rod& rod, const Trajectory& trajectory,
+void try_other_equilibrium(const force_model::Rod& rod, const SimulationEnd& trajectory,
                            double reference_energy, double tolerance, StabilityResult& result) {
   const Eigen::Matrix3Xd& end = trajectory.late.back();
   const double shortest = (end.rightCols(end.cols() - 1) - end.leftCols(end.cols() - 1))
@@ -120,7 +120,7 @@ StabilityResult run_against(const energy_model::PolygonResult& reference, const 
   // An implicit step costs as much as a hundred others.
   const long at_rest_steps =
       stepper == Stepper::implicit ? std::max(1L, hard.steps_at_rest / 100) : hard.steps_at_rest;
-  Trajectory trajectory;
+  SimulationEnd trajectory;
   if (move_gripper(hard, simulation)) {
     trajectory = rests ? stay_at_rest(simulation, at_rest_steps) : come_to_rest(simulation, budget);
   } else {

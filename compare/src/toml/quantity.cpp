@@ -31,6 +31,8 @@ constexpr Unit joint_stiffnesses[] = {
 constexpr Unit masses[] = {{"kg", 1}, {"g", 1e-3}};
 constexpr Unit masses_per_length[] = {{"kg/m", 1}, {"g/m", 1e-3}, {"g/cm", 1e-1}};
 constexpr Unit twists[] = {{"rad/m", 1}, {"deg/m", std::numbers::pi / 180}, {"1/m", 1}};
+constexpr Unit times[] = {{"s", 1}, {"ms", 1e-3}, {"min", 60}};
+constexpr Unit frequencies[] = {{"Hz", 1}, {"kHz", 1e3}};
 
 std::span<const Unit> units(Dimension dimension) {
   switch (dimension) {
@@ -60,6 +62,10 @@ std::span<const Unit> units(Dimension dimension) {
       return masses_per_length;
     case Dimension::twist:
       return twists;
+    case Dimension::time:
+      return times;
+    case Dimension::frequency:
+      return frequencies;
     case Dimension::number:
       break;
   }

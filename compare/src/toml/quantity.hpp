@@ -22,6 +22,8 @@ enum class Dimension {
   mass,
   mass_per_length,
   twist,  ///< angle per length
+  time,
+  frequency,
 };
 
 /// The names of the units that `dimension` knows, SI first.

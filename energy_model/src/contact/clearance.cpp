@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "dlo/energy_model/problem.hpp"
 
@@ -10,8 +11,40 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr Eigen::Index grid_points = 1001;
+/// Every so many-th of them is looked at first.
+constexpr std::size_t coarse_stride = 20;
 /// Newton's steps from the grid to a minimum; they stay between the neighbouring points.
 constexpr int refinements = 6;
+
+/// Of points that are not looked at, since nothing near them is as low.
+constexpr double not_looked_at = std::numeric_limits<double>::infinity();
+
+/// Points of the grid `s` whose clearance may be below `below` or hardly above it, with their
+/// neighbours, by growing s: along the rod the clearance changes by no more than the way, so that
+/// of most parts a coarse grid tells. One point at least.
+std::vector<std::size_t> near_obstacles(const Span& span, const SpanShape& shape, double below,
+                                        const std::vector<double>& s) {
+  std::vector<double> coarse;
+  for (std::size_t i = 0; i < s.size(); i += coarse_stride) coarse.push_back(s[i]);
+  const SpanSamples samples = shape.sample(coarse);
+  Eigen::VectorXd least = Eigen::VectorXd::Constant(samples.points.cols(), not_looked_at);
+  for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
+    least = least.cwiseMin(obstacle.body.clearances(samples.points));
+  }
+  // Half of a coarse interval away, and a neighbour and what it may sag by further.
+  const double most = below + (static_cast<double>(coarse_stride) / 2 + 3) * s[1];
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k + 1 < coarse.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    if (std::min(least[at], least[at + 1]) > most) continue;
+    const std::size_t first = k * coarse_stride;
+    for (std::size_t i = first; i <= first + coarse_stride; ++i) {
+      if (result.empty() || result.back() < i) result.push_back(i);
+    }
+  }
+  if (result.empty()) result.push_back(0);
+  return result;
+}
 
 }  // namespace
 
@@ -24,14 +57,22 @@ Clearance clearance_at(const obstacle::Body& body, const SpanSamples& samples, E
 
 std::vector<Lowest> lowest_points(const Span& span, const SpanShape& shape, double below) {
   const std::vector<double> s = equal_arc_lengths(span.length, grid_points);
-  const SpanSamples grid = shape.sample(s);
+  const std::vector<std::size_t> looked_at = near_obstacles(span, shape, below, s);
+  std::vector<double> near;
+  near.reserve(looked_at.size());
+  for (const std::size_t i : looked_at) near.push_back(s[i]);
+  const SpanSamples grid = shape.sample(near);
   const double h = s[1];
   const double bent = grid.curvature.colwise().norm().maxCoeff();
   std::vector<Lowest> found;
   for (const Span::Obstacle& obstacle : span.rigid_obstacles) {
     // Between two points of the grid it may be lower by this.
     const double sag = h * h / 8 * (bent + 1 / obstacle.body.smallest_radius());
-    const Eigen::VectorXd clearance = obstacle.body.clearances(grid.points);
+    Eigen::VectorXd clearance = Eigen::VectorXd::Constant(grid_points, not_looked_at);
+    const Eigen::VectorXd found_near = obstacle.body.clearances(grid.points);
+    for (std::size_t k = 0; k < looked_at.size(); ++k) {
+      clearance[static_cast<Eigen::Index>(looked_at[k])] = found_near[static_cast<Eigen::Index>(k)];
+    }
     for (Eigen::Index i = 0; i < grid_points; ++i) {
       const bool falls_to = i == 0 || clearance[i] < clearance[i - 1];
       const bool rises_from = i + 1 == grid_points || clearance[i] <= clearance[i + 1];

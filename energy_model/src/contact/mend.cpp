@@ -127,8 +127,12 @@ class Contacts {
       if (!beside) continue;
       // Next to one that has just become another the shape says nothing.
       if (unlike_) return;
-      contact.begin = std::max(0.0, std::min(contact.begin, lowest.s) - reach / 2);
-      contact.end = std::min(length, std::max(contact.end, lowest.s) + reach / 2);
+      // A point that only begins to lie has its ends nearer than where the rod is deepest.
+      const double away = std::max({contact.begin - lowest.s, lowest.s - contact.end, 0.0});
+      const bool is_short = contact.end - contact.begin < reach;
+      const double more = is_short ? std::min(away / 4, reach / 2) : reach / 2;
+      contact.begin = std::max(0.0, std::min(contact.begin, lowest.s) - more);
+      contact.end = std::min(length, std::max(contact.end, lowest.s) + more);
       return;
     }
     const double at = std::clamp(lowest.s, 0.0, length);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -20,12 +22,11 @@ bool is_rigid(const Obstacle& obstacle) { return std::isinf(obstacle.stiffness);
 /// Largest depth of a shape within a body [m]. Between points a body of small radius may hide:
 /// where it may be deeper there, the shape is looked at again, 16 times as closely.
 double depth_within(const obstacle::Body& body, const Equilibrium& shape, std::vector<double> s,
-                    const Samples& grid, double enough) {
+                    double h, const Samples& grid, double enough) {
   constexpr int closer = 16;
   constexpr int most_levels = 4;
   Eigen::VectorXd clearance = body.clearances(grid.points);
   double deepest = -clearance.minCoeff();
-  double h = s[1] - s[0];
   const double length = s.back();
   for (int level = 0; level < most_levels; ++level) {
     const double sag = h * h / (8 * body.smallest_radius());
@@ -49,15 +50,45 @@ double depth_within(const obstacle::Body& body, const Equilibrium& shape, std::v
   return deepest;
 }
 
+/// Points of the grid that may be within a rigid obstacle, or hide a part that is, and the ends:
+/// along the rod the clearance changes by no more than the way, so that of most parts a coarse grid
+/// tells.
+std::vector<double> near_obstacles(const Problem& problem, const Equilibrium& shape) {
+  constexpr std::size_t stride = 40;
+  const std::vector<double> s = equal_arc_lengths(problem.length, penetration_grid);
+  std::vector<double> coarse;
+  for (std::size_t i = 0; i < s.size(); i += stride) coarse.push_back(s[i]);
+  const Samples samples = shape.sample(coarse);
+  Eigen::VectorXd least =
+      Eigen::VectorXd::Constant(samples.points.cols(), std::numeric_limits<double>::infinity());
+  for (const Obstacle& obstacle : problem.obstacles) {
+    if (is_rigid(obstacle)) least = least.cwiseMin(obstacle.body.clearances(samples.points));
+  }
+  // Half of a coarse interval away, and what may hide between two points.
+  const double most = (static_cast<double>(stride) / 2 + 2) * s[1];
+  std::vector<double> near = {s.front()};
+  for (std::size_t k = 0; k + 1 < coarse.size(); ++k) {
+    const auto at = static_cast<Eigen::Index>(k);
+    if (std::min(least[at], least[at + 1]) > most) continue;
+    for (std::size_t i = k * stride + 1; i <= (k + 1) * stride; ++i) near.push_back(s[i]);
+    if (k > 0 && near[near.size() - stride - 1] < coarse[k]) {
+      near.insert(near.end() - stride, coarse[k]);
+    }
+  }
+  if (near.back() < s.back()) near.push_back(s.back());
+  return near;
+}
+
 /// Largest depth behind a rigid obstacle [m].
 double penetration(const Problem& problem, const Equilibrium& shape) {
-  const std::vector<double> s = equal_arc_lengths(problem.length, penetration_grid);
+  const double h = problem.length / (penetration_grid - 1);
+  const std::vector<double> s = near_obstacles(problem, shape);
   const Samples grid = shape.sample(s);
   double deepest = 0;
   for (const Obstacle& obstacle : problem.obstacles) {
     if (!is_rigid(obstacle)) continue;
-    deepest = std::max(
-        deepest, depth_within(obstacle.body, shape, s, grid, allowed_penetration * problem.length));
+    deepest = std::max(deepest, depth_within(obstacle.body, shape, s, h, grid,
+                                             allowed_penetration * problem.length));
   }
   return deepest;
 }

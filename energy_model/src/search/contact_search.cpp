@@ -43,8 +43,16 @@ class ContactSearch {
 
   [[nodiscard]] std::vector<SpanSolution> run() {
     std::vector<SpanSolution> found;
-    if (options_.start && !options_.all) look_from({options_.start}, found);
-    if (found.empty() || !succeeded(found.front().status)) search(found);
+    if (options_.known.model && options_.start && !options_.all) {
+      SpanSolution followed = follow();
+      if (followed.is_equilibrium() || followed.is_left_open()) {
+        found.push_back(std::move(followed));
+      }
+    }
+    if (found.empty()) {
+      if (options_.start && !options_.all) look_from({options_.start}, found);
+      if (found.empty() || !succeeded(found.front().status)) search(found);
+    }
     for (int i = 0; i < most_departures && found.front().status == SolveStatus::saddle; ++i) {
       const double energy = found.front().energy;
       leave(found);
@@ -56,6 +64,106 @@ class ContactSearch {
   }
 
  private:
+  /// From a known shape with its contacts, which are mended as they change; no polygon.
+  [[nodiscard]] SpanSolution follow() {
+    const KnownShape& known = options_.known;
+    Span span = span_;
+    span.planar = span_.planar && known.model->span().planar;
+    span.contacts = known.model->span().contacts;
+    for (Span::Contact& contact : span.contacts) {
+      const auto moved = std::find_if(
+          span.rigid_obstacles.begin(), span.rigid_obstacles.end(),
+          [&](const Span::Obstacle& other) { return other.index == contact.obstacle.index; });
+      if (moved == span.rigid_obstacles.end()) return {};
+      contact.obstacle = *moved;
+    }
+    const double share = goes_on_like_before() ? 1 : 0;
+    SpanSolution solution = next_to_known(span, share);
+    if (share > 0 && !solution.is_equilibrium()) solution = next_to_known(span, 0);
+    if (!solution.is_equilibrium()) return solution;
+    const Eigen::Matrix3Xd turned =
+        solution.model->tangents() - options_.start(solution.model->nodes()).tangents;
+    if (!(turned.cwiseAbs().maxCoeff() < followed_tangents)) return {};
+    spent_ += std::exchange(solution.evaluations, 0);
+    span = solution.model->span();
+    solution = with_right_contacts(std::move(span), {}, std::move(solution));
+    solution.followed = succeeded(solution.status) || solution.is_left_open();
+    return solution;
+  }
+
+  /// Whether the last two shapes have the same unknowns and contacts, so that a third may be looked
+  /// for where they lead.
+  [[nodiscard]] bool goes_on_like_before() const {
+    const KnownShape& known = options_.known;
+    const KnownShape& before = options_.before;
+    if (!before.model || before.x.size() != known.x.size() ||
+        before.model->terms() != known.model->terms() ||
+        before.multipliers.size() != known.multipliers.size()) {
+      return false;
+    }
+    const std::vector<Span::Contact>& a = before.model->span().contacts;
+    const std::vector<Span::Contact>& b = known.model->span().contacts;
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const auto& x, const auto& y) {
+      return x.obstacle.index == y.obstacle.index && x.lies() == y.lies();
+    });
+  }
+
+  /// Fewer than the known shape has, where the last ones are for nothing: a contact that has just
+  /// begun takes many for a while. Of rods in the plane.
+  [[nodiscard]] int enough_terms_of_known() const {
+    const SpanEnergy& model = *options_.known.model;
+    const int many = model.terms();
+    const int fewer = std::max(terms_of_load(model.span()), many - std::max(2, many / 5));
+    if (!model.span().planar || options_.terms > 0 || fewer >= many) return many;
+    // As finish_span() has it, with a margin.
+    constexpr double margin = 0.1;
+    const double most = margin * options_.tolerance * 4 * fewer * fewer;
+    const Eigen::Index first = model.size() - static_cast<Eigen::Index>(model.pieces()) * many;
+    for (Eigen::Index e = 0; e < model.pieces(); ++e) {
+      const auto last = options_.known.x.segment(first + e * many + fewer - 2, many - fewer + 2);
+      if (model.piece(e).angle(0) * last.cwiseAbs().maxCoeff() > most) return many;
+    }
+    return fewer;
+  }
+
+  /// An equilibrium with the known contacts, by Newton's method from where the last two shapes
+  /// lead.
+  /// @param share  of the way from the one before to the known one that is gone on
+  [[nodiscard]] SpanSolution next_to_known(Span span, double share) {
+    const KnownShape& known = options_.known;
+    const KnownShape& before = options_.before;
+    for (std::size_t i = 0; share > 0 && i < span.contacts.size(); ++i) {
+      const Span::Contact& last = before.model->span().contacts[i];
+      const Span::Contact at = span.contacts[i];
+      // The ends of the rod are no places from where a contact comes.
+      const bool inside = at.begin > 0 && at.end < span.length;
+      const double begin = at.begin + share * (at.begin - last.begin);
+      const double end = at.end + share * (at.end - last.end);
+      const bool ordered = (i == 0 || begin > span.contacts[i - 1].end) && begin <= end &&
+                           begin > 0 && end < span.length;
+      if (!inside || !ordered) continue;
+      span.contacts[i].begin = begin;
+      span.contacts[i].end = at.lies() ? end : begin;
+    }
+    SpanSolution solution;
+    solution.terms = share > 0 ? enough_terms_of_known() : known.model->terms();
+    solution.model = workspace_.model(span, solution.terms);
+    SpanEnergy& model = *solution.model;
+    if (model.pieces() != known.model->pieces()) return {};
+    const bool fits = span.planar || span.has_material_directors();
+    // The fit also says how often the clamps are wound.
+    solution.x =
+        fits ? model.fit(options_.start(model.nodes())) : model.adopt(*known.model, known.x);
+    if (known.multipliers.size() == model.constraints()) solution.multipliers = known.multipliers;
+    const bool as_many = solution.terms == known.model->terms();
+    if (share > 0 && as_many && known.x.size() == solution.x.size()) {
+      solution.x = known.x + share * (known.x - before.x);
+      solution.multipliers += share * (known.multipliers - before.multipliers);
+    }
+    workspace_.newton().polish(solution, load_);
+    return solution;
+  }
+
   /// From the rod without obstacles, which may stay clear of them, and from the starts of all
   /// searches.
   void search(std::vector<SpanSolution>& found) {
@@ -173,10 +281,16 @@ class ContactSearch {
     Span span = span_;
     span.contacts = polygon.contacts;
     if (polygon.tangents.row(2).cwiseAbs().maxCoeff() > flat) span.planar = false;
-    TangentField near = polygon.field();
-    SpanSolution solution;
+    return with_right_contacts(std::move(span), polygon.field(), {});
+  }
+
+  /// Contacts mended until they are right. @param solution  with the span's, if there is one; else
+  /// from `near`
+  [[nodiscard]] SpanSolution with_right_contacts(Span span, TangentField near,
+                                                 SpanSolution solution) {
     for (int round = 0; round < most_rounds; ++round) {
-      solution = near_field(span, near);
+      const bool found_already = round == 0 && solution.is_equilibrium();
+      if (!found_already) solution = near_field(span, near);
       if (!solution.is_equilibrium() && hold_points(span)) solution = near_field(span, near);
       if (!solution.is_equilibrium()) break;
       spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
@@ -243,6 +357,12 @@ class ContactSearch {
 
   [[nodiscard]] int terms(const Span& span) const {
     if (options_.terms > 0) return options_.terms;
+    // What is followed takes about as many as it has taken before.
+    const int known = options_.known.model ? options_.least_terms : 0;
+    return std::max(terms_of_load(span), known);
+  }
+
+  [[nodiscard]] int terms_of_load(const Span& span) const {
     constexpr int fewest = 12;  // beside a kink
     double longest = 0;
     for (const Piece& piece : pieces_of(span)) longest = std::max(longest, piece.length);

@@ -103,6 +103,7 @@ class EnergySolver::State {
       if (span.frames) span.span.rigid_obstacles.clear();
     }
     const bool warm = follow && remembered_.size() == placed.size();
+    followed_ = warm;
     remembered_.resize(placed.size());
     twists_.resize(placed.size());
     std::vector<std::vector<PlacedSolution>> solutions;
@@ -120,11 +121,13 @@ class EnergySolver::State {
         RememberedTwist& memory = twists_[i];
         solutions.push_back(twisted(placed[i], problem, options, warm, memory));
         const PlacedSolution& found = solutions.back().front();
+        followed_ = followed_ && found.solution.followed;
         remember(found, memory.twisted);
         memory.twist = found.solution.model->twist(found.solution.x);
         continue;
       }
       solutions.push_back(solve_placed(placed[i], problem, options, options_.start, last));
+      followed_ = followed_ && solutions.back().front().solution.followed;
       remember(solutions.back().front(), remembered_[i]);
     }
     std::vector<Equilibrium> result = combine(problem, solutions, log_);
@@ -136,12 +139,15 @@ class EnergySolver::State {
 
   /// Of the last solve().
   [[nodiscard]] const SearchLog& log() const { return log_; }
+  /// Whether the last solve() has followed every span's last shape.
+  [[nodiscard]] bool followed() const { return followed_; }
 
  private:
   /// A span's last solution, to go on from.
   struct Remembered {
     std::shared_ptr<const SpanEnergy> model;  // none after a failure
-    Eigen::VectorXd x;
+    Eigen::VectorXd x, multipliers;
+    KnownShape before;  // the one before it
     Eigen::Matrix3d frame;
 
     [[nodiscard]] bool planar() const { return !model || model->span().planar; }
@@ -206,7 +212,8 @@ class EnergySolver::State {
       };
       PlacedSolution to = from_shape(field, memory.twist + turned, frame.d1);
       to.solution.evaluations += untwisted.front().solution.evaluations;
-      if (is_known(to.solution)) return one(std::move(to));
+      to.solution.followed = is_known(to.solution);
+      if (to.solution.followed) return one(std::move(to));
     }
     std::vector<PlacedSolution> found;
     int spent = 0;
@@ -248,7 +255,8 @@ class EnergySolver::State {
       start = field_of(*shape, placed, problem.length);
     } else if (last != nullptr && last->model) {
       options.least_terms = last->model->terms();
-      options.known = {last->model, last->x};
+      options.known = {last->model, last->x, last->multipliers};
+      options.before = last->before;
       start = [&placed, last = *last](const Eigen::VectorXd& s) {
         return follow_field(placed, last, s);
       };
@@ -264,6 +272,7 @@ class EnergySolver::State {
       spent = followed.solution.evaluations;
       options.least_terms = 0;
       options.known = {};
+      options.before = {};
     }
     std::vector<PlacedSolution> found = search(placed, options);
     spent += found.front().solution.evaluations;
@@ -404,13 +413,17 @@ class EnergySolver::State {
   }
 
   static void remember(const PlacedSolution& found, Remembered& last) {
-    last.model = succeeded(found.solution.status) ? found.solution.model : nullptr;
+    const bool is_known = succeeded(found.solution.status) || found.solution.is_left_open();
+    last.before = {std::exchange(last.model, is_known ? found.solution.model : nullptr),
+                   std::move(last.x), std::move(last.multipliers)};
     last.x = found.solution.x;
+    last.multipliers = found.solution.multipliers;
     last.frame = found.placed.frame;
   }
 
   EnergyOptions options_;
   SearchLog log_;
+  bool followed_ = false;
   SpanWorkspace workspace_;
   std::vector<Remembered> remembered_;
   std::vector<RememberedTwist> twists_;
@@ -429,6 +442,8 @@ Equilibrium EnergySolver::solve(const Problem& problem) {
 Equilibrium EnergySolver::follow(const Problem& problem) {
   return std::move(state_->solve(problem, false, true).front());
 }
+
+bool EnergySolver::followed() const { return state_->followed(); }
 
 EnergySearch EnergySolver::search(const Problem& problem) {
   EnergySearch result;

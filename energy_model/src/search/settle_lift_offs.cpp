@@ -18,6 +18,8 @@ constexpr int most_updates = 8;
 constexpr int most_cuts = 3;
 /// Step at which an end is found, in lengths.
 constexpr double settled = 1e-10;
+/// What is missed where there is nothing to mend: lift_off.hpp's measures, which are steps or more.
+constexpr double nothing_missed = 1e-10;
 /// Longest step, in lengths: the polygon has told where the ends are; and over the room beside one.
 constexpr double longest_step = 0.02;
 constexpr double largest_share = 0.45;
@@ -36,6 +38,7 @@ class Settling {
   int run(const Deadline& deadline) {
     if (ends_.empty()) return spent_;
     for (int step = 0; step < most_steps && !deadline.passed(); ++step) {
+      if (miss_.cwiseAbs().maxCoeff() < nothing_missed) break;
       if (step % most_updates == 0 && !differentiate()) break;
       Eigen::VectorXd way = bounded(-jacobian_.partialPivLu().solve(miss_));
       if (!way.allFinite() || !move(way)) break;

@@ -119,7 +119,7 @@ class Search {
   }
 
   [[nodiscard]] std::vector<SpanSolution> run() {
-    if (options_.start) return list_of(finish(from_given_start()));
+    if (options_.start) return list_of(from_given_start_to_rest());
     std::vector<SpanSolution> found;
     if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
       SpanSolution solution = plain_cantilever();
@@ -378,15 +378,35 @@ class Search {
     if (succeeded(solution.status)) workspace_.newton().polish(solution, load_);
   }
 
+  /// The same, and of a shape that is followed (SpanOptions::known) to where it falls from a
+  /// saddle.
+  [[nodiscard]] SpanSolution from_given_start_to_rest() {
+    SpanSolution solution = finish(from_given_start());
+    solution.followed = came_by_newton_;
+    if (!options_.known.model || solution.status != SolveStatus::saddle) return solution;
+    std::optional<SpanSolution> lower = leave_saddle(solution);
+    if (!lower) return solution;
+    certify(*lower, load_);
+    lower->evaluations += solution.evaluations;
+    return succeeded(lower->status) ? std::move(*lower) : std::move(solution);
+  }
+
   /// From the caller's own start.
   [[nodiscard]] SpanSolution from_given_start() {
     const bool follow = options_.approach == Approach::follow;
     SpanSolution solution = follow ? near_field(options_.start) : from_start(Start{options_.start});
-    if (succeeded(solution.status)) return solution;
+    came_by_newton_ = follow && options_.known.model != nullptr && solution.is_equilibrium() &&
+                      is_near_start(solution);
+    if (succeeded(solution.status) && (came_by_newton_ || !options_.known.model)) return solution;
     const int spent = solution.evaluations;
     solution = follow ? from_start(Start{options_.start}) : near_field(options_.start);
     solution.evaluations += spent;
     return solution;
+  }
+
+  [[nodiscard]] bool is_near_start(const SpanSolution& solution) const {
+    const Eigen::Matrix3Xd start = options_.start(solution.model->nodes()).tangents;
+    return (solution.model->tangents() - start).cwiseAbs().maxCoeff() < followed_tangents;
   }
 
   [[nodiscard]] SpanSolution near_field(const TangentField& field) {
@@ -650,6 +670,7 @@ class Search {
   double fall_ = 0;
   int spent_ = 0;         // evaluations of everything that was looked at
   std::size_t left_ = 0;  // how many of the equilibria found have been looked at for a way down
+  bool came_by_newton_ = false;  // from the known shape to one next to it
 };
 
 }  // namespace

@@ -33,11 +33,16 @@ enum class Approach {
   descend,  ///< downhill, to a minimum
 };
 
-/// Unknowns of a shape that is known.
+/// Unknowns of a shape that is known, of the same span with its grips elsewhere.
 struct KnownShape {
   std::shared_ptr<const SpanEnergy> model;  ///< none: nothing is known
   Eigen::VectorXd x;
+  Eigen::VectorXd multipliers;
 };
+
+/// Tangents by which a shape may differ from the known one that it follows [-]: beyond, Newton's
+/// method has gone somewhere else.
+inline constexpr double followed_tangents = 0.3;
 
 struct SpanOptions {
   int terms = 0;  ///< 0: as many as `tolerance` needs
@@ -46,7 +51,9 @@ struct SpanOptions {
   bool all = false;                      ///< every equilibrium that the starts lead to
   TangentField start;                    ///< instead of the search
   Approach approach = Approach::follow;  ///< from `start`
-  KnownShape known;                      ///< what `start` shows, if it is a span's solution
+  KnownShape before;                     ///< the shape known before that one, on the same way
+  KnownShape known;                      ///< what `start` shows, if it is a span's solution that
+                                         ///< is followed: where it gives way it is left
   int least_terms = 0;                   ///< what resolves the start
   Deadline deadline;                     ///< of the whole solve
   SearchLog* log = nullptr;              ///< of a search for all, if it is asked for

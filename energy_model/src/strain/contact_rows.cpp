@@ -367,6 +367,7 @@ Eigen::VectorXd ContactRows::adopt(const ContactRows& other,
 
 std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers) const {
   constexpr int looks = 32;  // at the pressure of a piece
+  constexpr double shortest_told = 5e-3;
   std::vector<ContactForce> result;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Rows& rows = contacts_[c];
@@ -380,7 +381,12 @@ std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers
     force.total = force.begin = before;
     for (std::size_t i = 0; i < rows.slopes.size(); ++i) {
       const Rows::Slope& slope = rows.slopes[i];
-      const Eigen::VectorXd carried = multipliers.segment(slope.first, slope.count) / slope.length;
+      // Of a part this short rounding is most of the higher coefficients, and the force is smooth.
+      const bool is_short = slope.length < shortest_told;
+      const Eigen::VectorXd carried =
+          multipliers.segment(slope.first,
+                              is_short ? std::min<Eigen::Index>(slope.count, 4) : slope.count) /
+          slope.length;
       const double here = series(carried, 0);
       if (i == 0) {
         force.begin = before - here;
@@ -389,7 +395,7 @@ std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers
       }
       force.end = before = series(carried, 1);
       // The pressure is its derivative, which the last coefficients hardly know.
-      const Eigen::VectorXd smooth = carried.head((slope.count + 1) / 2);
+      const Eigen::VectorXd smooth = carried.head(is_short ? 2 : (slope.count + 1) / 2);
       double last = series(smooth, 0);
       for (int k = 1; k <= looks; ++k) {
         const double next = series(smooth, static_cast<double>(k) / looks);

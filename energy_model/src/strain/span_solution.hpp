@@ -25,6 +25,7 @@ struct [[nodiscard]] SpanSolution {
   double error = std::numeric_limits<double>::quiet_NaN();
   double energy = 0;      ///< in EI/l
   bool resolved = false;  ///< more terms would not change the shape, or the caller chose them
+  bool followed = false;  ///< next to the known shape it came from, by Newton's method alone
   /// Eigenvalue of the projected second variation, sideways included; NaN: not looked at.
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   /// Of them, those that are zero to the tolerance and no free turn's; near_singular if any.

@@ -141,7 +141,7 @@ TEST(SceneText, IsValidWithAnyAndAllOptionalPartsAndSolves) {
         SceneChoices{.youngs_modulus = "1 GPa", .density = "0", .direction = "-90 deg"}}) {
     const std::string text = scene_text(choices);
     const std::vector<std::string> paragraphs = optional_paragraphs(text);
-    ASSERT_EQ(paragraphs.size(), 5U);
+    ASSERT_EQ(paragraphs.size(), 6U);
     std::string all = text;
     for (const std::string& paragraph : paragraphs) {
       const Scene scene = parse_scene(text + paragraph, "scene.toml");
@@ -164,7 +164,7 @@ TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
   // An unknown key's message lists those that its table knows.
   int tables = 0;
   for (const std::string table : {"name", "[rod]", "[[gripper]]", "[[section]]", "[[load]]",
-                                  "[[obstacle]]", "[force_model]"}) {
+                                  "[[obstacle]]", "[track]", "[force_model]"}) {
     std::string wrong = all;
     const std::size_t start = wrong.find("\n" + table) + 1;
     wrong.insert(table == "name" ? start : wrong.find('\n', start) + 1, "bogus = 1\n");
@@ -184,7 +184,7 @@ TEST(SceneText, ExplainsEveryKeyThatAScenesTablesKnow) {
       ++tables;
     }
   }
-  EXPECT_EQ(tables, 7);
+  EXPECT_EQ(tables, 8);
 }
 
 TEST_F(Command, MaterialsListsEveryMaterialWithValues) {

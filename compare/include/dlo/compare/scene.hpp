@@ -8,6 +8,7 @@
 
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/material.hpp"
+#include "dlo/compare/trajectory.hpp"
 #include "dlo/obstacle/body.hpp"
 
 namespace dlo::compare {
@@ -29,7 +30,10 @@ struct Gripper {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< [m]
   std::optional<Eigen::Vector3d> direction;            ///< unit; a clamp has one, a pin has none
   std::optional<FrameHold> frame;                      ///< of a clamp that does not let it turn
-  std::string where;                                   ///< "file:line", for messages
+  /// How it moves (scene_at()); of a clamp whose poses have no directions its own stays. Empty: it
+  /// stands. All that takes a scene as it is has it at the first pose.
+  Trajectory trajectory = {};
+  std::string where;  ///< "file:line", for messages
 
   /// In every field.
   bool operator==(const Gripper&) const = default;
@@ -54,6 +58,9 @@ struct Obstacle {
   /// Coulomb's coefficient [-], >= 0. No model has friction: what a shape that touches such an
   /// obstacle leaves out is told (Solution::left_out).
   double friction = 0;
+  /// How it moves without turning, its poses being where the file's `point` is. Empty: it stands;
+  /// the body is that at the first pose.
+  Trajectory trajectory = {};
 
   /// In every field.
   bool operator==(const Obstacle&) const = default;
@@ -90,6 +97,18 @@ struct NamedValue {
 /// one (Saint-Venant), and for a rectangular one in the limit of a thin strip.
 inline constexpr double assumed_poisson_ratio = 0.3;
 
+/// How a scene that moves is looked at.
+struct TrackRates {
+  double frames = 1000;  ///< frames a second [Hz], > 0: how often grippers move
+  /// How often obstacles move [Hz], > 0; none: with every frame.
+  std::optional<double> obstacles;
+  /// Steps of the force model a second [Hz], > 0.
+  double steps = 30000;
+
+  /// In every field.
+  bool operator==(const TrackRates&) const = default;
+};
+
 /// A physical scene in SI units. A rod is round and of one material, or is given by its EI (about
 /// d1 and d2, if they differ) and its mass per length; where both are given, these count for
 /// bending and weight, and material and diameter for the axial stiffness only.
@@ -117,6 +136,7 @@ struct Scene {
   std::vector<PointLoad> loads;     ///< may be empty
   std::vector<Obstacle> obstacles;  ///< may be empty
   ForceModelSettings force_model;   ///< as the file has it
+  TrackRates track;                 ///< as the file has it
 
   [[nodiscard]] double cross_section() const;      ///< A [m^2]; 0 without a diameter
   [[nodiscard]] double bending_stiffness() const;  ///< EI [N m^2], outside sections; about d1
@@ -196,5 +216,21 @@ struct Scene {
   /// In every field.
   bool operator==(const Scene&) const = default;
 };
+
+/// First and last time of all poses of a scene [s].
+struct TimeSpan {
+  double begin = 0;  ///< [s]
+  double end = 0;    ///< [s], >= begin
+};
+
+/// When a scene moves; nothing of one that stands.
+[[nodiscard]] std::optional<TimeSpan> motion_of(const Scene& scene);
+
+/// The scene as it is at a time, standing: grippers and obstacles at their poses, none of which it
+/// has any more.
+/// @param obstacle_time  the same for obstacles, which a loop may move less often [s]
+[[nodiscard]] Scene scene_at(const Scene& scene, double time, double obstacle_time);
+/// At one time.
+[[nodiscard]] Scene scene_at(const Scene& scene, double time);
 
 }  // namespace dlo::compare

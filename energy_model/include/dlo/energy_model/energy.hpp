@@ -111,9 +111,15 @@ class EnergySolver {
 
   /// solve_energy().
   Equilibrium solve(const Problem& problem);
-  /// From the shape of the last call instead of a search, if it had one: for a gripper that has
-  /// moved a little. Follows its branch, so that snapping shows where it ends.
+  /// From the shape of the last call instead of a search, if it had one: for a gripper or an
+  /// obstacle that has moved a little. By Newton's method with the contacts that it has, which are
+  /// mended as they change; where that leads to no equilibrium near the last shape, or to one that
+  /// gives way, the branch has ended, and the shape is what the last one falls to (downhill), or
+  /// failing that what solve() finds. The problem has the same obstacles in the same order.
   Equilibrium follow(const Problem& problem);
+  /// Whether the last follow() has stayed on its branch, as far as Newton's method tells: the shape
+  /// is next to the one before. Work and energy tell too (a fall releases energy).
+  [[nodiscard]] bool followed() const;
   /// search_energy().
   [[nodiscard]] EnergySearch search(const Problem& problem);
   /// all_energy().

@@ -1,4 +1,4 @@
-#include "format/modes.hpp"
+#include "series/modes.hpp"
 
 #include <fmt/format.h>
 

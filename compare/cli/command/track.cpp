@@ -1,0 +1,111 @@
+#include "motion/track.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "option/option_values.hpp"
+#include "option/output.hpp"
+#include "option/scene_options.hpp"
+#include "option/terminal.hpp"
+#include "series/paraview.hpp"
+#include "series/track.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct TrackCommand {
+  std::string scene;
+  std::optional<double> from, to, frame_rate, obstacle_rate, step_rate;
+  bool no_force = false;
+  int samples = 41;
+  TrackFrames frames;
+  std::string paraview;
+  SceneOptions overrides;
+  OutputOptions output;
+};
+
+void run(const TrackCommand& command) {
+  const compare::Scene scene = command.overrides.load(command.scene);
+  warn_of_friction(scene);
+  compare::TrackOptions options;
+  options.from = command.from;
+  options.to = command.to;
+  options.rates = scene.track;
+  options.rates.frames = command.frame_rate.value_or(options.rates.frames);
+  options.rates.steps = command.step_rate.value_or(options.rates.steps);
+  if (command.obstacle_rate) options.rates.obstacles = command.obstacle_rate;
+  if (command.no_force) options.force = compare::ForceBeside::left_out;
+  options.samples = command.samples;
+  options.solve = command.overrides.solve();
+  if (!command.no_force) warn_of_polygons(scene);
+  const compare::Track track = [&] {
+    ProgressBar bar("track");
+    return compare::track(scene, options,
+                          [&](std::int64_t done, std::int64_t total) { bar.show(done, total); });
+  }();
+  if (!command.paraview.empty()) write_series(track, scene, command.frames, command.paraview);
+  write_output(command.output,
+               {.text = [&] { return track_text(track, scene, options); },
+                .json = [&] { return track_json(track, scene, options, command.frames); },
+                .csv = [&] { return track_csv(track, scene, command.frames); }});
+  if (!track.stopped) return;
+  throw compare::ConvergenceError(
+      fmt::format("{}: stopped at {:g} s: {} ({} frames before it are written)", scene.file,
+                  track.stopped->time, track.stopped->why, track.frames.size()));
+}
+
+}  // namespace
+
+void add_track(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "track", "follow the rod while grippers and obstacles move: forces, contacts, snaps, lag");
+  const auto options = std::make_shared<TrackCommand>();
+  command->add_option("SCENE", options->scene, "scene file (TOML) with poses")->required();
+  const auto rate = [&](const std::string& name, std::optional<double>& value,
+                        const std::string& what) {
+    command->add_option(name, value, what)->check(number_between(1e-6, 1e9))->type_name("HZ");
+  };
+  const double most = std::numeric_limits<double>::max();
+  command->add_option("--from", options->from, "first time [s], default the first pose's")
+      ->check(number_between(-most, most));
+  command->add_option("--to", options->to, "last time [s], default the last pose's")
+      ->check(number_between(-most, most));
+  rate("--frame-rate", options->frame_rate,
+       "frames a second, default [track] frame_rate of the scene, or 1000");
+  rate("--obstacle-rate", options->obstacle_rate,
+       "how often obstacles move, default [track] obstacle_rate, or with every frame");
+  rate("--step-rate", options->step_rate,
+       "steps of the force model a second, default [track] step_rate, or 30000");
+  command->add_flag("--no-force", options->no_force, "leave the force model out");
+  command->add_option("--samples", options->samples, "points of a frame's shape")
+      ->check(CLI::Range(2, 10000))
+      ->capture_default_str();
+  command
+      ->add_option("--every", options->frames.every,
+                   "write every so many-th frame to JSON, CSV and ParaView, and those of events")
+      ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
+  command->add_flag("--shapes", options->frames.points, "in JSON the frames' points too");
+  command
+      ->add_option(
+          "--paraview", options->paraview,
+          "write FILE such as rod.vtk.series for ParaView, and rod_00000.vtk, .. beside it")
+      ->type_name("FILE");
+  options->overrides.add_moving_to(*command);
+  add_output_options(*command, options->output);
+  command->footer(
+      "Exit status 3: the motion asks for what cannot be, such as grippers farther apart than\n"
+      "the rod; what was before it is written.\n"
+      "Examples:\n"
+      "  dlo track data/scenes/corner_routing.toml --frame-rate 100 --no-force\n"
+      "  dlo track data/scenes/buckling_wire.toml --frame-rate 50 --format csv");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,37 @@
+#include "series/paraview.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "base/output_file.hpp"
+#include "format/json.hpp"
+#include "option/output.hpp"
+#include "shape/write_vtk.hpp"
+
+namespace dlo::cli {
+
+void write_series(const compare::Track& track, const compare::Scene& scene,
+                  const TrackFrames& frames, const std::string& file) {
+  namespace fs = std::filesystem;
+  fs::path stem = fs::path(file).filename();
+  while (stem.has_extension()) stem = stem.stem();
+  const fs::path folder = fs::path(file).parent_path();
+  Json files = Json::array();
+  const auto write = [](const std::string& path, const std::string& text) {
+    compare::OutputFile output(path);
+    output.append(text);
+    output.finish();
+  };
+  for (const std::size_t i : frames.of(track)) {
+    const compare::TrackFrame& frame = track.frames[i];
+    const std::string name = fmt::format("{}_{:05}.vtk", stem.string(), i);
+    write((folder / name).string(),
+          compare::vtk_polyline({track.arc_length, frame.points}, {},
+                                fmt::format("{}, t = {:.9g} s", scene.name, frame.time)));
+    files.push_back({{"name", name}, {"time", frame.time}});
+  }
+  write(file, json_text({{"file-series-version", "1.0"}, {"files", std::move(files)}}));
+}
+
+}  // namespace dlo::cli

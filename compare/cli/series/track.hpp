@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+#include "motion/track.hpp"
+
+namespace dlo::cli {
+
+/// Which frames of a track are written.
+struct TrackFrames {
+  int every = 1;        ///< that many frames from one to the next; events' frames and the last too
+  bool points = false;  ///< in JSON with their shapes
+
+  /// Indices of these frames.
+  [[nodiscard]] std::vector<std::size_t> of(const compare::Track& track) const;
+};
+
+[[nodiscard]] std::string track_text(const compare::Track& track, const compare::Scene& scene,
+                                     const compare::TrackOptions& options);
+[[nodiscard]] std::string track_json(const compare::Track& track, const compare::Scene& scene,
+                                     const compare::TrackOptions& options,
+                                     const TrackFrames& frames);
+/// A row a frame.
+[[nodiscard]] std::string track_csv(const compare::Track& track, const compare::Scene& scene,
+                                    const TrackFrames& frames);
+
+}  // namespace dlo::cli

@@ -1,0 +1,161 @@
+#include "motion/force_track.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/discretise.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/force_model/simulation.hpp"
+#include "polygon/natural_plane.hpp"
+#include "polygon/step_constants.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Its points on the energy model's shape, but for those that grips hold.
+Eigen::Matrix3Xd start_on(const Discretisation& discretisation,
+                          const energy_model::Equilibrium& rod) {
+  std::vector<double> s = discretisation.arc_length;
+  for (double& at : s) at = std::clamp(at, 0.0, discretisation.length);
+  Eigen::Matrix3Xd points = rod.sample(s).points;
+  for (const force_model::Grip& grip : discretisation.rod.grips) {
+    points.middleCols(grip.first_point, grip.targets.cols()) = grip.targets;
+  }
+  return points;
+}
+
+double sum_of_squares(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
+  return (a - b).squaredNorm();
+}
+
+}  // namespace
+
+struct ForceTrack::State {
+  Discretisation discretisation;
+  std::vector<std::size_t> obstacles;
+  ForceModelSettings settings;
+  std::optional<force_model::Simulation> simulation;
+  double seconds = 0;
+};
+
+ForceTrack::ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
+                       const std::vector<std::size_t>& obstacles, const SolveOptions& options)
+    : state_(std::make_unique<State>()) {
+  if (turn_into_plane(now, now.force_model)) {
+    throw InputError(fmt::format(
+        "{}: a rod that is curved by nature, in a plane that is not z = 0, which a moving polygon "
+        "is not turned into",
+        now.file));
+  }
+  state_->obstacles = obstacles;
+  state_->settings = now.force_model;
+  state_->discretisation = discretise(now, now.force_model);
+  set_obstacles(now, obstacles, state_->discretisation);
+  const Discretisation& discretisation = state_->discretisation;
+  try {
+    state_->simulation.emplace(discretisation.rod, start_on(discretisation, rod),
+                               step_options(now.force_model, discretisation));
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: the force model: {}", now.file, error.what()));
+  }
+  const force_model::RelaxResult result =
+      state_->simulation->relax({.tolerance = options.rest_tolerance,
+                                 .max_steps = options.max_steps,
+                                 .time_limit = options.time_limit});
+  if (result.status == force_model::RelaxStatus::at_rest) return;
+  throw ConvergenceError(fmt::format("{}: the force model did not come to rest at first: {}",
+                                     now.file, result.message));
+}
+
+ForceTrack::~ForceTrack() = default;
+
+bool ForceTrack::step(const Scene& now, long steps) {
+  State& state = *state_;
+  Discretisation moved = discretise(now, state.settings);
+  set_obstacles(now, state.obstacles, moved);
+  force_model::Simulation& simulation = *state.simulation;
+  const auto begin = std::chrono::steady_clock::now();
+  for (std::size_t i = 0; i < moved.rod.grips.size(); ++i) {
+    simulation.move_grip(i, moved.rod.grips[i].targets, moved.rod.grips[i].reference);
+  }
+  for (std::size_t i = 0; i < moved.rod.walls.size(); ++i) {
+    const force_model::Wall& wall = moved.rod.walls[i];
+    const force_model::Wall& last = simulation.rod().walls[i];
+    if (wall.point != last.point) simulation.move_wall(i, wall);
+  }
+  bool finite = true;
+  for (long i = 0; i < steps && finite; ++i) {
+    finite = simulation.step().status != force_model::StepStatus::diverged;
+  }
+  state.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  state.discretisation = std::move(moved);
+  return finite;
+}
+
+ForceFrame ForceTrack::frame(const energy_model::Equilibrium& rod,
+                             const std::vector<double>& arc_length) const {
+  const force_model::Simulation& simulation = *state_->simulation;
+  const Eigen::Matrix3Xd points = simulation.points();
+  const Shape shape = state_->discretisation.shape(points);
+  ForceFrame frame;
+  frame.error_over_length = distance(shape, rod.sample) / state_->discretisation.length;
+  frame.points = resample(shape, arc_length).points;
+  // What an obstacle does to a held point inside a gripper is not felt outside.
+  force_model::Rod without_obstacles = simulation.rod();
+  without_obstacles.walls.clear();
+  without_obstacles.solids.clear();
+  for (const force_model::GripReaction& reaction :
+       force_model::grip_reactions(without_obstacles, points)) {
+    frame.grippers.push_back({reaction.force, reaction.torque});
+  }
+  return frame;
+}
+
+double ForceTrack::seconds() const { return state_->seconds; }
+
+Lag lag_of(const std::vector<Eigen::Matrix3Xd>& leader,
+           const std::vector<Eigen::Matrix3Xd>& follower, double step) {
+  constexpr std::size_t most_looks = 400;
+  const std::size_t count = leader.size();
+  double moved = 0;
+  for (const Eigen::Matrix3Xd& shape : leader) {
+    moved = std::max(moved, sum_of_squares(shape, leader.front()));
+  }
+  const double rounding = 1e-9 * (leader.front().colwise() - leader.front().col(0)).norm();
+  if (!(moved > rounding * rounding)) return {};
+  const std::size_t stride = std::max<std::size_t>(1, count / most_looks);
+  const auto squares_at = [&](std::size_t shift) {
+    double sum = 0;
+    for (std::size_t i = 0; i < count; i += stride) {
+      sum += sum_of_squares(follower[i], leader[i > shift ? i - shift : 0]);
+    }
+    return sum;
+  };
+  std::vector<double> squares;
+  for (std::size_t shift = 0; shift < count; ++shift) squares.push_back(squares_at(shift));
+  const auto best =
+      static_cast<std::size_t>(std::min_element(squares.begin(), squares.end()) - squares.begin());
+  double part = 0;
+  double least = squares[best];
+  if (best + 1 < count) {
+    // Of the parabola through three values; at no shift its mirror image is on the other side.
+    const double before = best > 0 ? squares[best - 1] : squares[best + 1];
+    const double after = squares[best + 1];
+    const double bend = before - 2 * least + after;
+    if (bend > 0) {
+      part = (before - after) / (2 * bend);
+      least = std::max(0.0, least - (before - after) * part / 4);
+    }
+  }
+  const double looks = std::ceil(static_cast<double>(count) / static_cast<double>(stride));
+  return {(static_cast<double>(best) + part) * step,
+          std::sqrt(least / (looks * static_cast<double>(leader.front().cols())))};
+}
+
+}  // namespace dlo::compare

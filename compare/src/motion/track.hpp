@@ -1,0 +1,95 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/progress.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/solution.hpp"
+#include "motion/contact_events.hpp"
+#include "motion/force_track.hpp"
+
+namespace dlo::compare {
+
+/// Which part of a scene's motion, and how it is looked at.
+struct TrackOptions {
+  std::optional<double> from;  ///< [s]; none: the first pose's time
+  std::optional<double> to;    ///< [s], > from; none: the last pose's
+  TrackRates rates;
+  ForceBeside force = ForceBeside::runs;
+  int samples = 41;  ///< points of a frame's shape, >= 2
+  SolveOptions solve;
+};
+
+/// The rod at one time, at rest.
+struct TrackFrame {
+  double time = 0;        ///< [s]
+  bool followed = false;  ///< next to the frame before, by Newton's method alone
+  /// As Solution's: it comes to zero where a branch ends at a fold [-].
+  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
+  /// Of the shape; gravity and loads are zero at the origin, which does not move [J].
+  SceneEnergies energy;
+  double work = 0;  ///< of grippers and obstacles on the rod, since the first frame [J]
+  /// That work since the frame before less what the energy has grown by, and what it may be with
+  /// forces between those of the two frames [J]. NaN where clamps turn the rod about itself.
+  double released = 0, released_bound = 0;
+  std::vector<GripperLoad> grippers;                ///< in the scene's order
+  std::vector<energy_model::ContactPart> contacts;  ///< with rigid obstacles, by arc length
+  Eigen::Matrix3Xd points;                          ///< at Track::arc_length [m]
+  double seconds = 0;                               ///< what it took
+  std::optional<ForceFrame> force;
+};
+
+/// A change of what touches, or a fall to another shape.
+struct TrackEvent {
+  /// What has happened.
+  enum class Kind {
+    contact,  ///< something begins to touch, or to lie
+    release,  ///< something ends to
+    snap,     ///< the shape has fallen to another one
+  };
+  Kind kind = Kind::contact;
+  std::size_t frame = 0;                                       ///< the first with it
+  std::optional<ContactChange> contact;                        ///< of a contact or a release
+  double released = std::numeric_limits<double>::quiet_NaN();  ///< of a snap [J]
+  double released_bound = 0;                                   ///< by which that may be off [J]
+};
+
+/// In words, for files.
+[[nodiscard]] const char* to_string(TrackEvent::Kind kind);
+
+/// Why frames are missing.
+struct TrackStop {
+  double time = 0;  ///< of the frame that has no shape [s]
+  std::string why;
+};
+
+/// A scene's motion so slow that the rod is at rest all the time.
+struct Track {
+  std::vector<double> arc_length;  ///< of the frames' points [m]
+  std::vector<TrackFrame> frames;  ///< up to where it had to stop; one or more
+  std::vector<TrackEvent> events;  ///< by time
+  std::optional<TrackStop> stopped;
+  double median_seconds = 0;          ///< of a frame of the energy model
+  int lost = 0;                       ///< frames where Newton's method did not keep the branch
+  std::vector<std::string> left_out;  ///< as Solution::left_out
+  ForceTrackSummary force;
+};
+
+/// Follows the energy model's shape through a scene's motion: the first frame has the lowest shape
+/// that is found, all others its branch, as long as there is one. A branch that ends is told by
+/// energy: what grippers and moving obstacles do on the rod is what its energy grows by, unless the
+/// rod falls, and then more is missing than any forces between those of the two frames could do (a
+/// snap). The force model makes its steps of each frame beside it, from rest.
+///
+/// What is impossible, such as grippers farther apart than the rod between them, ends it (stopped),
+/// and so does a solver that does not converge, or that comes out on a shape which is higher than
+/// the work allows.
+/// @throws InputError if nothing moves, the time is no part of the motion, or the first frame is
+/// impossible; ConvergenceError if the first frame has no shape
+[[nodiscard]] Track track(const Scene& scene, const TrackOptions& options,
+                          const Progress& progress = {});
+
+}  // namespace dlo::compare

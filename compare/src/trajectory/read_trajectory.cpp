@@ -1,0 +1,198 @@
+#include "trajectory/read_trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/input_file.hpp"
+#include "base/number.hpp"
+#include "base/quote.hpp"
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// No robot's program comes near it; the memory for a pose is a hundred bytes.
+constexpr std::size_t most_poses = 1'000'000;
+
+constexpr std::array<const char*, 7> pose_columns = {"time", "x", "y", "z", "dx", "dy", "dz"};
+constexpr const char* pose_columns_allowed =
+    "(allowed: a header of time,x,y,z or time,x,y,z,dx,dy,dz in any order)";
+
+/// What Trajectory says of a pose, without its own name.
+std::string problem_in(const std::invalid_argument& error) {
+  const std::string_view message = error.what();
+  const std::size_t name = message.find(": ");
+  return std::string(message.substr(name == std::string_view::npos ? 0 : name + 2));
+}
+
+std::string_view trimmed(std::string_view text) {
+  const std::size_t start = text.find_first_not_of(" \t\r");
+  if (start == std::string_view::npos) return {};
+  return text.substr(start, text.find_last_not_of(" \t\r") - start + 1);
+}
+
+std::vector<std::string_view> comma_fields(std::string_view line) {
+  std::vector<std::string_view> fields;
+  for (;;) {
+    const std::size_t end = line.find(',');
+    fields.push_back(trimmed(line.substr(0, end)));
+    if (end == std::string_view::npos) return fields;
+    line.remove_prefix(end + 1);
+  }
+}
+
+/// Where each of pose_columns is among a file's.
+struct PoseColumns {
+  std::size_t count = 0;
+  std::array<std::optional<std::size_t>, pose_columns.size()> of;
+
+  [[nodiscard]] bool has_direction() const { return of[4].has_value(); }
+};
+
+PoseColumns pose_columns_of(const std::vector<std::string_view>& fields, const std::string& where) {
+  PoseColumns columns{.count = fields.size(), .of = {}};
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const auto* const found = std::find(pose_columns.begin(), pose_columns.end(), fields[i]);
+    if (found == pose_columns.end()) {
+      throw InputError(fmt::format("{}: unknown column {} {}", where, quoted_piece(fields[i]),
+                                   pose_columns_allowed));
+    }
+    auto& of = columns.of[static_cast<std::size_t>(found - pose_columns.begin())];
+    if (of) throw InputError(fmt::format("{}: column {} given twice", where, *found));
+    of = i;
+  }
+  const bool direction = columns.of[4] || columns.of[5] || columns.of[6];
+  for (std::size_t k = 0; k < (direction ? pose_columns.size() : 4); ++k) {
+    if (columns.of[k]) continue;
+    throw InputError(
+        fmt::format("{}: column {} is missing {}", where, pose_columns[k], pose_columns_allowed));
+  }
+  return columns;
+}
+
+Pose pose_of(const std::vector<std::string_view>& fields, const PoseColumns& columns,
+             const std::string& where) {
+  if (fields.size() != columns.count) {
+    throw InputError(fmt::format("{}: {} column{} (allowed: {}, as in the header)", where,
+                                 fields.size(), fields.size() == 1 ? "" : "s", columns.count));
+  }
+  std::array<double, pose_columns.size()> values{};
+  for (std::size_t k = 0; k < pose_columns.size(); ++k) {
+    if (!columns.of[k]) continue;
+    const std::string_view field = fields[*columns.of[k]];
+    const std::optional<double> value = as_number<double>(field);
+    if (!value || !std::isfinite(*value)) {
+      throw InputError(fmt::format("{}: {} = {} is not a number (allowed: finite numbers in s, m)",
+                                   where, pose_columns[k], quoted_piece(field)));
+    }
+    values[k] = *value;
+  }
+  Pose pose{values[0], {values[1], values[2], values[3]}, std::nullopt};
+  if (columns.has_direction()) pose.direction = Eigen::Vector3d(values[4], values[5], values[6]);
+  return pose;
+}
+
+/// Relative to the folder of the scene; a pipe or a device could keep a scene from ever being read.
+std::string read_beside(const StrictTable& table, const std::string& name,
+                        const std::string& scene_file) {
+  const std::filesystem::path path = std::filesystem::path(scene_file).parent_path() / name;
+  std::error_code unknown;
+  if (!std::filesystem::is_regular_file(path, unknown)) {
+    table.fail("trajectory", fmt::format("no such file beside the scene (allowed: a CSV file, {})",
+                                         pose_columns_allowed));
+  }
+  return read_file(path.string());
+}
+
+Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const PoseKeys& keys) {
+  std::vector<Pose> poses;
+  for (StrictTable& row : rows) {
+    Pose pose;
+    pose.time = row.number("time", Dimension::time, Range::any());
+    pose.position = row.vector(keys.position, Dimension::length);
+    if (keys.direction && row.has("direction")) pose.direction = keys.direction(row);
+    row.finish();
+    const auto wrong = [&](const char* key, const char* problem) { row.fail(key, problem); };
+    if (!poses.empty()) {
+      if (!(pose.time > poses.back().time)) {
+        wrong("time", "not above that of the pose before (allowed: growing times)");
+      }
+      if (pose.direction.has_value() != poses.front().direction.has_value()) {
+        wrong("direction", "given for some poses only (allowed: for all of them or for none)");
+      }
+    }
+    poses.push_back(std::move(pose));
+  }
+  try {
+    return Trajectory(std::move(poses));
+  } catch (const std::invalid_argument& error) {
+    table.fail("pose", problem_in(error));
+  }
+}
+
+}  // namespace
+
+Trajectory parse_trajectory(std::string_view text, const std::string& file) {
+  std::optional<PoseColumns> columns;
+  std::vector<Pose> poses;
+  for (long number = 1; !text.empty(); ++number) {
+    const std::size_t end = text.find('\n');
+    const std::string_view line = trimmed(text.substr(0, end));
+    text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    if (line.empty() || line.front() == '#') continue;
+    const std::string where = fmt::format("{}:{}", file, number);
+    const std::vector<std::string_view> fields = comma_fields(line);
+    if (!columns) {
+      columns = pose_columns_of(fields, where);
+      continue;
+    }
+    if (poses.size() == most_poses) {
+      throw InputError(fmt::format("{}: more than {} poses", where, most_poses));
+    }
+    poses.push_back(pose_of(fields, *columns, where));
+    if (poses.size() > 1 && !(poses.back().time > poses[poses.size() - 2].time)) {
+      throw InputError(fmt::format("{}: time = {} is not above that of the row before", where,
+                                   poses.back().time));
+    }
+  }
+  if (poses.empty()) throw InputError(fmt::format("{}: no poses {}", file, pose_columns_allowed));
+  try {
+    return Trajectory(std::move(poses));
+  } catch (const std::invalid_argument& error) {
+    throw InputError(fmt::format("{}: {}", file, problem_in(error)));
+  }
+}
+
+Trajectory read_trajectory(StrictTable& table, const PoseKeys& keys,
+                           const std::string& scene_file) {
+  std::vector<StrictTable> rows = table.tables("pose");
+  const std::optional<std::string> name = table.optional_text("trajectory");
+  if (name && !rows.empty()) {
+    table.fail("trajectory", "given besides poses (allowed: one of trajectory and [[..pose]])");
+  }
+  if (!name) return rows.empty() ? Trajectory() : read_rows(table, rows, keys);
+  Trajectory trajectory;
+  try {
+    trajectory = parse_trajectory(read_beside(table, *name, scene_file), *name);
+  } catch (const InputError& error) {
+    // One that the table has made says where it is already.
+    if (std::string_view(error.what()).starts_with(scene_file)) throw;
+    table.fail("trajectory", error.what());
+  }
+  if (trajectory.poses().front().direction && !keys.direction) {
+    table.fail("trajectory", "has directions (allowed here: time,x,y,z)");
+  }
+  return trajectory;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,90 @@
+// The command track as a user runs it.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "command_fixture.hpp"
+
+namespace {
+
+using dlo::test::Command;
+using dlo::test::Outcome;
+using nlohmann::json;
+
+class TrackCommand : public Command {
+ protected:
+  static std::string wire() { return std::string(DLO_DATA) + "/scenes/buckling_wire.toml"; }
+};
+
+TEST_F(TrackCommand, TellsFramesAndEventsInEveryFormat) {
+  const std::string track = words({"track", wire(), "--frame-rate 20 --to 0.6"});
+  const Outcome text = run(track);
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("contact obstacle 1, tip at s = 0.3 m"), std::string::npos) << text.out;
+  const json document = json::parse(run(track + " --format json").out);
+  EXPECT_EQ(document.at("schema"), "dlo/track/1");
+  ASSERT_EQ(document.at("frames").size(), 13U);
+  const json& last = document.at("frames").back();
+  EXPECT_EQ(last.at("time_s"), 0.6);
+  EXPECT_EQ(last.at("contacts")[0].at("kind"), "tip");
+  EXPECT_GT(last.at("error_over_length").get<double>(), 0);
+  ASSERT_EQ(document.at("events").size(), 1U);
+  EXPECT_EQ(document.at("events")[0].at("kind"), "contact");
+  EXPECT_EQ(document.at("events")[0].at("obstacle"), 0);
+  EXPECT_EQ(document.at("events")[0].at("grippers").size(), 1U);
+  const std::string csv = run(track + " --every 4 --no-force --format csv").out;
+  EXPECT_EQ(csv.substr(0, 26), "time_s,energy_J,work_J,rel");
+  EXPECT_NE(csv.find(",1 tip,,"), std::string::npos) << csv;
+}
+
+TEST_F(TrackCommand, WritesASeriesForParaView) {
+  const std::string file = path("wire.vtk.series");
+  const Outcome result =
+      run(words({"track", wire(), "--frame-rate 10 --to 0.2 --no-force", "--paraview", file}));
+  ASSERT_EQ(result.status, 0) << result.err;
+  std::ifstream in(file);
+  const json series = json::parse(in);
+  ASSERT_EQ(series.at("files").size(), 3U);
+  EXPECT_EQ(series.at("files")[1].at("time"), 0.1);
+  std::ifstream frame(path(series.at("files")[1].at("name")));
+  std::string line;
+  std::getline(frame, line);
+  EXPECT_EQ(line, "# vtk DataFile Version 3.0");
+}
+
+TEST_F(TrackCommand, StopsAtTheImpossibleWithStatusThreeAndWhatWasBefore) {
+  const std::string file = scene(
+      "[rod]\nlength = 1\ndiameter = 0.01\nmaterial = \"silicone\"\n"
+      "[[gripper]]\nat = 0\nposition = [0, 0, 0]\nhold = \"pin\"\n"
+      "[[gripper]]\nat = 1\nhold = \"pin\"\n"
+      "[[gripper.pose]]\ntime = 0\nposition = [0.9, 0, 0]\n"
+      "[[gripper.pose]]\ntime = 1\nposition = [1.1, 0, 0]\n");
+  const Outcome result = run(words({"track", file, "--frame-rate 20 --no-force --format json"}));
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.err.find("stopped at 0.5 s"), std::string::npos) << result.err;
+  const json document = json::parse(result.out);
+  EXPECT_EQ(document.at("frames").size(), 10U);
+  EXPECT_NE(document.at("stopped").at("why").get<std::string>().find("allowed: less than"),
+            std::string::npos);
+}
+
+TEST_F(TrackCommand, OtherCommandsTakeTheSceneAtATime) {
+  const auto force = [&](const std::string& time) {
+    const Outcome result = run(words({"solve", wire(), "--format json", time}));
+    EXPECT_EQ(result.status, 0) << result.err;
+    return json::parse(result.out).at("grippers")[0].at("force_N")[0].get<double>();
+  };
+  EXPECT_LT(std::abs(force("--time 0")), 1e-12);
+  EXPECT_GT(force("--time 1"), 0.05);
+  expect_error(words({"solve", std::string(DLO_DATA) + "/scenes/cable.toml", "--time 1"}), 2,
+               {"--time 1", "nothing moves"});
+  expect_error(words({"track", std::string(DLO_DATA) + "/scenes/cable.toml"}), 2,
+               {"nothing moves", "[[gripper.pose]]"});
+  expect_error(words({"track", wire(), "--frame-rate 0"}), 2, {"--frame-rate"});
+}
+
+}  // namespace

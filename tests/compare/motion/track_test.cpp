@@ -1,0 +1,240 @@
+#include "motion/track.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using energy_model::ContactKind;
+using energy_model::ContactPart;
+
+TrackOptions at_rate(double rate) {
+  TrackOptions options;
+  options.rates.frames = rate;
+  options.force = ForceBeside::left_out;
+  options.samples = 21;
+  return options;
+}
+
+Scene corner() { return load_scene(std::string(DLO_DATA) + "/scenes/corner_routing.toml"); }
+
+const std::string light_wire =
+    "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n";
+
+/// A clamp that rises and turns down.
+Scene swung() {
+  return parse_scene(
+      light_wire +
+          "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\ndirection = \"60 deg\"\n"
+          "[[gripper.pose]]\ntime = 1\nposition = [0.3, 0.5, 0]\n"
+          "direction = \"-20 deg\"\n",
+      "swung.toml");
+}
+
+/// A rod that comes to rest on a peg, from which its clamp draws it until its tip falls off.
+Scene drawn_off() {
+  return parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 1\n[[gripper]]\nat = 0\n"
+      "direction = \"20 deg\"\n[[gripper.pose]]\ntime = 0\nposition = [0, 0.5, 0]\n"
+      "[[gripper.pose]]\ntime = 0.4\nposition = [0, 0, 0]\n"
+      "[[gripper.pose]]\ntime = 1\nposition = [-0.8, 0, 0]\n[[obstacle]]\n"
+      "shape = \"cylinder\"\npoint = [0.5, 0, 0]\naxis = [0, 0, 1]\nradius = 0.05\n"
+      "touches = \"axis\"\n",
+      "peg.toml");
+}
+
+double missed(const Scene& scene, double rate) {
+  const Track result = track(scene, at_rate(rate));
+  const TrackFrame& last = result.frames.back();
+  EXPECT_TRUE(result.events.empty());
+  return std::abs(last.work - (last.energy.total() - result.frames.front().energy.total()));
+}
+
+// The trapezoidal rule's error is of second order in the time of a frame.
+TEST(Track, EnergyGrowsByTheWorkOfWhatMoves) {
+  const double coarse = missed(swung(), 10);
+  const double fine = missed(swung(), 20);
+  EXPECT_LT(coarse, 8e-3);
+  EXPECT_NEAR(coarse / fine, 4, 0.4);
+}
+
+// A floor that rises under a rod: the work is the floor's.
+TEST(Track, CountsTheWorkOfAnObstacleThatMoves) {
+  const Scene scene = parse_scene(
+      light_wire +
+          "position = [0, 0, 0]\ndirection = \"0 deg\"\n[[obstacle]]\nnormal = [0, 1, 0]\n" +
+          "touches = \"axis\"\n[[obstacle.pose]]\ntime = 0\npoint = [0, -0.7, 0]\n" +
+          "[[obstacle.pose]]\ntime = 1\npoint = [0, -0.2, 0]\n",
+      "floor.toml");
+  const auto missed_at = [&](double rate) {
+    const Track result = track(scene, at_rate(rate));
+    const TrackFrame& last = result.frames.back();
+    EXPECT_FALSE(last.contacts.empty());
+    EXPECT_GT(last.work, 0.1);
+    return std::abs(last.work - (last.energy.total() - result.frames.front().energy.total()));
+  };
+  EXPECT_LT(missed_at(40), 2e-3);
+}
+
+// Every change again, at the same time to one frame of the slower one; a shorter part of the scene.
+TEST(Track, FindsEveryContactChangeAgainAtTwiceTheRate) {
+  const auto events_at = [](double rate) {
+    TrackOptions options = at_rate(rate);
+    options.from = 0.5;
+    options.to = 0.8;
+    const Track result = track(corner(), options);
+    std::vector<std::pair<std::string, double>> events;
+    for (const TrackEvent& event : result.events) {
+      EXPECT_TRUE(event.contact);
+      events.emplace_back(std::string(to_string(event.kind)) + " " +
+                              energy_model::to_string(event.contact->part.kind),
+                          result.frames[event.frame].time);
+    }
+    return events;
+  };
+  constexpr double rate = 40;
+  const auto slow = events_at(rate);
+  const auto fast = events_at(2 * rate);
+  ASSERT_EQ(slow.size(), 2U);
+  ASSERT_EQ(fast.size(), slow.size());
+  EXPECT_EQ(slow[0].first, "contact touching");
+  EXPECT_EQ(slow[1].first, "contact lying");
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    EXPECT_EQ(fast[i].first, slow[i].first);
+    EXPECT_LE(std::abs(fast[i].second - slow[i].second), 1 / rate + 1e-12);
+  }
+}
+
+// It falls once; the energy that it releases is what is missing of
+// the work, and comes out the same at twice the rate, to the bounds that both give.
+TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
+  const auto snap_of = [](double rate) {
+    const Track result = track(drawn_off(), at_rate(rate));
+    EXPECT_FALSE(result.stopped) << result.stopped->why;
+    std::vector<TrackEvent> snaps;
+    for (const TrackEvent& event : result.events) {
+      if (event.kind == TrackEvent::Kind::snap) snaps.push_back(event);
+    }
+    EXPECT_EQ(snaps.size(), 1U);
+    const TrackFrame& after = result.frames[snaps.at(0).frame];
+    EXPECT_FALSE(after.followed);
+    EXPECT_LT(after.points.row(1).minCoeff(), -0.4);
+    EXPECT_TRUE(after.contacts.empty());
+    return std::pair(snaps.at(0), after.time);
+  };
+  const auto [slow, slow_time] = snap_of(30);
+  const auto [fast, fast_time] = snap_of(60);
+  EXPECT_LE(std::abs(slow_time - fast_time), 1.0 / 30 + 1e-12);
+  EXPECT_GT(slow.released, 0.9);
+  EXPECT_LE(std::abs(slow.released - fast.released), slow.released_bound + fast.released_bound);
+  EXPECT_LT(fast.released_bound, slow.released_bound);
+}
+
+TEST(Track, StopsWhereGrippersAreFartherApartThanTheRod) {
+  const Scene scene = parse_scene(
+      light_wire + "position = [0, 0, 0]\nhold = \"pin\"\n[[gripper]]\nat = 1\nhold = \"pin\"\n" +
+          "[[gripper.pose]]\ntime = 0\nposition = [0.8, 0, 0]\n" +
+          "[[gripper.pose]]\ntime = 1\nposition = [1.2, 0, 0]\n",
+      "apart.toml");
+  const Track result = track(scene, at_rate(40));
+  ASSERT_TRUE(result.stopped);
+  // Half of the way at half of the time.
+  EXPECT_NEAR(result.stopped->time, 0.5, 0.03);
+  EXPECT_NE(result.stopped->why.find("rod between them"), std::string::npos) << result.stopped->why;
+  EXPECT_GE(result.frames.size(), 19U);
+  EXPECT_LT(result.frames.back().time, result.stopped->time);
+}
+
+TEST(Track, RefusesWhatDoesNotMove) {
+  const Scene scene =
+      parse_scene(light_wire + "position = [0, 0, 0]\ndirection = \"0 deg\"\n", "standing.toml");
+  EXPECT_THROW((void)track(scene, {}), InputError);
+  TrackOptions options = at_rate(10);
+  options.from = 1;
+  options.to = 1;
+  EXPECT_THROW((void)track(swung(), options), InputError);
+}
+
+// The force model, slow enough to keep up, is as far off as at rest.
+TEST(Track, RunsTheForceModelBesideIt) {
+  Scene scene = swung();
+  scene.force_model.points = 16;
+  scene.force_model.c_c = 200;
+  TrackOptions options = at_rate(20);
+  options.force = ForceBeside::runs;
+  options.rates.steps = 4000;
+  const ForceTrackSummary hasty = track(scene, options).force;
+  options.rates.steps = 40000;
+  const ForceTrackSummary patient = track(scene, options).force;
+  EXPECT_EQ(hasty.none, "");
+  EXPECT_EQ(hasty.steps_per_frame, 200);
+  EXPECT_LT(patient.largest, hasty.largest);
+  EXPECT_LT(patient.mean, 2 * patient.rest_error + 1e-3);
+}
+
+TEST(Lag, IsTheShiftOfASeriesOfShapes) {
+  std::vector<Eigen::Matrix3Xd> leader;
+  std::vector<Eigen::Matrix3Xd> follower;
+  constexpr double step = 0.01;
+  const auto shape_at = [](double time) {
+    const double way = time <= 0 ? 0 : time * time * (3 - 2 * time);
+    Eigen::Matrix3Xd shape(3, 2);
+    shape << 0, 1, way, way * way, 0, 0;
+    return shape;
+  };
+  for (int i = 0; i <= 100; ++i) {
+    leader.push_back(shape_at(step * i));
+    follower.push_back(shape_at(step * (i - 7.3)));
+  }
+  EXPECT_NEAR(lag_of(leader, follower, step).time, 0.073, 1e-3 * 0.073 + 1e-4);
+  EXPECT_LT(lag_of(leader, follower, step).rms, 5e-3);
+  EXPECT_NEAR(lag_of(leader, leader, step).time, 0, 1e-12);
+  const std::vector<Eigen::Matrix3Xd> stands(10, shape_at(0));
+  EXPECT_TRUE(std::isnan(lag_of(stands, stands, step).time));
+}
+
+ContactPart part(std::size_t obstacle, ContactKind kind, double begin, double end) {
+  return {.obstacle = obstacle, .kind = kind, .begin = begin, .end = end};
+}
+
+TEST(ContactChanges, PairTheNearestPartsOfAnObstacle) {
+  const std::vector<ContactPart> three = {part(0, ContactKind::touching, 0.2, 0.2),
+                                          part(0, ContactKind::lying, 0.6, 0.8),
+                                          part(1, ContactKind::tip, 1, 1)};
+  const std::vector<ContactPart> two = {part(0, ContactKind::lying, 0.58, 0.83),
+                                        part(1, ContactKind::tip, 1, 1)};
+  EXPECT_TRUE(contact_changes(three, three).empty());
+  const std::vector<ContactChange> gone = contact_changes(three, two);
+  ASSERT_EQ(gone.size(), 1U);
+  EXPECT_FALSE(gone[0].begins);
+  EXPECT_FALSE(gone[0].goes_on);
+  EXPECT_EQ(gone[0].part.begin, 0.2);
+  const std::vector<ContactChange> come = contact_changes(two, three);
+  ASSERT_EQ(come.size(), 1U);
+  EXPECT_TRUE(come[0].begins);
+  EXPECT_EQ(come[0].part.begin, 0.2);
+}
+
+TEST(ContactChanges, TellWhereAPointBeginsToLie) {
+  const std::vector<ContactPart> point = {part(2, ContactKind::touching, 0.5, 0.5)};
+  const std::vector<ContactPart> line = {part(2, ContactKind::lying, 0.45, 0.55)};
+  const std::vector<ContactChange> lies = contact_changes(point, line);
+  ASSERT_EQ(lies.size(), 1U);
+  EXPECT_TRUE(lies[0].begins && lies[0].goes_on);
+  EXPECT_EQ(lies[0].part.kind, ContactKind::lying);
+  const std::vector<ContactChange> lifts = contact_changes(line, point);
+  ASSERT_EQ(lifts.size(), 1U);
+  EXPECT_TRUE(!lifts[0].begins && lifts[0].goes_on);
+  EXPECT_EQ(lifts[0].part.kind, ContactKind::lying);
+}
+
+}  // namespace
+}  // namespace dlo::compare

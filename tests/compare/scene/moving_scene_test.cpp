@@ -1,0 +1,107 @@
+// Scenes whose grippers and obstacles move: what a file may say, and what is refused.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+
+namespace dlo::compare {
+namespace {
+
+const std::string held_rod =
+    "[rod]\nlength = 1\ndiameter = 0.02\nmaterial = \"silicone\"\n[[gripper]]\nat = 0\n";
+const std::string two_poses =
+    "[[gripper.pose]]\ntime = 1\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n"
+    "[[gripper.pose]]\ntime = \"3000 ms\"\nposition = [\"20 cm\", 0, 0]\n"
+    "direction = \"90 deg\"\n";
+
+std::string error_of(const std::string& text) {
+  try {
+    (void)parse_scene(text, "my.toml");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "read";
+}
+
+TEST(MovingScene, IsAtItsFirstPoseUnlessATimeIsAskedFor) {
+  const Scene scene = parse_scene(held_rod + two_poses, "my.toml");
+  EXPECT_EQ(scene.grippers[0].position, Eigen::Vector3d::Zero());
+  EXPECT_EQ(motion_of(scene)->begin, 1);
+  EXPECT_EQ(motion_of(scene)->end, 3);
+  const Scene half = scene_at(scene, 2);
+  EXPECT_LT((half.grippers[0].position - Eigen::Vector3d(0.1, 0, 0)).norm(), 1e-15);
+  EXPECT_LT((*half.grippers[0].direction - Eigen::Vector3d(1, 1, 0).normalized()).norm(), 1e-15);
+  EXPECT_FALSE(motion_of(half));
+  EXPECT_EQ(half.length, scene.length);
+}
+
+TEST(MovingScene, MovesObstaclesByTheirOwnTime) {
+  const Scene scene = parse_scene(
+      held_rod + two_poses + "[[obstacle]]\nnormal = [0, 1, 0]\n[[obstacle.pose]]\ntime = 0\n" +
+          "point = [0, -1, 0]\n[[obstacle.pose]]\ntime = 2\npoint = [0, -0.5, 0]\n",
+      "my.toml");
+  const auto height = [&](double time, double obstacle_time) {
+    return scene_at(scene, time, obstacle_time).obstacles[0].body.clearance({0, 0, 0});
+  };
+  EXPECT_NEAR(height(2, 0), 0.99, 1e-15);
+  EXPECT_NEAR(height(0, 1), 0.74, 1e-15);
+  EXPECT_NEAR(scene.obstacles[0].body.clearance({0, 0, 0}), 0.99, 1e-15);
+}
+
+TEST(MovingScene, KeepsADirectionThatNoPoseHas) {
+  const Scene scene = parse_scene(
+      held_rod + "direction = [0, 1, 0]\n[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n",
+      "my.toml");
+  EXPECT_EQ(*scene_at(scene, 5).grippers[0].direction, Eigen::Vector3d::UnitY());
+}
+
+TEST(MovingScene, ReadsPosesFromAFileBesideIt) {
+  const std::string folder = testing::TempDir();
+  std::ofstream(folder + "way.csv") << "time,x,y,z\n0,0,0,0\n1,0.5,0,0\n";
+  const std::string text = held_rod + "hold = \"pin\"\ntrajectory = \"way.csv\"\n";
+  const Scene scene = parse_scene(text, folder + "my.toml");
+  EXPECT_EQ(scene_at(scene, 1).grippers[0].position.x(), 0.5);
+  std::ofstream(folder + "way.csv") << "time,x,y,z\n0,0,0,nowhere\n";
+  try {
+    (void)parse_scene(text, folder + "my.toml");
+    ADD_FAILURE() << "read";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("my.toml:8: gripper.trajectory = 'way.csv': way.csv:2: "
+                        "z = \"nowhere\""),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(MovingScene, SaysWhatIsWrongWithAPose) {
+  const auto expect_error = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(error_of(text).find(part), std::string::npos) << error_of(text);
+  };
+  const std::string first = "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n";
+  expect_error(held_rod + "position = [0, 0, 0]\n" + two_poses,
+               "my.toml:7: gripper.position = [ 0, 0, 0 ]: given besides poses");
+  expect_error(held_rod + "direction = \"0 deg\"\n" + two_poses,
+               "given besides poses with directions");
+  expect_error(held_rod + first, "gripper.direction: missing");
+  expect_error(held_rod + two_poses + first,
+               "gripper.pose.time = 0: not above that of the pose before");
+  expect_error(held_rod + two_poses + "[[gripper.pose]]\ntime = 4\nposition = [0, 0, 0]\n",
+               "given for some poses only");
+  expect_error(held_rod + two_poses + "[[gripper.pose]]\ntime = \"4 h\"\nposition = [0, 0, 0]\n",
+               "unknown unit \"h\" in \"4 h\" (allowed: s, ms, min)");
+  expect_error(held_rod + "hold = \"pin\"\n" + two_poses, "unknown key");
+  expect_error(held_rod + "trajectory = \"none.csv\"\n", "no such file beside the scene");
+  expect_error(held_rod + "trajectory = \"none.csv\"\n" + two_poses, "given besides poses");
+  expect_error(held_rod + two_poses + "[track]\nframe_rate = 0\n",
+               "track.frame_rate = 0: out of range");
+  expect_error(held_rod + two_poses + "[track]\nrate = 5\n", "unknown key");
+}
+
+}  // namespace
+}  // namespace dlo::compare
