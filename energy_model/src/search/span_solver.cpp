@@ -13,11 +13,11 @@
 #include "certify/enough_terms.hpp"
 #include "certify/free_turns.hpp"
 #include "newton/penalty_descent.hpp"
-#include "newton/restore.hpp"
 #include "newton/trust_region.hpp"
 #include "problem/segments.hpp"
 #include "search/search_log.hpp"
 #include "search/span_starts.hpp"
+#include "search/start_ranking.hpp"
 #include "search/way_down.hpp"
 
 namespace dlo::energy_model {
@@ -75,18 +75,6 @@ std::vector<SpanSolution> list_of(SpanSolution solution) {
   result.push_back(std::move(solution));
   return result;
 }
-
-/// A shape to start from and, where starts were ranked, its unknowns in the model of the ranking.
-struct Start {
-  TangentField field;
-  std::shared_ptr<const SpanEnergy> model;
-  Eigen::VectorXd x;
-  double cost = 0;  // energy and that of springs at the grips, or without a gap
-  // At the nodes of the ranking, before a fit, and the least that it may cost
-  // without a gap.
-  StartShape shape = {};
-  double least = 0;
-};
 
 class Search {
  public:
@@ -248,67 +236,16 @@ class Search {
     if (options_.all) return starts;
     const std::shared_ptr<SpanEnergy> model =
         workspace_.model(span_, std::max(8, std::min(natural_terms_, coarse_terms())));
-    SpanSolution looked;
-    looked.model = model;
-    if (model->constraints() > 0 && !taut_ && !model->has_soft_obstacles() &&
-        !span_.has_material_directors()) {
-      meet_grips(looked, starts);
-    } else {
-      PointOnSpan point;
-      for (Start& start : starts) {
-        point.x = model->fit(start.field(model->nodes()));
-        if (model->terms() == coarse_terms()) {
-          start.model = model;
-          start.x = point.x;
-        }
-        evaluate(looked, point);
-        // Where the rod is taut, springs at the grips as stiff as it is between
-        // them.
-        start.cost = point.energy + stiffness_ / 2 * point.residual.squaredNorm();
-      }
-    }
-    spent_ += looked.evaluations;
-    std::stable_sort(starts.begin(), starts.end(), is_cheaper);
+    spent_ += rank_starts(
+        starts, {.model = model,
+                 .load = load_,
+                 .followed = followed(),
+                 .keeps_unknowns = model->terms() == coarse_terms(),
+                 .stiffness = stiffness_,
+                 .meets_grips = model->constraints() > 0 && !taut_ &&
+                                !model->has_soft_obstacles() && !span_.has_material_directors(),
+                 .deadline = &options_.deadline});
     return starts;
-  }
-
-  static bool is_cheaper(const Start& a, const Start& b) { return a.cost < b.cost; }
-
-  /// A gap that is left makes a shape cheaper than any that closes it: starts
-  /// are ranked by what they cost once it is closed, as far as they can still
-  /// be among those that are followed anyway.
-  void meet_grips(SpanSolution& looked, std::vector<Start>& starts) {
-    // Springs at the grips: as a descent by penalty begins with, and what a gap
-    // costs at least.
-    const double kappa = 100 * (1 + load_);
-    SpanEnergy& model = *looked.model;
-    for (Start& start : starts) {
-      start.shape = start.field(model.nodes());
-      const SpanEnergy::Estimate seen = model.estimate(start.shape.tangents);
-      start.cost = seen.energy + kappa / 2 * seen.gap * seen.gap;
-      // A fit in few terms is smoother, and closing a gap may straighten it.
-      start.least = seen.energy - seen.bending / 2;
-    }
-    std::stable_sort(starts.begin(), starts.end(), is_cheaper);
-    std::vector<double> energies;  // of those that meet the grips, the lowest ones
-    PointOnSpan point;
-    for (Start& start : starts) {
-      if (out_of_time()) return;
-      const double most = energies.size() < followed() ? infinite : energies.back();
-      if (start.least > most) continue;
-      point.x = model.fit(start.shape);
-      evaluate(looked, point);
-      if (!restore(looked, point, loosest_gap, most)) {
-        start.cost = std::max(start.cost, most);
-        continue;
-      }
-      start.model = looked.model;
-      start.x = point.x;
-      start.cost = point.energy;
-      energies.insert(std::upper_bound(energies.begin(), energies.end(), point.energy),
-                      point.energy);
-      if (energies.size() > followed()) energies.pop_back();
-    }
   }
 
   /// A curved rod, or a strip, that gives way out of its plane twists far: it has shapes of its own

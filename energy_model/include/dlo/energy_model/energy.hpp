@@ -44,9 +44,10 @@ struct EnergyOptions {
 /// lead to nothing stable), and what cannot hold itself is followed to where it falls, also out of
 /// its plane.
 ///
-/// Twist (Problem) is put in from the lowest shape without it, in small turns of the later clamp;
-/// what loses its stability or comes to the end of its branch is followed downhill. Nothing keeps
-/// the rod from passing through itself. `start` with its `twists` is gone from directly.
+/// Twist (Problem) is put in from the lowest shape without it, in turns of the later clamp, each
+/// held against its work; what loses its stability or comes to the end of its branch is followed
+/// downhill. Nothing keeps the rod from passing through itself. `start` with its `twists` is gone
+/// from directly.
 ///
 /// A rod with material directors (Problem) has the energy of its strains less the natural ones,
 ///     E = int 1/2 EI_1 (u1 - u01)^2 + 1/2 EI_2 (u2 - u02)^2 + 1/2 GJ (u3 - u03)^2 ds - ...,

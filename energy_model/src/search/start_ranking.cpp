@@ -1,0 +1,76 @@
+#include "search/start_ranking.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "newton/restore.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+bool is_cheaper(const Start& a, const Start& b) { return a.cost < b.cost; }
+
+void weigh_with_springs(SpanSolution& looked, const StartRanking& ranking,
+                        std::vector<Start>& starts) {
+  PointOnSpan point;
+  for (Start& start : starts) {
+    point.x = looked.model->fit(start.field(looked.model->nodes()));
+    if (ranking.keeps_unknowns) {
+      start.model = looked.model;
+      start.x = point.x;
+    }
+    evaluate(looked, point);
+    start.cost = point.energy + ranking.stiffness / 2 * point.residual.squaredNorm();
+  }
+}
+
+/// A gap that is left makes a shape cheaper than any that closes it: starts are ranked by what they
+/// cost once it is closed, as far as they can still be among those that are followed anyway.
+void meet_grips(SpanSolution& looked, const StartRanking& ranking, std::vector<Start>& starts) {
+  // Springs at the grips: as a descent by penalty begins with, and what a gap costs at least.
+  const double kappa = 100 * (1 + ranking.load);
+  SpanEnergy& model = *looked.model;
+  for (Start& start : starts) {
+    start.shape = start.field(model.nodes());
+    const SpanEnergy::Estimate seen = model.estimate(start.shape.tangents);
+    start.cost = seen.energy + kappa / 2 * seen.gap * seen.gap;
+    // A fit in few terms is smoother, and closing a gap may straighten it.
+    start.least = seen.energy - seen.bending / 2;
+  }
+  std::stable_sort(starts.begin(), starts.end(), is_cheaper);
+  std::vector<double> energies;  // of those that meet the grips, the lowest ones
+  PointOnSpan point;
+  for (Start& start : starts) {
+    if (ranking.deadline != nullptr && ranking.deadline->passed()) return;
+    const double most = energies.size() < ranking.followed ? std::numeric_limits<double>::infinity()
+                                                           : energies.back();
+    if (start.least > most) continue;
+    point.x = model.fit(start.shape);
+    evaluate(looked, point);
+    if (!restore(looked, point, loosest_gap, most)) {
+      start.cost = std::max(start.cost, most);
+      continue;
+    }
+    start.model = looked.model;
+    start.x = point.x;
+    start.cost = point.energy;
+    energies.insert(std::upper_bound(energies.begin(), energies.end(), point.energy), point.energy);
+    if (energies.size() > ranking.followed) energies.pop_back();
+  }
+}
+
+}  // namespace
+
+int rank_starts(std::vector<Start>& starts, const StartRanking& ranking) {
+  SpanSolution looked;
+  looked.model = ranking.model;
+  if (ranking.meets_grips) {
+    meet_grips(looked, ranking, starts);
+  } else {
+    weigh_with_springs(looked, ranking, starts);
+  }
+  std::stable_sort(starts.begin(), starts.end(), is_cheaper);
+  return looked.evaluations;
+}
+
+}  // namespace dlo::energy_model
