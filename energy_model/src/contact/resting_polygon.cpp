@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/tangent_between.hpp"
+#include "contact/tangent_between.hpp"
 #include "dlo/energy_model/polygon.hpp"
 
 namespace dlo::energy_model {

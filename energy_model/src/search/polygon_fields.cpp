@@ -5,7 +5,7 @@
 #include <memory>
 #include <utility>
 
-#include "base/tangent_between.hpp"
+#include "contact/tangent_between.hpp"
 #include "kirchhoff/relaxed_polygon.hpp"
 #include "kirchhoff/rod_span.hpp"
 

@@ -36,6 +36,10 @@ constexpr int least_terms = 7;
 /// Unknowns with which a minimum between grips is looked for.
 constexpr int coarse_unknowns = 100;
 
+/// Error over the length above which a shape is asked about with more terms than it takes to look
+/// right.
+constexpr double largest_told_error = 1e-5;
+
 /// Gradient over the load that a shape may have in more terms than its own.
 constexpr double largest_residual = 1e-5;
 
@@ -102,7 +106,7 @@ class Search {
 
   [[nodiscard]] SpanSolution finish(SpanSolution solution) {
     solution = refined(std::move(solution));
-    certify(solution, load_);
+    judge(solution);
     return solution;
   }
 
@@ -519,11 +523,36 @@ class Search {
         .norm();
   }
 
+  /// Next to a fold what the terms left out push decides whether there is a shape, and elsewhere it
+  /// may be most of the error that is told: then it is asked once more, with half as many terms
+  /// more.
+  void judge(SpanSolution& solution) {
+    certify(solution, load_);
+    const bool asks = solution.status == SolveStatus::near_singular ||
+                      (counts(solution) && solution.error > largest_told_error);
+    const int more = std::min(max_terms, 3 * solution.terms / 2);
+    const int fields = span_.planar ? 1 : span_.has_material_directors() ? 3 : 2;
+    if (!asks || options_.terms > 0 || out_of_time() ||
+        more * fields * solution.model->pieces() > most_unknowns) {
+      return;
+    }
+    SpanSolution finer = empty_solution(more);
+    finer.x = finer.model->adopt(*solution.model, solution.x);
+    finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
+    workspace_.newton().polish(finer, load_);
+    finer.resolved = solution.resolved;
+    certify(finer, load_);
+    spent_ += finer.evaluations;
+    const int evaluations = solution.evaluations + finer.evaluations;
+    if (finer.error < solution.error) solution = std::move(finer);
+    solution.evaluations = evaluations;
+  }
+
   /// Keeps an equilibrium that is not known yet, or the first failure until there is one.
   /// @return whether it is such an equilibrium
   bool add(SpanSolution solution, std::vector<SpanSolution>& found) {
     spent_ += solution.evaluations;
-    certify(solution, load_);
+    judge(solution);
     if (!counts(solution)) {
       if (found.empty()) found.push_back(std::move(solution));
       return false;

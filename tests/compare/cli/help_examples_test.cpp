@@ -132,7 +132,7 @@ TEST_F(Reference, BashCompletesSceneFiles) {
   using Words = std::vector<std::string>;
   EXPECT_EQ(completions("dlo solve m"), Words{"my cable.toml"});
   EXPECT_EQ(completions("dlo check a.toml --shape mi"), Words{"mine.csv"});
-  EXPECT_EQ(completions("dlo compare data/scenes/c"), Words{"data/scenes/cable.toml"});
+  EXPECT_EQ(completions("dlo compare data/scenes/ca"), Words{"data/scenes/cable.toml"});
   EXPECT_EQ(completions("dlo solve --points ''"), Words{""});
 }
 

@@ -439,9 +439,11 @@ TEST(Report, ReadsFoldersOfScenes) {
   }
   const std::vector<SceneFile> files = load_scene_files({folder, folder + "/cable.toml"});
   ASSERT_EQ(files.size(), scenes + 1);
-  EXPECT_EQ(files.front().name, "cable.toml");
+  const auto cable = std::find_if(files.begin(), files.end(),
+                                  [](const SceneFile& file) { return file.name == "cable.toml"; });
+  ASSERT_NE(cable, files.end());
   EXPECT_EQ(files.back().name, "cable_2.toml");
-  EXPECT_EQ(files.back().text, files.front().text);
+  EXPECT_EQ(files.back().text, cable->text);
   EXPECT_EQ(load_scene(folder + "/" + files[1].name).name, files[1].scene.name);
   EXPECT_THROW((void)load_scene_files({std::string(DLO_DATA) + "/shapes"}), InputError);
   EXPECT_THROW((void)load_scene_files({"nowhere.toml"}), InputError);
