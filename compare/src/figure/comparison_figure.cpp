@@ -142,7 +142,8 @@ ComparisonFigures comparison_figures(const Scene& scene, const std::vector<Compa
           "force model's joints (turning angle over the mean length of both segments) as points.",
           scene.name),
       .csv_file = figures.shapes.csv_file,
-      .panels = {curvature_panel(figures.shapes.csv_file, all, scene.planar())}};
+      .panels = {curvature_panel(figures.shapes.csv_file, all,
+                                 stays_in_plane(scene, comparisons.front().reference.points))}};
   figures.deviation = deviation_figure(scene, comparisons, number);
   return figures;
 }

@@ -25,10 +25,24 @@ double signed_curvature(const std::optional<Eigen::Vector3d>& normal,
   return normal ? binormal.dot(*normal) : binormal.norm();
 }
 
-/// The plane's normal towards the reader of a plot: positive curvature turns to the left.
-std::optional<Eigen::Vector3d> normal_to_reader(const Scene& scene, const View& view) {
-  std::optional<Eigen::Vector3d> normal = scene.plane_normal();
-  if (!normal) return normal;
+/// Normal of the plane that the scene has, if the points lie in it.
+std::optional<Eigen::Vector3d> plane_through(const Scene& scene, const Eigen::Matrix3Xd& points) {
+  constexpr double thick = 1e-6;  // of the length
+  const std::optional<Eigen::Vector3d> normal = scene.plane_normal();
+  if (!normal) return std::nullopt;
+  const Eigen::Vector3d held = scene.grippers.front().position;
+  for (const auto& point : points.colwise()) {
+    if (!(std::abs(normal->dot(point - held)) <= thick * scene.length)) return std::nullopt;
+  }
+  return normal;
+}
+
+/// The plane's normal towards the reader of a plot: positive curvature turns to the left. None
+/// where the points leave it.
+std::optional<Eigen::Vector3d> normal_to_reader(const Scene& scene, const View& view,
+                                                const Eigen::Matrix3Xd& points) {
+  std::optional<Eigen::Vector3d> normal = plane_through(scene, points);
+  if (!normal) return std::nullopt;
   const Eigen::Vector3d reader =
       Eigen::Vector3d::Unit(view.right).cross(Eigen::Vector3d::Unit(view.up));
   if (normal->dot(reader) < 0) normal = -*normal;
@@ -37,11 +51,15 @@ std::optional<Eigen::Vector3d> normal_to_reader(const Scene& scene, const View& 
 
 }  // namespace
 
+bool stays_in_plane(const Scene& scene, const Eigen::Matrix3Xd& points) {
+  return plane_through(scene, points).has_value();
+}
+
 std::vector<View> views_of(const Scene& scene, const Eigen::Matrix3Xd& points) {
   Eigen::Index gravity = 1;
   if (scene.gravity.norm() > 0) scene.gravity.cwiseAbs().maxCoeff(&gravity);
   const int up = static_cast<int>(gravity);
-  if (const auto normal = scene.plane_normal()) {
+  if (const auto normal = plane_through(scene, points)) {
     Eigen::Index along = 0;
     const double largest = normal->cwiseAbs().maxCoeff(&along);
     if (largest > 1 - 1e-12) {
@@ -68,7 +86,7 @@ Series rod_series(const Reference& rod, const Scene& scene, const View& view) {
   series.arc_length = drawn_arc_lengths(scene.length);
   const energy_model::Samples samples = rod(series.arc_length);
   series.points = samples.points;
-  const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view);
+  const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view, series.points);
   for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
     const Eigen::Vector3d tangent = samples.tangents.col(i);
     series.curvature.push_back(
@@ -79,7 +97,7 @@ Series rod_series(const Reference& rod, const Scene& scene, const View& view) {
 
 Series polygon_series(const Shape& shape, const Scene& scene, const View& view) {
   Series series{.id = "force", .points = shape.points, .arc_length = shape.arc_length};
-  const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view);
+  const std::optional<Eigen::Vector3d> normal = normal_to_reader(scene, view, series.points);
   series.curvature.assign(shape.arc_length.size(), NAN);
   for (std::size_t i = 1; i + 1 < series.curvature.size(); ++i) {
     series.curvature[i] = signed_curvature(normal, joint_curvature(shape, i));

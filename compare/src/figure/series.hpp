@@ -33,15 +33,20 @@ struct View {
   int up = 1;
 };
 
-/// The plane itself if it is a coordinate plane; else two projections that share an axis, the first
-/// with gravity upright.
+/// Whether points lie in a plane that the scene has: rods leave it where they give way sideways.
+/// @param points  of the rod [m]
+[[nodiscard]] bool stays_in_plane(const Scene& scene, const Eigen::Matrix3Xd& points);
+
+/// The plane that the points stay in if it is a coordinate plane; else two projections that share
+/// an axis, the first with gravity upright.
 /// @param points  of the rod [m]
 [[nodiscard]] std::vector<View> views_of(const Scene& scene, const Eigen::Matrix3Xd& points);
 
 /// Arc lengths [m] at which continuous rods are drawn.
 [[nodiscard]] std::vector<double> drawn_arc_lengths(double length);
 
-/// A rod as a line, with its curvature; in a plane that turns to the left is positive.
+/// A rod as a line, with its curvature; where it stays in a plane that turns to the left is
+/// positive.
 [[nodiscard]] Series rod_series(const Reference& rod, const Scene& scene, const View& view);
 
 /// A polygon, with the curvature of its joints.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -48,6 +49,9 @@ Picture solution_picture(const Scene& scene, const std::vector<Solution>& soluti
   const std::vector<View> views = views_of(scene, solutions.front().shape.points);
   std::vector<Series> all = obstacle_series(scene, views, solutions.front().shape.points);
   if (auto unbent = unbent_series(scene)) all.push_back(std::move(*unbent));
+  const bool planar = std::all_of(
+      solutions.begin(), solutions.end(),
+      [&scene](const Solution& solution) { return stays_in_plane(scene, solution.shape.points); });
   // The stable ones, which come first, on top.
   for (std::size_t k = solutions.size(); k-- > 0;) {
     const Solution& solution = solutions[k];
@@ -55,7 +59,7 @@ Picture solution_picture(const Scene& scene, const std::vector<Solution>& soluti
     series.id = fmt::format("solution_{}", k + 1);
     series.title = title_of(solution, k + 1, solutions.size());
     series.style = style_of(solution, k, solutions.size());
-    series.curvature = signed_as_points(solution, series);
+    series.curvature = planar ? signed_as_points(solution, series) : solution.curvature;
     all.push_back(std::move(series));
   }
   for (std::size_t k = 0; k < solutions.size(); ++k) {
@@ -77,7 +81,7 @@ Picture solution_picture(const Scene& scene, const std::vector<Solution>& soluti
   shapes.panels = shape_panels(shapes.csv_file, all, views);
   Figure curvature{
       .name = "curvature", .title = "Curvature along the rod", .csv_file = shapes.csv_file};
-  curvature.panels = {curvature_panel(shapes.csv_file, all, scene.planar())};
+  curvature.panels = {curvature_panel(shapes.csv_file, all, planar)};
   return {{{{shapes}, {curvature}}}};
 }
 

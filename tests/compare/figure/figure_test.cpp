@@ -14,6 +14,7 @@
 #include "figure/comparison_figure.hpp"
 #include "figure/fit_figure.hpp"
 #include "figure/map_figure.hpp"
+#include "figure/series.hpp"
 #include "figure/shape_panels.hpp"
 #include "figure/solution_figure.hpp"
 #include "figure/sweep_figure.hpp"
@@ -95,6 +96,22 @@ TEST(SolutionPicture, ShowsCurvatureWithTheSenseOfTurning) {
     // It sinks to the right, so it turns to the right.
     EXPECT_NEAR(rows[i].at(4), -solution.curvature[i], 1e-8 * solution.curvature[0]) << i;
   }
+}
+
+// A rod that gives way out of its scene's plane turns neither left nor right.
+TEST(SolutionPicture, ShowsARodThatLeavesItsPlaneFromTwoSidesAndItsCurvatureWithoutASense) {
+  Scene scene = test::heavy_scene(1, 0);
+  scene.grippers.push_back(
+      {.at = 1, .position = {0.5, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
+  ASSERT_TRUE(scene.planar());
+  const Solution solution = solve(scene, Model::energy);
+  ASSERT_GT(solution.shape.points.row(2).cwiseAbs().maxCoeff(), 0.01);
+  EXPECT_FALSE(stays_in_plane(scene, solution.shape.points));
+  const Figure shapes = solution_picture(scene, {solution}).rows.at(0).at(0).at(0);
+  EXPECT_EQ(shapes.panels.size(), 2U);
+  const auto rows = rows_of(shapes, "solution_1");
+  EXPECT_FALSE(rows.empty());
+  for (const std::vector<double>& row : rows) EXPECT_GE(row.at(4), 0);
 }
 
 TEST(CheckPicture, MarksTheWorstPointAndJoinsEachPointWithItsPlaceOnTheRod) {
