@@ -65,7 +65,9 @@ void run(const TrackCommand& command) {
   std::optional<compare::DynamicTrack> moving;
   if (command.dynamic) moving = compare::dynamic_track(scene, track, options, command.damping);
   const compare::DynamicTrack* dynamic = moving ? &*moving : nullptr;
-  if (!command.paraview.empty()) write_series(track, scene, command.frames, command.paraview);
+  if (!command.paraview.empty()) {
+    write_series(track, scene, command.frames, command.paraview, dynamic);
+  }
   write_output(command.output,
                {.text =
                     [&] {

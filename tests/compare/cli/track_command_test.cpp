@@ -129,6 +129,27 @@ TEST_F(TrackCommand, HasTheMovingRodInEveryFormat) {
   EXPECT_EQ(columns(0), columns(1));
 }
 
+TEST_F(TrackCommand, WritesTheMovingRodForParaView) {
+  const std::string swung = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
+  const std::string file = path("rod.vtk.series");
+  const json document =
+      json::parse(run(words({"track", swung, "--frame-rate 10 --to 0.2 --no-force --dynamic",
+                             "--shapes --format json --paraview", file}))
+                      .out);
+  std::ifstream frame(path("rod_00002.vtk"));
+  std::string line;
+  while (std::getline(frame, line) && line.rfind("POINTS", 0) != 0) {
+  }
+  for (const json& point : document.at("dynamic").at("frames").back().at("points_m")) {
+    for (const json& coordinate : point) {
+      double written = 0;
+      frame >> written;
+      EXPECT_NEAR(written, coordinate.get<double>(), 1e-8);
+    }
+  }
+  EXPECT_TRUE(frame.good());
+}
+
 TEST_F(TrackCommand, SaysWhatAMovingRodCannotHave) {
   const std::string swung = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
   expect_error(words({"track", wire(), "--frame-rate 20 --dynamic"}), 2,
