@@ -13,6 +13,7 @@
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
+#include "series/dynamic_track.hpp"
 #include "series/paraview.hpp"
 #include "series/track.hpp"
 
@@ -23,12 +24,23 @@ struct TrackCommand {
   std::string scene;
   std::optional<double> from, to, frame_rate, obstacle_rate, step_rate;
   bool no_force = false;
+  bool dynamic = false;
+  compare::RodDamping damping;
   int samples = 41;
   TrackFrames frames;
   std::string paraview;
   SceneOptions overrides;
   OutputOptions output;
 };
+
+void throw_if_stopped(const compare::Scene& scene, const std::optional<compare::TrackStop>& stopped,
+                      const char* what, std::size_t frames) {
+  if (!stopped) return;
+  throw compare::ConvergenceError(
+      fmt::format("{}:{} stopped at {:g} s: {} ({} frames before it "
+                  "are written)",
+                  scene.file, what, stopped->time, stopped->why, frames));
+}
 
 void run(const TrackCommand& command) {
   const compare::Scene scene = command.overrides.load(command.scene);
@@ -44,20 +56,28 @@ void run(const TrackCommand& command) {
   options.samples = command.samples;
   options.solve = command.overrides.solve();
   if (!command.no_force) warn_of_polygons(scene);
+  if (command.dynamic) compare::require_dynamic(scene, options);
   const compare::Track track = [&] {
     ProgressBar bar("track");
     return compare::track(scene, options,
                           [&](std::int64_t done, std::int64_t total) { bar.show(done, total); });
   }();
-  if (!command.paraview.empty()) write_series(track, scene, command.frames, command.paraview);
+  std::optional<compare::DynamicTrack> moving;
+  if (command.dynamic) moving = compare::dynamic_track(scene, track, options, command.damping);
+  const compare::DynamicTrack* dynamic = moving ? &*moving : nullptr;
+  if (!command.paraview.empty()) {
+    write_series(track, scene, command.frames, command.paraview, dynamic);
+  }
   write_output(command.output,
-               {.text = [&] { return track_text(track, scene, options); },
-                .json = [&] { return track_json(track, scene, options, command.frames); },
-                .csv = [&] { return track_csv(track, scene, command.frames); }});
-  if (!track.stopped) return;
-  throw compare::ConvergenceError(
-      fmt::format("{}: stopped at {:g} s: {} ({} frames before it are written)", scene.file,
-                  track.stopped->time, track.stopped->why, track.frames.size()));
+               {.text =
+                    [&] {
+                      return track_text(track, scene, options) +
+                             (dynamic ? dynamic_text(*dynamic) : "");
+                    },
+                .json = [&] { return track_json(track, scene, options, command.frames, dynamic); },
+                .csv = [&] { return track_csv(track, scene, command.frames, dynamic); }});
+  throw_if_stopped(scene, track.stopped, "", track.frames.size());
+  if (moving) throw_if_stopped(scene, moving->stopped, " the moving rod", moving->frames.size());
 }
 
 }  // namespace
@@ -83,6 +103,23 @@ void add_track(CLI::App& app) {
   rate("--step-rate", options->step_rate,
        "steps of the force model a second, default [track] step_rate, or 30000");
   command->add_flag("--no-force", options->no_force, "leave the force model out");
+  CLI::Option* const dynamic = command->add_flag(
+      "--dynamic", options->dynamic,
+      "the rod with its inertia too, from rest at the first pose; the force model against it");
+  command
+      ->add_option("--damping", options->damping.material,
+                   "with --dynamic: Kelvin-Voigt time tau of the material [s]")
+      ->check(number_between(0, most))
+      ->needs(dynamic)
+      ->type_name("TIME")
+      ->capture_default_str();
+  command
+      ->add_option("--drag", options->damping.air,
+                   "with --dynamic: drag of the air per length and velocity [N s/m^2]")
+      ->check(number_between(0, most))
+      ->needs(dynamic)
+      ->type_name("VALUE")
+      ->capture_default_str();
   command->add_option("--samples", options->samples, "points of a frame's shape")
       ->check(CLI::Range(2, 10000))
       ->capture_default_str();
@@ -104,7 +141,8 @@ void add_track(CLI::App& app) {
       "the rod; what was before it is written.\n"
       "Examples:\n"
       "  dlo track data/scenes/corner_routing.toml --frame-rate 100 --no-force\n"
-      "  dlo track data/scenes/buckling_wire.toml --frame-rate 50 --format csv");
+      "  dlo track data/scenes/buckling_wire.toml --frame-rate 50 --format csv\n"
+      "  dlo track data/scenes/swung_rod.toml --frame-rate 50 --dynamic --damping 0.01");
   command->callback([options] { run(*options); });
 }
 

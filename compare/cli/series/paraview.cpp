@@ -12,7 +12,8 @@
 namespace dlo::cli {
 
 void write_series(const compare::Track& track, const compare::Scene& scene,
-                  const TrackFrames& frames, const std::string& file) {
+                  const TrackFrames& frames, const std::string& file,
+                  const compare::DynamicTrack* dynamic) {
   namespace fs = std::filesystem;
   fs::path stem = fs::path(file).filename();
   while (stem.has_extension()) stem = stem.stem();
@@ -24,10 +25,12 @@ void write_series(const compare::Track& track, const compare::Scene& scene,
     output.finish();
   };
   for (const std::size_t i : frames.of(track)) {
+    if (dynamic != nullptr && i >= dynamic->frames.size()) break;
     const compare::TrackFrame& frame = track.frames[i];
+    const Eigen::Matrix3Xd& points = dynamic != nullptr ? dynamic->frames[i].points : frame.points;
     const std::string name = fmt::format("{}_{:05}.vtk", stem.string(), i);
     write((folder / name).string(),
-          compare::vtk_polyline({track.arc_length, frame.points}, {},
+          compare::vtk_polyline({track.arc_length, points}, {},
                                 fmt::format("{}, t = {:.9g} s", scene.name, frame.time)));
     files.push_back({{"name", name}, {"time", frame.time}});
   }

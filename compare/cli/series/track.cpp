@@ -11,6 +11,7 @@
 #include "format/json.hpp"
 #include "format/solution.hpp"
 #include "option/output.hpp"
+#include "series/dynamic_track.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -254,7 +255,7 @@ std::string track_text(const Track& track, const compare::Scene& scene,
 }
 
 std::string track_json(const Track& track, const compare::Scene& scene, const TrackOptions& options,
-                       const TrackFrames& frames) {
+                       const TrackFrames& frames, const compare::DynamicTrack* dynamic) {
   Json result = {{"schema", "dlo/track/1"},
                  {"scene", scene.name},
                  {"model", "energy"},
@@ -272,6 +273,7 @@ std::string track_json(const Track& track, const compare::Scene& scene, const Tr
     result["force_model"] = nullptr;
   }
   result["no_force_model"] = track.force.none.empty() ? Json(nullptr) : Json(track.force.none);
+  if (dynamic != nullptr) result["dynamic"] = dynamic_json(*dynamic, track, frames);
   Json events = Json::array();
   for (const TrackEvent& event : track.events) events.push_back(event_json(track, event));
   result["events"] = std::move(events);
@@ -284,11 +286,14 @@ std::string track_json(const Track& track, const compare::Scene& scene, const Tr
   return json_text(result);
 }
 
-std::string track_csv(const Track& track, const compare::Scene& scene, const TrackFrames& frames) {
+std::string track_csv(const Track& track, const compare::Scene& scene, const TrackFrames& frames,
+                      const compare::DynamicTrack* dynamic) {
   std::string out = "time_s,energy_J,work_J,released_J,touches,error_over_length";
   for (std::size_t i = 1; i <= scene.grippers.size(); ++i) {
     append(out, ",fx_{0}_N,fy_{0}_N,fz_{0}_N,tx_{0}_Nm,ty_{0}_Nm,tz_{0}_Nm", i);
   }
+  const std::size_t grippers = scene.grippers.size();
+  if (dynamic != nullptr) out += dynamic_csv_header(grippers);
   out += "\n";
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (const std::size_t i : frames.of(track)) {
@@ -301,6 +306,7 @@ std::string track_csv(const Track& track, const compare::Scene& scene, const Tra
       for (const double value : load.force) append_csv(out, ",{:.10g}", value);
       for (const double value : load.torque) append_csv(out, ",{:.10g}", value);
     }
+    if (dynamic != nullptr) out += dynamic_csv_fields(*dynamic, grippers, i);
     out += "\n";
   }
   return out;

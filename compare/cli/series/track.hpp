@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
+#include "motion/dynamic_track.hpp"
 #include "motion/track.hpp"
 
 namespace dlo::cli {
@@ -20,11 +21,14 @@ struct TrackFrames {
 
 [[nodiscard]] std::string track_text(const compare::Track& track, const compare::Scene& scene,
                                      const compare::TrackOptions& options);
+/// @param dynamic  its moving rod, or null
 [[nodiscard]] std::string track_json(const compare::Track& track, const compare::Scene& scene,
                                      const compare::TrackOptions& options,
-                                     const TrackFrames& frames);
-/// A row a frame.
+                                     const TrackFrames& frames,
+                                     const compare::DynamicTrack* dynamic = nullptr);
+/// A row a frame. @param dynamic  its moving rod, or null
 [[nodiscard]] std::string track_csv(const compare::Track& track, const compare::Scene& scene,
-                                    const TrackFrames& frames);
+                                    const TrackFrames& frames,
+                                    const compare::DynamicTrack* dynamic = nullptr);
 
 }  // namespace dlo::cli

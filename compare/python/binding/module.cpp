@@ -10,6 +10,7 @@ PYBIND11_MODULE(_dlo, module) {
   dlo::python::bind_solve(module);
   dlo::python::bind_judge(module);
   dlo::python::bind_studies(module);
+  dlo::python::bind_track(module);
   dlo::python::bind_force_model(module);
   dlo::python::bind_batch(module);
 }

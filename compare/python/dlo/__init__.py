@@ -8,6 +8,7 @@
 Scenes       Scene, clamp, pin, load, obstacle, section, materials
 One shape    solve, solve_all, check, compare, plan, calibrate
 Many         sweep, bench, stability, modes
+Motion       track
 In a loop    ForceModel, Batch
 Errors       InputError (a ValueError), ConvergenceError (a RuntimeError)
 
@@ -25,6 +26,7 @@ from ._documents import (
     Modes,
     Plan,
     Stability,
+    Track,
 )
 from ._errors import ConvergenceError, InputError
 from ._functions import (
@@ -38,6 +40,7 @@ from ._functions import (
     solve_all,
     stability,
     sweep,
+    track,
 )
 from ._loops import Batch, ForceModel
 from ._scene import (
@@ -77,6 +80,7 @@ __all__ = [
     "Section",
     "Solution",
     "Stability",
+    "Track",
     "__version__",
     "bench",
     "calibrate",
@@ -94,4 +98,5 @@ __all__ = [
     "solve_all",
     "stability",
     "sweep",
+    "track",
 ]

@@ -223,6 +223,15 @@ def stability_map(
     scene: Optional[SceneData], axis: str, columns: int, rows: int, steps: int, threads: int
 ) -> tuple[str, str]: ...
 def bench(scenes: Sequence[SceneData], seconds: float, repeats: int) -> tuple[str, str]: ...
+def track(
+    scene: SceneData,
+    part: Sequence[Optional[float]],
+    force: bool,
+    damping: Optional[tuple[float, float]],
+    samples: int,
+    make_result: Callable[[str, str], Any],
+    limits: dict[str, Any],
+) -> Any: ...
 def modes(
     scene: SceneData,
     count: int,

@@ -8,6 +8,8 @@ from typing import Any, Optional
 import numpy
 from numpy.typing import NDArray
 
+from ._errors import InputError
+
 
 class Document:
     """A result as the command writes it: str() is its text, json its JSON as a dict."""
@@ -64,6 +66,65 @@ class Modes(Document):
     def shapes(self) -> NDArray[numpy.float64]:
         """The modes' displacements, shape (n, M, 3)."""
         return numpy.array([mode["shape_m"] for mode in self["modes"]], dtype=float)
+
+
+class Track(Document):
+    """A rod while its grippers move, frame by frame; of track()."""
+
+    @property
+    def arc_length(self) -> NDArray[numpy.float64]:
+        """Of the frames' points [m], shape (M,)."""
+        return numpy.array(self["arc_length_m"], dtype=float)
+
+    @property
+    def time(self) -> NDArray[numpy.float64]:
+        """Of the frames [s], shape (F,)."""
+        return self._frames("time_s")
+
+    @property
+    def points(self) -> NDArray[numpy.float64]:
+        """At rest [m], shape (F, M, 3)."""
+        return self._frames("points_m")
+
+    @property
+    def gripper_forces(self) -> NDArray[numpy.float64]:
+        """What each gripper exerts on the rod at rest [N], shape (F, G, 3)."""
+        return self._grippers("force_N")
+
+    @property
+    def gripper_torques(self) -> NDArray[numpy.float64]:
+        """The same about each gripper's position [N m], shape (F, G, 3)."""
+        return self._grippers("torque_Nm")
+
+    @property
+    def moving_points(self) -> NDArray[numpy.float64]:
+        """Of the rod with inertia [m], shape (F, M, 3); of one that was asked for (dynamic)."""
+        return self._frames("points_m", moving=True)
+
+    @property
+    def moving_gripper_forces(self) -> NDArray[numpy.float64]:
+        """The same of the grippers' forces [N], shape (F, G, 3)."""
+        return self._grippers("force_N", moving=True)
+
+    @property
+    def moving_gripper_torques(self) -> NDArray[numpy.float64]:
+        """The same of their torques [N m], shape (F, G, 3)."""
+        return self._grippers("torque_Nm", moving=True)
+
+    def _list(self, moving: bool) -> list[dict[str, Any]]:
+        if moving and "dynamic" not in self.json:
+            raise InputError("track: no rod with inertia was asked for (allowed: dynamic=True)")
+        frames: list[dict[str, Any]] = (self["dynamic"] if moving else self.json)["frames"]
+        return frames
+
+    def _frames(self, key: str, moving: bool = False) -> NDArray[numpy.float64]:
+        return numpy.array([frame[key] for frame in self._list(moving)], dtype=float)
+
+    def _grippers(self, key: str, moving: bool = False) -> NDArray[numpy.float64]:
+        frames = self._list(moving)
+        return numpy.array(
+            [[gripper[key] for gripper in frame["grippers"]] for frame in frames], dtype=float
+        )
 
 
 class Calibration(Document):

@@ -8,7 +8,7 @@ import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from . import _dlo
-from ._documents import Benchmark, ForceModelFit, MaterialFit, Modes, Plan, Stability
+from ._documents import Benchmark, ForceModelFit, MaterialFit, Modes, Plan, Stability, Track
 from ._errors import InputError
 from ._scene import Quantity, Scene, SceneLike, as_scene
 
@@ -238,4 +238,37 @@ def modes(
     found: Modes = _dlo.modes(
         as_scene(scene)._data, count, rate, damping, samples, Modes, limits
     )
+    return found
+
+
+def track(
+    scene: SceneLike,
+    *,
+    begin: Optional[float] = None,
+    end: Optional[float] = None,
+    frame_rate: Optional[float] = None,
+    obstacle_rate: Optional[float] = None,
+    step_rate: Optional[float] = None,
+    force: bool = True,
+    dynamic: bool = False,
+    damping: float = 0.0,
+    drag: float = 0.0,
+    samples: int = 41,
+    **limits: Any,
+) -> Track:
+    """The rod of a scene that moves, at rest at every time: `dlo track`.
+
+    begin, end: of the motion [s]; None: the first and the last pose. frame_rate, obstacle_rate,
+    step_rate: frames, moves of obstacles and steps of the force model a second; None: as the scene
+    says. force: the force model beside it. dynamic: the rod with inertia too, from rest at the first
+    pose; damping: its material's Kelvin-Voigt time [s], drag: the air's force per length and velocity
+    [N s/m^2]. samples: M points of each frame.
+
+    Raises InputError, or ConvergenceError where it had to stop, whose result is what was before.
+    """
+    if not dynamic and (damping != 0 or drag != 0):
+        raise InputError("track: damping and drag are those of a rod with inertia (allowed: dynamic=True)")
+    part = [begin, end, frame_rate, obstacle_rate, step_rate]
+    loss = (damping, drag) if dynamic else None
+    found: Track = _dlo.track(as_scene(scene)._data, part, force, loss, samples, Track, limits)
     return found

@@ -102,10 +102,10 @@ ForceFrame ForceTrack::frame(const energy_model::Equilibrium& rod,
                              const std::vector<double>& arc_length) const {
   const force_model::Simulation& simulation = *state_->simulation;
   const Eigen::Matrix3Xd points = simulation.points();
-  const Shape shape = state_->discretisation.shape(points);
   ForceFrame frame;
-  frame.error_over_length = distance(shape, rod.sample) / state_->discretisation.length;
-  frame.points = resample(shape, arc_length).points;
+  frame.shape = state_->discretisation.shape(points);
+  frame.error_over_length = distance(frame.shape, rod.sample) / state_->discretisation.length;
+  frame.points = resample(frame.shape, arc_length).points;
   // What an obstacle does to a held point inside a gripper is not felt outside.
   force_model::Rod without_obstacles = simulation.rod();
   without_obstacles.walls.clear();

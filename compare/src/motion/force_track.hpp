@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape.hpp"
 #include "dlo/compare/solution.hpp"
 #include "dlo/energy_model/equilibrium.hpp"
 
@@ -20,6 +21,7 @@ struct ForceFrame {
   double error_over_length = 0;       ///< RMS distance from the energy model's shape [-]
   std::vector<GripperLoad> grippers;  ///< what each exerts on the rod
   Eigen::Matrix3Xd points;  ///< at the track's arc lengths, between its points straight [m]
+  Shape shape;              ///< its own points [m]
 };
 
 /// What the force model's frames come to.

@@ -11,23 +11,12 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "motion/polygon_modes.hpp"
+#include "motion/scene_inertia.hpp"
 #include "polygon/energy_problems.hpp"
 #include "polygon/step_constants.hpp"
 
 namespace dlo::compare {
 namespace {
-
-energy_model::Inertia inertia_of(const Scene& scene) {
-  energy_model::Inertia inertia;
-  inertia.mass_per_length = scene.mass_per_length();
-  for (const Section& section : scene.sections) {
-    inertia.of_sections.push_back(section.mass_per_length);
-  }
-  for (const PointLoad& load : scene.loads) {
-    if (load.mass > 0) inertia.point_masses.push_back({load.at, load.mass});
-  }
-  return inertia;
-}
 
 /// Displacements of the polygon's free points in a mode of the rod.
 Eigen::VectorXd movement_of(const energy_model::VibrationMode& mode, const Scene& scene,
@@ -112,7 +101,7 @@ SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
   energy_model::Vibrations found;
   try {
     found = energy_model::vibrations(
-        energy_problem(scene), inertia_of(scene), shape,
+        energy_problem(scene), scene_inertia(scene), shape,
         {.count = options.count, .tolerance = 1e-8, .time_limit = options.solve.time_limit});
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));

@@ -13,8 +13,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/energy_model/energy.hpp"
-#include "polygon/energy_problems.hpp"
-#include "scene/reach.hpp"
+#include "motion/frame_clock.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -24,79 +23,6 @@ using energy_model::Equilibrium;
 /// Energy that rounding and the solver's tolerance leave open, over EI/l and what gravity and loads
 /// could do [-].
 constexpr double energy_noise = 1e-8;
-
-/// When the frames are.
-class FrameClock {
- public:
-  FrameClock(const Scene& scene, const TrackOptions& options) {
-    const std::optional<TimeSpan> motion = motion_of(scene);
-    if (!motion) {
-      throw InputError(fmt::format(
-          "{}: nothing moves (allowed: [[gripper.pose]] or [[obstacle.pose]] with time and "
-          "position, or trajectory = \"file.csv\")",
-          scene.file));
-    }
-    begin_ = options.from.value_or(motion->begin);
-    end_ = options.to.value_or(motion->end);
-    if (!(end_ > begin_)) {
-      throw InputError(
-          fmt::format("{}: from {:g} s to {:g} s: no time passes (allowed: to > from; poses are "
-                      "from {:g} s to {:g} s)",
-                      scene.file, begin_, end_, motion->begin, motion->end));
-    }
-    rate_ = options.rates.frames;
-    obstacle_rate_ = options.rates.obstacles.value_or(rate_);
-    constexpr double most_frames = 1e7;
-    const double steps = std::ceil((end_ - begin_) * rate_ * (1 - 1e-12));
-    if (!(steps < most_frames)) {
-      throw InputError(fmt::format("{}: {:g} frames (allowed: up to {:g}, by a lower frame rate)",
-                                   scene.file, steps, most_frames));
-    }
-    steps_ = static_cast<std::size_t>(steps);
-  }
-
-  [[nodiscard]] std::size_t frames() const { return steps_ + 1; }
-  [[nodiscard]] double time(std::size_t frame) const {
-    return frame >= steps_ ? end_ : begin_ + static_cast<double>(frame) / rate_;
-  }
-  /// When obstacles were moved last.
-  [[nodiscard]] double obstacle_time(std::size_t frame) const {
-    const double since = time(frame) - begin_;
-    constexpr double rounding = 1e-9;
-    return std::min(end_, begin_ + std::floor(since * obstacle_rate_ + rounding) / obstacle_rate_);
-  }
-  [[nodiscard]] Scene scene(const Scene& scene, std::size_t frame) const {
-    return scene_at(scene, time(frame), obstacle_time(frame));
-  }
-
- private:
-  double begin_ = 0, end_ = 0, rate_ = 0, obstacle_rate_ = 0;
-  std::size_t steps_ = 0;
-};
-
-/// Those that are in reach at any of the frames.
-std::vector<std::size_t> obstacles_ever_in_reach(const Scene& scene, const FrameClock& clock) {
-  std::vector<bool> reached(scene.obstacles.size(), false);
-  for (std::size_t frame = 0; frame < clock.frames() && !scene.obstacles.empty(); ++frame) {
-    const Scene now = clock.scene(scene, frame);
-    for (const std::size_t i : obstacles_in_reach(now, now.force_model)) reached[i] = true;
-  }
-  std::vector<std::size_t> result;
-  for (std::size_t i = 0; i < reached.size(); ++i) {
-    if (reached[i]) result.push_back(i);
-  }
-  return result;
-}
-
-/// Of the same obstacles in all frames.
-energy_model::Problem frame_problem(const Scene& now, const std::vector<std::size_t>& obstacles) {
-  energy_model::Problem problem = energy_problem(now);
-  problem.obstacles.clear();
-  for (const std::size_t i : obstacles) {
-    problem.obstacles.push_back({now.obstacles[i].body, now.obstacles[i].stiffness});
-  }
-  return problem;
-}
 
 /// @throws InputError if a gripper has been moved into an obstacle
 void require_clear(const Scene& now) {
@@ -188,7 +114,7 @@ class Tracker {
   Tracker(const Scene& scene, const TrackOptions& options)
       : scene_(scene),
         options_(options),
-        clock_(scene, options),
+        clock_(scene, {options.from, options.to}, options.rates),
         obstacles_(obstacles_ever_in_reach(scene, clock_)),
         solver_({.terms = options.solve.terms,
                  .max_evaluations = options.solve.max_evaluations,

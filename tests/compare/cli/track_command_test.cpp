@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -85,6 +87,92 @@ TEST_F(TrackCommand, OtherCommandsTakeTheSceneAtATime) {
   expect_error(words({"track", std::string(DLO_DATA) + "/scenes/cable.toml"}), 2,
                {"nothing moves", "[[gripper.pose]]"});
   expect_error(words({"track", wire(), "--frame-rate 0"}), 2, {"--frame-rate"});
+}
+
+TEST_F(TrackCommand, HasTheMovingRodInEveryFormat) {
+  const std::string file = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
+  const std::string track =
+      words({"track", file, "--to 0.2 --frame-rate 50 --step-rate 3000 --dynamic --drag 0.02"});
+  const Outcome text = run(track);
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("dynamic     damping 0 s, drag 0.02 N s/m^2"), std::string::npos)
+      << text.out;
+  EXPECT_NE(text.out.find("force model off the moving rod by"), std::string::npos) << text.out;
+  const json document = json::parse(run(track + " --every 5 --shapes --format json").out);
+  EXPECT_EQ(document.at("schema"), "dlo/track/1");
+  const json& dynamic = document.at("dynamic");
+  EXPECT_EQ(dynamic.at("drag_N_s_per_m2"), 0.02);
+  EXPECT_EQ(dynamic.at("damping_s"), 0);
+  EXPECT_LT(dynamic.at("energy_error").get<double>(), 1e-6);
+  EXPECT_EQ(dynamic.at("stopped"), nullptr);
+  ASSERT_EQ(dynamic.at("frames").size(), document.at("frames").size());
+  const json& last = dynamic.at("frames").back();
+  EXPECT_EQ(last.at("time_s"), 0.2);
+  EXPECT_EQ(last.at("points_m").size(), 41U);
+  const json& energy = last.at("energy_J");
+  EXPECT_GT(energy.at("kinetic").get<double>(), 0);
+  EXPECT_GT(energy.at("dissipated").get<double>(), 0);
+  EXPECT_GT(last.at("quasi_static_error_over_length").get<double>(), 0.01);
+  EXPECT_EQ(last.at("force_error_over_length"),
+            dynamic.at("force_model").at("largest_error_over_length"));
+  EXPECT_EQ(
+      json::parse(run(track + " --no-force --format json").out).at("dynamic").at("force_model"),
+      nullptr);
+  const std::string csv = run(track + " --every 10 --no-force --format csv").out;
+  EXPECT_NE(csv.find(",dynamic_energy_J,kinetic_J,"), std::string::npos) << csv;
+  const auto columns = [&](std::size_t line) {
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < line; ++i) at = csv.find('\n', at) + 1;
+    return std::count(csv.begin() + static_cast<std::ptrdiff_t>(at),
+                      csv.begin() + static_cast<std::ptrdiff_t>(csv.find('\n', at)), ',');
+  };
+  EXPECT_EQ(columns(0), columns(1));
+}
+
+TEST_F(TrackCommand, WritesTheMovingRodForParaView) {
+  const std::string swung = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
+  const std::string file = path("rod.vtk.series");
+  const json document =
+      json::parse(run(words({"track", swung, "--frame-rate 10 --to 0.2 --no-force --dynamic",
+                             "--shapes --format json --paraview", file}))
+                      .out);
+  std::ifstream frame(path("rod_00002.vtk"));
+  std::string line;
+  while (std::getline(frame, line) && line.rfind("POINTS", 0) != 0) {
+  }
+  for (const json& point : document.at("dynamic").at("frames").back().at("points_m")) {
+    for (const json& coordinate : point) {
+      double written = 0;
+      frame >> written;
+      EXPECT_NEAR(written, coordinate.get<double>(), 1e-8);
+    }
+  }
+  EXPECT_TRUE(frame.good());
+}
+
+TEST_F(TrackCommand, SaysWhatAMovingRodCannotHave) {
+  const std::string swung = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
+  expect_error(words({"track", wire(), "--frame-rate 20 --dynamic"}), 2,
+               {"buckling_wire.toml: --dynamic: obstacle 1 is rigid", "allowed"});
+  expect_error(words({"track", swung, "--dynamic --from 0.1"}), 2, {"from 0.1 s", "allowed"});
+  expect_error(words({"track", swung, "--damping 0.1"}), 2, {"--damping", "--dynamic"});
+  expect_error(words({"track", swung, "--dynamic --drag -1"}), 2, {"--drag", "-1"});
+}
+
+TEST_F(TrackCommand, EndsTheMovingRodWhereTheTrackEnds) {
+  const std::string file = scene(
+      "[rod]\nlength = 1\ndiameter = 0.01\nmaterial = \"silicone\"\n"
+      "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"0 deg\"\n"
+      "[[gripper]]\nat = 1\nhold = \"pin\"\n"
+      "[[gripper.pose]]\ntime = 0\nposition = [0.9, 0, 0]\n"
+      "[[gripper.pose]]\ntime = 1\nposition = [1.1, 0, 0]\n");
+  const Outcome result = run(
+      words({"track", file, "--frame-rate 10 --no-force --dynamic --damping 0.01 --format json"}));
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.err.find("stopped at 0.5 s"), std::string::npos) << result.err;
+  const json document = json::parse(result.out);
+  EXPECT_EQ(document.at("dynamic").at("stopped").at("time_s"), 0.5);
+  EXPECT_EQ(document.at("dynamic").at("frames").size(), 5U);
 }
 
 }  // namespace

@@ -1,0 +1,168 @@
+#include "series/dynamic_track.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/display.hpp"
+#include "option/output.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::DynamicFrame;
+using compare::DynamicTrack;
+using compare::TrackErrors;
+
+/// Rows of the table in text, at most.
+constexpr std::size_t dynamic_rows = 11;
+constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
+
+Json errors_json(const TrackErrors& errors) {
+  return {{"mean_error_over_length", errors.mean},
+          {"largest_error_over_length", errors.largest},
+          {"largest_error_time_s", errors.largest_time}};
+}
+
+std::string errors_text(const TrackErrors& errors) {
+  return fmt::format("mean {:.4g} % of l, largest {:.4g} % at {:.6g} s", errors.mean * 100,
+                     errors.largest * 100, errors.largest_time);
+}
+
+Json moving_frame_json(const DynamicFrame& frame, bool points) {
+  Json grippers = Json::array();
+  for (const compare::GripperLoad& load : frame.grippers) {
+    grippers.push_back({{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}});
+  }
+  const energy_model::EnergyBalance& energy = frame.energy;
+  Json result = {{"time_s", frame.time},
+                 {"grippers", std::move(grippers)},
+                 {"energy_J",
+                  {{"kinetic", energy.kinetic},
+                   {"bending", energy.bending},
+                   {"gravity", energy.gravity},
+                   {"load", energy.load},
+                   {"obstacles", energy.obstacles},
+                   {"total", energy.total()},
+                   {"dissipated", energy.dissipated},
+                   {"work", energy.work}}},
+                 {"quasi_static_error_over_length", frame.quasi_static_error}};
+  result["force_error_over_length"] = frame.force_error ? Json(*frame.force_error) : Json(nullptr);
+  if (points) result["points_m"] = points_json(frame.points);
+  return result;
+}
+
+std::string moving_table(const DynamicTrack& dynamic) {
+  std::string out;
+  append(out, "\n{:>10} {:>14} {:>12} {:>12} {:>12} {:>12}\n", "t [s]", "energy [J]", "kinetic [J]",
+         "force 1 [N]", "at rest: d/l", "error/l");
+  const std::size_t count = dynamic.frames.size();
+  const std::size_t rows = std::min(count, dynamic_rows);
+  for (std::size_t row = 0; row < rows; ++row) {
+    const DynamicFrame& frame = dynamic.frames[rows == 1 ? 0 : row * (count - 1) / (rows - 1)];
+    append(out, "{:10.5g} {:14.8g} {:12.5g} {:12.5g} {:12.3g} {:>12}\n", frame.time,
+           frame.energy.total(), frame.energy.kinetic, frame.grippers.front().force.norm(),
+           frame.quasi_static_error,
+           frame.force_error ? fmt::format("{:.3g}", *frame.force_error) : "-");
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string dynamic_text(const DynamicTrack& dynamic) {
+  std::string out;
+  append(out, "\ndynamic     damping {:g} s, drag {:g} N s/m^2; {} terms, {} steps, {:.3g} s\n",
+         dynamic.damping.material, dynamic.damping.air, dynamic.terms, dynamic.steps,
+         dynamic.seconds);
+  append(
+      out,
+      "            energy balance missed by {:.2g} of the largest energy, {:.4g} J\n"
+      "            steps change the shape by {:.2g} l (estimate), {} terms instead by {:.2g} l\n",
+      dynamic.energy_error, dynamic.largest_energy, dynamic.step_error, dynamic.fewer_terms,
+      dynamic.term_difference);
+  append(out, "at rest     off the moving rod by {}\n", errors_text(dynamic.quasi_static));
+  if (dynamic.force) {
+    append(out, "force model off the moving rod by {}\n", errors_text(*dynamic.force));
+    if (std::isfinite(dynamic.force_lag)) {
+      append(out, "            late by {:.4g} ms; shifted by that, {:.4g} % of l (RMS) are left\n",
+             dynamic.force_lag * 1e3, dynamic.force_error_without_lag * 100);
+    }
+  }
+  if (dynamic.stopped) {
+    append(out, "stopped     at {:.6g} s: {}\n", dynamic.stopped->time,
+           compare::display(dynamic.stopped->why));
+  }
+  return out + moving_table(dynamic);
+}
+
+Json dynamic_json(const DynamicTrack& dynamic, const compare::Track& track,
+                  const TrackFrames& frames) {
+  Json result = {{"damping_s", dynamic.damping.material},
+                 {"drag_N_s_per_m2", dynamic.damping.air},
+                 {"terms", dynamic.terms},
+                 {"steps", dynamic.steps},
+                 {"run_s", dynamic.seconds},
+                 {"energy_error", dynamic.energy_error},
+                 {"largest_energy_J", dynamic.largest_energy},
+                 {"step_error_over_length", dynamic.step_error},
+                 {"fewer_terms", dynamic.fewer_terms},
+                 {"fewer_terms_change_over_length", dynamic.term_difference},
+                 {"quasi_static", errors_json(dynamic.quasi_static)}};
+  if (dynamic.force) {
+    result["force_model"] = errors_json(*dynamic.force);
+    result["force_model"]["lag_s"] = dynamic.force_lag;
+    result["force_model"]["error_without_lag_over_length"] = dynamic.force_error_without_lag;
+  } else {
+    result["force_model"] = nullptr;
+  }
+  if (dynamic.stopped) {
+    result["stopped"] = {{"time_s", dynamic.stopped->time}, {"why", dynamic.stopped->why}};
+  } else {
+    result["stopped"] = nullptr;
+  }
+  Json list = Json::array();
+  for (const std::size_t i : frames.of(track)) {
+    if (i < dynamic.frames.size()) {
+      list.push_back(moving_frame_json(dynamic.frames[i], frames.points));
+    }
+  }
+  result["frames"] = std::move(list);
+  return result;
+}
+
+std::string dynamic_csv_header(std::size_t grippers) {
+  std::string out =
+      ",dynamic_energy_J,kinetic_J,dynamic_work_J,dissipated_J,quasi_static_error_over_length,"
+      "force_error_over_length";
+  for (std::size_t i = 1; i <= grippers; ++i) {
+    append(out,
+           ",dynamic_fx_{0}_N,dynamic_fy_{0}_N,dynamic_fz_{0}_N,dynamic_tx_{0}_Nm,"
+           "dynamic_ty_{0}_Nm,dynamic_tz_{0}_Nm",
+           i);
+  }
+  return out;
+}
+
+std::string dynamic_csv_fields(const DynamicTrack& dynamic, std::size_t grippers,
+                               std::size_t index) {
+  constexpr std::size_t columns = 6;  // of the frame, and of each gripper
+  std::string out;
+  if (index >= dynamic.frames.size()) {
+    out.assign(columns * (grippers + 1), ',');
+    return out;
+  }
+  const DynamicFrame& frame = dynamic.frames[index];
+  append_csv(out, ",{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}", frame.energy.total(),
+             frame.energy.kinetic, frame.energy.work, frame.energy.dissipated,
+             frame.quasi_static_error, frame.force_error.value_or(no_value));
+  for (const compare::GripperLoad& load : frame.grippers) {
+    for (const double value : load.force) append_csv(out, ",{:.10g}", value);
+    for (const double value : load.torque) append_csv(out, ",{:.10g}", value);
+  }
+  return out;
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,208 @@
+#include "motion/dynamic_track.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "dlo/compare/deviation.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "motion/frame_clock.hpp"
+#include "motion/scene_inertia.hpp"
+#include "motion/trajectory_motion.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// Of each piece, where the options leave it open.
+constexpr int usual_terms = 12;
+[[noreturn]] void refuse(const Scene& scene, const std::string& why) {
+  throw InputError(fmt::format("{}: --dynamic: {}", scene.file, why));
+}
+
+FrameClock clock_of(const Scene& scene, const TrackOptions& options) {
+  return {scene, {options.from, options.to}, options.rates};
+}
+
+/// The scene's rod at the first frame, with its masses and the ways of its grips.
+energy_model::MovingRod moving_rod(const Scene& scene, const FrameClock& clock,
+                                   const RodDamping& damping) {
+  const Scene now = clock.scene(scene, 0).without_twist();
+  const double begin = clock.time(0);
+  energy_model::MovingRod rod;
+  rod.problem = frame_problem(now, obstacles_ever_in_reach(scene, clock));
+  rod.inertia = scene_inertia(now);
+  rod.material_damping = damping.material;
+  rod.air_drag = damping.air;
+  for (const Gripper& gripper : scene.grippers) {
+    if (gripper.trajectory.empty()) {
+      rod.motions.push_back(energy_model::standing(gripper.position));
+      continue;
+    }
+    rod.motions.push_back(trajectory_motion(gripper.trajectory, begin));
+    for (const double time : trajectory_breaks(gripper.trajectory, begin)) {
+      rod.breaks.push_back(time);
+    }
+  }
+  return rod;
+}
+
+void add_errors(const std::vector<DynamicFrame>& frames, DynamicTrack& result) {
+  const auto take = [](TrackErrors& errors, double error, double time) {
+    errors.mean += error;
+    if (!(error > errors.largest)) return;
+    errors.largest = error;
+    errors.largest_time = time;
+  };
+  TrackErrors force;
+  double followed = 0;
+  for (const DynamicFrame& frame : frames) {
+    take(result.quasi_static, frame.quasi_static_error, frame.time);
+    if (!frame.force_error) continue;
+    take(force, *frame.force_error, frame.time);
+    ++followed;
+  }
+  result.quasi_static.mean /= static_cast<double>(frames.size());
+  if (!(followed > 0)) return;
+  force.mean /= followed;
+  result.force = force;
+}
+
+/// Of the frames at equal times that have the force model beside them.
+void add_lag(const Track& track, double length, double step, DynamicTrack& result) {
+  std::vector<Eigen::Matrix3Xd> leader;
+  std::vector<Eigen::Matrix3Xd> follower;
+  for (std::size_t i = 0; i < result.frames.size() && track.frames[i].force; ++i) {
+    leader.push_back(result.frames[i].points);
+    follower.push_back(track.frames[i].force->points);
+  }
+  if (leader.empty()) return;
+  const Lag lag = lag_of(leader, follower, step);
+  result.force_lag = lag.time;
+  result.force_error_without_lag = lag.rms / length;
+}
+
+DynamicFrame frame_of(const energy_model::MovingFrame& moving, const TrackFrame& at_rest,
+                      const std::vector<double>& arc_length) {
+  const double length = arc_length.back();
+  DynamicFrame frame;
+  frame.time = at_rest.time;
+  frame.energy = moving.energy;
+  for (const energy_model::Reaction& reaction : moving.grips) {
+    frame.grippers.push_back({reaction.force, reaction.torque});
+  }
+  frame.points = moving.sample(arc_length).points;
+  frame.quasi_static_error = rms(arc_length, at_rest.points - frame.points) / length;
+  if (at_rest.force) frame.force_error = distance(at_rest.force->shape, moving.sample) / length;
+  return frame;
+}
+
+}  // namespace
+
+void require_dynamic(const Scene& scene, const TrackOptions& options) {
+  const FrameClock clock = clock_of(scene, options);
+  const double first = motion_of(scene)->begin;
+  if (clock.time(0) > first) {
+    refuse(scene, fmt::format("from {:g} s: the rod is at rest at its first pose, and moves from "
+                              "there (allowed: up to {:g} s)",
+                              clock.time(0), first));
+  }
+  if (scene.has_material_directors()) {
+    refuse(scene,
+           "a rod that is curved by nature or has two bending stiffnesses, whose twist has no "
+           "inertia in the model (allowed: round rods that are straight by nature)");
+  }
+  if (scene.holds_twist()) {
+    refuse(scene,
+           "clamps hold the rod's frame, and twist has no inertia in the model (allowed: at most "
+           "one frame or roll)");
+  }
+  if (!(scene.mass() > 0)) refuse(scene, "the rod has no mass (allowed: > 0 kg)");
+  for (const std::size_t i : obstacles_ever_in_reach(scene, clock)) {
+    const Obstacle& obstacle = scene.obstacles[i];
+    if (!std::isfinite(obstacle.stiffness)) {
+      refuse(scene, fmt::format("obstacle {} is rigid and in reach of the rod (allowed: one that "
+                                "yields, by a stiffness)",
+                                i + 1));
+    }
+    if (!obstacle.trajectory.empty()) {
+      refuse(scene, fmt::format("obstacle {} moves and is in reach of the rod (allowed: grippers "
+                                "that move, obstacles that stand)",
+                                i + 1));
+    }
+  }
+}
+
+DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOptions& options,
+                           const RodDamping& damping) {
+  require_dynamic(scene, options);
+  const FrameClock clock = clock_of(scene, options);
+  DynamicTrack result;
+  result.damping = damping;
+  result.stopped = track.stopped;
+  result.terms = options.solve.terms > 0 ? options.solve.terms : usual_terms;
+  result.fewer_terms = std::max(1, result.terms * 2 / 3);
+  const double limit = options.solve.time_limit;
+  std::vector<double> times;
+  for (const TrackFrame& frame : track.frames) times.push_back(frame.time - clock.time(0));
+  energy_model::Dynamics moved;
+  energy_model::Dynamics coarse;
+  try {
+    const energy_model::MovingRod rod = moving_rod(scene, clock, damping);
+    const energy_model::Equilibrium rest =
+        energy_model::solve_energy(rod.problem, {.terms = options.solve.terms,
+                                                 .max_evaluations = options.solve.max_evaluations,
+                                                 .time_limit = limit});
+    if (!energy_model::succeeded(rest.status)) {
+      throw ConvergenceError(fmt::format("{}: at {:g} s the energy model did not converge: {}",
+                                         scene.file, clock.time(0), rest.message));
+    }
+    const auto simulated = [&](int terms) {
+      return energy_model::simulate(rod, rest.sample, times, {.terms = terms, .time_limit = limit});
+    };
+    const auto begin = std::chrono::steady_clock::now();
+    moved = simulated(result.terms);
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    coarse = simulated(result.fewer_terms);
+  } catch (const std::invalid_argument& error) {
+    refuse(scene, error.what());
+  }
+  if (moved.frames.size() < times.size()) {
+    result.stopped = {track.frames[moved.frames.size()].time, moved.message};
+  }
+  if (moved.frames.empty()) {
+    throw ConvergenceError(fmt::format("{}: --dynamic: {}", scene.file, moved.message));
+  }
+  result.steps = moved.steps;
+  result.energy_error = moved.energy_error;
+  result.largest_energy = moved.largest_energy;
+  result.step_error = moved.error_estimate;
+  for (std::size_t i = 0; i < moved.frames.size(); ++i) {
+    result.frames.push_back(frame_of(moved.frames[i], track.frames[i], track.arc_length));
+  }
+  const SceneEnergies& zero = track.frames.front().energy;
+  const energy_model::EnergyBalance first = result.frames.front().energy;
+  for (DynamicFrame& frame : result.frames) {
+    frame.energy.gravity += zero.gravity - first.gravity;
+    frame.energy.load += zero.load - first.load;
+  }
+  if (coarse.frames.size() < moved.frames.size()) {
+    result.term_difference = std::numeric_limits<double>::infinity();
+  }
+  for (std::size_t i = 0; i < std::min(moved.frames.size(), coarse.frames.size()); ++i) {
+    const Eigen::Matrix3Xd apart =
+        coarse.frames[i].sample(track.arc_length).points - result.frames[i].points;
+    result.term_difference =
+        std::max(result.term_difference, rms(track.arc_length, apart) / scene.length);
+  }
+  add_errors(result.frames, result);
+  add_lag(track, scene.length, 1 / options.rates.frames, result);
+  return result;
+}
+
+}  // namespace dlo::compare

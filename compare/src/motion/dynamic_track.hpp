@@ -1,0 +1,72 @@
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+#include "dlo/energy_model/dynamics.hpp"
+#include "motion/track.hpp"
+
+namespace dlo::compare {
+
+/// What takes energy from a moving rod.
+struct RodDamping {
+  double material = 0;  ///< tau of Kelvin-Voigt, M = EI (kappa + tau kappa') [s], >= 0
+  double air = 0;       ///< force per length and velocity [N s/m^2], >= 0
+};
+
+/// The moving rod at the time of a frame of a Track.
+struct DynamicFrame {
+  double time = 0;  ///< [s]
+  /// Gravity and loads are zero where the track's are.
+  energy_model::EnergyBalance energy;
+  std::vector<GripperLoad> grippers;  ///< in the scene's order
+  Eigen::Matrix3Xd points;            ///< at Track::arc_length [m]
+  double quasi_static_error = 0;      ///< RMS distance of the track's shape over the length [-]
+  std::optional<double> force_error;  ///< the same of the force model's, at its own points [-]
+};
+
+/// What the errors of all frames come to.
+struct TrackErrors {
+  double mean = 0;          ///< over the length [-]
+  double largest = 0;       ///< over the length [-]
+  double largest_time = 0;  ///< [s]
+};
+
+/// A Track's rod with inertia.
+struct DynamicTrack {
+  RodDamping damping;
+  std::vector<DynamicFrame> frames;  ///< of the track's frames, up to where it had to stop
+  std::optional<TrackStop> stopped;  ///< also where the track itself has no more frames
+  int terms = 0;                     ///< of each piece and field
+  long steps = 0;                    ///< of the integrator
+  double seconds = 0;                ///< what it took, without the run with fewer terms
+  /// Largest miss of the energy balance, over `largest_energy`, as energy_model::Dynamics has it.
+  double energy_error = 0;
+  double largest_energy = 0;         ///< [J]
+  double step_error = 0;             ///< Dynamics::error_estimate, over the length [-]
+  int fewer_terms = 0;               ///< of a second run, which tells what terms left out change
+  double term_difference = 0;        ///< largest RMS distance of its frames, over the length [-]
+  TrackErrors quasi_static;          ///< of the track's shapes
+  std::optional<TrackErrors> force;  ///< of the force model's
+  double force_lag = std::numeric_limits<double>::quiet_NaN();  ///< as ForceTrackSummary's [s]
+  double force_error_without_lag = std::numeric_limits<double>::quiet_NaN();
+};
+
+/// @throws InputError if the scene has what a rod with inertia cannot have here: rigid or moving
+/// obstacles in reach, twist that clamps hold, curvature by nature, two bending stiffnesses, no
+/// mass; or if `options` begin after the first pose, at which the rod is at rest
+void require_dynamic(const Scene& scene, const TrackOptions& options);
+
+/// The rod of a track with inertia: from rest at its first frame, along the same trajectories,
+/// whose velocities its grips have (energy_model::simulate). What the shapes at rest and the force
+/// model's are off is measured against it.
+/// @param track  of the same scene and options
+/// @throws InputError as require_dynamic(), and if the damping is out of range; ConvergenceError if
+/// there is no shape to begin with
+[[nodiscard]] DynamicTrack dynamic_track(const Scene& scene, const Track& track,
+                                         const TrackOptions& options, const RodDamping& damping);
+
+}  // namespace dlo::compare

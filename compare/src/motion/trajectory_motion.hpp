@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "dlo/compare/trajectory.hpp"
+#include "dlo/energy_model/grip_motion.hpp"
+
+namespace dlo::compare {
+
+/// A gripper's trajectory as a motion of the energy model's, whose time is zero at `begin` [s]; its
+/// turn is that from the first pose, along the great circles. Accelerations jump at poses, where
+/// they are those before, to rounding of the time: what is just after it has those after.
+/// @param way  with poses
+[[nodiscard]] energy_model::GripMotion trajectory_motion(const Trajectory& way, double begin);
+
+/// The times of these poses [s], the same way: MovingRod::breaks.
+[[nodiscard]] std::vector<double> trajectory_breaks(const Trajectory& way, double begin);
+
+}  // namespace dlo::compare

@@ -1,0 +1,113 @@
+#include "trajectory/trajectory_leg.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace dlo::compare {
+namespace {
+
+/// Great circles whose tangents differ by less go on as one [-].
+constexpr double same_circle = 1e-6;
+
+/// Weights of Hermite's cubic at a share u of the time between two poses.
+struct Hermite {
+  double to;                    ///< of the change of the value
+  double slope_from, slope_to;  ///< of the rates, per time between
+};
+
+/// @param derivative  by u
+Hermite hermite(double u, int derivative) {
+  const double v = 1 - u;
+  if (derivative == 0) return {u * u * (1 + 2 * v), u * v * v, -u * u * v};
+  if (derivative == 1) return {6 * u * v, v * (1 - 3 * u), u * (3 * u - 2)};
+  return {6 * (v - u), 6 * u - 4, 6 * u - 2};
+}
+
+/// No faster than three times the slower side.
+double speed_share(double speed, double before, double after) {
+  const double most = 3 * std::min(before, after);
+  return speed > most ? most / speed : 1;
+}
+
+/// The great circle from one direction to the next.
+struct GreatCircle {
+  double angle = 0;                                ///< [rad]
+  Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< unit; zero where the two are the same
+};
+
+GreatCircle circle_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const Eigen::Vector3d across = from.cross(to);
+  const double sine = across.norm();
+  if (!(sine > 0)) return {};
+  return {std::atan2(sine, from.dot(to)), across / sine};
+}
+
+/// Rate of turning at a pose between two great circles [rad/s].
+double turning_rate(const GreatCircle& before, const GreatCircle& after, double h_before,
+                    double h_after) {
+  if (!((before.axis - after.axis).norm() < same_circle)) return 0;
+  const double s_before = before.angle / h_before;
+  const double s_after = after.angle / h_after;
+  const double rate = (h_after * s_before + h_before * s_after) / (h_before + h_after);
+  return rate * speed_share(rate, s_before, s_after);
+}
+
+Eigen::Vector3d velocity_between(const Pose& a, const Pose& b, const Pose& c) {
+  const double h_before = b.time - a.time;
+  const double h_after = c.time - b.time;
+  const Eigen::Vector3d before = (b.position - a.position) / h_before;
+  const Eigen::Vector3d after = (c.position - b.position) / h_after;
+  if (!(before.dot(after) > 0)) return Eigen::Vector3d::Zero();
+  const Eigen::Vector3d v = (h_after * before + h_before * after) / (h_before + h_after);
+  return v * speed_share(v.norm(), before.norm(), after.norm());
+}
+
+}  // namespace
+
+Eigen::Vector3d TrajectoryLeg::position(double time, int derivative) const {
+  const double h = to.time - from.time;
+  const Hermite at = hermite((time - from.time) / h, derivative);
+  const Eigen::Vector3d start = derivative == 0 ? from.position : Eigen::Vector3d::Zero().eval();
+  return (start + at.to * (to.position - from.position) + h * at.slope_from * velocity_from +
+          h * at.slope_to * velocity_to) /
+         std::pow(h, derivative);
+}
+
+double TrajectoryLeg::turned(double time, int derivative) const {
+  const double h = to.time - from.time;
+  const Hermite at = hermite((time - from.time) / h, derivative);
+  return (at.to * angle + h * (at.slope_from * rate_from + at.slope_to * rate_to)) /
+         std::pow(h, derivative);
+}
+
+TrajectoryLeg leg_after(const std::vector<Pose>& poses, std::size_t first) {
+  const Pose& a = poses[first];
+  const Pose& b = poses[first + 1];
+  const bool begins = first == 0;
+  const bool ends = first + 2 == poses.size();
+  const Eigen::Vector3d still = Eigen::Vector3d::Zero();
+  TrajectoryLeg leg;
+  leg.from = a;
+  leg.to = b;
+  leg.velocity_from = begins ? still : velocity_between(poses[first - 1], a, b);
+  leg.velocity_to = ends ? still : velocity_between(a, b, poses[first + 2]);
+  if (!a.direction) return leg;
+  const auto circle_of = [&](std::size_t i) {
+    return circle_between(*poses[i].direction, *poses[i + 1].direction);
+  };
+  const GreatCircle circle = circle_of(first);
+  if (!(circle.angle > 0)) return leg;
+  const double h = b.time - a.time;
+  leg.angle = circle.angle;
+  leg.axis = circle.axis;
+  if (!begins) {
+    leg.rate_from = turning_rate(circle_of(first - 1), circle, a.time - poses[first - 1].time, h);
+  }
+  if (!ends) {
+    leg.rate_to = turning_rate(circle, circle_of(first + 1), h, poses[first + 2].time - b.time);
+  }
+  return leg;
+}
+
+}  // namespace dlo::compare

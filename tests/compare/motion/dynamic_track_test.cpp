@@ -1,0 +1,249 @@
+#include "motion/dynamic_track.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "motion/trajectory_motion.hpp"
+
+namespace dlo::compare {
+namespace {
+
+TrackOptions frames_at(double rate) {
+  TrackOptions options;
+  options.rates.frames = rate;
+  options.force = ForceBeside::left_out;
+  options.samples = 21;
+  options.solve.terms = 8;
+  return options;
+}
+
+/// data/scenes/swung_rod.toml up to its second pose, so much slower.
+Scene swung(double slower) {
+  Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
+  std::vector<Pose> poses = scene.grippers.front().trajectory.poses();
+  poses.pop_back();
+  for (Pose& pose : poses) pose.time *= slower;
+  scene.grippers.front().trajectory = Trajectory(poses);
+  return scene;
+}
+
+DynamicTrack moved(const Scene& scene, const TrackOptions& options, const RodDamping& damping) {
+  const Track at_rest = track(scene, options);
+  EXPECT_FALSE(at_rest.stopped);
+  return dynamic_track(scene, at_rest, options, damping);
+}
+
+Trajectory corners() {
+  return Trajectory({{2, {0, 0, 0}, Eigen::Vector3d(1, 0, 0)},
+                     {3, {0.3, 0.1, 0}, Eigen::Vector3d(1, 1, 0)},
+                     {3.5, {0.4, 0.4, 0.1}, Eigen::Vector3d(0, 1, 0)},
+                     {5, {0.1, 0.5, 0.2}, Eigen::Vector3d(0, 1, 1)}});
+}
+
+// The derivatives by central differences, whose error is of second order in the step.
+TEST(TrajectoryMotion, HasThePosesOfItsTrajectoryAndTheirDerivatives) {
+  const Trajectory way = corners();
+  const energy_model::GripMotion motion = trajectory_motion(way, 2);
+  constexpr double step = 1e-4;
+  for (const double time : {0.2, 0.7, 1.2, 1.9, 2.8}) {
+    const energy_model::GripPose pose = motion(time);
+    const energy_model::GripPose before = motion(time - step);
+    const energy_model::GripPose after = motion(time + step);
+    const Pose known = way.pose_at(2 + time);
+    EXPECT_LT((pose.position - known.position).norm(), 1e-14);
+    EXPECT_LT((pose.turn * *way.poses().front().direction - *known.direction).norm(), 1e-14);
+    EXPECT_LT((pose.velocity - (after.position - before.position) / (2 * step)).norm(), 1e-7);
+    EXPECT_LT((pose.acceleration - (after.velocity - before.velocity) / (2 * step)).norm(), 1e-7);
+    const Eigen::AngleAxisd turned(after.turn * before.turn.conjugate());
+    EXPECT_LT((pose.angular_velocity - turned.angle() / (2 * step) * turned.axis()).norm(), 1e-7);
+    EXPECT_LT((pose.angular_acceleration -
+               (after.angular_velocity - before.angular_velocity) / (2 * step))
+                  .norm(),
+              1e-7);
+  }
+  EXPECT_EQ(motion(-1).velocity.norm(), 0);
+  EXPECT_EQ(motion(-1).position, way.poses().front().position);
+  EXPECT_EQ(motion(9).angular_velocity.norm(), 0);
+  EXPECT_LT((motion(9).position - way.poses().back().position).norm(), 1e-15);
+}
+
+// What a step's end asks for, and what its begin asks for.
+TEST(TrajectoryMotion, AccelerationsJumpJustAfterAPose) {
+  const energy_model::GripMotion motion = trajectory_motion(corners(), 2);
+  for (const double time : trajectory_breaks(corners(), 2)) {
+    const Eigen::Vector3d before = motion(time - 1e-9).acceleration;
+    const Eigen::Vector3d after = motion(time + 1e-9).acceleration;
+    EXPECT_GT((after - before).norm(), 0.1) << time;
+    EXPECT_LT((motion(time * (1 + 2e-16)).acceleration - before).norm(), 1e-6) << time;
+    EXPECT_LT((motion(time + 1e-12).acceleration - after).norm(), 1e-6) << time;
+  }
+}
+
+double error_of(double slower, const RodDamping& damping) {
+  TrackOptions options = frames_at(25 / slower);
+  options.solve.terms = 5;  // of both, so that what they leave out is in neither's distance
+  const DynamicTrack result = moved(swung(slower), options, damping);
+  EXPECT_FALSE(result.stopped);
+  EXPECT_LT(result.energy_error, 1e-6);
+  return result.quasi_static.mean;
+}
+
+// With drag the rod is behind by a way that is proportional to its speed; what the corners of the
+// accelerations leave is of second order.
+TEST(DynamicTrack, ComesToTheTrackAtFirstOrderInItsSpeed) {
+  const double fast = error_of(16, {.air = 0.05});
+  const double slow = error_of(64, {.air = 0.05});
+  EXPECT_LT(fast, 0.1);
+  EXPECT_NEAR(fast / slow, 4, 0.2);
+}
+
+// Then accelerations are all that bends it and makes it swing; where in a swing the frames are
+// changes the mean.
+TEST(DynamicTrack, ComesToTheTrackAtSecondOrderWithoutDamping) {
+  const double order = std::log(error_of(8, {}) / error_of(32, {})) / std::log(4.0);
+  EXPECT_NEAR(order, 2, 0.15);
+}
+
+// Of the frames, whose gravity is zero where the track's is.
+TEST(DynamicTrack, KeepsTheBalanceOfEnergyAndWork) {
+  const Scene scene = swung(1);
+  const TrackOptions options = frames_at(50);
+  const Track at_rest = track(scene, options);
+  for (const RodDamping damping : {RodDamping{}, RodDamping{.material = 0.01, .air = 0.02}}) {
+    const DynamicTrack result = dynamic_track(scene, at_rest, options, damping);
+    ASSERT_EQ(result.frames.size(), at_rest.frames.size());
+    EXPECT_FALSE(result.stopped);
+    const double begin = at_rest.frames.front().energy.total();
+    EXPECT_GT(result.largest_energy, 1e-3);
+    for (const DynamicFrame& frame : result.frames) {
+      const energy_model::EnergyBalance& energy = frame.energy;
+      EXPECT_NEAR(energy.total() - begin, energy.work - energy.dissipated,
+                  1e-6 * result.largest_energy);
+    }
+    EXPECT_LT(result.energy_error, 1e-6);
+    EXPECT_LT(result.step_error, 1e-4);
+    EXPECT_LT(result.term_difference, 1e-3);
+    EXPECT_EQ(result.frames.back().energy.dissipated > 0, damping.material > 0);
+    EXPECT_LT(result.frames.front().quasi_static_error, 1e-9);
+    EXPECT_GT(result.quasi_static.largest, 0.05);
+  }
+}
+
+// m (a - g), a that of the cubic from rest to rest; a rod so stiff that it bends by less than 1e-4.
+TEST(DynamicTrack, AGripperCarriesTheMassOfAStiffRod) {
+  const Scene scene = parse_scene(
+      "[rod]\nlength = 0.5\nbending_stiffness = 1000\nmass_per_length = 0.4\n"
+      "[[load]]\nat = 0.5\nmass = 0.1\n[[gripper]]\nat = 0\ndirection = \"0 deg\"\n"
+      "[[gripper.pose]]\ntime = 1\nposition = [0, 0, 0]\n"
+      "[[gripper.pose]]\ntime = 2\nposition = [0.5, 2, 0]\n",
+      "stiff.toml");
+  const DynamicTrack result = moved(scene, frames_at(8), {.material = 0.01});
+  ASSERT_EQ(result.frames.size(), 9U);
+  const Eigen::Vector3d way(0.5, 2, 0);
+  for (const std::size_t i : {3U, 5U, 6U}) {
+    const double u = static_cast<double>(i) / 8;
+    const Eigen::Vector3d expected = 0.3 * (6 * (1 - 2 * u) * way - scene.gravity);
+    EXPECT_LT((result.frames[i].grippers.front().force - expected).norm(), 2e-3) << u;
+    const Eigen::Vector3d velocity = 6 * u * (1 - u) * way;
+    EXPECT_NEAR(result.frames[i].energy.kinetic, 0.15 * velocity.squaredNorm(), 1e-3) << u;
+  }
+}
+
+TEST(DynamicTrack, MeasuresTheForceModelAgainstTheMovingRod) {
+  TrackOptions options = frames_at(50);
+  options.force = ForceBeside::runs;
+  options.to = 0.1;
+  Scene scene = swung(1);
+  scene.track.steps = 3000;
+  const Track at_rest = track(scene, options);
+  const DynamicTrack result = dynamic_track(scene, at_rest, options, {});
+  ASSERT_TRUE(result.force);
+  const DynamicFrame& first = result.frames.front();
+  const DynamicFrame& last = result.frames.back();
+  EXPECT_NEAR(*first.force_error, at_rest.frames.front().force->error_over_length, 1e-9);
+  EXPECT_GT(std::abs(*last.force_error - at_rest.frames.back().force->error_over_length), 1e-3);
+  EXPECT_EQ(result.force->largest_time, last.time);
+}
+
+void expect_refused(const std::string& rod, const std::string& rest, const std::string& why,
+                    const TrackOptions& options = frames_at(10)) {
+  const Scene scene = parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 1\n" + rod + "[[gripper]]\nat = 0\n" +
+          "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\ndirection = \"60 deg\"\n" +
+          "[[gripper.pose]]\ntime = 1\nposition = [0.1, 0, 0]\ndirection = \"50 deg\"\n" + rest,
+      "refused.toml");
+  try {
+    require_dynamic(scene, options);
+    ADD_FAILURE() << "expected: " << why;
+  } catch (const InputError& error) {
+    const std::string what = error.what();
+    EXPECT_NE(what.find("refused.toml: --dynamic: "), std::string::npos) << what;
+    EXPECT_NE(what.find(why), std::string::npos) << what;
+    EXPECT_NE(what.find("allowed"), std::string::npos) << what;
+  }
+}
+
+TEST(DynamicTrack, RefusesWhatARodWithInertiaCannotHave) {
+  const std::string mass = "mass_per_length = 0.5\n";
+  const std::string floor = "[[obstacle]]\nnormal = [0, 1, 0]\n";
+  expect_refused(mass, floor + "point = [0, -0.5, 0]\n", "obstacle 1 is rigid");
+  expect_refused(mass,
+                 floor + "stiffness = 1000\n[[obstacle.pose]]\ntime = 0\npoint = [0, -0.5, 0]\n" +
+                     "[[obstacle.pose]]\ntime = 1\npoint = [0, -0.4, 0]\n",
+                 "obstacle 1 moves");
+  expect_refused("mass_per_length = 0\n", "", "no mass");
+  expect_refused(mass + "natural_curvature = 1\n", "", "curved by nature");
+  const std::string held = "direction = \"0 deg\"\nroll = \"90 deg\"\n[[gripper]]\nat = ";
+  expect_refused(mass + "torsional_stiffness = 1\n",
+                 "[[gripper]]\nat = 0.5\nposition = [0.4, 0, 0]\n" + held +
+                     "1\nposition = [0.8, 0, 0]\ndirection = \"0 deg\"\nroll = \"0 deg\"\n",
+                 "clamps hold the rod's frame");
+  TrackOptions late = frames_at(10);
+  late.from = 0.5;
+  expect_refused(mass, "", "from 0.5 s: the rod is at rest at its first pose", late);
+}
+
+TEST(DynamicTrack, RefusesANegativeDamping) {
+  const Scene scene = swung(1);
+  const TrackOptions options = frames_at(10);
+  const Track at_rest = track(scene, options);
+  EXPECT_THROW((void)dynamic_track(scene, at_rest, options, {.material = -1}), InputError);
+  EXPECT_THROW((void)dynamic_track(scene, at_rest, options, {.air = std::nan("")}), InputError);
+}
+
+// Obstacles that cannot be reached do not matter; one that yields is met.
+TEST(DynamicTrack, MeetsAnObstacleThatYields) {
+  const std::string scene =
+      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n"
+      "direction = \"0 deg\"\n[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n"
+      "[[gripper.pose]]\ntime = 0.2\nposition = [0, -0.2, 0]\n[[obstacle]]\nnormal = [0, 1, 0]\n";
+  const std::string far = "point = [0, -9, 0]\n";
+  const std::string near = "point = [0, -0.6, 0]\nstiffness = 100\ntouches = \"axis\"\n";
+  const auto energy_of = [&](const std::string& where, double& balance) {
+    TrackOptions options = frames_at(20);
+    options.to = 0.5;
+    const DynamicTrack result =
+        moved(parse_scene(scene + where, "floor.toml"), options, {.material = 0.05});
+    balance = result.energy_error;
+    double largest = 0;
+    for (const DynamicFrame& frame : result.frames) {
+      largest = std::max(largest, frame.energy.obstacles);
+    }
+    return largest;
+  };
+  double balance = 0;
+  EXPECT_EQ(energy_of(far, balance), 0);
+  EXPECT_LT(balance, 1e-6);
+  EXPECT_GT(energy_of(near, balance), 1e-4);
+  // Its force has kinks by time.
+  EXPECT_LT(balance, 1e-4);
+}
+
+}  // namespace
+}  // namespace dlo::compare

@@ -1,0 +1,96 @@
+"""Rods while their grippers move."""
+
+import json
+import subprocess
+
+import numpy
+import pytest
+
+import dlo
+
+
+def without_times(document):
+    """But for what the clock has measured."""
+    if isinstance(document, dict):
+        return {k: without_times(v) for k, v in document.items() if k not in ("frame_s", "run_s")}
+    if isinstance(document, list):
+        return [without_times(value) for value in document]
+    return document
+
+
+@pytest.fixture
+def swung(root):
+    return root / "data/scenes/swung_rod.toml"
+
+
+def test_track_is_the_commands(swung, command):
+    found = dlo.track(
+        swung, end=0.1, frame_rate=50, step_rate=3000, dynamic=True, damping=0.01, samples=9
+    )
+    options = "--to 0.1 --frame-rate 50 --step-rate 3000 --dynamic --damping 0.01 --samples 9"
+    done = subprocess.run(
+        [command, "track", str(swung), *options.split(), "--shapes", "--format", "json"],
+        capture_output=True, text=True, check=True,
+    )
+    assert without_times(found.json) == without_times(json.loads(done.stdout))
+    assert "force model off the moving rod" in str(found)
+
+
+def test_track_has_arrays_of_all_frames(swung):
+    found = dlo.track(
+        swung, end=0.1, frame_rate=50, force=False, dynamic=True, drag=0.02, samples=9
+    )
+    numpy.testing.assert_allclose(found.time, [0, 0.02, 0.04, 0.06, 0.08, 0.1], rtol=1e-12)
+    assert found.points.shape == found.moving_points.shape == (6, 9, 3)
+    assert found.arc_length.shape == (9,)
+    for forces in (found.gripper_forces, found.moving_gripper_forces):
+        assert forces.shape == (6, 1, 3)
+    assert found.gripper_torques.shape == found.moving_gripper_torques.shape == (6, 1, 3)
+    # From the same shape at rest, then the tip stays behind; both are held by the same gripper.
+    numpy.testing.assert_allclose(found.moving_points[0], found.points[0], atol=1e-9)
+    apart = numpy.linalg.norm(found.moving_points - found.points, axis=2)
+    assert apart[:, 0].max() < 1e-12
+    assert apart[-1, -1] > 0.01
+
+
+def test_track_says_what_is_wrong(swung, root):
+    at_rest = dlo.track(swung, end=0.1, frame_rate=50, force=False)
+    with pytest.raises(dlo.InputError, match="dynamic=True"):
+        at_rest.moving_points
+    with pytest.raises(dlo.InputError, match="dynamic=True"):
+        dlo.track(swung, damping=0.01)
+    with pytest.raises(dlo.InputError, match="out of range"):
+        dlo.track(swung, frame_rate=0)
+    with pytest.raises(dlo.InputError, match="material_damping"):
+        dlo.track(swung, end=0.1, frame_rate=50, force=False, dynamic=True, damping=-1)
+    with pytest.raises(dlo.InputError, match="obstacle 1 is rigid"):
+        dlo.track(root / "data/scenes/buckling_wire.toml", frame_rate=20, dynamic=True)
+    with pytest.raises(dlo.InputError, match="nothing moves"):
+        dlo.track(root / "data/scenes/cable.toml")
+
+
+def test_track_that_stops_has_what_was_before():
+    scene = dlo.Scene.from_text(
+        """
+        [rod]
+        length = 1
+        diameter = 0.01
+        material = "silicone"
+        [[gripper]]
+        at = 0
+        position = [0, 0, 0]
+        hold = "pin"
+        [[gripper]]
+        at = 1
+        hold = "pin"
+        [[gripper.pose]]
+        time = 0
+        position = [0.9, 0, 0]
+        [[gripper.pose]]
+        time = 1
+        position = [1.1, 0, 0]
+        """
+    )
+    with pytest.raises(dlo.ConvergenceError, match="stopped at 0.5 s") as caught:
+        dlo.track(scene, frame_rate=20, force=False)
+    assert caught.value.result.time.shape == (10,)
