@@ -91,14 +91,18 @@ class TrustRegionDescent {
       qr_.compute(here.jacobian.transpose());
       qr_.setThreshold(1e-10);
       multipliers_ = qr_.solve(here.gradient);
-      const Eigen::MatrixXd Q = qr_.householderQ();
-      free_ = Q.rightCols(n - qr_.rank());
       // The model's Hessian is that of its last value().
       Eigen::VectorXd gradient(n);
       (void)model_.value(here.x, gradient);
       model_.hessian(multipliers_, hessian_);
-      projected_gradient_ = free_.transpose() * here.gradient;
-      projected_hessian_.noalias() = free_.transpose() * (hessian_ * free_);
+      // Q^T H Q by its reflections, which are as few as the constraints; Q itself is as large as H.
+      hessian_.applyOnTheLeft(qr_.householderQ().adjoint());
+      hessian_.applyOnTheRight(qr_.householderQ());
+      gradient = here.gradient;
+      gradient.applyOnTheLeft(qr_.householderQ().adjoint());
+      const Eigen::Index free = n - qr_.rank();
+      projected_gradient_ = gradient.tail(free);
+      projected_hessian_ = hessian_.bottomRightCorner(free, free);
     } else {
       multipliers_.resize(0);
       Eigen::VectorXd gradient(n);
@@ -127,7 +131,16 @@ class TrustRegionDescent {
     }
     predicted_ = -(projected_gradient_.dot(p) + p.dot(projected_hessian_ * p) / 2);
     length_ = p.norm();
-    return model_.constraints() > 0 ? Eigen::VectorXd(free_ * p) : p;
+    return in_unknowns(p);
+  }
+
+  /// A step in the null space of the constraints, in the unknowns.
+  [[nodiscard]] Eigen::VectorXd in_unknowns(const Eigen::VectorXd& p) const {
+    if (model_.constraints() == 0) return p;
+    Eigen::VectorXd step = Eigen::VectorXd::Zero(model_.size());
+    step.tail(p.size()) = p;
+    step.applyOnTheLeft(qr_.householderQ());
+    return step;
   }
 
   /// @return the next radius
@@ -161,7 +174,7 @@ class TrustRegionDescent {
   Eigen::LLT<Eigen::MatrixXd> llt_;
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
   Eigen::VectorXd multipliers_, projected_gradient_;
-  Eigen::MatrixXd free_, hessian_, projected_hessian_;
+  Eigen::MatrixXd hessian_, projected_hessian_;
   double predicted_ = 0;  // fall of E - lambda.c
   double length_ = 0;     // of the step
 };
