@@ -28,7 +28,7 @@ double signed_curvature(const std::optional<Eigen::Vector3d>& normal,
 /// Normal of the plane that the scene has, if the points lie in it.
 std::optional<Eigen::Vector3d> plane_through(const Scene& scene, const Eigen::Matrix3Xd& points) {
   constexpr double thick = 1e-6;  // of the length
-  const std::optional<Eigen::Vector3d> normal = scene.plane_normal();
+  std::optional<Eigen::Vector3d> normal = scene.plane_normal();
   if (!normal) return std::nullopt;
   const Eigen::Vector3d held = scene.grippers.front().position;
   for (const auto& point : points.colwise()) {

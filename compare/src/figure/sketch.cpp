@@ -25,7 +25,7 @@ class Dots {
       : cell_(cell),
         width_(columns * cell.across),
         height_(rows * cell.down),
-        set_(static_cast<std::size_t>(width_ * height_)) {}
+        set_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
 
   void set(int x, int y) {
     const int column = std::clamp(x, 0, width_ - 1);

@@ -24,6 +24,7 @@ std::vector<double> drawn_logarithms(const std::optional<double>& low, double be
   const double to = high.value_or(best + std::log(2.0));
   const double beyond = (to - from) / 2;
   std::vector<double> result;
+  result.reserve(static_cast<std::size_t>(std::max(0, count)));
   for (int i = 0; i < count; ++i) {
     result.push_back(from - beyond + (to - from + 2 * beyond) * i / std::max(1, count - 1));
   }

@@ -58,7 +58,7 @@ TEST_F(ProgramCommand, BenchPutsAProgramBesideOurModels) {
 }
 
 TEST_F(ProgramCommand, BenchSaysFailuresInTextAndTables) {
-  const std::string arguments = "bench --seconds 0.3 --repeats 1 --time-limit 0.05 " + cable() +
+  const std::string arguments = "bench --seconds 2 --repeats 1 --time-limit 0.05 " + cable() +
                                 " --with slow='sh -c \"sleep 9\" {shape}' ";
   const Outcome text = run(arguments);
   EXPECT_EQ(text.status, 3);
