@@ -25,12 +25,12 @@ class Dots {
       : cell_(cell),
         width_(columns * cell.across),
         height_(rows * cell.down),
-        set_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)) {}
+        set_(index(0, height_)) {}
 
   void set(int x, int y) {
     const int column = std::clamp(x, 0, width_ - 1);
     const int row = std::clamp(y, 0, height_ - 1);
-    set_[static_cast<std::size_t>(row * width_ + column)] = true;
+    set_[index(column, row)] = true;
   }
   /// All dots between two places, in steps of no more than one dot.
   void join(const Eigen::Vector2d& from, const Eigen::Vector2d& to) {
@@ -57,14 +57,17 @@ class Dots {
   }
 
  private:
+  [[nodiscard]] std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+           static_cast<std::size_t>(x);
+  }
   /// Dot (x, y) of a character is bit x + across * y.
   [[nodiscard]] unsigned bits_at(int column, int row) const {
     unsigned bits = 0;
     for (int y = 0; y < cell_.down; ++y) {
       for (int x = 0; x < cell_.across; ++x) {
-        const int at = (row * cell_.down + y) * width_ + column * cell_.across + x;
-        if (set_[static_cast<std::size_t>(at)])
-          bits |= 1U << static_cast<unsigned>(x + cell_.across * y);
+        const bool is_set = set_[index(column * cell_.across + x, row * cell_.down + y)];
+        if (is_set) bits |= 1U << static_cast<unsigned>(x + cell_.across * y);
       }
     }
     return bits;
