@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "judge/scalar_search.hpp"
+#include "base/scalar_search.hpp"
 
 namespace dlo::compare {
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/scalar_search.hpp"
+
 namespace dlo::compare {
 namespace {
 
@@ -77,9 +79,9 @@ class Arch {
     if (side == Side::against_load) up_ = -up_;
     lean_ = lean * rod * axis_.cross(up_);
     if (length() > rod) {
-      solve(slope_, 0, slope_, rod);
+      solve(slope_, slope_, rod);
     } else {
-      solve(height_, 0, 2 * rod, rod);
+      solve(height_, 2 * rod, rod);
     }
   }
 
@@ -116,17 +118,24 @@ class Arch {
 
   [[nodiscard]] double length() const {
     double sum = 0;
-    for (int i = 0; i < curve_points; ++i) sum += (point(i + 1) - point(i)).norm();
+    Eigen::Vector3d last = point(0);
+    for (int i = 1; i <= curve_points; ++i) {
+      const Eigen::Vector3d next = point(i);
+      sum += (next - last).norm();
+      last = next;
+    }
     return sum;
   }
 
-  /// Bisection of one of the curve's own numbers so that the curve is as long as the rod.
-  void solve(double& number, double low, double high, double rod) {
-    constexpr int halvings = 60;
-    for (int i = 0; i < halvings; ++i) {
-      number = (low + high) / 2;
-      (length() < rod ? low : high) = number;
-    }
+  /// One of the curve's own numbers between 0 and `most` so that the curve is as long as the rod;
+  /// or 0 if it is longer there, as between grips that are too far apart.
+  void solve(double& number, double most, double rod) {
+    constexpr double rounding = 1e-15;
+    const Function length_at = [&](double value) {
+      number = value;
+      return length();
+    };
+    number = length_at(0) < rod ? crossing(length_at, 0, most, rod, rounding * most) : 0;
   }
 
   Knot begin_, end_;

@@ -31,8 +31,8 @@ struct Minimum {
                                    double tolerance = 1e-7);
 
 /// GSL's Brent root finder: where the function crosses `level` between `inside`, where it is below,
-/// and `outside`, where it is above; to 1e-5 in x.
-[[nodiscard]] double crossing(const Function& function, double inside, double outside,
-                              double level);
+/// and `outside`, where it is above; to `tolerance` in x.
+[[nodiscard]] double crossing(const Function& function, double inside, double outside, double level,
+                              double tolerance = 1e-5);
 
 }  // namespace dlo::compare

@@ -1,4 +1,4 @@
-#include "judge/scalar_search.hpp"
+#include "base/scalar_search.hpp"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_min.h>
@@ -95,7 +95,8 @@ Minimum minimum_near(const Function& function, const Scan& scan, double toleranc
           gsl_min_fminimizer_f_minimum(minimiser.get())};
 }
 
-double crossing(const Function& function, double inside, double outside, double level) {
+double crossing(const Function& function, double inside, double outside, double level,
+                double tolerance) {
   keep_gsl_from_aborting();
   // Brent's method interpolates, so what is infinite is made merely large.
   const Function finite = [&](double x) {
@@ -113,7 +114,8 @@ double crossing(const Function& function, double inside, double outside, double 
   for (int i = 0; i < 60; ++i) {
     if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) break;
     if (gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()),
-                               gsl_root_fsolver_x_upper(solver.get()), 1e-5, 0) == GSL_SUCCESS) {
+                               gsl_root_fsolver_x_upper(solver.get()), tolerance,
+                               0) == GSL_SUCCESS) {
       break;
     }
   }
