@@ -56,7 +56,7 @@ Eigen::Index ContactRows::add_row() {
 void ContactRows::add_curved(Curved curved, Eigen::Index rows) {
   curved.first = linear_.cols();
   for (Eigen::Index k = 0; k < rows; ++k) (void)add_row();
-  curved.gaps.resize(static_cast<std::size_t>(curved.reach.cols()));
+  curved.gaps.resize(static_cast<std::size_t>(curved.reach.points()));
   curved_.push_back(std::move(curved));
 }
 
@@ -89,7 +89,7 @@ void ContactRows::add_clearance(const Span& span, std::size_t contact,
     Curved curved;
     curved.contact = contact;
     curved.body = own.obstacle.body;
-    curved.reach = reach_.begin(piece);
+    curved.reach = reach_.at_begin(piece);
     curved.weights.setOnes(1, 1);
     add_curved(std::move(curved), 1);
   }
@@ -120,8 +120,7 @@ void ContactRows::add_slopes(const Span& span, std::size_t contact,
       Curved curved;
       curved.contact = contact;
       curved.body = body;
-      curved.reach.resize(linear_.rows(), Q + 2);
-      curved.reach << reach_.begin(e), reach_.of_nodes(e), reach_.begin(e + 1);
+      curved.reach = reach_.along(e);
       curved.weights.resize(Q + 2, degrees);
       Eigen::VectorXd values(degrees);
       Eigen::VectorXd unused(degrees);
@@ -225,20 +224,25 @@ void ContactRows::place(const Eigen::MatrixX3d& tangents) {
     }
   }
   for (Curved& curved : curved_) {
-    const Eigen::Index points = curved.reach.cols();
+    const Eigen::Index points = curved.reach.points();
+    const Eigen::Matrix3Xd positions = curved.reach.positions(tangents);
     Eigen::MatrixX3d gradients(points, 3);
     Eigen::VectorXd clearances(points);
     for (Eigen::Index m = 0; m < points; ++m) {
       obstacle::Gap& gap = curved.gaps[static_cast<std::size_t>(m)];
-      gap = curved.body.gap(tangents.transpose() * curved.reach.col(m));
+      gap = curved.body.gap(positions.col(m));
       gradients.row(m) = gap.gradient;
       clearances[m] = gap.value;
     }
     const Eigen::Index rows = curved.weights.cols();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      by_tangent_[axis].middleCols(curved.first, rows).noalias() =
-          curved.reach *
-          (gradients.col(static_cast<Eigen::Index>(axis)).asDiagonal() * curved.weights);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      auto by_tangent = by_tangent_[static_cast<std::size_t>(axis)].middleCols(curved.first, rows);
+      // Of a rod in the plane nothing goes across it.
+      if (gradients.col(axis).isZero(0)) {
+        by_tangent.setZero();
+      } else {
+        curved.reach.spread(gradients.col(axis).asDiagonal() * curved.weights, by_tangent);
+      }
     }
     residual_.segment(curved.first, rows).noalias() = curved.weights.transpose() * clearances;
   }
@@ -301,12 +305,13 @@ void ContactRows::subtract_hessian(const Eigen::Ref<const Eigen::VectorXd>& mult
     const Eigen::VectorXd forces =
         curved.weights * multipliers.segment(curved.first, curved.weights.cols());
     std::array<Eigen::MatrixXd, 3> points;  // x unknowns
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      points[axis].noalias() = curved.reach.transpose() * tangents[axis];
+    const std::size_t axes = tangents[2].isZero(0) ? 2 : 3;
+    for (std::size_t axis = 0; axis < axes; ++axis) {
+      points[axis] = curved.reach.sums(tangents[axis]);
     }
-    for (std::size_t a = 0; a < 3; ++a) {
+    for (std::size_t a = 0; a < axes; ++a) {
       Eigen::MatrixXd bent = Eigen::MatrixXd::Zero(points[a].rows(), points[a].cols());
-      for (std::size_t b = 0; b < 3; ++b) {
+      for (std::size_t b = 0; b < axes; ++b) {
         Eigen::VectorXd by_point(forces.size());
         for (Eigen::Index m = 0; m < forces.size(); ++m) {
           by_point[m] = forces[m] * curved.gaps[static_cast<std::size_t>(m)].hessian(
@@ -322,19 +327,20 @@ void ContactRows::subtract_hessian(const Eigen::Ref<const Eigen::VectorXd>& mult
 void ContactRows::subtract_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                                     const Eigen::MatrixXd& tangents,
                                     Eigen::Ref<Eigen::MatrixXd> hessian) const {
-  const auto subtract = [&](double force, const obstacle::Gap& gap, const auto& reach) {
-    const Eigen::VectorXd moved = tangents.transpose() * reach;
-    hessian.noalias() -= (force * gap.hessian(2, 2)) * moved * moved.transpose();
-  };
   for (const Touch& touch : touches_) {
-    subtract(multipliers[touch.row], touch.gap, touch.point.position);
+    const Eigen::VectorXd moved = tangents.transpose() * touch.point.position;
+    hessian.noalias() -=
+        (multipliers[touch.row] * touch.gap.hessian(2, 2)) * moved * moved.transpose();
   }
   for (const Curved& curved : curved_) {
     const Eigen::VectorXd forces =
         curved.weights * multipliers.segment(curved.first, curved.weights.cols());
+    Eigen::VectorXd bent(forces.size());
     for (Eigen::Index m = 0; m < forces.size(); ++m) {
-      subtract(forces[m], curved.gaps[static_cast<std::size_t>(m)], curved.reach.col(m));
+      bent[m] = forces[m] * curved.gaps[static_cast<std::size_t>(m)].hessian(2, 2);
     }
+    const Eigen::MatrixXd moved = curved.reach.sums(tangents);
+    hessian.noalias() -= moved.transpose() * (bent.asDiagonal() * moved);
   }
 }
 

@@ -93,7 +93,7 @@ class ContactRows {
     obstacle::Body body;
     Eigen::Index first = 0;           // row
     Eigen::MatrixXd weights;          // rows = weights^T clearances, points x rows
-    Eigen::MatrixXd reach;            // of the points, nodes x points
+    PointsReach reach;                // of the points
     std::vector<obstacle::Gap> gaps;  // of the points
   };
   /// The row of a least clearance.

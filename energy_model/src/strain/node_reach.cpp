@@ -4,6 +4,24 @@
 
 namespace dlo::energy_model {
 
+Eigen::Matrix3Xd PointsReach::positions(const Eigen::MatrixX3d& tangents) const {
+  Eigen::Matrix3Xd result = tangents.middleRows(first_, own_.rows()).transpose() * own_;
+  result.colwise() += Eigen::Vector3d(tangents.transpose() * begin_);
+  return result;
+}
+
+Eigen::MatrixXd PointsReach::sums(const Eigen::MatrixXd& by_node) const {
+  Eigen::MatrixXd result = own_.transpose() * by_node.middleRows(first_, own_.rows());
+  result.rowwise() += Eigen::RowVectorXd(begin_.transpose() * by_node);
+  return result;
+}
+
+void PointsReach::spread(const Eigen::MatrixXd& by_point,
+                         Eigen::Ref<Eigen::MatrixXd> by_node) const {
+  by_node.noalias() = begin_ * by_point.colwise().sum();
+  by_node.middleRows(first_, own_.rows()).noalias() += own_ * by_point;
+}
+
 NodeReach::NodeReach(const Span& span, std::vector<Piece> pieces, const LegendreTable& table,
                      const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights)
     : pieces_(std::move(pieces)),
@@ -25,6 +43,20 @@ Eigen::MatrixXd NodeReach::of_nodes(Eigen::Index piece) const {
   const double length = pieces_[static_cast<std::size_t>(piece)].length;
   reach.middleRows(piece * Q, Q) += length * table_->integration.transpose();
   return reach;
+}
+
+PointsReach NodeReach::at_begin(Eigen::Index piece) const {
+  return {begin(piece), 0, Eigen::MatrixXd::Zero(0, 1)};
+}
+
+PointsReach NodeReach::along(Eigen::Index piece) const {
+  const Eigen::Index Q = table_->nodes.size();
+  const Eigen::Index first = piece * Q;
+  Eigen::MatrixXd own(Q, Q + 2);
+  own << Eigen::VectorXd::Zero(Q),
+      pieces_[static_cast<std::size_t>(piece)].length * table_->integration.transpose(),
+      weights_.segment(first, Q);
+  return {begin(piece), first, std::move(own)};
 }
 
 NodeReach::Point NodeReach::at(Eigen::Index piece, double s) const {
