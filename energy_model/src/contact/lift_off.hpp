@@ -17,6 +17,7 @@ struct LiftOff {
 
   [[nodiscard]] double at(const Span& span) const;
   void move(Span& span, double way) const;
+  [[nodiscard]] bool operator==(const LiftOff& other) const = default;
 };
 
 /// All of a span's, by growing s.

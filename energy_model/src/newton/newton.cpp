@@ -199,8 +199,15 @@ double Newton::length_of(const SpanSolution& solution) const {
   const Eigen::Index n = gradient_.size();
   const double shape = step_.head(n).norm();
   if (residual_.size() == 0) return shape;
-  const double scale = 1 + load_ + solution.multipliers.norm();
-  return std::hypot(shape, step_.tail(residual_.size()).norm() / scale);
+  return std::hypot(shape, step_.tail(residual_.size()).norm() / scale_of(solution));
+}
+
+double Newton::scale_of(const SpanSolution& solution) const {
+  return 1 + load_ + solution.multipliers.norm();
+}
+
+bool Newton::is_at_rounding(const SpanSolution& solution, double size) const {
+  return size <= last_residual * scale_of(solution);
 }
 
 /// Moves along the step, by a quarter as much as long as the next step with the same factor is not
@@ -214,8 +221,12 @@ bool Newton::natural_move(SpanSolution& solution, double& size) {
   trial_multipliers_ = solution.multipliers;
   first_step_ = step_;
   const double length = length_of(solution);
-  const double first = std::min(1.0, longest / step_.head(gradient_.size()).norm());
-  for (double part = first; part > least_part && !deadline_.passed(); part /= 4) {
+  const double moves = step_.head(gradient_.size()).norm();
+  const double first = std::min(1.0, longest / moves);
+  // So short a step is cut for nothing: if the next one is no shorter both are made of rounding.
+  const bool short_enough = moves <= coarsest_step && is_at_rounding(solution, size);
+  const double least = short_enough ? first / 2 : least_part;
+  for (double part = first; part > least && !deadline_.passed(); part /= 4) {
     step_ = first_step_;
     move(solution, part);
     size = evaluate(solution);
@@ -281,13 +292,25 @@ void Newton::polish_with_more_terms(SpanSolution& solution, const SpanSolution& 
   polish(solution, load);
 }
 
+void Newton::polish_nearby(SpanSolution& solution, double load) {
+  nearby_ = true;
+  polish(solution, load);
+  nearby_ = false;
+}
+
+bool Newton::has_factor_for(const SpanEnergy& model) const {
+  return model.constraints() > 0 && !definite_ && !stands_still_ &&
+         lu_.rows() == model.size() + model.constraints();
+}
+
 void Newton::run(SpanSolution& solution, double load) {
   load_ = load;
   begin(solution);
   const bool obstacles = solution.model->has_soft_obstacles();
   const int most_steps = obstacles ? 60 : 30;
   double size = evaluate(solution);
-  bool factored = false;
+  bool factored =
+      std::exchange(nearby_, false) && !obstacles && has_factor_for(*solution.model);
   bool shrinks = false;  // the steps, with the factor of an earlier point
   const auto finish = [&] {
     solution.residual = size;
@@ -313,7 +336,7 @@ void Newton::run(SpanSolution& solution, double load) {
     solve();
     const double moved = step_.head(gradient_.size()).norm();
     solution.next_step = moved;
-    const bool small = size <= last_residual * (1 + load + solution.multipliers.norm());
+    const bool small = is_at_rounding(solution, size);
     // Where the shape is right the forces need not be.
     if (moved <= finest_step && (small || obstacles)) return finish();
     if (obstacles) {
@@ -341,11 +364,11 @@ void Newton::run(SpanSolution& solution, double load) {
       if (definite_) solution.softest = softest_of_factor();
       return solution.finish(SolveStatus::near_singular);
     }
-    const double scale = 1 + load + solution.multipliers.norm();
-    if (!obstacles && rough_ && size <= rough_step * scale && solution.next_step <= rough_step) {
+    const double roughly = rough_step * scale_of(solution);
+    if (!obstacles && rough_ && size <= roughly && solution.next_step <= rough_step) {
       return finish();
     }
-    if (!obstacles && size <= last_residual * scale && solution.next_step <= finest_step) {
+    if (!obstacles && is_at_rounding(solution, size) && solution.next_step <= finest_step) {
       return finish();
     }
     // Between grips the caller looks at the second variation; without, the factor has to tell it.

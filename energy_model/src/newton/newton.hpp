@@ -38,6 +38,9 @@ class Newton {
   /// polish_along_branch().
   /// @param load  sum of weight and loads, the scale of the residuals
   void polish(SpanSolution& solution, double load);
+  /// The same between grips, the first steps with the factor of the last polish(), if it was of as
+  /// many unknowns: for a shape next to that one.
+  void polish_nearby(SpanSolution& solution, double load);
   /// The same to where Newton's next step is below `rough_step`, for a shape
   /// that is given more terms anyway.
   void polish_roughly(SpanSolution& solution, double load);
@@ -67,13 +70,19 @@ class Newton {
   [[nodiscard]] double step_length(SpanSolution& solution, double size);
   [[nodiscard]] double step_length_by_energy(SpanSolution& solution);
   [[nodiscard]] double length_of(const SpanSolution& solution) const;
+  /// Of forces, with which residuals are compared.
+  [[nodiscard]] double scale_of(const SpanSolution& solution) const;
+  /// Whether rounding may be what is left of a residual of this size.
+  [[nodiscard]] bool is_at_rounding(const SpanSolution& solution, double size) const;
   [[nodiscard]] double softest_of_factor();
+  [[nodiscard]] bool has_factor_for(const SpanEnergy& model) const;
   [[nodiscard]] bool natural_move(SpanSolution& solution, double& size);
 
   Deadline deadline_;
   double load_ = 0;
   bool stands_still_ = false;
   bool rough_ = false;
+  bool nearby_ = false;
   double pull_ = 1;  // scale of forces
   Eigen::VectorXd gradient_, residual_, right_, step_, first_step_;
   Eigen::MatrixXd jacobian_, hessian_, system_, neutral_;
