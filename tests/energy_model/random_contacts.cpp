@@ -1,0 +1,109 @@
+// Random rods over floors, beside walls and over pegs, as a table of what is certified and what it
+// takes.
+//   dlo_random_contacts [--scenes N] [--first K] [--time-limit SECONDS]
+// N scenes of each kind; processor time. Ends with 0 if no solve overran the limit; 1 if not; 2 for
+// bad usage.
+
+#include "random_contacts.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <iostream>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+
+namespace {
+
+using dlo::energy_model::Equilibrium;
+using dlo::energy_model::Problem;
+
+constexpr double largest_gamma = 1e5;
+
+struct Options {
+  unsigned scenes = 50;
+  unsigned first = 0;
+  double time_limit = 20;
+};
+
+Options read_options(int argc, char** argv) {
+  Options options;
+  for (int i = 1; i < argc; i += 2) {
+    const std::string name = argv[i];
+    if (i + 1 == argc) throw std::invalid_argument(name + " wants a value");
+    const std::string value = argv[i + 1];
+    std::size_t used = 0;
+    if (name == "--scenes") {
+      options.scenes = static_cast<unsigned>(std::stoul(value, &used));
+    } else if (name == "--first") {
+      options.first = static_cast<unsigned>(std::stoul(value, &used));
+    } else if (name == "--time-limit") {
+      options.time_limit = std::stod(value, &used);
+    } else {
+      throw std::invalid_argument("unknown option " + name);
+    }
+    if (used != value.size()) throw std::invalid_argument("not a number: " + value);
+  }
+  if (!(options.time_limit > 0)) throw std::invalid_argument("--time-limit must be > 0");
+  return options;
+}
+
+/// @return how many overran the limit
+template <class Scenes>
+int run(const Options& options, const char* kind, bool space, const Scenes& scene) {
+  std::vector<double> seconds;
+  std::map<std::string, int> refused;
+  int touching = 0;
+  int slow = 0;
+  unsigned slowest = 0;
+  for (unsigned i = 0; i < options.scenes; ++i) {
+    const unsigned seed = options.first + i;
+    const Problem problem = scene(seed, space, largest_gamma);
+    const std::clock_t begin = std::clock();
+    const Equilibrium rod = solve_energy(problem, {.time_limit = options.time_limit});
+    const double spent = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    if (seconds.empty() || spent > *std::max_element(seconds.begin(), seconds.end())) {
+      slowest = seed;
+    }
+    seconds.push_back(spent);
+    touching += rod.contacts.empty() ? 0 : 1;
+    slow += spent > 1.5 * options.time_limit ? 1 : 0;
+    if (succeeded(rod.status)) continue;
+    ++refused[rod.message];
+    std::printf("  %s, seed %u: %s\n", kind, seed, rod.message.c_str());
+  }
+  int failures = 0;
+  for (const auto& [message, times] : refused) failures += times;
+  std::sort(seconds.begin(), seconds.end());
+  std::printf(
+      "%s in %s: certified %u of %u, %d touch; median %.1f ms, 9 of 10 within %.0f ms, "
+      "slowest %.2f s (seed %u)\n",
+      kind, space ? "space" : "the plane", options.scenes - static_cast<unsigned>(failures),
+      options.scenes, touching, 1e3 * seconds[seconds.size() / 2],
+      1e3 * seconds[seconds.size() * 9 / 10], seconds.back(), slowest);
+  return slow;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  try {
+    options = read_options(argc, argv);
+    if (options.scenes == 0) throw std::invalid_argument("--scenes must be > 0");
+  } catch (const std::exception& error) {
+    std::cerr << "dlo_random_contacts: " << error.what() << "\n";
+    return 2;
+  }
+  int slow = 0;
+  for (const bool space : {false, true}) {
+    slow += run(options, "floors and walls", space, dlo::test::random_touching_problem);
+    slow += run(options, "pegs", space, dlo::test::random_peg_problem);
+  }
+  return slow == 0 ? 0 : 1;
+}
