@@ -296,7 +296,14 @@ class ContactSearch {
       spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
       std::optional<std::vector<Span::Contact>> next = mended(solution, load_, Terms::some);
       if (!next) {
+        const TangentField here = field_of(solution.model->shape(solution.x));
+        span = solution.model->span();
         solution = with_all_terms(std::move(solution));
+        // Where two points are about to become a part that lies neither slides with a least gap.
+        if (!solution.is_equilibrium() && hold_points(span)) {
+          solution = near_field(span, here);
+          if (solution.is_equilibrium()) solution = with_all_terms(std::move(solution));
+        }
         if (!solution.is_equilibrium()) break;
         next = mended(solution, load_, Terms::all);
         if (!next && !lifts_off(solution)) break;
