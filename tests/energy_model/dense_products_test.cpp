@@ -1,4 +1,4 @@
-#include "strain/dense_products.hpp"
+#include "linear/dense_products.hpp"
 
 #include <gtest/gtest.h>
 
@@ -31,21 +31,16 @@ TEST(DenseProducts, AreThoseOfTheLibraryInAllSizes) {
   for (const Index rows : {1, 2, 3, 4, 5, 8, 11, 20, 47}) {
     for (const Index inner : {1, 2, 3, 7, 26}) {
       for (const Index columns : {1, 2, 3, 4, 5, 9}) {
-        MatrixXd wholes[4];
+        MatrixXd wholes[3];
         const auto a = part_of(wholes[0], rows, inner);
         const auto b = part_of(wholes[1], inner, columns);
         auto product = part_of(wholes[2], rows, columns);
         const MatrixXd around = wholes[2];
-        auto transposed = part_of(wholes[3], inner, columns);
         for (const DenseKernel* kernel : kernels) {
           kernel->multiply(columns_of(a), columns_of(b), result_columns(product));
           EXPECT_LT((product - a * b).norm(), rounding) << rows << ' ' << inner << ' ' << columns;
           product = around.block(2, 1, rows, columns);
           EXPECT_EQ(wholes[2], around) << "written beside the result";
-          kernel->multiply_transposed(columns_of(a), columns_of(product),
-                                      result_columns(transposed));
-          EXPECT_LT((transposed - a.transpose() * product).norm(), rounding)
-              << rows << ' ' << inner << ' ' << columns;
         }
       }
     }
@@ -55,14 +50,50 @@ TEST(DenseProducts, AreThoseOfTheLibraryInAllSizes) {
 TEST(DenseProducts, WorkOutHalfOfWhatIsSymmetric) {
   for (const Index rows : {1, 3, 4, 9, 47}) {
     for (const Index columns : {1, 2, 3, 4, 5, 7, 20}) {
-      const MatrixXd a = MatrixXd::Random(rows, columns);
+      const MatrixXd a = MatrixXd::Random(columns, rows);
       const Eigen::VectorXd weights = Eigen::VectorXd::Random(rows);
-      const MatrixXd weighted = weights.asDiagonal() * a;
+      const MatrixXd weighted = a * weights.asDiagonal();
       MatrixXd product(columns, columns);
       for (const DenseKernel* kernel : kernels) {
         kernel->multiply_symmetric(columns_of(a), columns_of(weighted), result_columns(product));
-        EXPECT_LT((product - a.transpose() * weighted).norm(), rounding) << rows << ' ' << columns;
+        EXPECT_LT((product - a * weighted.transpose()).norm(), rounding) << rows << ' ' << columns;
       }
+    }
+  }
+}
+
+TEST(DenseProducts, FactorWhatIsPositiveDefiniteAndNothingElse) {
+  for (const Index n : {1, 2, 3, 4, 5, 8, 9, 13, 20, 47}) {
+    const MatrixXd root = MatrixXd::Random(n, n);
+    const MatrixXd matrix = root * root.transpose() + MatrixXd::Identity(n, n);
+    const Eigen::VectorXd right = Eigen::VectorXd::Random(n);
+    const Index stride = (n + padding - 1) / padding * padding;
+    for (const DenseKernel* kernel : kernels) {
+      MatrixXd factor = MatrixXd::Zero(stride, n);
+      factor.topRows(n) = matrix;
+      ASSERT_TRUE(kernel->factor({factor.data(), n, n, stride})) << n;
+      Eigen::VectorXd x = right;
+      kernel->solve({factor.data(), n, n, stride}, x.data());
+      EXPECT_LT((matrix * x - right).norm(), rounding) << n;
+      factor.topRows(n) = matrix;
+      factor(n - 1, n - 1) -= 1 / matrix.inverse()(n - 1, n - 1) + 1e-6;
+      EXPECT_FALSE(kernel->factor({factor.data(), n, n, stride})) << n;
+    }
+  }
+}
+
+TEST(DenseProducts, ReflectOnBothSides) {
+  for (const Index n : {1, 3, 8, 21}) {
+    const MatrixXd half = MatrixXd::Random(n, n);
+    const MatrixXd matrix = half + half.transpose();
+    const Eigen::VectorXd v = Eigen::VectorXd::Random(n);
+    const double tau = 2 / v.squaredNorm();
+    const MatrixXd reflection = MatrixXd::Identity(n, n) - tau * v * v.transpose();
+    for (const DenseKernel* kernel : kernels) {
+      MatrixXd reflected = matrix;
+      Eigen::VectorXd scratch(n);
+      kernel->reflect(result_columns(reflected), v.data(), tau, scratch.data());
+      EXPECT_LT((reflected - reflection * matrix * reflection).norm(), rounding) << n;
     }
   }
 }

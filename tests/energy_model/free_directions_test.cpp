@@ -1,8 +1,9 @@
-#include "base/free_directions.hpp"
+#include "linear/free_directions.hpp"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
 
@@ -54,6 +55,35 @@ TEST(FreeDirections, SmallestEigenvalueIsProven) {
   const Eigen::MatrixXd hessian =
       Eigen::MatrixXd::Identity(6, 6) - 0.9 * across * across.transpose();
   EXPECT_NEAR(smallest_eigenvalue(hessian, Eigen::MatrixXd(0, 6)), 0.1, 1e-4);
+}
+
+TEST(FreeDirections, StepIsThatOfTheWholeSystem) {
+  constexpr Eigen::Index n = 16;
+  for (const Eigen::Index m : {0, 1, 5, 16}) {
+    const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(m, n);
+    const Eigen::MatrixXd hessian = with_eigenvalues(Eigen::VectorXd::LinSpaced(n, 0.1, 2));
+    const Eigen::VectorXd right = Eigen::VectorXd::Random(n + m);
+    FreeHessian free;
+    free.compute(hessian, jacobian);
+    ASSERT_TRUE(free.has_solutions());
+    Eigen::VectorXd step;
+    free.solve(right, step);
+    Eigen::MatrixXd system(n + m, n + m);
+    system << hessian, -jacobian.transpose(), jacobian, Eigen::MatrixXd::Zero(m, m);
+    EXPECT_LT((step - system.partialPivLu().solve(right)).norm(), 1e-10 * step.norm()) << m;
+  }
+}
+
+TEST(FreeDirections, NoStepWithoutMinimumOrWithDependentConstraints) {
+  FreeHessian free;
+  free.compute(with_eigenvalues(Eigen::VectorXd::LinSpaced(8, -0.1, 2)), Eigen::MatrixXd(0, 8));
+  EXPECT_FALSE(free.has_solutions());
+  Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(3, 8);
+  jacobian.row(2) = jacobian.row(0) - jacobian.row(1);
+  free.compute(Eigen::MatrixXd::Identity(8, 8), jacobian);
+  EXPECT_FALSE(free.has_solutions());
+  free.compute(Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Random(3, 2));
+  EXPECT_FALSE(free.has_solutions());
 }
 
 }  // namespace

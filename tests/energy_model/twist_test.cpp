@@ -8,7 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "base/free_directions.hpp"
+#include "linear/free_directions.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"

@@ -59,6 +59,8 @@ LegendreTable make_table(int terms, Eigen::Index Q) {
     table.integrals.row(q) = integrals;
   }
   table.integration = table.integrals * table.values.transpose() * table.weights.asDiagonal();
+  table.values_transposed = table.values.transpose();
+  table.integration_transposed = table.integration.transpose();
   const Eigen::VectorXd root = table.weights.cwiseSqrt();
   Eigen::MatrixXd basis(Q, terms + 1);
   basis << root, root.asDiagonal() * table.integrals.leftCols(terms);

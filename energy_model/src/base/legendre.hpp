@@ -12,6 +12,8 @@ struct LegendreTable {
   Eigen::MatrixXd values;       ///< p_k at the nodes, Q x Q
   Eigen::MatrixXd integrals;    ///< int_0^node p_k, Q x Q
   Eigen::MatrixXd integration;  ///< from values at the nodes to int_0^node, Q x Q
+  /// Of `values` and `integration`.
+  Eigen::MatrixXd values_transposed, integration_transposed;
   /// From values f at the nodes to c and a_k with c + sum_{k < K} a_k int_0^node p_k nearest to f,
   /// (K + 1) x Q.
   Eigen::MatrixXd fit;

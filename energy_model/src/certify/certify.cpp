@@ -1,12 +1,12 @@
 #include "certify/certify.hpp"
 
-#include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "base/free_directions.hpp"
 #include "certify/free_turns.hpp"
+#include "linear/newton_system.hpp"
 #include "newton/newton.hpp"
 
 namespace dlo::energy_model {
@@ -30,20 +30,14 @@ constexpr double largest_h = 0.25;
 constexpr double largest_third_derivative = 4;
 
 /// Norm of Newton's step from here; in neutral directions it stands still.
-double newton_step(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
-                   const Eigen::VectorXd& gradient, const Eigen::VectorXd& residual) {
-  const Eigen::Index n = hessian.rows();
-  const Eigen::Index m = jacobian.rows();
-  Eigen::MatrixXd system(n + m, n + m);
-  system << hessian, jacobian.transpose(), jacobian, Eigen::MatrixXd::Zero(m, m);
-  Eigen::VectorXd right(n + m);
+double newton_step(NewtonSystem& system, const Eigen::VectorXd& gradient,
+                   const Eigen::VectorXd& residual) {
+  Eigen::VectorXd right(gradient.size() + residual.size());
   right << -gradient, -residual;
-  Eigen::VectorXd step = system.partialPivLu().solve(right);
-  if (!((system * step - right).norm() <= 1e-6 * right.norm()) ||
-      !(step.head(n).norm() <= largest_next_step)) {
-    step = AcrossNeutral(system).step(right);
-  }
-  return step.head(n).norm();
+  Eigen::VectorXd step;
+  system.solve(right, step);
+  if (!system.is_met(right, step, largest_next_step)) step = system.across_neutral(right);
+  return step.head(gradient.size()).norm();
 }
 
 /// Of forces.
@@ -93,14 +87,13 @@ struct Softness {
 /// @param bound    size up to which an eigenvalue counts as neutral
 /// @param free     turns of the rod as a whole, whose eigenvalues are zero
 /// @param nothing  size up to which one is zero whatever its direction is; negative: none is
-Softness softness(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian, double bound,
-                  Eigen::Index free, double nothing) {
+Softness softness(FreeHessian& hessian, double bound, Eigen::Index free, double nothing) {
   Softness result;
-  result.smallest = smallest_eigenvalue(hessian, jacobian);
+  result.smallest = smallest_eigenvalue(hessian);
   result.nearest_zero = std::abs(result.smallest);
   // A factor proves that none is much smaller than a smallest one that is positive.
   if (result.smallest > 2 * bound) return result;
-  const Eigen::VectorXd sizes = eigenvalues_by_size(hessian, jacobian).cwiseAbs();
+  const Eigen::VectorXd sizes = eigenvalues_by_size(hessian).cwiseAbs();
   result.zero = std::max(std::min(free, (sizes.array() <= bound).count()),
                          (sizes.array() <= nothing).count());
   result.neutral_directions = static_cast<int>((sizes.array() <= bound).count() - result.zero);
@@ -114,10 +107,10 @@ struct SoftMode {
   Eigen::VectorXd direction, multipliers;
 };
 
-SoftMode soft_mode(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
-                   Eigen::Index free) {
+SoftMode soft_mode(const FreeHessian& on_free_directions, const Eigen::MatrixXd& hessian,
+                   const Eigen::MatrixXd& jacobian, Eigen::Index free) {
   SoftMode mode;
-  mode.direction = direction_by_size(hessian, jacobian, free);
+  mode.direction = direction_by_size(on_free_directions, free);
   mode.multipliers = Eigen::VectorXd::Zero(jacobian.rows());
   if (jacobian.rows() > 0) {
     mode.multipliers = jacobian.transpose().householderQr().solve(hessian * mode.direction);
@@ -186,7 +179,9 @@ void certify(SpanSolution& solution, double load) {
   if (!(solution.residual <= largest_next_step * scale)) {
     return solution.fail("the residual of the returned shape is not small");
   }
-  solution.next_step = newton_step(hessian, jacobian, gradient, residual);
+  NewtonSystem system;
+  system.compute(hessian, jacobian);
+  solution.next_step = newton_step(system, gradient, residual);
   const bool small_step = solution.next_step <= largest_next_step;
   // Below it what is left of the residual makes a step that is not small.
   const double bound = std::max(neutral, small_step ? 0 : solution.residual / largest_next_step);
@@ -194,7 +189,7 @@ void certify(SpanSolution& solution, double load) {
   // Obstacles leave movements free that are not looked for: those that are zero but for rounding.
   const bool obstacles = model.has_soft_obstacles() || !model.span().contacts.empty();
   const double nothing = obstacles ? 128 * rounding_of(scale) : -1;
-  Softness found = softness(hessian, jacobian, bound, free.in_plane, nothing);
+  Softness found = softness(system.on_free_directions(), bound, free.in_plane, nothing);
   solution.smallest_curvature = found.smallest;
   solution.softest = found.nearest_zero;
   const double eta = linear_error(solution, load);
@@ -202,7 +197,7 @@ void certify(SpanSolution& solution, double load) {
   bool at_fold = false;
   solution.neutral_directions = found.neutral_directions;
   if (!model.has_soft_obstacles() && may_be_at_fold(solution, load, eta)) {
-    const SoftMode mode = soft_mode(hessian, jacobian, found.zero);
+    const SoftMode mode = soft_mode(system.on_free_directions(), hessian, jacobian, found.zero);
     const Softening change = softening(solution, mode);
     const double kappa = std::abs(change.first) + std::abs(change.second) * eta;
     const double h = eta * kappa / solution.softest;
@@ -213,7 +208,9 @@ void certify(SpanSolution& solution, double load) {
   solution.error = error_estimate(solution, moved);
   if (model.span().planar) {
     model.sideways(solution.multipliers, hessian, jacobian);
-    found = softness(hessian, jacobian, bound, free.sideways, nothing);
+    FreeHessian beside;
+    beside.compute(hessian, jacobian);
+    found = softness(beside, bound, free.sideways, nothing);
     solution.smallest_curvature = std::min(solution.smallest_curvature, found.smallest);
     solution.neutral_directions += found.neutral_directions;
   }

@@ -61,22 +61,21 @@ void Newton::factor(SpanSolution& solution) {
     definite_ = llt_.info() == Eigen::Success;
     if (definite_) return;
   }
-  factor_system();
-  if (!stands_still_) return;
   pull_ = 1 + load_ + solution.multipliers.norm();
-  find_neutral();
+  factor_system();
+  if (stands_still_) find_neutral();
 }
 
 /// In terms beyond those of the last Hessian bending outweighs what forces add,
 /// with the square of the order.
 void Newton::prolong(const SpanEnergy& model, const SpanEnergy& fewer) {
   const std::vector<Eigen::Index> places = model.places_of(fewer);
-  system_ = hessian_;
+  const Eigen::MatrixXd known = hessian_;
   hessian_.setIdentity(model.size(), model.size());
   for (std::size_t j = 0; j < places.size(); ++j) {
     for (std::size_t i = 0; i < places.size(); ++i) {
       hessian_(places[i], places[j]) =
-          system_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+          known(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
     }
   }
   prolonged_ = true;
@@ -85,30 +84,25 @@ void Newton::prolong(const SpanEnergy& model, const SpanEnergy& fewer) {
 }
 
 void Newton::factor_system() {
-  const Eigen::Index n = hessian_.rows();
-  const Eigen::Index m = jacobian_.rows();
-  system_.resize(n + m, n + m);
-  system_.topLeftCorner(n, n) = hessian_;
-  system_.topRightCorner(n, m) = -jacobian_.transpose();
-  system_.bottomLeftCorner(m, n) = jacobian_;
-  system_.bottomRightCorner(m, m).setZero();
-  lu_.compute(system_);
-  across_.reset();
+  system_.compute(hessian_, jacobian_);
+  broyden_.clear();
 }
 
 /// Into neutral_: orthonormal vectors that the system makes shorter than `neutral`, by inverse
 /// iteration; a step along them would be any. Multipliers count by their own size, or a gap that
 /// grips hardly close would pass for neutral.
 void Newton::find_neutral() {
-  const Eigen::Index size = system_.rows();
+  const Eigen::Index size = gradient_.size() + residual_.size();
   neutral_.resize(size, 0);
   const Eigen::VectorXd seed = Eigen::VectorXd::LinSpaced(size, 1, 2).normalized();
+  Eigen::VectorXd right;
   for (Eigen::Index found = 0; found < most_neutral; ++found) {
     Eigen::VectorXd v = seed;
     double shrinks = 1;
     for (int i = 0; i < 2; ++i) {
       v.tail(residual_.size()) /= pull_;
-      v = lu_.solve(v);
+      right = v;
+      system_.solve(right, v);
       v.tail(residual_.size()) /= pull_;
       v -= neutral_ * (neutral_.transpose() * v);
       shrinks = 1 / v.norm();
@@ -136,23 +130,16 @@ void Newton::solve() {
   }
   right_.resize(gradient_.size() + residual_.size());
   right_ << -gradient_, -residual_;
-  step_ = lu_.solve(right_);
+  system_.solve(right_, step_);
   if (stands_still_) stand_still();
   // A neutral direction leaves the system singular; least squares stands still along it.
-  const double moved = step_.head(gradient_.size()).norm();
-  if (!((system_ * step_ - right_).norm() <= 1e-6 * right_.norm()) || moved > 1e3) {
-    step_across_neutral();
-  }
-}
-
-void Newton::step_across_neutral() {
-  if (!across_) across_.emplace(system_);
-  step_ = across_->step(right_);
+  constexpr double longest = 1e3;
+  if (!system_.is_met(right_, step_, longest)) step_ = system_.across_neutral(right_);
 }
 
 void Newton::stand_still_where_neutral() {
   right_ << -gradient_, -residual_;
-  step_across_neutral();
+  step_ = system_.across_neutral(right_);
 }
 
 void Newton::move(SpanSolution& solution, double length) {
@@ -213,6 +200,7 @@ bool Newton::is_at_rounding(const SpanSolution& solution, double size) const {
 /// Moves along the step, by a quarter as much as long as the next step with the same factor is not
 /// shorter: Deuflhard's natural monotonicity, which does not depend on how gradients and gaps are
 /// weighed against each other. That step is left in step_, the residual in `size`.
+/// With constraints it is Broyden's, from all whole steps with this factor.
 /// @return whether there is such a part; the solution is where it was if not
 bool Newton::natural_move(SpanSolution& solution, double& size) {
   constexpr double longest = 2;        // of a step; angles of this size have left the path
@@ -232,7 +220,15 @@ bool Newton::natural_move(SpanSolution& solution, double& size) {
     size = evaluate(solution);
     if (std::isfinite(size)) {
       solve();
-      if (length_of(solution) < (1 - part / 4) * length) return true;
+      if (length_of(solution) < (1 - part / 4) * length) {
+        // A part of a step, and one that stands still, says less of the factor.
+        if (part < 1 || stands_still_) {
+          broyden_.clear();
+        } else if (residual_.size() > 0) {
+          update_step();
+        }
+        return true;
+      }
     }
     solution.x = trial_x_;
     solution.multipliers = trial_multipliers_;
@@ -240,6 +236,17 @@ bool Newton::natural_move(SpanSolution& solution, double& size) {
   step_ = first_step_;
   size = evaluate(solution);
   return false;
+}
+
+/// Into step_, which the factor gives after the whole step first_step_: Broyden's. Multipliers
+/// count by their own size.
+void Newton::update_step() {
+  auto first_multipliers = first_step_.tail(residual_.size());
+  auto multipliers = step_.tail(residual_.size());
+  first_multipliers /= pull_;
+  multipliers /= pull_;
+  broyden_.update(first_step_, step_);
+  multipliers *= pull_;
 }
 
 /// Of the Hessian that is factored, by inverse iteration from a vector that low modes share: not
@@ -312,6 +319,7 @@ void Newton::run(SpanSolution& solution, double load) {
   bool factored =
       std::exchange(nearby_, false) && !obstacles && has_factor_for(*solution.model);
   bool shrinks = false;  // the steps, with the factor of an earlier point
+  bool is_next = false;  // step_ is the next one already
   const auto finish = [&] {
     solution.residual = size;
     solution.softest = definite_ ? softest_of_factor() : std::numeric_limits<double>::quiet_NaN();
@@ -330,10 +338,12 @@ void Newton::run(SpanSolution& solution, double load) {
     if (std::exchange(prolong_next_, false)) {
       factor_system();
       factored = true;
+      is_next = false;
     } else if (!factored) {
       factor(solution);
+      is_next = false;
     }
-    solve();
+    if (!std::exchange(is_next, false)) solve();
     const double moved = step_.head(gradient_.size()).norm();
     solution.next_step = moved;
     const bool small = is_at_rounding(solution, size);
@@ -345,6 +355,7 @@ void Newton::run(SpanSolution& solution, double load) {
       size = evaluate(solution);
       solution.next_step = moved * size / before;
     } else if (natural_move(solution, size)) {
+      is_next = true;
       solution.next_step = step_.head(gradient_.size()).norm();
       shrinks = solution.next_step < fast_contraction * moved;
     } else {

@@ -2,11 +2,10 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/LU>
-#include <optional>
 
 #include "base/deadline.hpp"
-#include "base/free_directions.hpp"
+#include "linear/newton_system.hpp"
+#include "newton/broyden.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
@@ -65,7 +64,6 @@ class Newton {
   void stand_still();
   void solve();
   void stand_still_where_neutral();
-  void step_across_neutral();
   void move(SpanSolution& solution, double length);
   [[nodiscard]] double step_length(SpanSolution& solution, double size);
   [[nodiscard]] double step_length_by_energy(SpanSolution& solution);
@@ -77,6 +75,7 @@ class Newton {
   [[nodiscard]] double softest_of_factor();
   [[nodiscard]] bool has_factor_for(const SpanEnergy& model) const;
   [[nodiscard]] bool natural_move(SpanSolution& solution, double& size);
+  void update_step();
 
   Deadline deadline_;
   double load_ = 0;
@@ -85,13 +84,13 @@ class Newton {
   bool nearby_ = false;
   double pull_ = 1;  // scale of forces
   Eigen::VectorXd gradient_, residual_, right_, step_, first_step_;
-  Eigen::MatrixXd jacobian_, hessian_, system_, neutral_;
+  Eigen::MatrixXd jacobian_, hessian_, neutral_;
   Eigen::LLT<Eigen::MatrixXd> llt_;
-  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
-  std::optional<AcrossNeutral> across_;  // of system_, once it was asked for
-  bool prolonged_ = false;               // hessian_ is that of fewer terms
-  bool prolong_next_ = false;            // and what the next step begins with
-  bool definite_ = false;                // llt_ is what the system is solved with
+  NewtonSystem system_;        // where the Hessian has no factor llt_
+  BroydenSteps broyden_;       // with system_, multipliers over pull_
+  bool prolonged_ = false;     // hessian_ is that of fewer terms
+  bool prolong_next_ = false;  // and what the next step begins with
+  bool definite_ = false;      // llt_ is what the system is solved with
   Eigen::VectorXd trial_x_, trial_multipliers_, trial_gradient_, soft_;
 };
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/free_directions.hpp"
+#include "linear/free_directions.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/free_directions.hpp"
+#include "linear/free_directions.hpp"
 #include "newton/restore.hpp"
 
 namespace dlo::energy_model {

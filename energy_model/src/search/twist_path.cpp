@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "base/free_directions.hpp"
+#include "linear/free_directions.hpp"
 #include "base/legendre.hpp"
 #include "certify/enough_terms.hpp"
 #include "newton/penalty_descent.hpp"

@@ -1,6 +1,6 @@
 #include "search/way_down.hpp"
 
-#include "base/free_directions.hpp"
+#include "linear/free_directions.hpp"
 
 namespace dlo::energy_model {
 

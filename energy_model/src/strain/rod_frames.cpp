@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/spin.hpp"
-#include "strain/dense_products.hpp"
+#include "linear/dense_products.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -137,12 +137,13 @@ void RodFrames::resize(State& state) const {
   const Eigen::Index K = std::max(panels_.back().terms, panels_.front().terms);
   for (Eigen::MatrixX4d* m : {&state.product, &state.defect, &state.turn}) m->resize(Q, 4);
   for (Eigen::MatrixX3d* m : {&state.couples, &state.moments, &state.levers}) m->resize(Q, 3);
-  state.along.resize(Q);
+  state.along.resize(Q, 3);
   state.curvatures.resize(Q, 6);
-  state.spins.resize(3 * Q, fields_ * K);
-  state.weighted.resize(3 * Q, fields_ * K);
-  state.scaled.resize(std::max(Q, K), fields_ * K);
+  state.spins.resize(fields_ * K, 3 * Q);
+  state.weighted.resize(fields_ * K, 3 * Q);
+  state.scaled.resize(fields_ * K, Q);
   state.own.resize(fields_ * K, fields_ * K);
+  state.mixed.resize(fields_ * K, fields_ * K);
   state.beside.resize(3, fields_ * K);
   state.turned.resize(3, K);
   state.before.resize(columns_, K);
@@ -204,7 +205,7 @@ void RodFrames::moments(const Panel& panel, const FrameGradient& f, const Eigen:
     couples.row(r) = t.cross(g);
   }
   auto beyond = state.levers.topRows(Q);
-  multiply_transposed(panel.table->integration, couples, beyond);
+  multiply(panel.table->integration_transposed, couples, beyond);
   moments += panel.length * beyond;
 }
 
@@ -216,13 +217,17 @@ void RodFrames::pull(const FrameGradient& f, double sense, State& state,
     if (piece > 0 && !f.couples.empty()) later += f.couples[--piece];
     moments(*panel, f, later, state);
     const Eigen::Index Q = panel->nodes();
-    auto along = state.along.head(Q);
+    auto along = state.along.topLeftCorner(Q, fields_);
+    for (Eigen::Index field = 0; field < fields_; ++field) {
+      const auto d = director(state, field).middleRows(panel->node, Q);
+      along.col(field) = d.cwiseProduct(state.moments.topRows(Q)).rowwise().sum();
+    }
+    auto columns = state.product.topLeftCorner(panel->terms, fields_);
+    multiply(panel->table->values_transposed.topRows(panel->terms), along, columns);
     for (Eigen::Index field = 0; field < fields_; ++field) {
       const double scale = sense * panel->strain[static_cast<std::size_t>(field)];
-      const auto d = director(state, field).middleRows(panel->node, Q);
-      along = d.cwiseProduct(state.moments.topRows(Q)).rowwise().sum();
-      gradient.segment(field * columns_ + panel->column, panel->terms).noalias() +=
-          scale * (panel->table->values.leftCols(panel->terms).transpose() * along);
+      gradient.segment(field * columns_ + panel->column, panel->terms) +=
+          scale * columns.col(field);
     }
     later += state.couples.topRows(Q).colwise().sum().transpose();
   }
@@ -264,7 +269,7 @@ void RodFrames::pull_position(const std::vector<double>& signs, State& state,
         levers.row(r) = d.cross(own);
       }
       auto columns = state.product.topLeftCorner(panel->terms, 3);
-      multiply_transposed(panel->table->values.leftCols(panel->terms), levers, columns);
+      multiply(panel->table->values_transposed.topRows(panel->terms), levers, columns);
       jacobian.middleCols(field * columns_ + panel->column, panel->terms) =
           panel->strain[static_cast<std::size_t>(field)] * columns.transpose();
     }
@@ -273,19 +278,23 @@ void RodFrames::pull_position(const std::vector<double>& signs, State& state,
   }
 }
 
-/// Into state.spins: spins of the panel's nodes by its own unknowns, axis by axis.
+/// Into state.spins: spins of the panel's nodes by its own unknowns, which are the rows; columns
+/// are the nodes, axis by axis.
 void RodFrames::own_spins(const Panel& panel, State& state) const {
   const Eigen::Index Q = panel.nodes();
-  for (Eigen::Index field = 0; field < fields_; ++field) {
-    const double scale = panel.length * panel.strain[static_cast<std::size_t>(field)];
-    const auto d = director(state, field).middleRows(panel.node, Q);
-    auto scaled = state.scaled.topLeftCorner(Q, panel.terms);
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      scaled.noalias() =
-          (scale * d.col(axis)).asDiagonal() * panel.table->values.leftCols(panel.terms);
-      multiply(panel.table->integration, scaled,
-               state.spins.block(axis * Q, field * panel.terms, Q, panel.terms));
+  const Eigen::Index K = panel.terms;
+  const auto values = panel.table->values_transposed.topRows(K);
+  auto scaled = state.scaled.topLeftCorner(fields_ * K, Q);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (Eigen::Index field = 0; field < fields_; ++field) {
+      const double scale = panel.length * panel.strain[static_cast<std::size_t>(field)];
+      const auto d = director(state, field).col(axis).segment(panel.node, Q);
+      for (Eigen::Index r = 0; r < Q; ++r) {
+        scaled.col(r).segment(field * K, K) = (scale * d[r]) * values.col(r);
+      }
     }
+    multiply(scaled, panel.table->integration_transposed,
+             state.spins.block(0, axis * Q, fields_ * K, Q));
   }
 }
 
@@ -297,7 +306,7 @@ void RodFrames::end_spins(const Panel& panel, State& state) const {
     const auto d = director(state, field).middleRows(panel.node, Q);
     weighted.noalias() = panel.table->weights.asDiagonal() * d;
     auto columns = state.product.topLeftCorner(panel.terms, 3);
-    multiply_transposed(panel.table->values.leftCols(panel.terms), weighted, columns);
+    multiply(panel.table->values_transposed.topRows(panel.terms), weighted, columns);
     state.ends.middleCols(field * columns_ + panel.column, panel.terms) =
         panel.length * panel.strain[static_cast<std::size_t>(field)] * columns.transpose();
   }
@@ -307,13 +316,13 @@ void RodFrames::end_spins(const Panel& panel, State& state) const {
 void RodFrames::weigh_spins(const Panel& panel, State& state) const {
   constexpr std::array<std::array<Eigen::Index, 3>, 3> entry = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
   const Eigen::Index Q = panel.nodes();
-  for (Eigen::Index column = 0; column < fields_ * panel.terms; ++column) {
-    const auto spin = state.spins.col(column);
+  const Eigen::Index all = fields_ * panel.terms;
+  for (Eigen::Index r = 0; r < Q; ++r) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      state.weighted.col(column).segment(static_cast<Eigen::Index>(axis) * Q, Q) =
-          state.curvatures.col(entry[axis][0]).head(Q).cwiseProduct(spin.head(Q)) +
-          state.curvatures.col(entry[axis][1]).head(Q).cwiseProduct(spin.segment(Q, Q)) +
-          state.curvatures.col(entry[axis][2]).head(Q).cwiseProduct(spin.segment(2 * Q, Q));
+      state.weighted.col(static_cast<Eigen::Index>(axis) * Q + r).head(all) =
+          state.curvatures(r, entry[axis][0]) * state.spins.col(r).head(all) +
+          state.curvatures(r, entry[axis][1]) * state.spins.col(Q + r).head(all) +
+          state.curvatures(r, entry[axis][2]) * state.spins.col(2 * Q + r).head(all);
     }
   }
 }
@@ -334,11 +343,11 @@ void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matri
     const Eigen::Index K = panel->terms;
     const Eigen::Index all = fields_ * K;
     own_spins(*panel, state);
-    const auto spins = state.spins.topLeftCorner(3 * Q, all);
-    auto weighted = state.weighted.topLeftCorner(3 * Q, all);
+    const auto spins = state.spins.topLeftCorner(all, 3 * Q);
+    auto weighted = state.weighted.topLeftCorner(all, 3 * Q);
     auto own = state.own.topLeftCorner(all, all);
+    auto mixed = state.mixed.topLeftCorner(all, all);
     auto beside = state.beside.leftCols(all);
-    const auto values = panel->table->values.leftCols(K);
 
     // Spins squared: (g.theta)(t.theta) - (g.t) theta.theta
     Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
@@ -356,7 +365,7 @@ void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matri
       weigh_spins(*panel, state);
       multiply_symmetric(spins, weighted, own);
       for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        beside.row(axis) = weighted.middleRows(axis * Q, Q).colwise().sum();
+        beside.row(axis) = weighted.middleCols(axis * Q, Q).rowwise().sum().transpose();
       }
     }
     // Spins of spins: theta'.(M x theta), half of it to either side.
@@ -369,21 +378,18 @@ void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matri
         const Eigen::Vector3d m = state.moments.row(r);
         lever.row(r) = d.cross(m);
       }
-      auto by_node = state.weighted.topLeftCorner(Q, all);
-      for (Eigen::Index column = 0; column < all; ++column) {
-        by_node.col(column) = lever.col(0).cwiseProduct(spins.col(column).head(Q)) +
-                              lever.col(1).cwiseProduct(spins.col(column).segment(Q, Q)) +
-                              lever.col(2).cwiseProduct(spins.col(column).tail(Q));
+      auto by_node = state.weighted.topLeftCorner(all, Q);
+      for (Eigen::Index r = 0; r < Q; ++r) {
+        by_node.col(r) = half * lever(r, 0) * spins.col(r) + half * lever(r, 1) * spins.col(Q + r) +
+                         half * lever(r, 2) * spins.col(2 * Q + r);
       }
-      auto product = state.scaled.topLeftCorner(K, all);
-      multiply_transposed(values, by_node, product);
-      product *= half;
-      own.middleRows(field * K, K) += product;
-      own.middleCols(field * K, K) += product.transpose();
+      multiply(by_node, panel->table->values.leftCols(K), mixed.middleCols(field * K, K));
       auto turned = state.product.topLeftCorner(K, 3);
-      multiply_transposed(values, lever, turned);
+      multiply(panel->table->values_transposed.topRows(K), lever, turned);
       beside.middleCols(field * K, K) += half * turned.transpose();
     }
+    own += mixed;
+    own += mixed.transpose();
     for (Eigen::Index field = 0; field < fields_; ++field) {
       const auto ends = state.ends.middleCols(field * columns_ + panel->column, K);
       beside.middleCols(field * K, K).noalias() += later_curvature * ends;
@@ -435,7 +441,7 @@ std::array<Eigen::MatrixXd, 3> RodFrames::tangent_jacobian(State& state) const {
         const Eigen::Index column = field * columns_ + panel.column;
         if (first >= 0) {
           spins.block(axis * nodes + first, column, Q, K) =
-              state.spins.block(axis * Q, field * K, Q, K);
+              state.spins.block(field * K, axis * Q, K, Q).transpose();
         }
         spins.block(axis * nodes + beyond, column, nodes - beyond, K).rowwise() =
             state.ends.row(axis).segment(column, K);

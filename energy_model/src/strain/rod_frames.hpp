@@ -51,10 +51,10 @@ class RodFrames {
     // Scratch, of a piece
     Eigen::MatrixX4d product, defect, turn;
     Eigen::MatrixX3d couples, moments, levers;
-    Eigen::VectorXd along;
+    Eigen::MatrixX3d along;
     /// Upper halves of symmetric 3 x 3 matrices, row by row.
     Eigen::Matrix<double, Eigen::Dynamic, 6> curvatures;
-    Eigen::MatrixXd spins, weighted, scaled, own, before;
+    Eigen::MatrixXd spins, weighted, scaled, own, mixed, before;
     Eigen::Matrix3Xd beside, turned;
 
     /// Frame of the span's end.

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "base/fit_angle.hpp"
-#include "base/free_directions.hpp"
+#include "linear/free_directions.hpp"
 #include "base/legendre.hpp"
 #include "base/spin.hpp"
 

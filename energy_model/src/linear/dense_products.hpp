@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "strain/dense_kernel.hpp"
+#include "linear/dense_kernel.hpp"
 
 namespace dlo::energy_model {
 
@@ -27,12 +27,7 @@ inline void multiply(const DenseOperand& a, const DenseOperand& b, DenseResult r
   dense_kernel().multiply(columns_of(a), columns_of(b), result_columns(result));
 }
 
-/// result = A^T B
-inline void multiply_transposed(const DenseOperand& a, const DenseOperand& b, DenseResult result) {
-  dense_kernel().multiply_transposed(columns_of(a), columns_of(b), result_columns(result));
-}
-
-/// result = A^T B that is known to be symmetric
+/// result = A B^T that is known to be symmetric
 inline void multiply_symmetric(const DenseOperand& a, const DenseOperand& b, DenseResult result) {
   dense_kernel().multiply_symmetric(columns_of(a), columns_of(b), result_columns(result));
 }

@@ -4,6 +4,8 @@
 #include <Eigen/QR>
 #include <optional>
 
+#include "linear/free_hessian.hpp"
+
 namespace dlo::energy_model {
 
 /// Eigenvalues closer to zero than this are neutral: a rod that may turn about an axis for nothing.
@@ -28,17 +30,15 @@ class AcrossNeutral {
 
 /// Smallest eigenvalue of the Hessian on these directions, if it is positive larger by a hundredth
 /// at most; 1 if the constraints leave none.
+[[nodiscard]] double smallest_eigenvalue(FreeHessian& hessian);
 [[nodiscard]] double smallest_eigenvalue(const Eigen::MatrixXd& hessian,
                                          const Eigen::MatrixXd& jacobian);
 
 /// All eigenvalues there, by growing size: those nearest to zero come first.
-[[nodiscard]] Eigen::VectorXd eigenvalues_by_size(const Eigen::MatrixXd& hessian,
-                                                  const Eigen::MatrixXd& jacobian);
+[[nodiscard]] Eigen::VectorXd eigenvalues_by_size(const FreeHessian& hessian);
 
 /// Unit direction of one of them, of those that the constraints leave, by growing size from 0.
-[[nodiscard]] Eigen::VectorXd direction_by_size(const Eigen::MatrixXd& hessian,
-                                                const Eigen::MatrixXd& jacobian,
-                                                Eigen::Index index);
+[[nodiscard]] Eigen::VectorXd direction_by_size(const FreeHessian& hessian, Eigen::Index index);
 
 /// Whether no eigenvalue of a matrix, of which the lower half is read, is negative.
 [[nodiscard]] bool is_minimum(const Eigen::MatrixXd& hessian);

@@ -14,20 +14,30 @@ struct Columns {
   std::ptrdiff_t rows, columns, stride;
 };
 
+/// The widest register has as many lanes.
+inline constexpr std::ptrdiff_t padding = 8;
+
 /// Products of matrices of some ten to two hundred rows, for which a library's packing of its
-/// operands costs as much as the product, and of quaternions, one a row: w, x, y, z. Results have
-/// their size and none of the operands' memory.
+/// operands costs as much as the product, factors of such, and products of quaternions, one a row:
+/// w, x, y, z. Results have their size and none of the operands' memory.
 struct DenseKernel {
   void (*multiply)(const ConstColumns& a, const ConstColumns& b, const Columns& result);  ///< A B
-  void (*multiply_transposed)(const ConstColumns& a, const ConstColumns& b,
-                              const Columns& result);  ///< A^T B
-  /// A^T B that is symmetric, of which one half is worked out.
+  /// A B^T that is symmetric, of which one half is worked out.
   void (*multiply_symmetric)(const ConstColumns& a, const ConstColumns& b, const Columns& result);
   /// scale q (0, u1, u2, 0)
   void (*multiply_by_two_strains)(const ConstColumns& q, const ConstColumns& u, double scale,
                                   const Columns& result);
   void (*multiply_by_conjugate)(const Columns& a, const ConstColumns& b);  ///< a = a conj(b)
   void (*add_product)(const Columns& q, const ConstColumns& a);  ///< q = q + a q, of length 1 again
+  /// Lower half of a symmetric A = L L^T to L with one over each element of its diagonal; the
+  /// stride is a multiple of `padding`, and what a column has beyond its rows, and above the
+  /// diagonal, is written too. @return whether A is positive definite
+  bool (*factor)(const Columns& a);
+  /// x to (L L^T)^-1 x, of such a factor.
+  void (*solve)(const ConstColumns& l, double* x);
+  /// A = P A P of a symmetric A with the reflection P = 1 - tau v v^T.
+  /// @param w  scratch, as many as rows
+  void (*reflect)(const Columns& a, const double* v, double tau, double* w);
 };
 
 /// The one for this machine's instruction set.

@@ -1,0 +1,381 @@
+#include "linear/dense_kernel.hpp"
+
+// Compiled once for each instruction set, DLO_KERNEL naming the namespace (see CMakeLists.txt).
+// Nothing inline from a library that another file might compile too may be used in here but what
+// the compiler is sure to inline: of such a function the linker keeps one copy, perhaps one with
+// instructions that the machine lacks.
+
+namespace dlo::energy_model::DLO_KERNEL {
+namespace {
+
+#if defined(__AVX512F__)
+constexpr std::ptrdiff_t lane_count = 8;
+#elif defined(__AVX2__)
+constexpr std::ptrdiff_t lane_count = 4;
+#else
+constexpr std::ptrdiff_t lane_count = 2;
+#endif
+
+/// A register, and one as stored at any double (GCC and Clang vector extension).
+using Lanes [[gnu::vector_size(lane_count * sizeof(double))]] = double;
+using StoredLanes [[gnu::vector_size(lane_count * sizeof(double)), gnu::aligned(sizeof(double)),
+                    gnu::may_alias]] = double;
+
+inline Lanes read_lanes(const double* from) { return *reinterpret_cast<const StoredLanes*>(from); }
+inline void write_lanes(double* to, Lanes value) { *reinterpret_cast<StoredLanes*>(to) = value; }
+inline std::ptrdiff_t smaller(std::ptrdiff_t a, std::ptrdiff_t b) { return a < b ? a : b; }
+
+/// Factors by which the columns of A are multiplied: element k of column j of the result is at
+/// data + k * next + j * beside.
+struct Factors {
+  const double* data;
+  std::ptrdiff_t next, beside;
+};
+
+/// `registers` of rows from row i on, and `width` columns from column j on, of A B.
+template <int registers, int width>
+inline void multiply_tile(const ConstColumns& a, const Factors& b, const Columns& result,
+                          std::ptrdiff_t i, std::ptrdiff_t j) {
+  Lanes sums[registers][width] = {};
+  const double* left = a.data + i;
+  const double* right = b.data + j * b.beside;
+  for (std::ptrdiff_t k = 0; k < a.columns; ++k, left += a.stride, right += b.next) {
+    Lanes column[registers];
+    for (int r = 0; r < registers; ++r) column[r] = read_lanes(left + r * lane_count);
+    for (int c = 0; c < width; ++c) {
+      const double factor = right[c * b.beside];
+      for (int r = 0; r < registers; ++r) sums[r][c] += column[r] * factor;
+    }
+  }
+  for (int c = 0; c < width; ++c) {
+    double* to = result.data + (j + c) * result.stride + i;
+    for (int r = 0; r < registers; ++r) write_lanes(to + r * lane_count, sums[r][c]);
+  }
+}
+
+/// Rows from `first` on of `width` columns of A B from column j on. The last rows are worked out
+/// with as many before them as fill a tile.
+template <int width>
+inline void multiply_strip(const ConstColumns& a, const Factors& b, const Columns& result,
+                           std::ptrdiff_t first, std::ptrdiff_t j) {
+  constexpr int registers = 2;
+  constexpr std::ptrdiff_t tall = registers * lane_count;
+  if (a.rows >= lane_count) {
+    std::ptrdiff_t i = first;
+    for (; i + lane_count < a.rows && a.rows >= tall; i += tall) {
+      multiply_tile<registers, width>(a, b, result, smaller(i, a.rows - tall), j);
+    }
+    for (; i < a.rows; i += lane_count) {
+      multiply_tile<1, width>(a, b, result, smaller(i, a.rows - lane_count), j);
+    }
+    return;
+  }
+  for (std::ptrdiff_t c = j; c < j + width; ++c) {
+    for (std::ptrdiff_t i = first; i < a.rows; ++i) {
+      double sum = 0;
+      for (std::ptrdiff_t k = 0; k < a.columns; ++k) {
+        sum += a.data[k * a.stride + i] * b.data[c * b.beside + k * b.next];
+      }
+      result.data[c * result.stride + i] = sum;
+    }
+  }
+}
+
+void multiply(const ConstColumns& a, const ConstColumns& b, const Columns& result) {
+  constexpr std::ptrdiff_t width = 4;
+  const Factors factors = {b.data, 1, b.stride};
+  if (b.columns >= width) {
+    for (std::ptrdiff_t j = 0; j < b.columns; j += width) {
+      multiply_strip<width>(a, factors, result, 0, smaller(j, b.columns - width));
+    }
+    return;
+  }
+  if (b.columns == 3) multiply_strip<3>(a, factors, result, 0, 0);
+  if (b.columns == 2) multiply_strip<2>(a, factors, result, 0, 0);
+  if (b.columns == 1) multiply_strip<1>(a, factors, result, 0, 0);
+}
+
+void multiply_symmetric(const ConstColumns& a, const ConstColumns& b, const Columns& result) {
+  constexpr std::ptrdiff_t width = 4;
+  const Factors factors = {b.data, b.stride, 1};
+  const std::ptrdiff_t n = a.rows;
+  std::ptrdiff_t j = 0;
+  for (; j + width <= n; j += width) multiply_strip<width>(a, factors, result, j, j);
+  for (; j < n; ++j) multiply_strip<1>(a, factors, result, j, j);
+  for (j = 0; j < n; ++j) {
+    for (std::ptrdiff_t i = j + 1; i < n; ++i) {
+      result.data[i * result.stride + j] = result.data[j * result.stride + i];
+    }
+  }
+}
+
+inline double dot(const double* a, const double* b, std::ptrdiff_t size) {
+  double sum = 0;
+  for (std::ptrdiff_t k = 0; k < size; ++k) sum += a[k] * b[k];
+  return sum;
+}
+
+/// One row after the other, or as many as a register has lanes.
+inline void read(const double* from, double& value) { value = *from; }
+inline void read(const double* from, Lanes& value) { value = read_lanes(from); }
+inline void write(double* to, double value) { *to = value; }
+inline void write(double* to, Lanes value) { write_lanes(to, value); }
+inline double root(double a) { return __builtin_sqrt(a); }
+inline Lanes root(Lanes a) {
+  Lanes result{};
+  for (std::ptrdiff_t i = 0; i < lane_count; ++i) result[i] = __builtin_sqrt(a[i]);
+  return result;
+}
+
+template <typename Real>
+struct Quaternion {
+  Real w, x, y, z;
+};
+
+template <typename Real, typename Matrix>
+inline Quaternion<Real> read_quaternion(const Matrix& from, std::ptrdiff_t row) {
+  Quaternion<Real> q;
+  read(from.data + row, q.w);
+  read(from.data + from.stride + row, q.x);
+  read(from.data + 2 * from.stride + row, q.y);
+  read(from.data + 3 * from.stride + row, q.z);
+  return q;
+}
+
+template <typename Real>
+inline void write_quaternion(const Columns& to, std::ptrdiff_t row, const Quaternion<Real>& q) {
+  write(to.data + row, q.w);
+  write(to.data + to.stride + row, q.x);
+  write(to.data + 2 * to.stride + row, q.y);
+  write(to.data + 3 * to.stride + row, q.z);
+}
+
+template <typename Real>
+inline void strains_row(const ConstColumns& q, const ConstColumns& u, double scale,
+                        const Columns& result, std::ptrdiff_t row) {
+  const Quaternion<Real> from = read_quaternion<Real>(q, row);
+  Real a, b;
+  read(u.data + row, a);
+  read(u.data + u.stride + row, b);
+  a = a * scale;
+  b = b * scale;
+  write_quaternion<Real>(result, row,
+                         {-from.x * a - from.y * b, from.w * a - from.z * b,
+                          from.w * b + from.z * a, from.x * b - from.y * a});
+}
+
+template <typename Real>
+inline void conjugate_row(const Columns& a, const ConstColumns& b, std::ptrdiff_t row) {
+  const Quaternion<Real> p = read_quaternion<Real>(a, row);
+  const Quaternion<Real> q = read_quaternion<Real>(b, row);
+  write_quaternion<Real>(a, row,
+                         {p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z,
+                          -p.w * q.x + p.x * q.w - p.y * q.z + p.z * q.y,
+                          -p.w * q.y + p.y * q.w - p.z * q.x + p.x * q.z,
+                          -p.w * q.z + p.z * q.w - p.x * q.y + p.y * q.x});
+}
+
+template <typename Real>
+inline void add_row(const Columns& q, const ConstColumns& a, std::ptrdiff_t row) {
+  const Quaternion<Real> p = read_quaternion<Real>(q, row);
+  Quaternion<Real> by = read_quaternion<Real>(a, row);
+  by.w = by.w + 1.0;
+  const Quaternion<Real> sum = {by.w * p.w - by.x * p.x - by.y * p.y - by.z * p.z,
+                                by.w * p.x + by.x * p.w + by.y * p.z - by.z * p.y,
+                                by.w * p.y + by.y * p.w + by.z * p.x - by.x * p.z,
+                                by.w * p.z + by.z * p.w + by.x * p.y - by.y * p.x};
+  const Real size = root(sum.w * sum.w + sum.x * sum.x + sum.y * sum.y + sum.z * sum.z);
+  write_quaternion<Real>(q, row, {sum.w / size, sum.x / size, sum.y / size, sum.z / size});
+}
+
+void multiply_by_two_strains(const ConstColumns& q, const ConstColumns& u, double scale,
+                             const Columns& result) {
+  std::ptrdiff_t r = 0;
+  for (; r + lane_count <= q.rows; r += lane_count) strains_row<Lanes>(q, u, scale, result, r);
+  for (; r < q.rows; ++r) strains_row<double>(q, u, scale, result, r);
+}
+
+void multiply_by_conjugate(const Columns& a, const ConstColumns& b) {
+  std::ptrdiff_t r = 0;
+  for (; r + lane_count <= a.rows; r += lane_count) conjugate_row<Lanes>(a, b, r);
+  for (; r < a.rows; ++r) conjugate_row<double>(a, b, r);
+}
+
+void add_product(const Columns& q, const ConstColumns& a) {
+  std::ptrdiff_t r = 0;
+  for (; r + lane_count <= q.rows; r += lane_count) add_row<Lanes>(q, a, r);
+  for (; r < q.rows; ++r) add_row<double>(q, a, r);
+}
+
+/// `registers` of rows from row i on of `width` columns from column j on, less what the columns
+/// before have put into L L^T there.
+template <int registers, int width>
+inline void subtract_tile(const Columns& a, std::ptrdiff_t i, std::ptrdiff_t j) {
+  Lanes rest[registers][width];
+  for (int c = 0; c < width; ++c) {
+    for (int r = 0; r < registers; ++r) {
+      rest[r][c] = read_lanes(a.data + (j + c) * a.stride + i + r * lane_count);
+    }
+  }
+  const double* left = a.data + i;
+  const double* right = a.data + j;
+  for (std::ptrdiff_t k = 0; k < j; ++k, left += a.stride, right += a.stride) {
+    Lanes column[registers];
+    for (int r = 0; r < registers; ++r) column[r] = read_lanes(left + r * lane_count);
+    for (int c = 0; c < width; ++c) {
+      for (int r = 0; r < registers; ++r) rest[r][c] -= column[r] * right[c];
+    }
+  }
+  for (int c = 0; c < width; ++c) {
+    for (int r = 0; r < registers; ++r) {
+      write_lanes(a.data + (j + c) * a.stride + i + r * lane_count, rest[r][c]);
+    }
+  }
+}
+
+/// The register that a row is in.
+inline std::ptrdiff_t register_of(std::ptrdiff_t row) { return row / lane_count * lane_count; }
+
+/// `width` columns from column j on, of which those before are done.
+template <int width>
+inline bool factor_strip(const Columns& a, std::ptrdiff_t j) {
+  const std::ptrdiff_t first = register_of(j);
+  std::ptrdiff_t i = first;
+  for (; i + lane_count < a.rows; i += 2 * lane_count) subtract_tile<2, width>(a, i, j);
+  if (i < a.rows) subtract_tile<1, width>(a, i, j);
+  for (std::ptrdiff_t c = j; c < j + width; ++c) {
+    double* column = a.data + c * a.stride;
+    if (!(column[c] > 0)) return false;
+    const double scale = 1 / __builtin_sqrt(column[c]);
+    for (i = first; i < a.rows; i += lane_count) {
+      write_lanes(column + i, read_lanes(column + i) * scale);
+    }
+    for (std::ptrdiff_t later = c + 1; later < j + width; ++later) {
+      double* to = a.data + later * a.stride;
+      const double factor = column[later];
+      for (i = first; i < a.rows; i += lane_count) {
+        write_lanes(to + i, read_lanes(to + i) - read_lanes(column + i) * factor);
+      }
+    }
+    column[c] = scale;
+  }
+  return true;
+}
+
+bool factor(const Columns& a) {
+  constexpr std::ptrdiff_t width = 4;
+  std::ptrdiff_t j = 0;
+  for (; j + width <= a.columns; j += width) {
+    if (!factor_strip<width>(a, j)) return false;
+  }
+  for (; j < a.columns; ++j) {
+    if (!factor_strip<1>(a, j)) return false;
+  }
+  return true;
+}
+
+/// to = to + factor from
+inline void add_multiple(const double* from, double factor, std::ptrdiff_t size, double* to) {
+  std::ptrdiff_t i = 0;
+  for (; i + lane_count <= size; i += lane_count) {
+    write_lanes(to + i, read_lanes(to + i) + read_lanes(from + i) * factor);
+  }
+  for (; i < size; ++i) to[i] += factor * from[i];
+}
+
+inline double dot_of_lanes(const double* a, const double* b, std::ptrdiff_t size) {
+  Lanes sums{};
+  std::ptrdiff_t i = 0;
+  for (; i + lane_count <= size; i += lane_count) sums += read_lanes(a + i) * read_lanes(b + i);
+  double sum = dot(a + i, b + i, size - i);
+  for (std::ptrdiff_t lane = 0; lane < lane_count; ++lane) sum += sums[lane];
+  return sum;
+}
+
+/// `width` unknowns from j on of L y = x, and what they take from those beyond.
+template <int width>
+inline void solve_forward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
+  const double* columns[width];
+  double y[width];
+  for (int c = 0; c < width; ++c) {
+    columns[c] = l.data + (j + c) * l.stride;
+    y[c] = x[j + c];
+    for (int before = 0; before < c; ++before) y[c] -= columns[before][j + c] * y[before];
+    y[c] *= columns[c][j + c];
+    x[j + c] = y[c];
+  }
+  std::ptrdiff_t i = j + width;
+  for (; i + lane_count <= l.rows; i += lane_count) {
+    Lanes rest = read_lanes(x + i);
+    for (int c = 0; c < width; ++c) rest -= read_lanes(columns[c] + i) * y[c];
+    write_lanes(x + i, rest);
+  }
+  for (; i < l.rows; ++i) {
+    for (int c = 0; c < width; ++c) x[i] -= columns[c][i] * y[c];
+  }
+}
+
+/// `width` unknowns from j on of L^T y = x, where those beyond are known.
+template <int width>
+inline void solve_backward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
+  const double* columns[width];
+  Lanes sums[width] = {};
+  double y[width];
+  for (int c = 0; c < width; ++c) {
+    columns[c] = l.data + (j + c) * l.stride;
+    y[c] = x[j + c];
+  }
+  std::ptrdiff_t i = j + width;
+  for (; i + lane_count <= l.rows; i += lane_count) {
+    const Lanes known = read_lanes(x + i);
+    for (int c = 0; c < width; ++c) sums[c] += read_lanes(columns[c] + i) * known;
+  }
+  for (; i < l.rows; ++i) {
+    for (int c = 0; c < width; ++c) y[c] -= columns[c][i] * x[i];
+  }
+  for (int c = width; c-- > 0;) {
+    for (std::ptrdiff_t lane = 0; lane < lane_count; ++lane) y[c] -= sums[c][lane];
+    for (int later = c + 1; later < width; ++later) y[c] -= columns[c][j + later] * y[later];
+    y[c] *= columns[c][j + c];
+    x[j + c] = y[c];
+  }
+}
+
+void solve(const ConstColumns& l, double* x) {
+  constexpr std::ptrdiff_t width = 4;
+  const std::ptrdiff_t whole = l.rows / width * width;
+  std::ptrdiff_t j = 0;
+  for (; j < whole; j += width) solve_forward<width>(l, x, j);
+  for (; j < l.rows; ++j) solve_forward<1>(l, x, j);
+  for (; j > whole; --j) solve_backward<1>(l, x, j - 1);
+  for (; j > 0; j -= width) solve_backward<width>(l, x, j - width);
+}
+
+void reflect(const Columns& a, const double* v, double tau, double* w) {
+  const std::ptrdiff_t n = a.rows;
+  // w = tau A v - (tau^2 v.A v / 2) v, so that P A P = A - v w^T - w v^T
+  multiply({a.data, n, n, a.stride}, {v, n, 1, n}, {w, n, 1, n});
+  const double along = -tau / 2 * dot_of_lanes(v, w, n);
+  for (std::ptrdiff_t i = 0; i < n; ++i) w[i] = tau * (w[i] + along * v[i]);
+  for (std::ptrdiff_t j = 0; j < n; ++j) {
+    double* column = a.data + j * a.stride;
+    add_multiple(v, -w[j], n, column);
+    add_multiple(w, -v[j], n, column);
+  }
+}
+
+}  // namespace
+
+const DenseKernel& dense_kernel() {
+  static constexpr DenseKernel kernel = {multiply,
+                                         multiply_symmetric,
+                                         multiply_by_two_strains,
+                                         multiply_by_conjugate,
+                                         add_product,
+                                         factor,
+                                         solve,
+                                         reflect};
+  return kernel;
+}
+
+}  // namespace dlo::energy_model::DLO_KERNEL

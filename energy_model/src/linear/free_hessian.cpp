@@ -1,0 +1,153 @@
+#include "linear/free_hessian.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "linear/dense_products.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Of R's diagonal over its largest element, below which constraints depend on each other.
+constexpr double dependent = 1e-10;
+
+Eigen::Index padded(Eigen::Index rows) { return (rows + padding - 1) / padding * padding; }
+
+}  // namespace
+
+/// Householder's reflections of J^T, column by column.
+void FreeHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
+  reflections_ = jacobian.topRows(constraints_).transpose();
+  tau_.resize(constraints_);
+  diagonal_.resize(constraints_);
+  triangle_.setZero(constraints_, constraints_);
+  for (Eigen::Index i = 0; i < constraints_; ++i) {
+    auto v = reflections_.col(i);
+    triangle_.col(i).head(i) = v.head(i);
+    v.head(i).setZero();
+    const double size = v.norm();
+    diagonal_[i] = v[i] > 0 ? -size : size;
+    v[i] -= diagonal_[i];
+    const double squared = v.squaredNorm();
+    tau_[i] = squared > 0 ? 2 / squared : 0;
+    for (Eigen::Index later = i + 1; later < constraints_; ++later) {
+      auto column = reflections_.col(later);
+      column -= (tau_[i] * v.dot(column)) * v;
+    }
+  }
+  const double largest = constraints_ > 0 ? diagonal_.cwiseAbs().maxCoeff() : 1;
+  independent_ = (diagonal_.array().abs() > dependent * largest).all();
+}
+
+/// Factors Z^T H Z less a multiple of one. @return whether it is positive definite
+bool FreeHessian::factor(double shift, Eigen::MatrixXd& lower) const {
+  const Eigen::Index left = free();
+  lower.resize(padded(left), left);
+  lower.topRows(left) = turned_.bottomRightCorner(left, left);
+  lower.bottomRows(lower.rows() - left).setZero();
+  lower.diagonal().array() -= shift;
+  return dense_kernel().factor({lower.data(), left, left, lower.rows()});
+}
+
+void FreeHessian::compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
+  n_ = hessian.rows();
+  constraints_ = std::min(jacobian.rows(), n_);
+  reflect_constraints(jacobian);
+  independent_ = independent_ && constraints_ == jacobian.rows();
+  turned_ = hessian;
+  scratch_.resize(n_);
+  for (Eigen::Index i = 0; i < constraints_; ++i) {
+    dense_kernel().reflect(result_columns(turned_), reflections_.col(i).data(), tau_[i],
+                           scratch_.data());
+  }
+  definite_ = factor(0, factor_);
+}
+
+void FreeHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
+  const Eigen::Index left = free();
+  step.resize(right.size());
+  turned_right_ = right.head(n_);
+  for (Eigen::Index i = 0; i < constraints_; ++i) {
+    const auto v = reflections_.col(i);
+    turned_right_ -= (tau_[i] * v.dot(turned_right_)) * v;
+  }
+  auto x = step.head(n_);
+  auto y = x.head(constraints_);
+  auto z = x.tail(left);
+  // R^T y = b
+  for (Eigen::Index i = 0; i < constraints_; ++i) {
+    y[i] = (right[n_ + i] - triangle_.col(i).head(i).dot(y.head(i))) / diagonal_[i];
+  }
+  z = turned_right_.tail(left);
+  z.noalias() -= turned_.bottomLeftCorner(left, constraints_) * y;
+  dense_kernel().solve({factor_.data(), left, left, factor_.rows()}, z.data());
+  // R mu = (Q^T H Q) (y; z) - Q^T a, of Y
+  auto mu = step.tail(constraints_);
+  mu.noalias() = turned_.leftCols(constraints_).transpose() * x;
+  mu -= turned_right_.head(constraints_);
+  for (Eigen::Index i = constraints_; i-- > 0;) {
+    mu[i] /= diagonal_[i];
+    mu.head(i) -= mu[i] * triangle_.col(i).head(i);
+  }
+  for (Eigen::Index i = constraints_; i-- > 0;) {
+    const auto v = reflections_.col(i);
+    x -= (tau_[i] * v.dot(x)) * v;
+  }
+}
+
+std::optional<double> FreeHessian::smallest_of_definite() {
+  constexpr double slack = 0.01;
+  constexpr double settled = 1e-4;  // between two looks, of which the later is right to its square
+  constexpr Eigen::Index most_steps = 24;
+  const auto is_time_to_look = [](Eigen::Index k) { return k == 4 || k == 8 || k == 14; };
+  const Eigen::Index left = free();
+  if (!definite_ || left == 0) return std::nullopt;
+  // Lanczos' method with the inverse, each vector made orthogonal to all before.
+  const Eigen::Index most = std::min(most_steps, left);
+  krylov_.resize(left, most + 1);
+  // Without a symmetry, which a direction could lack.
+  for (Eigen::Index i = 0; i < left; ++i) {
+    krylov_(i, 0) = std::sin(1 + 1.7 * static_cast<double>(i));
+  }
+  krylov_.col(0).normalize();
+  Eigen::VectorXd along(most);
+  Eigen::VectorXd beside(most);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
+  double smallest = 0;
+  for (Eigen::Index k = 0; k < most; ++k) {
+    auto next = krylov_.col(k + 1);
+    next = krylov_.col(k);
+    dense_kernel().solve({factor_.data(), left, left, factor_.rows()}, next.data());
+    along[k] = krylov_.col(k).dot(next);
+    for (int twice = 0; twice < 2; ++twice) {
+      scratch_.head(k + 1).noalias() = krylov_.leftCols(k + 1).transpose() * next;
+      next.noalias() -= krylov_.leftCols(k + 1) * scratch_.head(k + 1);
+    }
+    beside[k] = next.norm();
+    const bool last = k + 1 == most || !(beside[k] > 1e-12 * along[k]);
+    if (!last) next /= beside[k];
+    if (!is_time_to_look(k) && !last) continue;
+    eigen.computeFromTridiagonal(along.head(k + 1), beside.head(k), Eigen::EigenvaluesOnly);
+    const double found = 1 / eigen.eigenvalues()[k];
+    const bool done = std::abs(found - smallest) <= settled * found;
+    smallest = found;
+    if (done || last) break;
+  }
+  if (!factor((1 - slack) * smallest, proof_)) return std::nullopt;
+  return smallest;
+}
+
+Eigen::MatrixXd FreeHessian::matrix() const { return turned_.bottomRightCorner(free(), free()); }
+
+Eigen::VectorXd FreeHessian::in_unknowns(const Eigen::VectorXd& v) const {
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(n_);
+  x.tail(free()) = v;
+  for (Eigen::Index i = constraints_; i-- > 0;) {
+    const auto w = reflections_.col(i);
+    x -= (tau_[i] * w.dot(x)) * w;
+  }
+  return x;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace dlo::energy_model {
+
+/// A Hessian on what the constraints leave free, factored: with the reflections Q of
+/// J^T = Q (R; 0), R triangular, and Q = (Y, Z),
+///     Z^T H Z = L L^T.
+/// It tells whether it is positive definite, what its smallest eigenvalue is, and Newton's step.
+/// Buffers survive from one compute() to the next.
+class FreeHessian {
+ public:
+  /// @param hessian   n x n, symmetric
+  /// @param jacobian  of the constraints, m x n; m may be 0 or exceed n
+  void compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
+
+  /// Whether Z^T H Z is positive definite (of no free direction it is) and the constraints are
+  /// independent: what solve() needs.
+  [[nodiscard]] bool has_solutions() const { return definite_ && independent_; }
+
+  /// Solution (x, mu) of H x - J^T mu = a, J x = b. It refines nothing: whoever wants to know how
+  /// good it is looks at what is left.
+  /// @param right      (a, b), n + m
+  /// @param[out] step  (x, mu), another vector
+  void solve(const Eigen::VectorXd& right, Eigen::VectorXd& step);
+
+  /// Of Z^T H Z, if it is positive definite, below which by less than a hundredth of it lies no
+  /// other one, which a factor proves; none if it is not or the proof fails.
+  [[nodiscard]] std::optional<double> smallest_of_definite();
+
+  /// Z^T H Z, free x free.
+  [[nodiscard]] Eigen::MatrixXd matrix() const;
+  /// A vector of the free directions in the unknowns: Z v.
+  [[nodiscard]] Eigen::VectorXd in_unknowns(const Eigen::VectorXd& v) const;
+
+ private:
+  [[nodiscard]] Eigen::Index free() const { return n_ - constraints_; }
+  void reflect_constraints(const Eigen::MatrixXd& jacobian);
+  [[nodiscard]] bool factor(double shift, Eigen::MatrixXd& lower) const;
+
+  Eigen::Index n_ = 0, constraints_ = 0;
+  bool definite_ = false, independent_ = false;
+  Eigen::MatrixXd reflections_;  // v of 1 - tau v v^T, n x m, the first v_i of each zero
+  Eigen::VectorXd tau_, diagonal_;
+  Eigen::MatrixXd triangle_;  // R above its diagonal
+  Eigen::MatrixXd turned_;    // Q^T H Q
+  Eigen::MatrixXd factor_;    // L
+  Eigen::MatrixXd proof_;     // of a shifted matrix
+  Eigen::VectorXd scratch_, turned_right_;
+  Eigen::MatrixXd krylov_;
+};
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <optional>
+
+#include "linear/free_directions.hpp"
+#include "linear/free_hessian.hpp"
+
+namespace dlo::energy_model {
+
+/// The linear system of Newton's method under constraints,
+///     H x - J^T mu = a,  J x = b,
+/// factored on the directions that the constraints leave free where H is positive definite there,
+/// as a whole where it is not. Buffers survive from one compute() to the next.
+class NewtonSystem {
+ public:
+  /// @param hessian   n x n, symmetric; has to outlive what is asked for below, unchanged
+  /// @param jacobian  m x n
+  void compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
+
+  /// @param right      (a, b), n + m
+  /// @param[out] step  (x, mu), another vector
+  void solve(const Eigen::VectorXd& right, Eigen::VectorXd& step);
+
+  /// Whether a step meets the system, to 1e-6 of its right side, and is no longer than this.
+  [[nodiscard]] bool is_met(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
+                            double longest);
+
+  /// By least squares: stands still in neutral directions.
+  [[nodiscard]] Eigen::VectorXd across_neutral(const Eigen::VectorXd& right);
+
+  /// H on the free directions, of a system with constraints; of one without H itself.
+  [[nodiscard]] FreeHessian& on_free_directions() { return free_; }
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd whole() const;
+
+  const Eigen::MatrixXd* hessian_ = nullptr;
+  Eigen::MatrixXd jacobian_;
+  FreeHessian free_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
+  std::optional<AcrossNeutral> across_;  // once it was asked for
+  Eigen::VectorXd left_;
+};
+
+}  // namespace dlo::energy_model
