@@ -19,6 +19,11 @@ class NewtonSystem {
   /// @param jacobian  m x n
   void compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
 
+  /// Whether it has been computed of so many unknowns and constraints.
+  [[nodiscard]] bool is_of(Eigen::Index unknowns, Eigen::Index constraints) const {
+    return hessian_ != nullptr && hessian_->rows() == unknowns && jacobian_.rows() == constraints;
+  }
+
   /// @param right      (a, b), n + m
   /// @param[out] step  (x, mu), another vector
   void solve(const Eigen::VectorXd& right, Eigen::VectorXd& step);

@@ -307,7 +307,7 @@ void Newton::polish_nearby(SpanSolution& solution, double load) {
 
 bool Newton::has_factor_for(const SpanEnergy& model) const {
   return model.constraints() > 0 && !definite_ && !stands_still_ &&
-         lu_.rows() == model.size() + model.constraints();
+         system_.is_of(model.size(), model.constraints());
 }
 
 void Newton::run(SpanSolution& solution, double load) {
@@ -316,8 +316,8 @@ void Newton::run(SpanSolution& solution, double load) {
   const bool obstacles = solution.model->has_soft_obstacles();
   const int most_steps = obstacles ? 60 : 30;
   double size = evaluate(solution);
-  bool factored =
-      std::exchange(nearby_, false) && !obstacles && has_factor_for(*solution.model);
+  bool factored = std::exchange(nearby_, false) && !obstacles && has_factor_for(*solution.model);
+  if (factored) broyden_.clear();
   bool shrinks = false;  // the steps, with the factor of an earlier point
   bool is_next = false;  // step_ is the next one already
   const auto finish = [&] {
