@@ -8,10 +8,10 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "linear/free_directions.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
+#include "linear/free_directions.hpp"
 #include "problems.hpp"
 #include "strain/span_energy.hpp"
 

@@ -295,8 +295,8 @@ inline double dot_of_lanes(const double* a, const double* b, std::ptrdiff_t size
 /// `width` unknowns from j on of L y = x, and what they take from those beyond.
 template <int width>
 inline void solve_forward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
-  const double* columns[width];
-  double y[width];
+  const double* columns[width] = {};
+  double y[width] = {};
   for (int c = 0; c < width; ++c) {
     columns[c] = l.data + (j + c) * l.stride;
     y[c] = x[j + c];
@@ -318,9 +318,9 @@ inline void solve_forward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
 /// `width` unknowns from j on of L^T y = x, where those beyond are known.
 template <int width>
 inline void solve_backward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
-  const double* columns[width];
+  const double* columns[width] = {};
   Lanes sums[width] = {};
-  double y[width];
+  double y[width] = {};
   for (int c = 0; c < width; ++c) {
     columns[c] = l.data + (j + c) * l.stride;
     y[c] = x[j + c];

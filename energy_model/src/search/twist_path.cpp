@@ -9,9 +9,9 @@
 #include <string>
 #include <utility>
 
-#include "linear/free_directions.hpp"
 #include "base/legendre.hpp"
 #include "certify/enough_terms.hpp"
+#include "linear/free_directions.hpp"
 #include "newton/penalty_descent.hpp"
 #include "newton/trust_region.hpp"
 
@@ -215,8 +215,8 @@ class TwistPath {
 
   [[nodiscard]] bool is_stable(const SpanSolution& solution) {
     derive(solution);
-    const Eigen::MatrixXd Z = free_directions(jacobian_, hessian_.rows());
-    Eigen::MatrixXd projected = Z.transpose() * hessian_ * Z;
+    on_free_directions_.compute(hessian_, jacobian_);
+    Eigen::MatrixXd projected = on_free_directions_.matrix();
     // Under large forces what is next to neutral is lost in rounding, whichever sign it has.
     projected.diagonal().array() += rounded_curvature * solution.multipliers.norm();
     return is_minimum(projected);
@@ -282,6 +282,7 @@ class TwistPath {
   Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a leap
   Eigen::VectorXd gradient_, residual_;
   Eigen::MatrixXd jacobian_, hessian_;
+  FreeHessian on_free_directions_;
 };
 
 }  // namespace

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "base/fit_angle.hpp"
-#include "linear/free_directions.hpp"
 #include "base/legendre.hpp"
 #include "base/spin.hpp"
+#include "linear/free_directions.hpp"
 
 namespace dlo::energy_model {
 namespace {
