@@ -12,7 +12,9 @@
 #include "certify/certify.hpp"
 #include "certify/enough_terms.hpp"
 #include "certify/free_turns.hpp"
+#include "certify/piece_cuts.hpp"
 #include "newton/penalty_descent.hpp"
+#include "newton/restore.hpp"
 #include "newton/trust_region.hpp"
 #include "problem/segments.hpp"
 #include "search/search_log.hpp"
@@ -36,12 +38,18 @@ constexpr int least_terms = 7;
 /// Unknowns with which a minimum between grips is looked for.
 constexpr int coarse_unknowns = 100;
 
+/// The same where they are more than `most_unknowns` because pieces end where the shape wants it.
+constexpr int most_graded_unknowns = 2 * most_unknowns;
+
 /// Error over the length above which a shape is asked about with more terms than it takes to look
 /// right.
 constexpr double largest_told_error = 1e-5;
 
 /// Gradient over the load that a shape may have in more terms than its own.
 constexpr double largest_residual = 1e-5;
+
+/// Gap over the tolerance that it may have there.
+constexpr double largest_gap = 10;
 
 /// A step of the trust region works with the cube of the unknowns.
 constexpr Eigen::Index most_descended = 160;
@@ -83,7 +91,11 @@ std::vector<SpanSolution> list_of(SpanSolution solution) {
 class Search {
  public:
   Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
-      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
+      : span_(span),
+        options_(options),
+        workspace_(workspace),
+        load_(span.total_load()),
+        graded_(!span.cuts.empty()) {
     workspace_.newton().limit(options.deadline);
     for (const Segment& segment : segments_of(span)) {
       if (!segment.taut()) continue;
@@ -183,9 +195,9 @@ class Search {
 
   [[nodiscard]] int terms() const {
     if (options_.terms > 0) return options_.terms;
-    const int layers = taut_ ? layer_terms : 0;
-    return std::max(
-        {first_terms(load_, longest_piece_), options_.least_terms, layers, natural_terms_});
+    const int layers = taut_ || graded_ ? layer_terms : 0;
+    const int first = graded_ ? 0 : first_terms(load_, longest_piece_);
+    return std::max({first, options_.least_terms, layers, natural_terms_});
   }
 
   [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
@@ -293,7 +305,10 @@ class Search {
       // Where the rod is taut such a start is near to the shape already.
       if (taut_ && !solution.model->has_soft_obstacles()) {
         workspace_.newton().polish(solution, load_);
-      } else {
+      }
+      if (!solution.is_equilibrium() && !out_of_time()) {
+        solution.x = start;
+        solution.multipliers.resize(0);
         descend(solution);
       }
       if (solution.model->constraints() > 0 && !solution.is_equilibrium() &&
@@ -340,6 +355,10 @@ class Search {
                       is_near_start(solution);
     if (succeeded(solution.status) && (came_by_newton_ || !options_.known.model)) return solution;
     const int spent = solution.evaluations;
+    if (std::optional<SpanSolution> graded = graded_start()) {
+      graded->evaluations += spent;
+      return std::move(*graded);
+    }
     solution = follow ? from_start(Start{options_.start}) : near_field(options_.start);
     solution.evaluations += spent;
     return solution;
@@ -367,6 +386,7 @@ class Search {
     SpanEnergy& model = *solution.model;
     if (!known.model || span_.planar || span_.has_material_directors()) return false;
     if (known.model->span().planar || known.model->pieces() != model.pieces()) return false;
+    if (known.model->span().cuts != span_.cuts) return false;
     solution.x = model.adopt(*known.model, known.x);
     Eigen::VectorXd gradient(model.size());
     (void)model.value(solution.x, gradient);
@@ -417,7 +437,8 @@ class Search {
   /// Raises the number of terms until the last ones do not matter any more.
   [[nodiscard]] SpanSolution refined(SpanSolution solution) {
     const int fields = span_.planar ? 1 : span_.has_material_directors() ? 3 : 2;
-    const int affordable = std::max(32, most_unknowns / (fields * solution.model->pieces()));
+    const int unknowns = graded_ ? most_graded_unknowns : most_unknowns;
+    const int affordable = std::max(32, unknowns / (fields * solution.model->pieces()));
     // Soft obstacles make kinks inside pieces, where contact begins; more terms help only so far.
     constexpr int most_with_soft_obstacles = 64;
     const int most_terms =
@@ -440,12 +461,13 @@ class Search {
       if (solution.terms >= most_terms) {
         solution.resolved = !span_.soft_obstacles.empty();
         if (solution.resolved) break;
+        if (std::optional<SpanSolution> graded = graded_anew(solution)) return std::move(*graded);
         solution.fail(solution.too_few_terms());
         break;
       }
       int more = solution.terms < terms() ? terms() : terms_by_decay(solution, before);
       // Grips may pull harder than weight and loads do.
-      if (solution.multipliers.size() > 0 && !taut_) {
+      if (solution.multipliers.size() > 0 && !taut_ && !graded_) {
         more =
             std::max(more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), longest_piece_));
       }
@@ -453,6 +475,64 @@ class Search {
       solution = with_terms(solution, std::min(most_terms, more), raised);
       raised = true;
     }
+    return solution;
+  }
+
+  /// The span with pieces that end where a shape wants it, unless they do so already.
+  [[nodiscard]] std::optional<Span> graded_for(const SpanSolution& shape) const {
+    const bool touches = !span_.rigid_obstacles.empty() || !span_.contacts.empty() ||
+                         shape.model->has_soft_obstacles();
+    if (graded_ || touches || span_.has_material_directors() || options_.terms > 0) {
+      return std::nullopt;
+    }
+    Span span = shape.model->span();
+    span.cuts = piece_cuts(shape);
+    if (span.cuts.empty()) return std::nullopt;
+    return span;
+  }
+
+  /// Where the terms that can be afforded do not resolve a shape, its pieces may end in the wrong
+  /// places.
+  [[nodiscard]] std::optional<SpanSolution> graded_anew(const SpanSolution& solution) {
+    const std::optional<Span> span = graded_for(solution);
+    if (!span) return std::nullopt;
+    Search search(*span, options_, workspace_);
+    SpanSolution finer = search.empty_solution(search.terms());
+    const TangentField field = field_of(solution.model->shape(solution.x));
+    finer.x = finer.model->fit(field(finer.model->nodes()));
+    if (span->twist) {
+      finer.x = finer.model->with_twist(finer.x, solution.model->twist(solution.x));
+    }
+    finer.multipliers = solution.multipliers;
+    finer.evaluations = solution.evaluations;
+    workspace_.newton().polish(finer, load_);
+    finer = search.refined(std::move(finer));
+    if (!finer.is_equilibrium()) return std::nullopt;
+    return finer;
+  }
+
+  /// From a start next to which Newton's method has found nothing, with pieces for the start's own
+  /// shape, downhill if need be.
+  [[nodiscard]] std::optional<SpanSolution> graded_start() {
+    if (options_.known.model || span_.holds.empty()) return std::nullopt;
+    SpanSolution looked = empty_solution(max_terms);
+    PointOnSpan point;
+    point.x = looked.x = looked.model->fit(options_.start(looked.model->nodes()));
+    evaluate(looked, point);
+    looked.multipliers = point.jacobian.transpose().householderQr().solve(point.gradient);
+    const std::optional<Span> span = graded_for(looked);
+    if (!span) return std::nullopt;
+    Search search(*span, options_, workspace_);
+    SpanSolution solution = search.near_field(options_.start);
+    const int spent = solution.evaluations;
+    if (!solution.is_equilibrium()) {
+      solution = search.empty_solution(search.terms());
+      solution.x = solution.model->fit(options_.start(solution.model->nodes()));
+      search.pull_to_grips(solution);
+      solution.evaluations += spent;
+    }
+    solution = search.refined(std::move(solution));
+    if (!solution.is_equilibrium()) return std::nullopt;
     return solution;
   }
 
@@ -504,12 +584,13 @@ class Search {
     // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
     if (solution.model->tail(solution.x) > options_.tolerance * 4 * K * K) return false;
     if (span_.is_plain_cantilever() || !span_.soft_obstacles.empty()) return true;
-    return residual_with_more_terms(solution) < largest_residual * (1 + load_);
+    return holds_with_more_terms(solution);
   }
 
-  /// Gradient of the shape in half as many terms more, with the quadrature of
-  /// these.
-  [[nodiscard]] double residual_with_more_terms(const SpanSolution& solution) {
+  /// Whether gradient and gaps of the shape are as small in half as many terms more, with the
+  /// quadrature of these: frames in space are integrated the better the more terms there are, and a
+  /// gap moves the shape by as much.
+  [[nodiscard]] bool holds_with_more_terms(const SpanSolution& solution) {
     const std::shared_ptr<SpanEnergy> model =
         workspace_.model(span_, std::min(max_terms, 3 * solution.terms / 2));
     const Eigen::VectorXd x = model->adopt(*solution.model, solution.x);
@@ -518,9 +599,10 @@ class Search {
     Eigen::VectorXd residual(model->constraints());
     Eigen::MatrixXd jacobian(model->constraints(), model->size());
     model->constraint(residual, jacobian);
-    return (gradient -
-            jacobian.transpose() * model->adopt_multipliers(*solution.model, solution.multipliers))
-        .norm();
+    gradient -=
+        jacobian.transpose() * model->adopt_multipliers(*solution.model, solution.multipliers);
+    return gradient.norm() < largest_residual * (1 + load_) &&
+           residual.norm() < largest_gap * options_.tolerance;
   }
 
   /// Next to a fold what the terms left out push decides whether there is a shape, and elsewhere it
@@ -531,16 +613,22 @@ class Search {
     const bool asks = solution.status == SolveStatus::near_singular ||
                       (counts(solution) && solution.error > largest_told_error);
     const int more = std::min(max_terms, 3 * solution.terms / 2);
-    const int fields = span_.planar ? 1 : span_.has_material_directors() ? 3 : 2;
+    const Span& own = solution.model->span();
+    const int fields = own.planar ? 1 : own.has_material_directors() ? 3 : 2;
     if (!asks || options_.terms > 0 || out_of_time() ||
         more * fields * solution.model->pieces() > most_unknowns) {
       return;
     }
-    SpanSolution finer = empty_solution(more);
+    SpanSolution finer;
+    // The shape may have left the plane, or the span's own pieces.
+    finer.model = workspace_.model(own, more);
+    finer.terms = more;
     finer.x = finer.model->adopt(*solution.model, solution.x);
     finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
     workspace_.newton().polish(finer, load_);
-    finer.resolved = solution.resolved;
+    // Of what Newton's method left open before nobody has asked whether its terms resolve it.
+    if (!solution.resolved) finer = Search(own, options_, workspace_).refined(std::move(finer));
+    finer.resolved = finer.resolved || solution.resolved;
     certify(finer, load_);
     spent_ += finer.evaluations;
     const int evaluations = solution.evaluations + finer.evaluations;
@@ -627,6 +715,7 @@ class Search {
   const SpanOptions& options_;
   SpanWorkspace& workspace_;
   double load_;
+  bool graded_;  // pieces end where a shape that is known wants it
   double longest_piece_ = 0;
   int natural_terms_ = 0;  // that the free rod's own strains take
   bool taut_ = false;      // pieces end where the layers at taut segments' ends have decayed
