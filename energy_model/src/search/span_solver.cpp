@@ -48,6 +48,10 @@ constexpr double largest_told_error = 1e-5;
 /// Gradient over the load that a shape may have in more terms than its own.
 constexpr double largest_residual = 1e-5;
 
+/// Cost over that of the last start that is followed anyway, of what starts fall by, up to which
+/// another one is followed too.
+constexpr double near_tie = 0.1;
+
 /// Gap over the tolerance that it may have there.
 constexpr double largest_gap = 10;
 
@@ -132,7 +136,7 @@ class Search {
       add(std::move(solution), found);
     }
     const std::vector<Start> starts = ranked_starts();
-    const std::size_t first = options_.all ? starts.size() : std::min(followed(), starts.size());
+    std::size_t first = options_.all ? starts.size() : std::min(followed(), starts.size());
     std::vector<SpanSolution> coarse;
     const std::string kind = options_.log != nullptr ? starts_of(span_) : std::string();
     for (std::size_t i = 0; i < starts.size() && !out_of_time(); ++i) {
@@ -148,6 +152,7 @@ class Search {
         // Descending leaves unstable equilibria; Newton's method alone stays near them.
         note(kind + ", by Newton's method", add(refined(near_field(starts[i].field)), found));
       }
+      if (i + 1 == first && may_lead_lower(starts, first, coarse)) ++first;
       if (i + 1 < first) continue;
       if (!options_.all) refine_lowest(std::exchange(coarse, {}), found);
       leave_saddles(found);
@@ -238,6 +243,19 @@ class Search {
     return solution;
   }
 
+  /// Whether the first of the starts that need not be followed costs about as much as the last of
+  /// those: next to what these have fallen by, that is no difference.
+  [[nodiscard]] bool may_lead_lower(const std::vector<Start>& starts, std::size_t next,
+                                    const std::vector<SpanSolution>& found) const {
+    if (options_.all || taut_ || next >= starts.size() || !starts.front().model) return false;
+    double lowest = infinite;
+    for (const SpanSolution& solution : found) {
+      if (solution.is_equilibrium()) lowest = std::min(lowest, solution.energy);
+    }
+    const double last = starts[followed() - 1].cost;
+    return starts[next].cost - last <= near_tie * (last - lowest);
+  }
+
   /// Starts that are descended from in any case.
   [[nodiscard]] std::size_t followed() const {
     return span_.has_material_directors() ? followed_natural_starts : followed_starts;
@@ -303,10 +321,9 @@ class Search {
                               : solution.model->fit(from.field(solution.model->nodes()));
       const Eigen::VectorXd start = solution.x;
       // Where the rod is taut such a start is near to the shape already.
-      if (taut_ && !solution.model->has_soft_obstacles()) {
-        workspace_.newton().polish(solution, load_);
-      }
-      if (!solution.is_equilibrium() && !out_of_time()) {
+      const bool is_near = taut_ && !solution.model->has_soft_obstacles();
+      if (is_near) workspace_.newton().polish(solution, load_);
+      if (!is_near || (!solution.is_equilibrium() && !out_of_time())) {
         solution.x = start;
         solution.multipliers.resize(0);
         descend(solution);
