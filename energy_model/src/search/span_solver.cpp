@@ -1,12 +1,14 @@
 #include "search/span_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "base/free_directions.hpp"
 #include "base/legendre.hpp"
 #include "base/minimise.hpp"
 #include "certify/certify.hpp"
@@ -61,10 +63,15 @@ constexpr Eigen::Index most_descended = 160;
 /// Unstable equilibria that are left for what lies below them.
 constexpr std::size_t most_saddles = 8;
 
+/// Equilibria between each two of which others are looked for.
+constexpr std::size_t most_joined = 6;
+
 /// Coefficients that resolve a layer over six of its lengths.
 constexpr int layer_terms = 20;
 
 constexpr const char* left_downhill = "unstable equilibria, left downhill";
+constexpr const char* between_found = "between two of those found, by Newton's method";
+constexpr const char* beside_found = "beside what was found, by Newton's method";
 constexpr const char* out_of_plane = "the same and others, out of the plane";
 
 /// What start_fields() and natural_fields() are, in words.
@@ -156,6 +163,10 @@ class Search {
       if (i + 1 < first) continue;
       if (!options_.all) refine_lowest(std::exchange(coarse, {}), found);
       leave_saddles(found);
+    }
+    if (options_.all) {
+      look_between(found);
+      look_beside(found);
     }
     if (span_.planar && span_.has_material_directors()) look_in_space(found);
     if (options_.log != nullptr) tell_what_was_left_out(found);
@@ -688,6 +699,75 @@ class Search {
       std::optional<SpanSolution> lower = leave_saddle(found[left_]);
       if (lower) note(left_downhill, add(std::move(*lower), found));
     }
+  }
+
+  /// Between two minima there is a pass, and a saddle on it: by Newton's method from where the
+  /// unknowns of two equilibria are joined.
+  void look_between(std::vector<SpanSolution>& found) {
+    constexpr std::array<double, 5> shares = {0.2, 0.3, 0.5, 0.7, 0.8};
+    for (std::size_t j = 1; j < found.size() && j < most_joined; ++j) {
+      for (std::size_t i = 0; i < j && !out_of_time(); ++i) {
+        const SpanSolution a = found[i];
+        const SpanSolution b = found[j];
+        const Span& span = a.model->span();
+        if (span.planar != b.model->span().planar || span.cuts != b.model->span().cuts) continue;
+        Search search(span, options_, workspace_);
+        for (const double share : shares) {
+          SpanSolution between = search.empty_solution(std::max(a.terms, b.terms));
+          SpanEnergy& model = *between.model;
+          between.x = (1 - share) * model.adopt(*a.model, a.x);
+          between.x += share * model.adopt(*b.model, b.x);
+          between.multipliers = (1 - share) * model.adopt_multipliers(*a.model, a.multipliers) +
+                                share * model.adopt_multipliers(*b.model, b.multipliers);
+          workspace_.newton().polish(between, load_);
+          note(between_found, add(search.refined(std::move(between)), found));
+        }
+      }
+    }
+    if (options_.log != nullptr && found.size() > most_joined) {
+      options_.log->leave_out("what lies between the equilibria found, but for the first " +
+                              std::to_string(most_joined));
+    }
+  }
+
+  /// At a fold two equilibria come from one, and lie on both sides of it along its softest
+  /// direction: by Newton's method from beside those found, also those found that way.
+  void look_beside(std::vector<SpanSolution>& found) {
+    constexpr std::array<double, 6> steps = {0.5, -0.5, 1, -1, 2, -2};
+    std::size_t i = 0;
+    for (; i < found.size() && i < most_saddles && !out_of_time(); ++i) {
+      if (!counts(found[i])) continue;
+      const std::shared_ptr<SpanEnergy> model = found[i].model;
+      const Eigen::VectorXd x = found[i].x;
+      const Eigen::VectorXd multipliers = found[i].multipliers;
+      const Eigen::VectorXd softest = softest_of(found[i]);
+      Search search(model->span(), options_, workspace_);
+      for (const double step : steps) {
+        SpanSolution beside = search.empty_solution(model->terms());
+        beside.x = beside.model->adopt(*model, x) + step * softest;
+        beside.multipliers = beside.model->adopt_multipliers(*model, multipliers);
+        workspace_.newton().polish(beside, load_);
+        note(beside_found, add(search.refined(std::move(beside)), found));
+      }
+    }
+    if (options_.log == nullptr || i >= found.size()) return;
+    options_.log->leave_out("what lies beside the equilibria found, but for the first " +
+                            std::to_string(i));
+  }
+
+  /// Unit vector along the eigenvalue of the projected second variation that is nearest to zero,
+  /// free turns left aside.
+  [[nodiscard]] static Eigen::VectorXd softest_of(const SpanSolution& solution) {
+    SpanEnergy& model = *solution.model;
+    Eigen::VectorXd gradient(model.size());
+    (void)model.value(solution.x, gradient);
+    Eigen::VectorXd residual(model.constraints());
+    Eigen::MatrixXd jacobian(model.constraints(), model.size());
+    model.constraint(residual, jacobian);
+    Eigen::MatrixXd hessian;
+    model.hessian(solution.multipliers, hessian);
+    return direction_by_size(hessian, jacobian,
+                             free_turns(model.span(), model.tangents()).in_plane);
   }
 
   /// Where an equilibrium that cannot hold itself comes to rest; out of its plane if that is the
