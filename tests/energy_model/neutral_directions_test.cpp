@@ -9,6 +9,7 @@
 #include <string>
 
 #include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
 
 namespace dlo::energy_model {
@@ -135,6 +136,24 @@ TEST(NeutralDirections, FreeTurnsAreNotCounted) {
   EXPECT_GT(solve_energy(across).smallest_curvature, 1e-3);
   // Nor is one held by a straight line of its own a turn of anything.
   expect_determined(solve_energy(heavy_cantilever(3, -90)));
+}
+
+TEST(NeutralDirections, MessagesOfBothSolversNameWhatMovesForNothing) {
+  Problem arch = heavy_cantilever(0, 0);
+  arch.grips = {{0, {0, 0, 0}, std::nullopt}, {1, {0.8, 0, 0}, std::nullopt}};
+  Problem pendant = heavy_cantilever(20, 0);
+  pendant.grips = {{0, {0, 0, 0}, std::nullopt}, {1, {0, -0.6, 0}, std::nullopt}};
+  for (const Problem& problem :
+       {arch, pendant, heavy_cantilever(8, 90), heavy_cantilever(20, 90)}) {
+    const Equilibrium energy = solve_energy(problem);
+    EXPECT_EQ(energy.status, SolveStatus::converged);
+    EXPECT_EQ(energy.message, "converged, moves for nothing in 1 way");
+    EXPECT_EQ(energy.message, solve_exact(problem).message);
+  }
+  for (const Problem& problem : {heavy_cantilever(1, 0), heavy_cantilever(1, -90)}) {
+    EXPECT_EQ(solve_energy(problem).message, "converged");
+    EXPECT_EQ(solve_exact(problem).message, "converged");
+  }
 }
 
 }  // namespace

@@ -64,6 +64,25 @@ TEST(Taut, TensionIsWhatTheSlackAsksFor) {
   EXPECT_GE(taut, 8);
 }
 
+TEST(Taut, StartsBendAsLoadsAndWeightAcrossThemWantIt) {
+  Problem problem = stretched(5e-4, 0.4, -0.3, false);
+  problem.weight_per_length = {0, -4000, 1000};
+  problem.loads = {{0.3, {0, 24000, 9000}}, {0.7, {500, -9000, 12500}}};
+  const Equilibrium solved = solve_energy(problem);
+  ASSERT_EQ(solved.status, SolveStatus::converged) << solved.message;
+  Span span = span_of(problem);
+  for (const Load& load : problem.loads) span.loads.push_back({load.at, load.force});
+  ASSERT_TRUE(segments_of(span).front().taut());
+  const std::vector<double> s = equal_arc_lengths(1, 201);
+  const Eigen::Matrix3Xd start =
+      start_fields(span).front()(Eigen::Map<const Eigen::VectorXd>(s.data(), 201)).tangents;
+  const Eigen::Matrix3Xd tangents = solved.sample(s).tangents;
+  // The load turns it by its share of the tension; that of the start is right to the layers' share
+  // of the length, and small angles add up.
+  EXPECT_GT((tangents.col(80) - tangents.col(40)).norm(), 0.05);
+  EXPECT_LT((start - tangents).colwise().norm().maxCoeff(), 0.006);
+}
+
 TEST(Taut, IsSolvedUpToTensionsOfTenMillion) {
   for (const double slack : {1e-2, 1e-3, 5e-4}) {
     for (const double angle : {0.1, 1.5, 3.0}) {

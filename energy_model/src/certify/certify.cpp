@@ -186,6 +186,7 @@ void certify(SpanSolution& solution, double load) {
   // Below it what is left of the residual makes a step that is not small.
   const double bound = std::max(neutral, small_step ? 0 : solution.residual / largest_next_step);
   const FreeTurns free = free_turns(model.span(), model.tangents());
+  solution.free_turns = static_cast<int>(free.all());
   // Obstacles leave movements free that are not looked for: those that are zero but for rounding.
   const bool obstacles = model.has_soft_obstacles() || !model.span().contacts.empty();
   const double nothing = obstacles ? 128 * rounding_of(scale) : -1;
@@ -221,6 +222,15 @@ void certify(SpanSolution& solution, double load) {
 }
 
 void certify_sideways(SpanSolution& solution, double load) {
+  const Span& span = solution.model->span();
+  // Only a rod that is pulled along its clamp turns freely, about that; few are.
+  const auto is_along = [&](const Eigen::Vector3d& force) {
+    return force.cross(*span.start_direction).norm() <= 1e-6 * force.norm();
+  };
+  if (is_along(span.weight) && std::all_of(span.loads.begin(), span.loads.end(),
+                                           [&](const auto& l) { return is_along(l.force); })) {
+    solution.free_turns = static_cast<int>(free_turns(span, solution.model->tangents()).all());
+  }
   const double eta = linear_error(solution, load);
   // Of what is no minimum in the plane the factor tells nothing.
   const bool looked_at = solution.is_equilibrium() && !std::isnan(solution.softest);

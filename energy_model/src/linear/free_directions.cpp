@@ -97,4 +97,9 @@ std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
   return std::move(found->direction);
 }
 
+std::string moves_for_nothing(int ways) {
+  if (ways == 0) return {};
+  return ", moves for nothing in " + std::to_string(ways) + (ways == 1 ? " way" : " ways");
+}
+
 }  // namespace dlo::energy_model

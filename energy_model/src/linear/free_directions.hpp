@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 #include <optional>
+#include <string>
 
 #include "linear/free_hessian.hpp"
 
@@ -50,5 +51,9 @@ class AcrossNeutral {
 /// The direction in which an unstable equilibrium gives way first; none if it is stable.
 [[nodiscard]] std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
                                                                const Eigen::MatrixXd& jacobian);
+
+/// How a message goes on about a shape that can move in so many ways without a change of energy;
+/// empty where there is none.
+[[nodiscard]] std::string moves_for_nothing(int ways);
 
 }  // namespace dlo::energy_model

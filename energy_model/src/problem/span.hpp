@@ -71,6 +71,9 @@ struct Span {
   std::vector<Contact> contacts;          ///< by growing s, none over another
   std::optional<Twist> twist;             ///< where both ends are clamped, not planar
   std::vector<Part> parts;                ///< where the section is another one, by growing s
+  /// Where pieces end, instead of where layers are guessed to have decayed (pieces_of()): as a
+  /// shape that is known wants it, by growing s; empty: nothing is known.
+  std::vector<double> cuts;
   /// About d1, d2 and the tangent of a frame that has first_d1() at the start; about d1 alone if
   /// planar. Of all rods with material directors, zero if the rod is straight.
   NaturalStrains natural;

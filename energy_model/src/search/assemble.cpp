@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/free_directions.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 #include "search/placed_shape.hpp"
@@ -68,6 +69,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
   result.grips.resize(problem.grips.size());
   result.obstacles.assign(problem.obstacles.size(), Eigen::Vector3d::Zero());
   result.smallest_curvature = std::numeric_limits<double>::infinity();
+  int free_turns = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
     const PlacedSpan& place = *placed[i];
     const SpanSolution& solution = *solutions[i];
@@ -75,6 +77,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     result.terms = std::max(result.terms, solution.terms);
     result.residual = std::max(result.residual, solution.residual);
     result.neutral_directions += solution.neutral_directions;
+    free_turns += solution.free_turns;
     // NaN, where one is not known, stays.
     if (std::isnan(solution.error) || solution.error > result.error_estimate) {
       result.error_estimate = solution.error;
@@ -134,6 +137,9 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
       result.grips[place.hold_grips[j]].torque +=
           to_space(solution.model->hold_torque(static_cast<Eigen::Index>(j), solution.multipliers));
     }
+  }
+  if (succeeded(result.status) || result.status == SolveStatus::saddle) {
+    result.message += moves_for_nothing(free_turns);
   }
   if (result.status == SolveStatus::near_singular && result.neutral_directions > 0) {
     result.message += ": " + std::to_string(result.neutral_directions) + " neutral direction" +

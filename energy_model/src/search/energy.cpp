@@ -30,7 +30,7 @@ constexpr std::size_t most_combinations = 64;
 /// Turn of a clamp at once that may be followed on the same branch [rad].
 constexpr double largest_followed_turn = 1;
 
-constexpr const char* from_polygons = "lowest minima of coarse polygons, downhill";
+constexpr const char* from_polygons = "lowest minima of coarse polygons, by Newton's method";
 constexpr const char* turned_little_by_little =
     "stable shapes without twist, turned little by little";
 
@@ -263,8 +263,10 @@ class EnergySolver::State {
     }
     int spent = 0;
     if (start && !options.all) {
+      PlacedSpan own = placed;
+      if (options.known.model) own.span.cuts = options.known.model->span().cuts;
       PlacedSolution followed =
-          from_field(placed, start, options, shape != nullptr || (last && !last->planar()));
+          from_field(own, start, options, shape != nullptr || (last && !last->planar()));
       if (followed.solution.is_equilibrium() || followed.solution.is_left_open()) {
         return one(std::move(followed));
       }
@@ -315,16 +317,19 @@ class EnergySolver::State {
       }
       return;
     }
-    for (const TangentField& field : polygon_fields(problem, placed, options.deadline)) {
+    const PolygonFields fields(problem, placed, options.deadline);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
       if (options.deadline.passed()) {
         if (options.log != nullptr) options.log->leave_out("starts after the time limit");
         return;
       }
       if (options.log != nullptr) options.log->tried(from_polygons);
+      // A minimum of the polygon is next to one of the rod; fewer terms than resolve it would lead
+      // away.
       SpanOptions own = options;
-      own.approach = Approach::descend;
+      own.approach = Approach::follow;
       own.log = nullptr;
-      PlacedSolution solution = from_field(placed, field, own, true);
+      PlacedSolution solution = from_field(placed, fields.field(i), own, true);
       spent += solution.solution.evaluations;
       const auto counts = [&](const SpanSolution& one) {
         return one.is_equilibrium() || (options.all && one.is_left_open());

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include "contact/tangent_between.hpp"
-#include "kirchhoff/relaxed_polygon.hpp"
 #include "kirchhoff/rod_span.hpp"
 
 namespace dlo::energy_model {
@@ -14,50 +12,70 @@ namespace {
 
 constexpr std::size_t most_fields = 12;
 
+/// Of a polygon that is relaxed once more; relaxing takes as many sweeps as it has intervals.
+constexpr double most_intervals = 600;
+
+Eigen::VectorXd middles_of(const RodMesh& mesh) {
+  const Eigen::Index count = mesh.intervals();
+  return (mesh.s.head(count) + mesh.s.tail(count)) / 2;
+}
+
 }  // namespace
 
-std::vector<TangentField> polygon_fields(const Problem& problem, const PlacedSpan& placed,
-                                         const Deadline& deadline) {
-  // The polygon knows no torque that clamps pass on.
+PolygonFields::PolygonFields(const Problem& problem, const PlacedSpan& placed,
+                             const Deadline& deadline)
+    : deadline_(deadline), reversed_(placed.reversed), frame_(placed.frame) {
   const auto is_clamp = [](const Span::Hold& hold) { return hold.direction.has_value(); };
-  if (std::any_of(placed.span.holds.begin(), placed.span.holds.end(), is_clamp)) return {};
-  const double begin = (placed.reversed ? placed.start / problem.length - placed.span.length
-                                        : placed.start / problem.length);
+  if (std::any_of(placed.span.holds.begin(), placed.span.holds.end(), is_clamp)) return;
+  const double begin = placed.reversed ? placed.start / problem.length - placed.span.length
+                                       : placed.start / problem.length;
   const std::vector<RodSpan> spans = cut_at_clamps(problem);
-  const auto own = std::min_element(spans.begin(), spans.end(), [&](const auto& a, const auto& b) {
+  span_ = *std::min_element(spans.begin(), spans.end(), [&](const auto& a, const auto& b) {
     return std::abs(a.begin - begin) < std::abs(b.begin - begin);
   });
   // Boundary layers of the loads, and no more than a coarse polygon needs.
-  const double load = std::min(total_load(*own), 1e4);
-  const RodMesh mesh =
-      make_mesh(*own, std::min(own->length / 16, 1 / std::sqrt(std::max(load, 1.0))));
-  std::vector<RelaxedPolygon> minima;
+  const double load = std::min(total_load(*span_), 1e4);
+  longest_ = std::min(span_->length / 16, 1 / std::sqrt(std::max(load, 1.0)));
+  const RodMesh mesh = make_mesh(*span_, longest_);
+  middles_ = middles_of(mesh);
   for (const bool planar : {true, false}) {
-    if ((planar && !own->plane) || deadline.passed()) continue;
-    PolygonMinima found = polygon_minima(*own, mesh, planar, deadline);
-    for (RelaxedPolygon& polygon : found.found) minima.push_back(std::move(polygon));
+    if ((planar && !span_->plane) || deadline.passed()) continue;
+    PolygonMinima minima = polygon_minima(*span_, mesh, planar, deadline);
+    for (RelaxedPolygon& polygon : minima.found) minima_.push_back({std::move(polygon), planar});
   }
-  std::stable_sort(minima.begin(), minima.end(),
-                   [](const auto& a, const auto& b) { return a.energy < b.energy; });
-  if (minima.size() > most_fields) minima.resize(most_fields);
-  const Eigen::Index count = mesh.intervals();
-  const Eigen::VectorXd middles = (mesh.s.head(count) + mesh.s.tail(count)) / 2;
-  std::vector<TangentField> fields;
-  fields.reserve(minima.size());
-  for (const RelaxedPolygon& polygon : minima) {
-    fields.emplace_back([middles, tangents = polygon.tangents, length = own->length,
-                         reversed = placed.reversed,
-                         frame = placed.frame](const Eigen::VectorXd& s) {
-      Eigen::Matrix3Xd result(3, s.size());
-      for (Eigen::Index q = 0; q < s.size(); ++q) {
-        const double at = reversed ? length - s[q] : s[q];
-        const Eigen::Vector3d t = frame * tangent_between(middles, tangents, at);
-        result.col(q) = reversed ? Eigen::Vector3d(-t) : t;
-      }
-      return result;
-    });
+  std::stable_sort(minima_.begin(), minima_.end(), [](const Minimum& a, const Minimum& b) {
+    return a.polygon.energy < b.polygon.energy;
+  });
+  if (minima_.size() > most_fields) minima_.erase(minima_.begin() + most_fields, minima_.end());
+}
+
+TangentField PolygonFields::field(std::size_t index) const {
+  const Minimum& minimum = minima_[index];
+  Eigen::VectorXd middles = middles_;
+  Eigen::Matrix3Xd tangents = minimum.polygon.tangents;
+  const double force = minimum.polygon.force.colwise().norm().maxCoeff() / softest(*span_);
+  const double resolving =
+      std::max(1 / std::sqrt(std::max(force, 1.0)), span_->length / most_intervals);
+  if (longest_ > 1.1 * resolving) {
+    const RodMesh finer = make_mesh(*span_, resolving);
+    middles = middles_of(finer);
+    tangents.resize(3, middles.size());
+    for (Eigen::Index i = 0; i < middles.size(); ++i) {
+      tangents.col(i) = tangent_between(middles_, minimum.polygon.tangents, middles[i]);
+    }
+    tangents =
+        relax_polygon(*span_, finer, std::move(tangents), minimum.planar, deadline_).tangents;
   }
-  return fields;
+  return [middles = std::move(middles), tangents = std::move(tangents), length = span_->length,
+          reversed = reversed_, frame = frame_](const Eigen::VectorXd& s) {
+    Eigen::Matrix3Xd result(3, s.size());
+    for (Eigen::Index q = 0; q < s.size(); ++q) {
+      const double at = reversed ? length - s[q] : s[q];
+      const Eigen::Vector3d t = frame * tangent_between(middles, tangents, at);
+      result.col(q) = reversed ? Eigen::Vector3d(-t) : t;
+    }
+    return result;
+  };
 }
 
 }  // namespace dlo::energy_model

@@ -1,18 +1,22 @@
 #include "search/span_solver.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "base/free_directions.hpp"
 #include "base/legendre.hpp"
 #include "base/minimise.hpp"
 #include "certify/certify.hpp"
 #include "certify/enough_terms.hpp"
 #include "certify/free_turns.hpp"
+#include "certify/piece_cuts.hpp"
 #include "newton/penalty_descent.hpp"
+#include "newton/restore.hpp"
 #include "newton/trust_region.hpp"
 #include "problem/segments.hpp"
 #include "search/search_log.hpp"
@@ -36,6 +40,9 @@ constexpr int least_terms = 7;
 /// Unknowns with which a minimum between grips is looked for.
 constexpr int coarse_unknowns = 100;
 
+/// The same where they are more than `most_unknowns` because pieces end where the shape wants it.
+constexpr int most_graded_unknowns = 2 * most_unknowns;
+
 /// Error over the length above which a shape is asked about with more terms than it takes to look
 /// right.
 constexpr double largest_told_error = 1e-5;
@@ -43,16 +50,28 @@ constexpr double largest_told_error = 1e-5;
 /// Gradient over the load that a shape may have in more terms than its own.
 constexpr double largest_residual = 1e-5;
 
+/// Cost over that of the last start that is followed anyway, of what starts fall by, up to which
+/// another one is followed too.
+constexpr double near_tie = 0.1;
+
+/// Gap over the tolerance that it may have there.
+constexpr double largest_gap = 10;
+
 /// A step of the trust region works with the cube of the unknowns.
 constexpr Eigen::Index most_descended = 160;
 
 /// Unstable equilibria that are left for what lies below them.
 constexpr std::size_t most_saddles = 8;
 
+/// Equilibria between each two of which others are looked for.
+constexpr std::size_t most_joined = 6;
+
 /// Coefficients that resolve a layer over six of its lengths.
 constexpr int layer_terms = 20;
 
 constexpr const char* left_downhill = "unstable equilibria, left downhill";
+constexpr const char* between_found = "between two of those found, by Newton's method";
+constexpr const char* beside_found = "beside what was found, by Newton's method";
 constexpr const char* out_of_plane = "the same and others, out of the plane";
 
 /// What start_fields() and natural_fields() are, in words.
@@ -83,7 +102,11 @@ std::vector<SpanSolution> list_of(SpanSolution solution) {
 class Search {
  public:
   Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
-      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
+      : span_(span),
+        options_(options),
+        workspace_(workspace),
+        load_(span.total_load()),
+        graded_(!span.cuts.empty()) {
     workspace_.newton().limit(options.deadline);
     for (const Segment& segment : segments_of(span)) {
       if (!segment.taut()) continue;
@@ -120,7 +143,7 @@ class Search {
       add(std::move(solution), found);
     }
     const std::vector<Start> starts = ranked_starts();
-    const std::size_t first = options_.all ? starts.size() : std::min(followed(), starts.size());
+    std::size_t first = options_.all ? starts.size() : std::min(followed(), starts.size());
     std::vector<SpanSolution> coarse;
     const std::string kind = options_.log != nullptr ? starts_of(span_) : std::string();
     for (std::size_t i = 0; i < starts.size() && !out_of_time(); ++i) {
@@ -136,9 +159,14 @@ class Search {
         // Descending leaves unstable equilibria; Newton's method alone stays near them.
         note(kind + ", by Newton's method", add(refined(near_field(starts[i].field)), found));
       }
+      if (i + 1 == first && may_lead_lower(starts, first, coarse)) ++first;
       if (i + 1 < first) continue;
       if (!options_.all) refine_lowest(std::exchange(coarse, {}), found);
       leave_saddles(found);
+    }
+    if (options_.all) {
+      look_between(found);
+      look_beside(found);
     }
     if (span_.planar && span_.has_material_directors()) look_in_space(found);
     if (options_.log != nullptr) tell_what_was_left_out(found);
@@ -183,9 +211,9 @@ class Search {
 
   [[nodiscard]] int terms() const {
     if (options_.terms > 0) return options_.terms;
-    const int layers = taut_ ? layer_terms : 0;
-    return std::max(
-        {first_terms(load_, longest_piece_), options_.least_terms, layers, natural_terms_});
+    const int layers = taut_ || graded_ ? layer_terms : 0;
+    const int first = graded_ ? 0 : first_terms(load_, longest_piece_);
+    return std::max({first, options_.least_terms, layers, natural_terms_});
   }
 
   [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
@@ -224,6 +252,19 @@ class Search {
     SpanSolution solution = refined(from_start(Start{soft_field(span_)}));
     solution.evaluations += spent;
     return solution;
+  }
+
+  /// Whether the first of the starts that need not be followed costs about as much as the last of
+  /// those: next to what these have fallen by, that is no difference.
+  [[nodiscard]] bool may_lead_lower(const std::vector<Start>& starts, std::size_t next,
+                                    const std::vector<SpanSolution>& found) const {
+    if (options_.all || taut_ || next >= starts.size() || !starts.front().model) return false;
+    double lowest = infinite;
+    for (const SpanSolution& solution : found) {
+      if (solution.is_equilibrium()) lowest = std::min(lowest, solution.energy);
+    }
+    const double last = starts[followed() - 1].cost;
+    return starts[next].cost - last <= near_tie * (last - lowest);
   }
 
   /// Starts that are descended from in any case.
@@ -291,9 +332,11 @@ class Search {
                               : solution.model->fit(from.field(solution.model->nodes()));
       const Eigen::VectorXd start = solution.x;
       // Where the rod is taut such a start is near to the shape already.
-      if (taut_ && !solution.model->has_soft_obstacles()) {
-        workspace_.newton().polish(solution, load_);
-      } else {
+      const bool is_near = taut_ && !solution.model->has_soft_obstacles();
+      if (is_near) workspace_.newton().polish(solution, load_);
+      if (!is_near || (!solution.is_equilibrium() && !out_of_time())) {
+        solution.x = start;
+        solution.multipliers.resize(0);
         descend(solution);
       }
       if (solution.model->constraints() > 0 && !solution.is_equilibrium() &&
@@ -340,6 +383,10 @@ class Search {
                       is_near_start(solution);
     if (succeeded(solution.status) && (came_by_newton_ || !options_.known.model)) return solution;
     const int spent = solution.evaluations;
+    if (std::optional<SpanSolution> graded = graded_start()) {
+      graded->evaluations += spent;
+      return std::move(*graded);
+    }
     solution = follow ? from_start(Start{options_.start}) : near_field(options_.start);
     solution.evaluations += spent;
     return solution;
@@ -367,6 +414,7 @@ class Search {
     SpanEnergy& model = *solution.model;
     if (!known.model || span_.planar || span_.has_material_directors()) return false;
     if (known.model->span().planar || known.model->pieces() != model.pieces()) return false;
+    if (known.model->span().cuts != span_.cuts) return false;
     solution.x = model.adopt(*known.model, known.x);
     Eigen::VectorXd gradient(model.size());
     (void)model.value(solution.x, gradient);
@@ -417,7 +465,8 @@ class Search {
   /// Raises the number of terms until the last ones do not matter any more.
   [[nodiscard]] SpanSolution refined(SpanSolution solution) {
     const int fields = span_.planar ? 1 : span_.has_material_directors() ? 3 : 2;
-    const int affordable = std::max(32, most_unknowns / (fields * solution.model->pieces()));
+    const int unknowns = graded_ ? most_graded_unknowns : most_unknowns;
+    const int affordable = std::max(32, unknowns / (fields * solution.model->pieces()));
     // Soft obstacles make kinks inside pieces, where contact begins; more terms help only so far.
     constexpr int most_with_soft_obstacles = 64;
     const int most_terms =
@@ -440,12 +489,13 @@ class Search {
       if (solution.terms >= most_terms) {
         solution.resolved = !span_.soft_obstacles.empty();
         if (solution.resolved) break;
+        if (std::optional<SpanSolution> graded = graded_anew(solution)) return std::move(*graded);
         solution.fail(solution.too_few_terms());
         break;
       }
       int more = solution.terms < terms() ? terms() : terms_by_decay(solution, before);
       // Grips may pull harder than weight and loads do.
-      if (solution.multipliers.size() > 0 && !taut_) {
+      if (solution.multipliers.size() > 0 && !taut_ && !graded_) {
         more =
             std::max(more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), longest_piece_));
       }
@@ -453,6 +503,64 @@ class Search {
       solution = with_terms(solution, std::min(most_terms, more), raised);
       raised = true;
     }
+    return solution;
+  }
+
+  /// The span with pieces that end where a shape wants it, unless they do so already.
+  [[nodiscard]] std::optional<Span> graded_for(const SpanSolution& shape) const {
+    const bool touches = !span_.rigid_obstacles.empty() || !span_.contacts.empty() ||
+                         shape.model->has_soft_obstacles();
+    if (graded_ || touches || span_.has_material_directors() || options_.terms > 0) {
+      return std::nullopt;
+    }
+    Span span = shape.model->span();
+    span.cuts = piece_cuts(shape);
+    if (span.cuts.empty()) return std::nullopt;
+    return span;
+  }
+
+  /// Where the terms that can be afforded do not resolve a shape, its pieces may end in the wrong
+  /// places.
+  [[nodiscard]] std::optional<SpanSolution> graded_anew(const SpanSolution& solution) {
+    const std::optional<Span> span = graded_for(solution);
+    if (!span) return std::nullopt;
+    Search search(*span, options_, workspace_);
+    SpanSolution finer = search.empty_solution(search.terms());
+    const TangentField field = field_of(solution.model->shape(solution.x));
+    finer.x = finer.model->fit(field(finer.model->nodes()));
+    if (span->twist) {
+      finer.x = finer.model->with_twist(finer.x, solution.model->twist(solution.x));
+    }
+    finer.multipliers = solution.multipliers;
+    finer.evaluations = solution.evaluations;
+    workspace_.newton().polish(finer, load_);
+    finer = search.refined(std::move(finer));
+    if (!finer.is_equilibrium()) return std::nullopt;
+    return finer;
+  }
+
+  /// From a start next to which Newton's method has found nothing, with pieces for the start's own
+  /// shape, downhill if need be.
+  [[nodiscard]] std::optional<SpanSolution> graded_start() {
+    if (options_.known.model || span_.holds.empty()) return std::nullopt;
+    SpanSolution looked = empty_solution(max_terms);
+    PointOnSpan point;
+    point.x = looked.x = looked.model->fit(options_.start(looked.model->nodes()));
+    evaluate(looked, point);
+    looked.multipliers = point.jacobian.transpose().householderQr().solve(point.gradient);
+    const std::optional<Span> span = graded_for(looked);
+    if (!span) return std::nullopt;
+    Search search(*span, options_, workspace_);
+    SpanSolution solution = search.near_field(options_.start);
+    const int spent = solution.evaluations;
+    if (!solution.is_equilibrium()) {
+      solution = search.empty_solution(search.terms());
+      solution.x = solution.model->fit(options_.start(solution.model->nodes()));
+      search.pull_to_grips(solution);
+      solution.evaluations += spent;
+    }
+    solution = search.refined(std::move(solution));
+    if (!solution.is_equilibrium()) return std::nullopt;
     return solution;
   }
 
@@ -504,12 +612,13 @@ class Search {
     // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
     if (solution.model->tail(solution.x) > options_.tolerance * 4 * K * K) return false;
     if (span_.is_plain_cantilever() || !span_.soft_obstacles.empty()) return true;
-    return residual_with_more_terms(solution) < largest_residual * (1 + load_);
+    return holds_with_more_terms(solution);
   }
 
-  /// Gradient of the shape in half as many terms more, with the quadrature of
-  /// these.
-  [[nodiscard]] double residual_with_more_terms(const SpanSolution& solution) {
+  /// Whether gradient and gaps of the shape are as small in half as many terms more, with the
+  /// quadrature of these: frames in space are integrated the better the more terms there are, and a
+  /// gap moves the shape by as much.
+  [[nodiscard]] bool holds_with_more_terms(const SpanSolution& solution) {
     const std::shared_ptr<SpanEnergy> model =
         workspace_.model(span_, std::min(max_terms, 3 * solution.terms / 2));
     const Eigen::VectorXd x = model->adopt(*solution.model, solution.x);
@@ -518,9 +627,10 @@ class Search {
     Eigen::VectorXd residual(model->constraints());
     Eigen::MatrixXd jacobian(model->constraints(), model->size());
     model->constraint(residual, jacobian);
-    return (gradient -
-            jacobian.transpose() * model->adopt_multipliers(*solution.model, solution.multipliers))
-        .norm();
+    gradient -=
+        jacobian.transpose() * model->adopt_multipliers(*solution.model, solution.multipliers);
+    return gradient.norm() < largest_residual * (1 + load_) &&
+           residual.norm() < largest_gap * options_.tolerance;
   }
 
   /// Next to a fold what the terms left out push decides whether there is a shape, and elsewhere it
@@ -531,16 +641,22 @@ class Search {
     const bool asks = solution.status == SolveStatus::near_singular ||
                       (counts(solution) && solution.error > largest_told_error);
     const int more = std::min(max_terms, 3 * solution.terms / 2);
-    const int fields = span_.planar ? 1 : span_.has_material_directors() ? 3 : 2;
+    const Span& own = solution.model->span();
+    const int fields = own.planar ? 1 : own.has_material_directors() ? 3 : 2;
     if (!asks || options_.terms > 0 || out_of_time() ||
         more * fields * solution.model->pieces() > most_unknowns) {
       return;
     }
-    SpanSolution finer = empty_solution(more);
+    SpanSolution finer;
+    // The shape may have left the plane, or the span's own pieces.
+    finer.model = workspace_.model(own, more);
+    finer.terms = more;
     finer.x = finer.model->adopt(*solution.model, solution.x);
     finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
     workspace_.newton().polish(finer, load_);
-    finer.resolved = solution.resolved;
+    // Of what Newton's method left open before nobody has asked whether its terms resolve it.
+    if (!solution.resolved) finer = Search(own, options_, workspace_).refined(std::move(finer));
+    finer.resolved = finer.resolved || solution.resolved;
     certify(finer, load_);
     spent_ += finer.evaluations;
     const int evaluations = solution.evaluations + finer.evaluations;
@@ -585,6 +701,75 @@ class Search {
     }
   }
 
+  /// Between two minima there is a pass, and a saddle on it: by Newton's method from where the
+  /// unknowns of two equilibria are joined.
+  void look_between(std::vector<SpanSolution>& found) {
+    constexpr std::array<double, 5> shares = {0.2, 0.3, 0.5, 0.7, 0.8};
+    for (std::size_t j = 1; j < found.size() && j < most_joined; ++j) {
+      for (std::size_t i = 0; i < j && !out_of_time(); ++i) {
+        const SpanSolution a = found[i];
+        const SpanSolution b = found[j];
+        const Span& span = a.model->span();
+        if (span.planar != b.model->span().planar || span.cuts != b.model->span().cuts) continue;
+        Search search(span, options_, workspace_);
+        for (const double share : shares) {
+          SpanSolution between = search.empty_solution(std::max(a.terms, b.terms));
+          SpanEnergy& model = *between.model;
+          between.x = (1 - share) * model.adopt(*a.model, a.x);
+          between.x += share * model.adopt(*b.model, b.x);
+          between.multipliers = (1 - share) * model.adopt_multipliers(*a.model, a.multipliers) +
+                                share * model.adopt_multipliers(*b.model, b.multipliers);
+          workspace_.newton().polish(between, load_);
+          note(between_found, add(search.refined(std::move(between)), found));
+        }
+      }
+    }
+    if (options_.log != nullptr && found.size() > most_joined) {
+      options_.log->leave_out("what lies between the equilibria found, but for the first " +
+                              std::to_string(most_joined));
+    }
+  }
+
+  /// At a fold two equilibria come from one, and lie on both sides of it along its softest
+  /// direction: by Newton's method from beside those found, also those found that way.
+  void look_beside(std::vector<SpanSolution>& found) {
+    constexpr std::array<double, 6> steps = {0.5, -0.5, 1, -1, 2, -2};
+    std::size_t i = 0;
+    for (; i < found.size() && i < most_saddles && !out_of_time(); ++i) {
+      if (!counts(found[i])) continue;
+      const std::shared_ptr<SpanEnergy> model = found[i].model;
+      const Eigen::VectorXd x = found[i].x;
+      const Eigen::VectorXd multipliers = found[i].multipliers;
+      const Eigen::VectorXd softest = softest_of(found[i]);
+      Search search(model->span(), options_, workspace_);
+      for (const double step : steps) {
+        SpanSolution beside = search.empty_solution(model->terms());
+        beside.x = beside.model->adopt(*model, x) + step * softest;
+        beside.multipliers = beside.model->adopt_multipliers(*model, multipliers);
+        workspace_.newton().polish(beside, load_);
+        note(beside_found, add(search.refined(std::move(beside)), found));
+      }
+    }
+    if (options_.log == nullptr || i >= found.size()) return;
+    options_.log->leave_out("what lies beside the equilibria found, but for the first " +
+                            std::to_string(i));
+  }
+
+  /// Unit vector along the eigenvalue of the projected second variation that is nearest to zero,
+  /// free turns left aside.
+  [[nodiscard]] static Eigen::VectorXd softest_of(const SpanSolution& solution) {
+    SpanEnergy& model = *solution.model;
+    Eigen::VectorXd gradient(model.size());
+    (void)model.value(solution.x, gradient);
+    Eigen::VectorXd residual(model.constraints());
+    Eigen::MatrixXd jacobian(model.constraints(), model.size());
+    model.constraint(residual, jacobian);
+    Eigen::MatrixXd hessian;
+    model.hessian(solution.multipliers, hessian);
+    return direction_by_size(hessian, jacobian,
+                             free_turns(model.span(), model.tangents()).in_plane);
+  }
+
   /// Where an equilibrium that cannot hold itself comes to rest; out of its plane if that is the
   /// only way in which it gives way.
   [[nodiscard]] std::optional<SpanSolution> leave_saddle(const SpanSolution& solution) {
@@ -627,6 +812,7 @@ class Search {
   const SpanOptions& options_;
   SpanWorkspace& workspace_;
   double load_;
+  bool graded_;  // pieces end where a shape that is known wants it
   double longest_piece_ = 0;
   int natural_terms_ = 0;  // that the free rod's own strains take
   bool taut_ = false;      // pieces end where the layers at taut segments' ends have decayed

@@ -109,15 +109,37 @@ class GrippedField {
     return std::cos(angle) * chord.along + std::sin(angle) * chord.down;
   }
 
-  /// The chord with layers at its ends, in which a rod under this tension turns to it.
+  /// What acts on a taut segment beyond s bends it aside from the chord: across the pull, less its
+  /// mean, so that it ends where the chord does. At a load it changes over the length of a layer.
+  [[nodiscard]] Eigen::Vector3d across_pull(const Segment& segment, double s) const {
+    Eigen::Vector3d force = span_.weight_between(s, (segment.begin + segment.end) / 2);
+    const double layer = 1 / std::sqrt(segment.tension);
+    for (const Span::Load& load : span_.loads) {
+      if (!(load.at > segment.begin && load.at < segment.end)) continue;
+      const double away = (load.at - s) / layer;
+      const double beyond = 0.5 + std::copysign(0.5 * -std::expm1(-std::abs(away)), away);
+      force += (beyond - (load.at - segment.begin) / segment.length()) * load.force;
+    }
+    return force - force.dot(segment.pull) * segment.pull;
+  }
+
+  /// Along the force in a rod under this tension, but for the layers at its ends in which it turns
+  /// to it.
   [[nodiscard]] Eigen::Vector3d stretched(std::size_t i, double u) const {
     const Segment& segment = segments_[i];
-    const Eigen::Vector3d pull = segment.tension * segment.pull;
+    const auto pull_at = [&](double s) {
+      return Eigen::Vector3d(segment.tension * segment.pull + across_pull(segment, s));
+    };
     const double from_begin = u * segment.length();
-    const Eigen::Vector3d at_begin = pendulum(span_, segment.begin_tangent, pull, from_begin, 0);
+    const Eigen::Vector3d begin_pull = pull_at(segment.begin);
+    const Eigen::Vector3d end_pull = pull_at(segment.end);
+    const Eigen::Vector3d at_begin =
+        pendulum(span_, segment.begin_tangent, begin_pull, from_begin, 0);
     const Eigen::Vector3d at_end =
-        pendulum(span_, segment.end_tangent, pull, segment.length() - from_begin, 0);
-    return (at_begin + at_end - segment.pull).normalized();
+        pendulum(span_, segment.end_tangent, end_pull, segment.length() - from_begin, 0);
+    return (pull_at(segment.begin + from_begin).normalized() + at_begin - begin_pull.normalized() +
+            at_end - end_pull.normalized())
+        .normalized();
   }
 
   /// Whether a clamp or a taut neighbour says what tangent an end of a segment has.

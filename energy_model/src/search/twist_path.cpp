@@ -77,6 +77,7 @@ class TwistPath {
         first_d1_(untwisted.end_d1) {
     workspace_.newton().limit(options.deadline);
     span_.planar = false;
+    span_.cuts = untwisted.solution.model->span().cuts;
     span_.twist = Span::Twist{stiffness, first_d1_};
     here_ = with_terms(untwisted.solution, terms_needed(untwisted.solution));
     here_.multipliers.resize(0);

@@ -4,9 +4,9 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
+#include "base/free_directions.hpp"
 #include "shooting/constrained_pencil.hpp"
 #include "shooting/lobatto_element.hpp"
 
@@ -218,9 +218,7 @@ void judge(const SecondVariation& stability, Equilibrium& shape) {
   shape.status = stability.stable() ? SolveStatus::converged : SolveStatus::saddle;
   shape.message = to_string(shape.status);
   shape.smallest_curvature = stability.smallest;
-  if (stability.neutral == 0) return;
-  shape.message += ", moves for nothing in " + std::to_string(stability.neutral) +
-                   (stability.neutral == 1 ? " way" : " ways");
+  shape.message += moves_for_nothing(stability.neutral);
 }
 
 Eigen::Matrix3Xd mode_at(const SecondVariation& variation, const Eigen::VectorXd& s) {

@@ -179,18 +179,8 @@ void cut_lift_offs(const Span& span, double layer, std::vector<double>& cuts) {
   }
 }
 
-}  // namespace
-
-std::vector<Piece> pieces_of(const Span& span) {
-  std::vector<double> cuts;
-  cuts.reserve(8 + span.holds.size() + span.loads.size() + 2 * span.parts.size());
-  cuts.insert(cuts.end(), {0, span.length, span.anchor});
-  for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
-  for (const Span::Load& load : span.loads) cuts.push_back(load.at);
-  for (const Span::Part& part : span.parts) cuts.insert(cuts.end(), {part.begin, part.end});
-  for (const Span::Contact& contact : span.contacts) {
-    cuts.insert(cuts.end(), {contact.begin, contact.end});
-  }
+/// Cuts where layers are to be expected.
+void cut_layers(const Span& span, std::vector<double>& cuts) {
   const double layer = 1 / std::sqrt(std::max(1.0, span.total_load()));
   const double room = span.end_direction ? 0.4 : 0.7;
   if (layer_depths[1] * layer < room * span.length) {
@@ -203,6 +193,25 @@ std::vector<Piece> pieces_of(const Span& span) {
     if (segment.taut()) cut_taut(segment, span, cuts);
   }
   cut_lift_offs(span, layer, cuts);
+}
+
+}  // namespace
+
+std::vector<Piece> pieces_of(const Span& span) {
+  std::vector<double> cuts;
+  cuts.reserve(8 + span.holds.size() + span.loads.size() + 2 * span.parts.size());
+  cuts.insert(cuts.end(), {0, span.length, span.anchor});
+  for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
+  for (const Span::Load& load : span.loads) cuts.push_back(load.at);
+  for (const Span::Part& part : span.parts) cuts.insert(cuts.end(), {part.begin, part.end});
+  for (const Span::Contact& contact : span.contacts) {
+    cuts.insert(cuts.end(), {contact.begin, contact.end});
+  }
+  if (span.cuts.empty()) {
+    cut_layers(span, cuts);
+  } else {
+    cuts.insert(cuts.end(), span.cuts.begin(), span.cuts.end());
+  }
   std::sort(cuts.begin(), cuts.end());
   std::vector<Piece> pieces;
   double begin = 0;

@@ -30,6 +30,7 @@ struct [[nodiscard]] SpanSolution {
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   /// Of them, those that are zero to the tolerance and no free turn's; near_singular if any.
   int neutral_directions = 0;
+  int free_turns = 0;  ///< of a shape that certify() has seen: those that are a free turn's
   std::shared_ptr<SpanEnergy> model;
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;

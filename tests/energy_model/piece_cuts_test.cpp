@@ -1,0 +1,75 @@
+// Where pieces of a soft rod end so that few coefficients resolve it, and that what takes them is
+// solved: random scenes that no affordable number of terms on pieces between grips resolves.
+
+#include "certify/piece_cuts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "random_scenes.hpp"
+#include "search/span_solver.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// A heavy rod between two pins that are close together: it hangs from both and turns back below.
+Span hairpin() {
+  Span span;
+  span.holds = {{1, {0.05, 0, 0}}};
+  span.weight = {0, -2e4, 0};
+  return span;
+}
+
+SpanSolution solved(const Span& span, int terms, SpanWorkspace& workspace) {
+  SpanOptions options;
+  options.terms = terms;
+  return std::move(solve_span(span, options, workspace).front());
+}
+
+TEST(PieceCuts, AreWhereASoftRodTurnsBackAndBesideIt) {
+  SpanWorkspace workspace;
+  Span span = hairpin();
+  const SpanSolution plain = solved(span, 96, workspace);
+  ASSERT_EQ(plain.status, SolveStatus::converged) << plain.message;
+  span.cuts = piece_cuts(plain);
+  // The lowest point is in the middle, and everything as far from it to both sides.
+  const auto is_cut = [&](double s) {
+    return std::any_of(span.cuts.begin(), span.cuts.end(),
+                       [&](double cut) { return std::abs(cut - s) < 2e-3; });
+  };
+  EXPECT_TRUE(is_cut(0.5));
+  for (const double cut : span.cuts) EXPECT_TRUE(is_cut(1 - cut)) << cut;
+  // With as many unknowns the last coefficients are smaller by orders of magnitude.
+  constexpr int terms = 24;
+  SpanWorkspace other;
+  const SpanSolution cut = solved(span, terms, other);
+  ASSERT_EQ(cut.status, SolveStatus::converged) << cut.message;
+  const int as_many = terms * cut.model->pieces() / plain.model->pieces();
+  const SpanSolution uncut = solved(hairpin(), as_many, workspace);
+  printf("cut %d pieces tail %g; uncut %d pieces x %d tail %g\n", cut.model->pieces(),
+         cut.model->tail(cut.x), plain.model->pieces(), as_many, uncut.model->tail(uncut.x));
+  EXPECT_LT(cut.model->tail(cut.x), 1e-2 * uncut.model->tail(uncut.x));
+}
+
+TEST(PieceCuts, ResolveSoftRodsBetweenManyGrips) {
+  // Refused before pieces ended where a shape wants it, before what loads do across a taut part was
+  // in its start, and before minima of polygons were followed with all terms.
+  for (const std::uint64_t number : {16, 19, 111, 127, 215, 245, 282, 341, 373}) {
+    SCOPED_TRACE(number);
+    const Problem problem = test::random_problem(number, test::RandomSpace::mixed);
+    const Equilibrium energy = solve_energy(problem);
+    ASSERT_EQ(energy.status, SolveStatus::converged) << energy.message;
+    EXPECT_LT(test::defects_of(problem, energy).worst(), 1e-6);
+    // Multiple shooting gives up on what is pulled with 1e8 EI/l^2.
+    if (number == 19) continue;
+    const Equilibrium exact = solve_exact(problem, {.start = &energy});
+    ASSERT_EQ(exact.status, SolveStatus::converged) << exact.message;
+    double distance = 1;
+    EXPECT_EQ(test::agreement_of(problem, energy, exact, distance), test::Agreement::same)
+        << distance;
+  }
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
