@@ -104,7 +104,9 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
   ++steps_;
   std::vector<SpanDrive> drives;
   for (Eigen::Index i = 0; i < stage_count; ++i) {
-    drives.push_back(drive_(at.time + rule_.nodes[i] * step));
+    // Radau's last point is the step's end, which may be a break.
+    drives.push_back(
+        drive_(std::min(at.time + rule_.nodes[i] * step, just_before(at.time + step))));
   }
   for (const bool renew : {false, true}) {
     Factor& newton = factor(at, step, renew);
