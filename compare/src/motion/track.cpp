@@ -14,6 +14,7 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "motion/frame_clock.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -180,6 +181,7 @@ class Tracker {
     for (const energy_model::Reaction& reaction : now.rod.grips) {
       frame.grippers.push_back({reaction.force, reaction.torque});
     }
+    frame.obstacles = forces_of_all(scene_, obstacles_, now.rod.obstacles);
     frame.contacts = now.rod.contacts;
     for (energy_model::ContactPart& contact : frame.contacts) {
       contact.obstacle = obstacles_[contact.obstacle];

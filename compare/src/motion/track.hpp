@@ -37,8 +37,9 @@ struct TrackFrame {
   double released = 0, released_bound = 0;
   std::vector<GripperLoad> grippers;                ///< in the scene's order
   std::vector<energy_model::ContactPart> contacts;  ///< with rigid obstacles, by arc length
-  Eigen::Matrix3Xd points;                          ///< at Track::arc_length [m]
-  double seconds = 0;                               ///< what it took
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod, as the scene's [N]
+  Eigen::Matrix3Xd points;                 ///< at Track::arc_length [m]
+  double seconds = 0;                      ///< what it took
   std::optional<ForceFrame> force;
 };
 
