@@ -234,6 +234,10 @@ std::string track_text(const Track& track, const compare::Scene& scene,
   append(out,
          "branch      lost by Newton's method in {} of them; energy tells whether the rod fell\n",
          track.lost);
+  if (track.repeated > 0) {
+    append(out, "            kept by it in {} more in up to 16 smaller steps only\n",
+           track.repeated);
+  }
   double released = 0;
   for (const TrackEvent& event : track.events) {
     if (event.kind == TrackEvent::Kind::snap) released += event.released;
@@ -262,7 +266,8 @@ std::string track_json(const Track& track, const compare::Scene& scene, const Tr
                  {"model", "energy"},
                  {"frames_per_second", options.rates.frames},
                  {"frame_s", track.median_seconds},
-                 {"frames_lost", track.lost}};
+                 {"frames_lost", track.lost},
+                 {"frames_repeated", track.repeated}};
   if (track.stopped) {
     result["stopped"] = {{"time_s", track.stopped->time}, {"why", track.stopped->why}};
   } else {
