@@ -65,7 +65,8 @@ class ContactGrid {
 
   [[nodiscard]] bool empty() const { return places_.empty(); }
   /// A point of a piece from its begin, over its length: weights of the tangents at its Q nodes.
-  [[nodiscard]] Eigen::MatrixXd::ConstColXpr place(std::size_t piece, Eigen::Index point) const {
+  [[nodiscard]] Eigen::Block<const Eigen::MatrixXd, Eigen::Dynamic, 1, true> place(
+      std::size_t piece, Eigen::Index point) const {
     return places_[piece].col(point);
   }
   /// Adds those of a piece that are within an obstacle. Their `normal`, `depth`, `velocity` and
