@@ -303,6 +303,41 @@ TEST(Dynamics, AClampThatStartsAtOnceStrikesTheRod) {
   EXPECT_LT(tip(result.frames[2]).y(), -1e-3);
 }
 
+// Radau's rule asks for the motion at the end of a step, where a break has two: what was before is
+// what counts, whichever of the two the motion itself says there.
+TEST(Dynamics, AStepThatEndsAtABreakKnowsOnlyWhatWasBefore) {
+  constexpr double stop = 0.1;
+  for (const bool pinned : {false, true}) {
+    MovingRod rod = pinned ? closed_rod(5) : moving_cantilever(5);
+    rod.material_damping = 0.01;
+    rod.air_drag = 1;
+    rod.breaks = {stop};
+    std::array<Dynamics, 2> runs;
+    for (const bool after : {false, true}) {
+      const Vector3d from = rod.problem.grips.back().position;
+      const Vector3d velocity(-0.3, 0.5, 0);
+      rod.motions.assign(rod.problem.grips.size(), nullptr);
+      rod.motions.back() = [=](double time) {
+        GripPose pose;
+        pose.position = from + std::min(time, stop) * velocity;
+        const bool stopped = after ? time >= stop : time > stop + 1e-14;
+        if (!stopped) pose.velocity = velocity;
+        return pose;
+      };
+      runs[after ? 1 : 0] =
+          run(rod, solve_energy(rod.problem).sample, {stop, 0.2}, {.terms = 8, .tolerance = 1e-6});
+    }
+    EXPECT_EQ(runs[0].steps, runs[1].steps) << pinned;
+    EXPECT_LT(runs[1].energy_error, 1e-5) << pinned;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Eigen::Matrix3Xd apart =
+          runs[0].frames[k].sample(std::vector<double>{0.3, 0.5, 1}).points -
+          runs[1].frames[k].sample(std::vector<double>{0.3, 0.5, 1}).points;
+      EXPECT_LT(apart.norm(), 1e-9) << pinned << " " << k;
+    }
+  }
+}
+
 // Made slower, a damped motion comes to the shapes at rest at first order in its speed.
 TEST(Dynamics, SlowMotionComesToRestingShapes) {
   MovingRod rod = moving_cantilever(5);
@@ -357,9 +392,6 @@ TEST(Dynamics, BothSidesOfAClampMoveAlike) {
 TEST(Dynamics, RefusesWhatItDoesNotKnow) {
   const StartingShape start = straight_rod(Vector3d::UnitX());
   const std::vector<double> times = {1};
-  MovingRod rigid = moving_cantilever(1);
-  rigid.problem.obstacles = {{obstacle::Body::half_space({0, -1, 0}, {0, 1, 0})}};
-  EXPECT_THROW((void)simulate(rigid, start, times), std::invalid_argument);
   MovingRod framed = moving_cantilever(1);
   framed.problem.grips[0].frame = FrameHold{};
   EXPECT_THROW((void)simulate(framed, start, times), std::invalid_argument);

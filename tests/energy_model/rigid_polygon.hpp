@@ -1,27 +1,41 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace dlo::test {
+
+/// What takes energy from a RigidPolygon, and what it falls on.
+struct PolygonSurroundings {
+  double material_damping = 0;
+  double floor = -std::numeric_limits<double>::infinity();  ///< its y
+};
 
 /// A cantilever (EI = l = rho A = 1) under its weight along -y as a polygon of rigid segments with
 /// point masses and springs at its joints, released at rest from straight along +x: Stoermer's and
 /// Verlet's method with the segments' lengths as constraints (SHAKE). Nothing of it is the energy
 /// model's. Of second order in the segments: the clamp holds the middle of the first one, the last
-/// point has half a mass; steps are as the square of a segment.
+/// point has half a mass; steps are as the square of a segment, or smaller where the damping of its
+/// joints is stiff. A floor is a spring and a critical dashpot under each point, which never pull.
 class RigidPolygon {
  public:
-  RigidPolygon(int free_points, double gamma)
+  RigidPolygon(int free_points, double gamma, PolygonSurroundings around = {})
       : count_(free_points),
         segment_(1 / (free_points + 0.5)),
         step_(0.25 * segment_ * segment_),
         gamma_(gamma),
+        around_(around),
         points_(Eigen::Matrix2Xd::Zero(2, free_points + 2)),
         inverse_mass_(Eigen::VectorXd::Constant(free_points + 2, 1 / segment_)) {
     for (Eigen::Index i = 0; i < points_.cols(); ++i) {
       points_(0, i) = (static_cast<double>(i) - 0.5) * segment_;
+    }
+    // Of the fastest vibration, omega = 4 / segment^2, tau omega^2 dt stays below 1.
+    if (around_.material_damping > 0) {
+      step_ = std::min(step_, std::pow(segment_, 4) / (16 * around_.material_damping));
     }
     inverse_mass_.head(2).setZero();
     inverse_mass_[free_points + 1] *= 2;
@@ -30,13 +44,28 @@ class RigidPolygon {
   /// Tip at times that grow.
   [[nodiscard]] Eigen::Matrix2Xd tips(const std::vector<double>& times) {
     Eigen::Matrix2Xd result(2, static_cast<Eigen::Index>(times.size()));
+    const std::vector<Eigen::Matrix2Xd> shapes = shapes_at(times);
+    for (std::size_t k = 0; k < times.size(); ++k) {
+      result.col(static_cast<Eigen::Index>(k)) = shapes[k].rightCols(1);
+    }
+    return result;
+  }
+
+  /// Arc length of a point from the clamp.
+  [[nodiscard]] double arc_length(Eigen::Index point) const {
+    return (static_cast<double>(point) - 0.5) * segment_;
+  }
+
+  /// Points, the first of which is within the clamp, at times that grow.
+  [[nodiscard]] std::vector<Eigen::Matrix2Xd> shapes_at(const std::vector<double>& times) {
+    std::vector<Eigen::Matrix2Xd> result;
     double last = 0;
     Eigen::Matrix2Xd velocity = Eigen::Matrix2Xd::Zero(2, points_.cols());
     for (std::size_t k = 0; k < times.size(); ++k) {
       const double count = std::ceil((times[k] - last) / step_);
       const double dt = (times[k] - last) / count;
       for (int i = 0; i < static_cast<int>(count); ++i) advance(dt, velocity);
-      result.col(static_cast<Eigen::Index>(k)) = points_.rightCols(1);
+      result.push_back(points_);
       last = times[k];
     }
     return result;
@@ -44,22 +73,24 @@ class RigidPolygon {
 
  private:
   void advance(double dt, Eigen::Matrix2Xd& velocity) {
-    velocity += dt / 2 * accelerations();
+    velocity += dt / 2 * accelerations(velocity);
     const Eigen::Matrix2Xd before = points_;
     points_ += dt * velocity;
     hold_lengths(before);
     velocity = (points_ - before) / dt;
-    velocity += dt / 2 * accelerations();
+    velocity += dt / 2 * accelerations(velocity);
     hold_velocities(velocity);
   }
 
-  [[nodiscard]] Eigen::Matrix2Xd accelerations() const {
+  [[nodiscard]] Eigen::Matrix2Xd accelerations(const Eigen::Matrix2Xd& velocity) const {
     Eigen::Matrix2Xd forces = Eigen::Matrix2Xd::Zero(2, points_.cols());
     for (Eigen::Index i = 1; i + 1 < points_.cols(); ++i) {
       const Eigen::Vector2d a = points_.col(i) - points_.col(i - 1);
       const Eigen::Vector2d b = points_.col(i + 1) - points_.col(i);
       const double angle = std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
-      const double moment = angle / segment_;
+      const double rate = turning(b, velocity.col(i + 1) - velocity.col(i)) -
+                          turning(a, velocity.col(i) - velocity.col(i - 1));
+      const double moment = (angle + around_.material_damping * rate) / segment_;
       const Eigen::Vector2d on_a = moment / a.squaredNorm() * Eigen::Vector2d(-a.y(), a.x());
       const Eigen::Vector2d on_b = moment / b.squaredNorm() * Eigen::Vector2d(-b.y(), b.x());
       // The joint turns a on and b back.
@@ -67,9 +98,21 @@ class RigidPolygon {
       forces.col(i - 1) -= on_a;
       forces.col(i + 1) -= on_b;
     }
+    constexpr double stiffness = 1e7;  // per length
+    for (Eigen::Index i = 2; i < points_.cols(); ++i) {
+      const double depth = around_.floor - points_(1, i);
+      if (!(depth > 0)) continue;
+      forces(1, i) += std::max(0.0, stiffness * depth - 2 * std::sqrt(stiffness) * velocity(1, i)) /
+                      inverse_mass_[i];
+    }
     Eigen::Matrix2Xd result = forces * inverse_mass_.asDiagonal();
     result.row(1).rightCols(count_).array() -= gamma_;
     return result;
+  }
+
+  /// Rate of turning of a segment.
+  [[nodiscard]] static double turning(const Eigen::Vector2d& along, const Eigen::Vector2d& rate) {
+    return (along.x() * rate.y() - along.y() * rate.x()) / along.squaredNorm();
   }
 
   /// Solves the tridiagonal equations for what moves points along the segments of `along`.
@@ -119,6 +162,7 @@ class RigidPolygon {
 
   Eigen::Index count_;
   double segment_, step_, gamma_;
+  PolygonSurroundings around_;
   Eigen::Matrix2Xd points_;
   Eigen::VectorXd inverse_mass_;
 };

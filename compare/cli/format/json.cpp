@@ -52,6 +52,12 @@ Json points_json(const Eigen::Matrix3Xd& points) {
   return result;
 }
 
+Json obstacles_json(const std::vector<Eigen::Vector3d>& forces) {
+  Json result = Json::array();
+  for (const Eigen::Vector3d& force : forces) result.push_back({{"force_N", to_json(force)}});
+  return result;
+}
+
 Json parameters_json(const compare::Solution& force, const compare::ForceModelSettings& settings) {
   const compare::Parameters& p = force.parameters;
   Json result = {{"points", settings.points},

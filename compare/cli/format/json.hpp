@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "dlo/compare/compared_state.hpp"
 #include "dlo/compare/deviation.hpp"
@@ -21,6 +22,8 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json deviation_json(const compare::Deviation& deviation);
 [[nodiscard]] Json modulus_json(const compare::EffectiveModulus& modulus);
 [[nodiscard]] Json points_json(const Eigen::Matrix3Xd& points);
+/// An object each with `force_N`. @param forces  of obstacles on the rod [N]
+[[nodiscard]] Json obstacles_json(const std::vector<Eigen::Vector3d>& forces);
 [[nodiscard]] Json parameters_json(const compare::Solution& force,
                                    const compare::ForceModelSettings& settings);
 [[nodiscard]] Json to_json(const compare::ComparedState& state);

@@ -221,11 +221,7 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
   if (!solution.twists.empty()) result["twist"] = twist_json(solution.twists);
   if (!solution.left_out.empty()) result["left_out"] = solution.left_out;
   if (!solution.obstacles.empty()) {
-    Json obstacles = Json::array();
-    for (const Eigen::Vector3d& force : solution.obstacles) {
-      obstacles.push_back({{"force_N", to_json(force)}});
-    }
-    result["obstacles"] = std::move(obstacles);
+    result["obstacles"] = obstacles_json(solution.obstacles);
     if (solution.model == compare::Model::energy || solution.model == compare::Model::exact) {
       result["penetration_m"] = solution.penetration;
       result["contacts"] = contacts_json(solution.contacts);

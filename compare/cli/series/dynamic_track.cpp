@@ -47,7 +47,9 @@ Json moving_frame_json(const DynamicFrame& frame, bool points) {
                    {"obstacles", energy.obstacles},
                    {"total", energy.total()},
                    {"dissipated", energy.dissipated},
+                   {"lost", energy.lost},
                    {"work", energy.work}}},
+                 {"obstacles", obstacles_json(frame.obstacles)},
                  {"quasi_static_error_over_length", frame.quasi_static_error}};
   result["force_error_over_length"] = frame.force_error ? Json(*frame.force_error) : Json(nullptr);
   if (points) result["points_m"] = points_json(frame.points);
@@ -83,6 +85,11 @@ std::string dynamic_text(const DynamicTrack& dynamic) {
       "            steps change the shape by {:.2g} l (estimate), {} terms instead by {:.2g} l\n",
       dynamic.energy_error, dynamic.largest_energy, dynamic.step_error, dynamic.fewer_terms,
       dynamic.term_difference);
+  if (dynamic.deepest_contact) {
+    append(out,
+           "contact     within a rigid obstacle by {:.2g} l at most; {:.4g} J were lost on them\n",
+           *dynamic.deepest_contact, dynamic.frames.back().energy.lost);
+  }
   append(out, "at rest     off the moving rod by {}\n", errors_text(dynamic.quasi_static));
   if (dynamic.force) {
     append(out, "force model off the moving rod by {}\n", errors_text(*dynamic.force));
@@ -108,6 +115,8 @@ Json dynamic_json(const DynamicTrack& dynamic, const compare::Track& track,
                  {"energy_error", dynamic.energy_error},
                  {"largest_energy_J", dynamic.largest_energy},
                  {"step_error_over_length", dynamic.step_error},
+                 {"deepest_contact_over_length",
+                  dynamic.deepest_contact ? Json(*dynamic.deepest_contact) : Json(nullptr)},
                  {"fewer_terms", dynamic.fewer_terms},
                  {"fewer_terms_change_over_length", dynamic.term_difference},
                  {"quasi_static", errors_json(dynamic.quasi_static)}};
@@ -133,9 +142,10 @@ Json dynamic_json(const DynamicTrack& dynamic, const compare::Track& track,
   return result;
 }
 
-std::string dynamic_csv_header(std::size_t grippers) {
+std::string dynamic_csv_header(std::size_t grippers, std::size_t obstacles) {
   std::string out =
-      ",dynamic_energy_J,kinetic_J,dynamic_work_J,dissipated_J,quasi_static_error_over_length,"
+      ",dynamic_energy_J,kinetic_J,dynamic_work_J,dissipated_J,lost_J,quasi_static_error_over_"
+      "length,"
       "force_error_over_length";
   for (std::size_t i = 1; i <= grippers; ++i) {
     append(out,
@@ -143,24 +153,31 @@ std::string dynamic_csv_header(std::size_t grippers) {
            "dynamic_ty_{0}_Nm,dynamic_tz_{0}_Nm",
            i);
   }
+  for (std::size_t i = 1; i <= obstacles; ++i) {
+    append(out, ",dynamic_obstacle_fx_{0}_N,dynamic_obstacle_fy_{0}_N,dynamic_obstacle_fz_{0}_N",
+           i);
+  }
   return out;
 }
 
 std::string dynamic_csv_fields(const DynamicTrack& dynamic, std::size_t grippers,
-                               std::size_t index) {
-  constexpr std::size_t columns = 6;  // of the frame, and of each gripper
+                               std::size_t obstacles, std::size_t index) {
   std::string out;
   if (index >= dynamic.frames.size()) {
-    out.assign(columns * (grippers + 1), ',');
+    constexpr std::size_t of_frame = 7, of_gripper = 6, of_obstacle = 3;
+    out.assign(of_frame + of_gripper * grippers + of_obstacle * obstacles, ',');
     return out;
   }
   const DynamicFrame& frame = dynamic.frames[index];
-  append_csv(out, ",{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}", frame.energy.total(),
-             frame.energy.kinetic, frame.energy.work, frame.energy.dissipated,
+  append_csv(out, ",{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}", frame.energy.total(),
+             frame.energy.kinetic, frame.energy.work, frame.energy.dissipated, frame.energy.lost,
              frame.quasi_static_error, frame.force_error.value_or(no_value));
   for (const compare::GripperLoad& load : frame.grippers) {
     for (const double value : load.force) append_csv(out, ",{:.10g}", value);
     for (const double value : load.torque) append_csv(out, ",{:.10g}", value);
+  }
+  for (const Eigen::Vector3d& force : frame.obstacles) {
+    for (const double value : force) append_csv(out, ",{:.10g}", value);
   }
   return out;
 }

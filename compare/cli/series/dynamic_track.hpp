@@ -19,9 +19,10 @@ namespace dlo::cli {
                                 const TrackFrames& frames);
 
 /// Columns of CSV behind those of its track, each with a comma before it.
-[[nodiscard]] std::string dynamic_csv_header(std::size_t grippers);
+[[nodiscard]] std::string dynamic_csv_header(std::size_t grippers, std::size_t obstacles);
 /// The same of a frame; empty fields behind the last one. @param index  of the track's frames
 [[nodiscard]] std::string dynamic_csv_fields(const compare::DynamicTrack& dynamic,
-                                             std::size_t grippers, std::size_t index);
+                                             std::size_t grippers, std::size_t obstacles,
+                                             std::size_t index);
 
 }  // namespace dlo::cli

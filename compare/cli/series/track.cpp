@@ -167,6 +167,7 @@ Json frame_json(const TrackFrame& frame, const compare::Scene& scene, bool point
                  {"smallest_curvature", frame.smallest_curvature},
                  {"grippers", std::move(grippers)},
                  {"contacts", contacts_json(frame.contacts)},
+                 {"obstacles", obstacles_json(frame.obstacles)},
                  {"energy_J",
                   {{"bending", energy.bending},
                    {"twisting", energy.twisting},
@@ -233,6 +234,10 @@ std::string track_text(const Track& track, const compare::Scene& scene,
   append(out,
          "branch      lost by Newton's method in {} of them; energy tells whether the rod fell\n",
          track.lost);
+  if (track.repeated > 0) {
+    append(out, "            kept by it in {} more in up to 16 smaller steps only\n",
+           track.repeated);
+  }
   double released = 0;
   for (const TrackEvent& event : track.events) {
     if (event.kind == TrackEvent::Kind::snap) released += event.released;
@@ -261,7 +266,8 @@ std::string track_json(const Track& track, const compare::Scene& scene, const Tr
                  {"model", "energy"},
                  {"frames_per_second", options.rates.frames},
                  {"frame_s", track.median_seconds},
-                 {"frames_lost", track.lost}};
+                 {"frames_lost", track.lost},
+                 {"frames_repeated", track.repeated}};
   if (track.stopped) {
     result["stopped"] = {{"time_s", track.stopped->time}, {"why", track.stopped->why}};
   } else {
@@ -293,7 +299,11 @@ std::string track_csv(const Track& track, const compare::Scene& scene, const Tra
     append(out, ",fx_{0}_N,fy_{0}_N,fz_{0}_N,tx_{0}_Nm,ty_{0}_Nm,tz_{0}_Nm", i);
   }
   const std::size_t grippers = scene.grippers.size();
-  if (dynamic != nullptr) out += dynamic_csv_header(grippers);
+  const std::size_t obstacles = scene.obstacles.size();
+  for (std::size_t i = 1; i <= obstacles; ++i) {
+    append(out, ",obstacle_fx_{0}_N,obstacle_fy_{0}_N,obstacle_fz_{0}_N", i);
+  }
+  if (dynamic != nullptr) out += dynamic_csv_header(grippers, obstacles);
   out += "\n";
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   for (const std::size_t i : frames.of(track)) {
@@ -306,7 +316,10 @@ std::string track_csv(const Track& track, const compare::Scene& scene, const Tra
       for (const double value : load.force) append_csv(out, ",{:.10g}", value);
       for (const double value : load.torque) append_csv(out, ",{:.10g}", value);
     }
-    if (dynamic != nullptr) out += dynamic_csv_fields(*dynamic, grippers, i);
+    for (const Eigen::Vector3d& force : frame.obstacles) {
+      for (const double value : force) append_csv(out, ",{:.10g}", value);
+    }
+    if (dynamic != nullptr) out += dynamic_csv_fields(*dynamic, grippers, obstacles, i);
     out += "\n";
   }
   return out;

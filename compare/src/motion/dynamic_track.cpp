@@ -14,6 +14,7 @@
 #include "motion/frame_clock.hpp"
 #include "motion/scene_inertia.hpp"
 #include "motion/trajectory_motion.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -28,25 +29,27 @@ FrameClock clock_of(const Scene& scene, const TrackOptions& options) {
   return {scene, {options.from, options.to}, options.rates};
 }
 
-/// The scene's rod at the first frame, with its masses and the ways of its grips.
-energy_model::MovingRod moving_rod(const Scene& scene, const FrameClock& clock,
-                                   const RodDamping& damping) {
+/// The scene's rod at the first frame, with its masses and the ways of its grips and obstacles.
+energy_model::MovingRod moving_rod(const Scene& scene, const std::vector<std::size_t>& obstacles,
+                                   const FrameClock& clock, const RodDamping& damping) {
   const Scene now = clock.scene(scene, 0).without_twist();
   const double begin = clock.time(0);
   energy_model::MovingRod rod;
-  rod.problem = frame_problem(now, obstacles_ever_in_reach(scene, clock));
+  rod.problem = frame_problem(now, obstacles);
   rod.inertia = scene_inertia(now);
   rod.material_damping = damping.material;
   rod.air_drag = damping.air;
+  const auto follow = [&](const Trajectory& way) {
+    for (const double time : trajectory_breaks(way, begin)) rod.breaks.push_back(time);
+    return trajectory_motion(way, begin);
+  };
   for (const Gripper& gripper : scene.grippers) {
-    if (gripper.trajectory.empty()) {
-      rod.motions.push_back(energy_model::standing(gripper.position));
-      continue;
-    }
-    rod.motions.push_back(trajectory_motion(gripper.trajectory, begin));
-    for (const double time : trajectory_breaks(gripper.trajectory, begin)) {
-      rod.breaks.push_back(time);
-    }
+    rod.motions.push_back(gripper.trajectory.empty() ? energy_model::standing(gripper.position)
+                                                     : follow(gripper.trajectory));
+  }
+  for (const std::size_t i : obstacles) {
+    const Trajectory& way = scene.obstacles[i].trajectory;
+    rod.obstacle_motions.push_back(way.empty() ? nullptr : follow(way));
   }
   return rod;
 }
@@ -122,25 +125,13 @@ void require_dynamic(const Scene& scene, const TrackOptions& options) {
            "one frame or roll)");
   }
   if (!(scene.mass() > 0)) refuse(scene, "the rod has no mass (allowed: > 0 kg)");
-  for (const std::size_t i : obstacles_ever_in_reach(scene, clock)) {
-    const Obstacle& obstacle = scene.obstacles[i];
-    if (!std::isfinite(obstacle.stiffness)) {
-      refuse(scene, fmt::format("obstacle {} is rigid and in reach of the rod (allowed: one that "
-                                "yields, by a stiffness)",
-                                i + 1));
-    }
-    if (!obstacle.trajectory.empty()) {
-      refuse(scene, fmt::format("obstacle {} moves and is in reach of the rod (allowed: grippers "
-                                "that move, obstacles that stand)",
-                                i + 1));
-    }
-  }
 }
 
 DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOptions& options,
                            const RodDamping& damping) {
   require_dynamic(scene, options);
   const FrameClock clock = clock_of(scene, options);
+  const std::vector<std::size_t> obstacles = obstacles_ever_in_reach(scene, clock);
   DynamicTrack result;
   result.damping = damping;
   result.stopped = track.stopped;
@@ -152,7 +143,7 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
   energy_model::Dynamics moved;
   energy_model::Dynamics coarse;
   try {
-    const energy_model::MovingRod rod = moving_rod(scene, clock, damping);
+    const energy_model::MovingRod rod = moving_rod(scene, obstacles, clock, damping);
     const energy_model::Equilibrium rest =
         energy_model::solve_energy(rod.problem, {.terms = options.solve.terms,
                                                  .max_evaluations = options.solve.max_evaluations,
@@ -182,8 +173,13 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
   result.energy_error = moved.energy_error;
   result.largest_energy = moved.largest_energy;
   result.step_error = moved.error_estimate;
+  const bool rigid = std::any_of(obstacles.begin(), obstacles.end(), [&](std::size_t i) {
+    return std::isinf(scene.obstacles[i].stiffness);
+  });
+  if (rigid) result.deepest_contact = moved.deepest_contact / scene.length;
   for (std::size_t i = 0; i < moved.frames.size(); ++i) {
     result.frames.push_back(frame_of(moved.frames[i], track.frames[i], track.arc_length));
+    result.frames.back().obstacles = forces_of_all(scene, obstacles, moved.frames[i].obstacles);
   }
   const SceneEnergies& zero = track.frames.front().energy;
   const energy_model::EnergyBalance first = result.frames.front().energy;

@@ -22,8 +22,9 @@ struct DynamicFrame {
   double time = 0;  ///< [s]
   /// Gravity and loads are zero where the track's are.
   energy_model::EnergyBalance energy;
-  std::vector<GripperLoad> grippers;  ///< in the scene's order
-  Eigen::Matrix3Xd points;            ///< at Track::arc_length [m]
+  std::vector<GripperLoad> grippers;       ///< in the scene's order
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod, in the scene's order [N]
+  Eigen::Matrix3Xd points;                 ///< at Track::arc_length [m]
   double quasi_static_error = 0;      ///< RMS distance of the track's shape over the length [-]
   std::optional<double> force_error;  ///< the same of the force model's, at its own points [-]
 };
@@ -45,8 +46,11 @@ struct DynamicTrack {
   double seconds = 0;                ///< what it took, without the run with fewer terms
   /// Largest miss of the energy balance, over `largest_energy`, as energy_model::Dynamics has it.
   double energy_error = 0;
-  double largest_energy = 0;         ///< [J]
-  double step_error = 0;             ///< Dynamics::error_estimate, over the length [-]
+  double largest_energy = 0;  ///< [J]
+  double step_error = 0;      ///< Dynamics::error_estimate, over the length [-]
+  /// Largest depth of the rod in a rigid obstacle in reach, over the length [-]; none: there is
+  /// none.
+  std::optional<double> deepest_contact;
   int fewer_terms = 0;               ///< of a second run, which tells what terms left out change
   double term_difference = 0;        ///< largest RMS distance of its frames, over the length [-]
   TrackErrors quasi_static;          ///< of the track's shapes
@@ -55,8 +59,8 @@ struct DynamicTrack {
   double force_error_without_lag = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// @throws InputError if the scene has what a rod with inertia cannot have here: rigid or moving
-/// obstacles in reach, twist that clamps hold, curvature by nature, two bending stiffnesses, no
+/// @throws InputError if the scene has what a rod with inertia cannot have here: twist that clamps
+/// hold, curvature by nature, two bending stiffnesses, no
 /// mass; or if `options` begin after the first pose, at which the rod is at rest
 void require_dynamic(const Scene& scene, const TrackOptions& options);
 

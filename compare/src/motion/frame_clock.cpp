@@ -52,6 +52,11 @@ Scene FrameClock::scene(const Scene& scene, std::size_t frame) const {
   return scene_at(scene, time(frame), obstacle_time(frame));
 }
 
+Scene FrameClock::scene_before(const Scene& scene, std::size_t frame, double share) const {
+  return scene_at(scene, std::lerp(time(frame - 1), time(frame), share),
+                  std::lerp(obstacle_time(frame - 1), obstacle_time(frame), share));
+}
+
 std::vector<std::size_t> obstacles_ever_in_reach(const Scene& scene, const FrameClock& clock) {
   std::vector<bool> reached(scene.obstacles.size(), false);
   for (std::size_t frame = 0; frame < clock.frames() && !scene.obstacles.empty(); ++frame) {

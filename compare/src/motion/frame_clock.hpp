@@ -27,6 +27,8 @@ class FrameClock {
   [[nodiscard]] double obstacle_time(std::size_t frame) const;
   /// As it is then, standing.
   [[nodiscard]] Scene scene(const Scene& scene, std::size_t frame) const;
+  /// On the way to a frame from the one before. @param share  of the way, 0 to 1; frame > 0
+  [[nodiscard]] Scene scene_before(const Scene& scene, std::size_t frame, double share) const;
 
  private:
   double begin_ = 0, end_ = 0, rate_ = 0, obstacle_rate_ = 0;

@@ -14,11 +14,17 @@
 #include "dlo/compare/reference.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "motion/frame_clock.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
 
 using energy_model::Equilibrium;
+
+/// Into so many steps, twice as many each time, the way to a frame is cut where Newton's method
+/// does not keep the branch, before the branch is said to have ended.
+constexpr int fewest_steps = 2;
+constexpr int most_steps = 16;
 
 /// Energy that rounding and the solver's tolerance leave open, over EI/l and what gravity and loads
 /// could do [-].
@@ -116,9 +122,10 @@ class Tracker {
         options_(options),
         clock_(scene, {options.from, options.to}, options.rates),
         obstacles_(obstacles_ever_in_reach(scene, clock_)),
-        solver_({.terms = options.solve.terms,
-                 .max_evaluations = options.solve.max_evaluations,
-                 .time_limit = options.solve.time_limit}) {
+        energy_options_({.terms = options.solve.terms,
+                         .max_evaluations = options.solve.max_evaluations,
+                         .time_limit = options.solve.time_limit}),
+        solver_(energy_options_) {
     result_.arc_length = equal_arc_lengths(scene.length, options.samples);
     bool yields = false;
     for (const std::size_t i : obstacles_) {
@@ -153,7 +160,7 @@ class Tracker {
     try {
       require_clear(now.scene);
       const energy_model::Problem problem = frame_problem(now.scene, obstacles_);
-      now.rod = index == 0 ? solver_.solve(problem) : solver_.follow(problem);
+      now.rod = index == 0 ? solver_.solve(problem) : follow(index, problem);
       if (now.rod.sample) points = now.rod.sample(result_.arc_length).points;
     } catch (const std::invalid_argument& error) {
       if (index == 0) throw InputError(fmt::format("{}: {}", scene_.file, error.what()));
@@ -180,6 +187,7 @@ class Tracker {
     for (const energy_model::Reaction& reaction : now.rod.grips) {
       frame.grippers.push_back({reaction.force, reaction.torque});
     }
+    frame.obstacles = forces_of_all(scene_, obstacles_, now.rod.obstacles);
     frame.contacts = now.rod.contacts;
     for (energy_model::ContactPart& contact : frame.contacts) {
       contact.obstacle = obstacles_[contact.obstacle];
@@ -188,9 +196,34 @@ class Tracker {
     add_contact_events(frame);
     add_force(now, frame);
     result_.lost += frame.followed ? 0 : 1;
+    result_.repeated += frame.followed && in_smaller_steps_ ? 1 : 0;
     result_.frames.push_back(std::move(frame));
     last_ = std::move(now);
     return true;
+  }
+
+  /// In one step, and where that does not keep the branch in smaller ones from the frame before.
+  Equilibrium follow(std::size_t index, const energy_model::Problem& problem) {
+    in_smaller_steps_ = false;
+    Equilibrium rod = solver_.follow(problem);
+    for (int steps = fewest_steps; steps <= most_steps; steps *= 2) {
+      if (solver_.followed() && energy_model::succeeded(rod.status)) break;
+      energy_model::EnergyOptions from_last = energy_options_;
+      from_last.start = &last_.rod;
+      energy_model::EnergySolver solver(from_last);
+      Equilibrium smaller = solver.solve(frame_problem(last_.scene, obstacles_));
+      bool kept = energy_model::succeeded(smaller.status);
+      for (int step = 1; step <= steps && kept; ++step) {
+        const Scene scene = clock_.scene_before(scene_, index, static_cast<double>(step) / steps);
+        smaller = solver.follow(step < steps ? frame_problem(scene, obstacles_) : problem);
+        kept = solver.followed() && energy_model::succeeded(smaller.status);
+      }
+      if (!kept) continue;
+      in_smaller_steps_ = true;
+      solver_ = std::move(solver);
+      return smaller;
+    }
+    return rod;
   }
 
   bool stop(double time, std::string why) {
@@ -214,6 +247,8 @@ class Tracker {
     }
     const bool fell = balances_ ? frame.released > frame.released_bound : !frame.followed;
     if (!fell) return true;
+    // Newton's method has then come to another branch in a smaller step.
+    if (in_smaller_steps_) frame.followed = false;
     TrackEvent event;
     event.kind = TrackEvent::Kind::snap;
     event.frame = result_.frames.size();
@@ -305,7 +340,9 @@ class Tracker {
   const TrackOptions& options_;
   FrameClock clock_;
   std::vector<std::size_t> obstacles_;
+  energy_model::EnergyOptions energy_options_;
   energy_model::EnergySolver solver_;
+  bool in_smaller_steps_ = false;  // the last frame
   bool balances_ = true;
   double noise_ = 0;
   Moment last_;

@@ -37,8 +37,9 @@ struct TrackFrame {
   double released = 0, released_bound = 0;
   std::vector<GripperLoad> grippers;                ///< in the scene's order
   std::vector<energy_model::ContactPart> contacts;  ///< with rigid obstacles, by arc length
-  Eigen::Matrix3Xd points;                          ///< at Track::arc_length [m]
-  double seconds = 0;                               ///< what it took
+  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod, as the scene's [N]
+  Eigen::Matrix3Xd points;                 ///< at Track::arc_length [m]
+  double seconds = 0;                      ///< what it took
   std::optional<ForceFrame> force;
 };
 
@@ -72,17 +73,19 @@ struct Track {
   std::vector<TrackFrame> frames;  ///< up to where it had to stop; one or more
   std::vector<TrackEvent> events;  ///< by time
   std::optional<TrackStop> stopped;
-  double median_seconds = 0;          ///< of a frame of the energy model
-  int lost = 0;                       ///< frames where Newton's method did not keep the branch
+  double median_seconds = 0;  ///< of a frame of the energy model
+  int lost = 0;               ///< frames where Newton's method did not keep the branch, in no steps
+  int repeated = 0;           ///< frames where it did so in smaller steps only
   std::vector<std::string> left_out;  ///< as Solution::left_out
   ForceTrackSummary force;
 };
 
 /// Follows the energy model's shape through a scene's motion: the first frame has the lowest shape
 /// that is found, all others its branch, as long as there is one. A branch that ends is told by
-/// energy: what grippers and moving obstacles do on the rod is what its energy grows by, unless the
-/// rod falls, and then more is missing than any forces between those of the two frames could do (a
-/// snap). The force model makes its steps of each frame beside it, from rest.
+/// energy, after Newton's method has not kept it in up to 16 steps either: what grippers and moving
+/// obstacles do on the rod is what its energy grows by, unless the rod falls, and then more is
+/// missing than any forces between those of the two frames could do (a snap). The force model makes
+/// its steps of each frame beside it, from rest.
 ///
 /// What is impossible, such as grippers farther apart than the rod between them, ends it (stopped),
 /// and so does a solver that does not converge, or that comes out on a shape which is higher than

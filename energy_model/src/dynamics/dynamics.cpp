@@ -46,10 +46,9 @@ void check_rod(const MovingRod& rod) {
   for (const double time : rod.breaks) {
     require(std::isfinite(time), simulate_name, "breaks", time, "finite");
   }
-  for (const Obstacle& obstacle : rod.problem.obstacles) {
-    require(std::isfinite(obstacle.stiffness), simulate_name, "Obstacle::stiffness",
-            obstacle.stiffness, "finite: a moving rod meets obstacles that yield");
-  }
+  require(rod.obstacle_motions.size() <= rod.problem.obstacles.size(), simulate_name,
+          "obstacle_motions.size()", static_cast<double>(rod.obstacle_motions.size()),
+          "no more than obstacles");
   if (has_material_directors(rod.problem)) {
     throw std::invalid_argument(
         "simulate: natural_strains or bending_stiffness_2 given, must be a round straight rod, "
@@ -67,6 +66,7 @@ void check_options(std::span<const double> times, const DynamicsOptions& options
   require_positive(simulate_name, "tolerance", options.tolerance);
   require(options.step >= 0 && std::isfinite(options.step), simulate_name, "step", options.step,
           ">= 0 and finite");
+  require_positive(simulate_name, "contact_depth", options.contact_depth);
   require(options.time_limit > 0, simulate_name, "time_limit", options.time_limit, "> 0");
   for (std::size_t i = 0; i < times.size(); ++i) {
     require(std::isfinite(times[i]), simulate_name, "times", times[i], "finite");
@@ -97,6 +97,7 @@ void add(const EnergyBalance& of, EnergyBalance& to) {
   to.load += of.load;
   to.obstacles += of.obstacles;
   to.dissipated += of.dissipated;
+  to.lost += of.lost;
   to.work += of.work;
 }
 
@@ -126,7 +127,7 @@ void add_loads_on_clamps(const MovingRod& rod, double begin, MovingFrame& frame)
 }
 
 double of_largest(const EnergyBalance& energy, const EnergyBalance& first) {
-  return std::max({energy.kinetic, energy.bending, energy.obstacles, energy.dissipated,
+  return std::max({energy.kinetic, energy.bending, energy.obstacles, energy.dissipated, energy.lost,
                    std::abs(energy.work), std::abs(energy.gravity - first.gravity),
                    std::abs(energy.load - first.load)});
 }
@@ -173,6 +174,7 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
     result.steps += run.steps;
     result.smallest_step = std::min(result.smallest_step, run.smallest_step);
     result.error_estimate += run.error;
+    result.deepest_contact = std::max(result.deepest_contact, run.depth);
     if (run.status != SolveStatus::converged) {
       result.status = run.status;
       result.message = run.message;
@@ -207,8 +209,8 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
     };
     if (k == 0) first = frame.energy;
     const EnergyBalance& energy = frame.energy;
-    largest_miss = std::max(
-        largest_miss, std::abs(energy.total() - first.total() + energy.dissipated - energy.work));
+    largest_miss = std::max(largest_miss, std::abs(energy.total() - first.total() +
+                                                   energy.dissipated + energy.lost - energy.work));
     result.largest_energy = std::max(result.largest_energy, of_largest(energy, first));
     if (k > 0) result.frames.push_back(std::move(frame));
   }

@@ -13,6 +13,11 @@ namespace {
 /// Components across its plane that a planar span may be given, over its own units.
 constexpr double motion_plane_rounding = 1e-10;
 
+/// A run is repeated with obstacles that are so much stiffer where they let the rod in too deep;
+/// what strikes then goes half as deep.
+constexpr double stiffer = 8;
+constexpr int most_repeats = 20;
+
 Moving turned(const Eigen::Matrix3d& by, const Moving& moving) {
   return {by * moving.value, by * moving.rate, by * moving.acceleration};
 }
@@ -42,6 +47,24 @@ GripPose MovingSpan::pose(std::size_t grip, double time) const {
 Eigen::Matrix3d MovingSpan::to_axes(double time) const {
   if (!placed_.span.start_direction) return placed_.frame;
   return placed_.frame * pose(placed_.anchor_grip, time).turn.conjugate().toRotationMatrix();
+}
+
+/// Where an obstacle is: a point x of its first place is at p + T (x - p0).
+BodyPlace MovingSpan::place(std::size_t obstacle, double seconds,
+                            const Eigen::Matrix3d& axes) const {
+  BodyPlace result;
+  result.turn = axes * placed_.frame.transpose();
+  if (obstacle >= rod_.obstacle_motions.size() || !rod_.obstacle_motions[obstacle]) return result;
+  const GripPose first = rod_.obstacle_motions[obstacle](begin_);
+  const GripPose now = rod_.obstacle_motions[obstacle](seconds);
+  const Eigen::Matrix3d turn =
+      (now.turn.normalized() * first.turn.normalized().conjugate()).toRotationMatrix();
+  const Eigen::Vector3d lever = turn * (placed_.anchor_position - first.position);
+  result.turn = axes * turn * placed_.frame.transpose();
+  result.origin = axes * (now.position + lever - placed_.anchor_position) / length_;
+  result.velocity = axes * (now.velocity + now.angular_velocity.cross(lever)) * (time_ / length_);
+  result.spin = axes * now.angular_velocity * time_;
+  return result;
 }
 
 SpanDrive MovingSpan::drive(double time, bool planar, bool& left_plane) const {
@@ -91,6 +114,17 @@ SpanDrive MovingSpan::drive(double time, bool planar, bool& left_plane) const {
   left_plane = left_plane || leans(result.spin) || out(result.anchor.value) ||
                out(result.anchor.rate) || out(result.anchor.acceleration);
   for (const Moving& hold : result.holds) left_plane = left_plane || out(hold.rate);
+  for (const Span::SoftObstacle& obstacle : placed_.span.soft_obstacles) {
+    result.soft_obstacles.push_back(place(obstacle.index, seconds, axes));
+  }
+  for (const Span::Obstacle& obstacle : placed_.span.rigid_obstacles) {
+    result.rigid_obstacles.push_back(place(obstacle.index, seconds, axes));
+  }
+  for (const std::vector<BodyPlace>* places : {&result.soft_obstacles, &result.rigid_obstacles}) {
+    for (const BodyPlace& moved : *places) {
+      left_plane = left_plane || out(moved.velocity) || leans(moved.spin);
+    }
+  }
   return result;
 }
 
@@ -135,8 +169,13 @@ SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
   const double seconds = at.time * time_;
   const Eigen::Matrix3d to_space = to_axes(seconds).transpose();
   const double unit = force_ * length_;
-  result.energy = {energies.kinetic * unit, energies.bending * unit,   energies.gravity * unit,
-                   energies.load * unit,    energies.obstacles * unit, at.dissipated * unit,
+  result.energy = {energies.kinetic * unit,
+                   energies.bending * unit,
+                   energies.gravity * unit,
+                   energies.load * unit,
+                   energies.obstacles * unit,
+                   at.dissipated * unit,
+                   at.lost * unit,
                    at.work * unit};
   const auto add = [&](std::size_t grip, const Eigen::Vector3d& force,
                        const Eigen::Vector3d& torque) {
@@ -151,6 +190,11 @@ SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
   for (std::size_t i = 0; i < model.obstacle_forces().size(); ++i) {
     result.obstacles.emplace_back(placed_.span.soft_obstacles[i].index,
                                   to_space * model.obstacle_forces()[i] * force_);
+  }
+  const std::vector<Eigen::Vector3d> rigid = model.rigid_forces();
+  for (std::size_t i = 0; i < rigid.size(); ++i) {
+    result.obstacles.emplace_back(placed_.span.rigid_obstacles[i].index,
+                                  to_space * rigid[i] * force_);
   }
   const double end =
       placed_.reversed ? placed_.start : placed_.start + placed_.span.length * length_;
@@ -167,26 +211,58 @@ SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
 SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>& masses,
                         std::span<const double> times, const DynamicsOptions& options, bool planar,
                         const Deadline& deadline) const {
+  ContactLaw contact;
+  contact.depth = options.contact_depth;
+  // What falls by the rod's length or moves as its slowest vibration, and strikes with all of its
+  // length: int k d^2 (1 + v / u) dd takes v^2 / 2.
+  const double speed = 1 + std::sqrt(2 * placed_.span.total_load());
+  contact.stiffness =
+      1.5 * speed * speed / (std::pow(contact.depth, 3) * (1 + speed / contact.rebound));
+  SpanRun result;
+  long steps = 0;
+  for (int repeat = 0; repeat < most_repeats; ++repeat) {
+    result = run_with(contact, start, masses, times, options, planar, deadline);
+    steps += result.steps;
+    result.steps = steps;
+    if (result.status == SolveStatus::converged || result.left_plane) break;
+    if (!(result.depth > contact.depth * length_) || deadline.passed()) break;
+    contact.stiffness *= stiffer;
+  }
+  return result;
+}
+
+SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& start,
+                             const std::vector<PointMass>& masses, std::span<const double> times,
+                             const DynamicsOptions& options, bool planar,
+                             const Deadline& deadline) const {
   SpanRun result;
   const std::vector<Piece> pieces = pieces_of(placed_.span);
   const Eigen::Vector3d first = tangents(start, Eigen::VectorXd::Zero(1)).col(0);
-  SpanDynamics model(placed_.span, pieces, options.terms, planar, first, inertia(pieces, masses));
+  SpanDynamics model(placed_.span, pieces, options.terms, planar, first, inertia(pieces, masses),
+                     contact);
   const Eigen::Matrix3Xd directions = tangents(start, model.nodes());
   if (planar && directions.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
     result.left_plane = true;
     return result;
   }
   bool left_plane = false;
-  SpanIntegrator integrator(model, [&](double time) { return drive(time, planar, left_plane); },
-                            {options.tolerance, options.step / time_, rod_.material_damping > 0});
+  SpanIntegrator integrator(
+      model, [&](double time) { return drive(time, planar, left_plane); },
+      {options.tolerance, options.step / time_, rod_.material_damping > 0 || model.may_touch()});
   SpanInstant at;
   at.time = begin_ / time_;
   at.state.x = model.fit(directions);
   at.state.v = Eigen::VectorXd::Zero(model.size());
   result.message = integrator.project(at);
   const auto stopped = [&] { return !result.message.empty() || (planar && left_plane); };
-  if (!stopped()) result.frames.push_back(frame(integrator, model, at));
-  const auto expired = [&] { return deadline.passed() || (planar && left_plane); };
+  if (!stopped()) {
+    result.frames.push_back(frame(integrator, model, at));
+    if (model.depth() > contact.depth) {
+      result.message = "the rod begins within a rigid obstacle";
+    }
+  }
+  const auto too_deep = [&] { return integrator.depth() > contact.depth; };
+  const auto expired = [&] { return deadline.passed() || (planar && left_plane) || too_deep(); };
   std::vector<double> breaks = rod_.breaks;
   std::sort(breaks.begin(), breaks.end());
   auto next_break = std::upper_bound(breaks.begin(), breaks.end(), begin_);
@@ -203,6 +279,10 @@ SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>
   result.steps = integrator.steps();
   result.smallest_step = integrator.smallest_step() * time_;
   result.error = integrator.error();
+  result.depth = integrator.depth() * length_;
+  if (too_deep() && !deadline.passed()) {
+    result.message = "a rigid obstacle is struck too hard for the depth that contact may have";
+  }
   result.status = result.message.empty() ? SolveStatus::converged
                   : deadline.passed()    ? SolveStatus::time_limit
                                          : SolveStatus::failed;

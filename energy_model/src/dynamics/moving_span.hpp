@@ -30,6 +30,7 @@ struct SpanRun {
   long steps = 0;
   double smallest_step = std::numeric_limits<double>::infinity();  ///< [s]
   double error = 0;                                                ///< of the length
+  double depth = 0;                                                ///< within rigid obstacles [m]
 };
 
 /// A span between clamps that move.
@@ -46,6 +47,13 @@ class MovingSpan {
                             bool planar, const Deadline& deadline) const;
 
  private:
+  /// With one law of contact; ends where it lets the rod in too deep.
+  [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const StartingShape& start,
+                                 const std::vector<PointMass>& masses,
+                                 std::span<const double> times, const DynamicsOptions& options,
+                                 bool planar, const Deadline& deadline) const;
+  [[nodiscard]] BodyPlace place(std::size_t obstacle, double seconds,
+                                const Eigen::Matrix3d& axes) const;
   [[nodiscard]] SpanInertia inertia(const std::vector<Piece>& pieces,
                                     const std::vector<PointMass>& masses) const;
   [[nodiscard]] Eigen::Matrix3d to_axes(double time) const;

@@ -11,6 +11,7 @@ SpanEnergies SpanDynamics::energies() const {
   const Eigen::Index Q = nodes_of_piece();
   result.bending = x_.cwiseProduct(elastic_).squaredNorm() / 2;
   result.obstacles = obstacle_energy_;
+  for (const Touch& touch : touches_) result.obstacles += touch.kept;
   for (std::size_t e = 0; e < pieces_.size(); ++e) {
     const Eigen::Index row = static_cast<Eigen::Index>(e) * Q;
     const double length = pieces_[e].length;
@@ -38,6 +39,7 @@ SpanReactions SpanDynamics::reactions(const Eigen::Ref<const Eigen::VectorXd>& m
     add(position_.row(node).transpose(), forces_.row(node).transpose());
   }
   for (std::size_t k = 0; k < stations_.size(); ++k) add(stations_[k].value, station_forces_[k]);
+  for (const Touch& touch : touches_) add(touch.at, -touch.push * touch.normal);
   for (std::size_t k = 0; k < hold_stations_.size(); ++k) {
     result.hold_forces.push_back(multiplier_force(multipliers, k));
     add(stations_[hold_stations_[k]].value, -result.hold_forces.back());
@@ -53,11 +55,15 @@ SpanReactions SpanDynamics::reactions(const Eigen::Ref<const Eigen::VectorXd>& m
 
 SpanPower SpanDynamics::power(const SpanReactions& reactions) const {
   SpanPower result;
-  result.grips = reactions.anchor_force.dot(drive_.anchor.rate) +
-                 reactions.anchor_torque.dot(drive_.spin) +
-                 reactions.end_torque.dot(drive_.end_spin);
+  result.work = obstacle_work_ + reactions.anchor_force.dot(drive_.anchor.rate) +
+                reactions.anchor_torque.dot(drive_.spin) +
+                reactions.end_torque.dot(drive_.end_spin);
   for (std::size_t k = 0; k < reactions.hold_forces.size(); ++k) {
-    result.grips += reactions.hold_forces[k].dot(drive_.holds[k].rate);
+    result.work += reactions.hold_forces[k].dot(drive_.holds[k].rate);
+  }
+  for (const Touch& touch : touches_) {
+    result.work += touch.push * touch.normal.dot(touch.velocity);
+    result.lost += touch.lost;
   }
   const Eigen::VectorXd strains = v_.cwiseProduct(elastic_);
   result.dissipated = inertia_.material_damping * strains.squaredNorm();

@@ -34,7 +34,8 @@ std::size_t station_at(const std::vector<Piece>& pieces, double s) {
 }  // namespace
 
 SpanDynamics::SpanDynamics(Span span, std::vector<Piece> pieces, int terms, bool planar,
-                           const Eigen::Vector3d& first, SpanInertia inertia)
+                           const Eigen::Vector3d& first, SpanInertia inertia,
+                           const ContactLaw& contact)
     : span_(std::move(span)),
       pieces_(std::move(pieces)),
       terms_(terms),
@@ -42,6 +43,7 @@ SpanDynamics::SpanDynamics(Span span, std::vector<Piece> pieces, int terms, bool
       free_start_(!span_.start_direction),
       inertia_(std::move(inertia)),
       table_(&director_table(terms)),
+      grid_(span_.rigid_obstacles, pieces_, *table_, contact),
       axes_(planar ? 2 : 3) {
   // In the plane d1 is across it, so that the first strain bends the rod within it.
   const Eigen::Vector3d tangent = span_.start_direction.value_or(first).normalized();
@@ -133,9 +135,9 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   const Eigen::Index nodes = s_.size();
   const Eigen::MatrixX3d t = state_.t.bottomRows(nodes);
   const Eigen::MatrixX3d w = omega_.bottomRows(nodes);
-  const Eigen::MatrixX3d t_rate = cross_rows(w, t);
+  t_rate_ = cross_rows(w, t);
   const Eigen::MatrixX3d t_acceleration =
-      cross_rows(alpha_.bottomRows(nodes), t) + cross_rows(w, t_rate);
+      cross_rows(alpha_.bottomRows(nodes), t) + cross_rows(w, t_rate_);
   end_tangent_.value = state_.end_frame().col(2);
   end_tangent_.rate = Eigen::Vector3d(omega.transpose()).cross(end_tangent_.value);
   end_tangent_.acceleration = Eigen::Vector3d(alpha.transpose()).cross(end_tangent_.value) +
@@ -155,7 +157,7 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
                                          (of.middleRows(row, Q).transpose() * table_->weights));
     };
     stations_[e + 1].value = along(t, stations_[e].value, position_);
-    stations_[e + 1].rate = along(t_rate, stations_[e].rate, velocity_);
+    stations_[e + 1].rate = along(t_rate_, stations_[e].rate, velocity_);
     stations_[e + 1].acceleration = along(t_acceleration, stations_[e].acceleration, acceleration_);
   }
   const Moving shift = {drive.anchor.value - stations_[anchor_station_].value,
@@ -191,23 +193,8 @@ void SpanDynamics::collect_forces() {
     station_forces_[k] =
         inertia_.at_stations[k] * stations_[k].acceleration - drive_.turn * station_loads_[k];
   }
-  obstacle_energy_ = 0;
-  for (std::size_t i = 0; i < span_.soft_obstacles.size(); ++i) {
-    const Span::SoftObstacle& obstacle = span_.soft_obstacles[i];
-    pushed_[i].setZero();
-    for (Eigen::Index node = 0; node < s_.size(); ++node) {
-      const Eigen::Vector3d at = drive_.turn.transpose() * position_.row(node).transpose();
-      if (!(obstacle.body.clearance(at) < 0)) continue;
-      const obstacle::Gap gap = obstacle.body.gap(at);
-      const double weight =
-          pieces_[static_cast<std::size_t>(node / Q)].length * table_->weights[node % Q];
-      const Eigen::Vector3d push =
-          drive_.turn * (-obstacle.stiffness * weight * gap.value * gap.gradient);
-      obstacle_energy_ += obstacle.stiffness * weight * gap.value * gap.value / 2;
-      pushed_[i] += push;
-      forces_.row(node) -= push.transpose();
-    }
-  }
+  collect_soft_obstacles();
+  collect_touches();
 }
 
 Eigen::Vector3d SpanDynamics::multiplier_force(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
@@ -217,13 +204,16 @@ Eigen::Vector3d SpanDynamics::multiplier_force(const Eigen::Ref<const Eigen::Vec
   return force;
 }
 
-/// Work of forces at nodes and stations, and of couples at the pieces' ends, by the unknowns.
+/// Work of forces at nodes, stations and points of the grid, and of couples at the pieces' ends, by
+/// the unknowns.
 Eigen::VectorXd SpanDynamics::pulled(const Eigen::MatrixX3d& at_nodes,
                                      const std::vector<Eigen::Vector3d>& at_stations,
-                                     const std::vector<Eigen::Vector3d>& couples) {
+                                     const std::vector<Eigen::Vector3d>& couples,
+                                     const std::vector<GridForce>& at_grid) {
   const Eigen::Index Q = nodes_of_piece();
   Eigen::Vector3d all = at_nodes.colwise().sum().transpose();
   for (const Eigen::Vector3d& force : at_stations) all += force;
+  for (const GridForce& at : at_grid) all += at.force;
   // Gradient by the tangents: what a tangent moves is all that lies beyond, seen from the anchor.
   Eigen::MatrixX3d by_tangents(s_.size(), 3);
   Eigen::Vector3d beyond = Eigen::Vector3d::Zero();
@@ -235,6 +225,12 @@ Eigen::VectorXd SpanDynamics::pulled(const Eigen::MatrixX3d& at_nodes,
         pieces_[e].length * (table_->integration.transpose() * at_nodes.middleRows(row, Q) +
                              table_->weights * carried.transpose());
     beyond += at_nodes.middleRows(row, Q).colwise().sum().transpose();
+    for (const GridForce& at : at_grid) {
+      if (at.piece != e) continue;
+      by_tangents.middleRows(row, Q) +=
+          pieces_[e].length * grid_.place(e, at.point) * at.force.transpose();
+      beyond += at.force;
+    }
   }
   Eigen::VectorXd result = Eigen::VectorXd::Zero(2 * frames_.columns());
   frames_.pull({&by_tangents, couples}, 1, state_, result);
@@ -252,8 +248,12 @@ Eigen::VectorXd SpanDynamics::residual(const Eigen::Ref<const Eigen::VectorXd>& 
     couples.back() -= multipliers[first + static_cast<Eigen::Index>(i)] *
                       end_tangent_.value.cross(drive_.across_end[i].value);
   }
+  std::vector<GridForce> at_grid;
+  for (const Touch& touch : touches_) {
+    at_grid.push_back({touch.piece, touch.point, -touch.push * touch.normal});
+  }
   return elastic_.cwiseProduct(x_ + inertia_.material_damping * v_) +
-         pulled(forces_, at_stations, couples);
+         pulled(forces_, at_stations, couples, at_grid);
 }
 
 SpanVelocities SpanDynamics::velocities() const {
@@ -273,7 +273,7 @@ Eigen::VectorXd SpanDynamics::impulse(const SpanVelocities& before) {
   for (std::size_t k = 0; k < stations_.size(); ++k) {
     at_stations.emplace_back(inertia_.at_stations[k] * (stations_[k].rate - before.stations[k]));
   }
-  return pulled(at_nodes, at_stations, {});
+  return pulled(at_nodes, at_stations, {}, {});
 }
 
 Eigen::MatrixX3d SpanDynamics::misses() const {
@@ -334,16 +334,6 @@ Eigen::MatrixXd SpanDynamics::mass_matrix() {
   const std::array<Eigen::MatrixXd, 3> masses = motion.masses(
       [&](Eigen::Index e) { return inertia_.per_length[static_cast<std::size_t>(e)]; }, points);
   return masses[0] + masses[1] + masses[2];
-}
-
-Eigen::MatrixXd SpanDynamics::damping(const Eigen::MatrixXd& mass) const {
-  // Drag acts as masses do, where those are the same all along.
-  double rod = 0;
-  for (std::size_t e = 0; e < pieces_.size(); ++e)
-    rod += inertia_.per_length[e] * pieces_[e].length;
-  Eigen::MatrixXd result = (rod > 0 ? inertia_.drag * span_.length / rod : 0) * mass;
-  result.diagonal() += inertia_.material_damping * elastic_;
-  return result;
 }
 
 Eigen::VectorXd SpanDynamics::fit(const Eigen::Matrix3Xd& tangents) const {

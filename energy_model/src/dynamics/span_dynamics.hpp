@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "dlo/obstacle/body.hpp"
+#include "dynamics/span_contact.hpp"
 #include "strain/rod_frames.hpp"
 #include "strain/span_shape.hpp"
 
@@ -27,6 +27,8 @@ struct SpanDrive {
   /// Directions across that of the clamp at the end, which the tangent there has none of.
   std::vector<Moving> across_end;
   Eigen::Vector3d end_spin = Eigen::Vector3d::Zero();  ///< of that clamp
+  std::vector<BodyPlace> soft_obstacles;               ///< of Span::soft_obstacles
+  std::vector<BodyPlace> rigid_obstacles;              ///< of Span::rigid_obstacles
 };
 
 /// What a span has besides its shape; own units.
@@ -50,8 +52,9 @@ struct SpanVelocities {
 
 /// What moves energy.
 struct SpanPower {
-  double grips = 0;       ///< work of the grips on the span, by time
-  double dissipated = 0;  ///< by time
+  double work = 0;        ///< of grips and of obstacles that move on the span, by time
+  double dissipated = 0;  ///< in the material and the air, by time
+  double lost = 0;        ///< to what rigid obstacles resist with, by time
 };
 
 struct SpanEnergies {
@@ -67,18 +70,18 @@ struct SpanReactions {
 };
 
 /// Equations of motion of a span in its strains x,
-///     int rho A r''.dr + c r'.dr ds + x.dx + tau x'.dx = int w.dr ds + loads + grips,
+///     int rho A r''.dr + c r'.dr ds + x.dx + tau x'.dx = int w.dr ds + loads + grips + obstacles,
 /// for all dx that move r, with r' and r'' from x', x'' by the angular velocity of cross-sections,
 ///     omega_s = R u',  alpha_s = R u'' + omega x R u',  t' = omega x t,  t'' = alpha x t + omega x
 ///     t',
 /// collocated as the directors are. Rates of vectors are those in space.
 class SpanDynamics {
  public:
-  /// @param span   without material directors; rigid obstacles are not seen
+  /// @param span   without material directors
   /// @param planar  keeps to the span's plane
   /// @param first  tangent at the start, of a span that no clamp holds there
   SpanDynamics(Span span, std::vector<Piece> pieces, int terms, bool planar,
-               const Eigen::Vector3d& first, SpanInertia inertia);
+               const Eigen::Vector3d& first, SpanInertia inertia, const ContactLaw& contact);
 
   [[nodiscard]] Eigen::Index size() const { return size_; }
   [[nodiscard]] Eigen::Index constraints() const { return constraints_; }
@@ -104,8 +107,8 @@ class SpanDynamics {
   [[nodiscard]] Eigen::MatrixXd jacobian();
   [[nodiscard]] Eigen::MatrixXd mass_matrix();
   /// Derivatives of the residual's other parts by x and v, but for geometric ones.
-  [[nodiscard]] Eigen::VectorXd stiffness() const { return elastic_; }
-  [[nodiscard]] Eigen::MatrixXd damping(const Eigen::MatrixXd& mass) const;
+  [[nodiscard]] Eigen::MatrixXd stiffness();
+  [[nodiscard]] Eigen::MatrixXd damping(const Eigen::MatrixXd& mass);
 
   [[nodiscard]] SpanEnergies energies() const;
   /// With these multipliers, for which residual() has been asked last.
@@ -113,6 +116,11 @@ class SpanDynamics {
   [[nodiscard]] SpanPower power(const SpanReactions& reactions) const;
   /// Of each of Span::soft_obstacles on the span.
   [[nodiscard]] const std::vector<Eigen::Vector3d>& obstacle_forces() const { return pushed_; }
+  /// Of each of Span::rigid_obstacles.
+  [[nodiscard]] std::vector<Eigen::Vector3d> rigid_forces() const;
+  [[nodiscard]] bool may_touch() const { return !grid_.empty(); }
+  /// By which it is within a rigid obstacle where it is most; 0: nowhere.
+  [[nodiscard]] double depth() const;
 
   /// The shape along the span's own frame.
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
@@ -122,9 +130,19 @@ class SpanDynamics {
   [[nodiscard]] Eigen::MatrixX3d rates(const Eigen::VectorXd& full) const;
   [[nodiscard]] Eigen::Index nodes_of_piece() const { return table_->nodes.size(); }
   void collect_forces();
+  void collect_soft_obstacles();
+  void collect_touches();
+  /// A force at a point of the grid.
+  struct GridForce {
+    std::size_t piece = 0;
+    Eigen::Index point = 0;
+    Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  };
   [[nodiscard]] Eigen::VectorXd pulled(const Eigen::MatrixX3d& at_nodes,
                                        const std::vector<Eigen::Vector3d>& at_stations,
-                                       const std::vector<Eigen::Vector3d>& couples);
+                                       const std::vector<Eigen::Vector3d>& couples,
+                                       const std::vector<GridForce>& at_grid);
+  [[nodiscard]] Eigen::VectorXd depth_gradient(const Touch& touch);
   [[nodiscard]] Eigen::Vector3d multiplier_force(
       const Eigen::Ref<const Eigen::VectorXd>& multipliers, std::size_t hold) const;
 
@@ -138,6 +156,7 @@ class SpanDynamics {
   RodFrames frames_;
   RodFrames::State state_;
   const LegendreTable* table_;
+  ContactGrid grid_;
   Eigen::VectorXd s_;
   Eigen::Index size_ = 0, constraints_ = 0, axes_ = 3;
   Eigen::VectorXd elastic_;
@@ -149,13 +168,15 @@ class SpanDynamics {
   SpanDrive drive_;
   Eigen::VectorXd x_, v_;
   Eigen::MatrixX3d omega_, alpha_;  // nodes, those of a free start's turn first
+  Eigen::MatrixX3d t_rate_;         // of tangents at the pieces' nodes
   Eigen::MatrixX3d position_, velocity_, acceleration_;  // of the pieces' nodes, in space
   std::vector<Moving> stations_;                         // the same of the pieces' ends
   Moving end_tangent_;
   Eigen::MatrixX3d forces_;  // inertia and drag less what pulls, at nodes
   std::vector<Eigen::Vector3d> station_forces_;
   std::vector<Eigen::Vector3d> pushed_;
-  double obstacle_energy_ = 0;
+  double obstacle_energy_ = 0, obstacle_work_ = 0;  // of soft ones; the latter by time
+  std::vector<Touch> touches_;                      // by piece
 };
 
 }  // namespace dlo::energy_model

@@ -60,13 +60,12 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
   const Eigen::Index n = span_.size();
   const Eigen::Index m = span_.constraints();
   const Eigen::MatrixXd damping = span_.damping(mass_);
-  const Eigen::VectorXd stiffness = span_.stiffness();
+  const Eigen::MatrixXd stiffness = span_.stiffness();
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(stage_count * (n + m), stage_count * (n + m));
   for (Eigen::Index i = 0; i < stage_count; ++i) {
     for (Eigen::Index j = 0; j < stage_count; ++j) {
       auto block = matrix.block(i * (n + m), j * (n + m), n, n);
-      block = step * rule_.inner(i, j) * damping;
-      block.diagonal() += step * step * rule_.twice(i, j) * stiffness;
+      block = step * rule_.inner(i, j) * damping + step * step * rule_.twice(i, j) * stiffness;
       if (i == j) block += mass_;
     }
     matrix.block(i * (n + m), i * (n + m) + n, n, m) = -jacobian_.transpose();
@@ -104,7 +103,9 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
   ++steps_;
   std::vector<SpanDrive> drives;
   for (Eigen::Index i = 0; i < stage_count; ++i) {
-    drives.push_back(drive_(at.time + rule_.nodes[i] * step));
+    // Radau's last point is the step's end, which may be a break.
+    drives.push_back(
+        drive_(std::min(at.time + rule_.nodes[i] * step, just_before(at.time + step))));
   }
   for (const bool renew : {false, true}) {
     Factor& newton = factor(at, step, renew);
@@ -141,8 +142,9 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
         at.time += step;
         for (std::size_t i = 0; i < stage_count; ++i) {
           const double weight = step * rule_.weights[static_cast<Eigen::Index>(i)];
-          at.work += weight * powers[i].grips;
+          at.work += weight * powers[i].work;
           at.dissipated += weight * powers[i].dissipated;
+          at.lost += weight * powers[i].lost;
         }
         found.step = step;
         found.end = at.time;
@@ -208,6 +210,10 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
       last_ = std::move(next);
       if (count <= 1) at.time = until;
       last_.end = at.time;
+      if (span_.may_touch()) {
+        (void)take_energy(just_before(at.time), at);
+        depth_ = std::max(depth_, span_.depth());
+      }
       continue;
     }
     if (!(next_ > 0)) next_ = 1e-3;
@@ -230,10 +236,12 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
       error = apart;
     }
     double energy = 0;
+    double depth = 0;
     if (solved) {
       energy = take_energy(just_before(twice.time), twice);
-      const double missed =
-          energy - energy_ + twice.dissipated - at.dissipated - (twice.work - at.work);
+      depth = span_.depth();
+      const double missed = energy - energy_ + twice.dissipated - at.dissipated + twice.lost -
+                            at.lost - (twice.work - at.work);
       error = std::max(error, std::abs(missed) / largest_energy_);
     }
     const double better =
@@ -244,6 +252,7 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
       continue;
     }
     energy_ = energy;
+    depth_ = std::max(depth_, depth);
     error_ += apart;
     smallest_step_ = std::min(smallest_step_, step / 2);
     const bool reached = step >= left * (1 - 1e-9);

@@ -17,8 +17,9 @@ namespace dlo::energy_model {
 struct SpanInstant {
   double time = 0;
   SpanState state;
-  double work = 0;        ///< of the grips
+  double work = 0;        ///< of grips, and of obstacles that move
   double dissipated = 0;  ///< in the material and the air
+  double lost = 0;        ///< to rigid obstacles
 };
 
 struct IntegratorOptions {
@@ -54,6 +55,8 @@ class SpanIntegrator {
   [[nodiscard]] long steps() const { return steps_; }
   [[nodiscard]] double smallest_step() const { return smallest_step_; }
   [[nodiscard]] double error() const { return error_; }
+  /// SpanDynamics::depth() at the ends of steps, where it has been largest.
+  [[nodiscard]] double depth() const { return depth_; }
 
  private:
   /// Newton's matrix for one size of step.
@@ -94,6 +97,7 @@ class SpanIntegrator {
   long steps_ = 0;
   double smallest_step_ = std::numeric_limits<double>::infinity();
   double error_ = 0;
+  double depth_ = 0;
 };
 
 }  // namespace dlo::energy_model

@@ -126,7 +126,8 @@ class EnergySolver::State {
         memory.twist = found.solution.model->twist(found.solution.x);
         continue;
       }
-      solutions.push_back(solve_placed(placed[i], problem, options, options_.start, last));
+      const Equilibrium* start = last != nullptr && last->model ? nullptr : options_.start;
+      solutions.push_back(solve_placed(placed[i], problem, options, start, last));
       followed_ = followed_ && solutions.back().front().solution.followed;
       remember(solutions.back().front(), remembered_[i]);
     }
@@ -178,7 +179,8 @@ class EnergySolver::State {
     const auto is_known = [](const SpanSolution& solution) {
       return solution.is_equilibrium() || solution.is_left_open();
     };
-    const bool starts = options_.start != nullptr && !options.all;
+    const bool starts =
+        options_.start != nullptr && !options.all && !(warm && memory.twisted.model);
     const TwistedPart* part =
         starts ? known_twist(*options_.start, placed, problem.length) : nullptr;
     const std::optional<Eigen::Vector3d> known_d1 = known_end_d1(held, placed.span);

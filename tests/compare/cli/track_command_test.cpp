@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "command_fixture.hpp"
@@ -129,6 +130,34 @@ TEST_F(TrackCommand, HasTheMovingRodInEveryFormat) {
   EXPECT_EQ(columns(0), columns(1));
 }
 
+TEST_F(TrackCommand, HasForcesOfObstaclesAtRestAndMoving) {
+  const std::string file = path("floor.toml");
+  std::ofstream(file) << "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n"
+                         "[[obstacle]]\nnormal = [0, 1, 0]\npoint = [0, -0.5, 0]\n"
+                         "[[gripper]]\nat = 0\ndirection = \"0 deg\"\n"
+                         "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n"
+                         "[[gripper.pose]]\ntime = 0.5\nposition = [0, -0.3, 0]\n";
+  const std::string track = words(
+      {"track", file, "--to 2 --frame-rate 10 --no-force --dynamic --damping 0.05 --every 20"});
+  const Outcome text = run(track);
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("contact     within a rigid obstacle by"), std::string::npos) << text.out;
+  const json document = json::parse(run(track + " --format json").out);
+  const json& rest = document.at("frames").back().at("obstacles").at(0).at("force_N");
+  const json& moving = document.at("dynamic").at("frames").back().at("obstacles").at(0);
+  EXPECT_GT(rest.at(1).get<double>(), 0.1);
+  EXPECT_NEAR(moving.at("force_N").at(1).get<double>(), rest.at(1).get<double>(), 0.1);
+  EXPECT_GT(document.at("dynamic").at("frames").back().at("energy_J").at("lost"), 0);
+  std::istringstream csv(run(track + " --format csv").out);
+  std::string header;
+  std::string row;
+  std::getline(csv, header);
+  std::getline(csv, row);
+  EXPECT_NE(header.find(",obstacle_fx_1_N,"), std::string::npos) << header;
+  EXPECT_NE(header.find(",dynamic_obstacle_fz_1_N"), std::string::npos) << header;
+  EXPECT_EQ(std::count(header.begin(), header.end(), ','), std::count(row.begin(), row.end(), ','));
+}
+
 TEST_F(TrackCommand, WritesTheMovingRodForParaView) {
   const std::string swung = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
   const std::string file = path("rod.vtk.series");
@@ -152,8 +181,13 @@ TEST_F(TrackCommand, WritesTheMovingRodForParaView) {
 
 TEST_F(TrackCommand, SaysWhatAMovingRodCannotHave) {
   const std::string swung = std::string(DLO_DATA) + "/scenes/swung_rod.toml";
-  expect_error(words({"track", wire(), "--frame-rate 20 --dynamic"}), 2,
-               {"buckling_wire.toml: --dynamic: obstacle 1 is rigid", "allowed"});
+  const std::string curved = scene(
+      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 1\nnatural_curvature = 1\n"
+      "[[gripper]]\nat = 0\ndirection = \"0 deg\"\n"
+      "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n"
+      "[[gripper.pose]]\ntime = 1\nposition = [0.1, 0, 0]\n");
+  expect_error(words({"track", curved, "--frame-rate 20 --dynamic"}), 2,
+               {"--dynamic: a rod that is curved by nature", "allowed"});
   expect_error(words({"track", swung, "--dynamic --from 0.1"}), 2, {"from 0.1 s", "allowed"});
   expect_error(words({"track", swung, "--damping 0.1"}), 2, {"--damping", "--dynamic"});
   expect_error(words({"track", swung, "--dynamic --drag -1"}), 2, {"--drag", "-1"});

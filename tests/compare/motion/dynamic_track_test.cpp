@@ -191,12 +191,6 @@ void expect_refused(const std::string& rod, const std::string& rest, const std::
 
 TEST(DynamicTrack, RefusesWhatARodWithInertiaCannotHave) {
   const std::string mass = "mass_per_length = 0.5\n";
-  const std::string floor = "[[obstacle]]\nnormal = [0, 1, 0]\n";
-  expect_refused(mass, floor + "point = [0, -0.5, 0]\n", "obstacle 1 is rigid");
-  expect_refused(mass,
-                 floor + "stiffness = 1000\n[[obstacle.pose]]\ntime = 0\npoint = [0, -0.5, 0]\n" +
-                     "[[obstacle.pose]]\ntime = 1\npoint = [0, -0.4, 0]\n",
-                 "obstacle 1 moves");
   expect_refused("mass_per_length = 0\n", "", "no mass");
   expect_refused(mass + "natural_curvature = 1\n", "", "curved by nature");
   const std::string held = "direction = \"0 deg\"\nroll = \"90 deg\"\n[[gripper]]\nat = ";
@@ -243,6 +237,48 @@ TEST(DynamicTrack, MeetsAnObstacleThatYields) {
   EXPECT_GT(energy_of(near, balance), 1e-4);
   // Its force has kinks by time.
   EXPECT_LT(balance, 1e-4);
+}
+
+// A clamp lays a rod on a rigid floor, or the floor comes up to it; either way they meet halfway,
+// and come to rest with the forces of the track.
+TEST(DynamicTrack, RigidFloorsThatStandOrMoveCarryTheRodAsAtRest) {
+  const auto scene = [](const std::string& clamp, const std::string& floor) {
+    return parse_scene(
+        "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0.5\n[[gripper]]\nat = 0\n"
+        "direction = \"0 deg\"\n" +
+            clamp + "[[obstacle]]\nnormal = [0, 1, 0]\ntouches = \"axis\"\n" + floor,
+        "floor.toml");
+  };
+  const Scene lowered = scene(
+      "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n"
+      "[[gripper.pose]]\ntime = 0.5\nposition = [0, -0.3, 0]\n",
+      "point = [0, -0.6, 0]\n");
+  const Scene raised = scene("position = [0, 0, 0]\n",
+                             "[[obstacle.pose]]\ntime = 0\npoint = [0, -0.6, 0]\n"
+                             "[[obstacle.pose]]\ntime = 0.5\npoint = [0, -0.3, 0]\n");
+  TrackOptions options = frames_at(20);
+  options.to = 4;
+  options.solve.terms = 16;
+  std::vector<Eigen::Vector3d> forces;
+  for (const Scene& floor : {lowered, raised}) {
+    const Track at_rest = track(floor, options);
+    ASSERT_FALSE(at_rest.stopped) << at_rest.stopped->why;
+    const DynamicTrack result = dynamic_track(floor, at_rest, options, {.material = 0.05});
+    ASSERT_FALSE(result.stopped) << result.stopped->why;
+    EXPECT_LT(result.energy_error, 1e-5);
+    ASSERT_TRUE(result.deepest_contact);
+    EXPECT_GT(*result.deepest_contact, 0);
+    EXPECT_LE(*result.deepest_contact, 1e-3);
+    const DynamicFrame& last = result.frames.back();
+    const TrackFrame& rest = at_rest.frames.back();
+    EXPECT_GT(rest.obstacles.front().y(), 0.3);
+    EXPECT_LT((last.obstacles.front() - rest.obstacles.front()).norm(),
+              5e-3 * rest.obstacles.front().norm());
+    EXPECT_LT(last.quasi_static_error, 1e-3);
+    EXPECT_EQ(result.frames.front().obstacles.front().norm(), 0);
+    forces.push_back(last.obstacles.front());
+  }
+  EXPECT_LT((forces[0] - forces[1]).norm(), 1e-3 * forces[0].norm());
 }
 
 }  // namespace

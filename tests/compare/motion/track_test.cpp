@@ -138,6 +138,43 @@ TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
   EXPECT_LT(fast.released_bound, slow.released_bound);
 }
 
+// At five frames a second the rod is swung too far for Newton's method in one step; at the times of
+// every frame it is where a track at a high rate has it.
+TEST(Track, RepeatsAFrameThatItHasLostInSmallerSteps) {
+  const Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
+  const Track coarse = track(scene, at_rate(5));
+  const Track fine = track(scene, at_rate(100));
+  EXPECT_EQ(fine.repeated, 0);
+  EXPECT_GT(coarse.repeated, 0);
+  EXPECT_EQ(coarse.lost, 0);
+  for (std::size_t i = 0; i < coarse.frames.size(); ++i) {
+    const TrackFrame& same = fine.frames[std::min(20 * i, fine.frames.size() - 1)];
+    ASSERT_NEAR(same.time, coarse.frames[i].time, 1e-12);
+    EXPECT_LT((same.points - coarse.frames[i].points).norm(), 1e-8) << same.time;
+    EXPECT_TRUE(coarse.frames[i].followed);
+  }
+}
+
+// After the last pose nothing moves, in either model, and nothing is done.
+TEST(Track, GoesOnAtRestBeyondTheLastPose) {
+  TrackOptions options = at_rate(20);
+  options.to = 1.5;
+  options.force = ForceBeside::runs;
+  Scene scene = swung();
+  scene.track.steps = 3000;
+  const Track result = track(scene, options);
+  ASSERT_EQ(result.frames.size(), 31U);
+  EXPECT_FALSE(result.stopped);
+  EXPECT_NEAR(result.frames.back().time, 1.5, 1e-12);
+  const TrackFrame& last_pose = result.frames[20];
+  for (std::size_t i = 21; i < result.frames.size(); ++i) {
+    EXPECT_LT((result.frames[i].points - last_pose.points).norm(), 1e-9) << i;
+    EXPECT_NEAR(result.frames[i].work, last_pose.work, 1e-12) << i;
+    ASSERT_TRUE(result.frames[i].force) << result.force.none;
+  }
+  EXPECT_TRUE(result.events.empty());
+}
+
 TEST(Track, StopsWhereGrippersAreFartherApartThanTheRod) {
   const Scene scene = parse_scene(
       light_wire + "position = [0, 0, 0]\nhold = \"pin\"\n[[gripper]]\nat = 1\nhold = \"pin\"\n" +

@@ -21,9 +21,12 @@ struct MovingRod {
   Problem problem;  ///< loads and weight stay; poses of grips that have a motion are those of it
   Inertia inertia;  ///< what `problem`'s weights do not say
   std::vector<GripMotion> motions;  ///< by grip; empty, or null for one: it stands
-  double material_damping = 0;      ///< tau of Kelvin-Voigt [s], >= 0
-  double air_drag = 0;              ///< c, force per length and velocity [N s/m^2], >= 0
-  std::vector<double> breaks;       ///< times at which a motion is not smooth [s]
+  /// By obstacle: what carries its body along, which is where the problem has it at the begin;
+  /// empty, or null for one: it stands.
+  std::vector<GripMotion> obstacle_motions;
+  double material_damping = 0;  ///< tau of Kelvin-Voigt [s], >= 0
+  double air_drag = 0;          ///< c, force per length and velocity [N s/m^2], >= 0
+  std::vector<double> breaks;   ///< times at which a motion is not smooth [s]
 };
 
 /// The shape that motion begins with: samples at arc lengths, of which the tangents count.
@@ -39,9 +42,10 @@ struct EnergyBalance {
   double bending = 0;    ///< int 1/2 EI kappa^2 ds
   double gravity = 0;    ///< of the rod's weight; zero where points sit at the first grip at time 0
   double load = 0;       ///< of dead loads, the same
-  double obstacles = 0;  ///< of the springs of what yields
+  double obstacles = 0;  ///< of the springs of what yields, and of those that stand for rigid ones
   double dissipated = 0;  ///< since the begin, in the material and in the air
-  double work = 0;        ///< since the begin, of the grips on the rod
+  double lost = 0;        ///< since the begin, on rigid obstacles
+  double work = 0;        ///< since the begin, of grips and of obstacles that move on the rod
 
   /// kinetic + bending + gravity + load + obstacles.
   [[nodiscard]] double total() const { return kinetic + bending + gravity + load + obstacles; }
@@ -68,11 +72,13 @@ struct [[nodiscard]] Dynamics {
   /// Sum over the steps of what halving a step changed: root mean square of the points'
   /// displacement over the length. NaN with a fixed step, which is not halved.
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
-  /// Largest |total - total at the begin + dissipated - work| of the frames, over
+  /// Largest depth of the rod's axis in a rigid obstacle at the end of a step [m].
+  double deepest_contact = 0;
+  /// Largest |total - total at the begin + dissipated + lost - work| of the frames, over
   /// `largest_energy`.
   double energy_error = std::numeric_limits<double>::infinity();
-  /// Of the frames: the largest kinetic, bending, obstacles', dissipated energy or work, or change
-  /// of gravity and load [J].
+  /// Of the frames: the largest kinetic, bending, obstacles', dissipated or lost energy or work, or
+  /// change of gravity and load [J].
   double largest_energy = 0;
 };
 
@@ -86,6 +92,10 @@ struct DynamicsOptions {
   /// [s]; 0: chosen by the tolerance. A fixed one keeps the method symmetric in time, so that an
   /// undamped rod's energy does not drift.
   double step = 0;
+  /// Largest depth of the rod's axis in a rigid obstacle, over the length, > 0: obstacles are made
+  /// stiff enough for it. Forces of contact are spread over a time that is as this depth over the
+  /// speed of what strikes.
+  double contact_depth = 1e-3;
   bool spatial = false;  ///< whether a rod whose grips and forces share a plane may leave it
   double time_limit = std::numeric_limits<double>::infinity();  ///< wall time [s], > 0
 };
@@ -101,11 +111,17 @@ struct DynamicsOptions {
 /// constraints, which hold for accelerations at the points of the rule, and by projection for
 /// positions and velocities after each step. Cross-sections have no inertia, so that twist does
 /// nothing.
+///
+/// Rigid obstacles are stiff ones: per length of rod they push with p = k d^2 max(0, 1 + d' / u) at
+/// a depth d (Hunt and Crossley), never pull, and have no friction. k is what DynamicsOptions'
+/// contact_depth asks for: a run that goes deeper is repeated with a larger one. With
+/// u = (EI / (m l))^(1/2) / 10, m the rod's mass, at most which what has struck leaves with, nearly
+/// all of its energy across the surface is lost (EnergyBalance::lost). As contact_depth goes to
+/// zero this is a rigid obstacle without restitution. With rigid obstacles the rule is Radau's.
 /// @param times  to give frames at [s], growing, the first one >= 0; motion begins at 0 or, if the
 /// first one is below zero, there
-/// @throws std::invalid_argument if something is out of range; if the problem has rigid obstacles
-/// (give them a stiffness), frames that clamps hold, natural strains or two bending stiffnesses,
-/// whose twist has no inertia here
+/// @throws std::invalid_argument if something is out of range; if the problem has frames that
+/// clamps hold, natural strains or two bending stiffnesses, whose twist has no inertia here
 Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<const double> times,
                   const DynamicsOptions& options = {});
 
