@@ -18,6 +18,8 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
+#include "figure/series.hpp"
 #include "paper/printed_tables.hpp"
 #include "parallel/threads.hpp"
 #include "scene/builtin_data.hpp"
@@ -104,6 +106,16 @@ SceneHistory history_of(Scene scene, const std::string& file, PaperWeight weight
   return result;
 }
 
+/// Along the rod that the page shows, if solve() comes to the same one.
+std::vector<double> tension_along(const Scene& scene, const Reference& rod) {
+  constexpr double same = 1e-6;  // of the length
+  const std::vector<double> s = drawn_arc_lengths(scene.length);
+  Solution solution = solve(scene, Model::energy, {}, s);
+  const double apart = (solution.shape.points - rod(s).points).colwise().norm().maxCoeff();
+  if (!(apart <= same * scene.length)) return {};
+  return std::move(solution.tension);
+}
+
 /// Whose scene it is.
 enum class Origin { paper, user };
 
@@ -117,6 +129,10 @@ void run_task(SceneTask& task, const ReportOptions& options, Origin origin) {
     better.force_model = hooke_consistent(own);
     try_to(scene.name + ", law hooke, bookkeeping consistent", task.failures,
            [&] { comparisons.push_back(compare(better)); });
+  }
+  if (!comparisons.empty()) {
+    try_to(scene.name + ", tension along the rod", task.failures,
+           [&] { task.report.tension = tension_along(scene, comparisons.front().reference_rod); });
   }
   if (!options.history || !straight_rod(scene, {0})) return;
   try_to(scene.name + ", E*/E against time", task.failures, [&] {
@@ -248,6 +264,12 @@ Report make_report(const std::vector<SceneFile>& files, const ReportOptions& opt
   say("scenes: both models, and E*/E on the way to rest");
   add_scenes(report.paper ? report_scene_files() : files, report.paper ? paper_scene_files : 0,
              report);
+  if (options.grid) {
+    say("grid of shapes");
+    tbb::task_arena arena(arena_threads(options.threads));
+    execute(arena,
+            [&] { report.grid = make_shape_grid(*options.grid, counted("grid of shapes")); });
+  }
   if (options.map) {
     say("stability map");
     StabilityMapOptions map = *options.map;

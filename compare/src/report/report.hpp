@@ -8,6 +8,7 @@
 #include "dlo/compare/progress.hpp"
 #include "paper/modulus_history.hpp"
 #include "paper/printed_tables.hpp"
+#include "report/shape_grid.hpp"
 #include "study/benchmark.hpp"
 #include "study/stability.hpp"
 #include "study/stability_map.hpp"
@@ -43,6 +44,8 @@ struct ReportOptions {
   /// The hard cases, with all steppers.
   std::optional<StabilityOptions> hard_cases =
       StabilityOptions{.steps_at_rest = 1'000'000, .left_out = {"N = 1000"}};
+  /// What the sliders of the page show; the same for all scenes.
+  std::optional<ShapeGridOptions> grid = ShapeGridOptions{};
   int threads = 0;  ///< at most; 0: as many as the machine has. The benchmark has one, alone
 };
 
@@ -65,6 +68,9 @@ struct SceneReport {
   /// As the scene says, then, unless it says so, with law hooke and bookkeeping consistent.
   std::vector<Comparison> comparisons;
   std::optional<SceneHistory> history;  ///< for rods that start straight
+  /// Of the first comparison's rod, at drawn_arc_lengths() [N], positive where it is pulled. Empty
+  /// where it is not the energy model's lowest shape, or a yielding obstacle is touched.
+  std::vector<double> tension;
 };
 
 /// All that a report shows.
@@ -79,6 +85,7 @@ struct Report {
   std::optional<StabilityMap> map;           ///< measured and predicted limits of c_F
   std::string map_file;                      ///< empty: hard_case_scene
   std::vector<StabilityResult> hard_cases;   ///< case by case, stepper by stepper
+  std::optional<ShapeGrid> grid;             ///< for the sliders
   std::vector<std::string> failures;  ///< what was asked for but did not converge, one line each
   double seconds = 0;                 ///< wall time of all of it
 };
