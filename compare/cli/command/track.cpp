@@ -9,12 +9,12 @@
 
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
-#include "figure/track_figure.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
+#include "picture/track_figure.hpp"
 #include "series/dynamic_track.hpp"
 #include "series/paraview.hpp"
 #include "series/track.hpp"
@@ -80,7 +80,7 @@ void run(const TrackCommand& command) {
                     },
                 .json = [&] { return track_json(track, scene, options, command.frames, dynamic); },
                 .csv = [&] { return track_csv(track, scene, command.frames, dynamic); }});
-  command.plot.draw([&] { return compare::track_picture(scene, track, options); });
+  command.plot.draw([&] { return compare::track_picture(scene, {track, dynamic}, options); });
   throw_if_stopped(scene, track.stopped, "", track.frames.size());
   if (moving) throw_if_stopped(scene, moving->stopped, " the moving rod", moving->frames.size());
 }

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "base/quote.hpp"
-#include "figure/comparison_figure.hpp"
+#include "picture/comparison_figure.hpp"
 #include "polygon/step_constants.hpp"
 #include "report/again.hpp"
 #include "report/html.hpp"
@@ -226,6 +226,22 @@ void add_shapes(const Report& report, Page& page) {
   page.table(budget_table(report));
 }
 
+void add_motion(const Report& report, Page& page) {
+  if (report.motions.empty()) return;
+  page.section("motion", "What moves");
+  page.paragraph(fmt::format(
+      "The rod is followed through the motion at rest in every frame: that is what the contacts, "
+      "snaps and forces are of. The force model makes its steps on the way. Where the scene allows "
+      "it the rod with its inertia is beside them, with a material damping of {} s. Errors are RMS "
+      "over the length, lag included.",
+      page_number(report_damping)));
+  page.figures("motion");
+  page.table(motion_table(report));
+  std::vector<std::string> commands;
+  for (const MotionReport& motion : report.motions) commands.push_back(track_command(motion));
+  page.commands("Each of them again", commands);
+}
+
 /// Empty but for its headings: the script fills it from the page's data.
 void add_interactive(Page& page) {
   page.section("interactive", "Turn, look along, compare", Seen::with_scripts);
@@ -348,6 +364,7 @@ std::string report_page(const Report& report, const std::vector<PageFigure>& fig
   add_verdict(report, page);
   add_shapes(report, page);
   add_interactive(page);
+  add_motion(report, page);
   add_modulus(report, page);
   add_speed(report, page);
   add_stability(report, page);

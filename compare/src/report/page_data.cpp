@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "figure/comparison_figure.hpp"
 #include "figure/series.hpp"
+#include "picture/comparison_figure.hpp"
 
 namespace dlo::compare {
 namespace {

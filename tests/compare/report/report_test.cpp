@@ -35,6 +35,7 @@ ReportOptions small_report() {
   options.history = false;
   options.benchmark.reset();
   options.grid.reset();
+  options.motion = false;
   options.map.reset();
   options.hard_cases.reset();
   return options;

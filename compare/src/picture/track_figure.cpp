@@ -1,4 +1,4 @@
-#include "figure/track_figure.hpp"
+#include "picture/track_figure.hpp"
 
 #include <fmt/format.h>
 
@@ -19,10 +19,11 @@ namespace dlo::compare {
 namespace {
 
 constexpr std::size_t most_shapes = 9;
-constexpr double highest_strip = 420;  // [pixels]
-constexpr double label_pixels = 20;    // of a cell's time, above its shape
-constexpr double air_pixels = 10;      // around its shape
-constexpr int most_lines = 6;          // as many as curves have looks
+constexpr double highest_strip = 420;     // [pixels]
+constexpr double label_pixels = 20;       // of a cell's time, above its shape
+constexpr double air_pixels = 10;         // around its shape
+constexpr std::size_t most_grippers = 3;  // twice as many curves have looks of their own
+constexpr int load_plot = 190;            // height [pixels]
 
 /// Frames equally far apart, the first and the last among them.
 std::vector<std::size_t> shown_frames(std::size_t count) {
@@ -34,11 +35,22 @@ std::vector<std::size_t> shown_frames(std::size_t count) {
   return frames;
 }
 
-Eigen::Matrix3Xd points_of(const Track& track) {
-  const auto samples = static_cast<Eigen::Index>(track.arc_length.size());
-  Eigen::Matrix3Xd all(3, samples * static_cast<Eigen::Index>(track.frames.size()));
-  for (std::size_t i = 0; i < track.frames.size(); ++i) {
-    all.middleCols(static_cast<Eigen::Index>(i) * samples, samples) = track.frames[i].points;
+/// Of all that is drawn of some frames.
+Eigen::Matrix3Xd points_of(const TrackShapes& shapes, const std::vector<std::size_t>& frames) {
+  std::vector<const Eigen::Matrix3Xd*> parts;
+  for (const std::size_t i : frames) {
+    const TrackFrame& frame = shapes.track.frames[i];
+    parts.push_back(&frame.points);
+    if (frame.force) parts.push_back(&frame.force->shape.points);
+    if (shapes.has_moving(i)) parts.push_back(&shapes.moving->frames[i].points);
+  }
+  Eigen::Index count = 0;
+  for (const Eigen::Matrix3Xd* part : parts) count += part->cols();
+  Eigen::Matrix3Xd all(3, count);
+  count = 0;
+  for (const Eigen::Matrix3Xd* part : parts) {
+    all.middleCols(count, part->cols()) = *part;
+    count += part->cols();
   }
   return all;
 }
@@ -116,8 +128,10 @@ Series within_cell(Series series, const View& view, const Cells& cells) {
 }
 
 /// What a cell shows.
-std::vector<Series> series_of(const Scene& now, const Track& track, const TrackFrame& frame,
+std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::size_t index,
                               const View& view, const Cells& cells) {
+  const std::vector<double>& arc_length = shapes.track.arc_length;
+  const TrackFrame& frame = shapes.track.frames[index];
   std::vector<Series> all;
   for (Series& outline : obstacle_series(now, {view}, frame.points)) {
     Series seen = within_cell(std::move(outline), view, cells);
@@ -126,34 +140,48 @@ std::vector<Series> series_of(const Scene& now, const Track& track, const TrackF
   if (frame.force) {
     all.push_back({.id = "force",
                    .title = "force model, on the way",
-                   .style = "with lines linecolor rgb '#B34700' linewidth 1.5 dashtype 2",
+                   .style = "with lines linecolor rgb '#B34700' linewidth 1.5 dashtype (5,3)",
                    .points = frame.force->shape.points,
                    .arc_length = frame.force->shape.arc_length});
+  }
+  if (shapes.has_moving(index)) {
+    all.push_back({.id = "moving",
+                   .title = "the rod with inertia",
+                   .style = "with lines linecolor rgb '#0059A8' linewidth 1.5 dashtype 1",
+                   .points = shapes.moving->frames[index].points,
+                   .arc_length = arc_length});
   }
   all.push_back({.id = "energy",
                  .title = "energy model (the rod itself), at rest",
                  .style = "with lines linecolor rgb 'black' linewidth 2 dashtype 1",
                  .points = frame.points,
-                 .arc_length = track.arc_length});
-  const Shape shape{.arc_length = track.arc_length, .points = frame.points};
+                 .arc_length = arc_length});
+  const Shape shape{.arc_length = arc_length, .points = frame.points};
   const RodPoints points = [&](const std::vector<double>& s) { return resample(shape, s).points; };
   if (auto contact = contact_series(frame.contacts, points, now.length)) {
     all.push_back(std::move(*contact));
   }
-  for (Series& gripper : gripper_series(now)) all.push_back(std::move(gripper));
+  for (Series& gripper : gripper_series(now)) {
+    // Thinner than in a plot of one shape.
+    gripper.style = gripper.title.empty()
+                        ? "with lines linecolor rgb '#909090' linewidth 3 dashtype 1"
+                        : "with points linecolor rgb 'black' pointtype 2 pointsize 0.7";
+    all.push_back(std::move(gripper));
+  }
   return all;
 }
 
-Figure strip_figure(const Scene& scene, const Track& track, const TrackOptions& options,
+Figure strip_figure(const Scene& scene, const TrackShapes& shapes, const TrackOptions& options,
                     std::size_t number) {
+  const Track& track = shapes.track;
   Figure figure{.name = fmt::format("strip_{}", number),
                 .section = "motion",
                 .title = scene.name + ": shapes over time",
                 .csv_file = fmt::format("strip_{}.csv", number)};
   const FrameClock clock(scene, {.from = options.from, .to = options.to}, options.rates);
-  const Eigen::Matrix3Xd points = points_of(track);
-  const View view = views_of(scene_at(scene, track.frames.front().time), points).front();
   const std::vector<std::size_t> frames = shown_frames(track.frames.size());
+  const Eigen::Matrix3Xd points = points_of(shapes, frames);
+  const View view = views_of(scene_at(scene, track.frames.front().time), points).front();
   const Cells cells = cells_for(points, view, static_cast<int>(frames.size()));
   Panel panel{
       .height = static_cast<int>(std::lround(cells.rows * cells.size[1] * cells.pixels_per_metre)),
@@ -177,7 +205,8 @@ Figure strip_figure(const Scene& scene, const Track& track, const TrackOptions& 
         "set label {} 't = {:.4g} s' at {:.6g},{:.6g} left front\n", i + 100, frame.time,
         cells.least[0] + shift[0] + 4 / cells.pixels_per_metre,
         cells.least[1] + shift[1] + cells.size[1] - label_pixels / 2 / cells.pixels_per_metre);
-    for (Series& series : series_of(clock.scene(scene, frames[i]), track, frame, view, cells)) {
+    for (Series& series :
+         series_of(clock.scene(scene, frames[i]), shapes, frames[i], view, cells)) {
       series.id += fmt::format("_{}", i + 1);
       const bool titled = !series.title.empty() && titles.insert(series.title).second;
       if (titled) ++panel.key_rows;
@@ -199,71 +228,98 @@ Figure strip_figure(const Scene& scene, const Track& track, const TrackOptions& 
   return figure;
 }
 
-/// Where something happens, as upright lines behind the curves, and their row of the key.
-void add_events(const Track& track, TrackEvent::Kind kind, const char* title, const char* line,
-                Panel& panel, std::string& plots) {
-  bool any = false;
-  for (const TrackEvent& event : track.events) {
-    if (event.kind != kind) continue;
-    any = true;
-    fmt::format_to(std::back_inserter(panel.script),
-                   "set arrow from {0:.8g}, graph 0 to {0:.8g}, graph 1 nohead back {1}\n",
-                   track.frames[event.frame].time, line);
-  }
-  if (!any) return;
-  ++panel.key_rows;
-  fmt::format_to(std::back_inserter(plots), ", \\\n  NaN title '{}' with lines {}", title, line);
+void add_rows(const char* rod, double time, std::size_t gripper, const GripperLoad& load,
+              std::string& csv) {
+  fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", rod, csv_number(time), gripper + 1,
+                 csv_number(load.force.norm()), csv_number(load.torque.norm()));
 }
 
-Figure force_figure(const Scene& scene, const Track& track, std::size_t number) {
-  Figure figure{.name = fmt::format("forces_{}", number),
-                .section = "motion",
-                .title = scene.name + ": forces of the grippers",
-                .description =
-                    "Amount of each gripper's force on the energy model's rod against "
-                    "time; upright lines where something begins or ends to touch, and "
-                    "where the rod snaps.",
-                .csv_file = fmt::format("forces_{}.csv", number),
-                .csv = "time_s,gripper,force_N\n"};
-  for (const TrackFrame& frame : track.frames) {
-    for (std::size_t i = 0; i < frame.grippers.size(); ++i) {
-      fmt::format_to(std::back_inserter(figure.csv), "{},{},{}\n", csv_number(frame.time), i + 1,
-                     csv_number(frame.grippers[i].force.norm()));
+/// One gripper after the other, since what is left out between two points ends a line.
+std::string force_csv(const Scene& scene, const TrackShapes& shapes) {
+  std::string csv = "rod,time_s,gripper,force_N,torque_Nm\n";
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    for (const TrackFrame& frame : shapes.track.frames) {
+      add_rows("at_rest", frame.time, i, frame.grippers[i], csv);
+    }
+    if (shapes.moving == nullptr) continue;
+    for (const DynamicFrame& frame : shapes.moving->frames) {
+      add_rows("moving", frame.time, i, frame.grippers[i], csv);
     }
   }
-  Panel panel{.x_label = "time [s]", .y_label = "force of a gripper [N]"};
+  return csv;
+}
+
+enum class Titles { shown, left_out };
+
+/// Of all grippers against time, a column of the CSV.
+Panel load_panel(const Scene& scene, const TrackShapes& shapes, const std::string& csv_file,
+                 int column, Titles titles) {
+  Panel panel{.height = load_plot, .x_label = "time [s]"};
   std::string plots;
-  const int lines = std::min(static_cast<int>(scene.grippers.size()), most_lines);
-  for (int i = 0; i < lines; ++i) {
-    fmt::format_to(
-        std::back_inserter(plots),
-        "{}'{}' skip 1 using ($2 == {} ? $1 : NaN):3 title 'gripper {} at s = {:.4g} m' {}",
-        i == 0 ? "plot " : ", \\\n  ", figure.csv_file, i + 1, i + 1,
-        scene.grippers[static_cast<std::size_t>(i)].at,
-        curve_style(static_cast<std::size_t>(i), "lines"));
-    ++panel.key_rows;
+  const auto add = [&](const std::string& data, const std::string& title, const char* style) {
+    const bool shown = titles == Titles::shown;
+    fmt::format_to(std::back_inserter(plots), "{}{} {} {}", plots.empty() ? "plot " : ", \\\n  ",
+                   data, shown ? "title " + gnuplot_string(title) : std::string("notitle"), style);
+    if (shown) ++panel.key_rows;
+  };
+  for (std::size_t i = 0; i < scene.grippers.size() && i < most_grippers; ++i) {
+    const auto data = [&](const char* rod) {
+      return fmt::format("'{}' skip 1 using (strcol(1) eq '{}' && $3 == {} ? $2 : NaN):{}",
+                         csv_file, rod, i + 1, column);
+    };
+    const std::string name = fmt::format("gripper {} at s = {:.4g} m", i + 1, scene.grippers[i].at);
+    add(data("at_rest"), name, curve_style(2 * i, "lines").c_str());
+    if (shapes.moving == nullptr) continue;
+    add(data("moving"), name + ", the rod with inertia", curve_style(2 * i + 1, "lines").c_str());
   }
-  add_events(track, TrackEvent::Kind::contact, "begins to touch, or to lie",
-             "linecolor rgb '#207A34' linewidth 1 dashtype 2", panel, plots);
-  add_events(track, TrackEvent::Kind::release, "ends to",
-             "linecolor rgb '#707070' linewidth 1 dashtype 3", panel, plots);
-  add_events(track, TrackEvent::Kind::snap, "snaps",
-             "linecolor rgb '#C00000' linewidth 1.5 dashtype 1", panel, plots);
+  const auto mark = [&](TrackEvent::Kind kind, const char* title, const char* line) {
+    bool any = false;
+    for (const TrackEvent& event : shapes.track.events) {
+      if (event.kind != kind) continue;
+      any = true;
+      fmt::format_to(std::back_inserter(panel.script),
+                     "set arrow from {0:.8g}, graph 0 to {0:.8g}, graph 1 nohead back {1}\n",
+                     shapes.track.frames[event.frame].time, line);
+    }
+    if (any) add("NaN", title, (std::string("with lines ") + line).c_str());
+  };
+  mark(TrackEvent::Kind::contact, "begins to touch, or to lie",
+       "linecolor rgb '#207A34' linewidth 1 dashtype 2");
+  mark(TrackEvent::Kind::release, "ends to", "linecolor rgb '#707070' linewidth 1 dashtype 3");
+  mark(TrackEvent::Kind::snap, "snaps", "linecolor rgb '#C00000' linewidth 1.5 dashtype 1");
   panel.script += "set yrange [0:*]\n" + plots + "\n";
-  figure.panels = {std::move(panel)};
+  return panel;
+}
+
+Figure force_figure(const Scene& scene, const TrackShapes& shapes, std::size_t number) {
+  Figure figure{.name = fmt::format("forces_{}", number),
+                .section = "motion",
+                .title = scene.name + ": what the grippers exert",
+                .description =
+                    "Amounts of each gripper's force and torque on the energy model's "
+                    "rod against time; upright lines where something begins or ends to "
+                    "touch, and where the rod snaps.",
+                .csv_file = fmt::format("forces_{}.csv", number),
+                .csv = force_csv(scene, shapes)};
+  constexpr int force_column = 4;
+  Panel force = load_panel(scene, shapes, figure.csv_file, force_column, Titles::left_out);
+  force.y_label = "force [N]";
+  Panel torque = load_panel(scene, shapes, figure.csv_file, force_column + 1, Titles::shown);
+  torque.y_label = "torque [N m]";
+  figure.panels = {std::move(force), std::move(torque)};
   return figure;
 }
 
 }  // namespace
 
-TrackFigures track_figures(const Scene& scene, const Track& track, const TrackOptions& options,
-                           std::size_t number) {
-  return {.strip = strip_figure(scene, track, options, number),
-          .forces = force_figure(scene, track, number)};
+TrackFigures track_figures(const Scene& scene, const TrackShapes& shapes,
+                           const TrackOptions& options, std::size_t number) {
+  return {.strip = strip_figure(scene, shapes, options, number),
+          .forces = force_figure(scene, shapes, number)};
 }
 
-Picture track_picture(const Scene& scene, const Track& track, const TrackOptions& options) {
-  TrackFigures figures = track_figures(scene, track, options, 1);
+Picture track_picture(const Scene& scene, const TrackShapes& shapes, const TrackOptions& options) {
+  TrackFigures figures = track_figures(scene, shapes, options, 1);
   return {{{{std::move(figures.strip)}, {std::move(figures.forces)}}}};
 }
 
