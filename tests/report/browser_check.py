@@ -56,7 +56,7 @@ const contrast = e => {
 const figures = [...document.querySelectorAll('figure')].map(f => {
   const svg = f.querySelector('svg');
   const b = svg ? box(svg) : {width: 0, height: 0, left: 0, right: 0};
-  const texts = svg ? [...svg.querySelectorAll('text')] : [];
+  const texts = svg ? [...svg.querySelectorAll('text')].filter(t => t.textContent.trim()) : [];
   return {id: f.id, width: b.width, height: b.height, left: b.left, right: b.right,
           visible: !!svg && getComputedStyle(svg).visibility === 'visible',
           role: svg && svg.getAttribute('role'),
