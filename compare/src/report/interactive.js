@@ -287,18 +287,18 @@
       this.logs = grid.gammas.map(Math.log10);
       const controls = element("div", {class: "sliders"});
       const slider = (id, label, values, step, at) => {
-        const input = element("input", {type: "range", id, min: values[0], max: values[values.length - 1],
-                                        step, value: at});
+        // Whole steps, or the last value could not be reached.
+        const [min, max] = [Math.floor(values[0] / step), Math.ceil(values[values.length - 1] / step)];
+        const input = element("input", {type: "range", id, min: min * step, max: max * step, step, value: at});
         const shown = element("output", {for: id});
         controls.append(element("label", {for: id}, label), input, shown);
         input.addEventListener("input", () => this.draw());
         return {input, shown};
       };
-      this.gamma = slider("grid-gamma", "Γ, weight against stiffness", this.logs, "any",
+      this.gamma = slider("grid-gamma", "Γ, weight against stiffness", this.logs, 0.01,
                           this.logs[Math.floor(this.logs.length / 2)]);
       this.angle = slider("grid-angle", "clamp above the horizontal", grid.angles_deg, 1, 0);
       this.points = slider("grid-points", "points N of the force model", grid.points, 1, 16);
-      this.gamma.input.step = 0.01;
       this.law = element("select", {id: "grid-law"});
       grid.models.forEach((model, i) => this.law.append(element(
         "option", {value: i}, `${model.law}, bookkeeping ${model.bookkeeping}`)));
@@ -349,8 +349,7 @@
       this.draw_distance(cell);
     }
     draw_shapes(cell, angle) {
-      // One scale for all places: no shape is wider or higher than its length.
-      this.shapes.clear(0.8);
+      this.shapes.clear(0.8);  // one scale for all: no shape is wider or higher than its length
       const scale = Math.min(this.shapes.width, this.shapes.height - 2 * gap) - 2 * gap;
       const all = points_of(cell.rod).concat(points_of(cell.polygon)).map(p => p.map(v => v / 1e4));
       const middle = bounds_of(all).map(range => (range[0] + range[1]) / 2);
