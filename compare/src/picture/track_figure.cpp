@@ -64,7 +64,8 @@ struct Cells {
 
   /// What is added to coordinates in a cell [m]: the lowest row begins at 0.
   [[nodiscard]] std::array<double, 2> shift(int cell) const {
-    return {cell % columns * size[0] - least[0], (rows - 1 - cell / columns) * size[1] - least[1]};
+    const int row_above_lowest = rows - 1 - cell / columns;
+    return {cell % columns * size[0] - least[0], row_above_lowest * size[1] - least[1]};
   }
 };
 
