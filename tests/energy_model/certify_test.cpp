@@ -25,5 +25,23 @@ TEST(Certify, TakesAShapeOfEnoughTermsAndOneOfTheCallers) {
   }
 }
 
+// Between two clamps in a plane three constraints take all that three terms leave free: there is no
+// direction in which a fold could be looked for.
+TEST(Certify, TakesAShapeThatNothingIsFreeIn) {
+  Span span;
+  span.planar = true;
+  span.length = 1;
+  span.start_direction = Eigen::Vector3d::UnitX();
+  span.end_direction = Eigen::Vector3d::UnitX();
+  span.holds = {{1, {0.8, 0, 0}}};
+  span.weight = {0, -0.2, 0};
+  SpanWorkspace workspace;
+  SpanOptions options;
+  options.terms = 3;
+  const SpanSolution solution = std::move(solve_span(span, options, workspace).front());
+  EXPECT_EQ(solution.status, SolveStatus::converged) << solution.message;
+  EXPECT_EQ(solution.neutral_directions, 0);
+}
+
 }  // namespace
 }  // namespace dlo::energy_model

@@ -5,9 +5,11 @@
                      [--chromedriver PATH]
 
 Makes a quick report of the scenes with the command DLO (or takes a finished one) and checks at 375,
-768 and 1440 pixels, in light and in dark: no console message, no request but for the page itself,
-every figure there, of some size and within the page, nothing that makes the page scroll sideways,
-text that stands out from its ground. With --screenshots it leaves pictures of all of them, and of the page as it is printed.
+400, 800, 1280 and 1920 pixels, in light and in dark: no console message, no request but for the
+page itself, every figure there, of some size and within the page, nothing that makes the page
+scroll sideways, text that stands out from its ground, less than 3 MB. Then it uses what the page's
+script offers (interaction.py), at 400 and 1280 pixels. With --screenshots it leaves pictures of all
+of them, and of the page as it is printed.
 """
 import argparse
 import base64
@@ -20,14 +22,17 @@ import sys
 import tempfile
 
 try:
+    from interaction import interactions
     from selenium import webdriver
     from selenium.webdriver.chrome.service import Service
 except ModuleNotFoundError:
     print("python3-selenium is not installed")
     sys.exit(77)  # skipped
 
-WIDTHS = (375, 768, 1440)
+WIDTHS = (375, 400, 800, 1280, 1920)
+USED_AT = (400, 1280)
 SCHEMES = ("light", "dark")
+LARGEST = 3_000_000  # bytes
 
 # Every figure's box, what is wider than the page, and the contrast of texts on their ground.
 MEASURE = """
@@ -51,7 +56,7 @@ const contrast = e => {
 const figures = [...document.querySelectorAll('figure')].map(f => {
   const svg = f.querySelector('svg');
   const b = svg ? box(svg) : {width: 0, height: 0, left: 0, right: 0};
-  const texts = svg ? [...svg.querySelectorAll('text')] : [];
+  const texts = svg ? [...svg.querySelectorAll('text')].filter(t => t.textContent.trim()) : [];
   return {id: f.id, width: b.width, height: b.height, left: b.left, right: b.right,
           visible: !!svg && getComputedStyle(svg).visibility === 'visible',
           role: svg && svg.getAttribute('role'),
@@ -127,7 +132,8 @@ def problems_of(seen):
 
 
 def check(page, chromedriver, screenshots):
-    problems = []
+    size = page.stat().st_size
+    problems = [f"the page has {size} bytes"] if size >= LARGEST else []
     browser = open_browser(chromedriver)
     try:
         browser.execute_cdp_cmd("Network.enable", {})
@@ -145,6 +151,12 @@ def check(page, chromedriver, screenshots):
                              for entry in browser.get_log("browser")]
                 if screenshots:
                     screenshot(browser, screenshots / f"{width}_{scheme}.png")
+        for width in USED_AT:
+            set_view(browser, width, "light")
+            problems += [f"{width} used: {problem}"
+                         for problem in interactions(browser, page.as_uri())]
+            problems += [f"{width} used: console: {entry['message']}"
+                         for entry in browser.get_log("browser")]
         if screenshots:
             set_view(browser, 720, "light", "print")
             screenshot(browser, screenshots / "print.png")

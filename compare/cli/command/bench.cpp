@@ -3,7 +3,6 @@
 #include "command/commands.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
-#include "figure/front_figure.hpp"
 #include "format/benchmark.hpp"
 #include "format/json.hpp"
 #include "option/exit_status.hpp"
@@ -13,6 +12,7 @@
 #include "option/program_options.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
+#include "picture/front_figure.hpp"
 #include "study/benchmark.hpp"
 
 namespace dlo::cli {

@@ -7,7 +7,6 @@
 #include "command/commands.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
-#include "figure/fit_figure.hpp"
 #include "format/force_model_fit.hpp"
 #include "format/json.hpp"
 #include "format/material_fit.hpp"
@@ -18,6 +17,7 @@
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
 #include "option/terminal.hpp"
+#include "picture/fit_figure.hpp"
 #include "toml/quantity.hpp"
 
 namespace dlo::cli {

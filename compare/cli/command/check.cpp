@@ -9,7 +9,6 @@
 #include "dlo/compare/friction_check.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_verdict.hpp"
-#include "figure/check_figure.hpp"
 #include "format/json.hpp"
 #include "format/shape_check.hpp"
 #include "option/exit_status.hpp"
@@ -18,6 +17,7 @@
 #include "option/scene_options.hpp"
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
+#include "picture/check_figure.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::cli {

@@ -5,8 +5,6 @@
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
-#include "figure/budget_figure.hpp"
-#include "figure/comparison_figure.hpp"
 #include "format/comparison.hpp"
 #include "format/json.hpp"
 #include "format/plan.hpp"
@@ -14,6 +12,8 @@
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
+#include "picture/budget_figure.hpp"
+#include "picture/comparison_figure.hpp"
 
 namespace dlo::cli {
 namespace {

@@ -7,13 +7,13 @@
 
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
-#include "figure/solution_figure.hpp"
 #include "format/json.hpp"
 #include "format/plan.hpp"
 #include "format/solution.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
+#include "picture/solution_figure.hpp"
 #include "shape/write_vtk.hpp"
 
 namespace dlo::cli {

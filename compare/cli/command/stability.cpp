@@ -9,7 +9,6 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "figure/map_figure.hpp"
 #include "format/json.hpp"
 #include "format/stability.hpp"
 #include "option/exit_status.hpp"
@@ -17,6 +16,7 @@
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
+#include "picture/map_figure.hpp"
 #include "study/hard_case.hpp"
 #include "study/stability_map.hpp"
 

@@ -9,11 +9,11 @@
 #include "batch/sweep_merge.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
-#include "figure/sweep_figure.hpp"
 #include "option/output.hpp"
 #include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
+#include "picture/sweep_figure.hpp"
 #include "polygon/natural_plane.hpp"
 #include "scene/reach.hpp"
 

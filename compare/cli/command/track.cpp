@@ -11,8 +11,10 @@
 #include "dlo/compare/error.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
+#include "option/plot.hpp"
 #include "option/scene_options.hpp"
 #include "option/terminal.hpp"
+#include "picture/track_figure.hpp"
 #include "series/dynamic_track.hpp"
 #include "series/paraview.hpp"
 #include "series/track.hpp"
@@ -30,6 +32,7 @@ struct TrackCommand {
   TrackFrames frames;
   std::string paraview;
   SceneOptions overrides;
+  PlotOptions plot;
   OutputOptions output;
 };
 
@@ -43,6 +46,7 @@ void throw_if_stopped(const compare::Scene& scene, const std::optional<compare::
 }
 
 void run(const TrackCommand& command) {
+  command.plot.require_drawable(command.output);
   const compare::Scene scene = command.overrides.load(command.scene);
   warn_of_friction(scene);
   compare::TrackOptions options;
@@ -76,6 +80,7 @@ void run(const TrackCommand& command) {
                     },
                 .json = [&] { return track_json(track, scene, options, command.frames, dynamic); },
                 .csv = [&] { return track_csv(track, scene, command.frames, dynamic); }});
+  command.plot.draw([&] { return compare::track_picture(scene, {track, dynamic}, options); });
   throw_if_stopped(scene, track.stopped, "", track.frames.size());
   if (moving) throw_if_stopped(scene, moving->stopped, " the moving rod", moving->frames.size());
 }
@@ -135,6 +140,7 @@ void add_track(CLI::App& app) {
           "write FILE such as rod.vtk.series for ParaView, and rod_00000.vtk, .. beside it")
       ->type_name("FILE");
   options->overrides.add_moving_to(*command);
+  options->plot.add_to(*command, "shapes over time and the grippers' forces", Sketches::none);
   add_output_options(*command, options->output);
   command->footer(
       "Exit status 3: the motion asks for what cannot be, such as grippers farther apart than\n"

@@ -5,10 +5,10 @@
 
 #include "base/display.hpp"
 #include "dlo/compare/deviation.hpp"
-#include "figure/budget_figure.hpp"
 #include "format/plan.hpp"
 #include "format/solution.hpp"
 #include "option/output.hpp"
+#include "picture/budget_figure.hpp"
 
 namespace dlo::cli {
 namespace {

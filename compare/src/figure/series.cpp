@@ -162,6 +162,7 @@ std::vector<Series> obstacle_series(const Scene& scene, const std::vector<View>&
   std::vector<Series> all;
   const Eigen::Vector3d middle = rod.rowwise().mean();
   for (std::size_t v = 0; v < views.size(); ++v) {
+    bool titled = false;  // in each view: one of them has the key
     const Eigen::Vector3d right = Eigen::Vector3d::Unit(views[v].right);
     const Eigen::Vector3d up = Eigen::Vector3d::Unit(views[v].up);
     for (const std::size_t i : obstacles_in_reach(scene, scene.force_model)) {
@@ -172,11 +173,12 @@ std::vector<Series> obstacle_series(const Scene& scene, const std::vector<View>&
       if (seen.cols() == 0) continue;
       Series series{.id = fmt::format("obstacle_{}_{}{}", i + 1, axis_names[views[v].right],
                                       axis_names[views[v].up]),
-                    .title = all.empty() ? "obstacles, where the rod's axis cannot be" : "",
+                    .title = titled ? "" : "obstacles, where the rod's axis cannot be",
                     .style =
                         "with filledcurves closed fillstyle solid 1 border linecolor rgb "
                         "'#8A8A8A' fillcolor rgb '#E4E4E4'",
                     .view = static_cast<int>(v)};
+      titled = true;
       series.points = right * seen.row(0) + up * seen.row(1);
       series.points += (Eigen::Vector3d::Ones() - right - up).cwiseProduct(body.centre()) *
                        Eigen::RowVectorXd::Ones(seen.cols());

@@ -38,9 +38,12 @@ std::array<double, 2> widened(const std::array<double, 2>& range, double to) {
 
 enum class Titles { shown, left_out };
 
-int rows_of_key(const std::vector<Series>& all) {
-  return static_cast<int>(std::count_if(
-      all.begin(), all.end(), [](const Series& series) { return !series.title.empty(); }));
+bool is_shown(const Series& series, int view) { return series.view < 0 || series.view == view; }
+
+int rows_of_key(const std::vector<Series>& all, int view) {
+  return static_cast<int>(std::count_if(all.begin(), all.end(), [view](const Series& series) {
+    return is_shown(series, view) && !series.title.empty();
+  }));
 }
 
 std::string plot_lines(const std::vector<Series>& all, const std::string& csv_file,
@@ -48,7 +51,7 @@ std::string plot_lines(const std::vector<Series>& all, const std::string& csv_fi
   std::string out = "plot";
   std::string separator = " ";
   for (const Series& series : all) {
-    if (series.view >= 0 && series.view != view) continue;
+    if (!is_shown(series, view)) continue;
     const bool shown = titles == Titles::shown && !series.title.empty();
     fmt::format_to(
         std::back_inserter(out), "{}{} {} {}", separator, series_data(csv_file, series.id, x, y),
@@ -93,7 +96,7 @@ std::vector<Panel> shape_panels(const std::string& csv_file, const std::vector<S
     Panel panel{.height = height,
                 .x_label = fmt::format("{} [m]", axis_names[view.right]),
                 .y_label = fmt::format("{} [m]", axis_names[view.up]),
-                .key_rows = last ? rows_of_key(all) : 0};
+                .key_rows = last ? rows_of_key(all, static_cast<int>(i)) : 0};
     panel.script = fmt::format(
         "# equal aspect: {:.6g} pixels a metre on both axes\n"
         "set xrange [{:.6g}:{:.6g}]\nset xtics {:g}\nset ytics {:g}\nset yrange [{:.6g}:{:.6g}]\n",

@@ -33,6 +33,16 @@ std::string benchmark_command(const Report& report) {
   return command + fmt::format(" --seconds {:g} --repeats {}", options.budget_s, options.repeats);
 }
 
+std::string track_command(const MotionReport& motion) {
+  std::string command = "dlo track scenes/" + motion.file.name;
+  const double rate = motion.options.rates.frames;
+  if (rate != motion.file.scene.track.frames) command += fmt::format(" --frame-rate {:g}", rate);
+  if (motion.moving) {
+    command += fmt::format(" --dynamic --damping {:g}", motion.moving->damping.material);
+  }
+  return command;
+}
+
 std::string map_command(const Report& report) {
   std::string command = "dlo stability";
   if (!report.map_file.empty()) command += " scenes/" + report.map_file;

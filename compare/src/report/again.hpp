@@ -12,6 +12,8 @@ namespace dlo::compare {
 
 [[nodiscard]] std::string benchmark_command(const Report& report);
 
+[[nodiscard]] std::string track_command(const MotionReport& motion);
+
 [[nodiscard]] std::string map_command(const Report& report);
 
 [[nodiscard]] std::string history_command(const Report& report);

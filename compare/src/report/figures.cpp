@@ -7,11 +7,12 @@
 #include <iterator>
 
 #include "base/quote.hpp"
-#include "figure/budget_figure.hpp"
-#include "figure/comparison_figure.hpp"
-#include "figure/front_figure.hpp"
-#include "figure/map_figure.hpp"
 #include "paper/printed_tables.hpp"
+#include "picture/budget_figure.hpp"
+#include "picture/comparison_figure.hpp"
+#include "picture/front_figure.hpp"
+#include "picture/map_figure.hpp"
+#include "picture/track_figure.hpp"
 #include "report/again.hpp"
 
 namespace dlo::compare {
@@ -82,6 +83,16 @@ std::vector<Figure> report_figures(const Report& report) {
     if (report.scenes[i].comparisons.empty()) continue;
     for (Figure& figure : scene_figures(report.scenes[i], i + 1)) {
       figures.push_back(std::move(figure));
+    }
+  }
+  for (std::size_t i = 0; i < report.motions.size(); ++i) {
+    const MotionReport& motion = report.motions[i];
+    TrackFigures drawn =
+        track_figures(motion.file.scene, {motion.track, motion.moving ? &*motion.moving : nullptr},
+                      motion.options, i + 1);
+    for (Figure* figure : {&drawn.strip, &drawn.forces}) {
+      figure->command = track_command(motion) + " --shapes --format json";
+      figures.push_back(std::move(*figure));
     }
   }
   std::vector<const SceneHistory*> histories;

@@ -231,6 +231,9 @@ WrittenReport write_report(const Report& report, const ReportMaker& maker,
   for (const SceneReport& scene : report.scenes) {
     temporary.write("scenes/" + scene.file.name, scene.file.text);
   }
+  for (const MotionReport& motion : report.motions) {
+    temporary.write("scenes/" + motion.file.name, motion.file.text);
+  }
   WrittenReport result;
   std::vector<PageFigure> figures;
   for (Figure& figure : report_figures(report)) {

@@ -7,10 +7,12 @@
 #include <utility>
 
 #include "base/quote.hpp"
-#include "figure/comparison_figure.hpp"
+#include "picture/comparison_figure.hpp"
 #include "polygon/step_constants.hpp"
 #include "report/again.hpp"
 #include "report/html.hpp"
+#include "report/page_data.hpp"
+#include "report/page_script.hpp"
 #include "report/provenance.hpp"
 #include "report/style.hpp"
 #include "report/tables.hpp"
@@ -19,17 +21,26 @@
 namespace dlo::compare {
 namespace {
 
+/// Of a section: also, or only, where the page's script runs.
+enum class Seen { always, with_scripts };
+
 /// A page while it is written.
 class Page {
  public:
   explicit Page(const std::vector<PageFigure>& figures) : figures_(figures) {}
 
   /// A section with a heading; what is added next is in it.
-  void section(const std::string& id, const std::string& heading) {
+  void section(const std::string& id, const std::string& heading, Seen seen = Seen::always) {
     if (open_) out_ += "</section>\n";
     open_ = true;
-    out_ += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n", id, escape_markup(heading));
-    sections_.emplace_back(id, heading);
+    out_ += fmt::format("<section id=\"{}\"{}>\n<h2>{}</h2>\n", id, hidden(seen),
+                        escape_markup(heading));
+    sections_.push_back({id, heading, seen});
+  }
+  /// What the script finds by its name and fills.
+  void filled_by_script(const std::string& id, const std::string& heading) {
+    out_ +=
+        fmt::format("<div id=\"{}\" hidden>\n<h3>{}</h3>\n</div>\n", id, escape_markup(heading));
   }
   void heading(const std::string& text) { out_ += "<h3>" + escape_markup(text) + "</h3>\n"; }
   void paragraph(const std::string& text) { out_ += "<p>" + escape_markup(text) + "</p>\n"; }
@@ -89,7 +100,8 @@ class Page {
     out_ += "</div>\n";
   }
 
-  [[nodiscard]] std::string finished(const std::string& title) const {
+  /// @param data  of its script
+  [[nodiscard]] std::string finished(const std::string& title, const std::string& data) const {
     std::string page = fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -97,14 +109,26 @@ class Page {
         "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<header>\n<h1>{0}</h1>\n",
         escape_markup(title), report_style);
     page += "<nav aria-label=\"Sections\"><ul>\n";
-    for (const auto& [id, heading] : sections_) {
-      page += fmt::format("<li><a href=\"#{}\">{}</a></li>\n", id, escape_markup(heading));
+    for (const auto& [id, heading, seen] : sections_) {
+      page += fmt::format("<li{}><a href=\"#{}\">{}</a></li>\n", hidden(seen), id,
+                          escape_markup(heading));
     }
-    return page + "</ul></nav>\n</header>\n<main>\n" + out_ + (open_ ? "</section>\n" : "") +
-           "</main>\n</body>\n</html>\n";
+    page += "</ul></nav>\n</header>\n<main>\n" + out_ + (open_ ? "</section>\n" : "") + "</main>\n";
+    page += "<script type=\"application/json\" id=\"page-data\">" + data + "</script>\n";
+    return page + "<script>\n" + std::string(builtin::interactive_js) +
+           "</script>\n</body>\n</html>\n";
   }
 
  private:
+  struct Section {
+    std::string id, heading;
+    Seen seen = Seen::always;
+  };
+
+  static const char* hidden(Seen seen) {
+    return seen == Seen::with_scripts ? " data-needs-script hidden" : "";
+  }
+
   void add_figure(const PageFigure& entry) {
     const Figure& figure = entry.figure;
     out_ += fmt::format("<figure id=\"figure-{}\">\n", figure.name);
@@ -124,7 +148,7 @@ class Page {
 
   const std::vector<PageFigure>& figures_;
   std::string out_;
-  std::vector<std::pair<std::string, std::string>> sections_;
+  std::vector<Section> sections_;
   bool open_ = false;
 };
 
@@ -200,6 +224,29 @@ void add_shapes(const Report& report, Page& page) {
       "Interaction is what law and bookkeeping do together beyond the sum of both.");
   page.figures("budget");
   page.table(budget_table(report));
+}
+
+void add_motion(const Report& report, Page& page) {
+  if (report.motions.empty()) return;
+  page.section("motion", "What moves");
+  page.paragraph(fmt::format(
+      "The rod is followed through the motion at rest in every frame: that is what the contacts, "
+      "snaps and forces are of. The force model makes its steps on the way. Where the scene allows "
+      "it the rod with its inertia is beside them, with a material damping of {} s. Errors are RMS "
+      "over the length, lag included.",
+      page_number(report_damping)));
+  page.figures("motion");
+  page.table(motion_table(report));
+  std::vector<std::string> commands;
+  for (const MotionReport& motion : report.motions) commands.push_back(track_command(motion));
+  page.commands("Each of them again", commands);
+}
+
+/// Empty but for its headings: the script fills it from the page's data.
+void add_interactive(Page& page) {
+  page.section("interactive", "Turn, look along, compare", Seen::with_scripts);
+  page.filled_by_script("viewer", "The scenes' shapes");
+  page.filled_by_script("grid", "A grid of shapes");
 }
 
 void add_modulus(const Report& report, Page& page) {
@@ -316,12 +363,15 @@ std::string report_page(const Report& report, const std::vector<PageFigure>& fig
   Page page(figures);
   add_verdict(report, page);
   add_shapes(report, page);
+  add_interactive(page);
+  add_motion(report, page);
   add_modulus(report, page);
   add_speed(report, page);
   add_stability(report, page);
   add_provenance(report, figures, maker, drawn_by, page);
   return page.finished(report.paper ? "The paper's rod: how far a fast model is from physics"
-                                    : "How far a fast rod model is from physics");
+                                    : "How far a fast rod model is from physics",
+                       page_data(report));
 }
 
 }  // namespace dlo::compare

@@ -16,7 +16,8 @@ struct PageFigure {
   std::string failure;  ///< why there is none
 };
 
-/// The whole page, in one file: style and figures in it, no script, nothing to be fetched.
+/// The whole page, in one file: style and figures in it, nothing to be fetched. Its script adds a
+/// section that can be turned and slid; all else is there without it.
 /// @param drawn_by  see gnuplot_version
 [[nodiscard]] std::string report_page(const Report& report, const std::vector<PageFigure>& figures,
                                       const ReportMaker& maker, const std::string& drawn_by);

@@ -18,6 +18,8 @@
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/scene_file.hpp"
 #include "dlo/compare/solution.hpp"
+#include "dlo/compare/solve.hpp"
+#include "figure/series.hpp"
 #include "paper/printed_tables.hpp"
 #include "parallel/threads.hpp"
 #include "scene/builtin_data.hpp"
@@ -56,6 +58,10 @@ std::vector<std::string> scenes_in(const std::string& folder) {
   }
   std::sort(paths.begin(), paths.end());
   return paths;
+}
+
+SceneFile built_in(const std::string& name, std::string_view text) {
+  return {name, std::string(text), parse_scene(std::string(text), name)};
 }
 
 ForceModelSettings hooke_consistent(const ForceModelSettings& settings) {
@@ -104,6 +110,16 @@ SceneHistory history_of(Scene scene, const std::string& file, PaperWeight weight
   return result;
 }
 
+/// Along the rod that the page shows, if solve() comes to the same one.
+std::vector<double> tension_along(const Scene& scene, const Reference& rod) {
+  constexpr double same = 1e-6;  // of the length
+  const std::vector<double> s = drawn_arc_lengths(scene.length);
+  Solution solution = solve(scene, Model::energy, {}, s);
+  const double apart = (solution.shape.points - rod(s).points).colwise().norm().maxCoeff();
+  if (!(apart <= same * scene.length)) return {};
+  return std::move(solution.tension);
+}
+
 /// Whose scene it is.
 enum class Origin { paper, user };
 
@@ -117,6 +133,10 @@ void run_task(SceneTask& task, const ReportOptions& options, Origin origin) {
     better.force_model = hooke_consistent(own);
     try_to(scene.name + ", law hooke, bookkeeping consistent", task.failures,
            [&] { comparisons.push_back(compare(better)); });
+  }
+  if (!comparisons.empty()) {
+    try_to(scene.name + ", tension along the rod", task.failures,
+           [&] { task.report.tension = tension_along(scene, comparisons.front().reference_rod); });
   }
   if (!options.history || !straight_rod(scene, {0})) return;
   try_to(scene.name + ", E*/E against time", task.failures, [&] {
@@ -141,6 +161,45 @@ void add_scenes(const std::vector<SceneFile>& files, std::size_t of_the_paper, R
     report.scenes.push_back(std::move(task.report));
     if (task.printed_weight) report.printed_weight.push_back(std::move(*task.printed_weight));
     report.failures.insert(report.failures.end(), task.failures.begin(), task.failures.end());
+  }
+}
+
+MotionReport follow(const SceneFile& file, const ReportOptions& options) {
+  MotionReport result{.file = file};
+  const Scene& scene = result.file.scene;
+  result.options.rates = scene.track;
+  if (options.frame_rate) result.options.rates.frames = *options.frame_rate;
+  result.track = track(scene, result.options);
+  try {
+    require_dynamic(scene, result.options);
+  } catch (const InputError&) {
+    return result;  // such as one with obstacles
+  }
+  result.moving = dynamic_track(scene, result.track, result.options, {.material = report_damping});
+  return result;
+}
+
+void add_motions(const std::vector<SceneFile>& files, Report& report) {
+  std::vector<const SceneFile*> moving;
+  for (const SceneFile& file : files) {
+    if (motion_of(file.scene)) moving.push_back(&file);
+  }
+  std::vector<std::optional<MotionReport>> found(moving.size());
+  std::vector<std::vector<std::string>> failures(moving.size());
+  tbb::task_arena arena(arena_threads(report.options.threads));
+  execute(arena, [&] {
+    tbb::parallel_for(std::size_t{0}, moving.size(), [&](std::size_t i) {
+      const std::string name = moving[i]->scene.name + ", motion";
+      try_to(name, failures[i], [&] { found[i] = follow(*moving[i], report.options); });
+      if (found[i] && found[i]->track.stopped) {
+        const TrackStop& stop = *found[i]->track.stopped;
+        failures[i].push_back(fmt::format("{}: stopped at {:g} s: {}", name, stop.time, stop.why));
+      }
+    });
+  });
+  for (std::size_t i = 0; i < moving.size(); ++i) {
+    if (found[i]) report.motions.push_back(std::move(*found[i]));
+    report.failures.insert(report.failures.end(), failures[i].begin(), failures[i].end());
   }
 }
 
@@ -191,16 +250,17 @@ std::vector<SceneFile> load_scene_files(const std::vector<std::string>& paths) {
 }
 
 std::vector<SceneFile> report_scene_files() {
-  std::vector<SceneFile> files;
-  const auto add = [&](const std::string& name, std::string_view text) {
-    files.push_back({name, std::string(text), parse_scene(std::string(text), name)});
-  };
-  add("spring_steel_135.toml", builtin::spring_steel_135_toml);
-  add("spring_steel_175.toml", builtin::spring_steel_175_toml);
-  add("spring_steel_215.toml", builtin::spring_steel_215_toml);
-  add("long_rod.toml", builtin::long_rod_toml);
-  add("side_load.toml", builtin::side_load_toml);
-  return files;
+  return {built_in("spring_steel_135.toml", builtin::spring_steel_135_toml),
+          built_in("spring_steel_175.toml", builtin::spring_steel_175_toml),
+          built_in("spring_steel_215.toml", builtin::spring_steel_215_toml),
+          built_in("long_rod.toml", builtin::long_rod_toml),
+          built_in("side_load.toml", builtin::side_load_toml)};
+}
+
+std::vector<SceneFile> report_moving_files() {
+  return {built_in("corner_routing.toml", builtin::corner_routing_toml),
+          built_in("buckling_wire.toml", builtin::buckling_wire_toml),
+          built_in("swung_rod.toml", builtin::swung_rod_toml)};
 }
 
 ReportOptions quick_report_options() {
@@ -209,6 +269,7 @@ ReportOptions quick_report_options() {
   options.benchmark = BenchmarkOptions{.budget_s = 1, .repeats = 3};
   options.map = StabilityMapOptions{.columns = 6, .rows = 16, .steps = 2000};
   options.hard_cases.reset();
+  options.frame_rate = 100;
   return options;
 }
 
@@ -248,6 +309,16 @@ Report make_report(const std::vector<SceneFile>& files, const ReportOptions& opt
   say("scenes: both models, and E*/E on the way to rest");
   add_scenes(report.paper ? report_scene_files() : files, report.paper ? paper_scene_files : 0,
              report);
+  if (options.motion) {
+    say("what moves");
+    add_motions(report.paper ? report_moving_files() : files, report);
+  }
+  if (options.grid) {
+    say("grid of shapes");
+    tbb::task_arena arena(arena_threads(options.threads));
+    execute(arena,
+            [&] { report.grid = make_shape_grid(*options.grid, counted("grid of shapes")); });
+  }
   if (options.map) {
     say("stability map");
     StabilityMapOptions map = *options.map;

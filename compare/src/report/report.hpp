@@ -6,8 +6,11 @@
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/progress.hpp"
+#include "motion/dynamic_track.hpp"
+#include "motion/track.hpp"
 #include "paper/modulus_history.hpp"
 #include "paper/printed_tables.hpp"
+#include "report/shape_grid.hpp"
 #include "study/benchmark.hpp"
 #include "study/stability.hpp"
 #include "study/stability_map.hpp"
@@ -29,6 +32,9 @@ struct SceneFile {
 /// space.
 [[nodiscard]] std::vector<SceneFile> report_scene_files();
 
+/// Three that move: a cable around a post, a wire against a wall, a hanging rod that is swung.
+[[nodiscard]] std::vector<SceneFile> report_moving_files();
+
 /// What a report computes.
 struct ReportOptions {
   /// RMS over the length up to which a shape counts as right, > 0. The report's own choice: there
@@ -43,6 +49,11 @@ struct ReportOptions {
   /// The hard cases, with all steppers.
   std::optional<StabilityOptions> hard_cases =
       StabilityOptions{.steps_at_rest = 1'000'000, .left_out = {"N = 1000"}};
+  /// Frames a second of what moves [Hz], > 0; none: as the scenes say.
+  std::optional<double> frame_rate;
+  bool motion = true;  ///< what moves is followed
+  /// What the sliders of the page show; the same for all scenes.
+  std::optional<ShapeGridOptions> grid = ShapeGridOptions{};
   int threads = 0;  ///< at most; 0: as many as the machine has. The benchmark has one, alone
 };
 
@@ -65,6 +76,21 @@ struct SceneReport {
   /// As the scene says, then, unless it says so, with law hooke and bookkeeping consistent.
   std::vector<Comparison> comparisons;
   std::optional<SceneHistory> history;  ///< for rods that start straight
+  /// Of the first comparison's rod, at drawn_arc_lengths() [N], positive where it is pulled. Empty
+  /// where it is not the energy model's lowest shape, or a yielding obstacle is touched.
+  std::vector<double> tension;
+};
+
+/// Kelvin-Voigt time of the material [s], of rods with inertia: without damping one that was swung
+/// would go on for ever. The report's own choice.
+inline constexpr double report_damping = 0.01;
+
+/// What a report says of a scene's motion.
+struct MotionReport {
+  SceneFile file;        ///< the scene
+  TrackOptions options;  ///< that it was followed with
+  Track track;           ///< the rod at rest in every frame, the force model beside it
+  std::optional<DynamicTrack> moving;  ///< the rod with inertia, where dynamic_track() knows it
 };
 
 /// All that a report shows.
@@ -79,6 +105,8 @@ struct Report {
   std::optional<StabilityMap> map;           ///< measured and predicted limits of c_F
   std::string map_file;                      ///< empty: hard_case_scene
   std::vector<StabilityResult> hard_cases;   ///< case by case, stepper by stepper
+  std::vector<MotionReport> motions;         ///< of what moves, in the files' order
+  std::optional<ShapeGrid> grid;             ///< for the sliders
   std::vector<std::string> failures;  ///< what was asked for but did not converge, one line each
   double seconds = 0;                 ///< wall time of all of it
 };

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/solution.hpp"
-#include "figure/budget_figure.hpp"
+#include "picture/budget_figure.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -152,6 +153,46 @@ HtmlTable budget_table(const Report& report) {
     table.rows.push_back({c.scene, setting_of(c), millimetres(c.budget.total_m), largest->first,
                           page_percent(largest->second->share)});
   });
+  return table;
+}
+
+HtmlTable motion_table(const Report& report) {
+  HtmlTable table{.caption =
+                      "Motion: contacts and snaps of the rod at rest, its grippers' largest "
+                      "force and torque, and the error of the force model on the way",
+                  .columns = {{"scene", HtmlCell::text},
+                              {"time [s]"},
+                              {"frames"},
+                              {"contacts begin or end"},
+                              {"snaps"},
+                              {"largest force [N]"},
+                              {"largest torque [N m]"},
+                              {"force model: mean error"},
+                              {"largest error"},
+                              {"late by [ms]"}}};
+  for (const MotionReport& motion : report.motions) {
+    const Track& track = motion.track;
+    double force = 0;
+    double torque = 0;
+    for (const TrackFrame& frame : track.frames) {
+      for (const GripperLoad& load : frame.grippers) {
+        force = std::max(force, load.force.norm());
+        torque = std::max(torque, load.torque.norm());
+      }
+    }
+    const auto snaps =
+        std::count_if(track.events.begin(), track.events.end(),
+                      [](const TrackEvent& event) { return event.kind == TrackEvent::Kind::snap; });
+    const bool beside = track.force.none.empty();
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    table.rows.push_back(
+        {motion.file.scene.name, page_number(track.frames.back().time - track.frames.front().time),
+         std::to_string(track.frames.size()),
+         std::to_string(static_cast<std::ptrdiff_t>(track.events.size()) - snaps),
+         std::to_string(snaps), page_number(force), page_number(torque),
+         page_percent(beside ? track.force.mean : none),
+         page_percent(beside ? track.force.largest : none), page_number(track.force.lag * 1e3)});
+  }
   return table;
 }
 

@@ -13,6 +13,7 @@ namespace dlo::compare {
 [[nodiscard]] HtmlTable deviation_table(const Report& report);
 [[nodiscard]] HtmlTable state_table(const Report& report);
 [[nodiscard]] HtmlTable budget_table(const Report& report);
+[[nodiscard]] HtmlTable motion_table(const Report& report);
 [[nodiscard]] HtmlTable modulus_table(const Report& report);
 [[nodiscard]] HtmlTable history_table(const Report& report);
 [[nodiscard]] HtmlTable answer_table(const Report& report);

@@ -197,7 +197,9 @@ void certify(SpanSolution& solution, double load) {
   double moved = eta;
   bool at_fold = false;
   solution.neutral_directions = found.neutral_directions;
-  if (!model.has_soft_obstacles() && may_be_at_fold(solution, load, eta)) {
+  // As many terms as constraints leave no direction that a fold could be in.
+  const bool can_move = found.zero < model.size() - model.constraints();
+  if (can_move && !model.has_soft_obstacles() && may_be_at_fold(solution, load, eta)) {
     const SoftMode mode = soft_mode(system.on_free_directions(), hessian, jacobian, found.zero);
     const Softening change = softening(solution, mode);
     const double kappa = std::abs(change.first) + std::abs(change.second) * eta;

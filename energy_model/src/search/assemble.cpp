@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "base/free_directions.hpp"
+#include "linear/free_directions.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 #include "search/placed_shape.hpp"

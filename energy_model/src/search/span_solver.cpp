@@ -8,13 +8,13 @@
 #include <string>
 #include <utility>
 
-#include "base/free_directions.hpp"
 #include "base/legendre.hpp"
 #include "base/minimise.hpp"
 #include "certify/certify.hpp"
 #include "certify/enough_terms.hpp"
 #include "certify/free_turns.hpp"
 #include "certify/piece_cuts.hpp"
+#include "linear/free_directions.hpp"
 #include "newton/penalty_descent.hpp"
 #include "newton/restore.hpp"
 #include "newton/trust_region.hpp"

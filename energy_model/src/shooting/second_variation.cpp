@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "base/free_directions.hpp"
+#include "linear/free_directions.hpp"
 #include "shooting/constrained_pencil.hpp"
 #include "shooting/lobatto_element.hpp"
 

@@ -1,4 +1,4 @@
-#include "figure/comparison_figure.hpp"
+#include "picture/comparison_figure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "figure/check_figure.hpp"
+#include "picture/check_figure.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "figure/sweep_figure.hpp"
+#include "picture/sweep_figure.hpp"
 
 #include <fmt/format.h>
 
@@ -89,7 +89,7 @@ Panel map_panel(const std::vector<SweptField>& fields, const std::string& file, 
   // Light to dark: told without colours too.
   fmt::format_to(std::back_inserter(panel.script),
                  "set palette defined (0 '#F2F0E6', 0.5 '#5B9BC8', 1 '#0B2D5B')\n"
-                 "set colorbox user horizontal origin graph 0,-0.28 size graph 1,0.04\n"
+                 "set colorbox user horizontal origin graph 0.06,-0.28 size graph 0.88,0.04\n"
                  "set offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n"
                  "plot '{}' skip 1 using 2:3:{} notitle with points pointtype 5 pointsize 2 "
                  "linecolor palette\n",

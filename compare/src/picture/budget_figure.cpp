@@ -1,4 +1,4 @@
-#include "figure/budget_figure.hpp"
+#include "picture/budget_figure.hpp"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <string>
 
 #include "base/quote.hpp"
-#include "figure/comparison_figure.hpp"
 #include "figure/shape_panels.hpp"
+#include "picture/comparison_figure.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -39,6 +39,17 @@ std::vector<std::pair<const char*, const BudgetPart*>> shown_parts(const Compari
   return parts;
 }
 
+namespace {
+
+/// Two digits behind the point, without a sign where they are zero.
+std::string share_text(double percent) {
+  std::string text = fmt::format("{:.2f} %", percent);
+  if (text == "-0.00 %") text.erase(0, 1);
+  return text;
+}
+
+}  // namespace
+
 Figure budget_figure(const std::vector<Comparison>& comparisons, std::size_t number) {
   Figure figure{.name = fmt::format("budget_{}", number),
                 .section = "budget",
@@ -62,11 +73,11 @@ Figure budget_figure(const std::vector<Comparison>& comparisons, std::size_t num
       const double percent = part->share * 100 + 0.0;
       least = std::min(least, percent);
       most = std::max(most, percent);
-      fmt::format_to(
-          std::back_inserter(figure.csv), "{},{},{},{},{},{}\n", id, ++row,
-          csv_number(std::min(0.0, percent)), csv_number(std::max(0.0, percent)),
-          csv_number(part->rms_m),
-          csv_field(fmt::format("{}: {:.4g} mm; {:.2f} %", name, part->rms_m * 1e3, percent)));
+      fmt::format_to(std::back_inserter(figure.csv), "{},{},{},{},{},{}\n", id, ++row,
+                     csv_number(std::min(0.0, percent)), csv_number(std::max(0.0, percent)),
+                     csv_number(part->rms_m),
+                     csv_field(fmt::format("{}: {:.4g} mm; {}", name, part->rms_m * 1e3,
+                                           share_text(percent))));
     }
     fmt::format_to(
         std::back_inserter(plots),

@@ -1,4 +1,4 @@
-#include "figure/fit_figure.hpp"
+#include "picture/fit_figure.hpp"
 
 #include <fmt/format.h>
 
@@ -53,7 +53,7 @@ Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {
   const double to = fit.profile.back().stiffness;
   panel.script = fmt::format(
       "set xrange [{:.10g}:{:.10g}]\nset yrange [0:4]\nset xtics {:g}\nset format x '%.3g'\n", from,
-      to, 2 * tic_step(to - from));
+      to, tic_step(2.5 * (to - from)));  // numbers as wide as a fifth of the plot
   const FittedValue& value = fit.youngs_modulus;
   // Behind the curve: the interval, open sides to the plot's edge.
   const auto edge = [](const std::optional<double>& end, const char* open) {

@@ -9,15 +9,15 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/solve.hpp"
-#include "figure/budget_figure.hpp"
-#include "figure/check_figure.hpp"
-#include "figure/comparison_figure.hpp"
-#include "figure/fit_figure.hpp"
-#include "figure/map_figure.hpp"
 #include "figure/series.hpp"
 #include "figure/shape_panels.hpp"
-#include "figure/solution_figure.hpp"
-#include "figure/sweep_figure.hpp"
+#include "picture/budget_figure.hpp"
+#include "picture/check_figure.hpp"
+#include "picture/comparison_figure.hpp"
+#include "picture/fit_figure.hpp"
+#include "picture/map_figure.hpp"
+#include "picture/solution_figure.hpp"
+#include "picture/sweep_figure.hpp"
 #include "scenes.hpp"
 
 namespace dlo::compare {
@@ -112,6 +112,25 @@ TEST(SolutionPicture, ShowsARodThatLeavesItsPlaneFromTwoSidesAndItsCurvatureWith
   const auto rows = rows_of(shapes, "solution_1");
   EXPECT_FALSE(rows.empty());
   for (const std::vector<double>& row : rows) EXPECT_GE(row.at(4), 0);
+}
+
+// The key is below the second projection, whose own outlines it names.
+TEST(SolutionPicture, NamesObstaclesInTheKeyOfBothKindsOfPicture) {
+  for (const double sideways : {0.0, 0.02}) {
+    Scene scene = test::heavy_scene(5, 0);
+    scene.loads = {{.at = scene.length, .force = {0, 0, sideways}}};
+    scene.obstacles = {{.body = obstacle::Body::sphere({0.5, -0.8, 0}, 0.1)}};
+    const Picture picture = solution_picture(scene, {solve(scene, Model::energy)});
+    const Panel& last = picture.rows.front().front().front().panels.back();
+    EXPECT_EQ(picture.rows.front().front().front().panels.size(), sideways == 0 ? 1U : 2U);
+    EXPECT_THAT(last.script, HasSubstr("title 'obstacles"));
+    std::size_t titles = 0;
+    for (std::size_t at = last.script.find(" title '"); at != std::string::npos;
+         at = last.script.find(" title '", at + 1)) {
+      ++titles;
+    }
+    EXPECT_EQ(titles, static_cast<std::size_t>(last.key_rows));
+  }
 }
 
 TEST(CheckPicture, MarksTheWorstPointAndJoinsEachPointWithItsPlaceOnTheRod) {

@@ -1,4 +1,4 @@
-#include "figure/solution_figure.hpp"
+#include "picture/solution_figure.hpp"
 
 #include <fmt/format.h>
 

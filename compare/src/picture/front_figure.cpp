@@ -1,4 +1,4 @@
-#include "figure/front_figure.hpp"
+#include "picture/front_figure.hpp"
 
 #include <fmt/format.h>
 

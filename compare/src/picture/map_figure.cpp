@@ -1,4 +1,4 @@
-#include "figure/map_figure.hpp"
+#include "picture/map_figure.hpp"
 
 #include <fmt/format.h>
 

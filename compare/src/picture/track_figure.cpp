@@ -1,0 +1,327 @@
+#include "picture/track_figure.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "base/quote.hpp"
+#include "figure/series.hpp"
+#include "figure/shape_panels.hpp"
+#include "motion/frame_clock.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr std::size_t most_shapes = 9;
+constexpr double highest_strip = 420;     // [pixels]
+constexpr double label_pixels = 20;       // of a cell's time, above its shape
+constexpr double air_pixels = 10;         // around its shape
+constexpr std::size_t most_grippers = 3;  // twice as many curves have looks of their own
+constexpr int load_plot = 190;            // height [pixels]
+
+/// Frames equally far apart, the first and the last among them.
+std::vector<std::size_t> shown_frames(std::size_t count) {
+  const std::size_t shown = std::min(count, most_shapes);
+  std::vector<std::size_t> frames;
+  for (std::size_t i = 0; i < shown; ++i) {
+    frames.push_back(shown > 1 ? (i * (count - 1) + (shown - 1) / 2) / (shown - 1) : 0);
+  }
+  return frames;
+}
+
+/// Of all that is drawn of some frames.
+Eigen::Matrix3Xd points_of(const TrackShapes& shapes, const std::vector<std::size_t>& frames) {
+  std::vector<const Eigen::Matrix3Xd*> parts;
+  for (const std::size_t i : frames) {
+    const TrackFrame& frame = shapes.track.frames[i];
+    parts.push_back(&frame.points);
+    if (frame.force) parts.push_back(&frame.force->shape.points);
+    if (shapes.has_moving(i)) parts.push_back(&shapes.moving->frames[i].points);
+  }
+  Eigen::Index count = 0;
+  for (const Eigen::Matrix3Xd* part : parts) count += part->cols();
+  Eigen::Matrix3Xd all(3, count);
+  count = 0;
+  for (const Eigen::Matrix3Xd* part : parts) {
+    all.middleCols(count, part->cols()) = *part;
+    count += part->cols();
+  }
+  return all;
+}
+
+/// Cells of one size, row by row, each with one shape at one scale.
+struct Cells {
+  std::array<double, 2> least = {0, 0};  ///< coordinates at the lower left corner of a cell [m]
+  std::array<double, 2> size = {1, 1};   ///< [m]
+  double pixels_per_metre = 1;
+  int columns = 1, rows = 1;
+
+  /// What is added to coordinates in a cell [m]: the lowest row begins at 0.
+  [[nodiscard]] std::array<double, 2> shift(int cell) const {
+    const int row_above_lowest = rows - 1 - cell / columns;
+    return {cell % columns * size[0] - least[0], row_above_lowest * size[1] - least[1]};
+  }
+};
+
+/// As many in a row as lets the shapes be largest.
+Cells cells_for(const Eigen::Matrix3Xd& points, const View& view, int count) {
+  const std::array<int, 2> axes = {view.right, view.up};
+  std::array<double, 2> least{};
+  std::array<double, 2> extent{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    least[i] = points.row(axes[i]).minCoeff();
+    extent[i] = points.row(axes[i]).maxCoeff() - least[i];
+  }
+  const double largest = std::max(extent[0], extent[1]);
+  for (std::size_t i = 0; i < 2; ++i) {  // a straight rod has room too
+    const double wanted = std::max(extent[i], 0.2 * largest);
+    least[i] -= (wanted - extent[i]) / 2;
+    extent[i] = wanted;
+  }
+  Cells best{.pixels_per_metre = 0};
+  for (int columns = 1; columns <= count; ++columns) {
+    const int rows = (count + columns - 1) / columns;
+    const double across = (plot_width / static_cast<double>(columns) - 2 * air_pixels) / extent[0];
+    const double upwards = (highest_strip / rows - 2 * air_pixels - label_pixels) / extent[1];
+    const double scale = std::min(across, upwards);
+    if (!(scale > best.pixels_per_metre)) continue;
+    best = {.pixels_per_metre = scale, .columns = columns, .rows = rows};
+  }
+  // The whole width is used; the height is what is needed.
+  best.size = {plot_width / (best.columns * best.pixels_per_metre),
+               extent[1] + (2 * air_pixels + label_pixels) / best.pixels_per_metre};
+  best.least = {least[0] - (best.size[0] - extent[0]) / 2,
+                least[1] - air_pixels / best.pixels_per_metre};
+  return best;
+}
+
+/// The part of a convex outline within limits of one of its coordinates (Sutherland and Hodgman).
+Eigen::Matrix3Xd clipped(const Eigen::Matrix3Xd& outline, int axis, double limit, double sign) {
+  std::vector<Eigen::Vector3d> kept;
+  const Eigen::Index count = outline.cols();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Vector3d a = outline.col(i);
+    const Eigen::Vector3d b = outline.col((i + 1) % count);
+    const double before = sign * (limit - a[axis]);
+    const double after = sign * (limit - b[axis]);
+    if (before >= 0) kept.push_back(a);
+    if ((before >= 0) != (after >= 0)) kept.emplace_back(a + (b - a) * (before / (before - after)));
+  }
+  Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(kept.size()));
+  for (std::size_t i = 0; i < kept.size(); ++i) result.col(static_cast<Eigen::Index>(i)) = kept[i];
+  return result;
+}
+
+Series within_cell(Series series, const View& view, const Cells& cells) {
+  const std::array<int, 2> axes = {view.right, view.up};
+  for (std::size_t i = 0; i < 2; ++i) {
+    series.points = clipped(series.points, axes[i], cells.least[i], -1);
+    series.points = clipped(series.points, axes[i], cells.least[i] + cells.size[i], 1);
+  }
+  series.arc_length.assign(static_cast<std::size_t>(series.points.cols()), NAN);
+  return series;
+}
+
+/// What a cell shows.
+std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::size_t index,
+                              const View& view, const Cells& cells) {
+  const std::vector<double>& arc_length = shapes.track.arc_length;
+  const TrackFrame& frame = shapes.track.frames[index];
+  std::vector<Series> all;
+  for (Series& outline : obstacle_series(now, {view}, frame.points)) {
+    Series seen = within_cell(std::move(outline), view, cells);
+    if (!seen.arc_length.empty()) all.push_back(std::move(seen));
+  }
+  if (frame.force) {
+    all.push_back({.id = "force",
+                   .title = "force model, on the way",
+                   .style = "with lines linecolor rgb '#B34700' linewidth 1.5 dashtype (5,3)",
+                   .points = frame.force->shape.points,
+                   .arc_length = frame.force->shape.arc_length});
+  }
+  if (shapes.has_moving(index)) {
+    all.push_back({.id = "moving",
+                   .title = "the rod with inertia",
+                   .style = "with lines linecolor rgb '#0059A8' linewidth 1.5 dashtype 1",
+                   .points = shapes.moving->frames[index].points,
+                   .arc_length = arc_length});
+  }
+  all.push_back({.id = "energy",
+                 .title = "energy model (the rod itself), at rest",
+                 .style = "with lines linecolor rgb 'black' linewidth 2 dashtype 1",
+                 .points = frame.points,
+                 .arc_length = arc_length});
+  const Shape shape{.arc_length = arc_length, .points = frame.points};
+  const RodPoints points = [&](const std::vector<double>& s) { return resample(shape, s).points; };
+  if (auto contact = contact_series(frame.contacts, points, now.length)) {
+    all.push_back(std::move(*contact));
+  }
+  for (Series& gripper : gripper_series(now)) {
+    // Thinner than in a plot of one shape.
+    gripper.style = gripper.title.empty()
+                        ? "with lines linecolor rgb '#909090' linewidth 3 dashtype 1"
+                        : "with points linecolor rgb 'black' pointtype 2 pointsize 0.7";
+    all.push_back(std::move(gripper));
+  }
+  return all;
+}
+
+Figure strip_figure(const Scene& scene, const TrackShapes& shapes, const TrackOptions& options,
+                    std::size_t number) {
+  const Track& track = shapes.track;
+  Figure figure{.name = fmt::format("strip_{}", number),
+                .section = "motion",
+                .title = scene.name + ": shapes over time",
+                .csv_file = fmt::format("strip_{}.csv", number)};
+  const FrameClock clock(scene, {.from = options.from, .to = options.to}, options.rates);
+  const std::vector<std::size_t> frames = shown_frames(track.frames.size());
+  const Eigen::Matrix3Xd points = points_of(shapes, frames);
+  const View view = views_of(scene_at(scene, track.frames.front().time), points).front();
+  const Cells cells = cells_for(points, view, static_cast<int>(frames.size()));
+  Panel panel{
+      .height = static_cast<int>(std::lround(cells.rows * cells.size[1] * cells.pixels_per_metre)),
+      .x_label =
+          fmt::format("{} [m]; a cell is {:.3g} m wide", axis_names[view.right], cells.size[0]),
+      .y_label = fmt::format("{} [m]", axis_names[view.up])};
+  panel.script = fmt::format(
+      "# equal aspect: {:.6g} pixels a metre on both axes\n"
+      "set xrange [0:{:.6g}]\nset yrange [0:{:.6g}]\nset xtics 0,{:.6g} scale 0\n"
+      "set ytics 0,{:.6g} scale 0\nset format ''\n",
+      cells.pixels_per_metre, cells.columns * cells.size[0], cells.rows * cells.size[1],
+      cells.size[0], cells.size[1]);
+  std::vector<Series> written;
+  std::set<std::string> titles;
+  std::string plots;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const TrackFrame& frame = track.frames[frames[i]];
+    const std::array<double, 2> shift = cells.shift(static_cast<int>(i));
+    fmt::format_to(
+        std::back_inserter(panel.script),
+        "set label {} 't = {:.4g} s' at {:.6g},{:.6g} left front\n", i + 100, frame.time,
+        cells.least[0] + shift[0] + 4 / cells.pixels_per_metre,
+        cells.least[1] + shift[1] + cells.size[1] - label_pixels / 2 / cells.pixels_per_metre);
+    for (Series& series :
+         series_of(clock.scene(scene, frames[i]), shapes, frames[i], view, cells)) {
+      series.id += fmt::format("_{}", i + 1);
+      const bool titled = !series.title.empty() && titles.insert(series.title).second;
+      if (titled) ++panel.key_rows;
+      fmt::format_to(std::back_inserter(plots), "{}{} {} {}", plots.empty() ? "plot " : ", \\\n  ",
+                     series_data(figure.csv_file, series.id,
+                                 fmt::format("${}{:+.8g}", view.right + 3, shift[0]),
+                                 fmt::format("(${}{:+.8g})", view.up + 3, shift[1])),
+                     titled ? "title " + gnuplot_string(series.title) : std::string("notitle"),
+                     series.style);
+      written.push_back(std::move(series));
+    }
+  }
+  panel.script += plots + "\n";
+  figure.csv = series_csv(written);
+  figure.description = fmt::format(
+      "{} shapes of {}, from {:.4g} to {:.4g} s, row by row, all at one scale and at equal aspect.",
+      frames.size(), scene.name, track.frames.front().time, track.frames.back().time);
+  figure.panels = {std::move(panel)};
+  return figure;
+}
+
+void add_rows(const char* rod, double time, std::size_t gripper, const GripperLoad& load,
+              std::string& csv) {
+  fmt::format_to(std::back_inserter(csv), "{},{},{},{},{}\n", rod, csv_number(time), gripper + 1,
+                 csv_number(load.force.norm()), csv_number(load.torque.norm()));
+}
+
+/// One gripper after the other, since what is left out between two points ends a line.
+std::string force_csv(const Scene& scene, const TrackShapes& shapes) {
+  std::string csv = "rod,time_s,gripper,force_N,torque_Nm\n";
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    for (const TrackFrame& frame : shapes.track.frames) {
+      add_rows("at_rest", frame.time, i, frame.grippers[i], csv);
+    }
+    if (shapes.moving == nullptr) continue;
+    for (const DynamicFrame& frame : shapes.moving->frames) {
+      add_rows("moving", frame.time, i, frame.grippers[i], csv);
+    }
+  }
+  return csv;
+}
+
+enum class Titles { shown, left_out };
+
+/// Of all grippers against time, a column of the CSV.
+Panel load_panel(const Scene& scene, const TrackShapes& shapes, const std::string& csv_file,
+                 int column, Titles titles) {
+  Panel panel{.height = load_plot, .x_label = "time [s]"};
+  std::string plots;
+  const auto add = [&](const std::string& data, const std::string& title, const char* style) {
+    const bool shown = titles == Titles::shown;
+    fmt::format_to(std::back_inserter(plots), "{}{} {} {}", plots.empty() ? "plot " : ", \\\n  ",
+                   data, shown ? "title " + gnuplot_string(title) : std::string("notitle"), style);
+    if (shown) ++panel.key_rows;
+  };
+  for (std::size_t i = 0; i < scene.grippers.size() && i < most_grippers; ++i) {
+    const auto data = [&](const char* rod) {
+      return fmt::format("'{}' skip 1 using (strcol(1) eq '{}' && $3 == {} ? $2 : NaN):{}",
+                         csv_file, rod, i + 1, column);
+    };
+    const std::string name = fmt::format("gripper {} at s = {:.4g} m", i + 1, scene.grippers[i].at);
+    add(data("at_rest"), name, curve_style(2 * i, "lines").c_str());
+    if (shapes.moving == nullptr) continue;
+    add(data("moving"), name + ", the rod with inertia", curve_style(2 * i + 1, "lines").c_str());
+  }
+  const auto mark = [&](TrackEvent::Kind kind, const char* title, const char* line) {
+    bool any = false;
+    for (const TrackEvent& event : shapes.track.events) {
+      if (event.kind != kind) continue;
+      any = true;
+      fmt::format_to(std::back_inserter(panel.script),
+                     "set arrow from {0:.8g}, graph 0 to {0:.8g}, graph 1 nohead back {1}\n",
+                     shapes.track.frames[event.frame].time, line);
+    }
+    if (any) add("NaN", title, (std::string("with lines ") + line).c_str());
+  };
+  mark(TrackEvent::Kind::contact, "begins to touch, or to lie",
+       "linecolor rgb '#207A34' linewidth 1 dashtype 2");
+  mark(TrackEvent::Kind::release, "ends to", "linecolor rgb '#707070' linewidth 1 dashtype 3");
+  mark(TrackEvent::Kind::snap, "snaps", "linecolor rgb '#C00000' linewidth 1.5 dashtype 1");
+  panel.script += "set yrange [0:*]\n" + plots + "\n";
+  return panel;
+}
+
+Figure force_figure(const Scene& scene, const TrackShapes& shapes, std::size_t number) {
+  Figure figure{.name = fmt::format("forces_{}", number),
+                .section = "motion",
+                .title = scene.name + ": what the grippers exert",
+                .description =
+                    "Amounts of each gripper's force and torque on the energy model's "
+                    "rod against time; upright lines where something begins or ends to "
+                    "touch, and where the rod snaps.",
+                .csv_file = fmt::format("forces_{}.csv", number),
+                .csv = force_csv(scene, shapes)};
+  constexpr int force_column = 4;
+  Panel force = load_panel(scene, shapes, figure.csv_file, force_column, Titles::left_out);
+  force.y_label = "force [N]";
+  Panel torque = load_panel(scene, shapes, figure.csv_file, force_column + 1, Titles::shown);
+  torque.y_label = "torque [N m]";
+  figure.panels = {std::move(force), std::move(torque)};
+  return figure;
+}
+
+}  // namespace
+
+TrackFigures track_figures(const Scene& scene, const TrackShapes& shapes,
+                           const TrackOptions& options, std::size_t number) {
+  return {.strip = strip_figure(scene, shapes, options, number),
+          .forces = force_figure(scene, shapes, number)};
+}
+
+Picture track_picture(const Scene& scene, const TrackShapes& shapes, const TrackOptions& options) {
+  TrackFigures figures = track_figures(scene, shapes, options, 1);
+  return {{{{std::move(figures.strip)}, {std::move(figures.forces)}}}};
+}
+
+}  // namespace dlo::compare
