@@ -19,7 +19,11 @@ constexpr int most_cuts = 3;
 /// Step at which an end is found, in lengths.
 constexpr double settled = 1e-10;
 /// What is missed where there is nothing to mend: lift_off.hpp's measures, which are steps or more.
-constexpr double nothing_missed = 1e-10;
+/// A curvature that is left at a lift-off is a moment there. What the contact carries has to make
+/// up for it next to that end, and its series of K terms ends with a force K^2 times as large.
+constexpr double nothing_missed = 1e-12;
+/// Below, steps that no longer halve what is missed are rounding.
+constexpr double nearly_nothing_missed = 1e-10;
 /// Longest step, in lengths: the polygon has told where the ends are; and over the room beside one.
 constexpr double longest_step = 0.02;
 constexpr double largest_share = 0.45;
@@ -37,8 +41,12 @@ class Settling {
 
   int run(const Deadline& deadline) {
     if (ends_.empty()) return spent_;
+    double before = INFINITY;
     for (int step = 0; step < most_steps && !deadline.passed(); ++step) {
-      if (miss_.cwiseAbs().maxCoeff() < nothing_missed) break;
+      const double missed = miss_.cwiseAbs().maxCoeff();
+      if (missed < nothing_missed) break;
+      if (missed < nearly_nothing_missed && missed > before / 2) break;
+      before = missed;
       if (step % most_updates == 0 && !differentiate()) break;
       Eigen::VectorXd way = bounded(-jacobian_.partialPivLu().solve(miss_));
       if (!way.allFinite() || !move(way)) break;
