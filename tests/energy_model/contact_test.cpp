@@ -5,19 +5,20 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
-#include <random>
 #include <string>
 #include <vector>
 
 #include "dlo/energy_model/energy.hpp"
 #include "equilibrium_balance.hpp"
 #include "problems.hpp"
+#include "random_contact.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 using test::BalanceDefects;
 using test::heavy_cantilever;
+using test::random_touching_problem;
 
 Problem over_floor(double gamma, double height) {
   Problem problem = heavy_cantilever(gamma, 0);
@@ -257,47 +258,6 @@ void expect_rests(const Problem& problem, const Equilibrium& shape, double panel
   EXPECT_LT(defects.worst(), 1e-5)
       << "force " << defects.force << ", torque " << defects.torque << ", moment " << defects.moment
       << ", grips " << defects.grips << ", integral " << defects.integral;
-}
-
-/// One to three grips above or beside a half-space, as drawn by a seed.
-Problem random_touching_problem(unsigned seed, bool space, double largest_gamma) {
-  std::mt19937 random(seed);
-  const auto uniform = [&](double low, double high) {
-    return low + (high - low) * static_cast<double>(random() - std::mt19937::min()) /
-                     static_cast<double>(std::mt19937::max());
-  };
-  const auto direction = [&] {
-    const double azimuth = uniform(-M_PI, M_PI);
-    const double z = space ? uniform(-1, 1) : 0;
-    const double r = std::sqrt(1 - z * z);
-    return Eigen::Vector3d(r * std::cos(azimuth), r * std::sin(azimuth), z);
-  };
-  Problem problem;
-  problem.length = 1;
-  problem.bending_stiffness = 1;
-  problem.weight_per_length = {0, -std::pow(10, uniform(0, std::log10(largest_gamma))), 0};
-  std::vector<double> at = {0};
-  const unsigned grips = 1 + random() % 3;
-  if (grips == 3) at.push_back(uniform(0.3, 0.7));
-  if (grips > 1) at.push_back(1);
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    if (i > 0) position += (at[i] - at[i - 1]) * uniform(0.2, 0.97) * direction();
-    Grip grip{at[i], position};
-    if (i == 0 || random() % 2 == 0) grip.direction = direction();
-    problem.grips.push_back(grip);
-  }
-  const double tilt = uniform(-0.7, 0.7);
-  const double aside = space ? uniform(-0.3, 0.3) : 0;
-  const std::array<Eigen::Vector3d, 3> normals = {
-      Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(std::sin(tilt), std::cos(tilt), aside),
-      Eigen::Vector3d(random() % 2 == 0 ? 1 : -1, tilt / 2, aside)};
-  const Eigen::Vector3d n = normals[random() % 3].normalized();
-  double lowest = 0;
-  for (const Grip& grip : problem.grips) lowest = std::min(lowest, n.dot(grip.position));
-  problem.obstacles = {
-      {obstacle::Body::half_space((lowest - std::pow(10, uniform(-2, -0.3))) * n, n)}};
-  return problem;
 }
 
 // What converges is an equilibrium with obstacles that only push, weighed from its samples; hardly
