@@ -120,8 +120,10 @@ Gap Body::gap(const Eigen::Vector3d& point) const {
   Gap gap;
   gap.value = distance - radius_;
   gap.gradient = axes_ * (out / distance);
-  // Of a face, which one axis leads away from, the surface is flat.
-  const Eigen::Array3d leaves = (out.array() != 0).cast<double>();
+  // Of a face, which one axis leads away from, the surface is flat. A core without width on an axis
+  // is left along it both ways, from right above it too.
+  const Eigen::Array3d leaves =
+      (out.array() != 0 || lower_.array() == upper_.array()).cast<double>();
   if (leaves.sum() > 1) {
     const Eigen::Matrix3d across = axes_ * leaves.matrix().asDiagonal() * axes_.transpose();
     gap.hessian = (across - gap.gradient * gap.gradient.transpose()) / distance;

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -11,6 +13,8 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "problems.hpp"
+#include "random_contact.hpp"
+#include "start_along.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -89,6 +93,114 @@ TEST(ExactContact, ContradictsNoRandomRodOverATiltedFloor) {
   EXPECT_GE(saddles, 5);  // on a slope that rises away from the clamp
   RecordProperty("same", same);
   RecordProperty("saddles", saddles);
+}
+
+/// How many shapes that converged and touch have been confirmed from where they are, by kind.
+struct Confirmed {
+  int touching = 0;
+  int confirmed = 0;
+  int lying = 0;
+  int points = 0;
+  int several = 0;
+
+  /// Shape to 1e-8 of the length, forces and torques to 1e-7 of the largest, energy to 1e-8 of it.
+  void confirm(const Problem& problem, const Equilibrium* start = nullptr) {
+    const Equilibrium energy = solve_energy(problem, {.time_limit = 20, .start = start});
+    if (!succeeded(energy.status) || energy.contacts.empty()) return;
+    ++touching;
+    const Equilibrium exact = solve_exact(problem, {.start = &energy});
+    EXPECT_TRUE(succeeded(exact.status)) << exact.message;
+    ++confirmed;
+    ASSERT_EQ(exact.contacts.size(), energy.contacts.size());
+    const std::vector<double> at = equal_arc_lengths(problem.length, 101);
+    const Eigen::Matrix3Xd apart = exact.sample(at).points - energy.sample(at).points;
+    EXPECT_LT(apart.colwise().norm().maxCoeff(), 1e-8 * problem.length);
+    double force = 1 + problem.weight_per_length.norm();
+    for (const Reaction& grip : energy.grips) force = std::max(force, grip.force.norm());
+    for (std::size_t k = 0; k < energy.grips.size(); ++k) {
+      EXPECT_LT((exact.grips[k].force - energy.grips[k].force).norm(), 1e-7 * force);
+      EXPECT_LT((exact.grips[k].torque - energy.grips[k].torque).norm(), 1e-7 * force);
+    }
+    EXPECT_NEAR(exact.energy.total(), energy.energy.total(), 1e-8 * force);
+    for (std::size_t k = 0; k < energy.contacts.size(); ++k) {
+      EXPECT_EQ(exact.contacts[k].kind, energy.contacts[k].kind);
+      EXPECT_EQ(exact.contacts[k].obstacle, energy.contacts[k].obstacle);
+      EXPECT_NEAR(exact.contacts[k].begin, energy.contacts[k].begin, 1e-6);
+      EXPECT_NEAR(exact.contacts[k].end, energy.contacts[k].end, 1e-6);
+      EXPECT_LT((exact.contacts[k].force - energy.contacts[k].force).norm(), 1e-7 * force);
+      (energy.contacts[k].kind == ContactKind::lying ? lying : points) += 1;
+    }
+    several += energy.contacts.size() > 1 ? 1 : 0;
+  }
+};
+
+// One to three grips of all kinds over floors and beside walls.
+TEST(ExactContact, ConfirmsRandomRodsAgainstPlanes) {
+  for (const bool space : {false, true}) {
+    Confirmed seen;
+    for (unsigned seed = 0; seed < 40; ++seed) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + (space ? " in space" : " in the plane"));
+      seen.confirm(test::random_touching_problem(seed, space, 300));
+    }
+    EXPECT_GE(seen.touching, 16);
+    EXPECT_EQ(seen.confirmed, seen.touching);
+    EXPECT_GE(seen.points, 5);
+    EXPECT_GE(seen.lying, 5);
+  }
+}
+
+// Cylinders, balls and capsules, touched at a point or wrapped.
+TEST(ExactContact, ConfirmsRandomRodsOverBodies) {
+  for (const bool space : {false, true}) {
+    Confirmed seen;
+    for (unsigned seed = 0; seed < 40; ++seed) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + (space ? " in space" : " in the plane"));
+      const std::optional<Problem> problem = test::random_problem_with_body(seed, space);
+      if (problem) seen.confirm(*problem);
+    }
+    EXPECT_GE(seen.touching, 30);
+    EXPECT_EQ(seen.confirmed, seen.touching);
+    EXPECT_GE(seen.points, 20);
+  }
+}
+
+// What is wrapped around a peg has its curvature; in space, where the tension is not square to the
+// axis, it is a part of a coil.
+TEST(ExactContact, ConfirmsTautRodsAroundAPeg) {
+  Confirmed seen;
+  constexpr double radius = 0.05;
+  for (const double aside : {0.0, 0.02}) {
+    SCOPED_TRACE("aside " + std::to_string(aside));
+    Problem problem = heavy_cantilever(10, 0);
+    problem.loads = {{1, 3e3 * Eigen::Vector3d(0, -1, aside).normalized()}};
+    problem.obstacles = {{obstacle::Body::cylinder({0.4, -radius, 0}, {0, 0, 1}, radius)}};
+    const Equilibrium start =
+        test::start_along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
+    seen.confirm(problem, &start);
+  }
+  EXPECT_EQ(seen.lying, 2);
+  EXPECT_EQ(seen.confirmed, 2);
+}
+
+// Two level clamps above a floor: free spans on both sides of what lies, a taut one that only
+// touches, in units of a real rod.
+TEST(ExactContact, ConfirmsACableBetweenTwoClampsOverAFloor) {
+  Confirmed seen;
+  for (const double apart : {0.9, 0.95, 0.99}) {
+    for (const double depth : {0.02, 0.1, 0.2}) {
+      SCOPED_TRACE("apart " + std::to_string(apart) + ", depth " + std::to_string(depth));
+      Problem cable;
+      cable.length = 2;
+      cable.bending_stiffness = 3e-3;
+      cable.weight_per_length = {0, -0.8, 0};
+      const Eigen::Vector3d level = Eigen::Vector3d::UnitX();
+      cable.grips = {{0, {1, 1, 0}, level}, {2, {1 + 2 * apart, 1, 0}, level}};
+      cable.obstacles = {{obstacle::Body::half_space({0, 1 - depth, 0}, {0, 1, 0})}};
+      seen.confirm(cable);
+    }
+  }
+  EXPECT_GE(seen.lying, 3);
+  EXPECT_EQ(seen.confirmed, seen.touching);
 }
 
 TEST(ExactContact, RefusesWhatItDoesNotKnow) {

@@ -5,13 +5,15 @@
 #include <Eigen/Geometry>
 #include <array>
 #include <cmath>
-#include <random>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "random_contact.hpp"
+#include "start_along.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -21,33 +23,6 @@ using test::heavy_cantilever;
 
 double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
-/// A shape to start from, of unit length, along a line from corner to corner.
-Equilibrium along(const std::vector<Eigen::Vector3d>& corners) {
-  std::vector<double> at = {0};
-  for (std::size_t i = 1; i < corners.size(); ++i) {
-    at.push_back(at.back() + (corners[i] - corners[i - 1]).norm());
-  }
-  Equilibrium shape;
-  shape.status = SolveStatus::converged;
-  shape.sample = [corners, at](std::span<const double> s) {
-    Samples samples;
-    samples.arc_length.assign(s.begin(), s.end());
-    const auto count = static_cast<Eigen::Index>(s.size());
-    samples.points.resize(3, count);
-    samples.tangents.resize(3, count);
-    samples.curvature.setZero(3, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      const double way = s[static_cast<std::size_t>(i)] * at.back();
-      std::size_t k = 1;
-      while (k + 1 < at.size() && at[k] < way) ++k;
-      samples.tangents.col(i) = (corners[k] - corners[k - 1]).normalized();
-      samples.points.col(i) = corners[k - 1] + (way - at[k - 1]) * samples.tangents.col(i);
-    }
-    return samples;
-  };
-  return shape;
 }
 
 // A taut weightless rod bends towards the peg by theta' = 2 (T/EI)^(1/2) sin(theta/2), theta from
@@ -61,7 +36,7 @@ TEST(Peg, TautRodLeavesItWhereItsCurvatureIsThePegs) {
       problem.obstacles = {{Body::cylinder({0.4, -radius, 0}, {0, 0, 1}, radius)}};
       // On this side of the peg it would hang from the clamp alone.
       const Equilibrium start =
-          along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
+          test::start_along({{0, 0, 0}, {0.4 + radius, 0, 0}, {0.4 + radius, radius - 0.6, 0}});
       const Equilibrium rod = solve_energy(problem, {.start = &start});
       ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
       ASSERT_EQ(rod.contacts.size(), 1);
@@ -145,7 +120,7 @@ TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
   Problem problem = heavy_cantilever(gamma, 0);
   problem.grips = {{0, {-0.33, -0.28, 0}}, {1, {0.38, -0.29, 0}}};
   problem.obstacles = {{Body::cylinder({0, 0, 0}, {0, 0, 1}, 0.05)}};
-  const Equilibrium start = along({{-0.33, -0.28, 0}, {0, 0.06, 0}, {0.38, -0.29, 0}});
+  const Equilibrium start = test::start_along({{-0.33, -0.28, 0}, {0, 0.06, 0}, {0.38, -0.29, 0}});
   const Equilibrium rod = solve_energy(problem, {.start = &start});
   ASSERT_EQ(rod.status, SolveStatus::converged) << rod.message;
   ASSERT_EQ(rod.contacts.size(), 1);
@@ -156,39 +131,6 @@ TEST(Peg, RopeHasTheTensionOfTheFrictionlessCapstan) {
   EXPECT_NEAR(before - after, gamma * (ends.points(1, 0) - ends.points(1, 1)), 1e-7 * gamma);
 }
 
-/// A body that the shape without it would enter, clear of the grips. @return whether there is one
-bool put_in_the_way(std::mt19937& random, bool space, Problem& problem) {
-  const auto uniform = [&random](double low, double high) {
-    return low + (high - low) * std::generate_canonical<double, 53>(random);
-  };
-  const Equilibrium free = solve_energy(problem);
-  if (!succeeded(free.status)) return false;
-  for (int attempt = 0; attempt < 100; ++attempt) {
-    const double radius = std::pow(10, uniform(-2, -0.7));
-    const double turn = uniform(0, 6.28);
-    const Eigen::Vector3d aside(std::cos(turn), std::sin(turn), space ? uniform(-0.5, 0.5) : 0);
-    const Eigen::Vector3d centre = free.sample(std::array{uniform(0.2, 1)}).points.col(0) +
-                                   radius * uniform(0.3, 0.9) * aside.normalized();
-    const Eigen::Vector3d axis(space ? uniform(-0.5, 0.5) : 0, space ? uniform(-0.5, 0.5) : 0, 1);
-    const std::array<Body, 3> bodies = {Body::cylinder(centre, axis, radius),
-                                        Body::sphere(centre, radius),
-                                        Body::capsule(centre, axis, 0.2, radius)};
-    const Body& body = bodies[random() % 3];
-    bool clear = true;
-    for (const Grip& grip : problem.grips) {
-      for (const double way : {-0.06, -0.03, 0.0, 0.03, 0.06}) {
-        const Eigen::Vector3d along =
-            grip.direction ? Eigen::Vector3d(way * *grip.direction) : Eigen::Vector3d::Zero();
-        clear = clear && body.clearance(grip.position + along) > 0.01;
-      }
-    }
-    if (!clear) continue;
-    problem.obstacles = {{body}};
-    return true;
-  }
-  return false;
-}
-
 // What converges is clear of the body, is pushed only, and keeps its first integral; hardly any
 // does not converge.
 TEST(Peg, RandomRodsRestOnBodiesOrSayWhyNot) {
@@ -197,22 +139,10 @@ TEST(Peg, RandomRodsRestOnBodiesOrSayWhyNot) {
   int touching = 0;
   for (const bool space : {false, true}) {
     for (unsigned seed = 0; seed < 20; ++seed) {
-      std::mt19937 random(seed + 977 * static_cast<unsigned>(space));
-      const auto uniform = [&random](double low, double high) {
-        return low + (high - low) * std::generate_canonical<double, 53>(random);
-      };
-      const auto direction = [&]() -> Eigen::Vector3d {
-        const Eigen::Vector3d d(uniform(-1, 1), uniform(-1, 1), space ? uniform(-1, 1) : 0);
-        return d.normalized();
-      };
-      const double gamma = std::pow(10, uniform(0, 4));
-      Problem problem = heavy_cantilever(gamma, 0);
-      problem.grips[0].direction = direction();
-      if (random() % 2 == 0) {
-        problem.grips.push_back({1, uniform(0.3, 0.9) * direction()});
-        if (random() % 2 == 0) problem.grips[1].direction = direction();
-      }
-      if (!put_in_the_way(random, space, problem)) continue;
+      const std::optional<Problem> scene = test::random_problem_with_body(seed, space);
+      if (!scene) continue;
+      const Problem& problem = *scene;
+      const double gamma = problem.weight_per_length.norm();
       SCOPED_TRACE("seed " + std::to_string(seed) + (space ? " in space" : " in the plane"));
       ++looked;
       const Equilibrium rod = solve_energy(problem, {.time_limit = 20});

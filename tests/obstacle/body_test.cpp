@@ -66,6 +66,18 @@ TEST(Body, DerivativesAreDifferences) {
   }
 }
 
+// In a plane through a ball's centre, or at a capsule's end, the surface bends out of it as well.
+TEST(Body, BendsOutOfThePlanesThatHalveIt) {
+  const Eigen::Matrix3d level = Eigen::Vector3d(0.5, 0, 0.5).asDiagonal();
+  const Body ball = Body::sphere({0, 0, 0}, 1);
+  EXPECT_TRUE(ball.gap({0, 2, 0}).hessian.isApprox(level, 1e-15));
+  const Body capsule = Body::capsule({0, -1, 0}, {0, 1, 0}, 2, 1);
+  EXPECT_TRUE(capsule.gap({0, 2, 0}).hessian.isApprox(level, 1e-15));
+  const Body cylinder = Body::cylinder({0, 0, 0}, {0, 0, 1}, 1);
+  const Eigen::Matrix3d round = Eigen::Vector3d(0.5, 0, 0).asDiagonal();
+  EXPECT_TRUE(cylinder.gap({0, 2, 0}).hessian.isApprox(round, 1e-15));
+}
+
 TEST(Body, ManyClearancesAreThoseOfEach) {
   Eigen::Matrix3Xd points(3, 20);
   for (Eigen::Index i = 0; i < 20; ++i) {

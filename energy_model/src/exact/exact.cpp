@@ -25,6 +25,7 @@
 #include "shooting/planar_shooting.hpp"
 #include "shooting/second_variation.hpp"
 #include "shooting/span_shooting.hpp"
+#include "touching/confirm_contacts.hpp"
 #include "touching/touching_cantilever.hpp"
 
 namespace dlo::energy_model {
@@ -231,12 +232,17 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
                   : solve_spans(problem, options, deadline);
 }
 
-Found search_touching(const Problem& problem, const Deadline& deadline) {
-  std::optional<Equilibrium> found = solve_touching_cantilever(problem, deadline);
+Found search_touching(const Problem& problem, const ExactOptions& options,
+                      const Deadline& deadline) {
+  std::optional<Equilibrium> found = options.start == nullptr
+                                         ? solve_touching_cantilever(problem, deadline)
+                                         : confirm_contacts(problem, *options.start, deadline);
   require(found.has_value(), "solve_exact", "number of obstacles",
           static_cast<double>(problem.obstacles.size()),
-          "0, or rigid half-spaces across the plane of a heavy round rod with one clamp at its "
-          "begin");
+          options.start == nullptr
+              ? "0, or rigid half-spaces across the plane of a heavy round rod with one clamp at "
+                "its begin, or a start has to say what touches"
+              : "0, or rigid ones that a round rod without twist touches between its grips");
   return {{*std::move(found)}, false, ""};
 }
 
@@ -248,7 +254,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
   require_positive("solve_exact", "tolerance", options.tolerance);
   require(options.time_limit > 0, "solve_exact", "time_limit", options.time_limit, "> 0");
   Found found = problem.obstacles.empty() ? search(problem, options, deadline)
-                                          : search_touching(problem, deadline);
+                                          : search_touching(problem, options, deadline);
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   for (Equilibrium& equilibrium : found.equilibria) {

@@ -20,7 +20,11 @@ constexpr int most_cuts = 3;
 /// Step at which an end is found, in lengths.
 constexpr double settled = 1e-10;
 /// What is missed where there is nothing to mend: lift_off.hpp's measures, which are steps or more.
-constexpr double nothing_missed = 1e-10;
+/// A curvature that is left at a lift-off is a moment there. What the contact carries has to make
+/// up for it next to that end, and its series of K terms ends with a force K^2 times as large.
+constexpr double nothing_missed = 1e-12;
+/// Below, steps that no longer halve what is missed are rounding.
+constexpr double nearly_nothing_missed = 1e-10;
 /// Longest step, in lengths: the polygon has told where the ends are; and over the room beside one.
 constexpr double longest_step = 0.02;
 constexpr double largest_share = 0.45;
@@ -45,22 +49,23 @@ class Settling {
 
   int run(const Deadline& deadline) {
     if (ends_.empty()) return spent_;
-    int updates = most_updates;
-    if (recall()) updates = 0;
+    int updates = recall() ? 0 : most_updates;
+    double before = INFINITY;
     for (int step = 0; step < most_steps && !deadline.passed(); ++step) {
-      const double before = miss_.cwiseAbs().maxCoeff();
-      if (before < nothing_missed) break;
-      if (updates >= most_updates) {
+      const double missed = miss_.cwiseAbs().maxCoeff();
+      if (missed < nothing_missed) break;
+      if (missed < nearly_nothing_missed && missed > before / 2) break;
+      const bool fast = missed < fast_contraction * before;
+      if (updates >= most_updates || (recalled_ && !fast)) {
         if (!differentiate()) break;
         updates = 0;
         recalled_ = false;
       }
+      before = missed;
       Eigen::VectorXd way = bounded(-jacobian_.partialPivLu().solve(miss_));
       if (!way.allFinite() || !move(way)) break;
       if (way.cwiseAbs().maxCoeff() < settled * solution_.model->span().length) break;
       ++updates;
-      const bool fast = miss_.cwiseAbs().maxCoeff() < fast_contraction * before;
-      if (recalled_ && !fast) updates = most_updates;
     }
     remember();
     return spent_;

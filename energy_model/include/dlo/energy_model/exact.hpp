@@ -56,8 +56,18 @@ struct ExactOptions {
 ///
 /// Over rigid half-spaces across its plane a heavy round rod of one section, straight by nature,
 /// with one clamp at its begin and no load is followed while its weight is raised from nothing: its
-/// end is free, touches or lies. Other contact is refused or ends as `failed` or `not_resolved`;
-/// the branch's end may be a `saddle` where there is a minimum. `start` is not used then.
+/// end is free, touches or lies. The branch's end may be a `saddle` where there is a minimum.
+///
+/// Any other contact of a round untwisted rod of one section with rigid bodies needs a `start`
+/// whose contacts say which parts touch what. Multiple shooting confirms or corrects it: where a
+/// part lies the rod is integrated along the plane, cylinder or ball, whose pressure is what keeps
+/// it there; gap, slope and curvature are the surface's where it lifts off, gap and slope vanish
+/// where it touches at a point, the gap at a tip; those arc lengths and the concentrated forces are
+/// unknowns. Where Newton's method does not close the shots it is `failed`; with depths elsewhere
+/// or forces that pull it is `not_resolved`: no other contact is looked for. Whether the second
+/// variation is positive is asked of its own elements, with its norm times 1e-3 on or off it;
+/// `smallest_curvature` is not known. A rod that lies on both sides of a grip or on two features of
+/// a body side by side is refused.
 ///
 /// A rod with material directors is not cut, because its torque passes through clamps that do not
 /// hold the frame; the first clamp holds the frame that Problem says. It is solved by multiple
@@ -76,7 +86,8 @@ struct ExactOptions {
 /// spin of its cross-sections, lengths in l. The stable equilibrium of lowest energy is returned;
 /// if none is stable the lowest one, as `saddle`. The message names what moves for nothing (turning
 /// about a line), combinations of spans beyond the 64 lowest, and tips that could not be shot from.
-/// @throws std::invalid_argument if the problem or an option is out of range, or has obstacles
+/// @throws std::invalid_argument if the problem or an option is out of range, or has obstacles that
+/// are not as said above
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
 /// Every equilibrium that the scan or the search finds, stable ones first, by energy; unstable ones

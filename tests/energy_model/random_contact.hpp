@@ -1,0 +1,112 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "problems.hpp"
+
+namespace dlo::test {
+
+/// One to three grips above or beside a half-space, as drawn by a seed.
+inline energy_model::Problem random_touching_problem(unsigned seed, bool space,
+                                                     double largest_gamma) {
+  std::mt19937 random(seed);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random() - std::mt19937::min()) /
+                     static_cast<double>(std::mt19937::max());
+  };
+  const auto direction = [&] {
+    const double azimuth = uniform(-M_PI, M_PI);
+    const double z = space ? uniform(-1, 1) : 0;
+    const double r = std::sqrt(1 - z * z);
+    return Eigen::Vector3d(r * std::cos(azimuth), r * std::sin(azimuth), z);
+  };
+  energy_model::Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.weight_per_length = {0, -std::pow(10, uniform(0, std::log10(largest_gamma))), 0};
+  std::vector<double> at = {0};
+  const unsigned grips = 1 + random() % 3;
+  if (grips == 3) at.push_back(uniform(0.3, 0.7));
+  if (grips > 1) at.push_back(1);
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (i > 0) position += (at[i] - at[i - 1]) * uniform(0.2, 0.97) * direction();
+    energy_model::Grip grip{at[i], position};
+    if (i == 0 || random() % 2 == 0) grip.direction = direction();
+    problem.grips.push_back(grip);
+  }
+  const double tilt = uniform(-0.7, 0.7);
+  const double aside = space ? uniform(-0.3, 0.3) : 0;
+  const std::array<Eigen::Vector3d, 3> normals = {
+      Eigen::Vector3d(0, 1, 0), Eigen::Vector3d(std::sin(tilt), std::cos(tilt), aside),
+      Eigen::Vector3d(random() % 2 == 0 ? 1 : -1, tilt / 2, aside)};
+  const Eigen::Vector3d n = normals[random() % 3].normalized();
+  double lowest = 0;
+  for (const energy_model::Grip& grip : problem.grips)
+    lowest = std::min(lowest, n.dot(grip.position));
+  problem.obstacles = {
+      {obstacle::Body::half_space((lowest - std::pow(10, uniform(-2, -0.3))) * n, n)}};
+  return problem;
+}
+
+/// A body that the shape without it would enter, clear of the grips. @return whether there is one
+inline bool put_in_the_way(std::mt19937& random, bool space, energy_model::Problem& problem) {
+  const auto uniform = [&random](double low, double high) {
+    return low + (high - low) * std::generate_canonical<double, 53>(random);
+  };
+  const energy_model::Equilibrium free = energy_model::solve_energy(problem);
+  if (!energy_model::succeeded(free.status)) return false;
+  for (int attempt = 0; attempt < 100; ++attempt) {
+    const double radius = std::pow(10, uniform(-2, -0.7));
+    const double turn = uniform(0, 6.28);
+    const Eigen::Vector3d aside(std::cos(turn), std::sin(turn), space ? uniform(-0.5, 0.5) : 0);
+    const Eigen::Vector3d centre = free.sample(std::array{uniform(0.2, 1)}).points.col(0) +
+                                   radius * uniform(0.3, 0.9) * aside.normalized();
+    const Eigen::Vector3d axis(space ? uniform(-0.5, 0.5) : 0, space ? uniform(-0.5, 0.5) : 0, 1);
+    const std::array<obstacle::Body, 3> bodies = {
+        obstacle::Body::cylinder(centre, axis, radius), obstacle::Body::sphere(centre, radius),
+        obstacle::Body::capsule(centre, axis, 0.2, radius)};
+    const obstacle::Body& body = bodies[random() % 3];
+    bool clear = true;
+    for (const energy_model::Grip& grip : problem.grips) {
+      for (const double way : {-0.06, -0.03, 0.0, 0.03, 0.06}) {
+        const Eigen::Vector3d along =
+            grip.direction ? Eigen::Vector3d(way * *grip.direction) : Eigen::Vector3d::Zero();
+        clear = clear && body.clearance(grip.position + along) > 0.01;
+      }
+    }
+    if (!clear) continue;
+    problem.obstacles = {{body}};
+    return true;
+  }
+  return false;
+}
+
+/// A heavy rod, clamped at its begin and in one of two cases held at its end, in whose way there is
+/// a cylinder, a ball or a capsule, as drawn by a seed. @return nothing where none is in its way
+inline std::optional<energy_model::Problem> random_problem_with_body(unsigned seed, bool space) {
+  std::mt19937 random(seed + 977 * static_cast<unsigned>(space));
+  const auto uniform = [&random](double low, double high) {
+    return low + (high - low) * std::generate_canonical<double, 53>(random);
+  };
+  const auto direction = [&]() -> Eigen::Vector3d {
+    const Eigen::Vector3d d(uniform(-1, 1), uniform(-1, 1), space ? uniform(-1, 1) : 0);
+    return d.normalized();
+  };
+  energy_model::Problem problem = heavy_cantilever(std::pow(10, uniform(0, 4)), 0);
+  problem.grips[0].direction = direction();
+  if (random() % 2 == 0) {
+    problem.grips.push_back({1, uniform(0.3, 0.9) * direction()});
+    if (random() % 2 == 0) problem.grips[1].direction = direction();
+  }
+  if (!put_in_the_way(random, space, problem)) return std::nullopt;
+  return problem;
+}
+
+}  // namespace dlo::test
