@@ -740,11 +740,12 @@ class Search {
       const std::shared_ptr<SpanEnergy> model = found[i].model;
       const Eigen::VectorXd x = found[i].x;
       const Eigen::VectorXd multipliers = found[i].multipliers;
-      const Eigen::VectorXd softest = softest_of(found[i]);
+      const std::optional<Eigen::VectorXd> softest = softest_of(found[i]);
+      if (!softest) continue;
       Search search(model->span(), options_, workspace_);
       for (const double step : steps) {
         SpanSolution beside = search.empty_solution(model->terms());
-        beside.x = beside.model->adopt(*model, x) + step * softest;
+        beside.x = beside.model->adopt(*model, x) + step * *softest;
         beside.multipliers = beside.model->adopt_multipliers(*model, multipliers);
         workspace_.newton().polish(beside, load_);
         note(beside_found, add(search.refined(std::move(beside)), found));
@@ -756,8 +757,8 @@ class Search {
   }
 
   /// Unit vector along the eigenvalue of the projected second variation that is nearest to zero,
-  /// free turns left aside.
-  [[nodiscard]] static Eigen::VectorXd softest_of(const SpanSolution& solution) {
+  /// free turns left aside; none if the constraints leave no other.
+  [[nodiscard]] static std::optional<Eigen::VectorXd> softest_of(const SpanSolution& solution) {
     SpanEnergy& model = *solution.model;
     Eigen::VectorXd gradient(model.size());
     (void)model.value(solution.x, gradient);
@@ -766,8 +767,11 @@ class Search {
     model.constraint(residual, jacobian);
     Eigen::MatrixXd hessian;
     model.hessian(solution.multipliers, hessian);
-    return direction_by_size(hessian, jacobian,
-                             free_turns(model.span(), model.tangents()).in_plane);
+    FreeHessian on_free_directions;
+    on_free_directions.compute(hessian, jacobian);
+    const Eigen::Index free = free_turns(model.span(), model.tangents()).in_plane;
+    if (free >= model.size() - model.constraints()) return std::nullopt;
+    return direction_by_size(on_free_directions, free);
   }
 
   /// Where an equilibrium that cannot hold itself comes to rest; out of its plane if that is the
