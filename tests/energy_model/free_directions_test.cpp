@@ -7,6 +7,8 @@
 #include <Eigen/QR>
 #include <cmath>
 
+#include "free_basis.hpp"
+
 namespace dlo::energy_model {
 namespace {
 
@@ -33,7 +35,7 @@ TEST(FreeDirections, OnlyWhatConstraintsLeaveFreeIsAsked) {
     const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(constraints, 16);
     const Eigen::MatrixXd hessian =
         with_eigenvalues(Eigen::VectorXd::LinSpaced(16, constraints == 3 ? -1 : 0.1, 2));
-    const Eigen::MatrixXd Z = free_directions(jacobian, 16);
+    const Eigen::MatrixXd Z = test::free_basis(jacobian, 16);
     EXPECT_LT((jacobian * Z).norm(), 1e-13);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Z.transpose() * hessian * Z);
     const double smallest = eigen.eigenvalues()[0];

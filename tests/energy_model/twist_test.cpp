@@ -11,6 +11,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
+#include "free_basis.hpp"
 #include "linear/free_directions.hpp"
 #include "problems.hpp"
 #include "strain/span_energy.hpp"
@@ -60,7 +61,7 @@ Eigen::VectorXd second_variation_at(SpanEnergy& model, const Eigen::VectorXd& x,
   }
   EXPECT_LT(residual.norm(), 1e-12);
   EXPECT_LT((gradient - jacobian.transpose() * multipliers).norm(), 1e-9);
-  const Eigen::MatrixXd Z = free_directions(effective, model.size());
+  const Eigen::MatrixXd Z = test::free_basis(effective, model.size());
   return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(Z.transpose() * hessian * Z).eigenvalues();
 }
 

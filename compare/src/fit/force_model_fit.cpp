@@ -15,7 +15,7 @@
 #include "dlo/compare/solution.hpp"
 #include "dlo/force_model/step_size.hpp"
 #include "fit/force_model_shortfall.hpp"
-#include "base/scalar_search.hpp"
+#include "polygon/scalar_search.hpp"
 #include "polygon/natural_plane.hpp"
 #include "solve/polygon_solution.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "base/scalar_search.hpp"
+#include "polygon/scalar_search.hpp"
 
 namespace dlo::compare {
 

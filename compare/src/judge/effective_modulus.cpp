@@ -12,7 +12,7 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
-#include "base/scalar_search.hpp"
+#include "polygon/scalar_search.hpp"
 
 namespace dlo::compare {
 namespace {

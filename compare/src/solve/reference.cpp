@@ -41,6 +41,32 @@ bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
                                         status == energy_model::SolveStatus::near_singular));
 }
 
+/// By the exact model on its own, or, of a rod that touches what it does not find by itself,
+/// from what the energy model says touches: its contacts are confirmed or corrected.
+/// @throws std::invalid_argument, ConvergenceError if the energy model finds none
+energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Problem& problem,
+                                      const SolveOptions& options) {
+  energy_model::ExactOptions exact{.time_limit = options.time_limit};
+  if (problem.obstacles.empty()) return energy_model::solve_exact(problem, exact);
+  try {
+    energy_model::Equilibrium own = energy_model::solve_exact(problem, exact);
+    if (energy_model::succeeded(own.status)) return own;
+  } catch (const std::invalid_argument&) {
+    // Of its own accord it knows one clamp over half-spaces.
+  }
+  const energy_model::Equilibrium told =
+      energy_model::solve_energy(problem, {.time_limit = options.time_limit});
+  if (!energy_model::succeeded(told.status)) {
+    throw ConvergenceError(fmt::format(
+        "{}: the energy model, which tells the exact one what touches, did not converge: {}",
+        scene.file, told.message));
+  }
+  exact.start = &told;
+  energy_model::Equilibrium confirmed = energy_model::solve_exact(problem, exact);
+  confirmed.message += ", from what the energy model says touches";
+  return confirmed;
+}
+
 }  // namespace
 
 energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
@@ -49,7 +75,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
   energy_model::Equilibrium result;
   try {
     result = model == Model::exact
-                 ? energy_model::solve_exact(problem, {.time_limit = options.time_limit})
+                 ? exact_shape(scene, problem, options)
                  : energy_model::solve_energy(problem, {.terms = options.terms,
                                                         .max_evaluations = options.max_evaluations,
                                                         .time_limit = options.time_limit,

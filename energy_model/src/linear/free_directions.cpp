@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -15,13 +14,6 @@ AcrossNeutral::AcrossNeutral(const Eigen::MatrixXd& system)
     : factor_(system.rows(), system.cols()) {
   factor_.setThreshold(neutral / std::max(1.0, system.cwiseAbs().maxCoeff()));
   factor_.compute(system);
-}
-
-Eigen::MatrixXd free_directions(const Eigen::MatrixXd& jacobian, Eigen::Index size) {
-  if (jacobian.rows() == 0) return Eigen::MatrixXd::Identity(size, size);
-  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(jacobian.transpose());
-  const Eigen::MatrixXd Q = qr.householderQ();
-  return Q.rightCols(size - jacobian.rows());
 }
 
 double smallest_eigenvalue(FreeHessian& hessian) {
@@ -95,11 +87,6 @@ std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
   std::optional<Softest> found = softest(hessian, jacobian);
   if (!found || found->eigenvalue > -neutral) return std::nullopt;
   return std::move(found->direction);
-}
-
-std::string moves_for_nothing(int ways) {
-  if (ways == 0) return {};
-  return ", moves for nothing in " + std::to_string(ways) + (ways == 1 ? " way" : " ways");
 }
 
 }  // namespace dlo::energy_model

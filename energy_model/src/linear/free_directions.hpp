@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <Eigen/QR>
 #include <optional>
-#include <string>
 
 #include "linear/free_hessian.hpp"
 
@@ -25,9 +24,6 @@ class AcrossNeutral {
  private:
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor_;
 };
-
-/// Orthonormal basis of what the constraints leave free.
-[[nodiscard]] Eigen::MatrixXd free_directions(const Eigen::MatrixXd& jacobian, Eigen::Index size);
 
 /// Smallest eigenvalue of the Hessian on these directions, if it is positive larger by a hundredth
 /// at most; 1 if the constraints leave none.
@@ -51,9 +47,5 @@ class AcrossNeutral {
 /// The direction in which an unstable equilibrium gives way first; none if it is stable.
 [[nodiscard]] std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
                                                                const Eigen::MatrixXd& jacobian);
-
-/// How a message goes on about a shape that can move in so many ways without a change of energy;
-/// empty where there is none.
-[[nodiscard]] std::string moves_for_nothing(int ways);
 
 }  // namespace dlo::energy_model

@@ -317,6 +317,7 @@ void Newton::run(SpanSolution& solution, double load) {
   const int most_steps = obstacles ? 60 : 30;
   double size = evaluate(solution);
   bool factored = std::exchange(nearby_, false) && !obstacles && has_factor_for(*solution.model);
+  bool borrowed = factored;  // the factor is another shape's
   if (factored) broyden_.clear();
   bool shrinks = false;  // the steps, with the factor of an earlier point
   bool is_next = false;  // step_ is the next one already
@@ -341,6 +342,7 @@ void Newton::run(SpanSolution& solution, double load) {
       is_next = false;
     } else if (!factored) {
       factor(solution);
+      borrowed = false;
       is_next = false;
     }
     if (!std::exchange(is_next, false)) solve();
@@ -364,7 +366,7 @@ void Newton::run(SpanSolution& solution, double load) {
         stand_still_where_neutral();
         solution.next_step = step_.head(gradient_.size()).norm();
       }
-      if (small && solution.next_step <= coarsest_step) return finish();
+      if (small && solution.next_step <= coarsest_step && !borrowed) return finish();
       if (factored) {
         // The factor was another point's.
         factored = false;
@@ -380,6 +382,11 @@ void Newton::run(SpanSolution& solution, double load) {
       return finish();
     }
     if (!obstacles && is_at_rounding(solution, size) && solution.next_step <= finest_step) {
+      if (borrowed) {
+        // Steps with the factor's own Hessian end far below the next one; these only by a part.
+        move(solution, 1);
+        size = evaluate(solution);
+      }
       return finish();
     }
     // Between grips the caller looks at the second variation; without, the factor has to tell it.

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "linear/free_directions.hpp"
+#include "base/moves_for_nothing.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 #include "search/placed_shape.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "linear/free_directions.hpp"
+#include "base/moves_for_nothing.hpp"
 #include "shooting/constrained_pencil.hpp"
 #include "shooting/lobatto_element.hpp"
 

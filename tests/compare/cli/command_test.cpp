@@ -193,7 +193,42 @@ shape = "sphere"
 point = [0, -0.2, 0]
 radius = 0.1
 )";
-  expect_error("solve " + scene(ball) + " --model exact", 2, {"obstacle", "energy"});
+  expect_error("solve " + scene(ball + "stiffness = 100\n") + " --model exact", 2,
+               {"obstacle", "energy"});
+}
+
+TEST_F(Command, ExactConfirmsWhatTheEnergyModelSaysTouches) {
+  const std::string peg = scene(R"(gravity = [0, -9.81, 0]
+[rod]
+length = "50 cm"
+diameter = "4 mm"
+material = { youngs_modulus = "100 MPa", density = 1200 }
+[[gripper]]
+at = 0
+position = [-0.2, 0, 0]
+direction = "10 deg"
+[[gripper]]
+at = "50 cm"
+position = [0.2, 0, 0]
+direction = "-10 deg"
+[[obstacle]]
+shape = "cylinder"
+point = [0, -0.05, 0]
+axis = [0, 0, 1]
+radius = "30 mm"
+)");
+  const json energy = json::parse(run("solve " + peg + " --format json").out);
+  const json exact = json::parse(run("solve " + peg + " --model exact --format json").out);
+  ASSERT_FALSE(energy.at("contacts").empty());
+  EXPECT_EQ(exact.at("contacts").size(), energy.at("contacts").size());
+  for (std::size_t i = 0; i < energy.at("points_m").size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR(exact.at("points_m")[i][k].get<double>(),
+                  energy.at("points_m")[i][k].get<double>(), 5e-9);
+    }
+  }
+  EXPECT_NE(run("solve " + peg + " --model exact").out.find("energy model says touches"),
+            std::string::npos);
 }
 
 TEST_F(Command, SolveMatchesTheReferenceValuesOfThePapersRod) {

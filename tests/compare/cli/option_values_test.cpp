@@ -134,7 +134,7 @@ TEST_F(Command, RodsBeyondTheLimitsNameFileLineAndKey) {
 TEST_F(Command, AModelThatDoesNotTakeASceneSaysWhichDoes) {
   const std::string ball = scene(std::string(rod_of) +
                                  "[[obstacle]]\nshape = \"sphere\"\npoint = [0, -0.2, "
-                                 "0]\nradius = 0.1\n");
+                                 "0]\nradius = 0.1\nstiffness = 100\n");
   expect_error("solve " + ball + " --model exact", 2,
                {"scene.toml", "obstacle", "--model energy, chain or force"});
   std::string soft = rod_of;

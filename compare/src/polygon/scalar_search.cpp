@@ -1,4 +1,4 @@
-#include "base/scalar_search.hpp"
+#include "polygon/scalar_search.hpp"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_min.h>

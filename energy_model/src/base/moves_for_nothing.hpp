@@ -1,0 +1,14 @@
+#pragma once
+
+#include <string>
+
+namespace dlo::energy_model {
+
+/// How a message goes on about a shape that can move in so many ways without a change of energy;
+/// empty where there is none.
+[[nodiscard]] inline std::string moves_for_nothing(int ways) {
+  if (ways == 0) return {};
+  return ", moves for nothing in " + std::to_string(ways) + (ways == 1 ? " way" : " ways");
+}
+
+}  // namespace dlo::energy_model
