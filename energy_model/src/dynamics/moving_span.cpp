@@ -18,7 +18,7 @@ constexpr double motion_plane_rounding = 1e-10;
 constexpr double stiffer = 8;
 constexpr int most_repeats = 20;
 
-Moving turned(const Eigen::Matrix3d& by, const Moving& moving) {
+Moving moved_by(const Eigen::Matrix3d& by, const Moving& moving) {
   return {by * moving.value, by * moving.rate, by * moving.acceleration};
 }
 
@@ -72,7 +72,7 @@ SpanDrive MovingSpan::drive(double time, bool planar, bool& left_plane) const {
   const GripPose anchor = pose(placed_.anchor_grip, seconds);
   const Eigen::Matrix3d axes = to_axes(seconds);
   const auto position_of = [&](const GripPose& pose) {
-    return turned(
+    return moved_by(
         axes, {(pose.position - placed_.anchor_position) / length_,
                pose.velocity * (time_ / length_), pose.acceleration * (time_ * time_ / length_)});
   };

@@ -17,11 +17,11 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double at_end = 1e-9;            // of arc lengths, in l
-constexpr double growth_of_arc = 3;        // of the fastest mode over an arc, its exponent
-constexpr double allowed_depth = 1e-9;     // in l; a tenth of what a converged shape may have
-constexpr double allowed_pull = 1e-7;      // of forces, over 1 + the largest one
-constexpr double stability_margin = 1e-3;  // of the second variation's norm
+constexpr double at_end = 1e-9;           // of arc lengths, in l
+constexpr double growth_of_interval = 3;  // of the fastest mode over an arc, its exponent
+constexpr double confirmed_depth = 1e-9;  // in l; a tenth of what a converged shape may have
+constexpr double allowed_pull = 1e-7;     // of forces, over 1 + the largest one
+constexpr double norm_margin = 1e-3;      // of the second variation's norm
 
 bool is_known(const Problem& problem) {
   const bool rigid =
@@ -153,7 +153,7 @@ class Confirmation {
     if (p > 0 && piece.surface && chain_.pieces.back().surface) return false;
     const double pulled = force_after(begin).norm() + chain_.weight.norm() * length;
     const double rate = std::sqrt(pulled) + state_of(begin + length / 2).segment<3>(6).norm();
-    const int arcs = 1 + static_cast<int>(length * rate / growth_of_arc);
+    const int arcs = 1 + static_cast<int>(length * rate / growth_of_interval);
     FlowState<double> node = state_of(begin);
     if (piece.surface) {
       const Eigen::Vector3d N = piece.surface->outward(node.head<3>());
@@ -322,7 +322,7 @@ class Confirmation {
       largest = std::max(largest, grip.force.norm() / force_unit_);
     }
     std::string wrong;
-    if (result.penetration > allowed_depth * l_) {
+    if (result.penetration > confirmed_depth * l_) {
       wrong = "the rod is " + std::to_string(result.penetration) +
               " m within an obstacle that it is not said to touch";
     } else if (least_force_ < -allowed_pull * largest ||
@@ -332,9 +332,9 @@ class Confirmation {
     result.status = SolveStatus::not_resolved;
     if (wrong.empty()) {
       result.status = SolveStatus::converged;
-      if (!is_stable(chain_, stability_margin)) {
+      if (!is_stable(chain_, norm_margin)) {
         result.status =
-            is_stable(chain_, -stability_margin) ? SolveStatus::near_singular : SolveStatus::saddle;
+            is_stable(chain_, -norm_margin) ? SolveStatus::near_singular : SolveStatus::saddle;
       }
     }
     result.message = wrong.empty() ? to_string(result.status) : wrong;

@@ -14,8 +14,8 @@ using Complex = std::complex<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 using Block = Eigen::Matrix<double, Eigen::Dynamic, 12>;
 
-constexpr int most_newton_steps = 30;
-constexpr double closed = 1e-9;             // of forces, in EI/l^2 over 1 + the largest one
+constexpr int most_chain_steps = 30;
+constexpr double closed_chain = 1e-9;       // of forces, in EI/l^2 over 1 + the largest one
 constexpr double last_step = 1e-8;          // in l, of positions and stations
 constexpr double longest_share = 0.3;       // of a piece, by which a station beside it moves
 constexpr double smallest_part = 1.0 / 64;  // of a Newton step
@@ -202,7 +202,7 @@ Join join_at(const ContactChain& chain, std::size_t j, const FlowState<double>* 
 }
 
 /// What all equations miss and their derivatives.
-struct System {
+struct ChainSystem {
   Eigen::VectorXd missed;
   Triplets derivatives;
 };
@@ -231,8 +231,8 @@ Eigen::Matrix<double, state, state> transition(const ContactChain& chain, std::s
   return by_node;
 }
 
-System system_of(const ContactChain& chain, const Layout& layout, bool differentiate) {
-  System system;
+ChainSystem chain_system(const ContactChain& chain, const Layout& layout, bool differentiate) {
+  ChainSystem system;
   std::vector<double> missed;
   const auto add = [&](std::size_t j, const Join& join, Eigen::Index after) {
     const auto row = static_cast<Eigen::Index>(missed.size());
@@ -354,8 +354,8 @@ FlowState<double> ContactChain::at(std::size_t piece, double s) const {
 
 bool close_chain(ContactChain& chain, const Deadline& deadline) {
   const Layout layout = layout_of(chain);
-  for (int steps = 0; steps < most_newton_steps && !deadline.passed(); ++steps) {
-    const System system = system_of(chain, layout, true);
+  for (int steps = 0; steps < most_chain_steps && !deadline.passed(); ++steps) {
+    const ChainSystem system = chain_system(chain, layout, true);
     ++chain.shots;
     const double missed = system.missed.norm();
     chain.residual = missed / largest_force(chain);
@@ -367,7 +367,7 @@ bool close_chain(ContactChain& chain, const Deadline& deadline) {
     const Eigen::VectorXd step = -solver.solve(system.missed);
     if (!step.allFinite()) return false;
     chain.step = length_of(chain, layout, step);
-    if (chain.residual < closed && chain.step < last_step) {
+    if (chain.residual < closed_chain && chain.step < last_step) {
       move(chain, layout, step);
       return true;
     }
@@ -377,7 +377,7 @@ bool close_chain(ContactChain& chain, const Deadline& deadline) {
       ContactChain trial = chain;
       move(trial, layout, part * step);
       ++trial.shots;
-      if (!(system_of(trial, layout, false).missed.norm() < (1 - part / 4) * missed)) continue;
+      if (!(chain_system(trial, layout, false).missed.norm() < (1 - part / 4) * missed)) continue;
       chain = std::move(trial);
       moved = true;
       break;
