@@ -36,7 +36,11 @@ inline energy_model::Problem random_touching_problem(unsigned seed, bool space,
   if (grips > 1) at.push_back(1);
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < at.size(); ++i) {
-    if (i > 0) position += (at[i] - at[i - 1]) * uniform(0.2, 0.97) * direction();
+    // One draw a statement: compilers evaluate operands in orders of their own.
+    if (i > 0) {
+      const double share = uniform(0.2, 0.97);
+      position += (at[i] - at[i - 1]) * share * direction();
+    }
     energy_model::Grip grip{at[i], position};
     if (i == 0 || random() % 2 == 0) grip.direction = direction();
     problem.grips.push_back(grip);
@@ -66,9 +70,13 @@ inline bool put_in_the_way(std::mt19937& random, bool space, energy_model::Probl
     const double radius = std::pow(10, uniform(-2, -0.7));
     const double turn = uniform(0, 6.28);
     const Eigen::Vector3d aside(std::cos(turn), std::sin(turn), space ? uniform(-0.5, 0.5) : 0);
-    const Eigen::Vector3d centre = free.sample(std::array{uniform(0.2, 1)}).points.col(0) +
-                                   radius * uniform(0.3, 0.9) * aside.normalized();
-    const Eigen::Vector3d axis(space ? uniform(-0.5, 0.5) : 0, space ? uniform(-0.5, 0.5) : 0, 1);
+    const double at = uniform(0.2, 1);
+    const double off = radius * uniform(0.3, 0.9);
+    const Eigen::Vector3d centre =
+        free.sample(std::array{at}).points.col(0) + off * aside.normalized();
+    const double leans_x = space ? uniform(-0.5, 0.5) : 0;
+    const double leans_y = space ? uniform(-0.5, 0.5) : 0;
+    const Eigen::Vector3d axis(leans_x, leans_y, 1);
     const std::array<obstacle::Body, 3> bodies = {
         obstacle::Body::cylinder(centre, axis, radius), obstacle::Body::sphere(centre, radius),
         obstacle::Body::capsule(centre, axis, 0.2, radius)};
@@ -96,13 +104,15 @@ inline std::optional<energy_model::Problem> random_problem_with_body(unsigned se
     return low + (high - low) * std::generate_canonical<double, 53>(random);
   };
   const auto direction = [&]() -> Eigen::Vector3d {
-    const Eigen::Vector3d d(uniform(-1, 1), uniform(-1, 1), space ? uniform(-1, 1) : 0);
-    return d.normalized();
+    const double x = uniform(-1, 1);
+    const double y = uniform(-1, 1);
+    return Eigen::Vector3d(x, y, space ? uniform(-1, 1) : 0).normalized();
   };
   energy_model::Problem problem = heavy_cantilever(std::pow(10, uniform(0, 4)), 0);
   problem.grips[0].direction = direction();
   if (random() % 2 == 0) {
-    problem.grips.push_back({1, uniform(0.3, 0.9) * direction()});
+    const double reach = uniform(0.3, 0.9);
+    problem.grips.push_back({1, reach * direction()});
     if (random() % 2 == 0) problem.grips[1].direction = direction();
   }
   if (!put_in_the_way(random, space, problem)) return std::nullopt;

@@ -15,8 +15,8 @@
 #include "dlo/compare/solution.hpp"
 #include "dlo/force_model/step_size.hpp"
 #include "fit/force_model_shortfall.hpp"
-#include "polygon/scalar_search.hpp"
 #include "polygon/natural_plane.hpp"
+#include "polygon/scalar_search.hpp"
 #include "solve/polygon_solution.hpp"
 
 namespace dlo::compare {

@@ -141,17 +141,17 @@ Lag lag_of(const std::vector<Eigen::Matrix3Xd>& leader,
   for (std::size_t shift = 0; shift < count; ++shift) squares.push_back(squares_at(shift));
   const auto best =
       static_cast<std::size_t>(std::min_element(squares.begin(), squares.end()) - squares.begin());
+  // A leader that stands all the time is nearer than one that moves, however late.
+  if (best + 1 == count) return {};
   double part = 0;
   double least = squares[best];
-  if (best + 1 < count) {
-    // Of the parabola through three values; at no shift its mirror image is on the other side.
-    const double before = best > 0 ? squares[best - 1] : squares[best + 1];
-    const double after = squares[best + 1];
-    const double bend = before - 2 * least + after;
-    if (bend > 0) {
-      part = (before - after) / (2 * bend);
-      least = std::max(0.0, least - (before - after) * part / 4);
-    }
+  // Of the parabola through three values; at no shift its mirror image is on the other side.
+  const double before = best > 0 ? squares[best - 1] : squares[best + 1];
+  const double after = squares[best + 1];
+  const double bend = before - 2 * least + after;
+  if (bend > 0) {
+    part = (before - after) / (2 * bend);
+    least = std::max(0.0, least - (before - after) * part / 4);
   }
   const double looks = std::ceil(static_cast<double>(count) / static_cast<double>(stride));
   return {(static_cast<double>(best) + part) * step,

@@ -79,7 +79,8 @@ struct Lag {
 };
 
 /// The lag at which the mean square distance over all frames is least; before its first frame the
-/// leader stands. NaN if the leader does not move.
+/// leader stands. NaN if the leader does not move, or is nearest where it stands all the time, as
+/// to a follower that goes elsewhere.
 /// @param leader, follower  shapes at equal steps of time [m], as many of each
 /// @param step              of time [s]
 [[nodiscard]] Lag lag_of(const std::vector<Eigen::Matrix3Xd>& leader,

@@ -206,14 +206,14 @@ material = { youngs_modulus = "100 MPa", density = 1200 }
 [[gripper]]
 at = 0
 position = [-0.2, 0, 0]
-direction = "10 deg"
+direction = "30 deg"
 [[gripper]]
 at = "50 cm"
-position = [0.2, 0, 0]
-direction = "-10 deg"
+position = [0.16, -0.12, 0]
+direction = "-70 deg"
 [[obstacle]]
 shape = "cylinder"
-point = [0, -0.05, 0]
+point = [0, 0.06, 0]
 axis = [0, 0, 1]
 radius = "30 mm"
 )");
