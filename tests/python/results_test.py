@@ -102,9 +102,9 @@ def test_every_equilibrium_is_found(root):
         ),
         samples=2,
     )
-    assert len(states) == 2
-    assert [state.smallest_curvature > 0 for state in states] == [True, False]
-    assert len(states.json["equilibria"]) == 2
+    assert len(states) == 3
+    assert [state.smallest_curvature > 0 for state in states] == [True, False, False]
+    assert len(states.json["equilibria"]) == 3
 
 
 def test_calibrate_finds_the_modulus_it_was_given(cable):
