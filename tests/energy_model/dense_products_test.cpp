@@ -48,15 +48,15 @@ TEST(DenseProducts, AreThoseOfTheLibraryInAllSizes) {
 }
 
 TEST(DenseProducts, WorkOutHalfOfWhatIsSymmetric) {
-  for (const Index rows : {1, 3, 4, 9, 47}) {
-    for (const Index columns : {1, 2, 3, 4, 5, 7, 20}) {
-      const MatrixXd a = MatrixXd::Random(columns, rows);
-      const Eigen::VectorXd weights = Eigen::VectorXd::Random(rows);
+  for (const Index inner : {1, 3, 4, 9, 47}) {
+    for (const Index n : {1, 2, 3, 4, 5, 7, 20}) {
+      const MatrixXd a = MatrixXd::Random(n, inner);
+      const Eigen::VectorXd weights = Eigen::VectorXd::Random(inner);
       const MatrixXd weighted = a * weights.asDiagonal();
-      MatrixXd product(columns, columns);
+      MatrixXd product(n, n);
       for (const DenseKernel* kernel : kernels) {
         kernel->multiply_symmetric(columns_of(a), columns_of(weighted), result_columns(product));
-        EXPECT_LT((product - a * weighted.transpose()).norm(), rounding) << rows << ' ' << columns;
+        EXPECT_LT((product - a * weighted.transpose()).norm(), rounding) << inner << ' ' << n;
       }
     }
   }

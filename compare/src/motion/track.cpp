@@ -122,9 +122,10 @@ class Tracker {
         options_(options),
         clock_(scene, {options.from, options.to}, options.rates),
         obstacles_(obstacles_ever_in_reach(scene, clock_)),
-        solver_({.terms = options.solve.terms,
-                 .max_evaluations = options.solve.max_evaluations,
-                 .time_limit = options.solve.time_limit}) {
+        energy_options_({.terms = options.solve.terms,
+                         .max_evaluations = options.solve.max_evaluations,
+                         .time_limit = options.solve.time_limit}),
+        solver_(energy_options_) {
     result_.arc_length = equal_arc_lengths(scene.length, options.samples);
     bool yields = false;
     for (const std::size_t i : obstacles_) {
@@ -204,13 +205,14 @@ class Tracker {
   /// In one step, and where that does not keep the branch in smaller ones from the frame before.
   Equilibrium follow(std::size_t index, const energy_model::Problem& problem) {
     in_smaller_steps_ = false;
-    const energy_model::EnergySolver before = solver_.fork();
     Equilibrium rod = solver_.follow(problem);
     for (int steps = fewest_steps; steps <= most_steps; steps *= 2) {
       if (solver_.followed() && energy_model::succeeded(rod.status)) break;
-      energy_model::EnergySolver solver = before.fork();
-      Equilibrium smaller;
-      bool kept = true;
+      energy_model::EnergyOptions from_last = energy_options_;
+      from_last.start = &last_.rod;
+      energy_model::EnergySolver solver(from_last);
+      Equilibrium smaller = solver.solve(frame_problem(last_.scene, obstacles_));
+      bool kept = energy_model::succeeded(smaller.status);
       for (int step = 1; step <= steps && kept; ++step) {
         const Scene scene = clock_.scene_before(scene_, index, static_cast<double>(step) / steps);
         smaller = solver.follow(step < steps ? frame_problem(scene, obstacles_) : problem);
@@ -338,6 +340,7 @@ class Tracker {
   const TrackOptions& options_;
   FrameClock clock_;
   std::vector<std::size_t> obstacles_;
+  energy_model::EnergyOptions energy_options_;
   energy_model::EnergySolver solver_;
   bool in_smaller_steps_ = false;  // the last frame
   bool balances_ = true;

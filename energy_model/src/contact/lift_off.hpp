@@ -17,7 +17,6 @@ struct LiftOff {
 
   [[nodiscard]] double at(const Span& span) const;
   void move(Span& span, double way) const;
-  [[nodiscard]] bool operator==(const LiftOff& other) const = default;
 };
 
 /// All of a span's, by growing s.

@@ -93,14 +93,6 @@ class EnergySolver::State {
  public:
   explicit State(const EnergyOptions& options) : options_(options) { check(options); }
 
-  void remember_like(const State& other) {
-    options_ = other.options_;
-    log_ = other.log_;
-    followed_ = other.followed_;
-    remembered_ = other.remembered_;
-    twists_ = other.twists_;
-  }
-
   std::vector<Equilibrium> solve(const Problem& problem, bool all, bool follow) {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
@@ -449,12 +441,6 @@ EnergySolver::EnergySolver(const EnergyOptions& options)
 EnergySolver::~EnergySolver() = default;
 EnergySolver::EnergySolver(EnergySolver&& other) noexcept = default;
 EnergySolver& EnergySolver::operator=(EnergySolver&& other) noexcept = default;
-
-EnergySolver EnergySolver::fork() const {
-  EnergySolver other;
-  other.state_->remember_like(*state_);
-  return other;
-}
 
 Equilibrium EnergySolver::solve(const Problem& problem) {
   return std::move(state_->solve(problem, false, false).front());

@@ -3,7 +3,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -28,12 +27,6 @@ constexpr double nearly_nothing_missed = 1e-10;
 /// Longest step, in lengths: the polygon has told where the ends are; and over the room beside one.
 constexpr double longest_step = 0.02;
 constexpr double largest_share = 0.45;
-/// Steps that are longer tell what the derivatives are, in lengths.
-constexpr double telling = 1e-7;
-/// How far ends may have moved since the derivatives were made that are begun with, in lengths, and
-/// by how much a step with them has to mend what is missed.
-constexpr double recalled_reach = 0.02;
-constexpr double fast_contraction = 0.1;
 /// Of a difference, over the room.
 constexpr double difference = 1e-6;
 
@@ -44,30 +37,21 @@ class Settling {
         workspace_(workspace),
         ends_(lift_offs(solution.model->span())),
         miss_(missed_by(solution)),
-        jacobian_(Eigen::MatrixXd::Constant(miss_.size(), miss_.size(),
-                                            std::numeric_limits<double>::quiet_NaN())) {}
+        jacobian_(miss_.size(), miss_.size()) {}
 
   int run(const Deadline& deadline) {
     if (ends_.empty()) return spent_;
-    int updates = recall() ? 0 : most_updates;
     double before = INFINITY;
     for (int step = 0; step < most_steps && !deadline.passed(); ++step) {
       const double missed = miss_.cwiseAbs().maxCoeff();
       if (missed < nothing_missed) break;
       if (missed < nearly_nothing_missed && missed > before / 2) break;
-      const bool fast = missed < fast_contraction * before;
-      if (updates >= most_updates || (recalled_ && !fast)) {
-        if (!differentiate()) break;
-        updates = 0;
-        recalled_ = false;
-      }
       before = missed;
+      if (step % most_updates == 0 && !differentiate()) break;
       Eigen::VectorXd way = bounded(-jacobian_.partialPivLu().solve(miss_));
       if (!way.allFinite() || !move(way)) break;
       if (way.cwiseAbs().maxCoeff() < settled * solution_.model->span().length) break;
-      ++updates;
     }
-    remember();
     return spent_;
   }
 
@@ -111,9 +95,7 @@ class Settling {
     }
     if (!trial.is_equilibrium()) return false;
     const Eigen::VectorXd miss = missed_by(trial);
-    if (way.norm() > telling * solution_.model->span().length) {
-      jacobian_ += (miss - miss_ - jacobian_ * way) * way.transpose() / way.squaredNorm();
-    }
+    jacobian_ += (miss - miss_ - jacobian_ * way) * way.transpose() / way.squaredNorm();
     miss_ = miss;
     solution_ = std::move(trial);
     return true;
@@ -139,37 +121,11 @@ class Settling {
     return true;
   }
 
-  /// The derivatives of the last settling, if it was of the same ends of much the same shape.
-  /// @return whether there are any
-  [[nodiscard]] bool recall() {
-    const SettledEnds& last = workspace_.settled_ends();
-    const std::vector<double> at = places();
-    const bool same = last.ends == ends_ && last.at.size() == at.size() &&
-                      std::equal(at.begin(), at.end(), last.at.begin(), [&](double a, double b) {
-                        return std::abs(a - b) < recalled_reach * solution_.model->span().length;
-                      });
-    if (!same) return false;
-    jacobian_ = last.jacobian;
-    recalled_ = true;
-    return true;
-  }
-
-  void remember() {
-    if (jacobian_.allFinite()) workspace_.settled_ends() = {ends_, places(), jacobian_};
-  }
-
-  [[nodiscard]] std::vector<double> places() const {
-    std::vector<double> at;
-    for (const LiftOff& end : ends_) at.push_back(end.at(solution_.model->span()));
-    return at;
-  }
-
   SpanSolution& solution_;
   SpanWorkspace& workspace_;
   std::vector<LiftOff> ends_;
   Eigen::VectorXd miss_;
   Eigen::MatrixXd jacobian_;
-  bool recalled_ = false;
   int spent_ = 0;
 };
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/deadline.hpp"
-#include "contact/lift_off.hpp"
 #include "dlo/energy_model/status.hpp"
 #include "newton/newton.hpp"
 #include "strain/span_energy.hpp"
@@ -60,25 +59,15 @@ struct SpanOptions {
   SearchLog* log = nullptr;              ///< of a search for all, if it is asked for
 };
 
-/// Ends of contacts that have settled, and how what is missed there changes with them.
-struct SettledEnds {
-  std::vector<LiftOff> ends;
-  std::vector<double> at;  ///< where they are
-  Eigen::MatrixXd jacobian;
-};
-
 /// Buffers that survive a solve: models that no solution holds any more are used again.
 class SpanWorkspace {
  public:
   [[nodiscard]] std::shared_ptr<SpanEnergy> model(const Span& span, int terms);
   [[nodiscard]] Newton& newton() { return newton_; }
-  /// The last ones.
-  [[nodiscard]] SettledEnds& settled_ends() { return settled_ends_; }
 
  private:
   std::vector<std::shared_ptr<SpanEnergy>> models_;
   Newton newton_;
-  SettledEnds settled_ends_;
 };
 
 /// Two equilibria of one span that are the same but for rounding and, in space, for free turns.

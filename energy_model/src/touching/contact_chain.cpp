@@ -242,7 +242,7 @@ ChainSystem chain_system(const ContactChain& chain, const Layout& layout, bool d
     put(system.derivatives, row, layout.force[j], join.by_force);
     return row;
   };
-  add(0, join_at(chain, 0, nullptr, &chain.pieces[0].nodes[0], layout.force[0] >= 0),
+  add(0, join_at(chain, 0, nullptr, chain.pieces[0].nodes.data(), layout.force[0] >= 0),
       layout.nodes[0]);
   for (std::size_t p = 0; p < chain.pieces.size(); ++p) {
     const ChainPiece& piece = chain.pieces[p];
@@ -254,7 +254,7 @@ ChainSystem chain_system(const ContactChain& chain, const Layout& layout, bool d
       const bool last = a + 1 == piece.nodes.size();
       const bool ends = last && p + 1 == chain.pieces.size();
       const FlowState<double>* next = nullptr;
-      if (!ends) next = last ? &chain.pieces[p + 1].nodes[0] : &piece.nodes[a + 1];
+      if (!ends) next = last ? chain.pieces[p + 1].nodes.data() : &piece.nodes[a + 1];
       const Eigen::Index here = layout.nodes[p] + state * static_cast<Eigen::Index>(a);
       Eigen::Index after = here + state;
       Join join;

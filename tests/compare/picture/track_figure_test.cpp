@@ -105,7 +105,8 @@ TEST(TrackFigures, NothingOfAStripLeavesItsCell) {
     const int columns = static_cast<int>(std::lround(right[1] / wide));
     const int rows = static_cast<int>(std::lround(up[1] / high));
     const double x = std::stod(row[2]) + shifts[id][0] - wide * (cell % columns);
-    const double y = std::stod(row[3]) + shifts[id][1] - high * (rows - 1 - cell / columns);
+    const int above = rows - 1 - cell / columns;
+    const double y = std::stod(row[3]) + shifts[id][1] - high * above;
     const double round = 1e-4 * wide;
     EXPECT_GE(x, -round) << id;
     EXPECT_LE(x, wide + round) << id;

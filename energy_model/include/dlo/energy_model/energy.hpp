@@ -110,10 +110,6 @@ class EnergySolver {
   EnergySolver(const EnergySolver& other) = delete;
   EnergySolver& operator=(const EnergySolver& other) = delete;
 
-  /// Another solver with the same options and last call, so that both can follow from there; in the
-  /// same thread, as they share its shapes.
-  [[nodiscard]] EnergySolver fork() const;
-
   /// solve_energy().
   Equilibrium solve(const Problem& problem);
   /// From the shape of the last call instead of a search, if it had one: for a gripper or an
