@@ -43,5 +43,72 @@ TEST(Certify, TakesAShapeThatNothingIsFreeIn) {
   EXPECT_EQ(solution.neutral_directions, 0);
 }
 
+/// Between clamps that lean out of the plane, at 0.8 of the length.
+Span spatial_arch(double lean) {
+  Span span;
+  span.planar = false;
+  span.length = 1;
+  span.start_direction = Eigen::Vector3d(1, 0, lean).normalized();
+  span.end_direction = Eigen::Vector3d(1, 0, -0.3).normalized();
+  span.holds = {{1, {0.8, 0, 0}}};
+  span.weight = {0, -10, 0};
+  return span;
+}
+
+// A factor of a point nearby tells what one of the shape's own does; one from farther away is not
+// taken.
+TEST(Certify, AsksTheLastFactorOnlyNextToThePointThatItIsOf) {
+  SpanWorkspace workspace;
+  Newton& newton = workspace.newton();
+  const Span span = spatial_arch(0.3);
+  SpanSolution solution = std::move(solve_span(span, SpanOptions(), workspace).front());
+  ASSERT_EQ(solution.status, SolveStatus::converged) << solution.message;
+  const SpanSolution alone = [&] {
+    SpanSolution copy = solution;
+    Newton another;
+    certify(copy, span.total_load(), another);
+    EXPECT_EQ(another.distance_of_factor(copy), 0);
+    return copy;
+  }();
+  Eigen::VectorXd gradient(solution.model->size());
+  Eigen::VectorXd residual(solution.model->constraints());
+  Eigen::MatrixXd jacobian(solution.model->constraints(), solution.model->size());
+  for (const double away : {1e-8, 1e-2}) {
+    SpanSolution beside = solution;
+    beside.x[1] += away;
+    (void)beside.model->value(beside.x, gradient);
+    beside.model->constraint(residual, jacobian);
+    newton.factor_at(beside, jacobian);
+    SpanSolution certified = solution;
+    certify(certified, span.total_load(), newton);
+    EXPECT_EQ(certified.status, SolveStatus::converged) << certified.message;
+    EXPECT_NEAR(certified.smallest_curvature, alone.smallest_curvature,
+                0.02 * alone.smallest_curvature);
+    EXPECT_NEAR(newton.distance_of_factor(certified), away < 1e-3 ? away : 0, 1e-15);
+  }
+}
+
+// A shape that is followed comes from the factor of the shape before, and is what a search finds.
+TEST(Certify, AFollowedShapeIsTheOneThatIsSearchedFor) {
+  SpanWorkspace workspace;
+  const SpanSolution before =
+      std::move(solve_span(spatial_arch(0.3), SpanOptions(), workspace).front());
+  ASSERT_TRUE(workspace.newton().has_factor_of(before.model.get()));
+  const Span span = spatial_arch(0.28);
+  SpanOptions options;
+  const auto tangents = [&](const Eigen::VectorXd&) { return before.model->tangents(); };
+  options.start = tangents;
+  options.known = {before.model, before.x, before.multipliers};
+  options.least_terms = before.terms;
+  const SpanSolution followed = std::move(solve_span(span, options, workspace).front());
+  const SpanSolution searched = std::move(solve_span(span, SpanOptions(), workspace).front());
+  ASSERT_EQ(followed.status, SolveStatus::converged) << followed.message;
+  EXPECT_TRUE(followed.followed);
+  EXPECT_LT(followed.next_step, 1e-10);
+  EXPECT_NEAR(followed.energy, searched.energy, 1e-9);
+  EXPECT_NEAR(followed.smallest_curvature, searched.smallest_curvature,
+              0.02 * searched.smallest_curvature);
+}
+
 }  // namespace
 }  // namespace dlo::energy_model

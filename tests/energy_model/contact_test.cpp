@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "../sanitized.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "equilibrium_balance.hpp"
 #include "problems.hpp"
@@ -263,13 +264,13 @@ void expect_rests(const Problem& problem, const Equilibrium& shape, double panel
 // What converges is an equilibrium with obstacles that only push, weighed from its samples; hardly
 // any scene is refused, and none without a reason.
 TEST(Contact, RandomScenesRestOrSayWhyNot) {
-  constexpr unsigned scenes = 40;
+  constexpr int scenes = test::draws(40);
   for (const bool space : {false, true}) {
     int converged = 0;
     int touching = 0;
-    for (unsigned seed = 0; seed < scenes; ++seed) {
+    for (int seed = 0; seed < scenes; ++seed) {
       SCOPED_TRACE("seed " + std::to_string(seed) + (space ? " in space" : " in the plane"));
-      const Problem problem = random_touching_problem(seed, space, 300);
+      const Problem problem = random_touching_problem(static_cast<unsigned>(seed), space, 300);
       const Equilibrium result = solve_energy(problem, {.time_limit = 60});
       if (result.status != SolveStatus::converged) {
         EXPECT_FALSE(result.message.empty());
@@ -281,7 +282,7 @@ TEST(Contact, RandomScenesRestOrSayWhyNot) {
       expect_rests(problem, result, 0.06 / std::sqrt(std::max(load, 10.0)));
     }
     EXPECT_GE(converged, scenes - 1);
-    EXPECT_GE(touching, 10);
+    EXPECT_GE(touching, test::draws(10));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace dlo::energy_model {
 
@@ -98,8 +99,65 @@ TEST(DenseProducts, ReflectOnBothSides) {
   }
 }
 
+TEST(DenseProducts, TurnAnglesAsTheLibraryDoes) {
+  // Of one unit in the last place of numbers up to one, and half of one.
+  constexpr double last_place = 1.7e-16;
+  Eigen::VectorXd angles(203);
+  for (Index i = 0; i < angles.size(); ++i) {
+    const auto step = static_cast<double>(i - 101);
+    angles[i] = i % 3 == 0 ? 0.1 * step : i % 3 == 1 ? 1e-9 * step : 9876.5 * step;
+  }
+  for (const Index count : {0, 1, 2, 3, 7, 8, 203}) {
+    for (const DenseKernel* kernel : kernels) {
+      Eigen::VectorXd cosines = Eigen::VectorXd::Constant(204, 2);
+      Eigen::VectorXd sines = cosines;
+      kernel->turn(angles.data(), count, cosines.data(), sines.data());
+      for (Index i = 0; i < count; ++i) {
+        EXPECT_NEAR(cosines[i], std::cos(angles[i]), last_place) << angles[i];
+        EXPECT_NEAR(sines[i], std::sin(angles[i]), last_place) << angles[i];
+      }
+      EXPECT_EQ(cosines[count], 2);
+      EXPECT_EQ(sines[count], 2);
+    }
+  }
+}
+
+TEST(DenseProducts, SumALongColumnInAllSizes) {
+  for (const Index rows : {15, 16, 31, 32, 33, 63, 64, 65, 130}) {
+    const MatrixXd a = MatrixXd::Random(rows, 30);
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(30);
+    for (const DenseKernel* kernel : kernels) {
+      Eigen::VectorXd product(rows);
+      kernel->multiply(columns_of(a), columns_of(b), result_columns(product));
+      EXPECT_LT((product - a * b).norm(), rounding) << rows;
+    }
+  }
+}
+
 Eigen::Quaterniond row_of(const Eigen::MatrixX4d& rows, Index r) {
   return {rows(r, 0), rows(r, 1), rows(r, 2), rows(r, 3)};
+}
+
+TEST(DenseProducts, CombineThirds) {
+  for (const Index rows : {1, 3, 8, 20, 53}) {
+    for (const Index n : {1, 2, 9}) {
+      MatrixXd wholes[2];
+      const auto a = part_of(wholes[0], rows, 3 * n);
+      auto sum = part_of(wholes[1], rows, n);
+      const MatrixXd factors = MatrixXd::Random(n, 3);
+      MatrixXd wanted = MatrixXd::Zero(rows, n);
+      for (Index i = 0; i < 3; ++i) {
+        wanted += a.middleCols(i * n, n) * factors.col(i).asDiagonal();
+      }
+      const MatrixXd around = wholes[1];
+      for (const DenseKernel* kernel : kernels) {
+        kernel->combine_thirds(columns_of(a), columns_of(factors), result_columns(sum));
+        EXPECT_LT((sum - wanted).norm(), rounding) << rows << ' ' << n;
+        sum = around.block(2, 1, rows, n);
+        EXPECT_EQ(wholes[1], around) << "written beside the result";
+      }
+    }
+  }
 }
 
 class QuaternionRows : public ::testing::TestWithParam<const DenseKernel*> {};

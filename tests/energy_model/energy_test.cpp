@@ -235,6 +235,25 @@ TEST(Energy, NextToBucklingTheErrorStatedCoversTheTrueOne) {
   EXPECT_LT(solve_energy(heavy_cantilever(1, 0)).error_estimate, 1e-10);
 }
 
+TEST(Energy, OfOneClampIsFoundByAFewNewtonSteps) {
+  EXPECT_LE(solve_energy(heavy_cantilever(0.18, 0)).evaluations, 4);
+  EXPECT_LE(solve_energy(heavy_cantilever(10, 0)).evaluations, 8);
+  EXPECT_LE(solve_energy(heavy_cantilever(100, 0)).evaluations, 8);
+}
+
+TEST(Energy, OfOneClampTurnsTowardsTheLoadByTheShorterWay) {
+  const std::vector<double> s = equal_arc_lengths(1, 33);
+  for (const double gamma : {0.5, 7.0, 9.0, 11.9, 12.1, 40.0, 60.0, 300.0}) {
+    for (const double degrees : {-89.0, -30.0, 0.0, 45.0, 80.0, 89.0, 95.0, 130.0, 200.0}) {
+      const Equilibrium found = solve_energy(heavy_cantilever(gamma, degrees));
+      ASSERT_EQ(found.status, SolveStatus::converged) << gamma << ' ' << degrees;
+      const Eigen::RowVectorXd across = found.sample(s).tangents.row(0);
+      const double side = across[0] > 0 ? 1 : -1;
+      EXPECT_GT((side * across).minCoeff(), -1e-8) << gamma << ' ' << degrees;
+    }
+  }
+}
+
 TEST(Energy, StoppedEarlyIsAFailureThatSaysSo) {
   const Equilibrium result = solve_energy(heavy_cantilever(10, 0), {.max_evaluations = 2});
   EXPECT_EQ(result.status, SolveStatus::evaluation_limit);

@@ -17,24 +17,14 @@
 #include "equilibrium_balance.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "problems.hpp"
+#include "rolled_clamps.hpp"
 #include "shooting/second_variation.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 using std::numbers::pi;
-
-/// A rod of unit length and stiffness, clamped at both ends.
-Problem clamped(const Eigen::Vector3d& end, const Eigen::Vector3d& direction, double c,
-                double roll) {
-  Problem problem = test::two_clamps(0, 0.5);
-  problem.torsional_stiffness = c;
-  problem.grips[1].position = end;
-  problem.grips[1].direction = direction;
-  problem.grips[0].frame = FrameHold{};
-  problem.grips[1].frame = FrameHold{.d1 = std::nullopt, .roll = roll};
-  return problem;
-}
+using test::rolled_clamps;
 
 /// The span of a rod between clamps that hold frames.
 RodSpan span_of(const Problem& problem) { return cut_at_clamps(problem).front(); }
@@ -71,7 +61,7 @@ double extrapolated_root(double x, double h, const std::function<double(double)>
 
 TEST(TwistedSecondVariation, VanishesWhereAStraightRodBuckles) {
   // Without tension between clamps: tan(M / 2) = M / 2.
-  const RodSpan span = span_of(clamped({0.5, 0, 0}, {1, 0, 0}, 0.01, 0));
+  const RodSpan span = span_of(rolled_clamps({0.5, 0, 0}, {1, 0, 0}, 0.01, 0));
   const auto smallest = [&](double torque) {
     return second_variation(span, states_of([&](double) {
                               RodState state;
@@ -104,7 +94,7 @@ TEST(TwistedSecondVariation, VanishesWhereMichellsRingBuckles) {
   // At a twist of 2 pi 3^(1/2) / c, in two ways. It turns about the clamps' line for nothing
   // before.
   for (const double c : {0.6, 1.0, 1.5}) {
-    const RodSpan span = span_of(clamped({0, 0, 0}, {1, 0, 0}, c, 0));
+    const RodSpan span = span_of(rolled_clamps({0, 0, 0}, {1, 0, 0}, c, 0));
     const auto stability = [&](double angle) {
       return second_variation(span, states_of([&](double s) { return ring_state(c, angle, s); }));
     };
@@ -179,7 +169,7 @@ TEST(TwistedSecondVariation, IsTheSecondDifferenceOfTheEnergy) {
   };
   for (const double angle : {-9.0, 0.0, 4.0, 13.0}) {
     const Curve curve{tangent, {2, -3, 5}, 0.8};
-    Problem problem = clamped({0.4, 0.3, 0.2}, tangent(1), curve.c, 0);
+    Problem problem = rolled_clamps({0.4, 0.3, 0.2}, tangent(1), curve.c, 0);
     problem.grips[0].direction = tangent(0);
     const SecondVariation found = second_variation(
         span_of(problem), states_of([&](double s) {
@@ -220,7 +210,7 @@ TEST(TwistedSecondVariation, IsTheSecondDifferenceOfTheEnergy) {
 }
 
 TEST(ExactTwist, ZeroIsWhatTheRodWithoutFramesHas) {
-  Problem problem = clamped({0.6, 0.2, 0.1}, {0.8, 0.3, -0.5}, 0.7, 0);
+  Problem problem = rolled_clamps({0.6, 0.2, 0.1}, {0.8, 0.3, -0.5}, 0.7, 0);
   problem.weight_per_length = {0, -5, 0};
   const Equilibrium twisted = solve_exact(problem);
   ASSERT_EQ(twisted.status, SolveStatus::converged) << twisted.message;
@@ -285,7 +275,7 @@ TEST(ExactTwist, FindsKirchhoffsHelix) {
   const Helix helix{0.15, 0.1, 2.5};
   const double c = 0.7;
   const RodState end = helix(1);
-  Problem problem = clamped(end.r, end.t, c, 0);
+  Problem problem = rolled_clamps(end.r, end.t, c, 0);
   problem.grips[0].direction = helix(0).t;
   // The normal turns by the torsion against the transported frame, the rod's frame by the twist.
   problem.grips[0].frame->d1 = helix(0).v;
@@ -356,7 +346,7 @@ struct LocalisedBuckle {
 TEST(ExactTwist, ConfirmsTheLocalisedBuckleOfALongRod) {
   // EI 1.345, GJ 0.789 N m^2 (van der Heijden, Neukirch, Goss, Thompson 2003), 27 turns, 3 % slack.
   const double c = 0.789 / 1.345;
-  const Problem plain = clamped({0.97, 0, 0}, {1, 0, 0}, c, 54 * pi);
+  const Problem plain = rolled_clamps({0.97, 0, 0}, {1, 0, 0}, c, 54 * pi);
   Problem problem = plain;
   problem.grips[0].frame->d1 = Eigen::Vector3d::UnitY();
   problem.grips[1].frame->d1 = Eigen::Vector3d::UnitY();
@@ -392,7 +382,7 @@ Eigen::Vector3d carried_director(const Equilibrium& shape, Eigen::Vector3d d) {
 
 /// Clamps that do not fit each other, and weight.
 Problem askew(double roll) {
-  Problem problem = clamped({0.6, 0.2, 0.1}, {0.8, 0.3, -0.5}, 0.7, roll);
+  Problem problem = rolled_clamps({0.6, 0.2, 0.1}, {0.8, 0.3, -0.5}, 0.7, roll);
   problem.weight_per_length = {0, -5, 0};
   return problem;
 }
@@ -439,7 +429,7 @@ TEST(ExactTwist, OfSeveralPartsIsInBalance) {
 
 TEST(ExactTwist, OfTheMirroredRollIsTheMirroredShape) {
   // Clamps, weight and the rod without twist in the plane.
-  Problem problem = clamped({0.8, 0.1, 0}, {1, 0.5, 0}, 0.7, 2.5);
+  Problem problem = rolled_clamps({0.8, 0.1, 0}, {1, 0.5, 0}, 0.7, 2.5);
   problem.weight_per_length = {0, -5, 0};
   const Equilibrium one = solve_exact(problem);
   problem.grips[1].frame->roll *= -1;

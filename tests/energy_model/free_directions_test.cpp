@@ -59,6 +59,36 @@ TEST(FreeDirections, SmallestEigenvalueIsProven) {
   EXPECT_NEAR(smallest_eigenvalue(hessian, Eigen::MatrixXd(0, 6)), 0.1, 1e-4);
 }
 
+// The vectors of the iteration become short among such, and have to stay orthogonal.
+TEST(FreeDirections, SmallestEigenvalueOfManyThatAreHardlyLargerIsNoneBelowThem) {
+  for (const double largest : {1.003, 1.03, 1.3}) {
+    const Eigen::MatrixXd hessian = with_eigenvalues(Eigen::VectorXd::LinSpaced(60, 1, largest));
+    EXPECT_NEAR(smallest_eigenvalue(hessian, Eigen::MatrixXd(0, 60)), 1, 1e-2) << largest;
+  }
+}
+
+TEST(FreeDirections, SoftestDirectionIsTheEigenvectorOnWhatIsFree) {
+  constexpr Eigen::Index n = 40;
+  for (const Eigen::Index m : {0, 5}) {
+    Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(n, 0.5, 3);
+    eigenvalues[0] = 1e-3;
+    const Eigen::MatrixXd hessian = with_eigenvalues(eigenvalues);
+    const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(m, n);
+    FreeHessian free;
+    free.compute(hessian, jacobian);
+    const std::optional<Eigen::VectorXd> softest = free.softest_of_definite();
+    ASSERT_TRUE(softest);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(free.matrix());
+    // As near as the residual over the distance to the next eigenvalue.
+    EXPECT_NEAR(std::abs(softest->dot(eigen.eigenvectors().col(0))), 1, 1e-9) << m;
+    EXPECT_NEAR(softest->norm(), 1, 1e-12);
+    EXPECT_LT((jacobian * direction_by_size(free, 0)).norm(), 1e-12);
+  }
+  FreeHessian saddle;
+  saddle.compute(with_eigenvalues(Eigen::VectorXd::LinSpaced(8, -0.1, 2)), Eigen::MatrixXd(0, 8));
+  EXPECT_FALSE(saddle.softest_of_definite());
+}
+
 TEST(FreeDirections, StepIsThatOfTheWholeSystem) {
   constexpr Eigen::Index n = 16;
   for (const Eigen::Index m : {0, 1, 5, 16}) {

@@ -351,31 +351,6 @@ TEST(SelfBuckling, IsWhereTheUprightRodLosesItsStability) {
   EXPECT_NEAR((7.8 + 0.1 * below / (below - above)) / self_buckling_gamma(), 1, 1e-4);
 }
 
-TEST(WarmStart, AfterASmallTurnOfTheGripperTakesAFewEvaluations) {
-  for (const double gamma : {0.2, 10.0, 100.0}) {
-    const Equilibrium before = solve_energy(heavy_cantilever(gamma, 0));
-    const Equilibrium after = solve_energy(heavy_cantilever(gamma, 1), {.start = &before});
-    ASSERT_EQ(after.status, SolveStatus::converged);
-    EXPECT_LE(after.evaluations, 5) << gamma;
-    const Equilibrium cold = solve_energy(heavy_cantilever(gamma, 1));
-    const std::vector<double> s = equal_arc_lengths(1, 11);
-    EXPECT_LT((after.sample(s).points - cold.sample(s).points).norm(), 1e-9);
-  }
-}
-
-TEST(WarmStart, FollowsAMovingGripperWithOneSolver) {
-  EnergySolver solver;
-  Equilibrium followed = solver.solve(heavy_cantilever(10, 0));
-  for (int degrees = 1; degrees <= 20; ++degrees) {
-    followed = solver.follow(heavy_cantilever(10, degrees));
-    ASSERT_EQ(followed.status, SolveStatus::converged) << followed.message;
-    EXPECT_LE(followed.evaluations, 5);
-  }
-  const std::vector<double> tip = {1.0};
-  const Equilibrium cold = solve_energy(heavy_cantilever(10, 20));
-  EXPECT_LT((followed.sample(tip).points - cold.sample(tip).points).norm(), 1e-10);
-}
-
 TEST(Grips, ScaleWithTheRodAtEqualGamma) {
   Problem problem = two_clamps(7, 0.7);
   problem.grips[1].direction = Eigen::Vector3d(1, 0.2, 0.4);

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../sanitized.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
 #include "random_contact.hpp"
@@ -138,8 +139,9 @@ TEST(Peg, RandomRodsRestOnBodiesOrSayWhyNot) {
   int converged = 0;
   int touching = 0;
   for (const bool space : {false, true}) {
-    for (unsigned seed = 0; seed < 20; ++seed) {
-      const std::optional<Problem> scene = test::random_problem_with_body(seed, space);
+    for (int seed = 0; seed < test::draws(20); ++seed) {
+      const std::optional<Problem> scene =
+          test::random_problem_with_body(static_cast<unsigned>(seed), space);
       if (!scene) continue;
       const Problem& problem = *scene;
       const double gamma = problem.weight_per_length.norm();
@@ -171,7 +173,7 @@ TEST(Peg, RandomRodsRestOnBodiesOrSayWhyNot) {
       EXPECT_NEAR(integral[0], integral[1], 1e-7 * size);
     }
   }
-  EXPECT_GE(looked, 30);
+  EXPECT_GE(looked, test::draws(30));
   EXPECT_GE(converged, looked - 1);
   EXPECT_GE(touching, converged - 4);
 }

@@ -86,6 +86,75 @@ TEST(Vibrations, OfAHardlyBuckledRodAreThoseOfAPressedBeam) {
   }
 }
 
+/// A rod of length 1 that two clamps hold straight along a direction.
+Problem taut_rod(const Vector3d& along) {
+  return unit_rod(Vector3d::Zero(),
+                  {clamped(0, {1, 2, 3}, along), clamped(1, Vector3d(1, 2, 3) + along, along)});
+}
+
+// cos(beta l) cosh(beta l) = 1.
+TEST(Vibrations, OfARodHeldStraightAreThoseOfAClampedBeam) {
+  const std::array<double, 3> roots = {4.730040744862704, 7.853204624095838, 10.995607838001671};
+  for (const Vector3d& along : {Vector3d(1, 0, 0), Vector3d(0.48, -0.6, 0.64)}) {
+    const Problem rod = taut_rod(along);
+    ASSERT_TRUE(is_held_straight(rod));
+    const Vibrations found = taut_vibrations(rod, {.mass_per_length = 1}, 0, {.count = 6});
+    ASSERT_EQ(found.status, SolveStatus::converged) << found.message;
+    ASSERT_EQ(found.modes.size(), 6U);
+    for (std::size_t k = 0; k < 6; ++k) {
+      const double exact = roots[k / 2] * roots[k / 2];
+      EXPECT_NEAR(found.modes[k].omega() / exact, 1, 1e-9) << k;
+    }
+    const std::vector<double> at = {0, 0.5, 1};
+    const Eigen::Matrix3Xd moved = found.modes[0].shape(at);
+    EXPECT_NEAR(moved.col(1).norm(), 1, 1e-9);
+    EXPECT_NEAR(moved.col(1).dot(along), 0, 1e-9);
+    EXPECT_NEAR(moved.col(0).norm() + moved.col(2).norm(), 0, 1e-9);
+  }
+}
+
+// w_ssss - T w_ss = omega^2 w: with b^2 - a^2 = T, a b = omega, modes even about the middle have
+// a tan(a/2) = -b tanh(b/2), odd ones a cot(a/2) = b coth(b/2). It buckles at -4 pi^2.
+TEST(Vibrations, OfARodHeldStraightKnowItsTension) {
+  const Problem rod = taut_rod(Vector3d::UnitX());
+  for (const double tension : {-30.0, 10.0, 1000.0}) {
+    const Vibrations found = taut_vibrations(rod, {.mass_per_length = 1}, tension, {.count = 4});
+    ASSERT_EQ(found.modes.size(), 4U);
+    for (const std::size_t k : {0U, 2U}) {
+      const double root = std::sqrt(tension * tension / 4 + found.modes[k].omega_squared);
+      const double a = std::sqrt(root - tension / 2);
+      const double b = std::sqrt(root + tension / 2);
+      const double miss = k == 0 ? a * std::sin(a / 2) + b * std::tanh(b / 2) * std::cos(a / 2)
+                                 : a * std::cos(a / 2) - b / std::tanh(b / 2) * std::sin(a / 2);
+      EXPECT_NEAR(miss / (a + b), 0, 1e-8) << tension << ", " << k;
+    }
+  }
+  const double buckles = -4 * std::numbers::pi * std::numbers::pi;
+  const Vibrations found = taut_vibrations(rod, {.mass_per_length = 1}, buckles, {.count = 1});
+  EXPECT_NEAR(found.modes[0].omega_squared, 0, 1e-7);
+}
+
+TEST(Vibrations, OfARodHeldStraightAskForOne) {
+  const Inertia inertia{.mass_per_length = 1};
+  Problem rod = taut_rod(Vector3d::UnitX());
+  rod.weight_per_length = {0, -1, 0};
+  EXPECT_THROW((void)taut_vibrations(rod, inertia, 0), std::invalid_argument);
+  rod = taut_rod(Vector3d::UnitX());
+  rod.loads = {{0.5, {1, 0, 0}}};
+  EXPECT_THROW((void)taut_vibrations(rod, inertia, 0), std::invalid_argument);
+  rod = taut_rod(Vector3d::UnitX());
+  rod.grips[1].position.x() -= 1e-6;
+  EXPECT_FALSE(is_held_straight(rod));
+  EXPECT_THROW((void)taut_vibrations(rod, inertia, 0), std::invalid_argument);
+  rod = taut_rod(Vector3d::UnitX());
+  rod.grips[1].direction = Vector3d(std::cos(1e-6), std::sin(1e-6), 0);
+  EXPECT_FALSE(is_held_straight(rod));
+  rod.grips[1].direction.reset();
+  EXPECT_FALSE(is_held_straight(rod));
+  rod.grips.pop_back();
+  EXPECT_FALSE(is_held_straight(rod));
+}
+
 // A mass M at the tip of a beam: 1 + cos cosh + beta M (cos sinh - sin cosh) = 0.
 TEST(Vibrations, OfACantileverWithAMassAtItsTip) {
   const double mass = 0.7;

@@ -1,11 +1,57 @@
 """What the tests share."""
 
+import ctypes
+import gc
 import os
 import pathlib
+import re
+import sys
+import tempfile
 
 import pytest
 
 import dlo
+
+# Under the preset asan this interpreter has been started with the sanitizers' runtime. The command has its
+# own, and must not get another one.
+PRELOADED = os.environ.pop("LD_PRELOAD", "")
+SANITIZED = "asan" in PRELOADED
+
+
+def leak_report():
+    """What the sanitizer prints of memory that no pointer leads to."""
+    with tempfile.TemporaryFile("w+") as report:
+        stderr = os.dup(2)
+        os.dup2(report.fileno(), 2)
+        ctypes.CDLL(None).__lsan_do_recoverable_leak_check()
+        os.dup2(stderr, 2)
+        os.close(stderr)
+        report.seek(0)
+        return report.read()
+
+
+@pytest.fixture(scope="session", autouse=True)
+def no_leaks():
+    """Under the sanitizer: the module has lost nothing of what it took, at the end of all tests. What
+    the interpreter and other modules have lost is not asked."""
+    yield
+    if SANITIZED:
+        gc.collect()
+        ours = re.compile(r"dlo::|/_dlo\.")  # a function of the module, by name or only by its file
+        lost = [block for block in leak_report().split("\n\n") if ours.search(block)]
+        assert not lost, "\n\n".join(lost)
+
+
+@pytest.fixture
+def sanitized():
+    """Whether this is a sanitizer build."""
+    return SANITIZED
+
+
+@pytest.fixture
+def interpreter():
+    """How another Python is started that can import dlo."""
+    return ["env", "LD_PRELOAD=" + PRELOADED, sys.executable] if PRELOADED else [sys.executable]
 
 
 @pytest.fixture

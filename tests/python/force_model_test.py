@@ -37,6 +37,50 @@ def test_it_writes_into_the_array_that_it_is_given(cable):
         loop.points(out=out)
 
 
+def held_at_both_ends(cable):
+    cable.grippers += (dlo.pin(at=cable.length, position=(0.6, 0, 0)),)
+    cable.force_model = {"points": 20}
+    return cable
+
+
+def test_between_two_grippers_it_starts_where_it_rests(cable):
+    loop = dlo.ForceModel(held_at_both_ends(cable))
+    start = loop.points()
+    loop.rest()
+    numpy.testing.assert_allclose(loop.points(), start, atol=1e-5)
+    assert loop.points()[:, 1].min() < -0.3
+    with pytest.raises(dlo.InputError, match="a pin has none"):
+        loop.move_gripper(1, position=(0.5, 0, 0), direction=(1, 0, 0))
+    loop.move_gripper(1, position=(0.5, 0, 0))
+    loop.rest()
+    numpy.testing.assert_allclose(loop.points()[-1], [0.5, 0, 0], atol=1e-12)
+
+
+def test_it_starts_from_the_points_that_it_is_given(cable):
+    rested = dlo.ForceModel(cable)
+    rested.rest()
+    again = dlo.ForceModel(cable, rested.points())
+    assert again.energy() == pytest.approx(rested.energy(), rel=1e-12)
+    again.rest()
+    numpy.testing.assert_allclose(again.points(), rested.points(), atol=1e-6)
+    with pytest.raises(dlo.InputError, match="3 of them"):
+        dlo.ForceModel(cable, rested.points()[:3])
+
+
+def test_it_says_what_it_cannot_do(cable):
+    with pytest.raises(dlo.InputError, match="grip_stiffness = 0: out of range"):
+        dlo.ForceModel(cable, grip_stiffness=0)
+    loop = dlo.ForceModel(cable)
+    with pytest.raises(dlo.InputError, match="must not be the zero vector"):
+        loop.move_gripper(0, position=(0, 0, 0), direction=(0, 0, 0))
+    with pytest.raises(dlo.InputError, match=r"shape \(2,\)"):
+        loop.move_gripper(0, position=(0, 0))
+    with pytest.raises(dlo.InputError, match="wall = 0: no plane"):
+        loop.move_wall(0, point=(0, 0, 0), normal=(0, 1, 0))
+    with pytest.raises(dlo.ConvergenceError, match="did not come to rest: .* after 10 steps"):
+        loop.rest(max_steps=10)
+
+
 def test_a_moved_gripper_takes_the_rod_along(cable):
     loop = dlo.ForceModel(cable)
     loop.rest()

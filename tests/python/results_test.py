@@ -1,5 +1,6 @@
 """Results: arrays that are views, and the command's own documents."""
 
+import gc
 import json
 import subprocess
 
@@ -77,6 +78,36 @@ def test_arrays_are_views_that_keep_the_result_alive(cable):
     # Chords of 1/32 m are shorter than their arcs, most where the rod bends at the clamp.
     assert 0.99 < numpy.linalg.norm(numpy.diff(points, axis=0), axis=1).sum() < 1
     assert s[-1] == 1
+
+
+def test_every_view_outlives_its_result(root, steel, cable):
+    cable.obstacles = [dlo.obstacle(point=(0, -0.5, 0), normal=(0, 1, 0))]
+    results = {
+        "of all grippers": dlo.solve(root / "data/scenes/twisted_wire.toml", samples=9),
+        "with a floor": dlo.solve(cable, samples=9),
+        "check": dlo.check(steel, dlo.solve(steel, samples=9).points),
+        "comparison": dlo.compare(steel, modulus=False),
+        "loop": dlo.ForceModel(steel),
+    }
+    seen = set()
+    while results:
+        what, result = results.popitem()
+        found = {name: getattr(result, name) for name in dir(result)
+                 if name[0] != "_" and name != "json"}
+        views = {name: view for name, view in found.items()
+                 if isinstance(view, numpy.ndarray) and view.size > 0}
+        assert views and not any(view.flags.owndata for view in views.values())
+        before = {name: view.copy() for name, view in views.items()}
+        seen |= set(views)
+        del result, found
+        gc.collect()
+        for name, view in views.items():
+            # The sanitizer sees what is copied as a whole; what is copied number by number would be what
+            # it fills freed memory with.
+            view.tobytes()
+            numpy.testing.assert_array_equal(view, before[name], err_msg=f"{what}: {name}")
+    assert seen >= {"points", "curvature", "tension", "d1", "gripper_forces", "gripper_torques",
+                    "obstacle_forces", "reference", "force_points", "energy_points", "arc_length"}
 
 
 def test_grippers_bear_the_weight(cable):
@@ -163,6 +194,17 @@ def test_stability_and_bench(steel):
     assert table["cases"][0]["outcome"] == "pass"
     runs = dlo.bench(steel, seconds=0.3, repeats=1)["runs"]
     assert {run["model"] for run in runs} >= {"energy", "chain"}
+
+
+def test_a_map_of_stability_is_the_commands(root, command):
+    scene = root / "data/scenes/spring_steel_175.toml"
+    table = dlo.stability(scene, map="cF-cc", columns=2, rows=3, map_steps=50)
+    expected = command_json(
+        command, "stability", scene, "--map", "cF-cc", "--columns", 2, "--rows", 3, "--map-steps", 50
+    )
+    assert table.json == expected
+    with pytest.raises(dlo.InputError, match="allowed: cF-cc, cF-ch"):
+        dlo.stability(map="cF")
 
 
 def test_plots(steel):

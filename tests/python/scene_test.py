@@ -149,3 +149,13 @@ def test_numbers_survive_the_way_through_text(cable):
     again = dlo.Scene.from_text(cable.to_toml())
     assert again.length == 1 / 3
     numpy.testing.assert_array_equal(again.gravity, [0, -numpy.pi, 1e-300])
+
+
+def test_every_material_can_be_named(steel):
+    found = dlo.materials()
+    assert {"spring_steel", "silicone", "copper"} <= {material["name"] for material in found}
+    for material in found:
+        assert material["source"]
+        steel.material = material["name"]
+        assert steel.youngs_modulus == material["youngs_modulus"]
+        assert steel.density == material["density"]

@@ -64,6 +64,11 @@ void add_modes(CLI::App& app) {
                    "damping ratio of the slowest mode that the material has, for c_h")
       ->check(number_between(1e-6, 1))
       ->capture_default_str();
+  command
+      ->add_option("--tension", options->modes.tension,
+                   "of a rod that clamps hold straight [N], which its shape does not tell; "
+                   "default 0")
+      ->check(CLI::Number);
   command->add_option("--samples", options->samples, "points of each mode's shape in JSON")
       ->check(CLI::Range(2, 100000))
       ->capture_default_str();

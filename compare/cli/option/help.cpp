@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <sstream>
 
 #include "base/words.hpp"
@@ -26,7 +27,15 @@ void read_type(const std::string& type, OptionText& text) {
     } else if (range != std::string::npos) {
       const std::string limits = part.substr(range + 5, part.size() - range - 6);
       const std::size_t dash = limits.find(" - ");
-      text.range = limits.substr(0, dash) + " to " + limits.substr(dash + 3);
+      // The largest double: whatever is finite is allowed.
+      const std::string largest = fmt::format("{:g}", std::numeric_limits<double>::max());
+      const std::string low = limits.substr(0, dash);
+      const std::string high = limits.substr(dash + 3);
+      if (high != largest) {
+        text.range = fmt::format("{} to {}", low, high);
+      } else if (low != "-" + largest) {
+        text.range = ">= " + low;
+      }
     }
   }
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is not in cstdlib
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
+#include "figure/layout.hpp"
 #include "option/terminal.hpp"
 
 namespace dlo::cli {
@@ -105,6 +107,10 @@ void PlotOptions::draw(const std::function<compare::Picture()>& picture) const {
   if (!draws()) return;
   const compare::PictureFormat format = *format_of(file_);
   const compare::Picture drawn = picture();
+  if (std::all_of(drawn.rows.begin(), drawn.rows.end(),
+                  [](const compare::PictureRow& row) { return row.empty(); })) {
+    throw compare::OutputError(fmt::format("--plot {}: there is nothing to draw", file_));
+  }
   const DrawingFolder folder;
   for (const compare::PictureRow& row : drawn.rows) {
     for (const std::vector<compare::Figure>& column : row) {

@@ -73,6 +73,9 @@ Json mode_json(const SceneMode& mode, const std::vector<double>& s) {
 std::string modes_text(const compare::SceneModes& modes, const compare::Scene& scene, double rate) {
   std::string out = fmt::format("scene       {}\n", compare::display(scene.name));
   for (std::size_t i = 0; i < modes.modes.size(); ++i) out += line_of(modes.modes[i], i);
+  if (modes.tension) {
+    append(out, "tension     {:g} N, which the shape does not tell (--tension)\n", *modes.tension);
+  }
   if (!modes.no_polygon.empty()) {
     append(out, "polygon     none: {}\n", modes.no_polygon);
     return out;
@@ -100,6 +103,7 @@ Json modes_json(const compare::SceneModes& modes, const compare::Scene& scene, d
                  {"model", "energy"},        {"status", to_string(modes.status)},
                  {"steps_per_second", rate}, {"arc_length_m", s},
                  {"modes", std::move(list)}};
+  result["tension_N"] = modes.tension ? Json(*modes.tension) : Json(nullptr);
   result["no_polygon"] = modes.no_polygon.empty() ? Json(nullptr) : Json(modes.no_polygon);
   result["mass_of_steps_kg"] = modes.mass_of_steps ? Json(*modes.mass_of_steps) : Json(nullptr);
   if (modes.physical) {

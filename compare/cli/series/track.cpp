@@ -60,11 +60,15 @@ std::string event_text(const Track& track, const TrackEvent& event) {
       out += event.contact->begins ? ", touched before" : ", goes on touching";
     }
     out += "\n";
-  } else if (std::isfinite(event.released)) {
-    append(out, "{:.4g} J released (+- {:.2g} J); smallest curvature before {:.3g}\n",
-           event.released, event.released_bound, before.smallest_curvature);
   } else {
-    out += "the shape is another one\n";
+    const bool told = std::isfinite(event.released);
+    out +=
+        told ? fmt::format("{:.4g} J released (+- {:.2g} J)", event.released, event.released_bound)
+             : "the shape is another one";
+    append(out, "; smallest curvature before {:.3g}\n", event.smallest_curvature);
+    if (event.kind == TrackEvent::Kind::lost) {
+      append(out, "{:23}its branch has not been seen to end: the solver may have lost it\n", "");
+    }
   }
   for (std::size_t i = 0; i < after.grippers.size(); ++i) {
     const compare::GripperLoad& from = before.grippers[i];
@@ -135,6 +139,7 @@ Json event_json(const Track& track, const TrackEvent& event) {
   } else {
     result["released_J"] = event.released;
     result["released_bound_J"] = event.released_bound;
+    result["smallest_curvature_before"] = event.smallest_curvature;
   }
   Json grippers = Json::array();
   for (std::size_t i = 0; i < after.grippers.size(); ++i) {
@@ -231,20 +236,15 @@ std::string track_text(const Track& track, const compare::Scene& scene,
                                  : "");
   append(out, "energy      {:.3g} ms a frame (median): {:.4g} frames a second\n",
          track.median_seconds * 1e3, 1 / track.median_seconds);
-  append(out,
-         "branch      lost by Newton's method in {} of them; energy tells whether the rod fell\n",
-         track.lost);
-  if (track.repeated > 0) {
-    append(out, "            kept by it in {} more in up to 16 smaller steps only\n",
-           track.repeated);
-  }
+  append(out, "branch      left in {} of them, kept in {} in smaller steps only\n", track.lost,
+         track.repeated);
   double released = 0;
   for (const TrackEvent& event : track.events) {
-    if (event.kind == TrackEvent::Kind::snap) released += event.released;
+    if (!event.contact) released += event.released;
   }
   if (!std::isnan(last.released)) {
     append(out,
-           "work        {:.6g} J by what moves; the energy grew by {:.6g} J, snaps released "
+           "work        {:.6g} J by what moves; the energy grew by {:.6g} J, falls released "
            "{:.4g} J\n",
            last.work, last.energy.total() - first.energy.total(), released);
   }

@@ -125,10 +125,10 @@ std::vector<compare::Scene> scenes_of(const std::vector<SharedScene>& shared) {
   return scenes;
 }
 
-using Documents = std::tuple<std::string, std::string, std::string>;  // text, JSON, TOML
+using FitDocuments = std::tuple<std::string, std::string, std::string>;  // text, JSON, TOML
 
-Documents calibrate_material(const std::vector<SharedScene>& scenes, const py::list& shapes,
-                             const py::dict& what, const py::dict& limits) {
+FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py::list& shapes,
+                                const py::dict& what, const py::dict& limits) {
   cli::MaterialReport report;
   report.scenes = scenes_of(scenes);
   std::vector<compare::MeasuredShape> measured_shapes;
@@ -161,9 +161,10 @@ Documents calibrate_material(const std::vector<SharedScene>& scenes, const py::l
           told ? cli::material_toml(report) : std::string()};
 }
 
-Documents calibrate_force_model(const std::vector<SharedScene>& scenes,
-                                const std::vector<SharedScene>& holdouts, std::optional<int> points,
-                                std::optional<double> target, const py::dict& limits) {
+FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,
+                                   const std::vector<SharedScene>& holdouts,
+                                   std::optional<int> points, std::optional<double> target,
+                                   const py::dict& limits) {
   compare::ForceModelFitOptions options;
   options.points = points;
   options.target = target.value_or(options.target);

@@ -24,7 +24,7 @@
 namespace dlo::python {
 namespace {
 
-using Documents = std::pair<std::string, std::string>;  // text and JSON
+using StudyDocuments = std::pair<std::string, std::string>;  // text and JSON
 
 /// @param fields  of each axis the field, and either its values as a scene file spells them or what
 /// --vary takes
@@ -66,8 +66,9 @@ py::dict sweep(
   return table.arrays();
 }
 
-Documents hard_cases(const std::string& name_contains, const std::vector<std::string>& steppers,
-                     std::optional<long> max_steps, int threads) {
+StudyDocuments hard_cases(const std::string& name_contains,
+                          const std::vector<std::string>& steppers, std::optional<long> max_steps,
+                          int threads) {
   compare::StabilityOptions options;
   options.name_contains = name_contains;
   options.threads = threads;
@@ -83,13 +84,13 @@ Documents hard_cases(const std::string& name_contains, const std::vector<std::st
   return run_long([&](Signals& signals) {
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
     const std::vector<compare::StabilityResult> results = compare::stability(options);
-    return Documents(cli::hard_cases_text(results, options.steppers.size()),
-                     cli::json_text(cli::hard_cases_json(results)));
+    return StudyDocuments(cli::hard_cases_text(results, options.steppers.size()),
+                          cli::json_text(cli::hard_cases_json(results)));
   });
 }
 
-Documents stability_map(const std::optional<SharedScene>& scene, const std::string& axis,
-                        int columns, int rows, long steps, int threads) {
+StudyDocuments stability_map(const std::optional<SharedScene>& scene, const std::string& axis,
+                             int columns, int rows, long steps, int threads) {
   if (axis != "cF-cc" && axis != "cF-ch") compare::refuse_choice(axis, {"cF-cc", "cF-ch"});
   compare::StabilityMapOptions options{
       .axis = axis == "cF-cc" ? compare::MapAxis::c_c : compare::MapAxis::c_h,
@@ -101,11 +102,12 @@ Documents stability_map(const std::optional<SharedScene>& scene, const std::stri
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
     const compare::StabilityMap map =
         compare::stability_map(scene ? (*scene)->scene : compare::hard_case_scene(), options);
-    return Documents(cli::stability_map_text(map), cli::json_text(cli::stability_map_json(map)));
+    return StudyDocuments(cli::stability_map_text(map),
+                          cli::json_text(cli::stability_map_json(map)));
   });
 }
 
-Documents bench(const std::vector<SharedScene>& shared, double seconds, int repeats) {
+StudyDocuments bench(const std::vector<SharedScene>& shared, double seconds, int repeats) {
   std::vector<compare::Scene> scenes;
   scenes.reserve(shared.size());
   for (const SharedScene& scene : shared) scenes.push_back(scene->scene);
@@ -114,7 +116,7 @@ Documents bench(const std::vector<SharedScene>& shared, double seconds, int repe
     const compare::BenchmarkReport report =
         compare::run_benchmark(scenes, {.budget_s = seconds, .repeats = repeats},
                                [&signals](const auto&) { signals.throw_if_stopped(); });
-    return Documents(cli::benchmark_text(report), cli::json_text(cli::benchmark_json(report)));
+    return StudyDocuments(cli::benchmark_text(report), cli::json_text(cli::benchmark_json(report)));
   });
 }
 

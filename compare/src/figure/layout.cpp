@@ -23,8 +23,8 @@ struct Look {
   int points;
   int dashes;
 };
-constexpr Look looks[] = {{"#0059A8", 6, 1},  {"#B34700", 4, 2},  {"#00704F", 8, 3},
-                          {"#8A2F85", 12, 4}, {"#7A5600", 10, 5}, {"#404040", 2, 2}};
+constexpr Look looks[curve_colours] = {{"#0059A8", 6, 1},  {"#B34700", 4, 2},  {"#00704F", 8, 3},
+                                       {"#8A2F85", 12, 4}, {"#7A5600", 10, 5}, {"#404040", 2, 2}};
 
 int height_of(const Panel& panel) {
   return top_margin + panel.height + axis_pixels + panel.key_rows * key_row_pixels;
@@ -131,6 +131,8 @@ void add_title(std::string& out, const Figure& figure, const Canvas& canvas, dou
   }
 }
 
+/// The same picture in every format, as the SVG has it: in PDF a pixel is 0.75 points, and a line
+/// of width 1 half a point; cairo's symbols are half as large.
 std::string terminal(PictureFormat format, const Canvas& canvas) {
   switch (format) {
     case PictureFormat::svg:
@@ -141,12 +143,12 @@ std::string terminal(PictureFormat format, const Canvas& canvas) {
     case PictureFormat::png:  // twice as fine, for screens and print
       return fmt::format(
           "set terminal pngcairo size {},{} noenhanced font 'sans-serif,12' fontscale 2 linewidth "
-          "2.6 pointscale 2 background '#ffffff'\n",
+          "2.6 pointscale 4 background '#ffffff'\n",
           2 * canvas.width, 2 * canvas.height);
     case PictureFormat::pdf:  // 96 pixels an inch
       return fmt::format(
           "set terminal pdfcairo size {:.4f}in,{:.4f}in noenhanced font 'sans-serif,12' fontscale "
-          "1 linewidth 1.3 background '#ffffff'\n",
+          "0.75 linewidth 1.95 pointscale 1.5 background '#ffffff'\n",
           canvas.width / 96.0, canvas.height / 96.0);
   }
   return {};

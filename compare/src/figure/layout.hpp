@@ -51,7 +51,10 @@ inline constexpr int plot_width = 358;
 /// colour-blind readers tell apart, with dashes and points of its own.
 [[nodiscard]] std::string curve_style(std::size_t i, const char* with);
 
-/// The colour of the i-th curve, as "#RRGGBB".
+/// How many colours curves have.
+inline constexpr std::size_t curve_colours = 6;
+
+/// The colour of the i-th curve, as "#RRGGBB"; they come again.
 [[nodiscard]] const char* curve_colour(std::size_t i);
 
 /// The script that draws NAME.svg, run in the folder of its CSV file.

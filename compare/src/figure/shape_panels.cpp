@@ -36,6 +36,30 @@ std::array<double, 2> widened(const std::array<double, 2>& range, double to) {
   return {middle - half, middle + half};
 }
 
+/// Width of a number on an axis, of letters 16 pixels high [pixels].
+double label_width(const std::string& number) {
+  constexpr double digit = 10.2;
+  constexpr double mark = 5.8;  // a point or a minus
+  double width = 0;
+  for (const char c : number) width += c == '.' || c == '-' ? mark : digit;
+  return width;
+}
+
+/// tic_step(), or a longer one whose numbers do not run into each other below the axis.
+double level_tic_step(const std::array<double, 2>& range, double pixels_per_metre) {
+  constexpr double gap = 8;  // [pixels]
+  double step = 0;
+  for (const double factor : {1.0, 2.0, 4.0}) {
+    step = tic_step(extent(range) * factor);
+    double widest = 0;
+    for (double k = std::ceil(range[0] / step); k * step <= range[1]; ++k) {
+      widest = std::max(widest, label_width(fmt::format("{:.6g}", k * step)));
+    }
+    if (widest + gap <= step * pixels_per_metre) break;
+  }
+  return step;
+}
+
 enum class Titles { shown, left_out };
 
 bool is_shown(const Series& series, int view) { return series.view < 0 || series.view == view; }
@@ -100,7 +124,8 @@ std::vector<Panel> shape_panels(const std::string& csv_file, const std::vector<S
     panel.script = fmt::format(
         "# equal aspect: {:.6g} pixels a metre on both axes\n"
         "set xrange [{:.6g}:{:.6g}]\nset xtics {:g}\nset ytics {:g}\nset yrange [{:.6g}:{:.6g}]\n",
-        pixels_per_metre, x[0], x[1], tic_step(width), tic_step(width), up[0], up[1]);
+        pixels_per_metre, x[0], x[1], level_tic_step(x, pixels_per_metre), tic_step(width), up[0],
+        up[1]);
     panel.script += plot_lines(all, csv_file, fmt::format("${}", view.right + 3),
                                fmt::format("{}", view.up + 3),
                                last ? Titles::shown : Titles::left_out, static_cast<int>(i));

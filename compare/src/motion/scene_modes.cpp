@@ -14,6 +14,7 @@
 #include "motion/scene_inertia.hpp"
 #include "polygon/energy_problems.hpp"
 #include "polygon/step_constants.hpp"
+#include "scene/scene_problem.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -51,6 +52,10 @@ PhysicalSteps physical_steps(double point_mass, double stiffest, double slowest,
 void add_polygon(const Scene& scene, const ModeOptions& options, SceneModes& result) {
   if (scene.holds_twist()) {
     result.no_polygon = "grippers twist the rod, and the polygon's frames are not followed here";
+    return;
+  }
+  if (result.tension.value_or(0) != 0) {
+    result.no_polygon = "its points are at rest without the rod's tension";
     return;
   }
   const MovingPolygon polygon = polygon_at_rest(scene, options.solve);
@@ -96,13 +101,30 @@ SteppedMode stepped_mode(double stiffness, double c_F, double c_h, double rate) 
 }
 
 SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
-  const energy_model::Equilibrium shape = solve_reference(scene, Model::energy, options.solve);
   SceneModes result;
   energy_model::Vibrations found;
+  const energy_model::VibrationOptions own = {
+      .count = options.count, .tolerance = 1e-8, .time_limit = options.solve.time_limit};
   try {
-    found = energy_model::vibrations(
-        energy_problem(scene), scene_inertia(scene), shape,
-        {.count = options.count, .tolerance = 1e-8, .time_limit = options.solve.time_limit});
+    const energy_model::Problem problem = scene_problem(scene);
+    if (energy_model::is_held_straight(problem)) {
+      if (scene.weight_between(0, scene.length).norm() > 0) {
+        throw InputError(
+            fmt::format("{}: the grippers hold the rod straight, which its weight would pull "
+                        "endlessly (allowed: some slack, or gravity = [0, 0, 0])",
+                        scene.file));
+      }
+      result.tension = options.tension.value_or(0);
+      found = energy_model::taut_vibrations(problem, scene_inertia(scene), *result.tension, own);
+    } else if (options.tension) {
+      throw InputError(
+          fmt::format("{}: tension = {:g} N: the rod's shape tells its tension "
+                      "(allowed: of one that clamps hold straight)",
+                      scene.file, *options.tension));
+    } else {
+      const energy_model::Equilibrium shape = solve_reference(scene, Model::energy, options.solve);
+      found = energy_model::vibrations(problem, scene_inertia(scene), shape, own);
+    }
   } catch (const std::invalid_argument& error) {
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }

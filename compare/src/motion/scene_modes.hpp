@@ -15,7 +15,9 @@ struct ModeOptions {
   int count = 6;          ///< modes, > 0
   double rate = 4000;     ///< steps a second, > 0 (the paper's)
   double damping = 0.01;  ///< ratio of the slowest mode that the material has [-], > 0 to 1
-  SolveOptions solve;     ///< limits of the solvers
+  /// Of a rod that clamps hold straight, which its shape does not tell [N]; none: 0.
+  std::optional<double> tension = std::nullopt;
+  SolveOptions solve;  ///< limits of the solvers
 };
 
 /// What the stepper's c_F and c_h make of a movement of stiffness k, exactly:
@@ -52,6 +54,7 @@ struct SceneModes {
   energy_model::SolveStatus status = energy_model::SolveStatus::not_run;  ///< of the rod's
   std::string message;
   std::vector<SceneMode> modes;         ///< the slowest first
+  std::optional<double> tension;        ///< of a rod that clamps hold straight [N]
   std::string no_polygon;               ///< why there are none of the polygon; empty: there are
   std::optional<double> mass_of_steps;  ///< m* = dt^2 / c_F of the scene's stepper [kg]
   std::optional<PhysicalSteps> physical;

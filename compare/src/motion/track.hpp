@@ -26,7 +26,7 @@ struct TrackOptions {
 /// The rod at one time, at rest.
 struct TrackFrame {
   double time = 0;        ///< [s]
-  bool followed = false;  ///< next to the frame before, by Newton's method alone
+  bool followed = false;  ///< on the branch of the frame before
   /// As Solution's: it comes to zero where a branch ends at a fold [-].
   double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
   /// Of the shape; gravity and loads are zero at the origin, which does not move [J].
@@ -49,13 +49,16 @@ struct TrackEvent {
   enum class Kind {
     contact,  ///< something begins to touch, or to lie
     release,  ///< something ends to
-    snap,     ///< the shape has fallen to another one
+    snap,     ///< the branch has ended, and the shape has fallen to another one
+    lost,     ///< so has the shape, but the branch has not been seen to end
   };
   Kind kind = Kind::contact;
   std::size_t frame = 0;                                       ///< the first with it
   std::optional<ContactChange> contact;                        ///< of a contact or a release
-  double released = std::numeric_limits<double>::quiet_NaN();  ///< of a snap [J]
+  double released = std::numeric_limits<double>::quiet_NaN();  ///< of a fall [J]
   double released_bound = 0;                                   ///< by which that may be off [J]
+  /// Of the last shape on the branch, before a fall [-].
+  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// In words, for files.
@@ -73,19 +76,18 @@ struct Track {
   std::vector<TrackFrame> frames;  ///< up to where it had to stop; one or more
   std::vector<TrackEvent> events;  ///< by time
   std::optional<TrackStop> stopped;
-  double median_seconds = 0;  ///< of a frame of the energy model
-  int lost = 0;               ///< frames where Newton's method did not keep the branch, in no steps
-  int repeated = 0;           ///< frames where it did so in smaller steps only
+  double median_seconds = 0;  ///< of a frame of the energy model in which something moves
+  int lost = 0;      ///< frames whose shape was searched for, on another branch or on the same
+  int repeated = 0;  ///< frames to which the branch was kept in smaller steps only
   std::vector<std::string> left_out;  ///< as Solution::left_out
   ForceTrackSummary force;
 };
 
 /// Follows the energy model's shape through a scene's motion: the first frame has the lowest shape
-/// that is found, all others its branch, as long as there is one. A branch that ends is told by
-/// energy, after Newton's method has not kept it in up to 16 steps either: what grippers and moving
-/// obstacles do on the rod is what its energy grows by, unless the rod falls, and then more is
-/// missing than any forces between those of the two frames could do (a snap). The force model makes
-/// its steps of each frame beside it, from rest.
+/// that is found, all others its branch (Branch), as long as there is one. Where the shape has
+/// fallen to a lower one, more energy is missing than any forces between those before and after
+/// could do; that is a snap only if the branch has shown its end, else the solver may have lost it.
+/// The force model makes its steps of each frame beside it, from rest.
 ///
 /// What is impossible, such as grippers farther apart than the rod between them, ends it (stopped),
 /// and so does a solver that does not converge, or that comes out on a shape which is higher than

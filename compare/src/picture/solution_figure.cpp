@@ -34,9 +34,11 @@ std::string title_of(const Solution& solution, std::size_t number, std::size_t c
 std::string style_of(const Solution& solution, std::size_t i, std::size_t count) {
   const bool polygon = solution.model == Model::chain || solution.model == Model::force;
   const char* colour = count == 1 ? "black" : curve_colour(i);
+  // Where the colours come again there are dots between the dashes.
+  const int dashes = i < curve_colours ? 2 : 4;
   return fmt::format("with {} linecolor rgb '{}' linewidth {} dashtype {}",
                      polygon ? "linespoints pointtype 7 pointsize 0.5" : "lines", colour,
-                     is_unstable(solution) ? 1.5 : 2, is_unstable(solution) ? 2 : 1);
+                     is_unstable(solution) ? 1.5 : 2, is_unstable(solution) ? dashes : 1);
 }
 
 }  // namespace

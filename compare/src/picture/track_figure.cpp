@@ -250,15 +250,15 @@ std::string force_csv(const Scene& scene, const TrackShapes& shapes) {
   return csv;
 }
 
-enum class Titles { shown, left_out };
+enum class KeyEntries { shown, left_out };
 
 /// Of all grippers against time, a column of the CSV.
 Panel load_panel(const Scene& scene, const TrackShapes& shapes, const std::string& csv_file,
-                 int column, Titles titles) {
+                 int column, KeyEntries entries) {
   Panel panel{.height = load_plot, .x_label = "time [s]"};
   std::string plots;
   const auto add = [&](const std::string& data, const std::string& title, const char* style) {
-    const bool shown = titles == Titles::shown;
+    const bool shown = entries == KeyEntries::shown;
     fmt::format_to(std::back_inserter(plots), "{}{} {} {}", plots.empty() ? "plot " : ", \\\n  ",
                    data, shown ? "title " + gnuplot_string(title) : std::string("notitle"), style);
     if (shown) ++panel.key_rows;
@@ -288,6 +288,8 @@ Panel load_panel(const Scene& scene, const TrackShapes& shapes, const std::strin
        "linecolor rgb '#207A34' linewidth 1 dashtype 2");
   mark(TrackEvent::Kind::release, "ends to", "linecolor rgb '#707070' linewidth 1 dashtype 3");
   mark(TrackEvent::Kind::snap, "snaps", "linecolor rgb '#C00000' linewidth 1.5 dashtype 1");
+  mark(TrackEvent::Kind::lost, "may have been lost",
+       "linecolor rgb '#C00000' linewidth 1.5 dashtype 3");
   panel.script += "set yrange [0:*]\n" + plots + "\n";
   return panel;
 }
@@ -303,9 +305,9 @@ Figure force_figure(const Scene& scene, const TrackShapes& shapes, std::size_t n
                 .csv_file = fmt::format("forces_{}.csv", number),
                 .csv = force_csv(scene, shapes)};
   constexpr int force_column = 4;
-  Panel force = load_panel(scene, shapes, figure.csv_file, force_column, Titles::left_out);
+  Panel force = load_panel(scene, shapes, figure.csv_file, force_column, KeyEntries::left_out);
   force.y_label = "force [N]";
-  Panel torque = load_panel(scene, shapes, figure.csv_file, force_column + 1, Titles::shown);
+  Panel torque = load_panel(scene, shapes, figure.csv_file, force_column + 1, KeyEntries::shown);
   torque.y_label = "torque [N m]";
   figure.panels = {std::move(force), std::move(torque)};
   return figure;

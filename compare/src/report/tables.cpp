@@ -165,6 +165,7 @@ HtmlTable motion_table(const Report& report) {
                               {"frames"},
                               {"contacts begin or end"},
                               {"snaps"},
+                              {"branch lost"},
                               {"largest force [N]"},
                               {"largest torque [N m]"},
                               {"force model: mean error"},
@@ -180,16 +181,18 @@ HtmlTable motion_table(const Report& report) {
         torque = std::max(torque, load.torque.norm());
       }
     }
-    const auto snaps =
-        std::count_if(track.events.begin(), track.events.end(),
-                      [](const TrackEvent& event) { return event.kind == TrackEvent::Kind::snap; });
+    const auto count = [&](auto... kinds) {
+      return std::count_if(track.events.begin(), track.events.end(),
+                           [=](const TrackEvent& event) { return ((event.kind == kinds) || ...); });
+    };
+    using Kind = TrackEvent::Kind;
+    const std::string lost = std::to_string(count(Kind::lost));
     const bool beside = track.force.none.empty();
     const double none = std::numeric_limits<double>::quiet_NaN();
     table.rows.push_back(
         {motion.file.scene.name, page_number(track.frames.back().time - track.frames.front().time),
-         std::to_string(track.frames.size()),
-         std::to_string(static_cast<std::ptrdiff_t>(track.events.size()) - snaps),
-         std::to_string(snaps), page_number(force), page_number(torque),
+         std::to_string(track.frames.size()), std::to_string(count(Kind::contact, Kind::release)),
+         std::to_string(count(Kind::snap)), lost, page_number(force), page_number(torque),
          page_percent(beside ? track.force.mean : none),
          page_percent(beside ? track.force.largest : none), page_number(track.force.lag * 1e3)});
   }

@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 
@@ -46,8 +49,17 @@ bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
 /// @throws std::invalid_argument, ConvergenceError if the energy model finds none
 energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Problem& problem,
                                       const SolveOptions& options) {
+  const auto begin = std::chrono::steady_clock::now();
+  const auto left = [&] {
+    const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+    return std::max(options.time_limit - spent.count(), std::numeric_limits<double>::min());
+  };
   energy_model::ExactOptions exact{.time_limit = options.time_limit};
-  if (problem.obstacles.empty()) return energy_model::solve_exact(problem, exact);
+  // What yields it refuses from any start.
+  const bool yields = std::any_of(
+      problem.obstacles.begin(), problem.obstacles.end(),
+      [](const energy_model::Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
+  if (problem.obstacles.empty() || yields) return energy_model::solve_exact(problem, exact);
   try {
     energy_model::Equilibrium own = energy_model::solve_exact(problem, exact);
     if (energy_model::succeeded(own.status)) return own;
@@ -55,13 +67,14 @@ energy_model::Equilibrium exact_shape(const Scene& scene, const energy_model::Pr
     // Of its own accord it knows one clamp over half-spaces.
   }
   const energy_model::Equilibrium told =
-      energy_model::solve_energy(problem, {.time_limit = options.time_limit});
+      energy_model::solve_energy(problem, {.time_limit = left()});
   if (!energy_model::succeeded(told.status)) {
     throw ConvergenceError(fmt::format(
         "{}: the energy model, which tells the exact one what touches, did not converge: {}",
         scene.file, told.message));
   }
   exact.start = &told;
+  exact.time_limit = left();
   energy_model::Equilibrium confirmed = energy_model::solve_exact(problem, exact);
   confirmed.message += ", from what the energy model says touches";
   return confirmed;

@@ -89,17 +89,23 @@ Equilibrium mirrored(const Scene& scene, const Equilibrium& state, const Eigen::
 std::vector<Equilibrium> all_states(const Scene& scene, const Equilibrium& lowest,
                                     const SolveOptions& options) {
   std::vector<Equilibrium> states = reference_states(scene, options);
-  const auto known = [&](const Equilibrium& state) {
-    return std::any_of(states.begin(), states.end(), [&](const Equilibrium& other) {
+  const auto find = [&](const Equilibrium& state) {
+    return std::find_if(states.begin(), states.end(), [&](const Equilibrium& other) {
       return shapes_apart(scene, state, other) < same_shape * scene.length;
     });
   };
-  if (!known(lowest)) states.insert(states.begin(), lowest);
+  // With the digits that solve() has.
+  const auto found_too = find(lowest);
+  if (found_too != states.end()) {
+    *found_too = lowest;
+  } else {
+    states.insert(states.begin(), lowest);
+  }
   if (const std::optional<Eigen::Vector3d> normal = scene.plane_normal()) {
     const std::size_t found = states.size();
     for (std::size_t i = 0; i < found; ++i) {
       Equilibrium image = mirrored(scene, states[i], *normal);
-      if (!known(image)) states.push_back(std::move(image));
+      if (find(image) == states.end()) states.push_back(std::move(image));
     }
   }
   std::stable_sort(states.begin(), states.end(), [](const Equilibrium& a, const Equilibrium& b) {

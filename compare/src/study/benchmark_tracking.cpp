@@ -60,7 +60,7 @@ Scene moved(const Scene& scene, const BenchmarkOptions& options, int frame) {
 }
 
 /// The quasi-static shapes at the frames at which errors are looked at.
-struct Track {
+struct ReferenceTrack {
   static constexpr int stride = 10;
   std::vector<energy_model::Equilibrium> rods;
 
@@ -71,15 +71,15 @@ struct Track {
   }
 };
 
-Track track_of(const Scene& scene, Model model, const BenchmarkOptions& options) {
-  Track track;
-  for (int frame = 0; frame < options.frames; frame += Track::stride) {
+ReferenceTrack track_of(const Scene& scene, Model model, const BenchmarkOptions& options) {
+  ReferenceTrack track;
+  for (int frame = 0; frame < options.frames; frame += ReferenceTrack::stride) {
     track.rods.push_back(solve_reference(moved(scene, options, frame), model));
   }
   return track;
 }
 
-BenchmarkRun track_energy(const Scene& scene, int terms, const Track& track,
+BenchmarkRun track_energy(const Scene& scene, int terms, const ReferenceTrack& track,
                           const BenchmarkOptions& options) {
   energy_model::EnergySolver solver({.terms = terms});
   energy_model::Problem problem = energy_problem(scene);
@@ -94,7 +94,9 @@ BenchmarkRun track_energy(const Scene& scene, int terms, const Track& track,
     frames.seconds.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     frames.work += rod.evaluations;
-    if (Track::looks_at(frame)) frames.add_error(track.square_error(scene, {s, points}, frame));
+    if (ReferenceTrack::looks_at(frame)) {
+      frames.add_error(track.square_error(scene, {s, points}, frame));
+    }
   }
   BenchmarkRun run{.scene = scene.name, .model = Model::energy, .size = terms};
   frames.add(run);
@@ -118,7 +120,7 @@ long frame_steps(force_model::Simulation simulation) {
 }
 
 BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int points,
-                         const Track& track, const BenchmarkOptions& options) {
+                         const ReferenceTrack& track, const BenchmarkOptions& options) {
   const ForceModelSettings settings = variant.settings(scene, points);
   Discretisation discretisation = discretise(scene, settings);
   std::vector<std::size_t> all(scene.obstacles.size());
@@ -139,7 +141,7 @@ BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int po
     frames.seconds.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
     frames.work += steps;
-    if (Track::looks_at(frame)) {
+    if (ReferenceTrack::looks_at(frame)) {
       frames.add_error(track.square_error(scene, now.shape(simulation.points()), frame));
     }
   }
@@ -153,9 +155,9 @@ BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int po
 std::vector<BenchmarkRun> tracking_runs(const Scene& scene, const ReferenceShape& reference,
                                         const BenchmarkOptions& options, Stopwatch& watch) {
   std::vector<BenchmarkRun> runs;
-  Track track;
+  ReferenceTrack track;
   const double predicted_track =
-      reference.rod.seconds * options.frames / static_cast<double>(Track::stride);
+      reference.rod.seconds * options.frames / static_cast<double>(ReferenceTrack::stride);
   const auto find = [&] { track = track_of(scene, reference.model, options); };
   if (!watch.run_once(scene.name + ": tracking, reference", predicted_track, find)) return runs;
   const auto add = [&](const std::string& name, double predicted, std::vector<BenchmarkRun>& to,

@@ -25,6 +25,10 @@ constexpr double largest_error = 2;
 /// not further than 2 / (1 + (1 - 2h)^(1/2)) eta; half of it is kept for what is estimated in h.
 constexpr double largest_h = 0.25;
 
+/// Share of an eigenvalue by which it may have changed since the factor that tells it: the
+/// eigenvalue is known no better.
+constexpr double largest_change = 0.01;
+
 /// Third derivatives of E - mu . c along a unit direction of strains are forces times angles of 1
 /// or less, those of positions three times counted, over the scale of forces.
 constexpr double largest_third_derivative = 4;
@@ -107,7 +111,7 @@ struct SoftMode {
   Eigen::VectorXd direction, multipliers;
 };
 
-SoftMode soft_mode(const FreeHessian& on_free_directions, const Eigen::MatrixXd& hessian,
+SoftMode soft_mode(FreeHessian& on_free_directions, const Eigen::MatrixXd& hessian,
                    const Eigen::MatrixXd& jacobian, Eigen::Index free) {
   SoftMode mode;
   mode.direction = direction_by_size(on_free_directions, free);
@@ -148,6 +152,14 @@ Softening softening(SpanSolution& solution, const SoftMode& mode) {
   return {(ahead - behind) / (2 * step), (ahead - 2 * here + behind) / (step * step)};
 }
 
+/// By how much the eigenvalues of the second variation on the free directions may differ from those
+/// at the point that Newton's factor is of: by third derivatives, and as the constraints turn what
+/// is free.
+double change_since(Newton& newton, const SpanSolution& solution, double scale) {
+  return newton.distance_of_factor(solution) * largest_third_derivative * scale /
+         std::min(1.0, newton.system().on_free_directions().least_constraint());
+}
+
 /// Whether the second variation might change so much within `eta` that h is above its limit; false
 /// where the largest forces there are could not do it.
 bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
@@ -157,7 +169,7 @@ bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
 
 }  // namespace
 
-void certify(SpanSolution& solution, double load) {
+void certify(SpanSolution& solution, double load, Newton& newton) {
   // Newton's method leaves those undetermined whose terms nobody has looked at.
   const bool undetermined = solution.status == SolveStatus::near_singular;
   if (!solution.is_equilibrium() && !undetermined) return;
@@ -165,11 +177,9 @@ void certify(SpanSolution& solution, double load) {
   Eigen::VectorXd gradient(model.size());
   solution.energy = model.value(solution.x, gradient);
   ++solution.evaluations;
-  Eigen::MatrixXd hessian;
   Eigen::MatrixXd jacobian(model.constraints(), model.size());
   Eigen::VectorXd residual(model.constraints());
   model.constraint(residual, jacobian);
-  model.hessian(solution.multipliers, hessian);
   gradient -= jacobian.transpose() * solution.multipliers;
   if (!(solution.multipliers.norm() <= largest_pull * (1 + load))) {
     return solution.fail("the grips would have to pull without bound");
@@ -179,28 +189,41 @@ void certify(SpanSolution& solution, double load) {
   if (!(solution.residual <= largest_next_step * scale)) {
     return solution.fail("the residual of the returned shape is not small");
   }
-  NewtonSystem system;
-  system.compute(hessian, jacobian);
-  solution.next_step = newton_step(system, gradient, residual);
-  const bool small_step = solution.next_step <= largest_next_step;
-  // Below it what is left of the residual makes a step that is not small.
-  const double bound = std::max(neutral, small_step ? 0 : solution.residual / largest_next_step);
   const FreeTurns free = free_turns(model.span(), model.tangents());
   solution.free_turns = static_cast<int>(free.all());
   // Obstacles leave movements free that are not looked for: those that are zero but for rounding.
   const bool obstacles = model.has_soft_obstacles() || !model.span().contacts.empty();
   const double nothing = obstacles ? 128 * rounding_of(scale) : -1;
-  Softness found = softness(system.on_free_directions(), bound, free.in_plane, nothing);
-  solution.smallest_curvature = found.smallest;
-  solution.softest = found.nearest_zero;
-  const double eta = linear_error(solution, load);
+  NewtonSystem& system = newton.system();
+  double bound = neutral;
+  double eta = 0;
+  bool small_step = false;
+  Softness found;
+  for (bool near = !obstacles && newton.has_factor_of(&model);; near = false) {
+    const double change = near ? change_since(newton, solution, scale) : 0;
+    near = near && change < largest_h;
+    if (!near) newton.factor_at(solution, jacobian);
+    solution.next_step = newton_step(system, gradient, residual);
+    small_step = solution.next_step <= largest_next_step;
+    // Below it what is left of the residual makes a step that is not small.
+    bound = std::max(neutral, small_step ? 0 : solution.residual / largest_next_step);
+    found = softness(system.on_free_directions(), bound, free.in_plane, nothing);
+    solution.smallest_curvature = found.smallest;
+    solution.softest = found.nearest_zero;
+    eta = linear_error(solution, load);
+    const bool tells = small_step && found.smallest > 2 * bound &&
+                       change <= largest_change * found.smallest &&
+                       !may_be_at_fold(solution, load, eta);
+    if (!near || tells) break;
+  }
   double moved = eta;
   bool at_fold = false;
   solution.neutral_directions = found.neutral_directions;
   // As many terms as constraints leave no direction that a fold could be in.
   const bool can_move = found.zero < model.size() - model.constraints();
   if (can_move && !model.has_soft_obstacles() && may_be_at_fold(solution, load, eta)) {
-    const SoftMode mode = soft_mode(system.on_free_directions(), hessian, jacobian, found.zero);
+    const SoftMode mode =
+        soft_mode(system.on_free_directions(), newton.hessian(), jacobian, found.zero);
     const Softening change = softening(solution, mode);
     const double kappa = std::abs(change.first) + std::abs(change.second) * eta;
     const double h = eta * kappa / solution.softest;
@@ -210,6 +233,7 @@ void certify(SpanSolution& solution, double load) {
   }
   solution.error = error_estimate(solution, moved);
   if (model.span().planar) {
+    Eigen::MatrixXd hessian;
     model.sideways(solution.multipliers, hessian, jacobian);
     FreeHessian beside;
     beside.compute(hessian, jacobian);
@@ -223,7 +247,7 @@ void certify(SpanSolution& solution, double load) {
                                                   : SolveStatus::converged);
 }
 
-void certify_sideways(SpanSolution& solution, double load) {
+void certify_sideways(SpanSolution& solution, double load, Newton& newton) {
   const Span& span = solution.model->span();
   // Only a rod that is pulled along its clamp turns freely, about that; few are.
   const auto is_along = [&](const Eigen::Vector3d& force) {
@@ -238,7 +262,8 @@ void certify_sideways(SpanSolution& solution, double load) {
   const bool looked_at = solution.is_equilibrium() && !std::isnan(solution.softest);
   const bool unsure =
       looked_at && (solution.softest <= neutral || may_be_at_fold(solution, load, eta));
-  if (unsure || solution.status == SolveStatus::near_singular) return certify(solution, load);
+  if (unsure || solution.status == SolveStatus::near_singular)
+    return certify(solution, load, newton);
   if (!solution.is_equilibrium()) return;
   solution.error = error_estimate(solution, eta);
   if (solution.status != SolveStatus::converged) return;

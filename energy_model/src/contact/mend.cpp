@@ -18,6 +18,15 @@ constexpr double first_part = 0.01;
 constexpr double short_gap = 0.02;
 constexpr double least_rise = 1e-3;
 
+/// Largest clearance between two arc lengths.
+double highest(const SpanShape& shape, const Span::Obstacle& obstacle, double from, double to) {
+  constexpr int looks = 16;
+  std::vector<double> s;
+  for (int i = 1; i < looks; ++i) s.push_back(from + (to - from) * i / looks);
+  const SpanSamples samples = shape.sample(s);
+  return obstacle.body.clearances(samples.points).maxCoeff();
+}
+
 class Contacts {
  public:
   Contacts(const SpanSolution& solution, double load, Terms terms)
@@ -59,8 +68,8 @@ class Contacts {
         continue;
       }
       const double length = contact.end - contact.begin;
-      const bool lifted = force.least_inner < pull_ ||
-                          (terms_ == Terms::all && force.least_pressure * length < pull_);
+      const bool pulled_along = terms_ == Terms::all && force.least_pressure * length < pull_;
+      const bool lifted = force.least_inner < pull_ || pulled_along;
       // Nothing beyond a free end is carried there.
       const bool begin_pulls = contact.begin > 0 && force.begin < pull_;
       const bool end_pulls = contact.end < span_.length && force.end < pull_;
@@ -69,28 +78,30 @@ class Contacts {
         double at = (contact.begin + contact.end) / 2;
         if (begin_pulls && !end_pulls) at = contact.end;
         if (end_pulls && !begin_pulls) at = contact.begin;
+        // Pushed at its ends alone the rod leaves the obstacle between them.
+        const bool inside = contact.begin > 0 && contact.end < span_.length;
+        if (inside && pulled_along && !begin_pulls && !end_pulls &&
+            length > short_gap * span_.length) {
+          Span::Contact first = contact;
+          first.end = first.begin;
+          kept.push_back(first);
+          at = contact.end;
+          split_.push_back(at);
+        }
         contact.begin = contact.end = at;
       }
       kept.push_back(contact);
     }
-    wrong_ = wrong_ || kept.size() < contacts_.size();
+    wrong_ = wrong_ || kept.size() != contacts_.size();
     contacts_ = std::move(kept);
   }
 
-  /// Neighbouring contacts with an obstacle that the rod hardly leaves between them, or is behind,
-  /// are one.
   void join() {
     for (std::size_t i = 0; i + 1 < contacts_.size();) {
       Span::Contact& here = contacts_[i];
       const Span::Contact& next = contacts_[i + 1];
-      const double gap = next.begin - here.end;
-      bool one = here.obstacle.index == next.obstacle.index && here.feature == next.feature;
-      if (one) {
-        const double rise = highest(here.obstacle, here.end, next.begin);
-        // Of a free part as short as that nothing could be told.
-        one = rise < 0 || (gap < short_gap * span_.length && rise < least_rise * gap);
-      }
-      if (!one) {
+      const bool split = std::find(split_.begin(), split_.end(), next.begin) != split_.end();
+      if (split || !are_one(here, next, span_, shape_)) {
         ++i;
         continue;
       }
@@ -98,15 +109,6 @@ class Contacts {
       contacts_.erase(contacts_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
       wrong_ = true;
     }
-  }
-
-  /// Largest clearance between two arc lengths.
-  [[nodiscard]] double highest(const Span::Obstacle& obstacle, double from, double to) const {
-    constexpr int looks = 16;
-    std::vector<double> s;
-    for (int i = 1; i < looks; ++i) s.push_back(from + (to - from) * i / looks);
-    const SpanSamples samples = shape_.sample(s);
-    return obstacle.body.clearances(samples.points).maxCoeff();
   }
 
   /// What is behind an obstacle touches it; next to another contact both lie, and so does what is
@@ -117,7 +119,7 @@ class Contacts {
       const bool same = contact.obstacle.index == lowest.obstacle.index;
       if (!same || contact.feature != lowest.feature) continue;
       if (lowest.s == length && contact.end < length &&
-          highest(contact.obstacle, contact.end, length) < 0) {
+          highest(shape_, contact.obstacle, contact.end, length) < 0) {
         contact.end = length;
         return;
       }
@@ -147,11 +149,21 @@ class Contacts {
   double pull_;
   Terms terms_;
   std::vector<Span::Contact> contacts_;
+  std::vector<double> split_;  // where the second points of parts are that have become two
   bool wrong_ = false;
   bool unlike_ = false;  // contacts_ are no longer those of the shape
 };
 
 }  // namespace
+
+bool are_one(const Span::Contact& here, const Span::Contact& next, const Span& span,
+             const SpanShape& shape) {
+  if (here.obstacle.index != next.obstacle.index || here.feature != next.feature) return false;
+  const double gap = next.begin - here.end;
+  const double rise = highest(shape, here.obstacle, here.end, next.begin);
+  // Of a free part as short as that nothing could be told.
+  return rise < 0 || (gap < short_gap * span.length && rise < least_rise * gap);
+}
 
 std::optional<std::vector<Span::Contact>> mended(const SpanSolution& solution, double load,
                                                  Terms terms) {

@@ -3,6 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "problem/span.hpp"
+#include "strain/span_shape.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
@@ -22,9 +24,14 @@ enum class Terms {
 /// pressures are above -1e-7 of all forces) and nothing is more than `deepest` (`deepest_coarse`)
 /// lengths behind one.
 /// @return nothing if so; else the contacts to try next: without those that pull, points where they
-///         lie too short or are pulled along a part, one where two meet, more where the rod is
-///         behind an obstacle
+///         lie too short, at both ends of a part along which the rod is pulled at, one where two
+///         meet, more where the rod is behind an obstacle
 [[nodiscard]] std::optional<std::vector<Span::Contact>> mended(const SpanSolution& solution,
                                                                double load, Terms terms);
+
+/// Whether a contact and the next one are one: with the same obstacle, and the rod hardly leaves it
+/// between them or is behind it.
+[[nodiscard]] bool are_one(const Span::Contact& here, const Span::Contact& next, const Span& span,
+                           const SpanShape& shape);
 
 }  // namespace dlo::energy_model

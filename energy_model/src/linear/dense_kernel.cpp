@@ -81,6 +81,18 @@ inline void multiply_strip(const ConstColumns& a, const Factors& b, const Column
   }
 }
 
+/// A b of one column, with as many registers as keep sums from waiting for each other.
+inline void multiply_column(const ConstColumns& a, const Factors& b, const Columns& result) {
+  std::ptrdiff_t i = 0;
+  for (; i + 8 * lane_count <= a.rows; i += 8 * lane_count) {
+    multiply_tile<8, 1>(a, b, result, i, 0);
+  }
+  for (; i + 4 * lane_count <= a.rows; i += 4 * lane_count) {
+    multiply_tile<4, 1>(a, b, result, i, 0);
+  }
+  if (i < a.rows) multiply_strip<1>(a, b, result, i, 0);
+}
+
 void multiply(const ConstColumns& a, const ConstColumns& b, const Columns& result) {
   constexpr std::ptrdiff_t width = 4;
   const Factors factors = {b.data, 1, b.stride};
@@ -92,7 +104,7 @@ void multiply(const ConstColumns& a, const ConstColumns& b, const Columns& resul
   }
   if (b.columns == 3) multiply_strip<3>(a, factors, result, 0, 0);
   if (b.columns == 2) multiply_strip<2>(a, factors, result, 0, 0);
-  if (b.columns == 1) multiply_strip<1>(a, factors, result, 0, 0);
+  if (b.columns == 1) multiply_column(a, factors, result);
 }
 
 void multiply_symmetric(const ConstColumns& a, const ConstColumns& b, const Columns& result) {
@@ -315,6 +327,13 @@ inline void solve_forward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
   }
 }
 
+inline double sum_of(Lanes lanes) {
+  for (std::ptrdiff_t half = lane_count / 2; half > 0; half /= 2) {
+    for (std::ptrdiff_t lane = 0; lane < half; ++lane) lanes[lane] += lanes[lane + half];
+  }
+  return lanes[0];
+}
+
 /// `width` unknowns from j on of L^T y = x, where those beyond are known.
 template <int width>
 inline void solve_backward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
@@ -330,11 +349,11 @@ inline void solve_backward(const ConstColumns& l, double* x, std::ptrdiff_t j) {
     const Lanes known = read_lanes(x + i);
     for (int c = 0; c < width; ++c) sums[c] += read_lanes(columns[c] + i) * known;
   }
+  for (int c = 0; c < width && i > j + width; ++c) y[c] -= sum_of(sums[c]);
   for (; i < l.rows; ++i) {
     for (int c = 0; c < width; ++c) y[c] -= columns[c][i] * x[i];
   }
   for (int c = width; c-- > 0;) {
-    for (std::ptrdiff_t lane = 0; lane < lane_count; ++lane) y[c] -= sums[c][lane];
     for (int later = c + 1; later < width; ++later) y[c] -= columns[c][j + later] * y[later];
     y[c] *= columns[c][j + c];
     x[j + c] = y[c];
@@ -364,6 +383,84 @@ void reflect(const Columns& a, const double* v, double tau, double* w) {
   }
 }
 
+using Bits [[gnu::vector_size(lane_count * sizeof(double))]] = long long;
+
+/// (a) The angle less the nearest multiple k of pi/2, a sum of three numbers of which the first two
+///     have 33 bits: k times them is exact.
+/// (b) Taylor's series on what is left, cut where fdlibm cuts it and with its coefficients.
+/// (c) Odd k exchange sine and cosine; signs follow from k, of which `shift` has left the last bits
+///     at the end of the mantissa.
+inline void turn_lanes(Lanes angle, Lanes& cosine, Lanes& sine) {
+  constexpr double shift = 0x1.8p52;
+  constexpr double per_quarter = 6.36619772367581382433e-01;
+  const Lanes shifted = angle * per_quarter + shift;
+  const Lanes k = shifted - shift;
+  Lanes r = angle - k * 1.57079632673412561417e+00;  // (a)
+  r = r - k * 6.07710050630396597660e-11;
+  r = r - k * 2.02226624879595063154e-21;
+  const Lanes z = r * r;  // (b)
+  Lanes s = z * 1.58969099521155010221e-10 - 2.50507602534068634195e-08;
+  s = z * s + 2.75573137070700676789e-06;
+  s = z * s - 1.98412698298579493134e-04;
+  s = z * s + 8.33333333332248946124e-03;
+  s = z * s - 1.66666666666666324348e-01;
+  s = r + r * z * s;
+  Lanes c = z * -1.13596475577881948265e-11 + 2.08757232129817482790e-09;
+  c = z * c - 2.75573143513906633035e-07;
+  c = z * c + 2.48015872894767294178e-05;
+  c = z * c - 1.38888888888741095749e-03;
+  c = z * c + 4.16666666666666019037e-02;
+  const Lanes half = 0.5 * z;
+  const Lanes most = 1.0 - half;
+  c = most + (((1.0 - most) - half) + z * z * c);
+  const Bits quarter = reinterpret_cast<Bits>(shifted);  // (c)
+  const Bits odd = -(quarter & 1);
+  const Bits of_s = reinterpret_cast<Bits>(s);
+  const Bits of_c = reinterpret_cast<Bits>(c);
+  const Bits sines = ((of_s & ~odd) | (of_c & odd)) ^ ((quarter & 2) << 62);
+  const Bits cosines = ((of_c & ~odd) | (of_s & odd)) ^ (((quarter + 1) & 2) << 62);
+  sine = reinterpret_cast<Lanes>(sines);
+  cosine = reinterpret_cast<Lanes>(cosines);
+}
+
+void turn(const double* angles, std::ptrdiff_t count, double* cosines, double* sines) {
+  Lanes cosine, sine;
+  std::ptrdiff_t i = 0;
+  for (; i + lane_count <= count; i += lane_count) {
+    turn_lanes(read_lanes(angles + i), cosine, sine);
+    write_lanes(cosines + i, cosine);
+    write_lanes(sines + i, sine);
+  }
+  if (i == count) return;
+  Lanes rest{};
+  for (std::ptrdiff_t lane = 0; lane < count - i; ++lane) rest[lane] = angles[i + lane];
+  turn_lanes(rest, cosine, sine);
+  for (std::ptrdiff_t lane = 0; lane < count - i; ++lane) {
+    cosines[i + lane] = cosine[lane];
+    sines[i + lane] = sine[lane];
+  }
+}
+
+void combine_thirds(const ConstColumns& a, const ConstColumns& factors, const Columns& result) {
+  const std::ptrdiff_t third = result.columns * a.stride;
+  for (std::ptrdiff_t j = 0; j < result.columns; ++j) {
+    const double* from = a.data + j * a.stride;
+    const double* factor = factors.data + j;
+    const double f0 = factor[0];
+    const double f1 = factor[factors.stride];
+    const double f2 = factor[2 * factors.stride];
+    double* to = result.data + j * result.stride;
+    std::ptrdiff_t i = 0;
+    for (; i + lane_count <= result.rows; i += lane_count) {
+      write_lanes(to + i, read_lanes(from + i) * f0 + read_lanes(from + third + i) * f1 +
+                              read_lanes(from + 2 * third + i) * f2);
+    }
+    for (; i < result.rows; ++i) {
+      to[i] = f0 * from[i] + f1 * from[third + i] + f2 * from[2 * third + i];
+    }
+  }
+}
+
 }  // namespace
 
 const DenseKernel& dense_kernel() {
@@ -374,7 +471,9 @@ const DenseKernel& dense_kernel() {
                                          add_product,
                                          factor,
                                          solve,
-                                         reflect};
+                                         reflect,
+                                         turn,
+                                         combine_thirds};
   return kernel;
 }
 

@@ -18,8 +18,8 @@ struct Columns {
 inline constexpr std::ptrdiff_t padding = 8;
 
 /// Products of matrices of some ten to two hundred rows, for which a library's packing of its
-/// operands costs as much as the product, factors of such, and products of quaternions, one a row:
-/// w, x, y, z. Results have their size and none of the operands' memory.
+/// operands costs as much as the product, factors of such, sines, and products of quaternions, one
+/// a row: w, x, y, z. Results have their size and none of the operands' memory.
 struct DenseKernel {
   void (*multiply)(const ConstColumns& a, const ConstColumns& b, const Columns& result);  ///< A B
   /// A B^T that is symmetric, of which one half is worked out.
@@ -38,6 +38,11 @@ struct DenseKernel {
   /// A = P A P of a symmetric A with the reflection P = 1 - tau v v^T.
   /// @param w  scratch, as many as rows
   void (*reflect)(const Columns& a, const double* v, double tau, double* w);
+  /// Cosines and sines of as many angles [rad], right to 2e-16 up to 1e6.
+  void (*turn)(const double* angles, std::ptrdiff_t count, double* cosines, double* sines);
+  /// Column j of the result, which has n: the sum over i = 0, 1, 2 of factors(j, i) times column
+  /// j + i n of A.
+  void (*combine_thirds)(const ConstColumns& a, const ConstColumns& factors, const Columns& result);
 };
 
 /// The one for this machine's instruction set.

@@ -41,7 +41,12 @@ Eigen::VectorXd eigenvalues_by_size(const FreeHessian& hessian) {
   return found;
 }
 
-Eigen::VectorXd direction_by_size(const FreeHessian& hessian, Eigen::Index index) {
+Eigen::VectorXd direction_by_size(FreeHessian& hessian, Eigen::Index index) {
+  if (index == 0) {
+    if (const std::optional<Eigen::VectorXd> softest = hessian.softest_of_definite()) {
+      return hessian.in_unknowns(*softest);
+    }
+  }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.matrix());
   std::vector<Eigen::Index> order(static_cast<std::size_t>(eigen.eigenvalues().size()));
   std::iota(order.begin(), order.end(), Eigen::Index{0});

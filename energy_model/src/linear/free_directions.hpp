@@ -35,7 +35,7 @@ class AcrossNeutral {
 [[nodiscard]] Eigen::VectorXd eigenvalues_by_size(const FreeHessian& hessian);
 
 /// Unit direction of one of them, of those that the constraints leave, by growing size from 0.
-[[nodiscard]] Eigen::VectorXd direction_by_size(const FreeHessian& hessian, Eigen::Index index);
+[[nodiscard]] Eigen::VectorXd direction_by_size(FreeHessian& hessian, Eigen::Index index);
 
 /// Whether no eigenvalue of a matrix, of which the lower half is read, is negative.
 [[nodiscard]] bool is_minimum(const Eigen::MatrixXd& hessian);

@@ -3,6 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "linear/dense_products.hpp"
 
@@ -11,6 +13,47 @@ namespace {
 
 /// Of R's diagonal over its largest element, below which constraints depend on each other.
 constexpr double dependent = 1e-10;
+
+/// Of a symmetric positive definite tridiagonal matrix, to 1e-9 of itself: from above by Laguerre's
+/// method, which for a polynomial with real roots goes to the largest one without passing it. The
+/// polynomial is the product of the pivots of x - T.
+double largest_eigenvalue(const Eigen::Ref<const Eigen::VectorXd>& diagonal,
+                          const Eigen::Ref<const Eigen::VectorXd>& beside) {
+  const Eigen::Index n = diagonal.size();
+  double x = 0;
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const double before = i > 0 ? std::abs(beside[i - 1]) : 0;
+    const double after = i + 1 < n ? std::abs(beside[i]) : 0;
+    x = std::max(x, diagonal[i] + before + after);
+  }
+  if (n < 2) return x;
+  constexpr int most_steps = 40;
+  for (int step = 0; step < most_steps; ++step) {
+    // Of log p: the sum of 1 / (x - root), and that of their squares.
+    double sum = 0;
+    double squares = 0;
+    double pivot = 1;
+    double slope = 0;
+    double bend = 0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double b = i > 0 ? beside[i - 1] * beside[i - 1] / (pivot * pivot) : 0;
+      const double next_bend = b * (bend - 2 * slope * slope / pivot);
+      const double next = x - diagonal[i] - b * pivot;
+      slope = 1 + b * slope;
+      bend = next_bend;
+      pivot = next;
+      if (!(pivot > 0)) return x;
+      sum += slope / pivot;
+      squares += slope / pivot * (slope / pivot) - bend / pivot;
+    }
+    const auto order = static_cast<double>(n);
+    const double root = std::sqrt(std::max(0.0, (order - 1) * (order * squares - sum * sum)));
+    const double by = order / (sum + root);
+    x -= by;
+    if (!(by > 1e-9 * x)) break;
+  }
+  return x;
+}
 
 Eigen::Index padded(Eigen::Index rows) { return (rows + padding - 1) / padding * padding; }
 
@@ -96,14 +139,14 @@ void FreeHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
   }
 }
 
-std::optional<double> FreeHessian::smallest_of_definite() {
-  constexpr double slack = 0.01;
-  constexpr double settled = 1e-4;  // between two looks, of which the later is right to its square
-  constexpr Eigen::Index most_steps = 24;
-  const auto is_time_to_look = [](Eigen::Index k) { return k == 4 || k == 8 || k == 14; };
+/// Each vector is made orthogonal to all before. Ends where the largest eigenvalue, looked at from
+/// time to time, has changed by less than `settled` of itself.
+FreeHessian::Lanczos FreeHessian::look_for_smallest(double settled, Eigen::Index most_steps) {
+  const auto is_time_to_look = [](Eigen::Index k) { return k == 4 || (k >= 8 && k % 6 == 2); };
+  // A vector that has become so much shorter is not orthogonal to the others yet, and what it
+  // lacks would grow by as much with each step.
+  constexpr double much_shorter = 0.5;
   const Eigen::Index left = free();
-  if (!definite_ || left == 0) return std::nullopt;
-  // Lanczos' method with the inverse, each vector made orthogonal to all before.
   const Eigen::Index most = std::min(most_steps, left);
   krylov_.resize(left, most + 1);
   // Without a symmetry, which a direction could lack.
@@ -111,31 +154,58 @@ std::optional<double> FreeHessian::smallest_of_definite() {
     krylov_(i, 0) = std::sin(1 + 1.7 * static_cast<double>(i));
   }
   krylov_.col(0).normalize();
-  Eigen::VectorXd along(most);
-  Eigen::VectorXd beside(most);
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
-  double smallest = 0;
+  Lanczos result{Eigen::VectorXd(most), Eigen::VectorXd(most), 0};
   for (Eigen::Index k = 0; k < most; ++k) {
     auto next = krylov_.col(k + 1);
     next = krylov_.col(k);
     dense_kernel().solve({factor_.data(), left, left, factor_.rows()}, next.data());
-    along[k] = krylov_.col(k).dot(next);
-    for (int twice = 0; twice < 2; ++twice) {
+    result.along[k] = krylov_.col(k).dot(next);
+    double size = next.norm();
+    for (int pass = 0; pass < 2; ++pass) {
       scratch_.head(k + 1).noalias() = krylov_.leftCols(k + 1).transpose() * next;
       next.noalias() -= krylov_.leftCols(k + 1) * scratch_.head(k + 1);
+      const double before = std::exchange(size, next.norm());
+      if (size > much_shorter * before) break;
     }
-    beside[k] = next.norm();
-    const bool last = k + 1 == most || !(beside[k] > 1e-12 * along[k]);
-    if (!last) next /= beside[k];
+    result.beside[k] = size;
+    const bool last = k + 1 == most || !(size > 1e-12 * result.along[k]);
+    if (!last) next /= size;
     if (!is_time_to_look(k) && !last) continue;
-    eigen.computeFromTridiagonal(along.head(k + 1), beside.head(k), Eigen::EigenvaluesOnly);
-    const double found = 1 / eigen.eigenvalues()[k];
-    const bool done = std::abs(found - smallest) <= settled * found;
-    smallest = found;
-    if (done || last) break;
+    const double before = result.largest;
+    result.largest = largest_eigenvalue(result.along.head(k + 1), result.beside.head(k));
+    const bool done = std::abs(result.largest - before) <= settled * result.largest;
+    if (!done && !last) continue;
+    result.along.conservativeResize(k + 1);
+    result.beside.conservativeResize(k);
+    return result;
   }
+  return result;
+}
+
+std::optional<double> FreeHessian::smallest_of_definite() {
+  constexpr double slack = 0.01;
+  constexpr double settled = 1e-4;  // between two looks, of which the later is right to its square
+  constexpr Eigen::Index most_steps = 24;
+  if (!definite_ || free() == 0) return std::nullopt;
+  const double smallest = 1 / look_for_smallest(settled, most_steps).largest;
   if (!factor((1 - slack) * smallest, proof_)) return std::nullopt;
   return smallest;
+}
+
+std::optional<Eigen::VectorXd> FreeHessian::softest_of_definite() {
+  constexpr double settled = 1e-12;
+  constexpr Eigen::Index most_steps = 80;
+  if (!definite_ || free() == 0) return std::nullopt;
+  const Lanczos found = look_for_smallest(settled, most_steps);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
+  eigen.computeFromTridiagonal(found.along, found.beside);
+  const Eigen::Index steps = found.along.size();
+  return Eigen::VectorXd(krylov_.leftCols(steps) * eigen.eigenvectors().col(steps - 1));
+}
+
+double FreeHessian::least_constraint() const {
+  return constraints_ > 0 ? diagonal_.cwiseAbs().minCoeff()
+                          : std::numeric_limits<double>::infinity();
 }
 
 Eigen::MatrixXd FreeHessian::matrix() const { return turned_.bottomRightCorner(free(), free()); }

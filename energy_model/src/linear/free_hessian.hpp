@@ -29,6 +29,13 @@ class FreeHessian {
   /// Of Z^T H Z, if it is positive definite, below which by less than a hundredth of it lies no
   /// other one, which a factor proves; none if it is not or the proof fails.
   [[nodiscard]] std::optional<double> smallest_of_definite();
+  /// A unit vector of the free directions along that eigenvalue, to where it changes no more; none
+  /// if Z^T H Z is not positive definite.
+  [[nodiscard]] std::optional<Eigen::VectorXd> softest_of_definite();
+
+  /// Smallest element of R's diagonal, by size: by how much a turn of the constraints' derivatives
+  /// turns the free directions more than that; infinite without constraints.
+  [[nodiscard]] double least_constraint() const;
 
   /// Z^T H Z, free x free.
   [[nodiscard]] Eigen::MatrixXd matrix() const;
@@ -39,6 +46,12 @@ class FreeHessian {
   [[nodiscard]] Eigen::Index free() const { return n_ - constraints_; }
   void reflect_constraints(const Eigen::MatrixXd& jacobian);
   [[nodiscard]] bool factor(double shift, Eigen::MatrixXd& lower) const;
+  /// Vectors krylov_ of Lanczos' method with the inverse, and the matrix that they make of it.
+  struct Lanczos {
+    Eigen::VectorXd along, beside;  // diagonal, and what is next to it
+    double largest = 0;             // eigenvalue
+  };
+  [[nodiscard]] Lanczos look_for_smallest(double settled, Eigen::Index most_steps);
 
   Eigen::Index n_ = 0, constraints_ = 0;
   bool definite_ = false, independent_ = false;

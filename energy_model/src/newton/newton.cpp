@@ -23,6 +23,13 @@ constexpr double fast_contraction = 0.1;
 /// Directions in which the rod moves for next to nothing.
 constexpr Eigen::Index most_neutral = 3;
 
+/// Steps to a shape next to another one, and the longest of them [rad].
+constexpr int most_nearby_steps = 10;
+constexpr double longest_nearby = 10;
+/// A neighbour's factor is left for a shape's own at this step [rad]: the next one, as large as its
+/// square, is at rounding.
+constexpr double last_borrowed_step = 1e-6;
+
 /// A factor is used again for a last step as long as x has moved less than this since: the residual
 /// still falls by that much.
 constexpr double factor_reach = 1e-3;
@@ -56,14 +63,37 @@ void Newton::factor(SpanSolution& solution) {
   solution.model->hessian(solution.multipliers, hessian_);
   prolonged_ = false;
   definite_ = false;
+  factored_.model = nullptr;
   if (jacobian_.rows() == 0) {
-    llt_.compute(hessian_);
-    definite_ = llt_.info() == Eigen::Success;
+    definite_ = definite_factor_.compute(hessian_);
     if (definite_) return;
   }
   pull_ = 1 + load_ + solution.multipliers.norm();
   factor_system();
+  remember_factor(solution);
   if (stands_still_) find_neutral();
+}
+
+void Newton::remember_factor(const SpanSolution& solution) {
+  factored_.model = solution.model.get();
+  factored_.x = solution.x;
+  factored_.multipliers = solution.multipliers;
+}
+
+void Newton::factor_at(const SpanSolution& solution, const Eigen::MatrixXd& jacobian) {
+  solution.model->hessian(solution.multipliers, hessian_);
+  prolonged_ = false;
+  definite_ = false;
+  pull_ = 1 + load_ + solution.multipliers.norm();
+  jacobian_ = jacobian;
+  factor_system();
+  remember_factor(solution);
+}
+
+double Newton::distance_of_factor(const SpanSolution& solution) const {
+  if (!has_factor_of(solution.model.get())) return std::numeric_limits<double>::infinity();
+  return (solution.x - factored_.x).norm() +
+         (solution.multipliers - factored_.multipliers).norm() / scale_of(solution);
 }
 
 /// In terms beyond those of the last Hessian bending outweighs what forces add,
@@ -80,6 +110,7 @@ void Newton::prolong(const SpanEnergy& model, const SpanEnergy& fewer) {
   }
   prolonged_ = true;
   prolong_next_ = true;
+  factored_.model = nullptr;
   definite_ = false;
 }
 
@@ -125,7 +156,7 @@ void Newton::stand_still() {
 void Newton::solve() {
   if (definite_) {
     step_ = -gradient_;
-    llt_.solveInPlace(step_);
+    definite_factor_.solve(step_);
     return;
   }
   right_.resize(gradient_.size() + residual_.size());
@@ -134,7 +165,8 @@ void Newton::solve() {
   if (stands_still_) stand_still();
   // A neutral direction leaves the system singular; least squares stands still along it.
   constexpr double longest = 1e3;
-  if (!system_.is_met(right_, step_, longest)) step_ = system_.across_neutral(right_);
+  if (nearby_ || system_.is_met(right_, step_, longest)) return;
+  step_ = system_.across_neutral(right_);
 }
 
 void Newton::stand_still_where_neutral() {
@@ -259,7 +291,7 @@ double Newton::softest_of_factor() {
   double grows = 1;
   for (int i = 0; i < iterations; ++i) {
     soft_ /= soft_.norm();
-    llt_.solveInPlace(soft_);
+    definite_factor_.solve(soft_);
     grows = soft_.norm();
   }
   return 1 / grows;
@@ -295,14 +327,22 @@ void Newton::polish_with_more_terms(SpanSolution& solution, const SpanSolution& 
   if (model.constraints() > 0 && !model.has_soft_obstacles() && !stands_still_ &&
       hessian_.rows() == fewer.model->size()) {
     prolong(model, *fewer.model);
+    ends_on_own_factor_ = true;
   }
   polish(solution, load);
+  ends_on_own_factor_ = false;
 }
 
 void Newton::polish_nearby(SpanSolution& solution, double load) {
-  nearby_ = true;
+  nearby_ = borrows_ = true;
+  run(solution, load);
+  nearby_ = borrows_ = false;
+}
+
+void Newton::polish_from_neighbour(SpanSolution& solution, double load) {
+  ends_on_own_factor_ = borrows_ = true;
   polish(solution, load);
-  nearby_ = false;
+  ends_on_own_factor_ = borrows_ = false;
 }
 
 bool Newton::has_factor_for(const SpanEnergy& model) const {
@@ -314,13 +354,14 @@ void Newton::run(SpanSolution& solution, double load) {
   load_ = load;
   begin(solution);
   const bool obstacles = solution.model->has_soft_obstacles();
-  const int most_steps = obstacles ? 60 : 30;
+  const int most_steps = obstacles ? 60 : nearby_ ? most_nearby_steps : 30;
   double size = evaluate(solution);
-  bool factored = std::exchange(nearby_, false) && !obstacles && has_factor_for(*solution.model);
-  bool borrowed = factored;  // the factor is another shape's
+  bool factored = std::exchange(borrows_, false) && !obstacles && has_factor_for(*solution.model);
   if (factored) broyden_.clear();
-  bool shrinks = false;  // the steps, with the factor of an earlier point
-  bool is_next = false;  // step_ is the next one already
+  if (factored) factored_.model = nullptr;
+  bool borrowed = factored || prolong_next_;  // the factor is another shape's
+  bool shrinks = false;                       // the steps, with the factor of an earlier point
+  bool is_next = false;                       // step_ is the next one already
   const auto finish = [&] {
     solution.residual = size;
     solution.softest = definite_ ? softest_of_factor() : std::numeric_limits<double>::quiet_NaN();
@@ -346,8 +387,15 @@ void Newton::run(SpanSolution& solution, double load) {
       is_next = false;
     }
     if (!std::exchange(is_next, false)) solve();
+    if (borrowed && ends_on_own_factor_ &&
+        step_.head(gradient_.size()).norm() <= last_borrowed_step) {
+      factor(solution);
+      borrowed = false;
+      solve();
+    }
     const double moved = step_.head(gradient_.size()).norm();
     solution.next_step = moved;
+    if (nearby_ && !borrowed && !(moved <= longest_nearby)) break;
     const bool small = is_at_rounding(solution, size);
     // Where the shape is right the forces need not be.
     if (moved <= finest_step && (small || obstacles)) return finish();
@@ -381,7 +429,9 @@ void Newton::run(SpanSolution& solution, double load) {
     if (!obstacles && rough_ && size <= roughly && solution.next_step <= rough_step) {
       return finish();
     }
-    if (!obstacles && is_at_rounding(solution, size) && solution.next_step <= finest_step) {
+    const bool goes_on = borrowed && ends_on_own_factor_;
+    if (!obstacles && !goes_on && is_at_rounding(solution, size) &&
+        solution.next_step <= finest_step) {
       if (borrowed) {
         // Steps with the factor's own Hessian end far below the next one; these only by a part.
         move(solution, 1);

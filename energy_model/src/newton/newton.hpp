@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "base/deadline.hpp"
+#include "linear/dense_factor.hpp"
 #include "linear/newton_system.hpp"
 #include "newton/broyden.hpp"
 #include "strain/span_solution.hpp"
@@ -38,8 +38,12 @@ class Newton {
   /// @param load  sum of weight and loads, the scale of the residuals
   void polish(SpanSolution& solution, double load);
   /// The same between grips, the first steps with the factor of the last polish(), if it was of as
-  /// many unknowns: for a shape next to that one.
+  /// many unknowns: for a shape next to that one. Where there is none within a few steps it ends as
+  /// `failed`, without a second try and without least squares.
   void polish_nearby(SpanSolution& solution, double load);
+  /// polish(), the first steps with the factor of the last one and the last ones with a factor of
+  /// its own, which has_factor_near() then finds.
+  void polish_from_neighbour(SpanSolution& solution, double load);
   /// The same to where Newton's next step is below `rough_step`, for a shape
   /// that is given more terms anyway.
   void polish_roughly(SpanSolution& solution, double load);
@@ -52,6 +56,21 @@ class Newton {
   /// bending alone.
   /// @param fewer  that solution
   void polish_with_more_terms(SpanSolution& solution, const SpanSolution& fewer, double load);
+
+  /// Factors the second variation of E - mu . c and the constraints at solution.x, where the
+  /// model's last value() was: what the next steps nearby begin with.
+  /// @param jacobian  of the constraints there
+  void factor_at(const SpanSolution& solution, const Eigen::MatrixXd& jacobian);
+  /// The last factor, and the Hessian that it is of.
+  [[nodiscard]] NewtonSystem& system() { return system_; }
+  [[nodiscard]] const Eigen::MatrixXd& hessian() const { return hessian_; }
+  /// Whether the last factor is of this model, at whatever point.
+  [[nodiscard]] bool has_factor_of(const SpanEnergy* model) const {
+    return model != nullptr && model == factored_.model;
+  }
+  /// By which unknowns, and multipliers over the scale of forces, differ from those that the last
+  /// factor is of; infinite if it is another model's.
+  [[nodiscard]] double distance_of_factor(const SpanSolution& solution) const;
 
  private:
   void run(SpanSolution& solution, double load);
@@ -73,6 +92,7 @@ class Newton {
   /// Whether rounding may be what is left of a residual of this size.
   [[nodiscard]] bool is_at_rounding(const SpanSolution& solution, double size) const;
   [[nodiscard]] double softest_of_factor();
+  void remember_factor(const SpanSolution& solution);
   [[nodiscard]] bool has_factor_for(const SpanEnergy& model) const;
   [[nodiscard]] bool natural_move(SpanSolution& solution, double& size);
   void update_step();
@@ -82,15 +102,22 @@ class Newton {
   bool stands_still_ = false;
   bool rough_ = false;
   bool nearby_ = false;
+  bool borrows_ = false;  // the factor of the last polish()
+  bool ends_on_own_factor_ = false;
   double pull_ = 1;  // scale of forces
   Eigen::VectorXd gradient_, residual_, right_, step_, first_step_;
   Eigen::MatrixXd jacobian_, hessian_, neutral_;
-  Eigen::LLT<Eigen::MatrixXd> llt_;
-  NewtonSystem system_;        // where the Hessian has no factor llt_
-  BroydenSteps broyden_;       // with system_, multipliers over pull_
+  DenseFactor definite_factor_;
+  NewtonSystem system_;   // where the Hessian has no definite_factor_
+  BroydenSteps broyden_;  // with system_, multipliers over pull_
+  /// What system_ is of; no model where it is none of a single point.
+  struct {
+    const SpanEnergy* model = nullptr;
+    Eigen::VectorXd x, multipliers;
+  } factored_;
   bool prolonged_ = false;     // hessian_ is that of fewer terms
   bool prolong_next_ = false;  // and what the next step begins with
-  bool definite_ = false;      // llt_ is what the system is solved with
+  bool definite_ = false;      // definite_factor_ is what the system is solved with
   Eigen::VectorXd trial_x_, trial_multipliers_, trial_gradient_, soft_;
 };
 

@@ -14,7 +14,9 @@ constexpr double same_arc_length_share = 1e-9;  // of the rod's length
 
 std::vector<OrderedGrip> ordered_grips(const Problem& problem) {
   std::vector<OrderedGrip> grips;
+  grips.reserve(problem.grips.size());
   for (std::size_t i = 0; i < problem.grips.size(); ++i) grips.push_back({i, &problem.grips[i]});
+  if (grips.size() < 2) return grips;
   std::stable_sort(grips.begin(), grips.end(), [](const OrderedGrip& a, const OrderedGrip& b) {
     return a.grip->at < b.grip->at;
   });

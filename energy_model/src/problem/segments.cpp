@@ -96,6 +96,7 @@ void set_tangents(const Span& span, std::vector<Segment>& segments) {
 }  // namespace
 
 std::vector<Segment> segments_of(const Span& span) {
+  if (span.holds.empty()) return {};
   std::vector<Span::Hold> points = {{span.anchor, Eigen::Vector3d::Zero()}};
   points.insert(points.end(), span.holds.begin(), span.holds.end());
   std::stable_sort(points.begin(), points.end(),

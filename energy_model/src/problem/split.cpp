@@ -27,6 +27,7 @@ void choose_frame(PlacedSpan& placed, const Directions& directions) {
   // find_plane wants the first direction and everything else; a direction and a force count alike.
   Eigen::Vector3d first = Eigen::Vector3d::UnitX();
   std::vector<Eigen::Vector3d> others;
+  others.reserve(directions.forces.size() + directions.grips.size());
   double largest = 0;
   for (const Eigen::Vector3d& force : directions.forces) {
     if (!(force.norm() > largest)) continue;

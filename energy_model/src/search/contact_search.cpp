@@ -26,6 +26,8 @@ constexpr std::size_t most_starts = 3;
 constexpr int most_rounds = 16;
 /// Times that a shape is left which cannot hold itself.
 constexpr int most_departures = 4;
+/// Unknowns from which on half of the terms that a load takes are tried first.
+constexpr int many_unknowns = 300;
 /// Out of its plane a polygon has tangents with more than this across it.
 constexpr double flat = 1e-6;
 /// Polygons whose energies are this close, over 1 + energy, are the same.
@@ -45,7 +47,7 @@ class ContactSearch {
     std::vector<SpanSolution> found;
     if (options_.known.model && options_.start && !options_.all) {
       SpanSolution followed = follow();
-      if (followed.is_equilibrium() || followed.is_left_open()) {
+      if (followed.is_equilibrium() || followed.is_left_open() || options_.only_known) {
         found.push_back(std::move(followed));
       }
     }
@@ -53,7 +55,8 @@ class ContactSearch {
       if (options_.start && !options_.all) look_from({options_.start}, found);
       if (found.empty() || !succeeded(found.front().status)) search(found);
     }
-    for (int i = 0; i < most_departures && found.front().status == SolveStatus::saddle; ++i) {
+    const int departures = options_.only_known ? 0 : most_departures;
+    for (int i = 0; i < departures && found.front().status == SolveStatus::saddle; ++i) {
       const double energy = found.front().energy;
       leave(found);
       if (!(found.front().energy < energy)) break;
@@ -339,7 +342,16 @@ class ContactSearch {
     const std::vector<LiftOff> ends = lift_offs(span);
     if (ends.empty()) return true;
     const Eigen::VectorXd miss = missed(solution, ends);
-    return miss.cwiseAbs().maxCoeff() <= settled;
+    if (!(miss.cwiseAbs().maxCoeff() <= settled)) return false;
+    // Two points share a force by where they are.
+    constexpr double share = 1e-7;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      if (span.contacts[ends[i].contact].lies()) continue;
+      const Room room = room_of(span, ends[i]);
+      const double off = std::abs(miss[static_cast<Eigen::Index>(i)]);
+      if (!(off <= share * std::min(room.down, room.up))) return false;
+    }
+    return true;
   }
 
   [[nodiscard]] SpanSolution near_field(const Span& span, const TangentField& near) {
@@ -372,8 +384,12 @@ class ContactSearch {
   [[nodiscard]] int terms_of_load(const Span& span) const {
     constexpr int fewest = 12;  // beside a kink
     double longest = 0;
-    for (const Piece& piece : pieces_of(span)) longest = std::max(longest, piece.length);
-    return std::max(fewest, first_terms(load_, longest));
+    const std::vector<Piece> pieces = pieces_of(span);
+    for (const Piece& piece : pieces) longest = std::max(longest, piece.length);
+    const int count = std::max(fewest, first_terms(load_, longest));
+    // Many pieces are short, and what they do not take need not be borne while contacts change.
+    const int unknowns = count * static_cast<int>(pieces.size()) * (span.planar ? 1 : 2);
+    return unknowns > many_unknowns ? std::max(fewest, count / 2) : count;
   }
 
   /// As many terms as the shape takes, and as what lies takes to be on its obstacle; certified.

@@ -93,7 +93,11 @@ class EnergySolver::State {
  public:
   explicit State(const EnergyOptions& options) : options_(options) { check(options); }
 
-  std::vector<Equilibrium> solve(const Problem& problem, bool all, bool follow) {
+  /// What is made of the shape of the last call.
+  enum class From { nothing, last_shape, last_shape_only };
+
+  /// @return none where the last shape only does not lead on
+  std::vector<Equilibrium> solve(const Problem& problem, bool all, From from) {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
     log_ = {};
@@ -102,8 +106,12 @@ class EnergySolver::State {
       // Contact is not looked for where clamps twist the rod; judge_penetration() tells of it.
       if (span.frames) span.span.rigid_obstacles.clear();
     }
-    const bool warm = follow && remembered_.size() == placed.size();
+    const bool warm = from != From::nothing && remembered_.size() == placed.size();
+    const bool only = from == From::last_shape_only;
     followed_ = warm;
+    if (only && !warm) return {};
+    former_ = remembered_;
+    former_twists_ = twists_;
     remembered_.resize(placed.size());
     twists_.resize(placed.size());
     std::vector<std::vector<PlacedSolution>> solutions;
@@ -116,12 +124,14 @@ class EnergySolver::State {
       options.max_evaluations = options_.max_evaluations;
       options.all = all;
       options.deadline = deadline;
+      options.only_known = only;
       if (all) options.log = &log_;
       if (placed[i].frames) {
         RememberedTwist& memory = twists_[i];
         solutions.push_back(twisted(placed[i], problem, options, warm, memory));
         const PlacedSolution& found = solutions.back().front();
         followed_ = followed_ && found.solution.followed;
+        if (only && !followed_) return gone_back();
         remember(found, memory.twisted);
         memory.twist = found.solution.model->twist(found.solution.x);
         continue;
@@ -129,13 +139,21 @@ class EnergySolver::State {
       const Equilibrium* start = last != nullptr && last->model ? nullptr : options_.start;
       solutions.push_back(solve_placed(placed[i], problem, options, start, last));
       followed_ = followed_ && solutions.back().front().solution.followed;
+      if (only && !followed_) return gone_back();
       remember(solutions.back().front(), remembered_[i]);
     }
     std::vector<Equilibrium> result = combine(problem, solutions, log_);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
+    followed_ = followed_ && (all || !only || succeeded(result.front().status));
+    if (only && !followed_) return gone_back();
     return result;
+  }
+
+  void go_back() {
+    remembered_ = former_;
+    twists_ = former_twists_;
   }
 
   /// Of the last solve().
@@ -160,6 +178,11 @@ class EnergySolver::State {
     double twist = 0;   // of `twisted`
     double turned = 0;  // of the end's frame from where the untwisted rod has it
   };
+
+  [[nodiscard]] std::vector<Equilibrium> gone_back() {
+    go_back();
+    return {};
+  }
 
   /// From a shape whose twist is known, if there is one. Else searches without twist: where the
   /// clamp has the frame starts there; then turns what is stable there.
@@ -215,7 +238,11 @@ class EnergySolver::State {
       PlacedSolution to = from_shape(field, memory.twist + turned, frame.d1);
       to.solution.evaluations += untwisted.front().solution.evaluations;
       to.solution.followed = is_known(to.solution);
-      if (to.solution.followed) return one(std::move(to));
+      if (to.solution.followed || options.only_known) return one(std::move(to));
+    }
+    if (options.only_known) {
+      untwisted.front().solution.followed = false;
+      return untwisted;
     }
     std::vector<PlacedSolution> found;
     int spent = 0;
@@ -252,6 +279,8 @@ class EnergySolver::State {
                                                          SpanOptions options,
                                                          const Equilibrium* shape,
                                                          const Remembered* last) {
+    // Nothing is known after a failure.
+    if (options.only_known && !(last != nullptr && last->model)) return one({placed, {}});
     TangentField start;
     if (shape != nullptr) {
       start = field_of(*shape, placed, problem.length);
@@ -269,7 +298,8 @@ class EnergySolver::State {
       if (options.known.model) own.span.cuts = options.known.model->span().cuts;
       PlacedSolution followed =
           from_field(own, start, options, shape != nullptr || (last && !last->planar()));
-      if (followed.solution.is_equilibrium() || followed.solution.is_left_open()) {
+      if (followed.solution.is_equilibrium() || followed.solution.is_left_open() ||
+          options.only_known) {
         return one(std::move(followed));
       }
       // The branch has ended, or the step was too large for it.
@@ -298,6 +328,7 @@ class EnergySolver::State {
   }
 
   static void sort(std::vector<PlacedSolution>& found) {
+    if (found.size() < 2) return;
     const auto rank = [](const SpanSolution& solution) {
       if (succeeded(solution.status)) return 0;
       return solution.is_equilibrium() ? 1 : 2;
@@ -385,7 +416,7 @@ class EnergySolver::State {
       found.push_back({placed, std::move(solution)});
       PlacedSolution& last = found.back();
       // The search may have left the plane.
-      last.placed.span.planar = last.solution.model->span().planar;
+      if (last.solution.model) last.placed.span.planar = last.solution.model->span().planar;
     }
     return found;
   }
@@ -432,8 +463,8 @@ class EnergySolver::State {
   SearchLog log_;
   bool followed_ = false;
   SpanWorkspace workspace_;
-  std::vector<Remembered> remembered_;
-  std::vector<RememberedTwist> twists_;
+  std::vector<Remembered> remembered_, former_;          // after the last call, and before it
+  std::vector<RememberedTwist> twists_, former_twists_;  // the same
 };
 
 EnergySolver::EnergySolver(const EnergyOptions& options)
@@ -443,25 +474,33 @@ EnergySolver::EnergySolver(EnergySolver&& other) noexcept = default;
 EnergySolver& EnergySolver::operator=(EnergySolver&& other) noexcept = default;
 
 Equilibrium EnergySolver::solve(const Problem& problem) {
-  return std::move(state_->solve(problem, false, false).front());
+  return std::move(state_->solve(problem, false, State::From::nothing).front());
 }
 
 Equilibrium EnergySolver::follow(const Problem& problem) {
-  return std::move(state_->solve(problem, false, true).front());
+  return std::move(state_->solve(problem, false, State::From::last_shape).front());
 }
+
+std::optional<Equilibrium> EnergySolver::keep(const Problem& problem) {
+  std::vector<Equilibrium> kept = state_->solve(problem, false, State::From::last_shape_only);
+  if (kept.empty()) return std::nullopt;
+  return std::move(kept.front());
+}
+
+void EnergySolver::go_back() { state_->go_back(); }
 
 bool EnergySolver::followed() const { return state_->followed(); }
 
 EnergySearch EnergySolver::search(const Problem& problem) {
   EnergySearch result;
-  result.equilibria = state_->solve(problem, true, false);
+  result.equilibria = state_->solve(problem, true, State::From::nothing);
   result.looked_from = state_->log().looked_from();
   result.not_looked = state_->log().not_looked();
   return result;
 }
 
 std::vector<Equilibrium> EnergySolver::solve_all(const Problem& problem) {
-  return state_->solve(problem, true, false);
+  return state_->solve(problem, true, State::From::nothing);
 }
 
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options) {

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "contact/lift_off.hpp"
+#include "contact/mend.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-constexpr int most_steps = 25;
+constexpr int most_settling_steps = 25;
 /// Broyden's updates until the derivatives are made anew.
-constexpr int most_updates = 8;
+constexpr int updates_a_derivative = 8;
 /// Times that a step is cut to a quarter which leads to no equilibrium.
 constexpr int most_cuts = 3;
 /// Step at which an end is found, in lengths.
@@ -26,9 +27,15 @@ constexpr double nothing_missed = 1e-12;
 constexpr double nearly_nothing_missed = 1e-10;
 /// Longest step, in lengths: the polygon has told where the ends are; and over the room beside one.
 constexpr double longest_step = 0.02;
-constexpr double largest_share = 0.45;
+constexpr double largest_room_share = 0.45;
 /// Of a difference, over the room.
 constexpr double difference = 1e-6;
+
+/// How hard an equilibrium is looked for.
+enum class Effort {
+  nearby,  // a few steps of Newton's method
+  all,
+};
 
 class Settling {
  public:
@@ -37,19 +44,22 @@ class Settling {
         workspace_(workspace),
         ends_(lift_offs(solution.model->span())),
         miss_(missed_by(solution)),
-        jacobian_(miss_.size(), miss_.size()) {}
+        jacobian_(miss_.size(), miss_.size()),
+        x_by_ends_(solution.x.size(), miss_.size()),
+        multipliers_by_ends_(solution.multipliers.size(), miss_.size()),
+        gaps_(gaps_of(solution)) {}
 
   int run(const Deadline& deadline) {
     if (ends_.empty()) return spent_;
     double before = INFINITY;
-    for (int step = 0; step < most_steps && !deadline.passed(); ++step) {
+    for (int step = 0; step < most_settling_steps && !deadline.passed(); ++step) {
       const double missed = miss_.cwiseAbs().maxCoeff();
       if (missed < nothing_missed) break;
       if (missed < nearly_nothing_missed && missed > before / 2) break;
       before = missed;
-      if (step % most_updates == 0 && !differentiate()) break;
+      if (step % updates_a_derivative == 0 && !differentiate()) break;
       Eigen::VectorXd way = bounded(-jacobian_.partialPivLu().solve(miss_));
-      if (!way.allFinite() || !move(way)) break;
+      if (!way.allFinite() || !move(way) || meet()) break;
       if (way.cwiseAbs().maxCoeff() < settled * solution_.model->span().length) break;
     }
     return spent_;
@@ -60,6 +70,31 @@ class Settling {
     return missed(solution, ends_);
   }
 
+  /// Between each contact and the next.
+  [[nodiscard]] static std::vector<double> gaps_of(const SpanSolution& solution) {
+    const std::vector<Span::Contact>& contacts = solution.model->span().contacts;
+    std::vector<double> gaps;
+    for (std::size_t i = 0; i + 1 < contacts.size(); ++i) {
+      gaps.push_back(contacts[i + 1].begin - contacts[i].end);
+    }
+    return gaps;
+  }
+
+  /// Whether two contacts have come so near to each other that they are one: apart they would take
+  /// many steps to meet.
+  [[nodiscard]] bool meet() const {
+    constexpr double near = 0.5;  // of the gap at first
+    const Span& span = solution_.model->span();
+    const std::vector<double> gaps = gaps_of(solution_);
+    for (std::size_t i = 0; i < gaps.size(); ++i) {
+      if (gaps[i] < near * gaps_[i] && are_one(span.contacts[i], span.contacts[i + 1], span,
+                                               solution_.model->shape(solution_.x))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   [[nodiscard]] Eigen::VectorXd bounded(Eigen::VectorXd way) const {
     const Span& span = solution_.model->span();
     double share = 1;
@@ -68,19 +103,34 @@ class Settling {
       const Room room = room_of(span, ends_[i]);
       const bool down = way[static_cast<Eigen::Index>(i)] < 0;
       const double most =
-          std::min(largest_share * (down ? room.down : room.up), longest_step * span.length);
+          std::min(largest_room_share * (down ? room.down : room.up), longest_step * span.length);
       if (size > most) share = std::min(share, most / size);
     }
     way *= share;
     return way;
   }
 
-  [[nodiscard]] SpanSolution with_moved(const Eigen::VectorXd& way) {
+  /// The equilibrium with ends that are moved, from where the derivatives by them lead.
+  [[nodiscard]] SpanSolution with_moved(const Eigen::VectorXd& way, Effort effort) {
     Span span = solution_.model->span();
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       ends_[i].move(span, way[static_cast<Eigen::Index>(i)]);
     }
-    SpanSolution result = with_contacts(solution_, span, workspace_);
+    SpanSolution result;
+    result.terms = solution_.terms;
+    result.model = workspace_.model(span, result.terms);
+    Newton& newton = workspace_.newton();
+    if (result.model->pieces() == solution_.model->pieces()) {
+      result.x = result.model->adopt(*solution_.model, solution_.x);
+      result.x += x_by_ends_ * way;
+      result.multipliers = solution_.multipliers + multipliers_by_ends_ * way;
+      effort == Effort::nearby ? newton.polish_nearby(result, span.total_load())
+                               : newton.polish(result, span.total_load());
+    } else {
+      const TangentField near = field_of(solution_.model->shape(solution_.x));
+      result.x = result.model->fit(near(result.model->nodes()));
+      newton.polish(result, span.total_load());
+    }
     spent_ += std::exchange(result.evaluations, 0);
     return result;
   }
@@ -88,20 +138,43 @@ class Settling {
   /// @param[in,out] way  cut where it leads to no equilibrium
   /// @return whether it has been gone
   [[nodiscard]] bool move(Eigen::VectorXd& way) {
-    SpanSolution trial = with_moved(way);
-    for (int cut = 0; cut < most_cuts && !trial.is_equilibrium(); ++cut) {
-      way /= 4;
-      trial = with_moved(way);
+    const Eigen::VectorXd whole = way;
+    SpanSolution trial;
+    for (const Effort effort : {Effort::nearby, Effort::all}) {
+      way = whole;
+      trial = with_moved(way, effort);
+      for (int cut = 0; cut < most_cuts && !trial.is_equilibrium(); ++cut) {
+        way /= 4;
+        trial = with_moved(way, effort);
+      }
+      if (trial.is_equilibrium()) break;
     }
     if (!trial.is_equilibrium()) return false;
     const Eigen::VectorXd miss = missed_by(trial);
-    jacobian_ += (miss - miss_ - jacobian_ * way) * way.transpose() / way.squaredNorm();
+    const Eigen::RowVectorXd along = way.transpose() / way.squaredNorm();
+    jacobian_ += (miss - miss_ - jacobian_ * way) * along;
+    if (is_alike(trial)) {
+      x_by_ends_ += (trial.x - solution_.x - x_by_ends_ * way) * along;
+      multipliers_by_ends_ +=
+          (trial.multipliers - solution_.multipliers - multipliers_by_ends_ * way) * along;
+    } else {
+      x_by_ends_.setZero(trial.x.size(), miss_.size());
+      multipliers_by_ends_.setZero(trial.multipliers.size(), miss_.size());
+    }
     miss_ = miss;
     solution_ = std::move(trial);
     return true;
   }
 
+  /// Whether it has the same unknowns as the solution: pieces come and go with their lengths.
+  [[nodiscard]] bool is_alike(const SpanSolution& other) const {
+    return other.x.size() == solution_.x.size() &&
+           other.multipliers.size() == solution_.multipliers.size();
+  }
+
   [[nodiscard]] bool differentiate() {
+    x_by_ends_.setZero(solution_.x.size(), miss_.size());
+    multipliers_by_ends_.setZero(solution_.multipliers.size(), miss_.size());
     Eigen::VectorXd way = Eigen::VectorXd::Zero(miss_.size());
     for (Eigen::Index i = 0; i < miss_.size(); ++i) {
       const LiftOff& end = ends_[static_cast<std::size_t>(i)];
@@ -113,9 +186,14 @@ class Settling {
       }
       const Room room = room_of(solution_.model->span(), end);
       way[i] = difference * (room.down > room.up ? -room.down : room.up);
-      const SpanSolution beside = with_moved(way);
+      SpanSolution beside = with_moved(way, Effort::nearby);
+      if (!beside.is_equilibrium()) beside = with_moved(way, Effort::all);
       if (!beside.is_equilibrium()) return false;
       jacobian_.col(i) = (missed_by(beside) - miss_) / way[i];
+      if (is_alike(beside)) {
+        x_by_ends_.col(i) = (beside.x - solution_.x) / way[i];
+        multipliers_by_ends_.col(i) = (beside.multipliers - solution_.multipliers) / way[i];
+      }
       way[i] = 0;
     }
     return true;
@@ -125,27 +203,13 @@ class Settling {
   SpanWorkspace& workspace_;
   std::vector<LiftOff> ends_;
   Eigen::VectorXd miss_;
-  Eigen::MatrixXd jacobian_;
+  // Derivatives by the ends: of what is missed, and of an equilibrium's unknowns and multipliers.
+  Eigen::MatrixXd jacobian_, x_by_ends_, multipliers_by_ends_;
+  std::vector<double> gaps_;  // at first
   int spent_ = 0;
 };
 
 }  // namespace
-
-SpanSolution with_contacts(const SpanSolution& from, const Span& span, SpanWorkspace& workspace) {
-  SpanSolution solution;
-  solution.model = workspace.model(span, from.terms);
-  solution.terms = from.terms;
-  if (solution.model->pieces() == from.model->pieces()) {
-    solution.x = solution.model->adopt(*from.model, from.x);
-    solution.multipliers = from.multipliers;
-    workspace.newton().polish_nearby(solution, span.total_load());
-  } else {
-    const TangentField near = field_of(from.model->shape(from.x));
-    solution.x = solution.model->fit(near(solution.model->nodes()));
-    workspace.newton().polish(solution, span.total_load());
-  }
-  return solution;
-}
 
 int settle_lift_offs(SpanSolution& solution, const Deadline& deadline, SpanWorkspace& workspace) {
   return Settling(solution, workspace).run(deadline);

@@ -4,10 +4,6 @@
 
 namespace dlo::energy_model {
 
-/// An equilibrium with these contacts, from another one whose contacts end elsewhere.
-[[nodiscard]] SpanSolution with_contacts(const SpanSolution& from, const Span& span,
-                                         SpanWorkspace& workspace);
-
 /// Moves the ends of a shape's contacts to where the rod lifts off by itself: Newton's method on
 /// what is missed there (LiftOff), with differences for derivatives, each an equilibrium of its
 /// own, then Broyden's. The shape's energy is stationary in them, so that its error is the square

@@ -92,6 +92,26 @@ bool has_stable_lowest(const std::vector<SpanSolution>& found) {
   return lowest != nullptr && succeeded(lowest->status);
 }
 
+/// Whether all tangents lie between the clamp's direction and the load's, on the shorter way, of a
+/// plain cantilever that is pulled one way. Then an equilibrium is the lowest one. With the angle
+/// chi from the load's opposite and the force n(s) of what hangs beyond s,
+///     chi'' = -n sin(chi),  chi(0) given,  chi'(length) = 0,
+/// and the energy's minimum has chi in [0, pi]: what is beyond may be mirrored, which costs no
+/// more. There is but one such solution, because sin(chi) / chi falls (Brezis and Oswald, 1986); a
+/// second one, chi = 0, only where the clamp points against the load, and that is unstable if it is
+/// not the only one.
+bool turns_to_load(const Span& span, const Eigen::Matrix3Xd& tangents) {
+  constexpr double rounding = 1e-9;  // sine of an angle that the terms leave
+  Eigen::Vector3d force = span.weight_between(0, span.length);
+  for (const Span::Load& load : span.loads) force += load.force;
+  const Eigen::Vector3d across(-force.y(), force.x(), 0);
+  const double side = std::copysign(1.0, across.dot(*span.start_direction));
+  for (Eigen::Index q = 0; q < tangents.cols(); ++q) {
+    if (side * across.dot(tangents.col(q)) < -rounding * force.norm()) return false;
+  }
+  return true;
+}
+
 /// A braced list would copy it.
 std::vector<SpanSolution> list_of(SpanSolution solution) {
   std::vector<SpanSolution> result;
@@ -138,7 +158,7 @@ class Search {
     std::vector<SpanSolution> found;
     if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
       SpanSolution solution = plain_cantilever();
-      certify_sideways(solution, load_);
+      certify_sideways(solution, load_, workspace_.newton());
       if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
       add(std::move(solution), found);
     }
@@ -238,16 +258,44 @@ class Search {
     return solution;
   }
 
-  /// The straight rod for a stiff one, the soft limit for a soft one or where straight is a saddle.
+  /// As the load on the straight rod bends it, if that lowers its energy; else straight.
+  static void bend_slightly(SpanSolution& solution) {
+    SpanEnergy& model = *solution.model;
+    solution.x.setZero(model.size());
+    Eigen::VectorXd gradient(model.size());
+    const double energy = model.value(solution.x, gradient);
+    ++solution.evaluations;
+    const Eigen::VectorXd bent = -gradient;
+    // Newton's method begins with this value, and counts it.
+    if (model.value(bent, gradient) < energy) solution.x = bent;
+  }
+
+  /// By Newton's method at once; where that leads elsewhere, downhill from the straight rod for a
+  /// stiff one, from the soft limit for a soft one or where straight is a saddle.
   [[nodiscard]] SpanSolution plain_cantilever() {
-    int spent = 0;
+    SpanSolution at_once = empty_solution(terms());
+    if (load_ < soft_load) {
+      bend_slightly(at_once);
+    } else {
+      at_once.x = at_once.model->fit(soft_field(span_)(at_once.model->nodes()));
+    }
+    workspace_.newton().polish(at_once, load_);
+    at_once = refined(std::move(at_once));
+    if (succeeded(at_once.status) && at_once.evaluations <= options_.max_evaluations &&
+        turns_to_load(span_, at_once.model->tangents())) {
+      return at_once;
+    }
+    int spent = at_once.evaluations;
     if (load_ < soft_load) {
       SpanSolution straight = empty_solution(coarse_terms());
       straight.x.setZero(straight.model->size());
       descend(straight);
       SpanSolution solution = refined(std::move(straight));
-      if (solution.status != SolveStatus::saddle) return solution;
-      spent = solution.evaluations;
+      if (solution.status != SolveStatus::saddle) {
+        solution.evaluations += spent;
+        return solution;
+      }
+      spent += solution.evaluations;
     }
     SpanSolution solution = refined(from_start(Start{soft_field(span_)}));
     solution.evaluations += spent;
@@ -279,8 +327,11 @@ class Search {
       starts.emplace_back().field = std::move(field);
     }
     if (options_.all) return starts;
+    const int coarse = coarse_terms();
+    // What is looked at with the terms that it is left with need not be fitted twice.
+    const bool keeps = coarse <= few_terms && span_.holds.empty() && span_.contacts.empty();
     const std::shared_ptr<SpanEnergy> model =
-        workspace_.model(span_, std::max(8, std::min(natural_terms_, coarse_terms())));
+        workspace_.model(span_, keeps ? coarse : std::max(8, std::min(natural_terms_, coarse)));
     spent_ += rank_starts(
         starts, {.model = model,
                  .load = load_,
@@ -334,6 +385,7 @@ class Search {
       // Where the rod is taut such a start is near to the shape already.
       const bool is_near = taut_ && !solution.model->has_soft_obstacles();
       if (is_near) workspace_.newton().polish(solution, load_);
+      if (falls_by_newton(solution)) return solution;
       if (!is_near || (!solution.is_equilibrium() && !out_of_time())) {
         solution.x = start;
         solution.multipliers.resize(0);
@@ -355,6 +407,31 @@ class Search {
     }
   }
 
+  /// Newton's method at once, of a rod that one clamp holds. @return whether it has led from
+  /// solution.x down to a minimum nearby
+  [[nodiscard]] bool falls_by_newton(SpanSolution& solution) {
+    constexpr double far = 2;  // of strains, as much as Newton's method goes in one step
+    SpanEnergy& model = *solution.model;
+    if (options_.all || !span_.start_direction || span_.has_material_directors() ||
+        span_.is_plain_cantilever() || model.constraints() > 0 || model.has_soft_obstacles()) {
+      return false;
+    }
+    const Eigen::VectorXd start = solution.x;
+    Eigen::VectorXd gradient(model.size());
+    const double energy = model.value(start, gradient);
+    if (solution.terms < terms()) {
+      workspace_.newton().polish_roughly(solution, load_);
+    } else {
+      workspace_.newton().polish(solution, load_);
+    }
+    if (succeeded(solution.status) && solution.energy <= energy &&
+        (solution.x - start).norm() < far && solution.evaluations <= options_.max_evaluations) {
+      return true;
+    }
+    solution.x = start;
+    return false;
+  }
+
   /// By springs at the grips that become stiffer, then Newton's method.
   void pull_to_grips(SpanSolution& solution) {
     descend_by_penalty(solution,
@@ -367,10 +444,11 @@ class Search {
   [[nodiscard]] SpanSolution from_given_start_to_rest() {
     SpanSolution solution = finish(from_given_start());
     solution.followed = came_by_newton_;
-    if (!options_.known.model || solution.status != SolveStatus::saddle) return solution;
+    if (!options_.known.model || options_.only_known || solution.status != SolveStatus::saddle)
+      return solution;
     std::optional<SpanSolution> lower = leave_saddle(solution);
     if (!lower) return solution;
-    certify(*lower, load_);
+    certify(*lower, load_, workspace_.newton());
     lower->evaluations += solution.evaluations;
     return succeeded(lower->status) ? std::move(*lower) : std::move(solution);
   }
@@ -382,6 +460,7 @@ class Search {
     came_by_newton_ = follow && options_.known.model != nullptr && solution.is_equilibrium() &&
                       is_near_start(solution);
     if (succeeded(solution.status) && (came_by_newton_ || !options_.known.model)) return solution;
+    if (options_.only_known) return solution;
     const int spent = solution.evaluations;
     if (std::optional<SpanSolution> graded = graded_start()) {
       graded->evaluations += spent;
@@ -400,8 +479,17 @@ class Search {
   [[nodiscard]] SpanSolution near_field(const TangentField& field) {
     SpanSolution solution = empty_solution(terms());
     const StartShape wanted = field(solution.model->nodes());
-    if (!adopt_known(wanted, solution)) solution.x = solution.model->fit(wanted);
-    workspace_.newton().polish(solution, load_);
+    Newton& newton = workspace_.newton();
+    if (!adopt_known(wanted, solution)) {
+      solution.x = solution.model->fit(wanted);
+      newton.polish(solution, load_);
+    } else if (newton.has_factor_of(options_.known.model.get())) {
+      solution.multipliers =
+          solution.model->adopt_multipliers(*options_.known.model, options_.known.multipliers);
+      newton.polish_from_neighbour(solution, load_);
+    } else {
+      newton.polish(solution, load_);
+    }
     return solution;
   }
 
@@ -466,14 +554,16 @@ class Search {
   [[nodiscard]] SpanSolution refined(SpanSolution solution) {
     const int fields = span_.planar ? 1 : span_.has_material_directors() ? 3 : 2;
     const int unknowns = graded_ ? most_graded_unknowns : most_unknowns;
-    const int affordable = std::max(32, unknowns / (fields * solution.model->pieces()));
+    const bool touches = !span_.contacts.empty();
+    // Contacts cut the rod into short pieces; it still may take the terms of its load.
+    const int least = touches ? std::max(32, terms()) : 32;
+    const int affordable = std::max(least, unknowns / (fields * solution.model->pieces()));
     // Soft obstacles make kinks inside pieces, where contact begins; more terms help only so far.
     constexpr int most_with_soft_obstacles = 64;
     const int most_terms =
         std::min(affordable, span_.soft_obstacles.empty() ? max_terms : most_with_soft_obstacles);
     Tail before;
     bool polished = false;
-    bool raised = false;  // Newton's last Hessian is this solution's
     while (solution.is_equilibrium()) {
       solution.resolved = options_.terms > 0 || resolved(solution);
       if (solution.resolved && solution.next_step > coarsest_step && !polished) {
@@ -493,15 +583,16 @@ class Search {
         solution.fail(solution.too_few_terms());
         break;
       }
-      int more = solution.terms < terms() ? terms() : terms_by_decay(solution, before);
+      const bool too_few = solution.terms < terms() && !touches;
+      int more = too_few ? terms() : terms_by_decay(solution, before);
       // Grips may pull harder than weight and loads do.
       if (solution.multipliers.size() > 0 && !taut_ && !graded_) {
         more =
             std::max(more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), longest_piece_));
       }
       before = {solution.terms, solution.model->tail(solution.x)};
-      solution = with_terms(solution, std::min(most_terms, more), raised);
-      raised = true;
+      const bool hessian_known = workspace_.newton().has_factor_of(solution.model.get());
+      solution = with_terms(solution, std::min(most_terms, more), hessian_known);
     }
     return solution;
   }
@@ -637,7 +728,7 @@ class Search {
   /// may be most of the error that is told: then it is asked once more, with half as many terms
   /// more.
   void judge(SpanSolution& solution) {
-    certify(solution, load_);
+    certify(solution, load_, workspace_.newton());
     const bool asks = solution.status == SolveStatus::near_singular ||
                       (counts(solution) && solution.error > largest_told_error);
     const int more = std::min(max_terms, 3 * solution.terms / 2);
@@ -657,7 +748,7 @@ class Search {
     // Of what Newton's method left open before nobody has asked whether its terms resolve it.
     if (!solution.resolved) finer = Search(own, options_, workspace_).refined(std::move(finer));
     finer.resolved = finer.resolved || solution.resolved;
-    certify(finer, load_);
+    certify(finer, load_, workspace_.newton());
     spent_ += finer.evaluations;
     const int evaluations = solution.evaluations + finer.evaluations;
     if (finer.error < solution.error) solution = std::move(finer);
@@ -845,6 +936,12 @@ std::shared_ptr<SpanEnergy> SpanWorkspace::model(const Span& span, int terms) {
 bool is_same_shape(const SpanSolution& a, const SpanSolution& b) {
   const Span& span = a.model->span();
   if (std::abs(a.energy - b.energy) > 1e-8 * (1 + span.total_load())) return false;
+  // Without softer parts points differ by less than strains do.
+  if (a.model->size() == b.model->size() && a.terms == b.terms && span.parts.empty() &&
+      span.planar == b.model->span().planar && span.cuts == b.model->span().cuts &&
+      (a.x - b.x).norm() < 1e-6 * span.length) {
+    return true;
+  }
   const std::vector<double> s = {0.3 * span.length, 0.6 * span.length, span.length};
   const Eigen::Matrix3Xd of_a = a.model->shape(a.x).sample(s).points;
   const Eigen::Matrix3Xd of_b = b.model->shape(b.x).sample(s).points;

@@ -54,6 +54,8 @@ struct SpanOptions {
   KnownShape before;                     ///< the shape known before that one, on the same way
   KnownShape known;                      ///< what `start` shows, if it is a span's solution that
                                          ///< is followed: where it gives way it is left
+  bool only_known = false;               ///< where Newton's method does not lead on from
+                                         ///< `known`, no other way is tried
   int least_terms = 0;                   ///< what resolves the start
   Deadline deadline;                     ///< of the whole solve
   SearchLog* log = nullptr;              ///< of a search for all, if it is asked for

@@ -36,6 +36,11 @@ constexpr double smooth_share = 0.005;
 /// Curvature over the forces below which rounding alone would move a shape visibly.
 constexpr double rounded_curvature = 1e-9;
 
+/// Distance of unknowns up to which a factor tells the stability of a stiff shape, and curvature
+/// from which it is one.
+constexpr double nearest_factor = 1e-3;
+constexpr double softest_stiff = 1e-2;
+
 /// Leaps to other branches, which would go on without an end where each leads to the next.
 constexpr int most_leaps = 60;
 
@@ -86,6 +91,7 @@ class TwistPath {
 
   [[nodiscard]] SpanSolution run(double whole) {
     workspace_.newton().polish_along_branch(here_, load_);
+    if (here_.is_equilibrium()) stiff_ = is_stable(here_) && stiff_;
     double turn = std::copysign(first_turn, whole);
     while (here_.is_equilibrium() && angle_ != whole) {
       if (options_.deadline.passed()) {
@@ -168,7 +174,12 @@ class TwistPath {
       next.x = next.model->with_twist(next.x, next.model->twist(next.x) + turn);
     }
     const Eigen::VectorXd predicted = next.x;
-    workspace_.newton().polish_along_branch(next, load_);
+    // Where nothing is neutral the factor that has told the stability of the last shape serves.
+    if (stiff_) {
+      workspace_.newton().polish_nearby(next, load_);
+    } else {
+      workspace_.newton().polish_along_branch(next, load_);
+    }
     spent_ += next.evaluations;
     if (!next.is_equilibrium()) return std::nullopt;
     // On the same branch the energy has risen by the torque's work. The shape tells less: it may
@@ -215,23 +226,42 @@ class TwistPath {
   }
 
   [[nodiscard]] bool is_stable(const SpanSolution& solution) {
-    derive(solution);
-    on_free_directions_.compute(hessian_, jacobian_);
-    Eigen::MatrixXd projected = on_free_directions_.matrix();
+    Newton& newton = workspace_.newton();
+    stiff_ = false;
+    if (!(newton.distance_of_factor(solution) <= nearest_factor)) {
+      place(solution);
+      newton.factor_at(solution, jacobian_);
+    }
+    FreeHessian& on_free_directions = newton.system().on_free_directions();
+    if (on_free_directions.has_solutions()) {
+      const std::optional<double> smallest = on_free_directions.smallest_of_definite();
+      stiff_ = smallest && *smallest > softest_stiff;
+      if (stiff_) return true;
+    }
+    if (newton.distance_of_factor(solution) > 0) {
+      place(solution);
+      newton.factor_at(solution, jacobian_);
+    }
+    Eigen::MatrixXd projected = on_free_directions.matrix();
     // Under large forces what is next to neutral is lost in rounding, whichever sign it has.
     projected.diagonal().array() += rounded_curvature * solution.multipliers.norm();
     return is_minimum(projected);
   }
 
-  /// Into hessian_ and jacobian_.
-  void derive(const SpanSolution& solution) {
+  /// Into gradient_, residual_ and jacobian_.
+  void place(const SpanSolution& solution) {
     SpanEnergy& model = *solution.model;
     gradient_.resize(model.size());
     residual_.resize(model.constraints());
     jacobian_.resize(model.constraints(), model.size());
     (void)model.value(solution.x, gradient_);
     model.constraint(residual_, jacobian_);
-    model.hessian(solution.multipliers, hessian_);
+  }
+
+  /// Into hessian_ and jacobian_.
+  void derive(const SpanSolution& solution) {
+    place(solution);
+    solution.model->hessian(solution.multipliers, hessian_);
   }
 
   /// Downhill to what is stable, from beside here.
@@ -283,7 +313,7 @@ class TwistPath {
   Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a leap
   Eigen::VectorXd gradient_, residual_;
   Eigen::MatrixXd jacobian_, hessian_;
-  FreeHessian on_free_directions_;
+  bool stiff_ = false;  // nothing is next to neutral at the shape that was last asked about
 };
 
 }  // namespace

@@ -32,6 +32,16 @@ void add_product_with_twist(const ConstRows& q, const ConstStrains& u, double sc
   }
 }
 
+/// from_rotation_vector(), for a small angle by the series of sine and cosine.
+Eigen::Quaterniond step_rotation(const Eigen::Vector3d& v) {
+  constexpr double small = 0.04;  // square of the angle, whose fifth power is below rounding
+  const double z = v.squaredNorm();
+  if (!(z < small)) return from_rotation_vector(v);
+  const double cosine = 1 - z / 8 * (1 - z / 48 * (1 - z / 120 * (1 - z / 224 * (1 - z / 360))));
+  const double half_sine = 0.5 * (1 - z / 24 * (1 - z / 80 * (1 - z / 168 * (1 - z / 288))));
+  return {cosine, half_sine * v.x(), half_sine * v.y(), half_sine * v.z()};
+}
+
 Eigen::Vector4d as_vector(const Eigen::Quaterniond& q) { return {q.w(), q.x(), q.y(), q.z()}; }
 
 }  // namespace
@@ -100,7 +110,7 @@ void RodFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& sta
         step.y() += h * h / 12 * (u(r - 1, 2) * u(r, 0) - u(r - 1, 0) * u(r, 2));
       }
     }
-    along = along * from_rotation_vector(step);
+    along = along * step_rotation(step);
     q.row(r) = as_vector(along).transpose();
   }
   const Eigen::Vector4d first = as_vector(at);
@@ -138,7 +148,7 @@ void RodFrames::resize(State& state) const {
   for (Eigen::MatrixX4d* m : {&state.product, &state.defect, &state.turn}) m->resize(Q, 4);
   for (Eigen::MatrixX3d* m : {&state.couples, &state.moments, &state.levers}) m->resize(Q, 3);
   state.along.resize(Q, 3);
-  state.curvatures.resize(Q, 6);
+  state.curvatures.resize(Q, 9);
   state.spins.resize(fields_ * K, 3 * Q);
   state.weighted.resize(fields_ * K, 3 * Q);
   state.scaled.resize(fields_ * K, Q);
@@ -314,16 +324,13 @@ void RodFrames::end_spins(const Panel& panel, State& state) const {
 
 /// Into state.weighted: state.curvatures of the nodes times state.spins.
 void RodFrames::weigh_spins(const Panel& panel, State& state) const {
-  constexpr std::array<std::array<Eigen::Index, 3>, 3> entry = {{{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}};
   const Eigen::Index Q = panel.nodes();
   const Eigen::Index all = fields_ * panel.terms;
-  for (Eigen::Index r = 0; r < Q; ++r) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      state.weighted.col(static_cast<Eigen::Index>(axis) * Q + r).head(all) =
-          state.curvatures(r, entry[axis][0]) * state.spins.col(r).head(all) +
-          state.curvatures(r, entry[axis][1]) * state.spins.col(Q + r).head(all) +
-          state.curvatures(r, entry[axis][2]) * state.spins.col(2 * Q + r).head(all);
-    }
+  const auto spins = state.spins.topLeftCorner(all, 3 * Q);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const auto factors = state.curvatures.block(0, 3 * axis, Q, 3);
+    auto weighted = state.weighted.block(0, axis * Q, all, Q);
+    dense_kernel().combine_thirds(columns_of(spins), columns_of(factors), result_columns(weighted));
   }
 }
 
@@ -360,7 +367,7 @@ void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matri
         const Eigen::Matrix3d a =
             spin_curvature(state.t.row(node), f.nodes->row(node - turn_nodes_));
         curvature += a;
-        state.curvatures.row(r) << a(0, 0), a(0, 1), a(0, 2), a(1, 1), a(1, 2), a(2, 2);
+        state.curvatures.row(r) << a.row(0), a.row(1), a.row(2);
       }
       weigh_spins(*panel, state);
       multiply_symmetric(spins, weighted, own);
@@ -379,14 +386,12 @@ void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matri
         lever.row(r) = d.cross(m);
       }
       auto by_node = state.weighted.topLeftCorner(all, Q);
-      for (Eigen::Index r = 0; r < Q; ++r) {
-        by_node.col(r) = half * lever(r, 0) * spins.col(r) + half * lever(r, 1) * spins.col(Q + r) +
-                         half * lever(r, 2) * spins.col(2 * Q + r);
-      }
+      lever *= half;
+      dense_kernel().combine_thirds(columns_of(spins), columns_of(lever), result_columns(by_node));
       multiply(by_node, panel->table->values.leftCols(K), mixed.middleCols(field * K, K));
       auto turned = state.product.topLeftCorner(K, 3);
       multiply(panel->table->values_transposed.topRows(K), lever, turned);
-      beside.middleCols(field * K, K) += half * turned.transpose();
+      beside.middleCols(field * K, K) += turned.transpose();
     }
     own += mixed;
     own += mixed.transpose();
@@ -405,16 +410,19 @@ void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matri
 void RodFrames::add_panel(const Panel& panel, const Eigen::Matrix3d& later_curvature, State& state,
                           Eigen::Ref<Eigen::MatrixXd> hessian) const {
   const Eigen::Index K = panel.terms;
+  const bool turns_more = (later_curvature.array() != 0).any();
   for (Eigen::Index row = 0; row < fields_; ++row) {
     const Eigen::Index at_row = row * columns_ + panel.column;
     for (Eigen::Index column = 0; column < fields_; ++column) {
       const Eigen::Index at_column = column * columns_ + panel.column;
       auto block = hessian.block(at_row, at_column, K, K);
       block += state.own.block(row * K, column * K, K, K);
-      const auto ends = state.ends.middleCols(at_column, K);
-      auto turned = state.turned.leftCols(K);
-      turned.noalias() = later_curvature * ends;
-      block.noalias() += state.ends.middleCols(at_row, K).transpose() * turned;
+      if (turns_more) {
+        const auto ends = state.ends.middleCols(at_column, K);
+        auto turned = state.turned.leftCols(K);
+        turned.noalias() = later_curvature * ends;
+        block.noalias() += state.ends.middleCols(at_row, K).transpose() * turned;
+      }
       if (panel.column == 0) continue;
       auto before = state.before.topLeftCorner(panel.column, K);
       before.noalias() = state.ends.middleCols(row * columns_, panel.column).transpose() *

@@ -52,8 +52,8 @@ class RodFrames {
     Eigen::MatrixX4d product, defect, turn;
     Eigen::MatrixX3d couples, moments, levers;
     Eigen::MatrixX3d along;
-    /// Upper halves of symmetric 3 x 3 matrices, row by row.
-    Eigen::Matrix<double, Eigen::Dynamic, 6> curvatures;
+    /// 3 x 3 matrices, row by row.
+    Eigen::Matrix<double, Eigen::Dynamic, 9> curvatures;
     Eigen::MatrixXd spins, weighted, scaled, own, mixed, before;
     Eigen::Matrix3Xd beside, turned;
 

@@ -4,21 +4,18 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include "base/fit_angle.hpp"
 #include "base/legendre.hpp"
 #include "base/spin.hpp"
+#include "linear/dense_products.hpp"
 #include "linear/free_directions.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 using std::numbers::pi;
-
-/// Up to these sizes dot products, and products with vectors, are faster than one of matrices,
-/// which packs its operands first.
-constexpr Eigen::Index most_for_dots = 12;
-constexpr Eigen::Index most_for_vectors = 20;
 
 double angle_of(const Eigen::Vector3d& direction) {
   return std::atan2(direction.y(), direction.x());
@@ -38,30 +35,14 @@ Eigen::Vector3d first_tangent(const Span& span) {
   return before.norm() > 0 ? Eigen::Vector3d(-before.normalized()) : Eigen::Vector3d::UnitX();
 }
 
+/// Products, node by node, of two vectors in the plane x-y.
+void dot_in_plane(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b, Eigen::VectorXd& result) {
+  result = a.col(0).cwiseProduct(b.col(0)) + a.col(1).cwiseProduct(b.col(1));
+}
+
 /// The angle that differs from `angle` by whole turns and is nearest to `target`.
 double nearest_turn(double angle, double target) {
   return angle + 2 * pi * std::round((target - angle) / (2 * pi));
-}
-
-/// Adds basis^T diag(by_node) basis to a symmetric matrix.
-void add_weighted_gram(const Eigen::Ref<const Eigen::VectorXd>& by_node,
-                       const Eigen::Ref<const Eigen::MatrixXd>& basis, Eigen::MatrixXd& scaled,
-                       Eigen::Ref<Eigen::MatrixXd> result) {
-  scaled.noalias() = by_node.asDiagonal() * basis;
-  const Eigen::Index columns = basis.cols();
-  if (columns > most_for_vectors) {
-    result.noalias() += basis.transpose() * scaled;
-    return;
-  }
-  for (Eigen::Index j = 0; j < columns; ++j) {
-    const Eigen::Index rows = columns - j;
-    if (columns > most_for_dots) {
-      result.col(j).tail(rows).noalias() += basis.rightCols(rows).transpose() * scaled.col(j);
-    } else {
-      for (Eigen::Index i = j; i < columns; ++i) result(i, j) += basis.col(i).dot(scaled.col(j));
-    }
-    result.row(j).tail(rows - 1) = result.col(j).tail(rows - 1).transpose();
-  }
 }
 
 }  // namespace
@@ -100,6 +81,7 @@ void SpanEnergy::tabulate_angles() {
       if (e <= director_rows_[i].piece) held_angle_(static_cast<Eigen::Index>(i), column) = turn;
     }
   }
+  turning_by_node_ = angle_.transpose();
 }
 
 /// Of the nodes of a free rod.
@@ -143,12 +125,23 @@ void SpanEnergy::tabulate_forces() {
 }
 
 void SpanEnergy::reset(const Span& span, int terms) {
+  std::vector<Piece> pieces = pieces_of(span);
+  // Of a cantilever in the plane angles depend on the pieces alone.
+  const auto is_cantilever = [](const Span& of) {
+    return of.planar && of.start_direction && of.holds.empty();
+  };
+  const auto is_same = [](const Piece& a, const Piece& b) {
+    return a.begin == b.begin && a.length == b.length && a.stiffness == b.stiffness;
+  };
+  const bool has_angles =
+      angle_.size() > 0 && is_cantilever(span) && is_cantilever(span_) && terms == terms_ &&
+      std::equal(pieces.begin(), pieces.end(), pieces_.begin(), pieces_.end(), is_same);
   span_ = span;
   terms_ = terms;
   axes_ = span.planar ? 2 : 3;
   free_start_ = span.start_direction ? 0 : 1;
-  pieces_ = pieces_of(span);
-  tabulate_nodes();
+  pieces_ = std::move(pieces);
+  if (!has_angles) tabulate_nodes();
   tabulate_forces();
   if (span.twist) twist_root_ = std::sqrt(span.twist->stiffness / span.length);
   contacts_.reset(span, pieces_, terms, *table_, s_, weights_);
@@ -157,15 +150,17 @@ void SpanEnergy::reset(const Span& span, int terms) {
   const Eigen::Index nodes = s_.size();
   for (Eigen::MatrixX3d* m : {&t_, &t_theta_, &total_, &carried_}) m->setZero(nodes, 3);
   if (span.planar) {
-    tabulate_angles();
+    if (!has_angles) tabulate_angles();
     tabulate_natural_angles();
     start_theta_ = span.start_direction ? angle_of(*span.start_direction) : 0;
     for (DirectorRow& row : director_rows_) {
       row.angle = nearest_turn(angle_of(row.to), start_theta_) - natural_turn(row.piece);
     }
     for (Eigen::VectorXd* v : {&theta_, &kappa_, &along_, &turning_}) v->setZero(nodes);
-    scaled_.resize(table_->nodes.size(), terms_);
+    scaled_.resize(terms_, table_->nodes.size());
+    own_.resize(terms_, terms_);
     beside_.resize(terms_);
+    pulled_.resize(columns_);
   } else {
     const Eigen::Vector3d tangent = first_tangent(span);
     start_frame_ = frame_along(tangent, span.first_d1(tangent));
@@ -221,17 +216,12 @@ void SpanEnergy::place_tangents() {
     t_ = state_.t.bottomRows(s_.size());
     return;
   }
-  theta_.noalias() = angle_ * x_;
+  multiply(angle_, x_, theta_);
   theta_.array() += start_theta_;
   if (natural_angle_.size() > 0) theta_ += natural_angle_;
-  for (Eigen::Index q = 0; q < theta_.size(); ++q) {
-    const double c = std::cos(theta_[q]);
-    const double s = std::sin(theta_[q]);
-    t_(q, 0) = c;
-    t_(q, 1) = s;
-    t_theta_(q, 0) = -s;
-    t_theta_(q, 1) = c;
-  }
+  dense_kernel().turn(theta_.data(), theta_.size(), t_.col(0).data(), t_.col(1).data());
+  t_theta_.col(0) = -t_.col(1);
+  t_theta_.col(1) = t_.col(0);
 }
 
 double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
@@ -250,8 +240,9 @@ double SpanEnergy::value(const Eigen::Ref<const Eigen::VectorXd>& x,
   total_ = force_;
   if (has_soft_obstacles()) energy += soft_contact_.add(t_, total_);
   if (span_.planar) {
-    turning_ = total_.cwiseProduct(t_theta_).rowwise().sum();
-    gradient.noalias() -= angle_.transpose() * turning_;
+    dot_in_plane(total_, t_theta_, turning_);
+    multiply(turning_by_node_, turning_, pulled_);
+    gradient -= pulled_;
   } else {
     frames_.pull({&total_}, -1, state_, gradient);
   }
@@ -310,7 +301,8 @@ void SpanEnergy::constraint(Eigen::Ref<Eigen::VectorXd> residual,
           t_.col(axis).dot(reach_.col(j)) - span_.holds[static_cast<std::size_t>(j)].offset[axis];
       if (!span_.planar) continue;
       turning_ = t_theta_.col(axis).cwiseProduct(reach_.col(j));
-      jacobian.row(row + axis).noalias() = turning_.transpose() * angle_;
+      multiply(turning_by_node_, turning_, pulled_);
+      jacobian.row(row + axis) = pulled_.transpose();
     }
     if (!span_.planar) {
       frames_.pull_position(reach_signs_[static_cast<std::size_t>(j)], state_,
@@ -371,19 +363,19 @@ void SpanEnergy::add_angles_squared(Eigen::Ref<Eigen::MatrixXd> result) {
     const auto along = along_.segment(e * Q, Q);
     const double own_turn = pieces_[static_cast<std::size_t>(e)].angle(0);
     const Eigen::Index column = free_start_ + e * K;
-    const auto angle = angle_.block(e * Q, column, Q, K);
-    auto own = result.block(column, column, K, K);
-    add_weighted_gram(along, angle, scaled_, own);
-    own(0, 0) += own_turn * own_turn * later;
-    auto beside = beside_.head(K);
-    beside.noalias() = angle.transpose() * along;
-    beside[0] += own_turn * later;
+    const auto angle = turning_by_node_.block(column, e * Q, K, Q);
+    scaled_ = angle * along.asDiagonal();
+    multiply_symmetric(angle, scaled_, own_);
+    result.block(column, column, K, K) += own_;
+    result(column, column) += own_turn * own_turn * later;
+    if (column > 0) multiply(angle, along, beside_);
+    beside_[0] += own_turn * later;
     for (Eigen::Index before = -free_start_; before < e; ++before) {
       const bool start = before < 0;
       const double turn = start ? 1 : pieces_[static_cast<std::size_t>(before)].angle(0);
       const Eigen::Index row = start ? 0 : free_start_ + before * K;
-      result.row(row).segment(column, K) += turn * beside.transpose();
-      result.col(row).segment(column, K) += turn * beside;
+      result.row(row).segment(column, K) += turn * beside_.transpose();
+      result.col(row).segment(column, K) += turn * beside_;
     }
     later += along.sum();
   }
@@ -410,7 +402,7 @@ void SpanEnergy::hessian(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
     result(f * columns_, f * columns_) = 0;
   }
   if (span_.planar) {
-    along_ = carried_.cwiseProduct(t_).rowwise().sum();
+    dot_in_plane(carried_, t_, along_);
     add_angles_squared(result);
   } else {
     carried_ = -carried_;
@@ -460,15 +452,16 @@ std::array<Eigen::MatrixXd, 3> SpanEnergy::tangent_jacobian() {
 /// costs there.
 void SpanEnergy::carry_sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
   carry(multipliers);
-  along_ = carried_.cwiseProduct(t_).rowwise().sum();
+  dot_in_plane(carried_, t_, along_);
   const Eigen::Index Q = table_->nodes.size();
   for (Eigen::Index e = 0; e < pieces(); ++e) {
     const double scale = pieces_[static_cast<std::size_t>(e)].strain(0);
-    kappa_.segment(e * Q, Q).noalias() =
-        scale * (table_->values.leftCols(terms_) * x_.segment(free_start_ + e * terms_, terms_));
+    auto kappa = kappa_.segment(e * Q, Q);
+    multiply(table_->values.leftCols(terms_), x_.segment(free_start_ + e * terms_, terms_), kappa);
+    kappa *= scale;
     const double stiffness = pieces_[static_cast<std::size_t>(e)].stiffness[0];
     along_.segment(e * Q, Q).array() -=
-        stiffness * weights_.segment(e * Q, Q).array() * kappa_.segment(e * Q, Q).array().square();
+        stiffness * weights_.segment(e * Q, Q).array() * kappa.array().square();
   }
 }
 

@@ -190,9 +190,10 @@ class SpanEnergy {
 
   // In the plane
   double start_theta_ = 0;
-  Eigen::MatrixXd angle_;          // of the nodes by unknown
-  Eigen::MatrixXd held_angle_;     // of the director rows by unknown
-  Eigen::VectorXd natural_angle_;  // of the nodes, from the start's; empty: zero
+  Eigen::MatrixXd angle_;            // of the nodes by unknown
+  Eigen::MatrixXd turning_by_node_;  // its transpose
+  Eigen::MatrixXd held_angle_;       // of the director rows by unknown
+  Eigen::VectorXd natural_angle_;    // of the nodes, from the start's; empty: zero
   // In space
   Eigen::Matrix3d start_frame_ = Eigen::Matrix3d::Identity();
   RodFrames frames_;
@@ -216,7 +217,7 @@ class SpanEnergy {
   std::vector<Eigen::Vector3d> couples_;     // by piece
   std::vector<Eigen::Matrix3d> curvatures_;  // by piece
   Eigen::VectorXd along_, turning_, pulled_, beside_;
-  Eigen::MatrixXd scaled_;
+  Eigen::MatrixXd scaled_, own_;
 };
 
 }  // namespace dlo::energy_model

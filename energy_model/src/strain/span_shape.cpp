@@ -160,6 +160,7 @@ void cut_taut(const Segment& segment, const Span& span, std::vector<double>& cut
 
 /// Cuts where the layers beside contacts have decayed.
 void cut_lift_offs(const Span& span, double layer, std::vector<double>& cuts) {
+  if (span.contacts.empty()) return;
   const std::vector<double> others = cuts;
   const auto cut = [&](double from, double sense) {
     double room = std::numeric_limits<double>::infinity();

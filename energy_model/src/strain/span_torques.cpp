@@ -26,16 +26,12 @@ Eigen::Vector3d SpanEnergy::start_torque(const Eigen::VectorXd& multipliers) con
     force.head(axes_) = multipliers.segment(j * axes_, axes_);
     moment += span_.holds[static_cast<std::size_t>(j)].offset.cross(force);
   }
-  for (Eigen::Index q = 0; q < s_.size(); ++q) {
-    const Eigen::Vector3d t = t_.row(q);
-    moment += weights_[q] * t.cross(span_.weight_between(s_[q], span_.length));
-  }
-  for (const Span::Load& load : span_.loads) {
-    const Eigen::VectorXd before =
-        (s_.array() < load.at).select(weights_, Eigen::VectorXd::Zero(weights_.size()));
-    const Eigen::Vector3d point = t_.transpose() * before;
-    moment += point.cross(load.force);
-  }
+  // Of weight and loads, which the nodes carry: sum t x force.
+  const auto carried = [this](Eigen::Index a, Eigen::Index b) {
+    return t_.col(a).dot(force_.col(b)) - t_.col(b).dot(force_.col(a));
+  };
+  moment.z() += carried(0, 1);
+  if (!span_.planar) moment.head<2>() += Eigen::Vector2d(carried(1, 2), carried(2, 0));
   if (contacts_.count() > 0) {
     moment += contacts_.moment(multipliers.segment(first_contact_row(), contacts_.count()), t_);
   }

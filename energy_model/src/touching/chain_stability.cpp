@@ -8,7 +8,7 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr Eigen::Index elements_per_arc = 8;
-constexpr double same = 1e-9;  // of constraints, over the largest one
+constexpr double same_row = 1e-9;  // of constraints, over the largest one
 
 /// Nodes of the elements: cross-sections, and two directions across the tangent that are eta's.
 struct Grid {
@@ -66,7 +66,7 @@ class SecondVariationOfChain {
       fixed.col(static_cast<Eigen::Index>(k)) = rows_[k].transpose();
     }
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(fixed);
-    qr.setThreshold(same);
+    qr.setThreshold(same_row);
     Eigen::MatrixXd free = second_ - margin * norm_;
     if (!rows_.empty()) {
       const Eigen::Index left = size_ - qr.rank();

@@ -3,13 +3,18 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/deadline.hpp"
 #include "base/require.hpp"
 #include "base/sized_samples.hpp"
 #include "problem/rod_law.hpp"
+#include "problem/split.hpp"
 #include "search/known_shape.hpp"
 #include "vibration/inertia.hpp"
 #include "vibration/span_modes.hpp"
@@ -68,21 +73,25 @@ struct VibratingSpan {
   }
 };
 
+/// The spans of a rod at rest with so many terms, bent out of their planes too.
+using SpansAtRest = std::function<std::vector<PlacedSolution>(int terms, SpanWorkspace&)>;
+
 class RodVibrations {
  public:
-  RodVibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
-                const VibrationOptions& options)
+  /// @param known  shape that `spans` has to find again; null: there is no other one
+  RodVibrations(const Problem& problem, const Inertia& inertia, SpansAtRest spans,
+                const Equilibrium* known, const VibrationOptions& options)
       : problem_(problem),
         inertia_(inertia),
+        spans_at_rest_(std::move(spans)),
         known_(known),
-        count_(options.count),
-        deadline_(options.time_limit) {}
+        count_(options.count) {}
 
   /// @return why there are none; empty: there are
   [[nodiscard]] std::string find(int terms) {
     spans_.clear();
     farthest_ = 0;
-    for (PlacedSolution& found : spans_in_space(problem_, known_, terms, deadline_, workspace_)) {
+    for (PlacedSolution& found : spans_at_rest_(terms, workspace_)) {
       SpanSolution& solution = found.solution;
       if (!solution.is_equilibrium() && solution.status != SolveStatus::near_singular) {
         return solution.message;
@@ -126,9 +135,11 @@ class RodVibrations {
     const std::shared_ptr<SpanEnergy>& model = found.solution.model;
     Eigen::VectorXd gradient(model->size());
     (void)model->value(found.solution.x, gradient);
-    const Eigen::Matrix3Xd known =
-        field_of(known_, placed, problem_.length)(model->nodes()).tangents;
-    farthest_ = std::max(farthest_, (known - model->tangents()).cwiseAbs().maxCoeff());
+    if (known_ != nullptr) {
+      const Eigen::Matrix3Xd known =
+          field_of(*known_, placed, problem_.length)(model->nodes()).tangents;
+      farthest_ = std::max(farthest_, (known - model->tangents()).cwiseAbs().maxCoeff());
+    }
     Eigen::VectorXd residual(model->constraints());
     Eigen::MatrixXd jacobian(model->constraints(), model->size());
     model->constraint(residual, jacobian);
@@ -150,7 +161,9 @@ class RodVibrations {
       // One at a clamp between two spans stands, in whichever it is counted.
       if (s >= 0 && s <= placed.span.length) points.push_back({s, point.mass});
     }
-    span->modes = span_modes(hessian, jacobian, span->motion.masses(per_length, points), count_);
+    // Two of one frequency are told apart together.
+    span->modes =
+        span_modes(hessian, jacobian, span->motion.masses(per_length, points), count_ + 1);
     spans_.push_back(std::move(span));
   }
 
@@ -199,34 +212,19 @@ class RodVibrations {
 
   const Problem& problem_;
   const Inertia& inertia_;
-  const Equilibrium& known_;
+  SpansAtRest spans_at_rest_;
+  const Equilibrium* known_;
   Eigen::Index count_;
-  Deadline deadline_;
   SpanWorkspace workspace_;
   std::vector<std::shared_ptr<const VibratingSpan>> spans_;
   double farthest_ = 0;  // component by which tangents are not the known shape's
 };
 
-}  // namespace
-
-double VibrationMode::omega() const { return std::sqrt(omega_squared); }
-
-Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
-                      const VibrationOptions& options) {
-  check(problem);
-  check(problem, inertia, "vibrations");
-  check_options(options);
+/// With more and more terms, until the modes do not change.
+Vibrations resolved(RodVibrations& rod, const Problem& problem, const Inertia& inertia,
+                    const VibrationOptions& options) {
   Vibrations result;
   result.status = SolveStatus::failed;
-  if (!known.sample) {
-    result.message = "there is no equilibrium to vibrate about: " + known.message;
-    return result;
-  }
-  if (!known.contacts.empty()) {
-    result.message = "the rod touches a rigid obstacle, which it would leave as it vibrates";
-    return result;
-  }
-  RodVibrations rod(problem, inertia, known, options);
   int terms = std::max(16, options.count + 8);
   std::vector<double> last;
   const double neutral_square = neutral_share * bending_unit(problem) /
@@ -263,6 +261,122 @@ Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equi
   result.message = rod.is_known() ? "the slowest modes still change with the number of terms"
                                   : "the shape is not found again with the terms of its modes";
   return result;
+}
+
+/// Rounding of what holds a rod straight.
+constexpr double straight_rounding = 1e-9;
+
+/// The same problem with a little slack between its grips, which problems have to have. Of a rod
+/// that is straight nothing depends on it.
+Problem with_slack(const Problem& problem) {
+  constexpr double slack = 1e-8;
+  Problem result = problem;
+  for (Grip& grip : result.grips) {
+    grip.position = problem.grips.front().position +
+                    (1 - slack) * (grip.position - problem.grips.front().position);
+  }
+  return result;
+}
+
+/// @throws std::invalid_argument if anything could bend or twist it
+void require_nothing_bends(const Problem& problem) {
+  const char* where = "taut_vibrations";
+  double weight = problem.weight_per_length.norm();
+  for (const Section& section : problem.sections) {
+    weight = std::max(weight, section.weight_per_length.norm());
+  }
+  require(weight == 0, where, "weight_per_length", weight,
+          "0: what weighs does not hang straight, or is pulled endlessly");
+  for (const Load& load : problem.loads) {
+    require(load.force.norm() == 0, where, "load", load.force.norm(), "0 of a rod held straight");
+  }
+  require(problem.obstacles.empty(), where, "obstacles",
+          static_cast<double>(problem.obstacles.size()), "none of a rod held straight");
+  require(problem.natural_strains.empty(), where, "natural_strains",
+          static_cast<double>(problem.natural_strains.size()), "none of a rod held straight");
+}
+
+}  // namespace
+
+double VibrationMode::omega() const { return std::sqrt(omega_squared); }
+
+Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
+                      const VibrationOptions& options) {
+  check(problem);
+  check(problem, inertia, "vibrations");
+  check_options(options);
+  Vibrations result;
+  result.status = SolveStatus::failed;
+  if (!known.sample) {
+    result.message = "there is no equilibrium to vibrate about: " + known.message;
+    return result;
+  }
+  if (!known.contacts.empty()) {
+    result.message = "the rod touches a rigid obstacle, which it would leave as it vibrates";
+    return result;
+  }
+  const Deadline deadline(options.time_limit);
+  RodVibrations rod(
+      problem, inertia,
+      [&](int terms, SpanWorkspace& workspace) {
+        return spans_in_space(problem, known, terms, deadline, workspace);
+      },
+      &known, options);
+  return resolved(rod, problem, inertia, options);
+}
+
+bool is_held_straight(const Problem& problem) {
+  std::vector<Grip> grips = problem.grips;
+  std::sort(grips.begin(), grips.end(), [](const Grip& a, const Grip& b) { return a.at < b.at; });
+  for (std::size_t i = 0; i < grips.size(); ++i) {
+    if (!grips[i].direction) return false;
+    const Eigen::Vector3d along = grips[0].direction->normalized();
+    const double rod = grips[i].at - grips[0].at;
+    const Eigen::Vector3d offset = grips[i].position - grips[0].position - rod * along;
+    if (!(offset.norm() <= straight_rounding * rod)) return false;
+    if (!((grips[i].direction->normalized() - along).norm() <= straight_rounding)) return false;
+  }
+  return grips.size() > 1;
+}
+
+Vibrations taut_vibrations(const Problem& problem, const Inertia& inertia, double tension,
+                           const VibrationOptions& options) {
+  const char* where = "taut_vibrations";
+  const Problem slack = with_slack(problem);
+  check(slack);
+  check(slack, inertia, where);
+  check_options(options);
+  require(std::isfinite(tension), where, "tension", tension, "finite");
+  require_nothing_bends(problem);
+  if (!is_held_straight(problem)) {
+    throw std::invalid_argument(std::string(where) +
+                                ": clamps do not hold the rod straight along its whole length");
+  }
+  const double force_unit = bending_unit(problem) / (problem.length * problem.length);
+  RodVibrations rod(
+      slack, inertia,
+      [&](int terms, SpanWorkspace& workspace) {
+        std::vector<PlacedSolution> spans;
+        for (PlacedSpan& placed : split(slack)) {
+          if (placed.frames) {
+            throw std::invalid_argument(std::string(where) + ": clamps hold the rod's frame");
+          }
+          placed.span.planar = false;
+          SpanSolution solution;
+          solution.model = workspace.model(placed.span, terms);
+          solution.terms = terms;
+          solution.x = Eigen::VectorXd::Zero(solution.model->size());
+          solution.multipliers = Eigen::VectorXd::Zero(solution.model->constraints());
+          if (!placed.span.holds.empty()) {
+            solution.multipliers.head<3>() = tension / force_unit * *placed.span.start_direction;
+          }
+          solution.finish(SolveStatus::converged);
+          spans.push_back({std::move(placed), std::move(solution)});
+        }
+        return spans;
+      },
+      nullptr, options);
+  return resolved(rod, slack, inertia, options);
 }
 
 }  // namespace dlo::energy_model

@@ -92,8 +92,7 @@ TEST_F(PlotCommand, CalibrateDraws) {
 
 TEST_F(PlotCommand, BenchDraws) {
   for (const char* file : {"a.svg", "a.png"}) {
-    const Outcome drawn =
-        run("bench " + steel() + " --seconds 0.1 --repeats 1 --plot " + path(file));
+    const Outcome drawn = run("bench " + steel() + " --seconds 1 --repeats 1 --plot " + path(file));
     EXPECT_EQ(drawn.status, 0) << drawn.err;
     expect_drawn(file);
   }

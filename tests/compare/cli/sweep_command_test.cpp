@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "../../sanitized.hpp"
 #include "command_fixture.hpp"
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/scene_file.hpp"
@@ -111,7 +112,7 @@ TEST_F(SweepCommand, KilledTwentyTimesGivesTheFileOfAnUnbrokenRun) {
   std::mt19937 random(5);
   std::uniform_int_distribution<std::uintmax_t> bytes(0, size / 24);
   // A run that finishes before the kill reaches it is begun anew and not counted.
-  for (int kills = 0; kills < 20;) {
+  for (int kills = 0; kills < dlo::test::draws(20);) {
     if (run_and_kill(vary, path("killed.csv"), bytes(random))) {
       ++kills;
     } else {

@@ -192,6 +192,35 @@ TEST(SceneModes, PhysicalStepsSwingAsTheRodDoes) {
   EXPECT_NEAR(found.modes[0].stepped->damping, 0.03, 0.03 * 0.03);
 }
 
+// The points' straight polygon comes to the clamped beam with the square of its segments.
+TEST(SceneModes, OfARodHeldStraightAreThoseOfAClampedBeam) {
+  Scene held = test::heavy_scene(0, 0);
+  held.gravity.setZero();
+  held.grippers.push_back({.at = 1, .position = {1, 0, 0}, .direction = Eigen::Vector3d::UnitX()});
+  const double unit = std::sqrt(held.bending_stiffness() / held.mass_per_length());
+  double last = 0;
+  for (const int points : {16, 31}) {
+    held.force_model.points = points;
+    const SceneModes found = scene_modes(held, {.count = 1});
+    ASSERT_TRUE(found.no_polygon.empty()) << found.no_polygon;
+    EXPECT_EQ(found.tension, 0);
+    EXPECT_NE(found.modes[0].rod.plane, energy_model::ModePlane::mixed);
+    EXPECT_NEAR(found.modes[0].rod.omega() / (22.373285448061 * unit), 1, 1e-9);
+    const double off = *found.modes[0].polygon_omega / found.modes[0].rod.omega() - 1;
+    if (last != 0) {
+      EXPECT_NEAR(last / off, 4, 0.7);
+    }
+    last = off;
+  }
+  EXPECT_GT(scene_modes(held, {.count = 1, .tension = 10}).modes[0].rod.omega(), 22.4 * unit);
+  Scene heavy = held;
+  heavy.gravity = {0, -9.81, 0};
+  EXPECT_THROW((void)scene_modes(heavy), InputError);
+  held.grippers[1].position.x() = 0.99;
+  EXPECT_FALSE(scene_modes(held, {.count = 1}).tension);
+  EXPECT_THROW((void)scene_modes(held, {.count = 1, .tension = 10}), InputError);
+}
+
 TEST(SceneModes, SayWhyThereAreNone) {
   Scene twisted = test::heavy_scene(5, 0);
   twisted.grippers.push_back(

@@ -136,6 +136,46 @@ TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
   EXPECT_GT(slow.released, 0.9);
   EXPECT_LE(std::abs(slow.released - fast.released), slow.released_bound + fast.released_bound);
   EXPECT_LT(fast.released_bound, slow.released_bound);
+  // From the fold itself, to a 1024th of a frame.
+  EXPECT_LT(slow.released_bound, 1e-3 * slow.released);
+  for (const TrackEvent& snap : {slow, fast}) {
+    EXPECT_GT(snap.smallest_curvature, 0);
+    EXPECT_LT(snap.smallest_curvature, 0.01);
+  }
+}
+
+/// An S between two clamps, one of which is turned until it has turned over, out of its plane.
+Scene turned_over() {
+  return parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 1\nmass_per_length = 0\n[[gripper]]\nat = 0\n"
+      "position = [0, 0, 0]\ndirection = \"0 deg\"\n[[gripper]]\nat = 1\n[[gripper.pose]]\n"
+      "time = 0\nposition = [0.97, 0, 0]\ndirection = \"-40 deg\"\n[[gripper.pose]]\ntime = 2\n"
+      "position = [0.97, 0, 0]\ndirection = \"120 deg\"\n",
+      "turned_over.toml");
+}
+
+// The branch ends where its mirror image begins: forces jump, and no energy is released.
+TEST(Track, TurningOverIsNoSnap) {
+  for (const double rate : {5.0, 20.0, 80.0}) {
+    const Track result = track(turned_over(), at_rate(rate));
+    EXPECT_FALSE(result.stopped);
+    EXPECT_TRUE(result.events.empty());
+    EXPECT_EQ(result.lost, 1);
+  }
+}
+
+// In a seventh of a second the rod comes from above the peg to below it.
+TEST(Track, GoesThroughNoObstacleInOneStep) {
+  const auto kinds = [](double rate) {
+    std::vector<std::string> result;
+    for (const TrackEvent& event : track(drawn_off(), at_rate(rate)).events) {
+      result.emplace_back(to_string(event.kind));
+    }
+    return result;
+  };
+  const std::vector<std::string> fine = kinds(60);
+  EXPECT_EQ(fine, (std::vector<std::string>{"contact", "snap", "release"}));
+  EXPECT_EQ(kinds(7), fine);
 }
 
 // At five frames a second the rod is swung too far for Newton's method in one step; at the times of

@@ -1,14 +1,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
 #include <sstream>
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/solve.hpp"
+#include "figure/gnuplot.hpp"
 #include "figure/series.hpp"
 #include "figure/shape_panels.hpp"
 #include "picture/budget_figure.hpp"
@@ -66,6 +71,27 @@ TEST(ShapePanels, HaveAsManyPixelsAMetreOnBothAxes) {
   EXPECT_NEAR(plot_width / range("x"), panel.height / range("y"), 1e-4 * plot_width / range("x"));
 }
 
+// A digit is 10 pixels wide, a point or a minus 5 to 6.
+TEST(ShapePanels, HaveNumbersBelowThatDoNotTouch) {
+  for (double reach = 0.2; reach < 3; reach *= 1.07) {
+    Series series{.id = "rod"};
+    series.points = Eigen::Matrix3Xd::Zero(3, 2);
+    series.points(0, 0) = -0.4 * reach;
+    series.points(0, 1) = 0.6 * reach;
+    const std::string script = shape_panels("a.csv", {series}, {{0, 1}}).front().script;
+    const auto number_after = [&script](const std::string& words) {
+      return std::stod(script.substr(script.find(words) + words.size()));
+    };
+    const double step = number_after("set xtics ");
+    const double spacing = step * number_after("aspect: ");
+    EXPECT_LT(spacing, plot_width / 2.0) << reach;
+    // The second one to the left of the middle: minus, zero, point and its digits.
+    const int digits = static_cast<int>(std::ceil(-std::log10(step) - 1e-9));
+    const double width = step < 1 ? 6 + 10 + 5 + 10 * digits : 6 + 10;
+    EXPECT_GT(spacing, width) << reach << ": " << step;
+  }
+}
+
 TEST(SolutionPicture, DashesWhatIsUnstable) {
   const Scene scene = test::heavy_scene(100, 20);
   const AllSolutions all = solve_all(scene, {}, equal_arc_lengths(scene.length, 101));
@@ -84,6 +110,20 @@ TEST(SolutionPicture, DashesWhatIsUnstable) {
   EXPECT_LT(unstable, all.solutions.size());
   EXPECT_FALSE(line_of(shapes, "gripper").empty());
   EXPECT_FALSE(line_of(shapes, "clamp_1").empty());
+}
+
+TEST(SolutionPicture, TellsElevenUnstableShapesApart) {
+  const Scene scene = test::heavy_scene(2, 0);
+  std::vector<Solution> all(12, solve(scene, Model::energy));
+  for (std::size_t i = 1; i < all.size(); ++i) all[i].smallest_curvature = -1;
+  const Picture picture = solution_picture(scene, all);
+  std::set<std::string> looks;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string line =
+        line_of(picture.rows.at(0).at(0).at(0), "solution_" + std::to_string(i + 1));
+    looks.insert(line.substr(line.find(" with lines ")));
+  }
+  EXPECT_EQ(looks.size(), all.size());
 }
 
 TEST(SolutionPicture, ShowsCurvatureWithTheSenseOfTurning) {
@@ -254,6 +294,31 @@ TEST(PictureScript, NamesItsTerminal) {
               HasSubstr("set terminal pngcairo size 1840,"));
   EXPECT_THAT(picture_script(picture, PictureFormat::pdf, "plot.pdf"),
               HasSubstr("set terminal pdfcairo"));
+}
+
+/// Width of a letter over that of a picture, as gnuplot has it once it has drawn one.
+double letter_share(PictureFormat format, const std::filesystem::path& folder) {
+  const Figure figure{.name = "a", .title = "a", .panels = {{.script = "plot x\n"}}};
+  std::ofstream(folder / "a.gp") << picture_script({{{{figure}}}}, format, "a.out")
+                                 << "set print 'share'\n"
+                                    "print real(GPVAL_TERM_HCHAR) / GPVAL_TERM_XSIZE\n";
+  EXPECT_EQ(run_script("a.gp", "a.out", folder), "");
+  double share = 0;
+  std::ifstream(folder / "share") >> share;
+  return share;
+}
+
+TEST(PictureScript, WritesLettersOfTheSameSizeInEveryFormat) {
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("dlo_letters_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  if (gnuplot_version(folder).empty()) GTEST_SKIP() << "there is no gnuplot";
+  const double png = letter_share(PictureFormat::png, folder);
+  EXPECT_NEAR(letter_share(PictureFormat::pdf, folder) / png, 1, 0.05);
+  // gnuplot guesses the width of a letter that the SVG's reader draws: 0.7 of its height.
+  EXPECT_NEAR(letter_share(PictureFormat::svg, folder), 0.7 * 16 / figure_width, 1e-4);
+  EXPECT_NEAR(png * figure_width / 16, 0.6, 0.1);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ struct EnergyOptions {
 /// Legendre polynomials, so that bending is |a|^2 / 2 and the Hessian the identity plus a compact
 /// part. NLopt's LD_LBFGS (where grips are constraints a trust region, where they stretch the rod
 /// springs that become stiffer) comes near the minimum with few terms, Newton steps with all of
-/// them finish, and their projected Hessian proves that it is one.
+/// them finish, and their projected Hessian proves that it is one. Of one clamp Newton's method
+/// begins at once, and NLopt is asked where that does not lead down to a minimum.
 ///
 /// Of several minima the lowest that the search finds is returned: one clamp turns towards the load
 /// by the shorter way, which is the lowest of all under parallel forces; other spans start from the
@@ -118,6 +120,13 @@ class EnergySolver {
   /// gives way, the branch has ended, and the shape is what the last one falls to (downhill), or
   /// failing that what solve() finds. The problem has the same obstacles in the same order.
   Equilibrium follow(const Problem& problem);
+  /// follow() as far as Newton's method stays on the branch, without what it does beyond. None
+  /// where that leads to no stable equilibrium near the last shape, or there is none: the next call
+  /// then goes on from the same shape as this one, in a smaller step for instance.
+  std::optional<Equilibrium> keep(const Problem& problem);
+  /// Forgets the shape of the last follow() or keep() that had one: the next call goes on from the
+  /// shape before it. Once for each of them.
+  void go_back();
   /// Whether the last follow() has stayed on its branch, as far as Newton's method tells: the shape
   /// is next to the one before. Work and energy tell too (a fall releases energy).
   [[nodiscard]] bool followed() const;

@@ -94,4 +94,19 @@ struct VibrationOptions {
 Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
                       const VibrationOptions& options = {});
 
+/// Whether clamps hold a rod straight: each as far from the next one, along the directions of both,
+/// as the rod between them is long, to rounding. It has no other shape, and solve_energy() none.
+[[nodiscard]] bool is_held_straight(const Problem& problem);
+
+/// vibrations() of a rod that is held straight, at a tension that its shape does not tell. To first
+/// order a deflection takes no length, so that without tension the modes are those of a beam that
+/// is clamped at both ends; with it there is w_ssss EI - tension w_ss = omega^2 m w. The rod that
+/// does not stretch keeps them for deflections whose length, int w_s^2/2 ds, the grips' give or the
+/// rod's own stretch has.
+/// @param tension  of the rod between its clamps [N]; pressed where < 0
+/// @throws std::invalid_argument as vibrations(), and if the rod is not held straight, or its
+/// weight, a load, natural strains, an obstacle or clamps that hold frames could bend or twist it
+Vibrations taut_vibrations(const Problem& problem, const Inertia& inertia, double tension,
+                           const VibrationOptions& options = {});
+
 }  // namespace dlo::energy_model

@@ -1,0 +1,313 @@
+#include "motion/branch.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "dlo/compare/discretise.hpp"
+#include "dlo/compare/error.hpp"
+#include "motion/sweep.hpp"
+
+namespace dlo::compare {
+namespace {
+
+using energy_model::Equilibrium;
+
+/// Of one frame, kept or not, and falls of which each is looked at on its own.
+constexpr int most_steps = 96;
+constexpr int most_falls = 4;
+
+/// How many of the smallest steps beyond the last shape what is extrapolated may come to zero: at a
+/// fold the smallest curvature has a vertical tangent, which a straight line through two shapes
+/// meets late.
+constexpr double steps_to_end = 4;
+
+/// Energy that rounding and the solver's tolerance leave open, over EI/l and what gravity and loads
+/// could do [-].
+constexpr double energy_noise = 1e-8;
+
+/// @throws InputError if a gripper has been moved into an obstacle
+void require_clear(const Scene& now) {
+  for (std::size_t g = 0; g < now.grippers.size(); ++g) {
+    for (std::size_t i = 0; i < now.obstacles.size(); ++i) {
+      const double depth = -now.obstacles[i].body.clearance(now.grippers[g].position);
+      if (!(depth > 1e-9 * now.length)) continue;
+      throw InputError(
+          fmt::format("gripper {} is {:.4g} m too near to obstacle {}, which the rod would enter",
+                      g + 1, depth, i + 1));
+    }
+  }
+}
+
+/// The turn from one direction to another, about the vector, by its length [rad].
+Eigen::Vector3d turn_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+  const Eigen::Vector3d across = from.cross(to);
+  const double sine = across.norm();
+  if (!(sine > 0)) return Eigen::Vector3d::Zero();
+  return std::atan2(sine, from.dot(to)) / sine * across;
+}
+
+/// What is done on the rod between two frames: with the mean of the forces, and what other forces
+/// could make of it that are between those of both, or beyond by as much as they have changed in
+/// the frame before (where a force has its largest value they are the same on either side of it).
+class Work {
+ public:
+  /// @param step     between the two shapes [frames]
+  /// @param changes  of the forces in the step before, a frame, one for each add(); empty: there is
+  ///                 none. Becomes those of this one.
+  Work(double step, std::vector<Eigen::Vector3d>& changes) : step_(step), changes_(changes) {}
+
+  void add(const Eigen::Vector3d& before, const Eigen::Vector3d& after,
+           const Eigen::Vector3d& moved) {
+    if (next_ == changes_.size()) changes_.emplace_back(Eigen::Vector3d::Zero());
+    Eigen::Vector3d& last = changes_[next_++];
+    done += (before + after).dot(moved) / 2;
+    bound += (std::abs((after - before).dot(moved)) + step_ * last.norm() * moved.norm()) / 2;
+    last = (after - before) / step_;
+  }
+
+  double done = 0;   ///< [J]
+  double bound = 0;  ///< [J]
+
+ private:
+  double step_ = 1;
+  std::vector<Eigen::Vector3d>& changes_;
+  std::size_t next_ = 0;
+};
+
+Work work_between(const Moment& before, const Moment& after, double step,
+                  const std::vector<std::size_t>& obstacles,
+                  std::vector<Eigen::Vector3d>& changes) {
+  Work work(step, changes);
+  for (std::size_t i = 0; i < after.scene.grippers.size(); ++i) {
+    const Gripper& from = before.scene.grippers[i];
+    const Gripper& to = after.scene.grippers[i];
+    work.add(before.rod.grips[i].force, after.rod.grips[i].force, to.position - from.position);
+    if (!to.direction) continue;
+    work.add(before.rod.grips[i].torque, after.rod.grips[i].torque,
+             turn_between(*from.direction, *to.direction));
+  }
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    const Eigen::Vector3d moved = after.scene.obstacles[obstacles[k]].body.centre() -
+                                  before.scene.obstacles[obstacles[k]].body.centre();
+    work.add(before.rod.obstacles[k], after.rod.obstacles[k], moved);
+  }
+  return work;
+}
+
+/// Whether the rod has come through an obstacle instead of to it: on the straight ways of its
+/// points in one step it would be deep inside.
+bool passes_through(const Moment& before, const Moment& after,
+                    const std::vector<std::size_t>& obstacles) {
+  return std::any_of(obstacles.begin(), obstacles.end(), [&](std::size_t i) {
+    const obstacle::Body& body = before.scene.obstacles[i].body;
+    const double radius = inner_radius(body);
+    if (!std::isfinite(radius)) return false;
+    // Chords of what lies, and of what slides along, are not as deep as this.
+    constexpr double share = 0.25;
+    constexpr double most_points = 513;
+    const double length = before.scene.length;
+    const double points = std::clamp(std::ceil(2 * length / radius) + 1, 33.0, most_points);
+    const double depth = std::max(share * radius, length / points / 2);
+    if (depth > radius / 2) return false;
+    const std::vector<double> s = equal_arc_lengths(length, static_cast<int>(points));
+    const Eigen::Vector3d moved = after.scene.obstacles[i].body.centre() - body.centre();
+    const Eigen::Matrix3Xd from = before.rod.sample(s).points;
+    const Eigen::Matrix3Xd to = after.rod.sample(s).points.colwise() - moved;
+    return sweeps_through(body, from, to, depth);
+  });
+}
+
+/// Where what goes from a to b on a way comes to zero beyond b, in units of that way.
+double comes_to_zero(double a, double b) {
+  if (!(b >= 0 && a > b)) return std::numeric_limits<double>::infinity();
+  return b / (a - b);
+}
+
+}  // namespace
+
+SceneEnergies energies_of(const Moment& moment) {
+  const Scene& now = moment.scene;
+  const Equilibrium& rod = moment.rod;
+  const Eigen::Vector3d zero = now.grippers.front().position;
+  SceneEnergies energy{.bending = rod.energy.bending,
+                       .twisting = rod.energy.twisting,
+                       .gravity = rod.energy.gravity,
+                       .load = rod.energy.load};
+  energy.gravity -= now.weight_between(0, now.length).dot(zero);
+  for (const PointLoad& load : now.loads) energy.load -= load.force.dot(zero);
+  return energy;
+}
+
+bool shows_its_end(const BranchWitness& before, const BranchWitness& last, double missed) {
+  const double way = last.at - before.at;
+  if (!(way > 0)) return false;
+  const double most = steps_to_end * missed / way;
+  const double a = before.smallest_curvature;
+  const double b = last.smallest_curvature;
+  if (std::min(comes_to_zero(a, b), comes_to_zero(a * a, b * b)) <= most) return true;
+  if (before.contacts.size() != last.contacts.size()) return false;
+  for (std::size_t i = 0; i < last.contacts.size(); ++i) {
+    const double was = before.contacts[i].force.norm();
+    if (comes_to_zero(was, last.contacts[i].force.norm()) <= most) return true;
+  }
+  return false;
+}
+
+Branch::Branch(const Scene& scene, const FrameClock& clock,
+               const energy_model::EnergyOptions& options)
+    : scene_(scene),
+      clock_(clock),
+      obstacles_(obstacles_ever_in_reach(scene, clock)),
+      solver_(options) {
+  bool yields = false;
+  for (const std::size_t i : obstacles_) {
+    yields = yields || std::isfinite(scene.obstacles[i].stiffness);
+  }
+  // What a clamp turns the rod about itself by, and what a yielding obstacle stores, is not told.
+  balances_ = !yields && !scene.holds_twist() &&
+              !(scene.has_material_directors() && !clock_.scene(scene, 0).planar());
+  double loads = scene.weight_between(0, scene.length).norm();
+  for (const PointLoad& point : scene.loads) loads += point.force.norm();
+  noise_ = energy_noise * (scene.bending_stiffness() / scene.length + loads * scene.length);
+}
+
+void Branch::begin() {
+  Scene scene = clock_.scene(scene_, 0);
+  require_clear(scene);
+  Equilibrium rod = solver_.solve(frame_problem(scene, obstacles_));
+  now_ = {std::move(scene), std::move(rod)};
+  witness(0);
+}
+
+Passage Branch::next() {
+  ++frame_;
+  Passage passage;
+  if (!stands()) {
+    go_to_frame(passage);
+  } else {
+    passage.stands = true;
+  }
+  if (!balances_) passage.released = std::numeric_limits<double>::quiet_NaN();
+  return passage;
+}
+
+void Branch::go_to_frame(Passage& passage) {
+  if (seen_) {
+    for (BranchWitness& witness : *seen_) witness.at -= 1;
+  }
+  double at = 0;
+  double step = 1;
+  int kept_in_a_row = 0;
+  int falls = 0;
+  for (int made = 0; at < 1; ++made) {
+    step = std::min(step, 1 - at);
+    if (made < most_steps && step >= smallest_step) {
+      if (keep(scene_at(at + step), at, step, passage)) {
+        at += step;
+        if (++kept_in_a_row == 2) step *= 2;
+      } else {
+        kept_in_a_row = 0;
+        passage.smaller = true;
+        step /= 2;
+      }
+      continue;
+    }
+    // What is just beyond the end of the branch tells best what the rod has fallen to.
+    const bool near = made < most_steps && ++falls <= most_falls;
+    const double missed = near ? std::min(2 * step, 1 - at) : 1 - at;
+    at += leave(at, missed, passage);
+    const double bound = passage.released_bound;
+    if (!energy_model::succeeded(now_.rod.status) || passage.released < -bound) return;
+    step = 1 - at;
+    kept_in_a_row = 0;
+  }
+}
+
+/// To the shape that a search finds from the end of the branch, a small step away or, where it
+/// finds none there, in the frame. @return the step [frames]
+double Branch::leave(double at, double missed, Passage& passage) {
+  if (passage.kept) {
+    passage.kept = false;
+    passage.last_curvature = now_.rod.smallest_curvature;
+    passage.ended = true;
+    passage.released = 0;
+    passage.released_bound = 0;
+  }
+  passage.ended = passage.ended && shows_its_end((*seen_)[0], (*seen_)[1], missed);
+  double step = missed;
+  Moment after{scene_at(at + step), {}};
+  after.rod = solver_.follow(frame_problem(after.scene, obstacles_));
+  if (!energy_model::succeeded(after.rod.status) && at + step < 1) {
+    solver_.go_back();
+    step = 1 - at;
+    after.scene = scene_at(1);
+    after.rod = solver_.follow(frame_problem(after.scene, obstacles_));
+  }
+  if (energy_model::succeeded(after.rod.status)) {
+    const Work work = work_between(now_, after, step, obstacles_, changes_);
+    const double grown = energies_of(after).total() - energies_of(now_).total();
+    passage.work += work.done;
+    passage.released += work.done - grown;
+    passage.released_bound += work.bound + noise_;
+  }
+  now_ = std::move(after);
+  // What is seen on another branch tells nothing of this one.
+  seen_.reset();
+  witness(at + step);
+  // Nor do forces that have jumped.
+  changes_.clear();
+  return step;
+}
+
+/// Where a motion dwells, so does the rod.
+bool Branch::stands() const {
+  const Scene scene = clock_.scene(scene_, frame_);
+  return scene.grippers == now_.scene.grippers && scene.obstacles == now_.scene.obstacles;
+}
+
+Scene Branch::scene_at(double share) const {
+  Scene scene =
+      share < 1 ? clock_.scene_before(scene_, frame_, share) : clock_.scene(scene_, frame_);
+  require_clear(scene);
+  return scene;
+}
+
+/// One step on the branch.
+bool Branch::keep(Scene scene, double from, double step, Passage& passage) {
+  std::optional<Equilibrium> rod = solver_.keep(frame_problem(scene, obstacles_));
+  if (!rod) return false;
+  Moment after{std::move(scene), std::move(*rod)};
+  std::vector<Eigen::Vector3d> changes = changes_;
+  const Work work = work_between(now_, after, step, obstacles_, changes);
+  const double released = work.done - (energies_of(after).total() - energies_of(now_).total());
+  const bool other_branch = balances_ && std::abs(released) > work.bound + noise_;
+  if (other_branch || passes_through(now_, after, obstacles_)) {
+    solver_.go_back();
+    return false;
+  }
+  changes_ = std::move(changes);
+  passage.work += work.done;
+  if (passage.kept) {
+    passage.released += released;
+    passage.released_bound += work.bound + noise_;
+  }
+  now_ = std::move(after);
+  witness(from + step);
+  return true;
+}
+
+void Branch::witness(double at) {
+  BranchWitness seen{at, now_.rod.smallest_curvature, now_.rod.contacts};
+  if (!seen_) {
+    seen_ = {seen, seen};
+  } else {
+    (*seen_)[0] = std::exchange((*seen_)[1], std::move(seen));
+  }
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dlo/obstacle/body.hpp"
+
+namespace dlo::compare {
+
+/// Radius of the largest ball in a body [m]; infinite of a half-space.
+[[nodiscard]] double inner_radius(const obstacle::Body& body);
+
+/// Whether a polyline, each of its points on a straight way, goes through a body deeper than that.
+/// @param before, after  its points at the begin and the end of their ways, 3 x M, M >= 2 [m]
+/// @param depth          > 0 [m]
+[[nodiscard]] bool sweeps_through(const obstacle::Body& body, const Eigen::Matrix3Xd& before,
+                                  const Eigen::Matrix3Xd& after, double depth);
+
+}  // namespace dlo::compare

@@ -1,0 +1,67 @@
+#include "motion/branch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+namespace dlo::compare {
+namespace {
+
+constexpr double missed_step = 1.0 / 512;
+
+/// Of two shapes, the later one a share of the missed step before the end, the other one `way`
+/// earlier.
+bool shows(const std::function<BranchWitness(double)>& shape_before_end, double way, double share) {
+  BranchWitness last = shape_before_end(share * missed_step);
+  BranchWitness before = shape_before_end(share * missed_step + way);
+  last.at = 1;
+  before.at = 1 - way;
+  return shows_its_end(before, last, missed_step);
+}
+
+BranchWitness of_curvature(double curvature) { return {.smallest_curvature = curvature}; }
+
+BranchWitness of_force(double force) {
+  BranchWitness witness{.smallest_curvature = 0.7};
+  witness.contacts.resize(2);
+  witness.contacts[0].force = Eigen::Vector3d(0, 3, 0);
+  witness.contacts[1].force = Eigen::Vector3d(0, force, 0);
+  return witness;
+}
+
+TEST(BranchWitness, ShowsFoldsBifurcationsAndLettingGo) {
+  for (const double way : {missed_step, 8 * missed_step, 0.125, 1.0}) {
+    for (const double share : {0.01, 0.5, 1.0}) {
+      EXPECT_TRUE(shows([](double left) { return of_curvature(3 * std::sqrt(left)); }, way, share));
+      EXPECT_TRUE(shows([](double left) { return of_curvature(2 * left); }, way, share));
+      EXPECT_TRUE(shows([](double left) { return of_force(0.2 * left); }, way, share));
+    }
+  }
+}
+
+// The ends that lie this far beyond the step that is missed are not the reason that it is.
+TEST(BranchWitness, ShowsNoEndThatIsFarAway) {
+  constexpr double far = 0.1;
+  for (const double way : {missed_step, 8 * missed_step, 0.125, 1.0}) {
+    EXPECT_FALSE(
+        shows([](double left) { return of_curvature(3 * std::sqrt(left + far)); }, way, 1));
+    EXPECT_FALSE(shows([](double left) { return of_curvature(2 * (left + far)); }, way, 1));
+    EXPECT_FALSE(shows([](double left) { return of_force(left + far); }, way, 1));
+    EXPECT_FALSE(shows([](double left) { return of_curvature(1 - left); }, way, 1));
+    EXPECT_FALSE(shows([](double /*left*/) { return BranchWitness{}; }, way, 1));
+  }
+}
+
+// Contacts that are not the same ones tell nothing of each other.
+TEST(BranchWitness, ComparesTheSameContactsOnly) {
+  BranchWitness last = of_force(1e-9);
+  BranchWitness before = of_force(1);
+  last.at = 1;
+  EXPECT_TRUE(shows_its_end(before, last, missed_step));
+  before.contacts.resize(1);
+  EXPECT_FALSE(shows_its_end(before, last, missed_step));
+}
+
+}  // namespace
+}  // namespace dlo::compare

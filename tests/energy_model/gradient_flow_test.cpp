@@ -1,0 +1,71 @@
+// Where the exact solver follows a twisted rod to when its shape becomes unstable
+// (shooting/gradient_flow.hpp).
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "base/sized_samples.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "dlo/energy_model/exact.hpp"
+#include "equilibrium_balance.hpp"
+#include "rolled_clamps.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// A heavy rod of unit length and stiffness, clamped at both ends, the second one rolled.
+Problem rolled(const Eigen::Vector3d& end, const Eigen::Vector3d& direction, double weight,
+               double c, double roll) {
+  Problem problem = test::rolled_clamps(end, direction, c, roll);
+  problem.weight_per_length = {0, -weight, 0};
+  return problem;
+}
+
+/// How far a shape between level clamps 0.8 apart is from itself after half a turn about the
+/// upright line halfway, end for end.
+double asymmetry(const Equilibrium& shape) {
+  const Eigen::Matrix3Xd points = shape.sample(equal_arc_lengths(1, 21)).points;
+  Eigen::Matrix3Xd turned = points.rowwise().reverse();
+  turned.row(0) = 0.8 - turned.row(0).array();
+  turned.row(2) *= -1;
+  return (points - turned).colwise().norm().maxCoeff();
+}
+
+// The continuation is on the symmetric shape, which is an equilibrium at every roll; at 12 it has
+// become a saddle.
+TEST(GradientFlow, LeavesTheSymmetryThatHasBecomeUnstable) {
+  const auto at = [](double roll) {
+    return rolled({0.8, 0, 0}, Eigen::Vector3d::UnitX(), 50, 2, roll);
+  };
+  const Equilibrium before = solve_exact(at(11));
+  ASSERT_EQ(before.status, SolveStatus::converged) << before.message;
+  EXPECT_LT(asymmetry(before), 1e-9);
+  const Equilibrium after = solve_exact(at(12));
+  ASSERT_EQ(after.status, SolveStatus::converged) << after.message;
+  EXPECT_GT(asymmetry(after), 1e-2);
+  EXPECT_GT(after.smallest_curvature, 0);
+  EXPECT_LT(test::balance_of(at(12), after, 0.01).worst(), 1e-10);
+}
+
+TEST(GradientFlow, GivesUpTwistBeyondAFold) {
+  const auto at = [](double roll) {
+    return rolled({0.6, 0.2, 0.1}, {0.8, 0.3, -0.5}, 20, 0.7, roll);
+  };
+  const Equilibrium before = solve_exact(at(6.5));
+  const Equilibrium after = solve_exact(at(7));
+  ASSERT_EQ(before.status, SolveStatus::converged) << before.message;
+  ASSERT_EQ(after.status, SolveStatus::converged) << after.message;
+  EXPECT_GT(after.smallest_curvature, 0);
+  EXPECT_LT(test::balance_of(at(7), after, 0.01).worst(), 1e-10);
+  // The roll grows, the twist drops: the rod takes up the difference by winding.
+  EXPECT_LT(after.twists.at(0).angle, before.twists.at(0).angle - 1);
+  // Less than the torque before would have put into it.
+  EXPECT_LT(after.energy.total(), before.energy.total() + 0.5 * before.twists[0].torque);
+  const Equilibrium energy = solve_energy(at(7), {.start = &after});
+  EXPECT_EQ(energy.status, SolveStatus::converged) << energy.message;
+  EXPECT_NEAR(energy.energy.total(), after.energy.total(), 1e-8);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
