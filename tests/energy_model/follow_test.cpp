@@ -1,10 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "dlo/energy_model/energy.hpp"
 #include "problems.hpp"
+#include "start_along.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -86,6 +89,63 @@ TEST(Keep, GoesBackToTheShapeBefore) {
   const std::optional<Equilibrium> again = solver.keep(heavy_cantilever(10, 85));
   ASSERT_TRUE(again);
   EXPECT_LT(apart(*again, *near), 1e-9);
+}
+
+constexpr double peg_radius = 0.05;
+
+/// A weightless rod that is drawn down over a peg.
+Problem drawn_over_peg(double tension) {
+  Problem problem = heavy_cantilever(0, 0);
+  problem.loads = {{1, {0, -tension, 0}}};
+  problem.obstacles = {{obstacle::Body::cylinder({0.4, -peg_radius, 0}, {0, 0, 1}, peg_radius)}};
+  return problem;
+}
+
+// Where a point begins to lie the clearance has neither slope nor curvature: the place of its least
+// value is 0 / 0. A step that ends there, or beyond, has to keep the branch however near it comes.
+TEST(Keep, FollowsAPointUntilItLiesAndBack) {
+  const Equilibrium start = test::start_along({{0, 0, 0}, {0.45, 0, 0}, {0.45, -0.55, 0}});
+  EnergySolver solver({.start = &start});
+  const Equilibrium first = solver.solve(drawn_over_peg(300));
+  ASSERT_EQ(first.status, SolveStatus::converged) << first.message;
+  ASSERT_EQ(first.contacts.size(), 1U);
+  ASSERT_EQ(first.contacts[0].kind, ContactKind::touching);
+  const auto kind_at = [&](double tension) {
+    const std::optional<Equilibrium> rod = solver.keep(drawn_over_peg(tension));
+    EXPECT_TRUE(rod) << tension;
+    EXPECT_EQ(rod->contacts.size(), 1U);
+    return rod->contacts.at(0).kind;
+  };
+  ASSERT_EQ(kind_at(500), ContactKind::touching);
+  double touches = 500;
+  double lies = 900;
+  while (lies - touches > 1e-8 * lies) {
+    const double middle = (touches + lies) / 2;
+    (kind_at(middle) == ContactKind::touching ? touches : lies) = middle;
+  }
+  // Both sides leave the peg at the same point there: at an angle phi each from the line of their
+  // tension, sin(phi / 2) = (EI / T)^(1/2) / 2R.
+  const std::optional<Equilibrium> there = solver.keep(drawn_over_peg(touches));
+  ASSERT_TRUE(there);
+  const Eigen::Vector3d held = there->grips[0].force.normalized();
+  const double phi = std::acos(held.y()) / 2;
+  // The clearance is r s^2 / 2 + F |s|^3 / 12 EI beside a point with the force F: behind the peg by
+  // 8 |r|^3 / 3 F^2, which may be 1e-9 of the length, and then phi is off by 2 tan(phi / 2) |r| R.
+  const double force = there->contacts.at(0).force.norm();
+  const double curvature = std::cbrt(1e-9 * 3 * force * force / 8);
+  EXPECT_NEAR(2 * std::asin(std::sqrt(1 / touches) / (2 * peg_radius)), phi,
+              2 * std::tan(phi / 2) * curvature * peg_radius);
+  for (const double sign : {-1.0, 1.0}) {
+    for (double aside = 0.03; aside > 1e-9; aside /= 30) {
+      SCOPED_TRACE(sign * aside);
+      EXPECT_EQ(kind_at(touches * (1 - sign * 0.1)),
+                sign > 0 ? ContactKind::touching : ContactKind::lying);
+      const std::optional<Equilibrium> near =
+          solver.keep(drawn_over_peg(touches * (1 + sign * aside)));
+      ASSERT_TRUE(near);
+      EXPECT_EQ(near->status, SolveStatus::converged);
+    }
+  }
 }
 
 }  // namespace

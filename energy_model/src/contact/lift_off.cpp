@@ -80,13 +80,13 @@ Eigen::VectorXd missed(const SpanSolution& solution, const std::vector<LiftOff>&
     const auto column = static_cast<Eigen::Index>(i);
     const Span::Contact& contact = span.contacts[ends[i].contact];
     const Clearance here = clearance_at(contact.obstacle.body, samples, column);
+    const Room room = room_of(span, ends[i]);
     if (contact.lies()) {
-      const Room room = room_of(span, ends[i]);
       result[column] = here.rate * (ends[i].begins ? room.down : room.up);
     } else if (const auto at = solution.model->touches_at(ends[i].contact)) {
       result[column] = contact.begin - *at;
     } else {
-      result[column] = here.rate > 0 ? here.slope / here.rate : here.slope;
+      result[column] = here.slope * std::min(room.down, room.up);
     }
   }
   return result;

@@ -28,6 +28,9 @@ constexpr int most_rounds = 16;
 constexpr int most_departures = 4;
 /// Unknowns from which on half of the terms that a load takes are tried first.
 constexpr int many_unknowns = 300;
+/// A part that lies and is shorter, in lengths, may be a point instead: it is asked again whether
+/// that is behind the obstacle.
+constexpr double shortest_told = 1e-3;
 /// Out of its plane a polygon has tangents with more than this across it.
 constexpr double flat = 1e-6;
 /// Polygons whose energies are this close, over 1 + energy, are the same.
@@ -79,10 +82,15 @@ class ContactSearch {
           [&](const Span::Obstacle& other) { return other.index == contact.obstacle.index; });
       if (moved == span.rigid_obstacles.end()) return {};
       contact.obstacle = *moved;
+      contact.slides = true;
     }
     const double share = goes_on_like_before() ? 1 : 0;
     SpanSolution solution = next_to_known(span, share);
     if (share > 0 && !solution.is_equilibrium()) solution = next_to_known(span, 0);
+    // Where a point begins to lie it slides with no least gap, and a part is too short to be told.
+    if (!solution.is_equilibrium() && hold_points(span)) {
+      solution = near_field(span, options_.start);
+    }
     if (!solution.is_equilibrium()) return solution;
     const Eigen::Matrix3Xd turned =
         solution.model->tangents() - options_.start(solution.model->nodes()).tangents;
@@ -323,11 +331,17 @@ class ContactSearch {
     return solution;
   }
 
-  /// Where an obstacle would have to pull there may be no shape that slides, but one that is held.
-  /// @return whether any contact slid
+  /// Where an obstacle would have to pull there may be no shape that slides, but one that is held;
+  /// and a part so short that a point is hardly behind the obstacle beside it is one.
+  /// @return whether any contact has changed
   [[nodiscard]] static bool hold_points(Span& span) {
     bool any = false;
     for (Span::Contact& contact : span.contacts) {
+      const bool inside = contact.begin > 0 && contact.end < span.length;
+      const double middle = (contact.begin + contact.end) / 2;
+      if (contact.lies() && inside && contact.end - contact.begin < shortest_told * span.length) {
+        contact.begin = contact.end = middle;
+      }
       any = any || (contact.slides && !contact.lies());
       contact.slides = false;
     }

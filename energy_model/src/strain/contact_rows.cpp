@@ -32,6 +32,17 @@ HeldBy held_within(const Span& span, double begin, double end) {
   return held;
 }
 
+/// Whether there is something beside the obstacle from which a concentrated force could come.
+bool may_concentrate(const Span& span, double at) {
+  const auto is_there = [at](double other) { return std::abs(at - other) < closest_cuts; };
+  return held_within(span, at, at) != HeldBy::nothing ||
+         std::any_of(span.loads.begin(), span.loads.end(),
+                     [&](const Span::Load& load) { return is_there(load.at); }) ||
+         std::any_of(span.parts.begin(), span.parts.end(), [&](const Span::Part& part) {
+           return is_there(part.begin) || is_there(part.end);
+         });
+}
+
 /// Series in orthonormal Legendre polynomials at xi.
 double series(const Eigen::Ref<const Eigen::VectorXd>& coefficients, double xi) {
   Eigen::VectorXd values(coefficients.size());
@@ -109,6 +120,7 @@ void ContactRows::add_slopes(const Span& span, std::size_t contact,
     slope.first = linear_.cols();
     slope.count = degrees;
     slope.length = piece.length;
+    slope.concentrates = may_concentrate(span, piece.begin);
     contacts_[contact].slopes.push_back(slope);
     if (body.is_half_space()) {
       for (Eigen::Index k = 0; k < degrees; ++k) {
@@ -396,7 +408,7 @@ std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers
       const double here = series(carried, 0);
       if (i == 0) {
         force.begin = before - here;
-      } else {
+      } else if (slope.concentrates) {
         force.least_inner = std::min(force.least_inner, before - here);
       }
       force.end = before = series(carried, 1);

@@ -20,7 +20,9 @@ struct ContactForce {
   double begin = 0, end = 0;  ///< concentrated ones; `end` is 0 where it touches at one point
   double least_pressure = 0;  ///< per length, of what lies; 0 where it touches at one point
   double largest_pressure = 0;
-  double least_inner = 0;  ///< least concentrated one inside, at loads and sections
+  /// Least concentrated one inside, at loads and sections; what the series of two pieces differ by
+  /// elsewhere is their error.
+  double least_inner = 0;
 };
 
 /// Constraints of the rod's contacts with rigid obstacles, over clearances g of its points. A
@@ -81,7 +83,8 @@ class ContactRows {
   struct Rows {
     struct Slope {
       Eigen::Index first = 0, count = 0;
-      double length = 0;  // of the piece
+      double length = 0;          // of the piece
+      bool concentrates = false;  // a load, a section's end or a grip is where it begins
     };
     Eigen::Index clearance = -1;
     std::vector<Slope> slopes;
