@@ -16,6 +16,10 @@ constexpr std::size_t coarse_stride = 20;
 /// Newton's steps from the grid to a minimum; they stay between the neighbouring points.
 constexpr int refinements = 6;
 
+/// Beside where a contact begins or ends it is looked at in half the way again and again: a point
+/// that begins to lie has the rod behind the obstacle beside it, nearer than the grid tells.
+constexpr int halvings_beside_contact = 10;
+
 /// Of points that are not looked at, since nothing near them is as low.
 constexpr double not_looked_at = std::numeric_limits<double>::infinity();
 
@@ -44,6 +48,51 @@ std::vector<std::size_t> near_obstacles(const Span& span, const SpanShape& shape
   }
   if (result.empty()) result.push_back(0);
   return result;
+}
+
+/// The least clearance between `low` and `high`, by Newton's method from `at`.
+Lowest lowest_between(const Span::Obstacle& obstacle, const SpanShape& shape, double low, double at,
+                      double high) {
+  Lowest lowest{obstacle, at, std::numeric_limits<double>::infinity()};
+  for (int k = 0; k < refinements; ++k) {
+    const Clearance here = clearance_at(obstacle.body, shape.sample(std::array{at}), 0);
+    if (here.value < lowest.clearance) lowest = {obstacle, at, here.value};
+    if (!(here.rate > 0)) break;
+    at = std::clamp(at - here.slope / here.rate, low, high);
+  }
+  lowest.feature = obstacle.body.feature(shape.sample(std::array{lowest.s}).points.col(0));
+  return lowest;
+}
+
+/// Least clearances below `below` on both sides of a contact's ends, nearer than `reach`.
+void add_beside_contacts(const Span& span, const Span::Obstacle& obstacle, const SpanShape& shape,
+                         double below, double reach, std::vector<Lowest>& found) {
+  const auto look = [&](double end, double first_step) {
+    std::vector<double> s;
+    for (double step = first_step; std::ssize(s) < halvings_beside_contact; step /= 2) {
+      s.push_back(std::clamp(end + step, 0.0, span.length));
+    }
+    const Eigen::VectorXd clearance = obstacle.body.clearances(shape.sample(s).points);
+    for (Eigen::Index k = 1; k + 1 < clearance.size(); ++k) {
+      // Of a least value two thirds at least are seen at one of these.
+      const bool is_low = clearance[k] < below / 2;
+      if (!is_low || clearance[k] > clearance[k - 1] || clearance[k] >= clearance[k + 1]) continue;
+      const auto at = static_cast<std::size_t>(k);
+      const double low = std::min(s[at - 1], s[at + 1]);
+      const double high = std::max(s[at - 1], s[at + 1]);
+      const Lowest lowest = lowest_between(obstacle, shape, low, s[at], high);
+      // The grid may have seen it.
+      const bool known = std::any_of(found.begin(), found.end(), [&](const Lowest& other) {
+        return other.obstacle.index == obstacle.index && other.s >= low && other.s <= high;
+      });
+      if (lowest.clearance < below && !known) found.push_back(lowest);
+    }
+  };
+  for (const Span::Contact& contact : span.contacts) {
+    if (contact.obstacle.index != obstacle.index) continue;
+    look(contact.begin, -reach);
+    look(contact.end, reach);
+  }
 }
 
 }  // namespace
@@ -79,18 +128,11 @@ std::vector<Lowest> lowest_points(const Span& span, const SpanShape& shape, doub
       if (!falls_to || !rises_from || clearance[i] > below + 2 * sag) continue;
       const double low = s[static_cast<std::size_t>(std::max<Eigen::Index>(0, i - 1))];
       const double high = s[static_cast<std::size_t>(std::min(grid_points - 1, i + 1))];
-      Lowest lowest{obstacle, s[static_cast<std::size_t>(i)], clearance[i]};
-      double at = lowest.s;
-      for (int k = 0; k < refinements; ++k) {
-        const Clearance here = clearance_at(obstacle.body, shape.sample(std::array{at}), 0);
-        if (here.value < lowest.clearance) lowest = {obstacle, at, here.value};
-        if (!(here.rate > 0)) break;
-        at = std::clamp(at - here.slope / here.rate, low, high);
-      }
-      if (!(lowest.clearance < below)) continue;
-      lowest.feature = obstacle.body.feature(shape.sample(std::array{lowest.s}).points.col(0));
-      found.push_back(lowest);
+      const double at = s[static_cast<std::size_t>(i)];
+      Lowest lowest = lowest_between(obstacle, shape, low, at, high);
+      if (lowest.clearance < below) found.push_back(std::move(lowest));
     }
+    add_beside_contacts(span, obstacle, shape, below, h, found);
   }
   std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.s < b.s; });
   return found;

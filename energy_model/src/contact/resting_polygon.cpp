@@ -12,6 +12,8 @@ namespace {
 /// Segments of a stiff and of a soft rod; lift-off lengths fall with the root of the load's root.
 constexpr double fewest_segments = 64;
 constexpr double most_segments = 256;
+/// What Segments::few are of them.
+constexpr double few = 1.0 / 3;
 /// Stretch and penetration that the loads and what bends a rod may make, in lengths.
 constexpr double yields = 1e-4;
 constexpr double bending_forces = 40;
@@ -20,6 +22,9 @@ constexpr Eigen::Index fewest_lying = 4;
 
 /// How far above a surface a grip is that holds the rod on it, in lengths: rounding.
 constexpr double on_surface = 1e-9;
+
+/// Newton step of a polygon at rest, in lengths: what solve_polygon() asks for as a proof.
+constexpr double tolerance = 1e-7;
 
 /// A polygon that crumples on its obstacle takes many more, and lies higher than others.
 constexpr int most_evaluations = 300;
@@ -30,7 +35,7 @@ struct Mesh {
   bool before = false, after = false;  // a held point beyond the start or the end
 };
 
-Mesh mesh_of(const Span& span) {
+Mesh mesh_of(const Span& span, Segments segments) {
   std::vector<double> cuts = {0, span.length, span.anchor};
   for (const Span::Hold& hold : span.holds) cuts.push_back(hold.at);
   for (const Span::Load& load : span.loads) cuts.push_back(load.at);
@@ -38,7 +43,7 @@ Mesh mesh_of(const Span& span) {
   std::sort(cuts.begin(), cuts.end());
   const double load = std::max(1.0, span.total_load());
   const double count = std::clamp(24 * std::pow(load, 0.25), fewest_segments, most_segments);
-  const double h = span.length / count;
+  const double h = span.length / (segments == Segments::few ? few * count : count);
   Mesh mesh;
   mesh.before = span.start_direction.has_value();
   mesh.after = span.end_direction.has_value();
@@ -47,8 +52,8 @@ Mesh mesh_of(const Span& span) {
   double begin = 0;
   for (const double cut : cuts) {
     if (cut - begin < closest_cuts) continue;
-    const double segments = std::max(1.0, std::ceil((cut - begin) / h));
-    for (double i = 1; i <= segments; ++i) mesh.s.push_back(begin + (cut - begin) * i / segments);
+    const double parts = std::max(1.0, std::ceil((cut - begin) / h));
+    for (double i = 1; i <= parts; ++i) mesh.s.push_back(begin + (cut - begin) * i / parts);
     begin = cut;
   }
   if (mesh.after) mesh.s.push_back(span.length + h);
@@ -57,7 +62,7 @@ Mesh mesh_of(const Span& span) {
 
 class Resting {
  public:
-  explicit Resting(const Span& span) : span_(span), mesh_(mesh_of(span)) {
+  Resting(const Span& span, Segments segments) : span_(span), mesh_(mesh_of(span, segments)) {
     const std::size_t count = mesh_.s.size();
     const double stiff = (bending_forces + span.total_load()) / yields;
     problem_.rest_lengths.resize(static_cast<Eigen::Index>(count) - 1);
@@ -86,15 +91,32 @@ class Resting {
   }
 
   [[nodiscard]] RestingPolygon from(const TangentField& start, const Deadline& deadline) {
+    return from(points_of(start), Stages::yes, deadline);
+  }
+
+  [[nodiscard]] RestingPolygon from(const RestingPolygon& coarse, const Deadline& deadline) {
+    return from(points_between(coarse), Stages::no, deadline);
+  }
+
+ private:
+  /// Whether stretch is soft at first, as far from rest.
+  enum class Stages { yes, no };
+
+  [[nodiscard]] RestingPolygon from(const Eigen::Matrix3Xd& start, Stages stages,
+                                    const Deadline& deadline) {
     PolygonOptions options;
-    options.tolerance = 1e-6;
+    options.tolerance = tolerance;
     options.max_evaluations = most_evaluations;
+    options.in_stages = stages == Stages::yes;
+    options.to_any_minimum = true;
     options.time_limit = std::max(1e-3, deadline.remaining());
-    const PolygonResult found = solve_polygon(problem_, points_of(start), options);
+    const PolygonResult found = solve_polygon(problem_, start, options);
     RestingPolygon result;
     result.evaluations = found.evaluations;
     result.energy = found.energy;
     result.at_rest = succeeded(found.status);
+    result.s = mesh_.s;
+    result.points = found.points;
     const Eigen::Index n = problem_.rest_lengths.size();
     result.middles.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) result.middles[i] = (s(i) + s(i + 1)) / 2;
@@ -107,7 +129,6 @@ class Resting {
     return result;
   }
 
- private:
   /// Mean length of a segment.
   [[nodiscard]] double segment() const {
     return span_.length / static_cast<double>(mesh_.s.size());
@@ -212,6 +233,29 @@ class Resting {
     return points;
   }
 
+  /// Between a coarser polygon's points by cubics, which stretch segments less than chords do.
+  [[nodiscard]] Eigen::Matrix3Xd points_between(const RestingPolygon& coarse) const {
+    const auto last = static_cast<Eigen::Index>(coarse.s.size()) - 1;
+    const auto at = [&](Eigen::Index i) { return coarse.s[static_cast<std::size_t>(i)]; };
+    const auto slope = [&](Eigen::Index i) {
+      const Eigen::Index before = std::max<Eigen::Index>(i - 1, 0);
+      const Eigen::Index after = std::min(i + 1, last);
+      return Eigen::Vector3d((coarse.points.col(after) - coarse.points.col(before)) /
+                             (at(after) - at(before)));
+    };
+    Eigen::Matrix3Xd points(3, static_cast<Eigen::Index>(mesh_.s.size()));
+    for (Eigen::Index k = 0; k < points.cols(); ++k) {
+      const auto above = std::upper_bound(coarse.s.begin(), coarse.s.end(), s(k));
+      const Eigen::Index i = std::clamp<Eigen::Index>(above - coarse.s.begin() - 1, 0, last - 1);
+      const double h = at(i + 1) - at(i);
+      const double x = (s(k) - at(i)) / h;
+      points.col(k) = (1 + 2 * x) * (1 - x) * (1 - x) * coarse.points.col(i) +
+                      x * x * (3 - 2 * x) * coarse.points.col(i + 1) +
+                      h * x * (1 - x) * ((1 - x) * slope(i) - x * slope(i + 1));
+    }
+    return points;
+  }
+
   /// Of a rigid obstacle: runs of points within it.
   void add_contacts(const Span::Obstacle& obstacle, const Eigen::Matrix3Xd& points,
                     RestingPolygon& result) const {
@@ -265,18 +309,18 @@ class Resting {
 }  // namespace
 
 TangentField RestingPolygon::field() const {
-  return [middles = middles, tangents = tangents](const Eigen::VectorXd& s) {
-    Eigen::Matrix3Xd result(3, s.size());
-    for (Eigen::Index q = 0; q < s.size(); ++q) {
-      result.col(q) = tangent_between(middles, tangents, s[q]);
+  return [middles = middles, tangents = tangents](const Eigen::VectorXd& at) {
+    Eigen::Matrix3Xd result(3, at.size());
+    for (Eigen::Index q = 0; q < at.size(); ++q) {
+      result.col(q) = tangent_between(middles, tangents, at[q]);
     }
     return result;
   };
 }
 
-RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start,
+RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start, Segments segments,
                                  const Deadline& deadline) {
-  Resting resting(span);
+  Resting resting(span, segments);
   if (!resting.goes_through(start)) return resting.from(start, deadline);
   TangentField from = start;
   int evaluations = 0;
@@ -285,13 +329,18 @@ RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start,
     for (Span::Obstacle& obstacle : rounder.rigid_obstacles) {
       obstacle.body = obstacle.body.rounded(round);
     }
-    const RestingPolygon before = Resting(rounder).from(from, deadline);
+    const RestingPolygon before = Resting(rounder, segments).from(from, deadline);
     evaluations += before.evaluations;
     from = before.field();
   }
   RestingPolygon result = resting.from(from, deadline);
   result.evaluations += evaluations;
   return result;
+}
+
+RestingPolygon rest_refined(const Span& span, const RestingPolygon& coarse,
+                            const Deadline& deadline) {
+  return Resting(span, Segments::all).from(coarse, deadline);
 }
 
 }  // namespace dlo::energy_model

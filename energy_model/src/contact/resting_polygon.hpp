@@ -14,6 +14,8 @@ struct RestingPolygon {
   bool at_rest = false;
   double energy = 0;  ///< in EI/l
   int evaluations = 0;
+  std::vector<double> s;      ///< of its points, by growing s
+  Eigen::Matrix3Xd points;    ///< 3 x s
   Eigen::VectorXd middles;    ///< s of the segments' middles
   Eigen::Matrix3Xd tangents;  ///< of the segments, unit, 3 x middles
   std::vector<Span::Contact> contacts;
@@ -22,10 +24,20 @@ struct RestingPolygon {
   [[nodiscard]] TangentField field() const;
 };
 
+/// How many segments a polygon has.
+enum class Segments {
+  few,  ///< a third of those that contacts take, which tell for less where it leads
+  all,
+};
+
 /// Descends from a shape with points that the obstacles push back by stiff springs, and stretch
 /// that is small: right to about the square of a segment. Where the shape goes through the inside
 /// of a block, which would push it out of several faces at once, the block grows out of a ball.
 [[nodiscard]] RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start,
-                                               const Deadline& deadline);
+                                               Segments segments, const Deadline& deadline);
+
+/// The same with all segments, from where one of few rests.
+[[nodiscard]] RestingPolygon rest_refined(const Span& span, const RestingPolygon& coarse,
+                                          const Deadline& deadline);
 
 }  // namespace dlo::energy_model

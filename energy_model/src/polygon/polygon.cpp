@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "base/deadline.hpp"
 #include "polygon/polygon_energy.hpp"
@@ -27,6 +28,10 @@ constexpr double rounding_step = 1e-7;
 /// No point moves further in one step, in polygon lengths.
 constexpr double largest_step = 0.2;
 constexpr int most_escapes = 10;
+/// Step, in polygon lengths, from which on a polygon that is not near a minimum may be near a
+/// saddle.
+constexpr double first_beside_saddle = 1e-3;
+constexpr int most_slow = 3;
 /// Force on a free point that may be left, over the forces that act [-]; above what rounding of the
 /// positions makes of the stiffest segment (proof()). A polygon whose Newton step is rounding is
 /// far below it, one that is pressed between two constraints far above.
@@ -62,32 +67,48 @@ class PolygonDescent {
     double damping = 0;
     double last_step = std::numeric_limits<double>::infinity();
     int escapes = 0;
-    assemble();
+    double beside_saddle = first_beside_saddle;
+    double last_stiffening = 0;
+    int slows = 0;  // steps in a row without all second derivatives that became shorter
+    assemble(SecondDerivatives::all);
     while (result_.evaluations < options_.max_evaluations) {
       if (deadline_.passed()) return SolveStatus::time_limit;
+      const bool exact = which_ == SecondDerivatives::all;
       if (!factor(damping)) {
-        damping = std::max(4 * damping, first_damping);
-        if (damping > most_damping) return SolveStatus::failed;
+        if (exact && options_.to_any_minimum) {
+          assemble(SecondDerivatives::stiffening);
+        } else {
+          damping = std::max(4 * damping, first_damping);
+          if (damping > most_damping) return SolveStatus::failed;
+        }
         continue;
       }
       const Eigen::VectorXd force = free_part(-gradient_);
       Eigen::VectorXd step = solver_.solve(force);
       const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
       if (!std::isfinite(size)) return SolveStatus::failed;
-      if (damping == 0) {
+      if (damping == 0 && exact) {
         if (size <= tolerance_) return SolveStatus::converged;
         if (size < rounding_step && size > last_step / 2) return SolveStatus::roundoff_limited;
         last_step = size;
-      } else if (force.dot(step) <= rounding_energy()) {
-        // At rest, but only damping made the Hessian positive.
-        if (factor(0)) {
+        slows = 0;
+      } else if (const bool at_rest = force.dot(step) <= rounding_energy();
+                 at_rest || (size < beside_saddle && slows >= most_slow)) {
+        // At rest, but only what was left out, or damping, made the Hessian positive; or on the
+        // slow way there.
+        beside_saddle = size / 4;
+        slows = 0;
+        assemble(SecondDerivatives::all);
+        if (at_rest && factor(0)) {
           damping = 0;
           continue;
         }
-        if (escapes++ == most_escapes) return SolveStatus::saddle;
-        (void)factor(damping);
+        if (at_rest && escapes++ == most_escapes) return SolveStatus::saddle;
+        for (damping = std::max(damping, first_damping); !factor(damping); damping *= 4) {
+          if (damping > most_damping) return SolveStatus::failed;
+        }
         escape();
-        assemble();
+        assemble(SecondDerivatives::all);
         continue;
       }
       step *= std::min(1.0, largest_step * length_ / step.cwiseAbs().maxCoeff());
@@ -100,8 +121,11 @@ class PolygonDescent {
         count_twists();
         gradient_ = trial_gradient_;
         energy_ = trial_energy;
-        assemble();
+        assemble(SecondDerivatives::all);
         damping = damping < 4 * first_damping ? 0 : damping / 8;
+        slows = !exact && size < std::exchange(last_stiffening, size) ? slows + 1 : 0;
+      } else if (exact && damping == 0 && options_.to_any_minimum) {
+        assemble(SecondDerivatives::stiffening);
       } else {
         damping = std::max(4 * damping, first_damping);
         if (damping > most_damping) return SolveStatus::failed;
@@ -119,7 +143,7 @@ class PolygonDescent {
     for (int taken = 0;; ++taken) {
       const double acting = evaluate();
       if (!succeeded(result_.status) || free_ == 0) return;
-      assemble();
+      assemble(SecondDerivatives::all);
       if (!factor(0)) return refuse("the second derivative is not positive");
       const Eigen::VectorXd step = solver_.solve(free_part(-gradient_));
       const double size = step.norm() / std::sqrt(static_cast<double>(free_)) / length_;
@@ -177,12 +201,13 @@ class PolygonDescent {
     }
   }
 
-  void assemble() {
+  void assemble(SecondDerivatives which) {
+    which_ = which;
     // A joint couples three points.
     constexpr Eigen::Index coupled = 3;
     const Eigen::Index unknowns = axes_ * free_;
     hessian_.setZero(std::min(coupled * axes_, unknowns), unknowns);
-    polygon_hessian(problem_, result_.points,
+    polygon_hessian(problem_, result_.points, which,
                     [&](Eigen::Index row, Eigen::Index column, const Eigen::Matrix3d& block) {
                       const Eigen::Index r = index_[static_cast<std::size_t>(row)];
                       const Eigen::Index c = index_[static_cast<std::size_t>(column)];
@@ -261,6 +286,7 @@ class PolygonDescent {
   double largest_ = 0;
   Eigen::Matrix3Xd gradient_;
   Eigen::Matrix3Xd trial_gradient_;
+  SecondDerivatives which_ = SecondDerivatives::all;  // are in hessian_
   Eigen::MatrixXd hessian_;  // of the free points, banded: see PolygonFactor
   Eigen::MatrixXd columns_;  // of the same
   PolygonFactor solver_;

@@ -174,7 +174,9 @@ double polygon_energy(const PolygonProblem& problem, const Points& points,
   return energy;
 }
 
-void polygon_hessian(const PolygonProblem& problem, const Points& points, const AddBlock& add) {
+void polygon_hessian(const PolygonProblem& problem, const Points& points, SecondDerivatives which,
+                     const AddBlock& add) {
+  const bool all = which == SecondDerivatives::all;
   const Eigen::Index n = problem.rest_lengths.size();
   const Eigen::Matrix3d one = Eigen::Matrix3d::Identity();
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -183,28 +185,31 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, const 
     const double length = d.norm();
     const Eigen::Vector3d u = d / length;
     const double along = problem.stretch_stiffness / L;
-    const double across = along * (length - L) / length;
+    const double turning = along * (length - L) / length;
+    const double across = all ? turning : std::max(turning, 0.0);
     add_difference_block(i, i, across * one + (along - across) * u * u.transpose(), add);
   }
   for (Eigen::Index i = 1; i < n; ++i) {
     const Corner c(points, i);
     const Joint j = joint(problem.law, joint_stiffness(problem, i), joint_length(problem, i), c.h);
-    const double curved = j.second / 4;
+    const double curved = (all ? j.second : std::max(j.second, 0.0)) / 4;
     const double slope = -j.first / 2;  // by cos alpha
-    const double cosine = 1 - 2 * c.h;
     const Eigen::Matrix3d beside_u = one - c.u * c.u.transpose();
     const Eigen::Matrix3d beside_v = one - c.v * c.v.transpose();
-    Eigen::Matrix3d aa =
-        curved * c.by_a * c.by_a.transpose() -
-        slope / c.a *
-            (c.u * c.by_a.transpose() + c.by_a * c.u.transpose() + cosine / c.a * beside_u);
-    Eigen::Matrix3d bb =
-        curved * c.by_b * c.by_b.transpose() -
-        slope / c.b *
-            (c.v * c.by_b.transpose() + c.by_b * c.v.transpose() + cosine / c.b * beside_v);
+    // h is |v - u|^2 / 4: of its second derivative what u and v do to first order is never
+    // negative.
+    Eigen::Matrix3d of_u = beside_u / c.a;
+    Eigen::Matrix3d of_v = beside_v / c.b;
+    if (all) {
+      const double cosine = 1 - 2 * c.h;
+      of_u = c.u * c.by_a.transpose() + c.by_a * c.u.transpose() + cosine / c.a * beside_u;
+      of_v = c.v * c.by_b.transpose() + c.by_b * c.v.transpose() + cosine / c.b * beside_v;
+    }
+    Eigen::Matrix3d aa = curved * c.by_a * c.by_a.transpose() - slope / c.a * of_u;
+    Eigen::Matrix3d bb = curved * c.by_b * c.by_b.transpose() - slope / c.b * of_v;
     const Eigen::Matrix3d ab =
         curved * c.by_a * c.by_b.transpose() + slope / (c.a * c.b) * beside_u * beside_v;
-    if (problem.natural_turns.size() > 0) {
+    if (all && problem.natural_turns.size() > 0) {
       const double couple = natural_turn(problem, i).couple;
       aa += couple * second_of_angle(c.u, c.a);
       bb -= couple * second_of_angle(c.v, c.b);
@@ -222,8 +227,8 @@ void polygon_hessian(const PolygonProblem& problem, const Points& points, const 
     const auto stiffen = [&](Eigen::Index i, double share, const Eigen::Vector3d& point) {
       if (obstacle.body.clearance(point) >= 0) return;
       const obstacle::Gap gap = obstacle.body.gap(point);
-      const Eigen::Matrix3d H =
-          k * (gap.gradient * gap.gradient.transpose() + gap.value * gap.hessian);
+      Eigen::Matrix3d H = k * gap.gradient * gap.gradient.transpose();
+      if (all) H += k * gap.value * gap.hessian;
       add(i, i, (1 - share) * (1 - share) * H);
       if (share == 0) return;
       add(i + 1, i + 1, share * share * H);

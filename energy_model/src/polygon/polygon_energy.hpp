@@ -16,8 +16,18 @@ using AddBlock =
 void add_difference_block(Eigen::Index p, Eigen::Index q, const Eigen::Matrix3d& H,
                           const AddBlock& add);
 
+/// Which second derivatives are told.
+enum class SecondDerivatives {
+  all,
+  /// Without what makes them negative: forces of compressed segments, couples of joints and pushes
+  /// of round obstacles turn as the points move aside. Far from rest these terms are the largest
+  /// and say least (as projected Newton methods for cloth have it: Teran et al., 2005).
+  stiffening,
+};
+
 /// Hessian of polygon_energy, but for twist_columns.
 void polygon_hessian(const PolygonProblem& problem,
-                     const Eigen::Ref<const Eigen::Matrix3Xd>& points, const AddBlock& add);
+                     const Eigen::Ref<const Eigen::Matrix3Xd>& points, SecondDerivatives which,
+                     const AddBlock& add);
 
 }  // namespace dlo::energy_model

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,6 +34,9 @@ constexpr int many_unknowns = 300;
 constexpr double shortest_told = 1e-3;
 /// Out of its plane a polygon has tangents with more than this across it.
 constexpr double flat = 1e-6;
+/// Of polygons with few segments those next to the lowest, over 1 + energy: their energies are off
+/// by about this.
+constexpr double near_lowest = 0.1;
 /// Polygons whose energies are this close, over 1 + energy, are the same.
 constexpr double same_polygon = 1e-6;
 
@@ -207,9 +211,42 @@ class ContactSearch {
     look_from(starts, found);
   }
 
-  /// What polygons lead to that come to rest from these shapes, the lowest first.
+  /// What polygons lead to that come to rest from these shapes, the lowest first. Of several starts
+  /// coarse polygons tell which are worth a finer one: those that come to rest next to the lowest;
+  /// the others, and at last the starts themselves, where these lead nowhere.
   void look_from(const std::vector<TangentField>& starts, std::vector<SpanSolution>& found) {
-    for (const RestingPolygon& polygon : polygons_from(starts)) {
+    const auto whole = [&](Segments segments) {
+      const std::size_t count = options_.all ? starts.size() : std::min(most_starts, starts.size());
+      return polygons_from(count, [&, segments](std::size_t i) {
+        return rest_on_obstacles(span_, starts[i], segments, options_.deadline);
+      });
+    };
+    if (!options_.all && starts.size() > 1) {
+      const std::vector<RestingPolygon> coarse = whole(Segments::few);
+      std::vector<RestingPolygon> near;
+      std::vector<RestingPolygon> other;
+      for (const RestingPolygon& polygon : coarse) {
+        if (!polygon.at_rest) continue;
+        const double lowest = coarse.front().energy;
+        const bool is_near = polygon.energy - lowest <= near_lowest * (1 + std::abs(lowest));
+        (is_near ? near : other).push_back(polygon);
+      }
+      for (const std::vector<RestingPolygon>* from : {&near, &other}) {
+        if (options_.deadline.passed() && !found.empty()) return;
+        look_from(polygons_from(from->size(),
+                                [&](std::size_t i) {
+                                  return rest_refined(span_, (*from)[i], options_.deadline);
+                                }),
+                  found);
+        if (!found.empty() && succeeded(found.front().status)) return;
+      }
+    }
+    if (options_.deadline.passed() && !found.empty()) return;
+    look_from(whole(Segments::all), found);
+  }
+
+  void look_from(const std::vector<RestingPolygon>& polygons, std::vector<SpanSolution>& found) {
+    for (const RestingPolygon& polygon : polygons) {
       if (options_.deadline.passed() && !found.empty()) {
         if (options_.log != nullptr) options_.log->leave_out("starts after the time limit");
         return;
@@ -222,16 +259,16 @@ class ContactSearch {
   }
 
   /// Those that do not come to rest only where none does.
-  [[nodiscard]] std::vector<RestingPolygon> polygons_from(const std::vector<TangentField>& starts) {
-    const std::size_t most = options_.all ? starts.size() : std::min(most_starts, starts.size());
+  [[nodiscard]] std::vector<RestingPolygon> polygons_from(
+      std::size_t count, const std::function<RestingPolygon(std::size_t)>& rest) {
     std::vector<RestingPolygon> polygons;
-    for (std::size_t i = 0; i < most; ++i) {
+    for (std::size_t i = 0; i < count; ++i) {
       if (options_.deadline.passed() && !polygons.empty()) {
         if (options_.log != nullptr) options_.log->leave_out("starts after the time limit");
         break;
       }
       if (options_.log != nullptr) options_.log->tried(polygons_at_rest);
-      RestingPolygon polygon = rest_on_obstacles(span_, starts[i], options_.deadline);
+      RestingPolygon polygon = rest(i);
       spent_ += polygon.evaluations;
       const bool known = std::any_of(polygons.begin(), polygons.end(), [&](const auto& other) {
         return other.at_rest && polygon.at_rest &&

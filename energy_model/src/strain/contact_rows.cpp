@@ -10,6 +10,12 @@
 namespace dlo::energy_model {
 namespace {
 
+/// On a part that is shorter [lengths] a few moments of the slope say all: more would be a system
+/// whose rounding hides Newton's last step, and forces that are made of it.
+constexpr double short_part = 5e-3;
+constexpr Eigen::Index most_of_short = 8;  // moments
+constexpr Eigen::Index told_of_short = 4;  // coefficients of the force
+
 /// How a grip holds the rod at a contact.
 enum class HeldBy {
   nothing,
@@ -116,14 +122,16 @@ void ContactRows::add_slopes(const Span& span, std::size_t contact,
     const Piece& piece = pieces[static_cast<std::size_t>(e)];
     const double middle = piece.begin + piece.length / 2;
     if (middle < own.begin || middle > own.end) continue;
+    const Eigen::Index count =
+        piece.length < short_part ? std::min(degrees, most_of_short) : degrees;
     Rows::Slope slope;
     slope.first = linear_.cols();
-    slope.count = degrees;
+    slope.count = count;
     slope.length = piece.length;
     slope.concentrates = may_concentrate(span, piece.begin);
     contacts_[contact].slopes.push_back(slope);
     if (body.is_half_space()) {
-      for (Eigen::Index k = 0; k < degrees; ++k) {
+      for (Eigen::Index k = 0; k < count; ++k) {
         const Eigen::Index row = add_row();
         linear_.col(row).segment(e * Q, Q) = table.weights.cwiseProduct(table.values.col(k));
         normal_.col(row) = body.normal();
@@ -133,9 +141,9 @@ void ContactRows::add_slopes(const Span& span, std::size_t contact,
       curved.contact = contact;
       curved.body = body;
       curved.reach = reach_.along(e);
-      curved.weights.resize(Q + 2, degrees);
-      Eigen::VectorXd values(degrees);
-      Eigen::VectorXd unused(degrees);
+      curved.weights.resize(Q + 2, count);
+      Eigen::VectorXd values(count);
+      Eigen::VectorXd unused(count);
       legendre(0, values, unused);
       curved.weights.row(0) = -values;
       legendre(1, values, unused);
@@ -145,7 +153,7 @@ void ContactRows::add_slopes(const Span& span, std::size_t contact,
         curved.weights.row(q + 1) = -table.weights[q] * values;
       }
       curved.weights /= piece.length;
-      add_curved(std::move(curved), degrees);
+      add_curved(std::move(curved), count);
     }
     degrees = terms;
   }
@@ -385,7 +393,6 @@ Eigen::VectorXd ContactRows::adopt(const ContactRows& other,
 
 std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers) const {
   constexpr int looks = 32;  // at the pressure of a piece
-  constexpr double shortest_told = 5e-3;
   std::vector<ContactForce> result;
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Rows& rows = contacts_[c];
@@ -399,11 +406,10 @@ std::vector<ContactForce> ContactRows::forces(const Eigen::VectorXd& multipliers
     force.total = force.begin = before;
     for (std::size_t i = 0; i < rows.slopes.size(); ++i) {
       const Rows::Slope& slope = rows.slopes[i];
-      // Of a part this short rounding is most of the higher coefficients, and the force is smooth.
-      const bool is_short = slope.length < shortest_told;
+      const bool is_short = slope.length < short_part;
       const Eigen::VectorXd carried =
           multipliers.segment(slope.first,
-                              is_short ? std::min<Eigen::Index>(slope.count, 4) : slope.count) /
+                              is_short ? std::min(slope.count, told_of_short) : slope.count) /
           slope.length;
       const double here = series(carried, 0);
       if (i == 0) {

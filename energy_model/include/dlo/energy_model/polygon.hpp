@@ -82,6 +82,11 @@ struct PolygonOptions {
   double time_limit = std::numeric_limits<double>::infinity();
   /// Begin with a soft stretch stiffness; false: for a start that is nearly at rest.
   bool in_stages = true;
+  /// What is done where second derivatives are negative. false: they are damped until none is, in
+  /// small steps downhill to a minimum next to the start. true: terms that are negative are left
+  /// out, in large steps to any minimum; soft polygons far from rest take a fifth of the
+  /// evaluations.
+  bool to_any_minimum = false;
 };
 
 /// A shape of a polygon, and how it was found.
