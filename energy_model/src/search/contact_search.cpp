@@ -169,9 +169,11 @@ class ContactSearch {
     // The fit also says how often the clamps are wound.
     solution.x =
         fits ? model.fit(options_.start(model.nodes())) : model.adopt(*known.model, known.x);
-    if (known.multipliers.size() == model.constraints()) solution.multipliers = known.multipliers;
+    // A part that comes to be short has fewer of them.
+    const bool as_held = known.multipliers.size() == model.constraints();
+    if (as_held) solution.multipliers = known.multipliers;
     const bool as_many = solution.terms == known.model->terms();
-    if (share > 0 && as_many && known.x.size() == solution.x.size()) {
+    if (share > 0 && as_many && as_held && known.x.size() == solution.x.size()) {
       solution.x = known.x + share * (known.x - before.x);
       solution.multipliers += share * (known.multipliers - before.multipliers);
     }
