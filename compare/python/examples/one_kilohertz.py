@@ -20,7 +20,8 @@ wire = dlo.Scene(
 print("   N   error/l   30 steps")
 for points in (8, 16, 32, 64):
     scene = wire.replace(force_model={"points": points})
-    error = dlo.compare(scene, modulus=False).deviation["rms_over_length"]
+    # 64 points take a million steps to come to rest: a slow machine needs more than the usual limit.
+    error = dlo.compare(scene, modulus=False, time_limit=120).deviation["rms_over_length"]
     loop = dlo.ForceModel(scene)
     out = numpy.empty((len(loop), 3))
     times = []
