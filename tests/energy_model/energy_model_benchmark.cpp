@@ -7,6 +7,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -19,6 +20,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "dlo/force_model/rod.hpp"
+#include "random_problems.hpp"
 
 namespace {
 
@@ -161,6 +163,70 @@ Problem sideways_load() {
   return problem;
 }
 BENCHMARK_CAPTURE(cold, clamp_spatial, sideways_load())->Unit(benchmark::kMicrosecond);
+
+/// The end's clamp turns by 1 degree to and fro.
+void warm_two_clamps(benchmark::State& state) {
+  Problem turned = two_clamps(10, 0.8, 0.3);
+  turned.grips[1].direction = Eigen::AngleAxisd(std::numbers::pi / 180, Eigen::Vector3d::UnitY()) *
+                              *turned.grips[1].direction;
+  const std::array<Problem, 2> problems = {two_clamps(10, 0.8, 0.3), turned};
+  EnergySolver solver;
+  (void)solver.solve(problems[0]);
+  std::size_t i = 0;
+  for (auto _ : state) benchmark::DoNotOptimize(solver.follow(problems[i = 1 - i]));
+  report(state, solver.follow(problems[1 - i]));
+}
+BENCHMARK(warm_two_clamps)->Name("warm/two_clamps_spatial")->Unit(benchmark::kMicrosecond);
+
+/// Clamps that hold frames, turned against each other; `twins` is the time in units of that of the
+/// same problem with the twist left free.
+void twisted(benchmark::State& state) {
+  const Problem free = two_clamps(10, 0.8, 0.3);
+  Problem problem = free;
+  problem.torsional_stiffness = 0.8;
+  for (dlo::energy_model::Grip& grip : problem.grips) grip.frame.emplace();
+  problem.grips[1].frame->roll = std::numbers::pi / 180 * static_cast<double>(state.range(0));
+  EnergySolver solver;
+  for (auto _ : state) benchmark::DoNotOptimize(solver.solve(problem));
+  report(state, solver.solve(problem));
+  EnergySolver twin;
+  state.counters["twins"] =
+      in_units_of(median_seconds(9, 20, [&] { benchmark::DoNotOptimize(twin.solve(free)); }));
+}
+BENCHMARK(twisted)->Arg(60)->Arg(180)->Unit(benchmark::kMicrosecond);
+
+/// 300 random rods between clamps, each solved once: the time of the median and of the slowest in
+/// plain steps, and how many are certified.
+void random_between(benchmark::State& state, dlo::test::RandomSpace space, bool pin) {
+  constexpr std::uint64_t count = 300;
+  const double step = plain_step();
+  std::vector<double> steps;
+  int certified = 0;
+  for (auto _ : state) {
+    certified = 0;
+    EnergySolver solver;
+    for (std::uint64_t number = 0; number < count; ++number) {
+      const Problem problem = dlo::test::random_between_clamps(number, space, pin);
+      const auto begin = std::chrono::steady_clock::now();
+      const Equilibrium result = solver.solve(problem);
+      const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+      steps.push_back(taken.count() / step);
+      if (succeeded(result.status)) ++certified;
+    }
+  }
+  std::sort(steps.begin(), steps.end());
+  state.counters["median"] = steps[steps.size() / 2];
+  state.counters["slowest"] = steps.back();
+  state.counters["certified"] = certified;
+}
+BENCHMARK_CAPTURE(random_between, clamps_planar, dlo::test::RandomSpace::plane, false)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(random_between, clamps_spatial, dlo::test::RandomSpace::space, false)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(random_between, clamps_and_pin_planar, dlo::test::RandomSpace::plane, true)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(random_between, clamps_and_pin_spatial, dlo::test::RandomSpace::space, true)
+    ->Unit(benchmark::kMillisecond);
 
 /// Error and time against K.
 void terms(benchmark::State& state, double gamma) {

@@ -196,6 +196,34 @@ inline energy_model::Problem random_problem(std::uint64_t number, RandomSpace sp
   return random_rod_held(random, space);
 }
 
+/// A rod of unit length and stiffness between two clamps at its ends, which a random curve leads
+/// through, in one of three problems turned at random, in one of three moved towards each other;
+/// with `pin` a pin between them. Gamma is between 0.1 and 1e4.
+inline energy_model::Problem random_between_clamps(std::uint64_t number, RandomSpace space,
+                                                   bool pin) {
+  constexpr std::uint64_t of_their_own = 1U << 29U;
+  RandomNumbers random(of_their_own + 4 * number + (space == RandomSpace::space ? 1 : 0) +
+                       (pin ? 2 : 0));
+  energy_model::Problem problem;
+  problem.length = 1;
+  problem.bending_stiffness = 1;
+  problem.weight_per_length = {0, -std::pow(10, random.uniform(-1, 4)), 0};
+  const RandomCurve curve(random, space);
+  const int kind = random.below(3);
+  const double nearer = kind == 2 ? random.uniform(0.05, 1) : 0.999;
+  const double pinned_at = random_arc_length(random, 0.2, 0.8);
+  const auto hold = [&](double at, bool clamped) {
+    energy_model::Grip& grip = problem.grips.emplace_back();
+    grip.at = at;
+    grip.position = nearer * curve.point(at);
+    if (clamped) grip.direction = kind == 1 ? random.direction(space) : curve.tangent(at);
+  };
+  hold(0, true);
+  if (pin) hold(pinned_at, false);
+  hold(1, true);
+  return problem;
+}
+
 inline energy_model::Problem twisted_problem(std::uint64_t number) {
   constexpr double most_turns = 3;
   constexpr std::uint64_t of_their_own = 1U << 20U;

@@ -218,11 +218,18 @@ TEST_P(ObjectiveWithoutObstacles, DoesNotAllocate) {
   Eigen::MatrixXd jacobian(model.constraints(), model.size());
   const Eigen::VectorXd mu = Eigen::VectorXd::Ones(model.constraints());
   Eigen::MatrixXd hessian(model.size(), model.size());
-  const long before = allocations;
-  for (int i = 0; i < 3; ++i) {
-    x[0] = i;
+  long before = allocations;
+  const auto evaluate = [&] {
     (void)model.value(x, gradient);
     model.constraint(residual, jacobian);
+  };
+  evaluate();
+  EXPECT_EQ(allocations, before);
+  model.hessian(mu, hessian);
+  before = allocations;
+  for (int i = 1; i < 3; ++i) {
+    x[0] = i;
+    evaluate();
     model.hessian(mu, hessian);
   }
   EXPECT_EQ(allocations, before);

@@ -93,11 +93,98 @@ bool FreeHessian::factor(double shift, Eigen::MatrixXd& lower) const {
   return dense_kernel().factor({lower.data(), left, left, lower.rows()});
 }
 
-void FreeHessian::compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
-  n_ = hessian.rows();
+void FreeHessian::constrain(const Eigen::MatrixXd& jacobian) {
+  n_ = jacobian.cols();
   constraints_ = std::min(jacobian.rows(), n_);
   reflect_constraints(jacobian);
   independent_ = independent_ && constraints_ == jacobian.rows();
+}
+
+/// v to Q^T v
+void FreeHessian::reflect(Eigen::VectorXd& v) const {
+  for (Eigen::Index i = 0; i < constraints_; ++i) {
+    const auto w = reflections_.col(i);
+    v -= (tau_[i] * w.dot(v)) * w;
+  }
+}
+
+FreeHessian::Balance FreeHessian::balance(const Eigen::VectorXd& gradient) {
+  turned_right_ = gradient;
+  reflect(turned_right_);
+  Balance result{turned_right_.head(constraints_), turned_right_.tail(free())};
+  // R mu = Q^T g, of Y
+  Eigen::VectorXd& mu = result.multipliers;
+  for (Eigen::Index i = constraints_; i-- > 0;) {
+    mu[i] /= diagonal_[i];
+    mu.head(i) -= mu[i] * triangle_.col(i).head(i);
+  }
+  return result;
+}
+
+void FreeHessian::solve_free(Eigen::VectorXd& z) const {
+  dense_kernel().solve({factor_.data(), free(), free(), factor_.rows()}, z.data());
+}
+
+/// By Newton's method on 1 / |z(mu)|, which is all but straight, between bounds of mu: below the
+/// lower one Z^T H Z + mu is not positive definite, or z too long (Moré and Sorensen, 1983).
+bool FreeHessian::solve_within(double length, Eigen::VectorXd& z) {
+  constexpr int most_steps = 40;
+  constexpr double longest = 1.01;   // over `length`
+  constexpr double shortest = 0.75;  // likewise
+  constexpr double closed = 1e-2;    // bounds are one another
+  const Eigen::VectorXd right = z;
+  double low = 0;
+  double high = std::numeric_limits<double>::infinity();
+  double mu = 0;
+  if (!definite_) {
+    const auto turned = turned_.bottomRightCorner(free(), free());
+    low = std::max(0.0, -turned.diagonal().minCoeff());
+    mu = 1.1 * low + right.norm() / length;
+  }
+  const auto between = [&] {
+    if (std::isinf(high)) return 4 * mu;
+    return low > 0.1 * high ? (low + high) / 2 : std::sqrt(std::max(low, 1e-4 * high) * high);
+  };
+  for (int step = 0; step < most_steps; ++step) {
+    if (!factor(-mu, proof_)) {
+      low = mu;
+      mu = between();
+      continue;
+    }
+    const ConstColumns lower{proof_.data(), free(), free(), proof_.rows()};
+    z = right;
+    dense_kernel().solve(lower, z.data());
+    const double size = z.norm();
+    if (!std::isfinite(size)) return false;
+    if (size <= longest * length && (size >= shortest * length || mu == 0)) return true;
+    if (size > length) {
+      low = mu;
+    } else {
+      high = mu;
+    }
+    if (high - low <= closed * high && size < length) {
+      // Nothing pulls along the smallest eigenvalue.
+      Eigen::VectorXd soft = Eigen::VectorXd::LinSpaced(z.size(), 1, 2);
+      for (int i = 0; i < 3; ++i) {
+        soft.normalize();
+        dense_kernel().solve(lower, soft.data());
+      }
+      soft.normalize();
+      const double along = z.dot(soft);
+      const double rest = std::sqrt(along * along + length * length - size * size);
+      z += (along < 0 ? -along - rest : rest - along) * soft;
+      return true;
+    }
+    Eigen::VectorXd slope = z;
+    dense_kernel().solve(lower, slope.data());
+    const double next = mu + size * size / z.dot(slope) * (size - length) / length;
+    mu = next > low && next < high ? next : between();
+  }
+  return false;
+}
+
+void FreeHessian::compute(const Eigen::MatrixXd& hessian) {
+  n_ = hessian.rows();
   turned_ = hessian;
   scratch_.resize(n_);
   for (Eigen::Index i = 0; i < constraints_; ++i) {
@@ -111,10 +198,7 @@ void FreeHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
   const Eigen::Index left = free();
   step.resize(right.size());
   turned_right_ = right.head(n_);
-  for (Eigen::Index i = 0; i < constraints_; ++i) {
-    const auto v = reflections_.col(i);
-    turned_right_ -= (tau_[i] * v.dot(turned_right_)) * v;
-  }
+  reflect(turned_right_);
   auto x = step.head(n_);
   auto y = x.head(constraints_);
   auto z = x.tail(left);

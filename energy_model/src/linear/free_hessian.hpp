@@ -14,7 +14,31 @@ class FreeHessian {
  public:
   /// @param hessian   n x n, symmetric
   /// @param jacobian  of the constraints, m x n; m may be 0 or exceed n
-  void compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
+  void compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
+    constrain(jacobian);
+    compute(hessian);
+  }
+  /// In two steps, where the Hessian takes multipliers that the constraints tell.
+  void constrain(const Eigen::MatrixXd& jacobian);
+  void compute(const Eigen::MatrixXd& hessian);
+
+  /// Whether the constraints are independent.
+  [[nodiscard]] bool is_independent() const { return independent_; }
+  /// Multipliers mu with J^T mu nearest to a gradient, of independent constraints, and what is left
+  /// of it: Z^T g.
+  struct Balance {
+    Eigen::VectorXd multipliers, left;
+  };
+  [[nodiscard]] Balance balance(const Eigen::VectorXd& gradient);
+
+  [[nodiscard]] bool is_definite() const { return definite_; }
+  /// z to (Z^T H Z)^-1 z, if it is positive definite.
+  void solve_free(Eigen::VectorXd& z) const;
+  /// z to (Z^T H Z + mu)^-1 z with a mu >= 0 that makes Z^T H Z + mu positive definite and z about
+  /// as long as this, if it has to be shorter than without; where no mu does, along the smallest
+  /// eigenvalue as well.
+  /// @return whether it is; false if rounding is in the way
+  [[nodiscard]] bool solve_within(double length, Eigen::VectorXd& z);
 
   /// Whether Z^T H Z is positive definite (of no free direction it is) and the constraints are
   /// independent: what solve() needs.
@@ -45,6 +69,7 @@ class FreeHessian {
  private:
   [[nodiscard]] Eigen::Index free() const { return n_ - constraints_; }
   void reflect_constraints(const Eigen::MatrixXd& jacobian);
+  void reflect(Eigen::VectorXd& v) const;
   [[nodiscard]] bool factor(double shift, Eigen::MatrixXd& lower) const;
   /// Vectors krylov_ of Lanczos' method with the inverse, and the matrix that they make of it.
   struct Lanczos {

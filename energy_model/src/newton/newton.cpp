@@ -66,7 +66,8 @@ void Newton::factor(SpanSolution& solution) {
   factored_.model = nullptr;
   if (jacobian_.rows() == 0) {
     definite_ = definite_factor_.compute(hessian_);
-    if (definite_) return;
+    system_known_ = false;
+    if (definite_) return remember_factor(solution);
   }
   pull_ = 1 + load_ + solution.multipliers.norm();
   factor_system();
@@ -116,7 +117,13 @@ void Newton::prolong(const SpanEnergy& model, const SpanEnergy& fewer) {
 
 void Newton::factor_system() {
   system_.compute(hessian_, jacobian_);
+  system_known_ = true;
   broyden_.clear();
+}
+
+NewtonSystem& Newton::system() {
+  if (!system_known_) factor_system();
+  return system_;
 }
 
 /// Into neutral_: orthonormal vectors that the system makes shorter than `neutral`, by inverse

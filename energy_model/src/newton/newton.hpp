@@ -62,7 +62,7 @@ class Newton {
   /// @param jacobian  of the constraints there
   void factor_at(const SpanSolution& solution, const Eigen::MatrixXd& jacobian);
   /// The last factor, and the Hessian that it is of.
-  [[nodiscard]] NewtonSystem& system() { return system_; }
+  [[nodiscard]] NewtonSystem& system();
   [[nodiscard]] const Eigen::MatrixXd& hessian() const { return hessian_; }
   /// Whether the last factor is of this model, at whatever point.
   [[nodiscard]] bool has_factor_of(const SpanEnergy* model) const {
@@ -118,6 +118,7 @@ class Newton {
   bool prolonged_ = false;     // hessian_ is that of fewer terms
   bool prolong_next_ = false;  // and what the next step begins with
   bool definite_ = false;      // definite_factor_ is what the system is solved with
+  bool system_known_ = true;   // system_ is of hessian_, too
   Eigen::VectorXd trial_x_, trial_multipliers_, trial_gradient_, soft_;
 };
 

@@ -1,9 +1,10 @@
 #include "newton/restore.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "linear/dense_products.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -32,29 +33,34 @@ void evaluate(SpanSolution& solution, PointOnSpan& point) {
   ++solution.evaluations;
 }
 
-bool restore(SpanSolution& solution, PointOnSpan& point, double gap, double most_energy) {
+bool restore(SpanSolution& solution, PointOnSpan& point, double gap, RestoreScratch& scratch,
+             double most_energy) {
   if (solution.model->constraints() == 0) return std::isfinite(point.energy);
   constexpr int most_steps = 60;
   constexpr double longest = 1;  // of a step
   constexpr int most_bends = 3;
-  PointOnSpan trial;
-  Eigen::MatrixXd normal;
+  PointOnSpan& trial = scratch.trial;
+  Eigen::MatrixXd& square = scratch.square;
+  Eigen::MatrixXd& normal = scratch.normal;
   int bends = 0;
   double mu = 1e-12;
   for (int i = 0; i < most_steps; ++i) {
     const double size = point.residual.norm();
     if (!std::isfinite(size) || point.energy > most_energy) return false;
     if (size <= gap) return true;
-    const Eigen::MatrixXd square = point.jacobian * point.jacobian.transpose();
+    square.resize(point.residual.size(), point.residual.size());
+    multiply_symmetric(point.jacobian, point.jacobian, square);
     const double scale = square.diagonal().maxCoeff();
     bool shorter = false;
     for (; mu < 1e3 && !shorter; mu *= 10) {
       normal = square;
       normal.diagonal().array() += mu * scale;
-      const Eigen::VectorXd step =
-          -point.jacobian.transpose() * normal.ldlt().solve(point.residual);
-      if (!(step.norm() <= longest)) continue;
-      trial.x = point.x + step;
+      if (!scratch.factor.compute(normal)) continue;
+      scratch.along = point.residual;
+      scratch.factor.solve(scratch.along);
+      scratch.step.noalias() = point.jacobian.transpose() * scratch.along;
+      if (!(scratch.step.norm() <= longest)) continue;
+      trial.x = point.x - scratch.step;
       evaluate(solution, trial);
       shorter = trial.residual.norm() < 0.99 * size;
     }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <limits>
 
+#include "linear/dense_factor.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
@@ -20,6 +21,14 @@ struct PointOnSpan {
 /// Evaluates a solution's model at a point, and counts it.
 void evaluate(SpanSolution& solution, PointOnSpan& point);
 
+/// What restore() works in; buffers survive from one call to the next.
+struct RestoreScratch {
+  PointOnSpan trial;
+  Eigen::MatrixXd square, normal;
+  DenseFactor factor;
+  Eigen::VectorXd along, step;
+};
+
 /// Steps to |c| <= gap, each of which has to make it smaller: Levenberg and Marquardt's, which are
 /// Gauss-Newton's near the end,
 ///     -J^T (J J^T + mu)^-1 c.
@@ -29,6 +38,7 @@ void evaluate(SpanSolution& solution, PointOnSpan& point);
 /// @param most_energy    above which nobody asks how it goes on
 /// @return whether the gap is closed
 [[nodiscard]] bool restore(SpanSolution& solution, PointOnSpan& point, double gap,
+                           RestoreScratch& scratch,
                            double most_energy = std::numeric_limits<double>::infinity());
 
 }  // namespace dlo::energy_model

@@ -2,12 +2,13 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "linear/free_directions.hpp"
+#include "linear/free_hessian.hpp"
 #include "newton/restore.hpp"
 
 namespace dlo::energy_model {
@@ -56,7 +57,7 @@ class TrustRegionDescent {
     PointOnSpan here;
     here.x = solution_.x;
     evaluate(solution_, here);
-    if (!restore(solution_, here, loosest_gap)) {
+    if (!restore(solution_, here, loosest_gap, scratch_)) {
       solution_.multipliers = multipliers_;
       return solution_.fail("the grips' positions could not be met from this start");
     }
@@ -83,79 +84,97 @@ class TrustRegionDescent {
   }
 
  private:
-  /// Multipliers, null space, projected gradient and Hessian at a point.
+  /// Multipliers, what is free, projected gradient and Hessian at a point.
   void linearise(const PointOnSpan& here) {
-    const Eigen::Index n = model_.size();
-    const Eigen::Index m = model_.constraints();
-    if (m > 0) {
-      qr_.compute(here.jacobian.transpose());
-      qr_.setThreshold(1e-10);
-      multipliers_ = qr_.solve(here.gradient);
-      // The model's Hessian is that of its last value().
-      Eigen::VectorXd gradient(n);
-      (void)model_.value(here.x, gradient);
-      model_.hessian(multipliers_, hessian_);
-      // Q^T H Q by its reflections, which are as few as the constraints; Q itself is as large as H.
-      hessian_.applyOnTheLeft(qr_.householderQ().adjoint());
-      hessian_.applyOnTheRight(qr_.householderQ());
-      gradient = here.gradient;
-      gradient.applyOnTheLeft(qr_.householderQ().adjoint());
-      const Eigen::Index free = n - qr_.rank();
-      projected_gradient_ = gradient.tail(free);
-      projected_hessian_ = hessian_.bottomRightCorner(free, free);
+    free_.constrain(here.jacobian);
+    dependent_ = !free_.is_independent();
+    if (dependent_) {
+      project_on_rank(here);
     } else {
-      multipliers_.resize(0);
-      Eigen::VectorXd gradient(n);
-      (void)model_.value(here.x, gradient);
-      model_.hessian(multipliers_, projected_hessian_);
-      projected_gradient_ = here.gradient;
+      FreeHessian::Balance balance = free_.balance(here.gradient);
+      multipliers_ = std::move(balance.multipliers);
+      projected_gradient_ = std::move(balance.left);
     }
+    // The model's Hessian is that of its last value().
+    gradient_.resize(model_.size());
+    (void)model_.value(here.x, gradient_);
+    model_.hessian(multipliers_, hessian_);
+    if (dependent_) {
+      projected_hessian_.noalias() = basis_.transpose() * hessian_ * basis_;
+      llt_.compute(projected_hessian_);
+    } else {
+      free_.compute(hessian_);
+    }
+  }
+
+  /// Where constraints depend on each other, as of a straight rod.
+  void project_on_rank(const PointOnSpan& here) {
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(here.jacobian.transpose());
+    qr.setThreshold(1e-10);
+    multipliers_ = qr.solve(here.gradient);
+    const Eigen::MatrixXd turns = qr.householderQ();
+    basis_ = turns.rightCols(model_.size() - qr.rank());
+    projected_gradient_ = basis_.transpose() * here.gradient;
+  }
+
+  [[nodiscard]] bool is_definite() const {
+    return dependent_ ? llt_.info() == Eigen::Success : free_.is_definite();
+  }
+
+  /// p to the inverse of the projected Hessian times p.
+  void solve_definite(Eigen::VectorXd& p) const {
+    if (dependent_) {
+      llt_.solveInPlace(p);
+    } else {
+      free_.solve_free(p);
+    }
+  }
+
+  [[nodiscard]] Eigen::VectorXd step_by_eigenvalues(double radius) {
+    if (!dependent_) projected_hessian_ = free_.matrix();
+    eigen_.compute(projected_hessian_);
+    return eigen_.eigenvectors() *
+           step_in_region(eigen_.eigenvalues(),
+                          eigen_.eigenvectors().transpose() * projected_gradient_, radius);
   }
 
   /// Step in the unknowns; nothing where the point is near a minimum already.
   [[nodiscard]] std::optional<Eigen::VectorXd> best_step(double radius, bool flat) {
     predicted_ = 0;
     if (projected_gradient_.size() == 0) return std::nullopt;
-    llt_.compute(projected_hessian_);
-    Eigen::VectorXd p;
-    if (llt_.info() == Eigen::Success) {
-      if (flat) return std::nullopt;
-      p = -llt_.solve(projected_gradient_);
+    Eigen::VectorXd p = -projected_gradient_;
+    const bool definite = is_definite();
+    if (definite && flat) return std::nullopt;
+    if (definite) {
+      solve_definite(p);
+      if (p.norm() <= options_.nearest) return std::nullopt;
     }
-    if (p.size() == 0 || !(p.norm() <= radius)) {
-      eigen_.compute(projected_hessian_);
-      if (flat && eigen_.eigenvalues()[0] > -neutral) return std::nullopt;
-      p = eigen_.eigenvectors() *
-          step_in_region(eigen_.eigenvalues(),
-                         eigen_.eigenvectors().transpose() * projected_gradient_, radius);
+    if (!definite || !(p.norm() <= radius)) {
+      p = -projected_gradient_;
+      // What lies between flat and falling takes its eigenvalues.
+      if (flat || dependent_ || !free_.solve_within(radius, p)) {
+        p = step_by_eigenvalues(radius);
+        if (flat && eigen_.eigenvalues()[0] > -neutral) return std::nullopt;
+      }
     }
+    if (!dependent_) projected_hessian_ = free_.matrix();
     predicted_ = -(projected_gradient_.dot(p) + p.dot(projected_hessian_ * p) / 2);
     length_ = p.norm();
-    return in_unknowns(p);
-  }
-
-  /// A step in the null space of the constraints, in the unknowns.
-  [[nodiscard]] Eigen::VectorXd in_unknowns(const Eigen::VectorXd& p) const {
-    if (model_.constraints() == 0) return p;
-    Eigen::VectorXd step = Eigen::VectorXd::Zero(model_.size());
-    step.tail(p.size()) = p;
-    step.applyOnTheLeft(qr_.householderQ());
-    return step;
+    return dependent_ ? Eigen::VectorXd(basis_ * p) : free_.in_unknowns(p);
   }
 
   /// @return the next radius
   [[nodiscard]] double try_step(PointOnSpan& here, const Eigen::VectorXd& step, double radius) {
-    PointOnSpan trial;
-    trial.x = here.x + step;
-    evaluate(solution_, trial);
+    trial_.x = here.x + step;
+    evaluate(solution_, trial_);
     const double gap = std::min(loosest_gap, std::max(1e-13, 1e-2 * length_ * length_));
-    if (!restore(solution_, trial, gap)) return std::min(radius, length_) / 4;
+    if (!restore(solution_, trial_, gap, scratch_)) return std::min(radius, length_) / 4;
     const double before = here.energy - multipliers_.dot(here.residual);
-    const double after = trial.energy - multipliers_.dot(trial.residual);
+    const double after = trial_.energy - multipliers_.dot(trial_.residual);
     const double rounding = 1e-14 * (1 + std::abs(before) + multipliers_.norm());
     const double ratio = (before - after + rounding) / (predicted_ + rounding);
     if (!(ratio > 0.1)) return std::min(radius, length_) / 4;
-    here = std::move(trial);
+    std::swap(here, trial_);
     if (ratio > 0.75 && length_ > 0.9 * radius) return std::min(largest_radius, 2 * radius);
     return ratio < 0.25 ? radius / 2 : radius;
   }
@@ -170,10 +189,14 @@ class TrustRegionDescent {
   SpanSolution& solution_;
   SpanEnergy& model_;
   const TrustRegionOptions& options_;
-  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr_;
+  PointOnSpan trial_;
+  RestoreScratch scratch_;
+  FreeHessian free_;
+  bool dependent_ = false;  // constraints, so that basis_ is of what is free
+  Eigen::MatrixXd basis_;
   Eigen::LLT<Eigen::MatrixXd> llt_;
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
-  Eigen::VectorXd multipliers_, projected_gradient_;
+  Eigen::VectorXd multipliers_, gradient_, projected_gradient_;
   Eigen::MatrixXd hessian_, projected_hessian_;
   double predicted_ = 0;  // fall of E - lambda.c
   double length_ = 0;     // of the step

@@ -12,8 +12,11 @@ inline constexpr double first_radius = 1;
 inline constexpr double largest_radius = 8;
 
 struct TrustRegionOptions {
-  double load = 0;                     ///< sum of weight and loads, the scale of the gradient
-  double gradient_tolerance = 0;       ///< of the projected gradient, over 1 + load; > 0
+  double load = 0;                ///< sum of weight and loads, the scale of the gradient
+  double gradient_tolerance = 0;  ///< of the projected gradient, over 1 + load; > 0
+  /// Newton's step up to which a minimum is near enough for Newton's method, where the projected
+  /// Hessian is positive definite.
+  double nearest = 0;
   int max_iterations = 100;            ///< steps, accepted or not
   const Deadline* deadline = nullptr;  ///< asked once a step; null: none
   double stiffness = 0;                ///< of the rod between its grips, force per length
@@ -30,7 +33,8 @@ struct TrustRegionOptions {
 /// start.
 ///
 /// Status `converged` says that the projected gradient is below its tolerance where H has no
-/// eigenvalue below -neutral; the multipliers are left in the solution.
+/// eigenvalue below -neutral, or that a minimum is as near as was asked for; the multipliers are
+/// left in the solution.
 void descend_in_trust_region(SpanSolution& solution, const TrustRegionOptions& options);
 
 }  // namespace dlo::energy_model

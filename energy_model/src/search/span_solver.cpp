@@ -57,8 +57,14 @@ constexpr double near_tie = 0.1;
 /// Gap over the tolerance that it may have there.
 constexpr double largest_gap = 10;
 
+/// Difference of points over the length up to which what is only roughly polished is one shape.
+constexpr double same_coarse_points = 10 * rough_step;
+
 /// A step of the trust region works with the cube of the unknowns.
 constexpr Eigen::Index most_descended = 160;
+
+/// Models that are kept for as many terms each.
+constexpr std::size_t most_kept_models = 8;
 
 /// Unstable equilibria that are left for what lies below them.
 constexpr std::size_t most_saddles = 8;
@@ -172,7 +178,8 @@ class Search {
       SpanSolution solution = from_start(starts[i]);
       spent_ += solution.evaluations;
       solution.evaluations = 0;
-      const bool known = is_known(solution, coarse);
+      const bool known =
+          is_known(solution, coarse, options_.all ? same_points : same_coarse_points);
       if (!known) coarse.push_back(std::move(solution));
       if (options_.all) {
         note(kind + ", downhill", !known && add(refined(coarse.back()), found));
@@ -533,9 +540,10 @@ class Search {
   void minimise(SpanSolution& solution) const {
     SpanEnergy& model = *solution.model;
     if (model.constraints() > 0) {
-      descend_in_trust_region(
-          solution,
-          {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
+      descend_in_trust_region(solution, {.load = load_,
+                                         .gradient_tolerance = handover_gradient,
+                                         .nearest = handover_step,
+                                         .deadline = &options_.deadline});
       return;
     }
     const Objective objective = [&model](const Eigen::Ref<const Eigen::VectorXd>& x,
@@ -590,6 +598,7 @@ class Search {
         more =
             std::max(more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), longest_piece_));
       }
+      if (before.terms == 0) more = std::max(more, terms_by_own_decay(solution));
       before = {solution.terms, solution.model->tail(solution.x)};
       const bool hessian_known = workspace_.newton().has_factor_of(solution.model.get());
       solution = with_terms(solution, std::min(most_terms, more), hessian_known);
@@ -661,6 +670,27 @@ class Search {
     double size = 0;
   };
 
+  /// Terms with which the last ones of a first shape will be small enough, if they go on falling
+  /// exponentially as its second half does, which is a little too few; as many as it has where they
+  /// do not fall.
+  [[nodiscard]] int terms_by_own_decay(const SpanSolution& solution) const {
+    constexpr double reserve = 1.15;
+    constexpr double falls = 0.5;
+    const int K = solution.terms;
+    const int half = K / 2;
+    const double before = solution.model->tail(solution.x, half);
+    const double now = solution.model->tail(solution.x);
+    if (options_.terms > 0 || half < 2 || !(now > 0 && now < falls * before)) return K;
+    const double rate = std::log(before / now) / (K - half);
+    double all = K;
+    // What is small enough grows with the terms.
+    for (int i = 0; i < 2; ++i) {
+      all = K + std::log(now / (options_.tolerance * 4 * all * all)) / rate;
+      if (!(all > K)) return K;
+    }
+    return static_cast<int>(std::ceil(std::min(reserve * all, 1.0 * max_terms)));
+  }
+
   /// Terms with which the last ones will be small enough, if they go on falling
   /// exponentially as from those before; a quarter more where nothing is known.
   [[nodiscard]] int terms_by_decay(const SpanSolution& solution, const Tail& before) const {
@@ -683,7 +713,7 @@ class Search {
     if (hessian_known) {
       workspace_.newton().polish_with_more_terms(finer, solution, load_);
     } else {
-      polish_before_more_terms(finer);
+      workspace_.newton().polish(finer, load_);
     }
     const bool descends = finer.model->size() <= most_descended;
     if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles())) descend(finer);
@@ -775,10 +805,10 @@ class Search {
     return solution.is_equilibrium() || (options_.all && solution.is_left_open());
   }
 
-  [[nodiscard]] bool is_known(const SpanSolution& solution,
-                              const std::vector<SpanSolution>& found) const {
+  [[nodiscard]] bool is_known(const SpanSolution& solution, const std::vector<SpanSolution>& found,
+                              double tolerance = same_points) const {
     return std::any_of(found.begin(), found.end(), [&](const SpanSolution& other) {
-      return counts(other) && is_same_shape(solution, other);
+      return counts(other) && is_same_shape(solution, other, tolerance);
     });
   }
 
@@ -923,8 +953,14 @@ class Search {
 }  // namespace
 
 std::shared_ptr<SpanEnergy> SpanWorkspace::model(const Span& span, int terms) {
-  const auto unused = std::find_if(models_.begin(), models_.end(),
-                                   [](const auto& model) { return model.use_count() == 1; });
+  const auto is_unused = [](const auto& model) { return model.use_count() == 1; };
+  auto unused = std::find_if(models_.begin(), models_.end(), [&](const auto& model) {
+    return is_unused(model) && model->terms() == terms;
+  });
+  // Another one has buffers of another size.
+  if (unused == models_.end() && models_.size() >= most_kept_models) {
+    unused = std::find_if(models_.begin(), models_.end(), is_unused);
+  }
   if (unused != models_.end()) {
     (*unused)->reset(span, terms);
     return *unused;
@@ -933,19 +969,19 @@ std::shared_ptr<SpanEnergy> SpanWorkspace::model(const Span& span, int terms) {
   return models_.back();
 }
 
-bool is_same_shape(const SpanSolution& a, const SpanSolution& b) {
+bool is_same_shape(const SpanSolution& a, const SpanSolution& b, double tolerance) {
   const Span& span = a.model->span();
-  if (std::abs(a.energy - b.energy) > 1e-8 * (1 + span.total_load())) return false;
+  if (std::abs(a.energy - b.energy) > 1e-2 * tolerance * (1 + span.total_load())) return false;
   // Without softer parts points differ by less than strains do.
   if (a.model->size() == b.model->size() && a.terms == b.terms && span.parts.empty() &&
       span.planar == b.model->span().planar && span.cuts == b.model->span().cuts &&
-      (a.x - b.x).norm() < 1e-6 * span.length) {
+      (a.x - b.x).norm() < tolerance * span.length) {
     return true;
   }
   const std::vector<double> s = {0.3 * span.length, 0.6 * span.length, span.length};
   const Eigen::Matrix3Xd of_a = a.model->shape(a.x).sample(s).points;
   const Eigen::Matrix3Xd of_b = b.model->shape(b.x).sample(s).points;
-  if ((of_a - of_b).norm() < 1e-6 * span.length) return true;
+  if ((of_a - of_b).norm() < tolerance * span.length) return true;
   const bool planar = span.planar && b.model->span().planar;
   return !planar && is_turned_copy(span, of_a, of_b);
 }

@@ -24,6 +24,9 @@ inline constexpr std::size_t followed_natural_starts = 6;
 /// a line search, which compares energies, would stall near the root of the rounding error.
 inline constexpr double handover_gradient = 1e-5;
 
+/// Its step [rad] below which Newton's method goes on alone.
+inline constexpr double handover_step = 0.1;
+
 /// Newton's method factors a dense matrix of this size at most.
 inline constexpr int most_unknowns = 480;
 
@@ -72,8 +75,12 @@ class SpanWorkspace {
   Newton newton_;
 };
 
+/// Difference of points over the length up to which polished shapes are one.
+inline constexpr double same_points = 1e-6;
+
 /// Two equilibria of one span that are the same but for rounding and, in space, for free turns.
-[[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b);
+[[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b,
+                                 double tolerance = same_points);
 
 /// Equilibria of a span, lowest energy first: the search's best one, or all of them. Never empty; a
 /// failure is a single solution that says so.

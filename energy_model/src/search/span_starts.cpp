@@ -45,13 +45,16 @@ Eigen::Vector3d pendulum(const Span& span, const Eigen::Vector3d& from,
 
 /// A with J_0(A) = chord over arc length: the amplitude of a sine in angle that has this slack.
 double slack_amplitude(double ratio) {
-  double low = 0;
-  double high = 2.404825557695773;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = (low + high) / 2;
-    (std::cyl_bessel_j(0, middle) > ratio ? low : high) = middle;
+  constexpr double first_zero = 2.404825557695773;
+  constexpr int most_steps = 10;
+  // Of small slack J_0 = 1 - A^2 / 4; Newton's method passes the amplitude once, then comes back.
+  double amplitude = 2 * std::sqrt(std::max(0.0, 1 - ratio));
+  for (int i = 0; i < most_steps && amplitude > 0; ++i) {
+    const double by = (std::cyl_bessel_j(0, amplitude) - ratio) / std::cyl_bessel_j(1, amplitude);
+    amplitude = std::min(amplitude + by, first_zero);
+    if (std::abs(by) < 1e-12) break;
   }
-  return low;
+  return amplitude;
 }
 
 /// Terms that the shape of the free rod is looked at with.

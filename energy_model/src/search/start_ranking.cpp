@@ -40,14 +40,15 @@ void meet_grips(SpanSolution& looked, const StartRanking& ranking, std::vector<S
   std::stable_sort(starts.begin(), starts.end(), is_cheaper);
   std::vector<double> energies;  // of those that meet the grips, the lowest ones
   PointOnSpan point;
+  RestoreScratch scratch;
   for (Start& start : starts) {
     if (ranking.deadline != nullptr && ranking.deadline->passed()) return;
     const double most = energies.size() < ranking.followed ? std::numeric_limits<double>::infinity()
                                                            : energies.back();
     if (start.least > most) continue;
-    point.x = model.fit(start.shape);
+    point.x = model.fit(start.shape, 0);
     evaluate(looked, point);
-    if (!restore(looked, point, loosest_gap, most)) {
+    if (!restore(looked, point, loosest_gap, scratch, most)) {
       start.cost = std::max(start.cost, most);
       continue;
     }

@@ -39,7 +39,8 @@ Eigen::VectorXd RodFrames::from_angles(const Eigen::MatrixX2d& angles) const {
   return x;
 }
 
-Eigen::VectorXd RodFrames::fit(const Eigen::Matrix3Xd& tangents) const {
+Eigen::VectorXd RodFrames::fit(const Eigen::Matrix3Xd& tangents, int most_steps,
+                               State& state) const {
   const Eigen::Index nodes = nodes_ - turn_nodes_;
   Eigen::MatrixX2d angles(nodes, 2);
   Eigen::Quaterniond frame = start_;
@@ -54,9 +55,6 @@ Eigen::VectorXd RodFrames::fit(const Eigen::Matrix3Xd& tangents) const {
   if (fields_ == 3) x -= projected(natural_);
   // Newton's steps towards the tangents: a small turn R omega of the frames, none of them about the
   // tangent's axis at the start, comes from strains omega' + u x omega.
-  State state;
-  resize(state);
-  constexpr int most_steps = 3;
   for (int step = 0; step < most_steps; ++step) {
     evaluate(x, state);
     Eigen::MatrixX2d turns(nodes, 2);

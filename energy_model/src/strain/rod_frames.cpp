@@ -37,8 +37,13 @@ Eigen::Quaterniond step_rotation(const Eigen::Vector3d& v) {
   constexpr double small = 0.04;  // square of the angle, whose fifth power is below rounding
   const double z = v.squaredNorm();
   if (!(z < small)) return from_rotation_vector(v);
-  const double cosine = 1 - z / 8 * (1 - z / 48 * (1 - z / 120 * (1 - z / 224 * (1 - z / 360))));
-  const double half_sine = 0.5 * (1 - z / 24 * (1 - z / 80 * (1 - z / 168 * (1 - z / 288))));
+  // By the inverses of the series' quotients, as there is a step to every node.
+  const double cosine =
+      1 -
+      z * (1. / 8) *
+          (1 - z * (1. / 48) * (1 - z * (1. / 120) * (1 - z * (1. / 224) * (1 - z * (1. / 360)))));
+  const double half_sine =
+      0.5 * (1 - z * (1. / 24) * (1 - z * (1. / 80) * (1 - z * (1. / 168) * (1 - z * (1. / 288)))));
   return {cosine, half_sine * v.x(), half_sine * v.y(), half_sine * v.z()};
 }
 
@@ -144,10 +149,16 @@ void RodFrames::resize(State& state) const {
   for (Eigen::MatrixX3d* m : {&state.d1, &state.d2, &state.t, &state.tails}) m->resize(nodes_, 3);
   // The last panel is the largest.
   const Eigen::Index Q = panels_.back().nodes();
-  const Eigen::Index K = std::max(panels_.back().terms, panels_.front().terms);
   for (Eigen::MatrixX4d* m : {&state.product, &state.defect, &state.turn}) m->resize(Q, 4);
   for (Eigen::MatrixX3d* m : {&state.couples, &state.moments, &state.levers}) m->resize(Q, 3);
   state.along.resize(Q, 3);
+  state.ends.resize(3, fields_ * columns_);
+}
+
+/// What only second derivatives need, at the first of them.
+void RodFrames::resize_for_hessian(State& state) const {
+  const Eigen::Index Q = panels_.back().nodes();
+  const Eigen::Index K = std::max(panels_.back().terms, panels_.front().terms);
   state.curvatures.resize(Q, 9);
   state.spins.resize(fields_ * K, 3 * Q);
   state.weighted.resize(fields_ * K, 3 * Q);
@@ -157,7 +168,6 @@ void RodFrames::resize(State& state) const {
   state.beside.resize(3, fields_ * K);
   state.turned.resize(3, K);
   state.before.resize(columns_, K);
-  state.ends.resize(3, fields_ * columns_);
 }
 
 void RodFrames::evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& state) const {
@@ -336,6 +346,7 @@ void RodFrames::weigh_spins(const Panel& panel, State& state) const {
 
 void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matrix3d> curvatures,
                             State& state, Eigen::Ref<Eigen::MatrixXd> hessian) const {
+  resize_for_hessian(state);
   turn_ends(state);
   Eigen::Matrix3d later_curvature = Eigen::Matrix3d::Zero();
   Eigen::Vector3d later = Eigen::Vector3d::Zero();
@@ -437,6 +448,7 @@ std::array<Eigen::MatrixXd, 3> RodFrames::tangent_jacobian(State& state) const {
   const Eigen::Index nodes = nodes_ - turn_nodes_;
   std::array<Eigen::MatrixXd, 3> jacobian;
   Eigen::MatrixXd spins = Eigen::MatrixXd::Zero(3 * nodes, fields_ * columns_);
+  resize_for_hessian(state);
   for (const Panel& panel : panels_) {
     const Eigen::Index Q = panel.nodes();
     const Eigen::Index K = panel.terms;

@@ -36,6 +36,9 @@ struct FrameGradient {
 /// start there.
 class RodFrames {
  public:
+  /// After which tangents are fitted as well as the coefficients can.
+  static constexpr int most_fit_steps = 3;
+
   /// Of the last evaluate(), rows are nodes, those of a free start's turn first.
   struct State {
     Eigen::MatrixX4d q;          ///< unit quaternions w, x, y, z
@@ -81,7 +84,8 @@ class RodFrames {
   [[nodiscard]] Eigen::Index columns() const { return columns_; }
   [[nodiscard]] Eigen::Index turn_nodes() const { return turn_nodes_; }
 
-  /// Gives a state its size; nothing else allocates, but for tangent_jacobian() and fit().
+  /// Gives a state its size; nothing else allocates, but for tangent_jacobian(), fit() and the
+  /// first add_hessian().
   void resize(State& state) const;
 
   /// Directors by collocation at the nodes: Magnus' fourth-order steps between neighbouring nodes,
@@ -114,7 +118,14 @@ class RodFrames {
 
   /// Coefficients whose tangents at the nodes are these (3 x nodes), by least squares on each
   /// piece; without twist.
-  [[nodiscard]] Eigen::VectorXd fit(const Eigen::Matrix3Xd& tangents) const;
+  /// @param most_steps  of Newton's method towards them
+  [[nodiscard]] Eigen::VectorXd fit(const Eigen::Matrix3Xd& tangents, int most_steps,
+                                    State& scratch) const;
+  [[nodiscard]] Eigen::VectorXd fit(const Eigen::Matrix3Xd& tangents) const {
+    State scratch;
+    resize(scratch);
+    return fit(tangents, most_fit_steps, scratch);
+  }
   /// With three fields: the same shape with the rod's frame turned ahead by these angles at the
   /// nodes.
   [[nodiscard]] Eigen::VectorXd rolled(const Eigen::VectorXd& x, const Eigen::VectorXd& roll) const;
@@ -132,6 +143,7 @@ class RodFrames {
   [[nodiscard]] static const Eigen::MatrixX3d& director(const State& state, Eigen::Index field) {
     return field == 0 ? state.d1 : field == 1 ? state.d2 : state.t;
   }
+  void resize_for_hessian(State& state) const;
   void integrate(const Panel& panel, Eigen::Quaterniond& at, State& state) const;
   void multiply_by_strains(const Eigen::Ref<const Eigen::MatrixX4d, 0, Eigen::OuterStride<>>& q,
                            const Panel& panel, const State& state,

@@ -559,11 +559,12 @@ std::vector<Eigen::Index> SpanEnergy::places_of(const SpanEnergy& other) const {
   return places;
 }
 
-Eigen::VectorXd SpanEnergy::fit(const StartShape& shape) {
+Eigen::VectorXd SpanEnergy::fit(const StartShape& shape, int most_steps) {
   const Eigen::Matrix3Xd& tangents = shape.tangents;
   if (!span_.planar) {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
-    x.head(strains()) = frames_.fit(tangents);
+    evaluated_ = false;
+    x.head(strains()) = frames_.fit(tangents, most_steps, state_);
     if (fields() == 3 && shape.roll.size() > 0) x = frames_.rolled(x, shape.roll);
     return x;
   }

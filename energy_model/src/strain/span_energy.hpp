@@ -23,7 +23,7 @@ namespace dlo::energy_model {
 ///
 /// L = E - sum mu . c: the multipliers mu are the forces (of positions) and torques (of end angles)
 /// that the grips exert on the rod. value(), constraint() and hessian() allocate nothing, but for
-/// obstacles.
+/// obstacles and what the first Hessian takes.
 class SpanEnergy {
  public:
   SpanEnergy() = default;
@@ -62,7 +62,9 @@ class SpanEnergy {
   /// Unknowns whose tangents, and with material directors frames, at the nodes come nearest to the
   /// given ones; a planar span drops what leaves its plane. Also turns the clamps' angles to the
   /// winding of these tangents.
-  [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape);
+  /// @param most_steps  that the fit may take in space, one evaluation each
+  [[nodiscard]] Eigen::VectorXd fit(const StartShape& shape,
+                                    int most_steps = RodFrames::most_fit_steps);
 
   /// What tangents at the nodes would cost a round rod that is straight by
   /// nature, and how far from the holds they would end, before they are fitted.
