@@ -154,7 +154,11 @@ class Search {
   }
 
   [[nodiscard]] SpanSolution finish(SpanSolution solution) {
-    solution = refined(std::move(solution));
+    // It may have pieces of its own.
+    const Span own = solution.model->span();
+    solution = own.cuts == span_.cuts
+                   ? refined(std::move(solution))
+                   : Search(own, options_, workspace_).refined(std::move(solution));
     judge(solution);
     return solution;
   }
