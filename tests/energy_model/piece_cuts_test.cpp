@@ -71,5 +71,19 @@ TEST(PieceCuts, ResolveSoftRodsBetweenManyGrips) {
   }
 }
 
+TEST(PieceCuts, OfAShapeAreThoseThatItIsFinishedOn) {
+  SpanWorkspace workspace;
+  Span span = hairpin();
+  span.cuts = piece_cuts(solved(span, 96, workspace));
+  const SpanSolution cut = solved(span, 0, workspace);
+  ASSERT_EQ(cut.status, SolveStatus::converged) << cut.message;
+  ASSERT_GT(cut.model->pieces(), 1);
+  // The span that it is a shape of need not have them.
+  const SpanSolution finished = finish_span(hairpin(), SpanOptions(), workspace, cut);
+  EXPECT_EQ(finished.status, SolveStatus::converged) << finished.message;
+  EXPECT_EQ(finished.model->pieces(), cut.model->pieces());
+  EXPECT_NEAR(finished.energy, cut.energy, 1e-9 * std::abs(cut.energy));
+}
+
 }  // namespace
 }  // namespace dlo::energy_model
