@@ -120,7 +120,7 @@ class RodFrames {
   /// piece; without twist.
   /// @param most_steps  of Newton's method towards them
   [[nodiscard]] Eigen::VectorXd fit(const Eigen::Matrix3Xd& tangents, int most_steps,
-                                    State& scratch) const;
+                                    State& state) const;
   [[nodiscard]] Eigen::VectorXd fit(const Eigen::Matrix3Xd& tangents) const {
     State scratch;
     resize(scratch);
