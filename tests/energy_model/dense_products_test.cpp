@@ -138,23 +138,27 @@ Eigen::Quaterniond row_of(const Eigen::MatrixX4d& rows, Index r) {
   return {rows(r, 0), rows(r, 1), rows(r, 2), rows(r, 3)};
 }
 
-TEST(DenseProducts, CombineThirds) {
+TEST(DenseProducts, AddWeighed) {
   for (const Index rows : {1, 3, 8, 20, 53}) {
     for (const Index n : {1, 2, 9}) {
-      MatrixXd wholes[2];
-      const auto a = part_of(wholes[0], rows, 3 * n);
-      auto sum = part_of(wholes[1], rows, n);
-      const MatrixXd factors = MatrixXd::Random(n, 3);
-      MatrixXd wanted = MatrixXd::Zero(rows, n);
-      for (Index i = 0; i < 3; ++i) {
-        wanted += a.middleCols(i * n, n) * factors.col(i).asDiagonal();
-      }
-      const MatrixXd around = wholes[1];
+      MatrixXd wholes[3];
+      const auto a = part_of(wholes[0], rows, n);
+      const auto b = part_of(wholes[1], rows, n);
+      auto sum = part_of(wholes[2], rows, n);
+      const MatrixXd left_of_a = MatrixXd::Random(rows, 3);
+      const MatrixXd left_of_b = MatrixXd::Random(rows, 3);
+      const MatrixXd right_of_a = MatrixXd::Random(n, 3);
+      const MatrixXd right_of_b = MatrixXd::Random(n, 3);
+      const MatrixXd wanted = a.cwiseProduct(left_of_a * right_of_a.transpose()) +
+                              b.cwiseProduct(left_of_b * right_of_b.transpose());
+      const MatrixXd around = wholes[2];
       for (const DenseKernel* kernel : kernels) {
-        kernel->combine_thirds(columns_of(a), columns_of(factors), result_columns(sum));
+        kernel->add_weighed({columns_of(a), columns_of(left_of_a), columns_of(right_of_a)},
+                            {columns_of(b), columns_of(left_of_b), columns_of(right_of_b)},
+                            result_columns(sum));
         EXPECT_LT((sum - wanted).norm(), rounding) << rows << ' ' << n;
         sum = around.block(2, 1, rows, n);
-        EXPECT_EQ(wholes[1], around) << "written beside the result";
+        EXPECT_EQ(wholes[2], around) << "written beside the result";
       }
     }
   }

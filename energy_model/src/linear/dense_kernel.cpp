@@ -441,22 +441,35 @@ void turn(const double* angles, std::ptrdiff_t count, double* cosines, double* s
   }
 }
 
-void combine_thirds(const ConstColumns& a, const ConstColumns& factors, const Columns& result) {
-  const std::ptrdiff_t third = result.columns * a.stride;
+/// A row of A B^T times its weight, of one column of B^T.
+template <typename Real>
+inline Real weighed_row(const WeighedProduct& a, const double (&right)[3], std::ptrdiff_t column,
+                        std::ptrdiff_t row) {
+  const double* left = a.left.data + row;
+  Real weight, x, y, z;
+  read(a.weights.data + column * a.weights.stride + row, weight);
+  read(left, x);
+  read(left + a.left.stride, y);
+  read(left + 2 * a.left.stride, z);
+  return weight * (x * right[0] + y * right[1] + z * right[2]);
+}
+
+void add_weighed(const WeighedProduct& a, const WeighedProduct& b, const Columns& result) {
+  const auto right_of = [](const WeighedProduct& of, std::ptrdiff_t column, double(&right)[3]) {
+    for (std::ptrdiff_t i = 0; i < 3; ++i) right[i] = of.right.data[i * of.right.stride + column];
+  };
+  double of_a[3];
+  double of_b[3];
   for (std::ptrdiff_t j = 0; j < result.columns; ++j) {
-    const double* from = a.data + j * a.stride;
-    const double* factor = factors.data + j;
-    const double f0 = factor[0];
-    const double f1 = factor[factors.stride];
-    const double f2 = factor[2 * factors.stride];
+    right_of(a, j, of_a);
+    right_of(b, j, of_b);
     double* to = result.data + j * result.stride;
     std::ptrdiff_t i = 0;
     for (; i + lane_count <= result.rows; i += lane_count) {
-      write_lanes(to + i, read_lanes(from + i) * f0 + read_lanes(from + third + i) * f1 +
-                              read_lanes(from + 2 * third + i) * f2);
+      write_lanes(to + i, weighed_row<Lanes>(a, of_a, j, i) + weighed_row<Lanes>(b, of_b, j, i));
     }
     for (; i < result.rows; ++i) {
-      to[i] = f0 * from[i] + f1 * from[third + i] + f2 * from[2 * third + i];
+      to[i] = weighed_row<double>(a, of_a, j, i) + weighed_row<double>(b, of_b, j, i);
     }
   }
 }
@@ -473,7 +486,7 @@ const DenseKernel& dense_kernel() {
                                          solve,
                                          reflect,
                                          turn,
-                                         combine_thirds};
+                                         add_weighed};
   return kernel;
 }
 

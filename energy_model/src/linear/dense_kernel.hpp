@@ -14,6 +14,11 @@ struct Columns {
   std::ptrdiff_t rows, columns, stride;
 };
 
+/// weights o (left right^T), element by element; `left` and `right` have three columns.
+struct WeighedProduct {
+  ConstColumns weights, left, right;
+};
+
 /// The widest register has as many lanes.
 inline constexpr std::ptrdiff_t padding = 8;
 
@@ -40,9 +45,8 @@ struct DenseKernel {
   void (*reflect)(const Columns& a, const double* v, double tau, double* w);
   /// Cosines and sines of as many angles [rad], right to 2e-16 up to 1e6.
   void (*turn)(const double* angles, std::ptrdiff_t count, double* cosines, double* sines);
-  /// Column j of the result, which has n: the sum over i = 0, 1, 2 of factors(j, i) times column
-  /// j + i n of A.
-  void (*combine_thirds)(const ConstColumns& a, const ConstColumns& factors, const Columns& result);
+  /// a + b
+  void (*add_weighed)(const WeighedProduct& a, const WeighedProduct& b, const Columns& result);
 };
 
 /// The one for this machine's instruction set.

@@ -159,12 +159,14 @@ void RodFrames::resize(State& state) const {
 void RodFrames::resize_for_hessian(State& state) const {
   const Eigen::Index Q = panels_.back().nodes();
   const Eigen::Index K = std::max(panels_.back().terms, panels_.front().terms);
-  state.curvatures.resize(Q, 9);
-  state.spins.resize(fields_ * K, 3 * Q);
-  state.weighted.resize(fields_ * K, 3 * Q);
-  state.scaled.resize(fields_ * K, Q);
+  const Eigen::Index pairs = fields_ * (fields_ + 1) / 2;
+  for (auto* m : {&state.curvatures, &state.beyond}) m->resize(Q, 6);
+  for (auto* by_field : {&state.pulls, &state.turns}) {
+    for (Eigen::MatrixX3d& m : *by_field) m.resize(Q, 3);
+  }
+  state.pairs.resize(Q, pairs * Q);
+  state.by_node.resize(K, pairs * Q);
   state.own.resize(fields_ * K, fields_ * K);
-  state.mixed.resize(fields_ * K, fields_ * K);
   state.beside.resize(3, fields_ * K);
   state.turned.resize(3, K);
   state.before.resize(columns_, K);
@@ -332,15 +334,92 @@ void RodFrames::end_spins(const Panel& panel, State& state) const {
   }
 }
 
-/// Into state.weighted: state.curvatures of the nodes times state.spins.
-void RodFrames::weigh_spins(const Panel& panel, State& state) const {
+/// Into state.beyond: what of f's second derivatives A by turns of the panel's nodes lies beyond
+/// each node, int_s^end A. @return all of it
+Eigen::Matrix3d RodFrames::gather_curvatures(const Panel& panel, const FrameGradient& f,
+                                             State& state) const {
   const Eigen::Index Q = panel.nodes();
-  const Eigen::Index all = fields_ * panel.terms;
-  const auto spins = state.spins.topLeftCorner(all, 3 * Q);
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const auto factors = state.curvatures.block(0, 3 * axis, Q, 3);
-    auto weighted = state.weighted.block(0, axis * Q, all, Q);
-    dense_kernel().combine_thirds(columns_of(spins), columns_of(factors), result_columns(weighted));
+  auto beyond = state.beyond.topRows(Q);
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  if (panel.node < turn_nodes_) {
+    beyond.setZero();
+    return sum;
+  }
+  auto curvatures = state.curvatures.topRows(Q);
+  for (Eigen::Index r = 0; r < Q; ++r) {
+    const Eigen::Index node = panel.node + r;
+    const Eigen::Matrix3d a = spin_curvature(state.t.row(node), f.nodes->row(node - turn_nodes_));
+    sum += a;
+    curvatures.row(r) << a(0, 0), a(1, 1), a(2, 2), a(0, 1), a(0, 2), a(1, 2);
+  }
+  multiply(panel.table->integration_transposed, curvatures, beyond);
+  beyond *= panel.length;
+  return sum;
+}
+
+/// Into state.turns: by what an unknown whose strain is 1 at a node turns there, per length of the
+/// panel. Into state.pulls: what a turn theta that a node has already makes of it, pull . theta, of
+/// state.moments M and state.beyond B: d x M / 2 + B d.
+void RodFrames::weigh_turns(const Panel& panel, State& state) const {
+  const Eigen::Index Q = panel.nodes();
+  const auto M = state.moments.topRows(Q).array();
+  const auto B = state.beyond.topRows(Q).array();
+  for (Eigen::Index field = 0; field < fields_; ++field) {
+    const auto which = static_cast<std::size_t>(field);
+    const auto d = director(state, field).middleRows(panel.node, Q).array();
+    auto pull = state.pulls[which].topRows(Q).array();
+    pull.col(0) = (d.col(1) * M.col(2) - d.col(2) * M.col(1)) / 2 + B.col(0) * d.col(0) +
+                  B.col(3) * d.col(1) + B.col(4) * d.col(2);
+    pull.col(1) = (d.col(2) * M.col(0) - d.col(0) * M.col(2)) / 2 + B.col(3) * d.col(0) +
+                  B.col(1) * d.col(1) + B.col(5) * d.col(2);
+    pull.col(2) = (d.col(0) * M.col(1) - d.col(1) * M.col(0)) / 2 + B.col(4) * d.col(0) +
+                  B.col(5) * d.col(1) + B.col(2) * d.col(2);
+    pull *= panel.strain[which];
+    state.turns[which].topRows(Q).array() = panel.length * panel.strain[which] * d;
+  }
+}
+
+/// Into state.own: second derivatives of f by pairs of the panel's own unknowns. With the strains
+/// p and p' of a pair, and the turn theta' = int turn' p' that the latter has made up to a node, f
+/// changes by
+///     int pull . theta' p ds
+/// and the same with both exchanged: theta . A theta' has been integrated by parts, and the order
+/// of two turns counts half to either side. No turns of all nodes by all unknowns are worked out,
+/// but what pairs of nodes do to each other: the polynomials come last.
+void RodFrames::pair_unknowns(const Panel& panel, State& state) const {
+  const LegendreTable& table = *panel.table;
+  const Eigen::Index Q = panel.nodes();
+  const Eigen::Index K = panel.terms;
+  const Eigen::Index pairs = fields_ * (fields_ + 1) / 2;
+  const auto values = table.values_transposed.topRows(K);
+  Eigen::Index pair = 0;
+  for (Eigen::Index a = 0; a < fields_; ++a) {
+    for (Eigen::Index b = a; b < fields_; ++b, ++pair) {
+      const auto first = static_cast<std::size_t>(a);
+      const auto second = static_cast<std::size_t>(b);
+      auto nodes = state.pairs.block(0, pair * Q, Q, Q);
+      dense_kernel().add_weighed(
+          {columns_of(table.integration), columns_of(state.pulls[first].topRows(Q)),
+           columns_of(state.turns[second].topRows(Q))},
+          {columns_of(table.integration_transposed), columns_of(state.turns[first].topRows(Q)),
+           columns_of(state.pulls[second].topRows(Q))},
+          result_columns(nodes));
+    }
+  }
+  auto by_node = state.by_node.topLeftCorner(K, pairs * Q);
+  multiply(values, state.pairs.topLeftCorner(Q, pairs * Q), by_node);
+  pair = 0;
+  for (Eigen::Index a = 0; a < fields_; ++a) {
+    for (Eigen::Index b = a; b < fields_; ++b, ++pair) {
+      auto own = state.own.block(a * K, b * K, K, K);
+      const auto of_pair = by_node.middleCols(pair * Q, Q);
+      if (a == b) {
+        multiply_symmetric(values, of_pair, own);
+        continue;
+      }
+      multiply(of_pair, table.values.leftCols(K), own);
+      state.own.block(b * K, a * K, K, K) = own.transpose();
+    }
   }
 }
 
@@ -357,58 +436,20 @@ void RodFrames::add_hessian(const FrameGradient& f, std::span<const Eigen::Matri
       later_curvature += curvatures[piece];
     }
     moments(*panel, f, later, state);
+    const Eigen::Matrix3d curvature = gather_curvatures(*panel, f, state);
+    weigh_turns(*panel, state);
+    pair_unknowns(*panel, state);
+    // With the turn of all that is beyond an earlier panel.
     const Eigen::Index Q = panel->nodes();
     const Eigen::Index K = panel->terms;
-    const Eigen::Index all = fields_ * K;
-    own_spins(*panel, state);
-    const auto spins = state.spins.topLeftCorner(all, 3 * Q);
-    auto weighted = state.weighted.topLeftCorner(all, 3 * Q);
-    auto own = state.own.topLeftCorner(all, all);
-    auto mixed = state.mixed.topLeftCorner(all, all);
-    auto beside = state.beside.leftCols(all);
-
-    // Spins squared: (g.theta)(t.theta) - (g.t) theta.theta
-    Eigen::Matrix3d curvature = Eigen::Matrix3d::Zero();
-    if (panel->node < turn_nodes_) {
-      own.setZero();
-      beside.setZero();
-    } else {
-      for (Eigen::Index r = 0; r < Q; ++r) {
-        const Eigen::Index node = panel->node + r;
-        const Eigen::Matrix3d a =
-            spin_curvature(state.t.row(node), f.nodes->row(node - turn_nodes_));
-        curvature += a;
-        state.curvatures.row(r) << a.row(0), a.row(1), a.row(2);
-      }
-      weigh_spins(*panel, state);
-      multiply_symmetric(spins, weighted, own);
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        beside.row(axis) = weighted.middleCols(axis * Q, Q).rowwise().sum().transpose();
-      }
-    }
-    // Spins of spins: theta'.(M x theta), half of it to either side.
-    for (Eigen::Index field = 0; field < fields_; ++field) {
-      const double half = panel->strain[static_cast<std::size_t>(field)] / 2;
-      const Eigen::MatrixX3d& directors = director(state, field);
-      auto lever = state.levers.topRows(Q);
-      for (Eigen::Index r = 0; r < Q; ++r) {
-        const Eigen::Vector3d d = directors.row(panel->node + r);
-        const Eigen::Vector3d m = state.moments.row(r);
-        lever.row(r) = d.cross(m);
-      }
-      auto by_node = state.weighted.topLeftCorner(all, Q);
-      lever *= half;
-      dense_kernel().combine_thirds(columns_of(spins), columns_of(lever), result_columns(by_node));
-      multiply(by_node, panel->table->values.leftCols(K), mixed.middleCols(field * K, K));
+    for (Eigen::Index field = 0; field < fields_ && panel->column > 0; ++field) {
       auto turned = state.product.topLeftCorner(K, 3);
-      multiply(panel->table->values_transposed.topRows(K), lever, turned);
-      beside.middleCols(field * K, K) += turned.transpose();
-    }
-    own += mixed;
-    own += mixed.transpose();
-    for (Eigen::Index field = 0; field < fields_; ++field) {
+      multiply(panel->table->values_transposed.topRows(K),
+               state.pulls[static_cast<std::size_t>(field)].topRows(Q), turned);
+      auto beside = state.beside.middleCols(field * K, K);
       const auto ends = state.ends.middleCols(field * columns_ + panel->column, K);
-      beside.middleCols(field * K, K).noalias() += later_curvature * ends;
+      beside = turned.transpose();
+      beside.noalias() += later_curvature * ends;
     }
     add_panel(*panel, later_curvature, state, hessian);
     later_curvature += curvature;
@@ -448,7 +489,8 @@ std::array<Eigen::MatrixXd, 3> RodFrames::tangent_jacobian(State& state) const {
   const Eigen::Index nodes = nodes_ - turn_nodes_;
   std::array<Eigen::MatrixXd, 3> jacobian;
   Eigen::MatrixXd spins = Eigen::MatrixXd::Zero(3 * nodes, fields_ * columns_);
-  resize_for_hessian(state);
+  state.spins.resize(fields_ * panels_.back().terms, 3 * panels_.back().nodes());
+  state.scaled.resize(fields_ * panels_.back().terms, panels_.back().nodes());
   for (const Panel& panel : panels_) {
     const Eigen::Index Q = panel.nodes();
     const Eigen::Index K = panel.terms;

@@ -55,9 +55,10 @@ class RodFrames {
     Eigen::MatrixX4d product, defect, turn;
     Eigen::MatrixX3d couples, moments, levers;
     Eigen::MatrixX3d along;
-    /// 3 x 3 matrices, row by row.
-    Eigen::Matrix<double, Eigen::Dynamic, 9> curvatures;
-    Eigen::MatrixXd spins, weighted, scaled, own, mixed, before;
+    /// Symmetric 3 x 3 matrices: xx, yy, zz, xy, xz, yz.
+    Eigen::Matrix<double, Eigen::Dynamic, 6> curvatures, beyond;
+    std::array<Eigen::MatrixX3d, 3> pulls, turns;  // by field
+    Eigen::MatrixXd pairs, by_node, spins, scaled, own, before;
     Eigen::Matrix3Xd beside, turned;
 
     /// Frame of the span's end.
@@ -151,7 +152,10 @@ class RodFrames {
   void moments(const Panel& panel, const FrameGradient& f, const Eigen::Vector3d& later,
                State& state) const;
   void own_spins(const Panel& panel, State& state) const;
-  void weigh_spins(const Panel& panel, State& state) const;
+  [[nodiscard]] Eigen::Matrix3d gather_curvatures(const Panel& panel, const FrameGradient& f,
+                                                  State& state) const;
+  void weigh_turns(const Panel& panel, State& state) const;
+  void pair_unknowns(const Panel& panel, State& state) const;
   void end_spins(const Panel& panel, State& state) const;
   void add_panel(const Panel& panel, const Eigen::Matrix3d& later_curvature, State& state,
                  Eigen::Ref<Eigen::MatrixXd> hessian) const;
