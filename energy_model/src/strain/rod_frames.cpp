@@ -13,8 +13,10 @@ namespace {
 constexpr int turn_terms = 1;
 
 /// Largest defect of the collocation that is left, and corrections that it may take. From Magnus'
-/// steps two do for all strains that a rod's own nodes resolve.
+/// steps two do for all strains that a rod's own nodes resolve. Of others a defect is left that
+/// none takes away, which shows in one that is above the square of the last.
 constexpr double finest_defect = 2e-15;
+constexpr double largest_square = 10;  // of what a correction leaves, over the square
 constexpr int most_corrections = 6;
 
 using Rows = Eigen::Ref<Eigen::MatrixX4d, 0, Eigen::OuterStride<>>;
@@ -120,13 +122,15 @@ void RodFrames::integrate(const Panel& panel, Eigen::Quaterniond& at, State& sta
   }
   const Eigen::Vector4d first = as_vector(at);
   const DenseKernel& kernel = dense_kernel();
+  double before = 1;
   for (int i = 0; i < most_corrections; ++i) {
     multiply_by_strains(q, panel, state, product);
     multiply(table.integration, product, defect);
     defect -= q;
     defect.rowwise() += first.transpose();
     const double size = defect.cwiseAbs().maxCoeff();
-    if (!(size > finest_defect) || !(size < 1)) break;
+    if (!(size > finest_defect) || !(size < 1) || size > largest_square * before * before) break;
+    before = size;
     // eta = d q* + 1/2 int d u q*
     multiply_by_strains(defect, panel, state, product);
     kernel.multiply_by_conjugate(result_columns(product), columns_of(q));

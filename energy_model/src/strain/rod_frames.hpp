@@ -90,7 +90,8 @@ class RodFrames {
   void resize(State& state) const;
 
   /// Directors by collocation at the nodes: Magnus' fourth-order steps between neighbouring nodes,
-  /// then Newton's corrections of q = q0 + 1/2 int q u, each of which squares the error, to 1e-14.
+  /// then Newton's corrections of q = q0 + 1/2 int q u, each of which squares the error, to 1e-14
+  /// or to what the nodes do not resolve.
   void evaluate(const Eigen::Ref<const Eigen::VectorXd>& x, State& state) const;
 
   /// Adds `sense` times the gradient of f by x.
