@@ -20,6 +20,17 @@ Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& eigenvalues) {
   return Q * eigenvalues.asDiagonal() * Q.transpose();
 }
 
+Eigen::VectorXd smallest_eigenvalues(const Eigen::MatrixXd& hessian,
+                                     const Eigen::MatrixXd& jacobian) {
+  FreeHessian free;
+  free.compute(hessian, jacobian);
+  return energy_model::smallest_eigenvalues(free, 0);
+}
+
+double smallest_eigenvalue(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
+  return smallest_eigenvalues(hessian, jacobian)[0];
+}
+
 TEST(FreeDirections, SmallestEigenvalueIsTheSmallestWhateverItsSign) {
   for (const double smallest : {1e-3, 0.2, 0.999, 1.0, 1e-9, 0.0, -1e-3, -4.0}) {
     Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(24, 1, 3);
@@ -42,8 +53,8 @@ TEST(FreeDirections, OnlyWhatConstraintsLeaveFreeIsAsked) {
     // A hundredth is what is proven.
     EXPECT_NEAR(smallest_eigenvalue(hessian, jacobian), smallest, 1e-2 * std::abs(smallest));
   }
-  EXPECT_EQ(smallest_eigenvalue(Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Identity(2, 2)),
-            1);
+  const Eigen::MatrixXd all = Eigen::MatrixXd::Identity(2, 2);
+  EXPECT_EQ(smallest_eigenvalues(all, all).size(), 0);
 }
 
 /// A seed of the iteration that has nothing of the softest direction finds another eigenvalue,
@@ -64,6 +75,64 @@ TEST(FreeDirections, SmallestEigenvalueOfManyThatAreHardlyLargerIsNoneBelowThem)
   for (const double largest : {1.003, 1.03, 1.3}) {
     const Eigen::MatrixXd hessian = with_eigenvalues(Eigen::VectorXd::LinSpaced(60, 1, largest));
     EXPECT_NEAR(smallest_eigenvalue(hessian, Eigen::MatrixXd(0, 60)), 1, 1e-2) << largest;
+  }
+}
+
+TEST(FreeDirections, AllEigenvaluesAreToldWhereTheSmallestIsNotAbove) {
+  const Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(12, 0.1, 2);
+  FreeHessian free;
+  free.compute(with_eigenvalues(eigenvalues), Eigen::MatrixXd(0, 12));
+  EXPECT_EQ(energy_model::smallest_eigenvalues(free, 0.05).size(), 1);
+  EXPECT_LT((energy_model::smallest_eigenvalues(free, 0.2) - eigenvalues).norm(), 1e-13);
+}
+
+/// Moré and Sorensen: (H + mu) z = b with H + mu positive semidefinite and |z| = length, or mu = 0
+/// and z shorter, is the minimum of z.H z / 2 - b.z within this length.
+TEST(FreeDirections, StepWithinALengthIsTheLowestThere) {
+  constexpr Eigen::Index n = 24;
+  for (const double smallest : {0.5, 1e-3, 0.0, -0.1, -3.0}) {
+    for (const double length : {1e-3, 0.1, 2.0, 50.0}) {
+      for (const double pulled_along_it : {1.0, 1e-9, 0.0}) {
+        Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(n, 0.7, 4);
+        eigenvalues[0] = smallest;
+        const Eigen::MatrixXd hessian = with_eigenvalues(eigenvalues);
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian);
+        const Eigen::VectorXd soft = eigen.eigenvectors().col(0);
+        Eigen::VectorXd right = Eigen::VectorXd::Random(n);
+        right += (pulled_along_it - 1) * right.dot(soft) * soft;
+        FreeHessian free;
+        free.compute(hessian, Eigen::MatrixXd(0, n));
+        Eigen::VectorXd z = right;
+        // Without a mu it is for who asks to know whether Newton's step is within.
+        if (free.is_definite()) {
+          free.solve_free(z);
+          if (z.norm() <= length) continue;
+          z = right;
+        }
+        ASSERT_TRUE(free.solve_within(length, z)) << smallest << ' ' << length;
+        EXPECT_LE(z.norm(), 1.011 * length);
+        EXPECT_GE(z.norm(), 0.74 * length);
+        // The lowest on the sphere of its own length, by eigenvalues and bisection.
+        const Eigen::VectorXd pull = eigen.eigenvectors().transpose() * right;
+        double low = std::max(0.0, -smallest);
+        double high = low + right.norm() / z.norm();
+        const auto step = [&](double mu) {
+          return Eigen::VectorXd(pull.array() / (eigenvalues.array() + mu).max(1e-300));
+        };
+        for (int i = 0; i < 200; ++i) {
+          const double middle = (low + high) / 2;
+          (step(middle).norm() > z.norm() ? low : high) = middle;
+        }
+        Eigen::VectorXd lowest = step(high);
+        // What mu cannot tell for rounding, where nothing pulls along the smallest one.
+        const double others = lowest.tail(n - 1).squaredNorm();
+        lowest[0] = std::copysign(std::sqrt(std::max(0.0, z.squaredNorm() - others)), lowest[0]);
+        const double wanted = lowest.dot(eigenvalues.cwiseProduct(lowest)) / 2 - pull.dot(lowest);
+        const double found = z.dot(hessian * z) / 2 - right.dot(z);
+        EXPECT_NEAR(found, wanted, 2e-2 * std::abs(wanted))
+            << smallest << ' ' << length << ' ' << pulled_along_it;
+      }
+    }
   }
 }
 

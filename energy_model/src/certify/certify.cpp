@@ -92,12 +92,13 @@ struct Softness {
 /// @param free     turns of the rod as a whole, whose eigenvalues are zero
 /// @param nothing  size up to which one is zero whatever its direction is; negative: none is
 Softness softness(FreeHessian& hessian, double bound, Eigen::Index free, double nothing) {
+  const Eigen::VectorXd eigenvalues = smallest_eigenvalues(hessian, 2 * bound);
   Softness result;
-  result.smallest = smallest_eigenvalue(hessian);
+  result.smallest = eigenvalues.size() > 0 ? eigenvalues[0] : 1;
   result.nearest_zero = std::abs(result.smallest);
-  // A factor proves that none is much smaller than a smallest one that is positive.
   if (result.smallest > 2 * bound) return result;
-  const Eigen::VectorXd sizes = eigenvalues_by_size(hessian).cwiseAbs();
+  Eigen::VectorXd sizes = eigenvalues.cwiseAbs();
+  std::sort(sizes.begin(), sizes.end());
   result.zero = std::max(std::min(free, (sizes.array() <= bound).count()),
                          (sizes.array() <= nothing).count());
   result.neutral_directions = static_cast<int>((sizes.array() <= bound).count() - result.zero);

@@ -16,29 +16,13 @@ AcrossNeutral::AcrossNeutral(const Eigen::MatrixXd& system)
   factor_.compute(system);
 }
 
-double smallest_eigenvalue(FreeHessian& hessian) {
-  if (const std::optional<double> smallest = hessian.smallest_of_definite()) return *smallest;
-  const Eigen::MatrixXd projected = hessian.matrix();
-  if (projected.size() == 0) return 1;
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected, Eigen::EigenvaluesOnly)
-      .eigenvalues()[0];
-}
-
-double smallest_eigenvalue(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
-  FreeHessian on_free_directions;
-  on_free_directions.compute(hessian, jacobian);
-  return smallest_eigenvalue(on_free_directions);
-}
-
-Eigen::VectorXd eigenvalues_by_size(const FreeHessian& hessian) {
+Eigen::VectorXd smallest_eigenvalues(FreeHessian& hessian, double above) {
+  const std::optional<double> smallest = hessian.smallest_of_definite();
+  if (smallest && *smallest > above) return Eigen::VectorXd::Constant(1, *smallest);
   const Eigen::MatrixXd projected = hessian.matrix();
   if (projected.size() == 0) return {};
-  Eigen::VectorXd found =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected, Eigen::EigenvaluesOnly)
-          .eigenvalues();
-  std::sort(found.begin(), found.end(),
-            [](double a, double b) { return std::abs(a) < std::abs(b); });
-  return found;
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(projected, Eigen::EigenvaluesOnly)
+      .eigenvalues();
 }
 
 Eigen::VectorXd direction_by_size(FreeHessian& hessian, Eigen::Index index) {
@@ -69,9 +53,7 @@ struct Softest {
   Eigen::VectorXd direction;
 };
 
-std::optional<Softest> softest(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
-  FreeHessian on_free_directions;
-  on_free_directions.compute(hessian, jacobian);
+std::optional<Softest> softest(const FreeHessian& on_free_directions) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(on_free_directions.matrix());
   if (eigen.eigenvalues().size() == 0) return std::nullopt;
   return Softest{eigen.eigenvalues()[0],
@@ -82,14 +64,19 @@ std::optional<Softest> softest(const Eigen::MatrixXd& hessian, const Eigen::Matr
 
 std::optional<Eigen::VectorXd> softest_direction(const Eigen::MatrixXd& hessian,
                                                  const Eigen::MatrixXd& jacobian) {
-  std::optional<Softest> found = softest(hessian, jacobian);
+  FreeHessian on_free_directions;
+  on_free_directions.compute(hessian, jacobian);
+  std::optional<Softest> found = softest(on_free_directions);
   if (!found) return std::nullopt;
   return std::move(found->direction);
 }
 
 std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
                                                  const Eigen::MatrixXd& jacobian) {
-  std::optional<Softest> found = softest(hessian, jacobian);
+  FreeHessian on_free_directions;
+  on_free_directions.compute(hessian, jacobian);
+  if (on_free_directions.is_definite()) return std::nullopt;
+  std::optional<Softest> found = softest(on_free_directions);
   if (!found || found->eigenvalue > -neutral) return std::nullopt;
   return std::move(found->direction);
 }

@@ -25,14 +25,9 @@ class AcrossNeutral {
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> factor_;
 };
 
-/// Smallest eigenvalue of the Hessian on these directions, if it is positive larger by a hundredth
-/// at most; 1 if the constraints leave none.
-[[nodiscard]] double smallest_eigenvalue(FreeHessian& hessian);
-[[nodiscard]] double smallest_eigenvalue(const Eigen::MatrixXd& hessian,
-                                         const Eigen::MatrixXd& jacobian);
-
-/// All eigenvalues there, by growing size: those nearest to zero come first.
-[[nodiscard]] Eigen::VectorXd eigenvalues_by_size(const FreeHessian& hessian);
+/// Smallest eigenvalue of the Hessian on these directions, larger by a hundredth at most, if it is
+/// positive and above this; else all of them, growing. None if the constraints leave no direction.
+[[nodiscard]] Eigen::VectorXd smallest_eigenvalues(FreeHessian& hessian, double above);
 
 /// Unit direction of one of them, of those that the constraints leave, by growing size from 0.
 [[nodiscard]] Eigen::VectorXd direction_by_size(FreeHessian& hessian, Eigen::Index index);

@@ -100,30 +100,43 @@ void FreeHessian::constrain(const Eigen::MatrixXd& jacobian) {
   independent_ = independent_ && constraints_ == jacobian.rows();
 }
 
-/// v to Q^T v
-void FreeHessian::reflect(Eigen::VectorXd& v) const {
-  for (Eigen::Index i = 0; i < constraints_; ++i) {
-    const auto w = reflections_.col(i);
-    v -= (tau_[i] * w.dot(v)) * w;
-  }
+void FreeHessian::reflect(Eigen::Index i, Vector v) const {
+  const auto w = reflections_.col(i);
+  v -= (tau_[i] * w.dot(v)) * w;
 }
 
-FreeHessian::Balance FreeHessian::balance(const Eigen::VectorXd& gradient) {
-  turned_right_ = gradient;
-  reflect(turned_right_);
-  Balance result{turned_right_.head(constraints_), turned_right_.tail(free())};
-  // R mu = Q^T g, of Y
-  Eigen::VectorXd& mu = result.multipliers;
+/// v to Q^T v
+void FreeHessian::turn(Vector v) const {
+  for (Eigen::Index i = 0; i < constraints_; ++i) reflect(i, v);
+}
+
+/// v to Q v
+void FreeHessian::turn_back(Vector v) const {
+  for (Eigen::Index i = constraints_; i-- > 0;) reflect(i, v);
+}
+
+/// mu to R^-1 mu
+void FreeHessian::solve_triangle(Vector mu) const {
   for (Eigen::Index i = constraints_; i-- > 0;) {
     mu[i] /= diagonal_[i];
     mu.head(i) -= mu[i] * triangle_.col(i).head(i);
   }
+}
+
+/// z to (L L^T)^-1 z
+void FreeHessian::solve_by(const Eigen::MatrixXd& lower, Vector z) const {
+  dense_kernel().solve({lower.data(), free(), free(), lower.rows()}, z.data());
+}
+
+FreeHessian::Balance FreeHessian::balance(const Eigen::VectorXd& gradient) {
+  turned_right_ = gradient;
+  turn(turned_right_);
+  Balance result{turned_right_.head(constraints_), turned_right_.tail(free())};
+  solve_triangle(result.multipliers);
   return result;
 }
 
-void FreeHessian::solve_free(Eigen::VectorXd& z) const {
-  dense_kernel().solve({factor_.data(), free(), free(), factor_.rows()}, z.data());
-}
+void FreeHessian::solve_free(Eigen::VectorXd& z) const { solve_by(factor_, z); }
 
 /// By Newton's method on 1 / |z(mu)|, which is all but straight, between bounds of mu: below the
 /// lower one Z^T H Z + mu is not positive definite, or z too long (Moré and Sorensen, 1983).
@@ -132,14 +145,14 @@ bool FreeHessian::solve_within(double length, Eigen::VectorXd& z) {
   constexpr double longest = 1.01;   // over `length`
   constexpr double shortest = 0.75;  // likewise
   constexpr double closed = 1e-2;    // bounds are one another
-  const Eigen::VectorXd right = z;
+  right_ = z;
   double low = 0;
   double high = std::numeric_limits<double>::infinity();
   double mu = 0;
   if (!definite_) {
     const auto turned = turned_.bottomRightCorner(free(), free());
     low = std::max(0.0, -turned.diagonal().minCoeff());
-    mu = 1.1 * low + right.norm() / length;
+    mu = 1.1 * low + right_.norm() / length;
   }
   const auto between = [&] {
     if (std::isinf(high)) return 4 * mu;
@@ -151,9 +164,8 @@ bool FreeHessian::solve_within(double length, Eigen::VectorXd& z) {
       mu = between();
       continue;
     }
-    const ConstColumns lower{proof_.data(), free(), free(), proof_.rows()};
-    z = right;
-    dense_kernel().solve(lower, z.data());
+    z = right_;
+    solve_by(proof_, z);
     const double size = z.norm();
     if (!std::isfinite(size)) return false;
     if (size <= longest * length && (size >= shortest * length || mu == 0)) return true;
@@ -164,20 +176,20 @@ bool FreeHessian::solve_within(double length, Eigen::VectorXd& z) {
     }
     if (high - low <= closed * high && size < length) {
       // Nothing pulls along the smallest eigenvalue.
-      Eigen::VectorXd soft = Eigen::VectorXd::LinSpaced(z.size(), 1, 2);
+      along_.setLinSpaced(z.size(), 1, 2);
       for (int i = 0; i < 3; ++i) {
-        soft.normalize();
-        dense_kernel().solve(lower, soft.data());
+        along_.normalize();
+        solve_by(proof_, along_);
       }
-      soft.normalize();
-      const double along = z.dot(soft);
-      const double rest = std::sqrt(along * along + length * length - size * size);
-      z += (along < 0 ? -along - rest : rest - along) * soft;
+      along_.normalize();
+      const double part = z.dot(along_);
+      const double rest = std::sqrt(part * part + length * length - size * size);
+      z += (part < 0 ? -part - rest : rest - part) * along_;
       return true;
     }
-    Eigen::VectorXd slope = z;
-    dense_kernel().solve(lower, slope.data());
-    const double next = mu + size * size / z.dot(slope) * (size - length) / length;
+    along_ = z;
+    solve_by(proof_, along_);
+    const double next = mu + size * size / z.dot(along_) * (size - length) / length;
     mu = next > low && next < high ? next : between();
   }
   return false;
@@ -198,7 +210,7 @@ void FreeHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
   const Eigen::Index left = free();
   step.resize(right.size());
   turned_right_ = right.head(n_);
-  reflect(turned_right_);
+  turn(turned_right_);
   auto x = step.head(n_);
   auto y = x.head(constraints_);
   auto z = x.tail(left);
@@ -208,19 +220,13 @@ void FreeHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
   }
   z = turned_right_.tail(left);
   z.noalias() -= turned_.bottomLeftCorner(left, constraints_) * y;
-  dense_kernel().solve({factor_.data(), left, left, factor_.rows()}, z.data());
+  solve_by(factor_, z);
   // R mu = (Q^T H Q) (y; z) - Q^T a, of Y
   auto mu = step.tail(constraints_);
   mu.noalias() = turned_.leftCols(constraints_).transpose() * x;
   mu -= turned_right_.head(constraints_);
-  for (Eigen::Index i = constraints_; i-- > 0;) {
-    mu[i] /= diagonal_[i];
-    mu.head(i) -= mu[i] * triangle_.col(i).head(i);
-  }
-  for (Eigen::Index i = constraints_; i-- > 0;) {
-    const auto v = reflections_.col(i);
-    x -= (tau_[i] * v.dot(x)) * v;
-  }
+  solve_triangle(mu);
+  turn_back(x);
 }
 
 /// Each vector is made orthogonal to all before. Ends where the largest eigenvalue, looked at from
@@ -242,7 +248,7 @@ FreeHessian::Lanczos FreeHessian::look_for_smallest(double settled, Eigen::Index
   for (Eigen::Index k = 0; k < most; ++k) {
     auto next = krylov_.col(k + 1);
     next = krylov_.col(k);
-    dense_kernel().solve({factor_.data(), left, left, factor_.rows()}, next.data());
+    solve_by(factor_, next);
     result.along[k] = krylov_.col(k).dot(next);
     double size = next.norm();
     for (int pass = 0; pass < 2; ++pass) {
@@ -297,10 +303,7 @@ Eigen::MatrixXd FreeHessian::matrix() const { return turned_.bottomRightCorner(f
 Eigen::VectorXd FreeHessian::in_unknowns(const Eigen::VectorXd& v) const {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n_);
   x.tail(free()) = v;
-  for (Eigen::Index i = constraints_; i-- > 0;) {
-    const auto w = reflections_.col(i);
-    x -= (tau_[i] * w.dot(x)) * w;
-  }
+  turn_back(x);
   return x;
 }
 

@@ -69,7 +69,12 @@ class FreeHessian {
  private:
   [[nodiscard]] Eigen::Index free() const { return n_ - constraints_; }
   void reflect_constraints(const Eigen::MatrixXd& jacobian);
-  void reflect(Eigen::VectorXd& v) const;
+  using Vector = Eigen::Ref<Eigen::VectorXd>;
+  void reflect(Eigen::Index i, Vector v) const;
+  void turn(Vector v) const;
+  void turn_back(Vector v) const;
+  void solve_triangle(Vector mu) const;
+  void solve_by(const Eigen::MatrixXd& lower, Vector z) const;
   [[nodiscard]] bool factor(double shift, Eigen::MatrixXd& lower) const;
   /// Vectors krylov_ of Lanczos' method with the inverse, and the matrix that they make of it.
   struct Lanczos {
@@ -86,7 +91,7 @@ class FreeHessian {
   Eigen::MatrixXd turned_;    // Q^T H Q
   Eigen::MatrixXd factor_;    // L
   Eigen::MatrixXd proof_;     // of a shifted matrix
-  Eigen::VectorXd scratch_, turned_right_;
+  Eigen::VectorXd scratch_, turned_right_, right_, along_;
   Eigen::MatrixXd krylov_;
 };
 
