@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "search/span_solver.hpp"
+#include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
 namespace {

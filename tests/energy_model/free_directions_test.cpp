@@ -109,7 +109,8 @@ TEST(FreeDirections, StepWithinALengthIsTheLowestThere) {
           if (z.norm() <= length) continue;
           z = right;
         }
-        ASSERT_TRUE(free.solve_within(length, z)) << smallest << ' ' << length;
+        ASSERT_TRUE(free.solve_within(length, z))
+            << smallest << ' ' << length << ' ' << pulled_along_it;
         EXPECT_LE(z.norm(), 1.011 * length);
         EXPECT_GE(z.norm(), 0.74 * length);
         // The lowest on the sphere of its own length, by eigenvalues and bisection.

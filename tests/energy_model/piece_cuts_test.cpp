@@ -8,7 +8,8 @@
 #include <cmath>
 
 #include "random_scenes.hpp"
-#include "search/span_solver.hpp"
+#include "span/refinement.hpp"
+#include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -79,7 +80,7 @@ TEST(PieceCuts, OfAShapeAreThoseThatItIsFinishedOn) {
   ASSERT_EQ(cut.status, SolveStatus::converged) << cut.message;
   ASSERT_GT(cut.model->pieces(), 1);
   // The span that it is a shape of need not have them.
-  const SpanSolution finished = finish_span(hairpin(), SpanOptions(), workspace, cut);
+  const SpanSolution finished = finish(cut, SpanOptions(), workspace);
   EXPECT_EQ(finished.status, SolveStatus::converged) << finished.message;
   EXPECT_EQ(finished.model->pieces(), cut.model->pieces());
   EXPECT_NEAR(finished.energy, cut.energy, 1e-9 * std::abs(cut.energy));

@@ -9,7 +9,7 @@
 #include "dlo/energy_model/exact.hpp"
 #include "newton/penalty_descent.hpp"
 #include "problem/segments.hpp"
-#include "search/span_starts.hpp"
+#include "span/span_starts.hpp"
 
 namespace dlo::energy_model {
 namespace {

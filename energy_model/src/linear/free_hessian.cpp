@@ -149,13 +149,16 @@ bool FreeHessian::solve_within(double length, Eigen::VectorXd& z) {
   double low = 0;
   double high = std::numeric_limits<double>::infinity();
   double mu = 0;
+  const auto turned = turned_.bottomRightCorner(free(), free());
+  // An eigenvalue that is zero but for rounding.
+  const double least =
+      std::numeric_limits<double>::epsilon() * turned.diagonal().cwiseAbs().maxCoeff();
   if (!definite_) {
-    const auto turned = turned_.bottomRightCorner(free(), free());
     low = std::max(0.0, -turned.diagonal().minCoeff());
     mu = 1.1 * low + right_.norm() / length;
   }
   const auto between = [&] {
-    if (std::isinf(high)) return 4 * mu;
+    if (std::isinf(high)) return std::max(4 * mu, least);
     return low > 0.1 * high ? (low + high) / 2 : std::sqrt(std::max(low, 1e-4 * high) * high);
   };
   for (int step = 0; step < most_steps; ++step) {
@@ -174,7 +177,7 @@ bool FreeHessian::solve_within(double length, Eigen::VectorXd& z) {
     } else {
       high = mu;
     }
-    if (high - low <= closed * high && size < length) {
+    if ((high - low <= closed * high || high <= least) && size < length) {
       // Nothing pulls along the smallest eigenvalue.
       along_.setLinSpaced(z.size(), 1, 2);
       for (int i = 0; i < 3; ++i) {
@@ -190,7 +193,7 @@ bool FreeHessian::solve_within(double length, Eigen::VectorXd& z) {
     along_ = z;
     solve_by(proof_, along_);
     const double next = mu + size * size / z.dot(along_) * (size - length) / length;
-    mu = next > low && next < high ? next : between();
+    mu = next > low && next < high ? std::max(next, least) : between();
   }
   return false;
 }

@@ -13,10 +13,12 @@
 #include "contact/mend.hpp"
 #include "contact/resting_polygon.hpp"
 #include "newton/trust_region.hpp"
-#include "search/search_log.hpp"
 #include "search/settle_lift_offs.hpp"
-#include "search/span_starts.hpp"
-#include "search/way_down.hpp"
+#include "span/refinement.hpp"
+#include "span/same_shape.hpp"
+#include "span/search_log.hpp"
+#include "span/span_starts.hpp"
+#include "span/way_down.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -130,7 +132,7 @@ class ContactSearch {
     const int many = model.terms();
     const int fewer = std::max(terms_of_load(model.span()), many - std::max(2, many / 5));
     if (!model.span().planar || options_.terms > 0 || fewer >= many) return many;
-    // As finish_span() has it, with a margin.
+    // As refined() has it, with a margin.
     constexpr double margin = 0.1;
     const double most = margin * options_.tolerance * 4 * fewer * fewer;
     const Eigen::Index first = model.size() - static_cast<Eigen::Index>(model.pieces()) * many;
@@ -483,7 +485,7 @@ class ContactSearch {
     SpanOptions options = options_;
     options.start = nullptr;
     const Span span = solution.model->span();
-    solution = finish_span(span, options, workspace_, std::move(solution));
+    solution = finish(std::move(solution), options, workspace_);
     spent_ += std::exchange(solution.evaluations, 0);
     return solution;
   }

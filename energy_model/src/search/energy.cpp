@@ -17,9 +17,9 @@
 #include "search/contact_search.hpp"
 #include "search/known_shape.hpp"
 #include "search/polygon_fields.hpp"
-#include "search/search_log.hpp"
-#include "search/span_solver.hpp"
 #include "search/twist_path.hpp"
+#include "span/search_log.hpp"
+#include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "dlo/energy_model/equilibrium.hpp"
 #include "problem/split.hpp"
-#include "search/span_solver.hpp"
+#include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
 

@@ -8,7 +8,7 @@
 #include "dlo/energy_model/problem.hpp"
 #include "kirchhoff/relaxed_polygon.hpp"
 #include "problem/split.hpp"
-#include "search/span_solver.hpp"
+#include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
 

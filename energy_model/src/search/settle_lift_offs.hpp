@@ -1,6 +1,6 @@
 #pragma once
 
-#include "search/span_solver.hpp"
+#include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
 

@@ -14,6 +14,7 @@
 #include "linear/free_directions.hpp"
 #include "newton/penalty_descent.hpp"
 #include "newton/trust_region.hpp"
+#include "span/refinement.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -353,10 +354,7 @@ SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
   int spent = 0;
   for (const double tolerance : {coarse_tolerance, fine_tolerance}) {
     solution = TwistPath(span, stiffness, untwisted, options, tolerance, workspace).run(angle);
-    if (solution.is_equilibrium()) {
-      const Span twisted = solution.model->span();
-      solution = finish_span(twisted, options, workspace, std::move(solution));
-    }
+    if (solution.is_equilibrium()) solution = finish(std::move(solution), options, workspace);
     solution.evaluations += std::exchange(spent, spent + solution.evaluations);
     if (succeeded(solution.status) || options.deadline.passed()) break;
   }
@@ -391,7 +389,7 @@ SpanSolution twist_from(const TangentField& field, double twist,
     if (solution.is_equilibrium()) break;
     if (!more || options.deadline.passed()) return solution;
   }
-  return finish_span(twisted, options, workspace, std::move(solution));
+  return finish(std::move(solution), options, workspace);
 }
 
 }  // namespace dlo::energy_model

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "problem/split.hpp"
-#include "search/span_solver.hpp"
+#include "span/span_solver.hpp"
 
 namespace dlo::energy_model {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "problem/span.hpp"
-#include "search/span_solver.hpp"
+#include "strain/span_shape.hpp"
 
 namespace dlo::energy_model {
 

@@ -1,4 +1,4 @@
-#include "search/way_down.hpp"
+#include "span/way_down.hpp"
 
 #include "linear/free_directions.hpp"
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "base/deadline.hpp"
-#include "search/span_solver.hpp"
 #include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {

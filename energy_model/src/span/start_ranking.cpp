@@ -1,4 +1,4 @@
-#include "search/start_ranking.hpp"
+#include "span/start_ranking.hpp"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "search/search_log.hpp"
+#include "span/search_log.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "search/span_starts.hpp"
+#include "span/span_starts.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "problem/segments.hpp"
+#include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {
 namespace {

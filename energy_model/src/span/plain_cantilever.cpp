@@ -1,0 +1,80 @@
+#include "span/plain_cantilever.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "span/refinement.hpp"
+#include "span/span_starts.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Above this sum of weight and loads (in EI/l^2) a rod is nearer to its soft limit than to
+/// straight.
+constexpr double soft_load = 12;
+
+/// Whether all tangents lie between the clamp's direction and the load's, on the shorter way, of a
+/// plain cantilever that is pulled one way. Then an equilibrium is the lowest one. With the angle
+/// chi from the load's opposite and the force n(s) of what hangs beyond s,
+///     chi'' = -n sin(chi),  chi(0) given,  chi'(length) = 0,
+/// and the energy's minimum has chi in [0, pi]: what is beyond may be mirrored, which costs no
+/// more. There is but one such solution, because sin(chi) / chi falls (Brezis and Oswald, 1986); a
+/// second one, chi = 0, only where the clamp points against the load, and that is unstable if it is
+/// not the only one.
+bool turns_to_load(const Span& span, const Eigen::Matrix3Xd& tangents) {
+  constexpr double rounding = 1e-9;  // sine of an angle that the terms leave
+  Eigen::Vector3d force = span.weight_between(0, span.length);
+  for (const Span::Load& load : span.loads) force += load.force;
+  const Eigen::Vector3d across(-force.y(), force.x(), 0);
+  const double side = std::copysign(1.0, across.dot(*span.start_direction));
+  for (Eigen::Index q = 0; q < tangents.cols(); ++q) {
+    if (side * across.dot(tangents.col(q)) < -rounding * force.norm()) return false;
+  }
+  return true;
+}
+
+/// As the load on the straight rod bends it, if that lowers its energy; else straight.
+void bend_slightly(SpanSolution& solution) {
+  SpanEnergy& model = *solution.model;
+  solution.x.setZero(model.size());
+  Eigen::VectorXd gradient(model.size());
+  const double energy = model.value(solution.x, gradient);
+  ++solution.evaluations;
+  const Eigen::VectorXd bent = -gradient;
+  // Newton's method begins with this value, and counts it.
+  if (model.value(bent, gradient) < energy) solution.x = bent;
+}
+
+}  // namespace
+
+SpanSolution plain_cantilever(SpanDescents& on) {
+  SpanSolution at_once = on.empty_solution(on.terms());
+  if (on.traits().load < soft_load) {
+    bend_slightly(at_once);
+  } else {
+    at_once.x = at_once.model->fit(soft_field(on.span())(at_once.model->nodes()));
+  }
+  on.newton().polish(at_once, on.traits().load);
+  at_once = refined(on, std::move(at_once));
+  if (succeeded(at_once.status) && at_once.evaluations <= on.options().max_evaluations &&
+      turns_to_load(on.span(), at_once.model->tangents())) {
+    return at_once;
+  }
+  int spent = at_once.evaluations;
+  if (on.traits().load < soft_load) {
+    SpanSolution straight = on.empty_solution(on.coarse_terms());
+    straight.x.setZero(straight.model->size());
+    on.descend(straight);
+    SpanSolution solution = refined(on, std::move(straight));
+    if (solution.status != SolveStatus::saddle) {
+      solution.evaluations += spent;
+      return solution;
+    }
+    spent += solution.evaluations;
+  }
+  SpanSolution solution = refined(on, on.from_start(Start{soft_field(on.span())}));
+  solution.evaluations += spent;
+  return solution;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,257 @@
+#include "span/refinement.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "base/legendre.hpp"
+#include "certify/certify.hpp"
+#include "certify/enough_terms.hpp"
+#include "certify/piece_cuts.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// The same where they are more than `most_unknowns` because pieces end where the shape wants it.
+constexpr int most_graded_unknowns = 2 * most_unknowns;
+
+/// Error over the length above which a shape is asked about with more terms than it takes to look
+/// right.
+constexpr double largest_told_error = 1e-5;
+
+/// Gradient over the load that a shape may have in more terms than its own.
+constexpr double largest_residual = 1e-5;
+
+/// Gap over the tolerance that it may have there.
+constexpr double largest_gap = 10;
+
+/// Last coefficients of a shape with so many terms.
+struct Tail {
+  int terms = 0;
+  double size = 0;
+};
+
+class Refinement {
+ public:
+  explicit Refinement(SpanDescents& on)
+      : on_(on), span_(on.span()), options_(on.options()), traits_(on.traits()) {}
+
+  [[nodiscard]] SpanSolution run(SpanSolution solution) {
+    const int unknowns = traits_.graded ? most_graded_unknowns : most_unknowns;
+    const bool touches = !span_.contacts.empty();
+    // Contacts cut the rod into short pieces; it still may take the terms of its load.
+    const int least = touches ? std::max(32, on_.terms()) : 32;
+    const int affordable = std::max(least, unknowns / (traits_.fields * solution.model->pieces()));
+    // Soft obstacles make kinks inside pieces, where contact begins; more terms help only so far.
+    constexpr int most_with_soft_obstacles = 64;
+    const int most_terms =
+        std::min(affordable, span_.soft_obstacles.empty() ? max_terms : most_with_soft_obstacles);
+    Tail before;
+    bool polished = false;
+    while (solution.is_equilibrium()) {
+      solution.resolved = options_.terms > 0 || resolved(solution);
+      if (solution.resolved && solution.next_step > coarsest_step && !polished) {
+        newton().polish(solution, traits_.load);
+        polished = true;
+        continue;
+      }
+      if (solution.resolved) break;
+      if (on_.out_of_time()) {
+        solution.finish(SolveStatus::time_limit);
+        break;
+      }
+      if (solution.terms >= most_terms) {
+        solution.resolved = !span_.soft_obstacles.empty();
+        if (solution.resolved) break;
+        if (std::optional<SpanSolution> graded = graded_anew(solution)) return std::move(*graded);
+        solution.fail(solution.too_few_terms());
+        break;
+      }
+      const bool too_few = solution.terms < on_.terms() && !touches;
+      int more = too_few ? on_.terms() : terms_by_decay(solution, before);
+      // Grips may pull harder than weight and loads do.
+      if (solution.multipliers.size() > 0 && !traits_.taut && !traits_.graded) {
+        more = std::max(
+            more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), traits_.longest_piece));
+      }
+      if (before.terms == 0) more = std::max(more, terms_by_own_decay(solution));
+      before = {solution.terms, solution.model->tail(solution.x)};
+      const bool hessian_known = newton().has_factor_of(solution.model.get());
+      solution = with_terms(solution, std::min(most_terms, more), hessian_known);
+    }
+    return solution;
+  }
+
+ private:
+  [[nodiscard]] Newton& newton() const { return on_.newton(); }
+
+  /// Where the terms that can be afforded do not resolve a shape, its pieces may end in the wrong
+  /// places.
+  [[nodiscard]] std::optional<SpanSolution> graded_anew(const SpanSolution& solution) {
+    const std::optional<Span> span = graded_for(on_, solution);
+    if (!span) return std::nullopt;
+    SpanDescents graded(*span, options_, on_.workspace());
+    SpanSolution finer = graded.empty_solution(graded.terms());
+    const TangentField field = field_of(solution.model->shape(solution.x));
+    finer.x = finer.model->fit(field(finer.model->nodes()));
+    if (span->twist) {
+      finer.x = finer.model->with_twist(finer.x, solution.model->twist(solution.x));
+    }
+    finer.multipliers = solution.multipliers;
+    finer.evaluations = solution.evaluations;
+    newton().polish(finer, traits_.load);
+    finer = refined(graded, std::move(finer));
+    if (!finer.is_equilibrium()) return std::nullopt;
+    return finer;
+  }
+
+  /// Terms with which the last ones of a first shape will be small enough, if they go on falling
+  /// exponentially as its second half does, which is a little too few; as many as it has where they
+  /// do not fall.
+  [[nodiscard]] int terms_by_own_decay(const SpanSolution& solution) const {
+    constexpr double reserve = 1.15;
+    constexpr double falls = 0.5;
+    const int K = solution.terms;
+    const int half = K / 2;
+    const double before = solution.model->tail(solution.x, half);
+    const double now = solution.model->tail(solution.x);
+    if (options_.terms > 0 || half < 2 || !(now > 0 && now < falls * before)) return K;
+    const double rate = std::log(before / now) / (K - half);
+    double all = K;
+    // What is small enough grows with the terms.
+    for (int i = 0; i < 2; ++i) {
+      all = K + std::log(now / (options_.tolerance * 4 * all * all)) / rate;
+      if (!(all > K)) return K;
+    }
+    return static_cast<int>(std::ceil(std::min(reserve * all, 1.0 * max_terms)));
+  }
+
+  /// Terms with which the last ones will be small enough, if they go on falling
+  /// exponentially as from those before; a quarter more where nothing is known.
+  [[nodiscard]] int terms_by_decay(const SpanSolution& solution, const Tail& before) const {
+    const int K = solution.terms;
+    const double now = solution.model->tail(solution.x);
+    const double wanted = options_.tolerance * 4 * K * K;
+    int more = std::max(2, K / 4);
+    if (before.terms > 0 && now < before.size && now > wanted) {
+      const double rate = std::log(before.size / now) / (K - before.terms);
+      more = std::clamp(static_cast<int>(std::ceil(std::log(now / wanted) / rate)), 2, 2 * more);
+    }
+    return K + more;
+  }
+
+  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms,
+                                        bool hessian_known) {
+    SpanSolution finer = on_.empty_solution(terms);
+    finer.x = finer.model->adopt(*solution.model, solution.x);
+    finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
+    if (hessian_known) {
+      newton().polish_with_more_terms(finer, solution, traits_.load);
+    } else {
+      newton().polish(finer, traits_.load);
+    }
+    const bool descends = finer.model->size() <= most_descended;
+    if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles()))
+      on_.descend(finer);
+    if (!finer.is_equilibrium() && !finer.model->has_soft_obstacles()) {
+      finer.x = finer.model->adopt(*solution.model, solution.x);
+      finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
+      on_.pull_to_grips(finer);
+    }
+    finer.evaluations += solution.evaluations;
+    return finer;
+  }
+
+  [[nodiscard]] bool resolved(const SpanSolution& solution) {
+    if (span_.is_plain_cantilever() && solution.terms < on_.terms()) return false;
+    if (span_.twist && solution.terms < terms_under_twist(solution)) return false;
+    const double K = solution.terms;
+    // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
+    if (solution.model->tail(solution.x) > options_.tolerance * 4 * K * K) return false;
+    if (span_.is_plain_cantilever() || !span_.soft_obstacles.empty()) return true;
+    return holds_with_more_terms(solution);
+  }
+
+  /// Whether gradient and gaps of the shape are as small in half as many terms more, with the
+  /// quadrature of these: frames in space are integrated the better the more terms there are, and a
+  /// gap moves the shape by as much.
+  [[nodiscard]] bool holds_with_more_terms(const SpanSolution& solution) {
+    const std::shared_ptr<SpanEnergy> model =
+        on_.workspace().model(span_, std::min(max_terms, 3 * solution.terms / 2));
+    const Eigen::VectorXd x = model->adopt(*solution.model, solution.x);
+    Eigen::VectorXd gradient(model->size());
+    (void)model->value(x, gradient);
+    Eigen::VectorXd residual(model->constraints());
+    Eigen::MatrixXd jacobian(model->constraints(), model->size());
+    model->constraint(residual, jacobian);
+    gradient -=
+        jacobian.transpose() * model->adopt_multipliers(*solution.model, solution.multipliers);
+    return gradient.norm() < largest_residual * (1 + traits_.load) &&
+           residual.norm() < largest_gap * options_.tolerance;
+  }
+
+  SpanDescents& on_;
+  const Span& span_;
+  const SpanOptions& options_;
+  const SpanTraits& traits_;
+};
+
+}  // namespace
+
+SpanSolution refined(SpanDescents& on, SpanSolution solution) {
+  return Refinement(on).run(std::move(solution));
+}
+
+std::optional<Span> graded_for(const SpanDescents& on, const SpanSolution& shape) {
+  const Span& span = on.span();
+  const bool touches =
+      !span.rigid_obstacles.empty() || !span.contacts.empty() || shape.model->has_soft_obstacles();
+  if (on.traits().graded || touches || span.has_material_directors() || on.options().terms > 0) {
+    return std::nullopt;
+  }
+  Span result = shape.model->span();
+  result.cuts = piece_cuts(shape);
+  if (result.cuts.empty()) return std::nullopt;
+  return result;
+}
+
+int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& workspace) {
+  Newton& newton = workspace.newton();
+  const double load = solution.model->span().total_load();
+  certify(solution, load, newton);
+  const bool asks = solution.status == SolveStatus::near_singular ||
+                    (counts(solution, options) && solution.error > largest_told_error);
+  const int more = std::min(max_terms, 3 * solution.terms / 2);
+  if (!asks || options.terms > 0 || options.deadline.passed() ||
+      more * SpanTraits::fields_of(solution.model->span()) * solution.model->pieces() >
+          most_unknowns) {
+    return 0;
+  }
+  // The shape may have left the plane, or have pieces of its own.
+  const Span own = solution.model->span();
+  SpanDescents on(own, options, workspace);
+  SpanSolution finer = on.empty_solution(more);
+  finer.x = finer.model->adopt(*solution.model, solution.x);
+  finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
+  newton.polish(finer, load);
+  // Of what Newton's method left open before nobody has asked whether its terms resolve it.
+  if (!solution.resolved) finer = refined(on, std::move(finer));
+  finer.resolved = finer.resolved || solution.resolved;
+  certify(finer, load, newton);
+  const int spent = finer.evaluations;
+  const int evaluations = solution.evaluations + spent;
+  if (finer.error < solution.error) solution = std::move(finer);
+  solution.evaluations = evaluations;
+  return spent;
+}
+
+SpanSolution finish(SpanSolution solution, const SpanOptions& options, SpanWorkspace& workspace) {
+  const Span own = solution.model->span();
+  SpanDescents on(own, options, workspace);
+  solution = refined(on, std::move(solution));
+  (void)judge(solution, options, workspace);
+  return solution;
+}
+
+}  // namespace dlo::energy_model

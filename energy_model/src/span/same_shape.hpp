@@ -1,0 +1,14 @@
+#pragma once
+
+#include "strain/span_solution.hpp"
+
+namespace dlo::energy_model {
+
+/// Difference of points over the length up to which polished shapes are one.
+inline constexpr double same_points = 1e-6;
+
+/// Two equilibria of one span that are the same but for rounding and, in space, for free turns.
+[[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b,
+                                 double tolerance = same_points);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,201 @@
+#include "span/span_descents.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/legendre.hpp"
+#include "base/minimise.hpp"
+#include "certify/enough_terms.hpp"
+#include "newton/penalty_descent.hpp"
+#include "newton/trust_region.hpp"
+#include "strain/piece.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// The fewest coefficients of a coarser start.
+constexpr int least_terms = 7;
+
+/// Unknowns with which a minimum between grips is looked for.
+constexpr int coarse_unknowns = 100;
+
+/// Coefficients that resolve a layer over six of its lengths.
+constexpr int layer_terms = 20;
+
+/// Those of a ranked start.
+Eigen::VectorXd unknowns_of(const Start& start, SpanEnergy& model) {
+  Eigen::VectorXd x = model.adopt(*start.model, start.x);
+  model.wind_to(x);
+  return x;
+}
+
+}  // namespace
+
+SpanDescents::SpanDescents(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
+    : span_(span), options_(options), workspace_(workspace), traits_(span) {
+  newton().limit(options.deadline);
+}
+
+int SpanDescents::terms() const {
+  if (options_.terms > 0) return options_.terms;
+  const int layers = traits_.taut || traits_.graded ? layer_terms : 0;
+  const int first = traits_.graded ? 0 : first_terms(traits_.load, traits_.longest_piece);
+  return std::max({first, options_.least_terms, layers, traits_.natural_terms});
+}
+
+int SpanDescents::coarse_terms() const {
+  if (options_.terms > 0) return options_.terms;
+  if (terms() <= few_terms) return terms();
+  int coarse = terms() / 2;
+  if (!span_.holds.empty()) {
+    const int pieces = static_cast<int>(pieces_of(span_).size());
+    coarse = std::min(coarse, coarse_unknowns / (traits_.fields * pieces));
+  }
+  return std::max(least_terms, coarse);
+}
+
+SpanSolution SpanDescents::empty_solution(int terms) {
+  SpanSolution solution;
+  solution.model = workspace_.model(span_, terms);
+  solution.terms = terms;
+  return solution;
+}
+
+SpanSolution SpanDescents::from_start(const Start& from) {
+  SpanSolution solution;
+  int spent = 0;
+  for (int count = coarse_terms();; count *= 2) {
+    solution = empty_solution(std::min(count, max_terms));
+    solution.x = from.model ? unknowns_of(from, *solution.model)
+                            : solution.model->fit(from.field(solution.model->nodes()));
+    const Eigen::VectorXd start = solution.x;
+    // Where the rod is taut such a start is near to the shape already.
+    const bool is_near = traits_.taut && !solution.model->has_soft_obstacles();
+    if (is_near) newton().polish(solution, traits_.load);
+    if (falls_by_newton(solution)) return solution;
+    if (!is_near || (!solution.is_equilibrium() && !out_of_time())) {
+      solution.x = start;
+      solution.multipliers.resize(0);
+      descend(solution);
+    }
+    if (solution.model->constraints() > 0 && !solution.is_equilibrium() &&
+        !solution.model->has_soft_obstacles()) {
+      solution.x = start;
+      solution.multipliers.resize(0);
+      pull_to_grips(solution);
+    }
+    spent += solution.evaluations;
+    solution.evaluations = spent;
+    const bool plain = solution.model->constraints() == 0 && !solution.model->has_soft_obstacles();
+    if (solution.is_equilibrium() || plain) return solution;
+    const bool more = 2 * solution.model->size() <= most_descended && options_.terms == 0;
+    if (!more || out_of_time()) return solution;
+  }
+}
+
+/// Newton's method at once, of a rod that one clamp holds. @return whether it has led from
+/// solution.x down to a minimum nearby
+bool SpanDescents::falls_by_newton(SpanSolution& solution) {
+  constexpr double far = 2;  // of strains, as much as Newton's method goes in one step
+  SpanEnergy& model = *solution.model;
+  if (options_.all || !span_.start_direction || span_.has_material_directors() ||
+      span_.is_plain_cantilever() || model.constraints() > 0 || model.has_soft_obstacles()) {
+    return false;
+  }
+  const Eigen::VectorXd start = solution.x;
+  Eigen::VectorXd gradient(model.size());
+  const double energy = model.value(start, gradient);
+  if (solution.terms < terms()) {
+    newton().polish_roughly(solution, traits_.load);
+  } else {
+    newton().polish(solution, traits_.load);
+  }
+  if (succeeded(solution.status) && solution.energy <= energy &&
+      (solution.x - start).norm() < far && solution.evaluations <= options_.max_evaluations) {
+    return true;
+  }
+  solution.x = start;
+  return false;
+}
+
+void SpanDescents::pull_to_grips(SpanSolution& solution) {
+  descend_by_penalty(
+      solution,
+      {.load = traits_.load, .deadline = &options_.deadline, .stiffness = traits_.stiffness});
+  if (succeeded(solution.status)) newton().polish(solution, traits_.load);
+}
+
+SpanSolution SpanDescents::near_field(const TangentField& field) {
+  SpanSolution solution = empty_solution(terms());
+  const StartShape wanted = field(solution.model->nodes());
+  if (!adopt_known(wanted, solution)) {
+    solution.x = solution.model->fit(wanted);
+    newton().polish(solution, traits_.load);
+  } else if (newton().has_factor_of(options_.known.model.get())) {
+    solution.multipliers =
+        solution.model->adopt_multipliers(*options_.known.model, options_.known.multipliers);
+    newton().polish_from_neighbour(solution, traits_.load);
+  } else {
+    newton().polish(solution, traits_.load);
+  }
+  return solution;
+}
+
+/// In space a rod that is straight by nature has next to the same strains where its grips have
+/// hardly moved, unless the frame of its start has turned about it. @return whether they give the
+/// tangents that are wanted
+bool SpanDescents::adopt_known(const StartShape& wanted, SpanSolution& solution) const {
+  constexpr double near = 0.2;  // of tangents
+  const KnownShape& known = options_.known;
+  SpanEnergy& model = *solution.model;
+  if (!known.model || span_.planar || span_.has_material_directors()) return false;
+  if (known.model->span().planar || known.model->pieces() != model.pieces()) return false;
+  if (known.model->span().cuts != span_.cuts) return false;
+  solution.x = model.adopt(*known.model, known.x);
+  Eigen::VectorXd gradient(model.size());
+  (void)model.value(solution.x, gradient);
+  return (model.tangents() - wanted.tangents).cwiseAbs().maxCoeff() < near;
+}
+
+void SpanDescents::descend(SpanSolution& solution) {
+  minimise(solution);
+  if (!succeeded(solution.status)) return;
+  // A cantilever is polished once it has all its terms.
+  if (span_.is_plain_cantilever() && solution.terms < terms()) return;
+  if (solution.terms < terms()) {
+    polish_before_more_terms(solution);
+  } else {
+    newton().polish(solution, traits_.load);
+  }
+}
+
+void SpanDescents::polish_before_more_terms(SpanSolution& solution) {
+  if (options_.all || options_.terms > 0 || solution.model->constraints() == 0) {
+    newton().polish(solution, traits_.load);
+  } else {
+    newton().polish_roughly(solution, traits_.load);
+  }
+}
+
+void SpanDescents::minimise(SpanSolution& solution) const {
+  SpanEnergy& model = *solution.model;
+  if (model.constraints() > 0) {
+    descend_in_trust_region(solution, {.load = traits_.load,
+                                       .gradient_tolerance = handover_gradient,
+                                       .nearest = handover_step,
+                                       .deadline = &options_.deadline});
+    return;
+  }
+  const Objective objective = [&model](const Eigen::Ref<const Eigen::VectorXd>& x,
+                                       Eigen::Ref<Eigen::VectorXd> gradient) {
+    return model.value(x, gradient);
+  };
+  const MinimiseResult result = minimise_lbfgs(
+      objective, solution.x, {handover_gradient * (1 + traits_.load), options_.max_evaluations});
+  solution.evaluations += result.evaluations;
+  // Newton's method has to prove the shape anyway.
+  solution.status = result.is_a_start() ? SolveStatus::roundoff_limited : result.status;
+  solution.message = result.message;
+}
+
+}  // namespace dlo::energy_model
