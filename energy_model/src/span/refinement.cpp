@@ -13,7 +13,7 @@
 namespace dlo::energy_model {
 namespace {
 
-/// The same where they are more than `most_unknowns` because pieces end where the shape wants it.
+/// Unknowns that a shape may have whose pieces end where it wants it.
 constexpr int most_graded_unknowns = 2 * most_unknowns;
 
 /// Error over the length above which a shape is asked about with more terms than it takes to look

@@ -227,8 +227,8 @@ class Search {
     for (const std::string& what : own.not_looked()) options_.log->leave_out(what);
   }
 
-  /// The same, and of a shape that is followed (SpanOptions::known) to where it falls from a
-  /// saddle.
+  /// From the caller's own start, certified; a shape that is followed (SpanOptions::known) to where
+  /// it falls from a saddle.
   [[nodiscard]] SpanSolution from_given_start_to_rest() {
     SpanSolution solution = finish(from_given_start(), options_, workspace_);
     solution.followed = came_by_newton_;
@@ -241,7 +241,6 @@ class Search {
     return succeeded(lower->status) ? std::move(*lower) : std::move(solution);
   }
 
-  /// From the caller's own start.
   [[nodiscard]] SpanSolution from_given_start() {
     const bool follow = options_.approach == Approach::follow;
     SpanSolution solution =
@@ -289,12 +288,6 @@ class Search {
     if (!solution.is_equilibrium()) return std::nullopt;
     return solution;
   }
-
-  /// Last coefficients of a shape with so many terms.
-  struct Tail {
-    int terms = 0;
-    double size = 0;
-  };
 
   /// Keeps an equilibrium that is not known yet, or the first failure until there is one.
   /// @return whether it is such an equilibrium

@@ -8,6 +8,9 @@
 namespace dlo::energy_model {
 namespace {
 
+/// Of a fit whose gap is closed anyway.
+constexpr int no_corrections = 0;
+
 bool is_cheaper(const Start& a, const Start& b) { return a.cost < b.cost; }
 
 void weigh_with_springs(SpanSolution& looked, const StartRanking& ranking,
@@ -46,7 +49,7 @@ void meet_grips(SpanSolution& looked, const StartRanking& ranking, std::vector<S
     const double most = energies.size() < ranking.followed ? std::numeric_limits<double>::infinity()
                                                            : energies.back();
     if (start.least > most) continue;
-    point.x = model.fit(start.shape, 0);
+    point.x = model.fit(start.shape, no_corrections);
     evaluate(looked, point);
     if (!restore(looked, point, loosest_gap, scratch, most)) {
       start.cost = std::max(start.cost, most);
