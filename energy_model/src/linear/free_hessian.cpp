@@ -100,7 +100,7 @@ void FreeHessian::constrain(const Eigen::MatrixXd& jacobian) {
   independent_ = independent_ && constraints_ == jacobian.rows();
 }
 
-void FreeHessian::reflect(Eigen::Index i, Vector v) const {
+void FreeHessian::reflect(Eigen::Index i, Vector& v) const {
   const auto w = reflections_.col(i);
   v -= (tau_[i] * w.dot(v)) * w;
 }

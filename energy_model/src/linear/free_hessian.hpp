@@ -70,7 +70,7 @@ class FreeHessian {
   [[nodiscard]] Eigen::Index free() const { return n_ - constraints_; }
   void reflect_constraints(const Eigen::MatrixXd& jacobian);
   using Vector = Eigen::Ref<Eigen::VectorXd>;
-  void reflect(Eigen::Index i, Vector v) const;
+  void reflect(Eigen::Index i, Vector& v) const;
   void turn(Vector v) const;
   void turn_back(Vector v) const;
   void solve_triangle(Vector mu) const;

@@ -169,7 +169,7 @@ void SpanDescents::descend(SpanSolution& solution) {
   }
 }
 
-void SpanDescents::polish_before_more_terms(SpanSolution& solution) {
+void SpanDescents::polish_before_more_terms(SpanSolution& solution) const {
   if (options_.all || options_.terms > 0 || solution.model->constraints() == 0) {
     newton().polish(solution, traits_.load);
   } else {

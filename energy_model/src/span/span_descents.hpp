@@ -54,7 +54,7 @@ class SpanDescents {
  private:
   [[nodiscard]] bool falls_by_newton(SpanSolution& solution);
   [[nodiscard]] bool adopt_known(const StartShape& wanted, SpanSolution& solution) const;
-  void polish_before_more_terms(SpanSolution& solution);
+  void polish_before_more_terms(SpanSolution& solution) const;
   void minimise(SpanSolution& solution) const;
 
   const Span& span_;
