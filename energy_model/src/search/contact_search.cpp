@@ -484,7 +484,6 @@ class ContactSearch {
   [[nodiscard]] SpanSolution finished(SpanSolution solution) {
     SpanOptions options = options_;
     options.start = nullptr;
-    const Span span = solution.model->span();
     solution = finish(std::move(solution), options, workspace_);
     spent_ += std::exchange(solution.evaluations, 0);
     return solution;
