@@ -65,10 +65,11 @@ def _build(folder, settings):
     """Compiles the module into the folder; what an earlier call has compiled is kept."""
     build = (settings or {}).get("build-dir")
     if build is None:
-        build = ROOT / "build/wheel"
+        # The folder of the command's build: its libraries are not compiled a second time.
+        build = ROOT / "build/release"
         _run(
-            "cmake", "-G", "Ninja", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release",
-            "-DDLO_TESTS=OFF", "-DDLO_PYTHON=ON", f"-DDLO_PYTHON_EXECUTABLE={sys.executable}",
+            "cmake", "--preset", "build", "-S", ROOT, "-DDLO_PYTHON=ON",
+            f"-DDLO_PYTHON_EXECUTABLE={sys.executable}",
         )
     _run("cmake", "--build", build, "--target", "dlo_python")
     with tempfile.TemporaryDirectory() as installed:
@@ -106,7 +107,7 @@ def _pack(folder, wheel, info):
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     """PEP 517: the wheel's file name, in that directory. Setting build-dir: a folder in which CMake
-    has been configured with DLO_PYTHON for the same Python, to be used instead of build/wheel."""
+    has been configured with DLO_PYTHON for the same Python, to be used instead of build/release."""
     project = _project()
     info = f"{project['name']}-{project['version']}.dist-info"
     name = f"{project['name']}-{project['version']}-{_tag()}.whl"
