@@ -10,9 +10,14 @@
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "run_command.hpp"
+#include "shell_words.hpp"
 
 namespace dlo::test {
 
@@ -54,7 +59,17 @@ class Command : public testing::Test {
     return path("scene.toml");
   }
 
+  /// The command within this process, which is faster; arguments that need a shell bring a process.
   [[nodiscard]] Outcome run(const std::string& arguments) const {
+    std::optional<std::vector<std::string>> list = shell_words(arguments);
+    if (!list) return run_process(arguments);
+    Outcome result;
+    result.status = cli::run_command(std::move(*list), result.out, result.err);
+    return result;
+  }
+
+  /// A process of the command: for what is about processes.
+  [[nodiscard]] Outcome run_process(const std::string& arguments) const {
     return run_line(std::string(DLO_COMMAND) + " " + arguments);
   }
 

@@ -6,8 +6,8 @@
 namespace dlo::cli {
 
 // Each adds its command to the application and runs it when it is chosen. Errors are exceptions;
-// main() turns them into messages and exit statuses. A result outside a tolerance is printed, then
-// end_with(ExitStatus::outside_tolerance) called.
+// report_exception() turns them into messages and exit statuses. A result outside a tolerance is
+// printed, then end_with(ExitStatus::outside_tolerance) called.
 void add_init(CLI::App& app);
 void add_materials(CLI::App& app);
 void add_solve(CLI::App& app);

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -21,6 +22,9 @@ namespace dlo::cli {
 namespace {
 
 constexpr const char* standard_output = "standard output";
+
+// Of the process, as its descriptors are.
+std::atomic<RedirectedOutput*> redirected = nullptr;
 
 /// While it lives, a pipe that nobody reads does not end the process.
 class WithoutBrokenPipes {
@@ -120,7 +124,25 @@ void write_output(const OutputOptions& options, const Formats& formats) {
   }
 }
 
+RedirectedOutput::RedirectedOutput(std::string& out, std::string& err)
+    : out_(out), err_(err), before_(redirected.exchange(this)) {}
+
+RedirectedOutput::~RedirectedOutput() { redirected = before_; }
+
+RedirectedOutput* RedirectedOutput::current() { return redirected; }
+
+void RedirectedOutput::append_out(std::string_view text) {
+  const std::scoped_lock lock(writing_);
+  out_.append(text);
+}
+
+void RedirectedOutput::append_err(std::string_view text) {
+  const std::scoped_lock lock(writing_);
+  err_.append(text);
+}
+
 void write_standard_output(std::string_view text) {
+  if (RedirectedOutput* texts = RedirectedOutput::current()) return texts->append_out(text);
   compare::write_all(STDOUT_FILENO, text, standard_output);
 }
 
@@ -132,6 +154,7 @@ void close_standard_output() {
 }
 
 void write_standard_error(std::string_view text) {
+  if (RedirectedOutput* texts = RedirectedOutput::current()) return texts->append_err(text);
   const WithoutBrokenPipes quietly;
   try {
     compare::write_all(STDERR_FILENO, text, "standard error");
@@ -201,6 +224,7 @@ void check_outputs(const CLI::App& command) {
       outputs.push_back(file);
     }
   }
+  if (RedirectedOutput::current() != nullptr) return;
   // A shell that appends to an input with ">>" would let the command write behind what it reads.
   for (const std::string& input : inputs) {
     struct stat open {};

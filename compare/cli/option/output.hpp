@@ -6,6 +6,7 @@
 #include <concepts>
 #include <functional>
 #include <iterator>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -99,6 +100,31 @@ void say(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
 }
 /// A text on standard error as it is; where it cannot be written nothing happens, not even SIGPIPE.
 void write_standard_error(std::string_view text);
+
+/// While it lives, what goes to standard output and standard error is appended to two texts, of all
+/// threads: one may live at a time, or one within another. Nothing is a terminal then.
+class RedirectedOutput {
+ public:
+  /// @param out, err  have to outlive it; nobody else touches them meanwhile
+  RedirectedOutput(std::string& out, std::string& err);
+  ~RedirectedOutput();
+  RedirectedOutput(const RedirectedOutput&) = delete;
+  RedirectedOutput& operator=(const RedirectedOutput&) = delete;
+  RedirectedOutput(RedirectedOutput&&) = delete;
+  RedirectedOutput& operator=(RedirectedOutput&&) = delete;
+
+  /// The one that is in force, null if there is none.
+  [[nodiscard]] static RedirectedOutput* current();
+
+  void append_out(std::string_view text);
+  void append_err(std::string_view text);
+
+ private:
+  std::string& out_;
+  std::string& err_;
+  std::mutex writing_;  ///< threads of a scheduler write warnings
+  RedirectedOutput* before_;
+};
 
 /// Descriptors 0 to 2 that the caller has closed: nothing that is opened later may take their
 /// place. Writing to a standard output that was closed stays an error.

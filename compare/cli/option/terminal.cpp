@@ -20,12 +20,16 @@ std::string_view environment(const char* name) {
   return value != nullptr ? value : "";
 }
 
-bool is_terminal(int file) { return ::isatty(file) == 1 && environment("TERM") != "dumb"; }
+bool is_redirected() { return RedirectedOutput::current() != nullptr; }
+
+bool is_terminal(int file) {
+  return !is_redirected() && ::isatty(file) == 1 && environment("TERM") != "dumb";
+}
 
 std::size_t columns_of_terminal(int file) {
   winsize size{};
   constexpr std::size_t usual = 80;
-  const bool known = ::ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
+  const bool known = !is_redirected() && ::ioctl(file, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
   return known ? size.ws_col : usual;
 }
 

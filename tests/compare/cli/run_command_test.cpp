@@ -1,0 +1,120 @@
+// The command as a function: what it is as a process, and nothing of it left for the next call.
+
+#include "run_command.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "command_fixture.hpp"
+#include "dlo/compare/error.hpp"
+#include "option/output.hpp"
+#include "shell_words.hpp"
+
+namespace {
+
+using dlo::cli::RedirectedOutput;
+using dlo::test::Command;
+using dlo::test::Outcome;
+using dlo::test::shell_words;
+using Words = std::vector<std::string>;
+
+class RunCommand : public Command {};
+
+TEST_F(RunCommand, IsTheProcess) {
+  ASSERT_EQ(
+      run("solve " + steel() + " --model force --points 8 --format csv -o " + path("s.csv")).status,
+      0);
+  // The search for what would make the shape right tells of its time.
+  const std::string check = "check " + steel() + " --no-explanation --shape " + path("s.csv");
+  const struct {
+    std::string arguments;
+    int status;
+  } cases[] = {{"solve " + steel() + " --format csv", 0},
+               {check + " --tolerance 0.1%", 1},
+               {"solve " + steel() + " --model force --law hooke --c-c '5 kg'", 2},
+               {"solve " + path("nothing.toml"), 2},
+               {"slove", 2},
+               {"help solve", 0},
+               {"--version", 0},
+               {"", 0}};
+  for (const auto& one : cases) {
+    const Outcome process = run_process(one.arguments);
+    EXPECT_EQ(process.status, one.status) << one.arguments << process.err;
+    EXPECT_NE(process.out + process.err, "") << one.arguments;
+    for (const char* call : {"first", "second"}) {
+      const Outcome here = run(one.arguments);
+      EXPECT_EQ(here.status, process.status) << one.arguments << ", " << call;
+      EXPECT_EQ(here.out, process.out) << one.arguments << ", " << call;
+      EXPECT_EQ(here.err, process.err) << one.arguments << ", " << call;
+    }
+  }
+}
+
+TEST_F(RunCommand, WithoutTextsThrowsWhatItIsRefusedWith) {
+  EXPECT_THROW((void)dlo::cli::run_command({"solve", path("nothing.toml")}),
+               dlo::compare::InputError);
+}
+
+TEST_F(RunCommand, ABrokenPipeIsAStatusAndEndsNoProcess) {
+  ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
+  // More than a pipe holds (64 KiB), so that the reader's end is always noticed.
+  const std::string solve = "solve " + steel() + " --samples 10000 --format csv -o " + path("pipe");
+  std::thread reader([file = path("pipe")] { (void)std::ifstream(file).get(); });
+  auto* const before = std::signal(SIGPIPE, SIG_IGN);
+  const Outcome result = run(solve);
+  (void)std::signal(SIGPIPE, before);
+  reader.join();
+  EXPECT_EQ(result.status, dlo::cli::broken_pipe_status) << result.err;
+  EXPECT_EQ(result.out + result.err, "");
+}
+
+TEST(RedirectedOutputTest, HoldsForAllThreadsUntilItsEnd) {
+  std::string out = "before ";
+  std::string err;
+  std::string inner_out;
+  std::string inner_err;
+  {
+    const RedirectedOutput redirected(out, err);
+    try {
+      const RedirectedOutput inner(inner_out, inner_err);
+      dlo::cli::write_standard_output("inner");
+      throw std::string("an error");
+    } catch (const std::string&) {
+      dlo::cli::write_standard_output("outer");
+    }
+    constexpr int lines = 1000;
+    const auto say = [] {
+      for (int i = 0; i < lines; ++i) dlo::cli::say("a line");
+    };
+    std::thread other(say);
+    say();
+    other.join();
+    EXPECT_EQ(err.size(), 2 * lines * std::string("dlo: a line\n").size());
+  }
+  EXPECT_EQ(out, "before outer");
+  EXPECT_EQ(inner_out, "inner");
+  EXPECT_EQ(inner_err, "");
+  EXPECT_EQ(RedirectedOutput::current(), nullptr);
+}
+
+TEST(ShellWords, AreThoseOfTheShell) {
+  EXPECT_EQ(shell_words("  solve a.toml\t--c-c '5 kg' "),
+            (Words{"solve", "a.toml", "--c-c", "5 kg"}));
+  EXPECT_EQ(shell_words("--with a='sh -c \"x; y\" {shape}'"),
+            (Words{"--with", "a=sh -c \"x; y\" {shape}"}));
+  EXPECT_EQ(shell_words(R"(a\ b "c\"d\e" '' "")"), (Words{"a b", R"(c"d\e)", "", ""}));
+  EXPECT_EQ(shell_words(""), Words{});
+  for (const char* line : {"a | b", "a >b", "a; b", "a & b", "$a", "\"$a\"", "`a`", "a*", "a?", "~",
+                           "[a]", "# a", "(a)", "a\nb", "'a", "\"a", "a\\"}) {
+    EXPECT_EQ(shell_words(line), std::nullopt) << line;
+  }
+}
+
+}  // namespace
