@@ -246,8 +246,8 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
         // fall.
         const Eigen::Matrix3Xd falling = searches[rod].look(shape(rod));
         if (falling.cols() > 0) nudge(rod, falling);
-        if (!searches[rod].bounces()) continue;
-        controls_[rod].descend();
+        controls_[rod].correct_slowest_mode(searches[rod].slowest_mode());
+        if (searches[rod].bounces()) controls_[rod].descend();
         c_F_.lane[rod] = controls_[rod].options().c_F;
       }
     }

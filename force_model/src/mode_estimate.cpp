@@ -9,6 +9,10 @@ namespace {
 
 constexpr double memory = 0.8;  // weight of older blocks
 
+/// Estimate over true stiffness [-]: with less, heavy_ball's steps are at most half as fast in the
+/// slowest mode as they could be, which is not worth another beginning.
+constexpr double misled = 2;
+
 }  // namespace
 
 ModeEstimate::ModeEstimate(const Rod& rod, const Eigen::Matrix3Xd& points)
@@ -27,6 +31,20 @@ void ModeEstimate::update(double inner_mode, double force_change, double point_c
   }
   modes_.slowest = std::clamp(modes_.slowest, smallest_mode_ratio * modes_.fastest, modes_.fastest);
   block_open_ = true;
+}
+
+void ModeEstimate::update_fastest(double inner_mode) {
+  modes_.fastest = inner_mode + constraints_;
+  modes_.slowest = std::clamp(modes_.slowest, smallest_mode_ratio * modes_.fastest, modes_.fastest);
+  block_open_ = false;
+}
+
+void ModeEstimate::correct_slowest(double slowest) {
+  if (!(modes_.slowest > misled * slowest)) return;
+  modes_.slowest = std::max(slowest, smallest_mode_ratio * modes_.fastest);
+  force_change_ = 0;
+  point_change_ = 0;
+  block_open_ = false;
 }
 
 void ModeEstimate::change_environment(const Rod& rod, const Eigen::Matrix3Xd& points) {

@@ -17,6 +17,11 @@ namespace dlo::force_model {
 /// and up to 0.35 for one that stretches (c_c = 1e9 N). A block with no more than k = 2 of it says
 /// too little about the slowest mode and is left out: taken for it, rounding stopped a rod of 1000
 /// points a thousandth of its length from rest.
+///
+/// The quotient is far above the slowest mode where faster ones move more, as those that a contact
+/// kicks do. Steps made for such an estimate hardly move what is slow: no block is above rounding
+/// any more, the estimate stays as it is and the rod creeps for ever. Nothing but the tangent
+/// stiffness tells this from rest, so that who has factorised it corrects the estimate.
 class ModeEstimate {
  public:
   ModeEstimate(const Rod& rod, const Eigen::Matrix3Xd& points);
@@ -30,6 +35,14 @@ class ModeEstimate {
   /// After a change of the rod's walls. The next update starts a new block: its changes mean
   /// nothing.
   void change_environment(const Rod& rod, const Eigen::Matrix3Xd& points);
+
+  /// The same while steps without momentum are made: these move by the fast modes that they damp
+  /// and by rounding, which say nothing of the slowest. The next update starts a new block.
+  void update_fastest(double inner_mode);
+
+  /// Begins anew with this stiffness where the estimate is far above it.
+  /// @param slowest  of the tangent stiffness where the rod is; infinity: not known [N/m]
+  void correct_slowest(double slowest);
 
   [[nodiscard]] const ModeBounds& modes() const { return modes_; }
 

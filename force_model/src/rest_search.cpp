@@ -95,6 +95,7 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
   const double distance = shape.forces.norm() / estimate_.modes().slowest / root_points;
   const bool seems_at_rest = std::max(distance, shape.momentum) < target_;
   bounces_ = false;
+  slowest_mode_ = std::numeric_limits<double>::infinity();
   // Rounding of many stiff points' positions makes forces that hide rest from these signs for good.
   // Where there is no force at all, no step will ever tell more (the paper's law has no stiffness
   // where the rod is straight, so its modes say nothing of the distance).
@@ -110,6 +111,9 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
     result_.status = RelaxStatus::at_rest;
     return {};
   }
+  // While contacts open and close, the stiffness of one moment is not that of the next; where the
+  // signs were wrong, it is better than what they came from.
+  if (check.stable && (check.proven || seems_at_rest)) slowest_mode_ = check.slowest_mode;
   // The chord of a contact that opens and closes proves nothing; calm it all the same.
   const double nearly = rod_.touches_anything() ? 100 : 1;
   // What only creeps without momentum needs it back: no descent after one that did not halve the

@@ -47,6 +47,10 @@ class RestSearch {
   /// not for the forces. Steps without momentum (StepControl::descend) end that.
   [[nodiscard]] bool bounces() const { return bounces_; }
 
+  /// Stiffness of the slowest mode, if the last look found the rod on its way to a proven
+  /// equilibrium but not there, or its cheap signs of rest wrong; else infinity [N/m].
+  [[nodiscard]] double slowest_mode() const { return slowest_mode_; }
+
   /// The outcome; a shape that has used up its steps is measured.
   [[nodiscard]] RelaxResult finish(const MovingShape& shape);
 
@@ -68,6 +72,7 @@ class RestSearch {
   double descended_from_ = std::numeric_limits<double>::infinity();
   bool looked_without_force_ = false;
   int neutral_modes_ = 0;
+  double slowest_mode_ = std::numeric_limits<double>::infinity();
   RelaxResult result_;
 };
 

@@ -39,7 +39,16 @@ StepControl::StepControl(const Rod& rod, const Eigen::Matrix3Xd& points, const S
 }
 
 void StepControl::update_modes(double inner_mode, double force_change, double point_change) {
-  estimate_.update(inner_mode, force_change, point_change);
+  if (descends()) {
+    estimate_.update_fastest(inner_mode);
+  } else {
+    estimate_.update(inner_mode, force_change, point_change);
+  }
+  choose_constants();
+}
+
+void StepControl::correct_slowest_mode(double slowest) {
+  estimate_.correct_slowest(slowest);
   choose_constants();
 }
 
@@ -56,8 +65,7 @@ void StepControl::descend() {
 void StepControl::choose_constants() {
   if (!options_.policy.automatic) return;
   const ModeBounds& modes = estimate_.modes();
-  const bool descends = steps_ < descends_until_;
-  const HeavyBall chosen = descends ? HeavyBall{1 / modes.fastest, 0} : heavy_ball(modes);
+  const HeavyBall chosen = descends() ? HeavyBall{1 / modes.fastest, 0} : heavy_ball(modes);
   options_.c_F = chosen.c_F;
   options_.c_h = chosen.c_h;
 }

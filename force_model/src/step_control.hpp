@@ -33,6 +33,9 @@ class StepControl {
   /// 1/fastest, so that the potential energy falls with each.
   void descend();
 
+  /// @param slowest  stiffness of the slowest mode where the rod is; infinity: not known [N/m]
+  void correct_slowest_mode(double slowest);
+
   /// Scaling of a proposed step.
   /// @param largest_squared  of the movements that the limit compares [m^2]
   /// @param sum_squared      not finite if a movement is not [m^2]
@@ -55,6 +58,7 @@ class StepControl {
 
  private:
   void choose_constants();
+  [[nodiscard]] bool descends() const { return steps_ < descends_until_; }
 
   StepOptions options_;
   ModeEstimate estimate_;
