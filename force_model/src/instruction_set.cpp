@@ -1,6 +1,6 @@
 #include "dlo/force_model/instruction_set.hpp"
 
-#include <algorithm>
+#include <cstdlib>
 #include <stdexcept>
 #include <string>
 
@@ -46,6 +46,21 @@ KernelOfSet kernel_of(InstructionSet set) {
   }
 }
 
+constexpr const char* variable = "DLO_INSTRUCTION_SET";
+
+/// As the variable has it.
+const char* name_of(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::avx2:
+      return "avx2";
+    case InstructionSet::avx512:
+      return "avx512";
+    case InstructionSet::baseline:
+      break;
+  }
+  return "baseline";
+}
+
 }  // namespace
 
 const char* to_string(InstructionSet set) {
@@ -69,9 +84,24 @@ std::vector<InstructionSet> available_instruction_sets() {
   return sets;
 }
 
+InstructionSet instruction_set_named(std::string_view name) {
+  std::string allowed;
+  for (const InstructionSet set : available_instruction_sets()) {
+    if (name == name_of(set)) return set;
+    allowed += (allowed.empty() ? "" : ", ") + std::string(name_of(set));
+  }
+  throw std::invalid_argument("instruction_set_named: " + std::string(variable) + " = " +
+                              std::string(name) + ", must be one that this machine has (" +
+                              allowed + ")");
+}
+
 InstructionSet fastest_instruction_set() {
-  static const InstructionSet fastest = available_instruction_sets().back();
-  return fastest;
+  static const InstructionSet chosen = [] {
+    const char* name = std::getenv(variable);
+    const bool given = name != nullptr && *name != '\0';
+    return given ? instruction_set_named(name) : available_instruction_sets().back();
+  }();
+  return chosen;
 }
 
 const StepKernel& step_kernel(InstructionSet set, const KernelChoice& choice,

@@ -4,12 +4,12 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+#include <vector>
 
 namespace dlo::energy_model {
-
-namespace kernel_baseline {
-const DenseKernel& dense_kernel();
-}
 
 namespace {
 
@@ -19,8 +19,39 @@ using Eigen::MatrixXd;
 /// Rounding of sums of up to fifty products of numbers up to one.
 constexpr double rounding = 1e-13;
 
-/// What this machine runs and what any machine can.
-const DenseKernel* const kernels[] = {&dense_kernel(), &kernel_baseline::dense_kernel()};
+/// Of the sets that this machine has.
+std::vector<const DenseKernel*> available_kernels() {
+  std::vector<const DenseKernel*> available;
+  for (const char* name : {"baseline", "avx2", "avx512"}) {
+    try {
+      available.push_back(&dense_kernel_named(name));
+    } catch (const std::invalid_argument&) {
+      // Not one of them.
+    }
+  }
+  return available;
+}
+
+const std::vector<const DenseKernel*> kernels = available_kernels();
+
+TEST(DenseKernel, OfASetThatIsUnknownIsRefusedWithThoseThatThereAre) {
+  try {
+    (void)dense_kernel_named("sse9");
+    FAIL() << "no error";
+  } catch (const std::invalid_argument& error) {
+    const std::string begin =
+        "dense_kernel_named: DLO_INSTRUCTION_SET = sse9, must be one that this machine has "
+        "(baseline";
+    EXPECT_EQ(std::string(error.what()).substr(0, begin.size()), begin);
+  }
+}
+
+// CMakeLists.txt runs it with each name.
+TEST(DenseKernel, IsTheOneThatTheEnvironmentNamesElseTheFastest) {
+  const char* name = std::getenv("DLO_INSTRUCTION_SET");
+  EXPECT_EQ(&dense_kernel(),
+            name != nullptr && *name != '\0' ? &dense_kernel_named(name) : kernels.back());
+}
 
 /// A block whose columns do not follow each other in memory.
 MatrixXd::BlockXpr part_of(MatrixXd& whole, Index rows, Index columns) {

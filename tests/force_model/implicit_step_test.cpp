@@ -22,7 +22,7 @@ namespace {
 using std::numbers::pi;
 using test::SteelRod;
 
-const StepOptions implicit_options{.policy = policy(Stepper::implicit)};
+StepOptions implicit_options() { return {.policy = policy(Stepper::implicit)}; }
 
 /// Steel a hundred times softer, with its own stretch stiffness: Gamma = 18.
 struct SoftRod : SteelRod {
@@ -82,7 +82,7 @@ std::vector<ImplicitCase> implicit_cases() {
 
 TEST(ImplicitStepper, RestsWhereTheAutomaticStepperDoes) {
   for (const ImplicitCase& one : implicit_cases()) {
-    Simulation simulation(one.rod, one.start, implicit_options);
+    Simulation simulation(one.rod, one.start, implicit_options());
     const RelaxResult result = simulation.relax({.tolerance = 1e-9});
     ASSERT_EQ(result.status, RelaxStatus::at_rest) << one.name << ": " << result.message;
     EXPECT_LT(result.remaining_error, 1e-9 * one.rod.length()) << one.name;
@@ -100,11 +100,11 @@ TEST(ImplicitStepper, RestsWhereTheAutomaticStepperDoes) {
 TEST(ImplicitStepper, BringsASoftRodToRestInTenSolvesWhateverItsPoints) {
   for (const int points : {16, 32, 200}) {
     const SoftRod soft(points);
-    Simulation reference(soft.rod(), soft.straight(), implicit_options);
+    Simulation reference(soft.rod(), soft.straight(), implicit_options());
     const RelaxResult rest = reference.relax({.tolerance = 1e-9});
     ASSERT_EQ(rest.status, RelaxStatus::at_rest);
     EXPECT_LE(rest.steps, 10) << points;
-    Simulation simulation(soft.rod(), soft.straight(), implicit_options);
+    Simulation simulation(soft.rod(), soft.straight(), implicit_options());
     while (simulation.steps() < 5) ASSERT_EQ(simulation.step().status, StepStatus::good);
     EXPECT_LT(rms_between(simulation.points(), reference.points()), 1e-3 * soft.length) << points;
     while (simulation.steps() < 7) ASSERT_EQ(simulation.step().status, StepStatus::good);
@@ -128,8 +128,8 @@ TEST(ImplicitStepper, DoesTheSameInEveryFrameOfReference) {
       wall.point = moved(wall.point);
       wall.normal = turn * wall.normal;
     }
-    Simulation here(one.rod, one.start, implicit_options);
-    Simulation there(rod, moved(one.start), implicit_options);
+    Simulation here(one.rod, one.start, implicit_options());
+    Simulation there(rod, moved(one.start), implicit_options());
     ASSERT_EQ(here.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest) << one.name;
     ASSERT_EQ(there.relax({.tolerance = 1e-9}).status, RelaxStatus::at_rest) << one.name;
     EXPECT_LT(rms_between(moved(here.points()), there.points()), 1e-9) << one.name;
@@ -138,7 +138,7 @@ TEST(ImplicitStepper, DoesTheSameInEveryFrameOfReference) {
 
 TEST(ImplicitStepper, MovesARestingRodWithItsGripperInOneSolve) {
   const SoftRod soft(32);
-  Simulation simulation(soft.rod(), soft.straight(), implicit_options);
+  Simulation simulation(soft.rod(), soft.straight(), implicit_options());
   ASSERT_EQ(simulation.relax({.tolerance = 1e-10}).status, RelaxStatus::at_rest);
   const Eigen::Matrix3Xd rest = simulation.points();
   const Eigen::Vector3d way(0.3, 0.4, -1.2);
@@ -158,7 +158,7 @@ TEST(ImplicitStepper, MovesARestingRodWithItsGripperInOneSolve) {
 /// length.
 TEST(ImplicitStepper, FollowsAGripperWithinAMillionthOfTheLengthByOneSolveAFrame) {
   const SoftRod soft(32);
-  Simulation simulation(soft.rod(), soft.straight(), implicit_options);
+  Simulation simulation(soft.rod(), soft.straight(), implicit_options());
   ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest);
   const long before = simulation.steps();
   constexpr int frames = 100;
@@ -180,7 +180,7 @@ TEST(ImplicitStepper, FollowsAGripperWithinAMillionthOfTheLengthByOneSolveAFrame
 
 TEST(ImplicitStepper, ArrivesWithAGripperThatJumpsAndTurnsRound) {
   const SoftRod soft(16);
-  Simulation simulation(soft.rod(), soft.straight(), implicit_options);
+  Simulation simulation(soft.rod(), soft.straight(), implicit_options());
   ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest);
   const Eigen::Matrix3Xd targets =
       grip_targets({0, 0.5, 0}, {-1, 0, 0}, soft.segment(), soft.segment() / 2);
@@ -194,7 +194,7 @@ TEST(ImplicitStepper, ArrivesWithAGripperThatJumpsAndTurnsRound) {
   Eigen::Matrix3Xd straight = soft.straight();
   straight.row(0) *= -1;
   straight.row(1).array() += 0.5;
-  Simulation direct(turned, straight, implicit_options);
+  Simulation direct(turned, straight, implicit_options());
   ASSERT_EQ(direct.relax().status, RelaxStatus::at_rest);
   EXPECT_LT(rms_between(simulation.points(), direct.points()), 2e-7 * soft.length);
 }
@@ -206,7 +206,7 @@ TEST(ImplicitStepper, LeavesABalancedRodStandingOnlyWhereItIsStable) {
     steel.angle = pi / 2;
     steel.weight_per_length = gamma * steel.EI / std::pow(steel.length, 3);
     Simulation simulation(steel.rod({BendingLaw::hooke, steel.EI}, steel.AE), steel.straight(),
-                          implicit_options);
+                          implicit_options());
     ASSERT_EQ(simulation.relax().status, RelaxStatus::at_rest) << gamma;
     const double aside = std::abs(simulation.points()(0, 15)) / steel.length;
     if (gamma < 8) {
@@ -231,7 +231,7 @@ TEST(ImplicitStepper, StaysStableWithTimeStepsFarBeyondTheFastestMode) {
   Rod rod = soft.rod();
   rod.masses = -rod.loads.row(1).transpose() / 9.81;
   rod.walls = {floor_at(-0.2, soft.AE / soft.segment())};
-  StepOptions options = implicit_options;
+  StepOptions options = implicit_options();
   options.time_step = 0.01;
   options.damping_rate = 10;
   Simulation simulation(rod, soft.straight(), options);
@@ -242,7 +242,7 @@ TEST(ImplicitStepper, StaysStableWithTimeStepsFarBeyondTheFastestMode) {
   }
   EXPECT_GT(fell, -0.205);
   ASSERT_EQ(simulation.relax({.tolerance = 1e-6}).status, RelaxStatus::at_rest);
-  Simulation rest(rod, soft.straight(), implicit_options);
+  Simulation rest(rod, soft.straight(), implicit_options());
   ASSERT_EQ(rest.relax().status, RelaxStatus::at_rest);
   EXPECT_LT(rms_between(simulation.points(), rest.points()), 2e-6 * soft.length);
 }
@@ -250,12 +250,12 @@ TEST(ImplicitStepper, StaysStableWithTimeStepsFarBeyondTheFastestMode) {
 TEST(ImplicitStepper, RefusesWhatItCannotDo) {
   const SteelRod steel;
   const Rod rod = steel.rod({BendingLaw::hooke, steel.EI}, 660);
-  EXPECT_THROW(Batch({{rod, steel.straight(), implicit_options}}), std::invalid_argument);
-  StepOptions in_time = implicit_options;
+  EXPECT_THROW(Batch({{rod, steel.straight(), implicit_options()}}), std::invalid_argument);
+  StepOptions in_time = implicit_options();
   in_time.time_step = 1e-3;
   EXPECT_THROW(Simulation(rod, steel.straight(), in_time), std::invalid_argument);  // no masses
   for (const double wrong : {0.0, -1.0, std::nan("")}) {
-    StepOptions options = implicit_options;
+    StepOptions options = implicit_options();
     options.time_step = wrong;
     EXPECT_THROW(Simulation(rod, steel.straight(), options), std::invalid_argument) << wrong;
     options = in_time;
@@ -264,7 +264,8 @@ TEST(ImplicitStepper, RefusesWhatItCannotDo) {
   }
   test::TwistedRod twisted;
   twisted.turn = 1;
-  EXPECT_THROW(Simulation(twisted.rod(), twisted.arch(), implicit_options), std::invalid_argument);
+  EXPECT_THROW(Simulation(twisted.rod(), twisted.arch(), implicit_options()),
+               std::invalid_argument);
 }
 
 }  // namespace

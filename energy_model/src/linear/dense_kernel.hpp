@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string_view>
 
 namespace dlo::energy_model {
 
@@ -49,7 +50,14 @@ struct DenseKernel {
   void (*add_weighed)(const WeighedProduct& a, const WeighedProduct& b, const Columns& result);
 };
 
-/// The one for this machine's instruction set.
+/// The one for an instruction set: "baseline", "avx2" or "avx512".
+/// @throws std::invalid_argument naming the value and the sets that this machine has
+[[nodiscard]] const DenseKernel& dense_kernel_named(std::string_view name);
+
+/// The one for this machine's fastest instruction set or, for tests and to compare machines, for
+/// the one that the environment variable DLO_INSTRUCTION_SET names, which is read once; empty, it
+/// counts as not set.
+/// @throws std::invalid_argument as dense_kernel_named
 [[nodiscard]] const DenseKernel& dense_kernel();
 
 }  // namespace dlo::energy_model

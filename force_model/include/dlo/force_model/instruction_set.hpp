@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 namespace dlo::force_model {
@@ -17,7 +18,13 @@ enum class InstructionSet {
 /// Those that this machine can run, the fastest last.
 [[nodiscard]] std::vector<InstructionSet> available_instruction_sets();
 
-/// The fastest of them.
+/// One of them by its name: "baseline", "avx2" or "avx512".
+/// @throws std::invalid_argument naming the value and those that this machine has
+[[nodiscard]] InstructionSet instruction_set_named(std::string_view name);
+
+/// The fastest of them or, for tests and to compare machines, the one that the environment variable
+/// DLO_INSTRUCTION_SET names, which is read once; empty, it counts as not set.
+/// @throws std::invalid_argument as instruction_set_named
 [[nodiscard]] InstructionSet fastest_instruction_set();
 
 }  // namespace dlo::force_model
