@@ -13,7 +13,7 @@
 namespace dlo::force_model {
 namespace {
 
-struct Start {
+struct FloorStart {
   Rod rod;
   Eigen::Matrix3Xd points;
 };
@@ -55,8 +55,8 @@ Eigen::Matrix3Xd sagging(const Rod& rod, double sag) {
 }
 
 /// The sag with which the polygon is as long as the rod.
-Start over_floor(Eigen::Index points, double height = 0.2) {
-  Start start;
+FloorStart over_floor(Eigen::Index points, double height = 0.2) {
+  FloorStart start;
   start.rod = rod_over_floor(points, height);
   double low = 0;
   double high = 8;
@@ -85,7 +85,7 @@ TEST(RigidFloor, RodsOnItComeToRestFromEveryRoundingOfTheirStart) {
   std::uniform_real_distribution<double> rounding(-1e-15, 1e-15);
   long most = 0;
   for (int points = first; points < first + numbers; ++points) {
-    const Start start = over_floor(points);
+    const FloorStart start = over_floor(points);
     Eigen::Matrix3Xd rest;
     for (const InstructionSet set : sets) {
       for (int i = 0; i < starts; ++i) {
@@ -112,7 +112,7 @@ TEST(RigidFloor, RodsOnItComeToRestFromEveryRoundingOfTheirStart) {
 TEST(RigidFloor, APointThatBarelyTouchesItKeepsNoRodFromRest) {
   constexpr Eigen::Index points = 24;
   const auto touching_at = [](double height) {
-    const Start start = over_floor(points, height);
+    const FloorStart start = over_floor(points, height);
     Simulation simulation(start.rod, start.points, {});
     const RelaxResult result = relax(simulation);
     EXPECT_EQ(result.status, RelaxStatus::at_rest) << height << ": " << result.remaining_error;

@@ -21,7 +21,7 @@ struct Oscillation {
   Oscillation() {
     SteelRod steel;
     steel.points = 6;
-    steel.weight_per_length *= 1e-7;
+    steel.weight_per_length *= 1e-6;
     rod = steel.rod({force_model::BendingLaw::hooke, steel.EI}, 2000);
     straight = steel.straight();
     rod.masses = Eigen::VectorXd::LinSpaced(steel.points, 0.8e-3, 1.4e-3);

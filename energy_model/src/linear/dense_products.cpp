@@ -1,9 +1,9 @@
 #include "linear/dense_products.hpp"
 
+#include <array>
 #include <cstdlib>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 namespace dlo::energy_model {
 
@@ -26,29 +26,31 @@ constexpr const char* variable = "DLO_INSTRUCTION_SET";
 
 struct KernelOfSet {
   std::string_view name;
-  const DenseKernel& kernel;
+  const DenseKernel* kernel = nullptr;  ///< null if this machine cannot run the set
 };
 
-/// Of the sets that this machine has, the fastest last.
-std::vector<KernelOfSet> available_kernels() {
-  std::vector<KernelOfSet> kernels = {{"baseline", kernel_baseline::dense_kernel()}};
+/// The fastest first; the last is always there.
+std::array<KernelOfSet, 3> kernels() {
+  const DenseKernel* avx2 = nullptr;
+  const DenseKernel* avx512 = nullptr;
 #if defined(__x86_64__)
   const bool runs_avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
   const bool runs_avx512 = runs_avx2 && __builtin_cpu_supports("avx512f") &&
                            __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-  if (runs_avx2) kernels.push_back({"avx2", kernel_avx2::dense_kernel()});
-  if (runs_avx512) kernels.push_back({"avx512", kernel_avx512::dense_kernel()});
+  if (runs_avx2) avx2 = &kernel_avx2::dense_kernel();
+  if (runs_avx512) avx512 = &kernel_avx512::dense_kernel();
 #endif
-  return kernels;
+  return {{{"avx512", avx512}, {"avx2", avx2}, {"baseline", &kernel_baseline::dense_kernel()}}};
 }
 
 }  // namespace
 
 const DenseKernel& dense_kernel_named(std::string_view name) {
   std::string allowed;
-  for (const KernelOfSet& set : available_kernels()) {
-    if (name == set.name) return set.kernel;
-    allowed += (allowed.empty() ? "" : ", ") + std::string(set.name);
+  for (const KernelOfSet& set : kernels()) {
+    if (set.kernel == nullptr) continue;
+    if (name == set.name) return *set.kernel;
+    allowed = std::string(set.name) + (allowed.empty() ? "" : ", ") + allowed;
   }
   throw std::invalid_argument("dense_kernel_named: " + std::string(variable) + " = " +
                               std::string(name) + ", must be one that this machine has (" +
@@ -58,8 +60,11 @@ const DenseKernel& dense_kernel_named(std::string_view name) {
 const DenseKernel& dense_kernel() {
   static const DenseKernel& chosen = []() -> const DenseKernel& {
     const char* name = std::getenv(variable);
-    const bool given = name != nullptr && *name != '\0';
-    return given ? dense_kernel_named(name) : available_kernels().back().kernel;
+    if (name != nullptr && *name != '\0') return dense_kernel_named(name);
+    for (const KernelOfSet& set : kernels()) {
+      if (set.kernel != nullptr) return *set.kernel;
+    }
+    return kernel_baseline::dense_kernel();
   }();
   return chosen;
 }
