@@ -29,7 +29,7 @@ struct KernelOfSet {
   const DenseKernel* kernel = nullptr;  ///< null if this machine cannot run the set
 };
 
-/// The fastest first; the last is always there.
+/// The fastest last; the first is always there.
 std::array<KernelOfSet, 3> kernels() {
   const DenseKernel* avx2 = nullptr;
   const DenseKernel* avx512 = nullptr;
@@ -40,7 +40,7 @@ std::array<KernelOfSet, 3> kernels() {
   if (runs_avx2) avx2 = &kernel_avx2::dense_kernel();
   if (runs_avx512) avx512 = &kernel_avx512::dense_kernel();
 #endif
-  return {{{"avx512", avx512}, {"avx2", avx2}, {"baseline", &kernel_baseline::dense_kernel()}}};
+  return {{{"baseline", &kernel_baseline::dense_kernel()}, {"avx2", avx2}, {"avx512", avx512}}};
 }
 
 }  // namespace
@@ -50,7 +50,8 @@ const DenseKernel& dense_kernel_named(std::string_view name) {
   for (const KernelOfSet& set : kernels()) {
     if (set.kernel == nullptr) continue;
     if (name == set.name) return *set.kernel;
-    allowed = std::string(set.name) + (allowed.empty() ? "" : ", ") + allowed;
+    if (!allowed.empty()) allowed += ", ";
+    allowed += set.name;
   }
   throw std::invalid_argument("dense_kernel_named: " + std::string(variable) + " = " +
                               std::string(name) + ", must be one that this machine has (" +
@@ -61,10 +62,11 @@ const DenseKernel& dense_kernel() {
   static const DenseKernel& chosen = []() -> const DenseKernel& {
     const char* name = std::getenv(variable);
     if (name != nullptr && *name != '\0') return dense_kernel_named(name);
+    const DenseKernel* fastest = nullptr;
     for (const KernelOfSet& set : kernels()) {
-      if (set.kernel != nullptr) return *set.kernel;
+      if (set.kernel != nullptr) fastest = set.kernel;
     }
-    return kernel_baseline::dense_kernel();
+    return *fastest;
   }();
   return chosen;
 }
