@@ -9,7 +9,7 @@
 #include "base/display.hpp"
 #include "format/plan.hpp"
 #include "option/output.hpp"
-#include "solve/self_crossing.hpp"
+#include "polygon/self_crossing.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -30,6 +30,18 @@ Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
                      {"torque_Nm", part.torque}});
   }
   return {{"total_rad", total}, {"parts", std::move(parts)}};
+}
+
+Json turns_json(const std::vector<compare::Linking>& parts) {
+  Json result = Json::array();
+  for (const compare::Linking& part : parts) {
+    result.push_back({{"from_m", part.begin},
+                      {"to_m", part.end},
+                      {"held", part.held},
+                      {"twist", part.twist},
+                      {"writhe", part.writhe}});
+  }
+  return result;
 }
 
 /// As far as it is known; a fold or bifurcation leaves it open.
@@ -144,6 +156,16 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     append(out, "twist      {:.6g} rad, torque {:.6g} Nm from s = {:.4g} to {:.4g} m\n", part.angle,
            part.torque, part.begin, part.end);
   }
+  for (const compare::Linking& part : solution.linking) {
+    const double turns = part.twist + part.writhe;
+    append(out, "turns      {:.3f} = twist {:.3f} + writhe {:.3f} from s = {:.4g} to {:.4g} m",
+           turns, part.twist, part.writhe, part.begin, part.end);
+    constexpr double tolerance = 0.02;  // of the writhe
+    if (std::abs(turns - part.held) > tolerance) {
+      append(out, ", by the grips alone {:.3f}", part.held);
+    }
+    append(out, "\n");
+  }
   for (const Eigen::Vector3d& force : solution.obstacles) {
     append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
            force.z());
@@ -219,6 +241,7 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
     result["neutral_directions"] = solution.neutral_directions;
   }
   if (!solution.twists.empty()) result["twist"] = twist_json(solution.twists);
+  if (!solution.linking.empty()) result["turns"] = turns_json(solution.linking);
   if (!solution.left_out.empty()) result["left_out"] = solution.left_out;
   if (!solution.obstacles.empty()) {
     result["obstacles"] = obstacles_json(solution.obstacles);

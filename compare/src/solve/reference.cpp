@@ -8,12 +8,14 @@
 #include <limits>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "dlo/compare/error.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "polygon/energy_problems.hpp"
 #include "scene/reach.hpp"
+#include "solve/linking.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -42,6 +44,15 @@ bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
   return energy_model::succeeded(status) ||
          (options.accept_unresolved && (status == energy_model::SolveStatus::not_resolved ||
                                         status == energy_model::SolveStatus::near_singular));
+}
+
+/// A balance whose turns are not those of the grips is one of another scene.
+void refuse_lost_turns(const Scene& scene, energy_model::Equilibrium& equilibrium) {
+  if (!energy_model::succeeded(equilibrium.status)) return;
+  std::string lost = lost_turns(linking_of(scene, equilibrium));
+  if (lost.empty()) return;
+  equilibrium.status = energy_model::SolveStatus::not_resolved;
+  equilibrium.message = std::move(lost);
 }
 
 /// By the exact model on its own, or, of a rod that touches what it does not find by itself,
@@ -96,6 +107,7 @@ energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
   } catch (const std::invalid_argument& error) {
     refuse_rod(scene, model, error);
   }
+  refuse_lost_turns(scene, result);
   if (!acceptable(result.status, options)) {
     throw ConvergenceError(fmt::format(
         "{}: the {} model did not converge: {} ({} evaluations{}{})", scene.file, to_string(model),
@@ -121,6 +133,7 @@ energy_model::EnergySearch search_states(const Scene& scene, const SolveOptions&
   } catch (const std::invalid_argument& error) {
     refuse_rod(scene, Model::energy, error);
   }
+  for (energy_model::Equilibrium& state : states) refuse_lost_turns(scene, state);
   const std::string looked = looked_from(states);
   std::erase_if(states, [&](const energy_model::Equilibrium& state) {
     return !acceptable(state.status, options) && state.status != energy_model::SolveStatus::saddle;

@@ -13,6 +13,7 @@
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "scene/reach.hpp"
+#include "solve/linking.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -67,6 +68,7 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   }
   solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene), equilibrium.obstacles);
   solution.twists = equilibrium.twists;
+  solution.linking = linking_of(scene, equilibrium);
   if (scene.holds_twist() && solution.twists.empty()) solution.left_out = {"twist"};
   if (touches_with_friction(scene, solution.obstacles)) solution.left_out.emplace_back("friction");
   solution.contacts = contacts_of(scene, equilibrium);

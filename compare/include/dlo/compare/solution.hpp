@@ -65,6 +65,16 @@ struct GripperLoad {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< [N m]
 };
 
+/// Turns of a part of the rod whose ends hold frames, in turns; the writhe is of that part with its
+/// ends going on straight.
+struct Linking {
+  double begin = 0;   ///< arc length [m]
+  double end = 0;     ///< arc length [m]
+  double held = 0;    ///< by the grips, whole turns counted
+  double twist = 0;   ///< of the shape: TwistedPart::angle
+  double writhe = 0;  ///< of its axis
+};
+
 /// A shape and what it cost. Only converged shapes are returned, and those that are not resolved or
 /// near singular to whoever accepts them (SolveOptions::accept_unresolved).
 struct Solution {
@@ -89,6 +99,8 @@ struct Solution {
   /// scene.
   std::vector<energy_model::ContactPart> contacts;
   std::vector<energy_model::TwistedPart> twists;  ///< as Equilibrium::twists
+  /// Of energy and exact, of the same parts; but where an end's line passes through the rod.
+  std::vector<Linking> linking;
   /// Of what the scene asks for, what the model left out: "twist", "natural curvature", "friction"
   /// (where it touches an obstacle that has it; of Comparison, where either model does).
   std::vector<std::string> left_out;

@@ -1,4 +1,4 @@
-#include "solve/self_crossing.hpp"
+#include "polygon/self_crossing.hpp"
 
 #include <algorithm>
 
