@@ -142,6 +142,27 @@ TEST(Exact, EndsWhenItsTimeIsOver) {
   EXPECT_THROW((void)solve_exact(pins, {.time_limit = 0}), std::invalid_argument);
 }
 
+TEST(Exact, ListsWhatItHasFoundWhenItsTimeIsOver) {
+  Problem arch = heavy_cantilever(30, 20);
+  arch.grips.push_back({1, {0.55, -0.1, 0}, Eigen::Vector3d(1, 0, 0)});
+  const std::vector<Equilibrium> whole = all_exact(arch);
+  ASSERT_FALSE(whole.empty());
+  int cut_short = 0;
+  // The polygons that it shoots from take a share of the time, so that some limit ends them and
+  // leaves enough to shoot from the first.
+  for (double limit = 1; limit > 1e-4; limit /= 1.2) {
+    for (const Equilibrium& found : all_exact(arch, {.time_limit = limit})) {
+      if (found.status != SolveStatus::time_limit) continue;
+      ++cut_short;
+      EXPECT_TRUE(says(found, "others may be lower")) << found.message;
+      EXPECT_TRUE(says(found, "converged") || says(found, "saddle")) << found.message;
+      EXPECT_EQ(says(found, "saddle"), found.smallest_curvature < 0) << found.message;
+      EXPECT_LT(test::balance_of(arch, found, 0.02).worst(), 1e-9);
+    }
+  }
+  EXPECT_GT(cut_short, 0);
+}
+
 TEST(LoadBesideAClamp, CountsOnce) {
   // Nearer than 1e-9 l it is the clamp's, on either side of it and at either end.
   struct Case {

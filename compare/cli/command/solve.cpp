@@ -59,10 +59,10 @@ void warn_of_force_model_options(const SolveOptions& options) {
   say("{}: no effect on the shape of model {} (only on force and chain)", names, options.model);
 }
 
-/// A shape that is not resolved, or left open by a fold, has been shown, which is no success.
+/// A shape that is not resolved, left open by a fold or, as the first of all that are found,
+/// unstable has been shown, which is no success.
 void require_resolved(const compare::Solution& solution, const compare::Scene& scene) {
   if (energy_model::succeeded(solution.status)) return;
-  if (solution.status == energy_model::SolveStatus::saddle) return;
   throw compare::ConvergenceError(fmt::format(
       "{}: the {} model: {}", scene.file, compare::to_string(solution.model), solution.message));
 }

@@ -40,18 +40,23 @@ std::vector<std::string> drawn_results(const std::string& model) {
   return {"tip_x_m", "tip_y_m", "energy_J"};
 }
 
+std::vector<compare::SweptField> swept_fields(const compare::Grid& grid) {
+  std::vector<compare::SweptField> fields;
+  for (const compare::Axis& axis : grid.axes()) {
+    compare::SweptField field{.column = axis.column(),
+                              .values = {},
+                              .logarithmic = axis.spacing == compare::Spacing::logarithmic};
+    for (std::int64_t i = 0; i < axis.count; ++i) field.values.push_back(axis.number(i));
+    fields.push_back(std::move(field));
+  }
+  return fields;
+}
+
 void plot(const SweepOptions& options, const compare::Sweep& sweep,
           const std::vector<std::string>& rows) {
   options.plot.draw([&] {
-    std::vector<compare::SweptField> fields;
-    for (const compare::Axis& axis : sweep.grid().axes()) {
-      compare::SweptField field{.column = axis.column(),
-                                .values = {},
-                                .logarithmic = axis.spacing == compare::Spacing::logarithmic};
-      for (std::int64_t i = 0; i < axis.count; ++i) field.values.push_back(axis.number(i));
-      fields.push_back(std::move(field));
-    }
-    return compare::sweep_picture(fields, sweep.header(), rows, drawn_results(options.model));
+    return compare::sweep_picture(swept_fields(sweep.grid()), sweep.header(), rows,
+                                  drawn_results(options.model));
   });
 }
 
@@ -186,6 +191,7 @@ void run(SweepOptions options, const std::vector<std::string>& inputs) {
         "sweep: no --vary FIELD=VALUES given (allowed: such as --vary gamma=1,10)");
   }
   const compare::Sweep sweep = sweep_of(options);
+  if (options.plot.draws()) compare::require_drawable(swept_fields(sweep.grid()));
   warn_of_polygons_in(sweep, options.model);
   const std::optional<compare::Shard> shard = chosen_shard(options.shard);
   if (shard && options.plot.draws()) {

@@ -18,6 +18,8 @@ constexpr const char* schema = "dlo/baseline/1";
 
 BaselineCase read_case(StrictTable& table) {
   BaselineCase result;
+  table.only({"bookkeeping", "fingerprint", "law", "max_over_length", "model", "points", "program",
+              "rms_over_length", "scene", "tip_over_length"});
   result.scene = table.text("scene");
   if (table.has("program")) {
     result.program = table.text("program");
@@ -59,6 +61,7 @@ std::string BaselineCase::name() const {
 std::vector<BaselineCase> read_baseline(const std::string& text, const std::string& file) {
   const toml::table root = parse_toml(text, file);
   StrictTable table(root, "", file);
+  table.only({"case", "schema"});
   (void)table.choice("schema", {schema});
   std::vector<BaselineCase> cases;
   std::set<std::string> names;

@@ -123,6 +123,25 @@ bool LineReader::next(std::string& line) {
   return true;
 }
 
+std::int64_t fields_of(std::string_view line) {
+  std::int64_t fields = 1;
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') quoted = !quoted;
+    if (c == ',' && !quoted) ++fields;
+  }
+  return fields;
+}
+
+bool row_is_whole(std::string_view line, std::string_view start, std::int64_t fields) {
+  if (!line.starts_with(start) || fields_of(line) != fields) return false;
+  if (row_is_ok(line)) return true;
+  // Without results only a status is left, which says why.
+  const auto empty = static_cast<std::size_t>(fields - fields_of(start));
+  line.remove_prefix(start.size());
+  return line.size() > empty && line.starts_with(std::string(empty, ','));
+}
+
 bool row_is_ok(std::string_view line) {
   constexpr std::string_view status = ",ok";
   return line.size() >= status.size() && line.substr(line.size() - status.size()) == status;

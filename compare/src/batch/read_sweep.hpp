@@ -54,6 +54,14 @@ class LineReader {
   std::int64_t number_ = 0;
 };
 
+/// Fields of a line (without its end), of which some may be quoted.
+[[nodiscard]] std::int64_t fields_of(std::string_view line);
+
+/// Whether a row (without its line end) has all that belongs to it: its start, and results with the
+/// status ok or none with one that says why.
+/// @param start  Sweep::row_start();  @param fields  of the header
+[[nodiscard]] bool row_is_whole(std::string_view line, std::string_view start, std::int64_t fields);
+
 /// Whether the status of a row (without its line end) is ok.
 [[nodiscard]] bool row_is_ok(std::string_view line);
 

@@ -40,7 +40,8 @@ struct Remains {
   std::int64_t bytes = 0;  ///< of whole lines
 };
 
-/// Reads a file that an earlier run began. Every row has to be the one that belongs there.
+/// Reads a file that an earlier run began. Every row has to be the one that belongs there;
+/// one that lacks columns or its status ends what is kept.
 Remains read_remains(const Sweep& sweep, const SweepHead& head, const std::string& path) {
   LineReader reader(path);
   Remains remains;
@@ -55,9 +56,14 @@ Remains read_remains(const Sweep& sweep, const SweepHead& head, const std::strin
   if (early) return remains;
   if (!whole) refuse_other_sweep(path, begun.substr(0, begun.find('\n')), head);
   remains.bytes = reader.bytes();
+  const std::int64_t fields = fields_of(sweep.header());
   while (reader.next(line)) {
     const std::int64_t row = head.range.first + remains.rows;
-    if (row == head.range.last || line.rfind(sweep.row_start(row), 0) != 0) {
+    const std::string start = row < head.range.last ? sweep.row_start(row) : std::string();
+    // What is behind a row that lacks something is computed again with it.
+    const bool belongs = !start.empty() && (line.starts_with(start) || start.starts_with(line));
+    if (belongs && !row_is_whole(line, start, fields)) return remains;
+    if (!belongs) {
       throw InputError(
           fmt::format("{}:{}: not row {} of this sweep, the file is damaged (allowed: "
                       "another -o, or --restart)",

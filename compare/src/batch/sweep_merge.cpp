@@ -18,16 +18,6 @@ struct ShardFile {
   std::string columns;
 };
 
-std::int64_t fields_of(const std::string& line) {
-  std::int64_t fields = 1;
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') quoted = !quoted;
-    if (c == ',' && !quoted) ++fields;
-  }
-  return fields;
-}
-
 ShardFile open_shard(const std::string& path) {
   LineReader reader(path);
   std::string line;

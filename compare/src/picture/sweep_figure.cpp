@@ -100,9 +100,7 @@ Panel map_panel(const std::vector<SweptField>& fields, const std::string& file, 
 
 }  // namespace
 
-Picture sweep_picture(const std::vector<SweptField>& fields, const std::string& header,
-                      const std::vector<std::string>& rows,
-                      const std::vector<std::string>& results) {
+void require_drawable(const std::vector<SweptField>& fields) {
   if (fields.empty() || fields.size() > 2) {
     throw InputError(
         fmt::format("--plot: {} fields are varied (allowed: one or two)", fields.size()));
@@ -112,6 +110,12 @@ Picture sweep_picture(const std::vector<SweptField>& fields, const std::string& 
         fmt::format("--plot: {} = {} is no number (allowed: a first field with numbers as values)",
                     fields.front().column, fields.front().values.front()));
   }
+}
+
+Picture sweep_picture(const std::vector<SweptField>& fields, const std::string& header,
+                      const std::vector<std::string>& rows,
+                      const std::vector<std::string>& results) {
+  require_drawable(fields);
   std::string csv = header;
   for (const std::string& row : rows) csv += row;
   const bool lines =

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "base/number.hpp"
 #include "figure/series.hpp"
 #include "picture/comparison_figure.hpp"
 
@@ -17,7 +18,7 @@ using Json = nlohmann::ordered_json;
 /// Five significant digits: a thousandth of what a screen shows.
 Json number(double value) {
   if (!std::isfinite(value)) return nullptr;
-  return std::stod(fmt::format("{:.5g}", value)) + 0.0;
+  return as_number<double>(fmt::format("{:.5g}", value)).value() + 0.0;
 }
 
 template <typename Values>

@@ -35,6 +35,7 @@ void check(const ForceModelSettings& settings, const std::string& where) {
 ForceModelSettings parse_parameters(const std::string& text, const std::string& file) {
   const toml::table root = parse_toml(text, file);
   StrictTable table(root, "", file);
+  table.only({"derived", "force_model"});
   StrictTable settings_table = table.table("force_model");
   const ForceModelSettings settings = read_force_model(settings_table);
   check(settings, settings_table.where());

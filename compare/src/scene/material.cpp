@@ -12,6 +12,7 @@ std::vector<Material> read_materials(const std::string& text, const std::string&
   std::vector<Material> result;
   for (StrictTable& entry : table.tables("material")) {
     Material material;
+    entry.only({"density", "name", "source", "youngs_modulus"});
     material.name = entry.text("name");
     material.youngs_modulus =
         entry.number("youngs_modulus", Dimension::pressure, Range::positive());

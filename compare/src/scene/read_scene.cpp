@@ -133,6 +133,8 @@ Eigen::Vector3d read_place(StrictTable& table, const char* key, const Trajectory
 
 Gripper read_gripper(StrictTable& table, double length, const std::string& file) {
   Gripper gripper;
+  table.only({"at", "direction", "frame", "hold", "pose", "position", "quaternion", "roll",
+              "trajectory", "turns"});
   gripper.at = read_arc_length(table, length);
   const std::string hold = table.has("hold") ? table.choice("hold", {"clamp", "pin"}) : "clamp";
   PoseKeys keys;
@@ -243,6 +245,8 @@ obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
 /// @param radius  of the rod [m]
 Obstacle read_obstacle(StrictTable& table, double radius, const std::string& file) {
   Obstacle obstacle;
+  table.only({"axis", "friction", "length", "normal", "point", "pose", "radius", "shape", "size",
+              "stiffness", "touches", "trajectory"});
   obstacle.trajectory = read_trajectory(table, {.position = "point", .direction = nullptr}, file);
   const Eigen::Vector3d point = read_place(table, "point", obstacle.trajectory);
   const std::string shape =
@@ -302,6 +306,7 @@ void require_clear(const Scene& scene, const StrictTable& entry) {
 
 PointLoad read_load(StrictTable& table, const Scene& scene) {
   PointLoad load;
+  table.only({"at", "force", "mass"});
   load.at = read_arc_length(table, scene.length);
   const std::optional<double> mass =
       table.optional_number("mass", Dimension::mass, Range::positive());
@@ -320,6 +325,8 @@ PointLoad read_load(StrictTable& table, const Scene& scene) {
 Scene read_scene(const toml::table& root, const std::string& file,
                  const std::vector<Material>& known_materials) {
   StrictTable table(root, "", file);
+  table.only(
+      {"force_model", "gravity", "gripper", "load", "name", "obstacle", "rod", "section", "track"});
   Scene scene;
   scene.file = file;
   scene.name = table.optional_text("name").value_or(valid_utf8(file));

@@ -74,14 +74,7 @@ const toml::node* StrictTable::find(std::string_view key) {
 
 const toml::node& StrictTable::need(std::string_view key) {
   const toml::node* node = find(key);
-  if (node == nullptr) {
-    // A slip of the pen is both a missing and an unknown key.
-    const std::string slip = nearest_word(key, keys());
-    if (!slip.empty() && !known_.contains(slip)) {
-      fail(slip, fmt::format("unknown key, did you mean {}?", key));
-    }
-    fail(key, "missing, it is required");
-  }
+  if (node == nullptr) fail(key, "missing, it is required");
   return *node;
 }
 
@@ -266,14 +259,15 @@ std::vector<std::string> StrictTable::keys() const {
   return result;
 }
 
-void StrictTable::finish() const {
-  for (const auto& [key, node] : table_) {
-    if (known_.contains(key.str())) continue;
-    const std::vector<std::string> known(known_.begin(), known_.end());
-    fail(key.str(),
-         fmt::format("unknown key{} (allowed: {})", did_you_mean(key.str(), known), joined(known)));
+void StrictTable::only(const std::vector<std::string>& allowed) const {
+  for (const std::string& key : keys()) {
+    if (std::find(allowed.begin(), allowed.end(), key) != allowed.end()) continue;
+    fail(key,
+         fmt::format("unknown key{} (allowed: {})", did_you_mean(key, allowed), joined(allowed)));
   }
 }
+
+void StrictTable::finish() const { only({known_.begin(), known_.end()}); }
 
 toml::table parse_toml(const std::string& text, const std::string& file) {
   if (text.size() > largest_toml) {

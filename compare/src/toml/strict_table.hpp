@@ -77,6 +77,11 @@ class StrictTable {
   [[nodiscard]] bool is_array(std::string_view key) const;
   [[nodiscard]] std::vector<std::string> keys() const;
 
+  /// All that the table may have, in any of its forms. Called before a key is read, so that a wrong
+  /// key is named rather than the one that is missing because of it.
+  /// @throws InputError naming the first key that is not among them
+  void only(const std::vector<std::string>& allowed) const;
+
   /// @throws InputError naming the first key that nobody asked for and the keys that exist
   void finish() const;
 

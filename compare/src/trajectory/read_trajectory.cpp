@@ -116,7 +116,10 @@ std::string read_beside(const StrictTable& table, const std::string& name,
 
 Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const PoseKeys& keys) {
   std::vector<Pose> poses;
+  std::vector<std::string> allowed{keys.position, "time"};
+  if (keys.direction) allowed.emplace_back("direction");
   for (StrictTable& row : rows) {
+    row.only(allowed);
     Pose pose;
     pose.time = row.number("time", Dimension::time, Range::any());
     pose.position = row.vector(keys.position, Dimension::length);

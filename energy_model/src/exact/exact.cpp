@@ -265,8 +265,8 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
     const std::string reached = equilibrium.message;
     equilibrium.status = SolveStatus::time_limit;
     equilibrium.message = std::string(to_string(equilibrium.status)) + " after " +
-                          std::to_string(options.time_limit) + " s" +
-                          (holds ? ": others may be lower" : ": " + reached);
+                          std::to_string(options.time_limit) + " s" + ": " + reached +
+                          (holds ? ", others may be lower" : "");
   }
   return std::move(found.equilibria);
 }
@@ -276,7 +276,11 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
 std::vector<Equilibrium> all_exact(const Problem& problem, const ExactOptions& options) {
   std::vector<Equilibrium> equilibria = solve(problem, options);
   std::erase_if(equilibria, [](const Equilibrium& equilibrium) {
-    return !succeeded(equilibrium.status) && equilibrium.status != SolveStatus::saddle;
+    // What is found before the time is up is an equilibrium, of a list that may lack others.
+    const bool cut_short =
+        equilibrium.status == SolveStatus::time_limit && static_cast<bool>(equilibrium.sample);
+    return !succeeded(equilibrium.status) && equilibrium.status != SolveStatus::saddle &&
+           !cut_short;
   });
   return equilibria;
 }

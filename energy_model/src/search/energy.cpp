@@ -12,6 +12,7 @@
 #include "base/require.hpp"
 #include "certify/free_turns.hpp"
 #include "contact/penetration.hpp"
+#include "problem/redundant_obstacles.hpp"
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
 #include "search/contact_search.hpp"
@@ -105,6 +106,7 @@ class EnergySolver::State {
     for (PlacedSpan& span : placed) {
       // Contact is not looked for where clamps twist the rod; judge_penetration() tells of it.
       if (span.frames) span.span.rigid_obstacles.clear();
+      remove_redundant_obstacles(span.span);
     }
     const bool warm = from != From::nothing && remembered_.size() == placed.size();
     const bool only = from == From::last_shape_only;

@@ -49,6 +49,15 @@ TEST_F(Command, ReportMakesAPage) {
   EXPECT_EQ(commands, (std::set<std::string>{"bench", "compare", "report", "stability"}));
 }
 
+TEST_F(Command, ReportTakesACoordinateThatOnlyASubnormalNumberHolds) {
+  const std::string file = scene(
+      "[rod]\nlength = 0.3\ndiameter = \"1 mm\"\nmaterial = \"copper\"\n"
+      "[[gripper]]\nat = 0\nposition = [0, -3e-312, 0]\ndirection = 0\n");
+  const Outcome result = run(words({"report", file, "--quick -o", path("subnormal")}));
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(read(path("subnormal") + "/index.html"), HasSubstr("<section id=\"shapes\">"));
+}
+
 TEST_F(Command, ReportRefusesWhatIsNotAReport) {
   std::filesystem::create_directory(path("mine"));
   std::ofstream(path("mine") + "/diary.txt") << "dear diary";

@@ -105,6 +105,14 @@ TEST_F(SweepCommand, BadGridsAreOneLineAndStatusTwo) {
   expect_error("sweep --merge " + steel(), 2, {"-o"});
 }
 
+TEST_F(SweepCommand, RefusesAPictureOverWordsBeforeItComputes) {
+  expect_error("sweep " + steel() + " --vary rod.material=copper,nylon -o " + path("words.csv") +
+                   " --plot " + path("words.svg"),
+               2, {"--plot", "rod.material", "copper is no number"});
+  EXPECT_FALSE(std::filesystem::exists(path("words.csv")));
+  EXPECT_FALSE(std::filesystem::exists(path("words.csv.part")));
+}
+
 TEST_F(SweepCommand, KilledTwentyTimesGivesTheFileOfAnUnbrokenRun) {
   const std::string vary = "gamma=log:0.1:100:20000";
   ASSERT_EQ(run("sweep " + steel() + " --vary " + vary + " -o " + path("whole.csv")).status, 0);

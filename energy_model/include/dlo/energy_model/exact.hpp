@@ -92,7 +92,8 @@ Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {}
 
 /// Every equilibrium that the scan or the search finds, stable ones first, by energy; unstable ones
 /// have the status `saddle`. Of several spans the 64 lowest combinations; the message says if there
-/// are more. Empty if nothing was found.
+/// are more. If the time is up before the search is, what it has found until then: all have the
+/// status `time_limit`, and the message says what they are. Empty if nothing was found.
 [[nodiscard]] std::vector<Equilibrium> all_exact(const Problem& problem,
                                                  const ExactOptions& options = {});
 

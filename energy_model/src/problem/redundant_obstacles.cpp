@@ -1,0 +1,65 @@
+#include "problem/redundant_obstacles.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace dlo::energy_model {
+namespace {
+
+/// By how much a body may stick out of another one and be within it, in lengths: a tenth of what a
+/// shape may be behind a rigid obstacle.
+constexpr double rounding = 1e-10;
+/// A rod stays within its length of the anchor; the core of a body is cut a little farther out.
+constexpr double beyond_reach = 1.05;
+
+/// Of the core of a body, as far as a point near the anchor can be next to it.
+Eigen::Matrix<double, 3, 8> corners_in_reach(const obstacle::Body& body, double reach) {
+  const Eigen::Vector3d origin = body.axes().transpose() * -body.centre();
+  const auto in_reach = [&](const Eigen::Vector3d& end) {
+    return end.cwiseMax((origin.array() - reach).matrix())
+        .cwiseMin((origin.array() + reach).matrix())
+        .eval();
+  };
+  const Eigen::Vector3d lower = in_reach(body.lower());
+  const Eigen::Vector3d upper = in_reach(body.upper());
+  Eigen::Matrix<double, 3, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    Eigen::Vector3d local = lower;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((i >> axis) % 2 == 1) local[axis] = upper[axis];
+    }
+    corners.col(i) = body.centre() + body.axes() * local;
+  }
+  return corners;
+}
+
+/// A body is convex: it holds another one if it holds the balls around the corners of its core.
+bool holds(const obstacle::Body& outer, const Eigen::Matrix<double, 3, 8>& corners, double radius) {
+  for (Eigen::Index i = 0; i < corners.cols(); ++i) {
+    if (!(outer.clearance(corners.col(i)) <= rounding - radius)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+void remove_redundant_obstacles(Span& span) {
+  std::vector<Span::Obstacle> kept;
+  for (const Span::Obstacle& next : span.rigid_obstacles) {
+    const double reach = beyond_reach * span.length;
+    const Eigen::Matrix<double, 3, 8> corners = corners_in_reach(next.body, reach);
+    const bool redundant =
+        std::any_of(kept.begin(), kept.end(), [&](const Span::Obstacle& obstacle) {
+          return holds(obstacle.body, corners, next.body.radius());
+        });
+    if (redundant) continue;
+    std::erase_if(kept, [&](const Span::Obstacle& obstacle) {
+      return holds(next.body, corners_in_reach(obstacle.body, reach), obstacle.body.radius());
+    });
+    kept.push_back(next);
+  }
+  span.rigid_obstacles = std::move(kept);
+}
+
+}  // namespace dlo::energy_model

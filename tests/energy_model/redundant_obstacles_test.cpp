@@ -1,0 +1,116 @@
+// Rods on rigid obstacles of which one lies within another, flush with it or not.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../sanitized.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Body = obstacle::Body;
+
+/// A clamped rod over a floor or a table, and bodies within what is below it.
+struct RedundantScene {
+  Problem plain;
+  Problem with_more;
+};
+
+class RedundantScenes {
+ public:
+  RedundantScene next() {
+    RedundantScene scene;
+    const double height = between(0.05, 0.3);
+    scene.plain = test::heavy_cantilever(between(20, 150), between(-20, 20));
+    const bool table = random_() % 3 == 0;
+    // The table is longer than the rod and 0.4 high, with round edges.
+    const Body ground =
+        table ? Body::box({0.5, -height - 0.2, 0}, axes_, {4, 0.4, 2}, between(0.01, 0.05))
+              : Body::half_space({0, -height, 0}, {0, 1, 0});
+    scene.plain.obstacles = {{ground}};
+    scene.with_more = scene.plain;
+    std::vector<Obstacle>& all = scene.with_more.obstacles;
+    for (unsigned count = 1 + random_() % 3; count > 0; --count) {
+      all.push_back({within(ground, height)});
+    }
+    std::shuffle(all.begin(), all.end(), random_);
+    return scene;
+  }
+
+ private:
+  Body within(const Body& ground, double height) {
+    const double x = between(0.1, 0.9);
+    const double size = between(0.05, 0.3);
+    switch (random_() % 4) {
+      case 0:
+        return ground;
+      case 1: {  // flush
+        const double radius = size * between(0.05, 0.4);
+        return Body::box({x, -height - size / 2, 0}, axes_, {2 * size, size, size}, radius);
+      }
+      case 2:  // below by little
+        if (ground.is_half_space()) {
+          return Body::half_space({x, -height - std::pow(10, between(-12, -3)), 0}, {0, 2, 0});
+        }
+        return Body::box({0.5, -height - 0.2, 0}, axes_, {3, 0.4, 1}, ground.radius());
+      default:  // touching the surface from within
+        return Body::sphere({x, -height - size / 2, between(-0.1, 0.1)}, size / 2);
+    }
+  }
+
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+
+  std::mt19937 random_{20};
+  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();
+};
+
+TEST(RedundantObstacles, AreAsIfTheyWereNotThere) {
+  const std::vector<double> s = {0, 0.1, 0.25, 0.4, 0.6, 0.75, 0.9, 1};
+  RedundantScenes scenes;
+  const int draws = test::draws(100);
+  int certified = 0;
+  for (int i = 0; i < draws; ++i) {
+    const RedundantScene scene = scenes.next();
+    const EnergyOptions options{.time_limit = 5};
+    const Equilibrium alone = solve_energy(scene.plain, options);
+    const Equilibrium found = solve_energy(scene.with_more, options);
+    ASSERT_EQ(found.status, alone.status) << i << " " << found.message;
+    if (!succeeded(found.status)) continue;
+    ++certified;
+    EXPECT_NEAR(found.energy.total(), alone.energy.total(),
+                1e-9 * std::abs(alone.energy.total()) + 1e-9)
+        << i;
+    EXPECT_LT((found.sample(s).points - alone.sample(s).points).cwiseAbs().maxCoeff(), 1e-7) << i;
+    Eigen::Vector3d pushed = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& force : found.obstacles) pushed += force;
+    EXPECT_LT((pushed - alone.obstacles.front()).norm(), 1e-6 * (1 + pushed.norm())) << i;
+  }
+  EXPECT_GE(certified, draws * 95 / 100);
+}
+
+TEST(RedundantObstacles, ABodyThatSticksOutCounts) {
+  // A box on the floor under the rod, which carries it higher up than the floor does; beside it one
+  // that stands as far out of the floor but out of the rod's reach.
+  Problem problem = test::heavy_cantilever(80, 0);
+  const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  problem.obstacles = {{Body::half_space({0, -0.2, 0}, {0, 1, 0})},
+                       {Body::box({0.5, -0.2, 0}, axes, {0.3, 0.1, 0.4}, 0.03)},
+                       {Body::box({3, -0.2, 0}, axes, {0.3, 0.1, 0.4}, 0.03)}};
+  const Equilibrium found = solve_energy(problem);
+  ASSERT_TRUE(succeeded(found.status)) << found.message;
+  EXPECT_GT(found.obstacles.at(1).y(), 0);
+  EXPECT_EQ(found.obstacles.at(2).norm(), 0);
+  EXPECT_GT(found.sample(std::vector<double>{0.5}).points(1, 0), -0.151);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
