@@ -78,7 +78,9 @@ std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain) 
   std::vector<SimulatorParameter> all = {
       {"MuJoCo", "joint stiffness", "N m/rad", joint},
       {"Bullet", "btGeneric6DofSpring2Constraint::setStiffness", "N m/rad", joint},
-      {"Newton", "add_rod bend_stiffness", "N m^2", rod},
+      // 1.2.0 stopped dividing it by the length of a segment.
+      {"Newton", "add_rod bend_stiffness before 1.2.0", "N m^2", rod},
+      {"Newton", "add_rod bend_stiffness since 1.2.0", "N m/rad", joint},
       {"Newton", "add_joint_cable bend_stiffness", "N m/rad", joint}};
   if (chain.equivalent_modulus > 0) {
     all.push_back({"MuJoCo", "cable plugin bend", "Pa", chain.equivalent_modulus});

@@ -46,7 +46,7 @@ TEST(ShapeMatcher, SaysWhereAndHowFar) {
   shape.points.col(3).z() = 0.025;
   EXPECT_NONFATAL_FAILURE(EXPECT_SHAPE_NEAR(shape, bent(), 0.01),
                           "shape is not the shape of bent() (heavy) within 0.01:\n"
-                          "  largest distance 0.025 m = 2.5 % of l at s = 0.8 m (point 3): (");
+                          "  largest distance 0.025 m = 2.5 % of l at s = 0.8 m (point 4): (");
   EXPECT_NONFATAL_FAILURE(EXPECT_SHAPE_NEAR(shape, bent(), 0.01), ", 0.025) m instead of (");
   EXPECT_NONFATAL_FAILURE(EXPECT_SHAPE_NEAR(shape, bent(), 0.01), "allowed 1 % of l");
   EXPECT_NONFATAL_FAILURE(EXPECT_THAT(shape, IsShapeOf(bent(), 0.01)),
@@ -62,18 +62,28 @@ TEST(ShapeMatcher, SaysWhatIsNoShape) {
   };
   Shape shape = exact_shape();
   shape.points(1, 2) = NAN;
-  EXPECT_THAT(explanation(shape), HasSubstr("not finite at point 2, s = 0.35 m"));
+  EXPECT_THAT(explanation(shape), HasSubstr("not finite at point 3, s = 0.35 m"));
   shape = exact_shape();
   shape.arc_length.pop_back();
   EXPECT_THAT(explanation(shape), HasSubstr("5 points and 4 arc lengths"));
   shape = exact_shape();
   shape.arc_length[2] = 0.9;
-  EXPECT_THAT(explanation(shape), HasSubstr("do not grow at point 3"));
+  EXPECT_THAT(explanation(shape), HasSubstr("do not grow at point 4"));
   shape.arc_length = {0, 1, 2, 3, 4};
-  EXPECT_THAT(explanation(shape), HasSubstr("leaves the rod at point 2, s = 2 m"));
+  EXPECT_THAT(explanation(shape), HasSubstr("leaves the rod at point 3, s = 2 m"));
   shape.arc_length[0] = NAN;
-  EXPECT_THAT(explanation(shape), HasSubstr("leaves the rod at point 0"));
+  EXPECT_THAT(explanation(shape), HasSubstr("leaves the rod at point 1"));
   EXPECT_THAT(explanation({}), HasSubstr("0 points"));
+}
+
+TEST(ShapeMatcher, AllowsArcLengthsTheRoundingOfASum) {
+  Shape shape = exact_shape();
+  shape.arc_length.front() = -3e-8;
+  shape.arc_length.back() = 1 + 4e-8;
+  EXPECT_SHAPE_NEAR(shape, bent(), 1e-6);
+  shape.arc_length.back() = 1 + 2e-5;
+  EXPECT_THAT(shape_near(shape, bent(), 1e-6).explanation,
+              HasSubstr("leaves the rod at point 5, s = 1.00002 m (allowed: 0 to 1 m)"));
 }
 
 TEST(ShapeMatcher, RefusesAToleranceThatIsNone) {

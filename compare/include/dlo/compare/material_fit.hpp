@@ -96,9 +96,9 @@ struct SimulatorParameter {
 
 /// The springs of a chain as the parameters of simulators that have such chains: MuJoCo 3 (joints,
 /// and its plugin `mujoco.elasticity.cable`, which divides E I by h itself), Bullet 3, PyElastica
-/// 0.3 (E of a rod whose first element is held), Newton (`ModelBuilder.add_rod`, which divides by
-/// h, and `add_joint_cable`, which does not). Those that take a modulus only if the diameter is
-/// known.
+/// 0.3 (E of a rod whose first element is held), Newton (`ModelBuilder.add_rod`, which divided
+/// by h before version 1.2.0, and `add_joint_cable`, which does not). Those that take a modulus
+/// only if the diameter is known.
 [[nodiscard]] std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain);
 
 /// How one shape was laid on the rod of the fitted modulus.
