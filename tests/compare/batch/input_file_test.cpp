@@ -178,9 +178,9 @@ TEST(TextLimits, NothingIsNestedSoDeepThatAParserOverflows) {
   EXPECT_EQ(scene("\na = " + repeated("[", many) + repeated("]", many)), brackets);
   EXPECT_EQ(scene("\na = " + repeated("{a = ", many) + "1" + repeated("}", many)), brackets);
   // As deep as allowed goes through the parser.
-  const std::string unknown = "s.toml:1: a: unknown key";
-  EXPECT_EQ(scene("a" + repeated(".a", 31) + " = 1").find(unknown), 0U);
-  EXPECT_EQ(scene("a = " + repeated("[", 32) + repeated("]", 32)).find(unknown), 0U);
+  const std::string unknown = ": unknown key (allowed: force_model, ";
+  EXPECT_NE(scene("a" + repeated(".a", 31) + " = 1").find(unknown), std::string::npos);
+  EXPECT_NE(scene("a = " + repeated("[", 32) + repeated("]", 32)).find(unknown), std::string::npos);
 }
 
 TEST(TextLimits, StringsAndCommentsNestNothing) {
