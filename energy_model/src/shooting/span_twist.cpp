@@ -13,7 +13,7 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr double first_step = 0.5;          // of the roll [rad]
-constexpr double longest_roll_step = 3;     // [rad]
+constexpr double longest_twist_step = 3;    // [rad]
 constexpr double shortest_step = 1.0 / 64;  // [rad]
 constexpr int few_shots = 12;               // Newton's method takes two an iteration
 constexpr int step_iterations = 12;       // of Newton's method: more are slower than a shorter step
@@ -79,7 +79,7 @@ class Continuation {
       const double next = std::abs(way) <= step ? target_ : reached_ + std::copysign(step, way);
       const double factor = advance(next);
       if (factor > 0) {
-        step = std::min(longest_roll_step, step * factor);
+        step = std::min(longest_twist_step, step * factor);
         continue;
       }
       if (!before_.nodes.empty()) {
