@@ -10,6 +10,7 @@
 #include "format/plan.hpp"
 #include "option/output.hpp"
 #include "polygon/self_crossing.hpp"
+#include "solve/linking.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -159,7 +160,8 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   for (const compare::Linking& part : solution.linking) {
     const double turns = part.twist + part.writhe;
     append(out, "turns      {:.3f} = twist {:.3f} + writhe {:.3f} from s = {:.4g} to {:.4g} m",
-           turns, part.twist, part.writhe, part.begin, part.end);
+           compare::unsigned_zero(turns), compare::unsigned_zero(part.twist),
+           compare::unsigned_zero(part.writhe), part.begin, part.end);
     constexpr double tolerance = 0.02;  // of the writhe
     if (std::abs(turns - part.held) > tolerance) {
       append(out, ", by the grips alone {:.3f}", part.held);

@@ -88,7 +88,8 @@ std::optional<double> writhe_of_part(const energy_model::Equilibrium& equilibriu
 }
 
 /// By how many turns a shape misses those that are held. Each passage through itself takes or gives
-/// two; a half-turn between frames may have been meant either way round.
+/// two. Less than one is none: a roll without d1 counts from the rod without twist, whose writhe
+/// the grips alone do not tell. A half-turn between frames may have been meant either way round.
 double turns_lost(const Linking& part) {
   const double missing = part.held - part.twist - part.writhe;
   const double one_way = 2 * std::round(missing / 2);
@@ -141,6 +142,8 @@ std::vector<Linking> linking_of(const Scene& scene, const energy_model::Equilibr
   return parts;
 }
 
+double unsigned_zero(double turns) { return std::abs(turns) < 0.5e-3 ? 0.0 : turns; }
+
 std::string lost_turns(const std::vector<Linking>& parts) {
   for (const Linking& part : parts) {
     if (turns_lost(part) == 0) continue;
@@ -148,7 +151,8 @@ std::string lost_turns(const std::vector<Linking>& parts) {
         "not verified: the grips hold {:.3f} turns from s = {:g} to {:g} m and the shape has "
         "{:.3f} "
         "(twist {:.3f}, writhe {:.3f}): it has passed through itself",
-        part.held, part.begin, part.end, part.twist + part.writhe, part.twist, part.writhe);
+        part.held, part.begin, part.end, unsigned_zero(part.twist + part.writhe),
+        unsigned_zero(part.twist), unsigned_zero(part.writhe));
   }
   return {};
 }

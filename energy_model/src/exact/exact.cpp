@@ -265,7 +265,7 @@ std::vector<Equilibrium> solve(const Problem& problem, const ExactOptions& optio
     const std::string reached = equilibrium.message;
     equilibrium.status = SolveStatus::time_limit;
     equilibrium.message = std::string(to_string(equilibrium.status)) + " after " +
-                          std::to_string(options.time_limit) + " s" + ": " + reached +
+                          std::to_string(options.time_limit) + " s: " + reached +
                           (holds ? ", others may be lower" : "");
   }
   return std::move(found.equilibria);
