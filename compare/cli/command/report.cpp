@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "base/display.hpp"
@@ -19,6 +20,7 @@
 #include "option/terminal.hpp"
 #include "report/folder.hpp"
 #include "report/verdict.hpp"
+#include "trajectory/trajectory_files.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -47,8 +49,12 @@ void refuse_scenes_inside(const ReportOptions& options) {
   std::error_code error;
   const fs::path folder = fs::canonical(options.folder, error);
   if (error) return;
+  std::vector<std::string> inputs = options.scenes;
   for (const std::string& scene : options.scenes) {
-    const fs::path read = fs::canonical(scene, error);
+    for (std::string& file : compare::trajectory_files(scene)) inputs.push_back(std::move(file));
+  }
+  for (const std::string& input : inputs) {
+    const fs::path read = fs::canonical(input, error);
     if (error) continue;
     if (std::mismatch(folder.begin(), folder.end(), read.begin(), read.end()).first !=
         folder.end()) {
@@ -56,7 +62,7 @@ void refuse_scenes_inside(const ReportOptions& options) {
     }
     throw compare::InputError(
         fmt::format("report: -o {}: holds {}, which is read too (allowed: another folder)",
-                    options.folder, scene));
+                    options.folder, input));
   }
 }
 

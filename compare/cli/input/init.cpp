@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "base/display.hpp"
 #include "base/quote.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
@@ -41,9 +42,9 @@ std::filesystem::path file_of(const std::string& target, std::string& name) {
 
 std::string next_steps(const compare::Scene& scene, const std::string& file) {
   std::string out;
-  append(out, "{} written: {:g} m long, {:g} mm thick, E = {:g} MPa, density {:g} kg/m^3\n", file,
-         scene.length, scene.diameter * 1e3, scene.material.youngs_modulus * 1e-6,
-         scene.material.density);
+  append(out, "{} written: {:g} m long, {:g} mm thick, E = {:g} MPa, density {:g} kg/m^3\n",
+         compare::display(file), scene.length, scene.diameter * 1e3,
+         scene.material.youngs_modulus * 1e-6, scene.material.density);
   append(out, "  weight {:.4g} N, EI = {:.4g} N m^2, Gamma = w l^3 / (EI) = {:.4g}\n",
          scene.mass() * scene.gravity.norm(), scene.bending_stiffness(), scene.gamma());
   append(out,

@@ -17,6 +17,8 @@
 #include "base/output_file.hpp"
 #include "dlo/compare/error.hpp"
 #include "option/help.hpp"
+#include "option/series_files.hpp"
+#include "trajectory/trajectory_files.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -75,7 +77,10 @@ std::vector<std::string> input_files_but(const CLI::App& command, const CLI::Opt
   std::vector<std::string> files;
   for (const CLI::Option* option : command.get_options()) {
     if (option == left_out || !is_read(*option)) continue;
-    for (const std::string& word : option->results()) files.push_back(word);
+    for (const std::string& word : option->results()) {
+      files.push_back(word);
+      for (std::string& beside : compare::trajectory_files(word)) files.push_back(beside);
+    }
   }
   return files;
 }
@@ -90,9 +95,26 @@ bool is_written(const CLI::App& command, const CLI::Option& option) {
 void refuse_two_outputs(const std::string& option, const std::string& file,
                         const std::vector<std::string>& others) {
   for (const std::string& other : others) {
-    if (file != other && !compare::same_file(file, other)) continue;
-    throw compare::InputError(
-        fmt::format("{} {}: is written twice (allowed: another file)", option, file));
+    // Files that are not there yet are told apart by where their names lead.
+    const bool same = compare::same_file(file, other) ||
+                      compare::output_target(file).path == compare::output_target(other).path;
+    if (!same) continue;
+    throw compare::InputError(fmt::format("{} {}: is written twice{} (allowed: another file)",
+                                          option, file,
+                                          file == other ? "" : fmt::format(", as {}", other)));
+  }
+}
+
+/// How many frames a series has, and so which files it writes, is known only when it is computed.
+void refuse_among_frames(const std::string& series, const std::vector<std::string>& inputs,
+                         const std::vector<std::string>& outputs) {
+  for (const std::vector<std::string>* files : {&inputs, &outputs}) {
+    for (const std::string& file : *files) {
+      if (!is_frame_of_series(file, series)) continue;
+      throw compare::InputError(
+          fmt::format("--paraview {}: writes frames {}, and {} is {} too (allowed: another file)",
+                      series, frame_names(series), file, files == &inputs ? "read" : "written"));
+    }
   }
 }
 
@@ -204,6 +226,7 @@ std::vector<std::string> input_files(const CLI::App& command) {
 void check_outputs(const CLI::App& command) {
   const std::vector<std::string> inputs = input_files(command);
   std::vector<std::string> outputs;
+  std::vector<std::string> series;
   std::error_code unknown;
   for (const CLI::Option* option : command.get_options()) {
     if (!is_written(command, *option)) continue;
@@ -222,8 +245,10 @@ void check_outputs(const CLI::App& command) {
         refuse_two_outputs(name, file, outputs);
       }
       outputs.push_back(file);
+      if (has_long_name(*option, {"paraview"})) series.push_back(file);
     }
   }
+  for (const std::string& file : series) refuse_among_frames(file, inputs, outputs);
   if (RedirectedOutput::current() != nullptr) return;
   // A shell that appends to an input with ">>" would let the command write behind what it reads.
   for (const std::string& input : inputs) {

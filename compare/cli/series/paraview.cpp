@@ -7,16 +7,15 @@
 #include "base/output_file.hpp"
 #include "format/json.hpp"
 #include "option/output.hpp"
+#include "option/series_files.hpp"
 #include "shape/write_vtk.hpp"
 
 namespace dlo::cli {
-
 void write_series(const compare::Track& track, const compare::Scene& scene,
                   const TrackFrames& frames, const std::string& file,
                   const compare::DynamicTrack* dynamic) {
   namespace fs = std::filesystem;
-  fs::path stem = fs::path(file).filename();
-  while (stem.has_extension()) stem = stem.stem();
+  const std::string stem = series_stem(file);
   const fs::path folder = fs::path(file).parent_path();
   Json files = Json::array();
   const auto write = [](const std::string& path, const std::string& text) {
@@ -28,7 +27,7 @@ void write_series(const compare::Track& track, const compare::Scene& scene,
     if (dynamic != nullptr && i >= dynamic->frames.size()) break;
     const compare::TrackFrame& frame = track.frames[i];
     const Eigen::Matrix3Xd& points = dynamic != nullptr ? dynamic->frames[i].points : frame.points;
-    const std::string name = fmt::format("{}_{:05}.vtk", stem.string(), i);
+    const std::string name = fmt::format("{}_{:05}.vtk", stem, i);
     write((folder / name).string(),
           compare::vtk_polyline({track.arc_length, points}, {},
                                 fmt::format("{}, t = {:.9g} s", scene.name, frame.time)));

@@ -8,10 +8,41 @@
 #include "base/display.hpp"
 
 namespace dlo::compare {
+namespace {
+
+/// A word of any bytes as bash takes it, printable.
+std::string bash_word(const std::string& word) {
+  std::string quoted = "$'";
+  for (const char c : word) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '\'' || c == '\\') {
+      quoted += '\\';
+      quoted += c;
+    } else {
+      quoted += code < 0x20 || code > 0x7e ? fmt::format("\\{:03o}", code) : std::string(1, c);
+    }
+  }
+  return quoted + "'";
+}
+
+}  // namespace
+
+std::string xml_text(const std::string& text) {
+  std::string result = valid_utf8(text);
+  for (char& c : result) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7f') c = ' ';
+  }
+  for (const std::string_view no_character : {"\xef\xbf\xbe", "\xef\xbf\xbf"}) {
+    for (std::size_t at = 0; (at = result.find(no_character, at)) != std::string::npos;) {
+      result.replace(at, no_character.size(), "\xef\xbf\xbd");
+    }
+  }
+  return result;
+}
 
 std::string escape_markup(const std::string& text) {
   std::string result;
-  for (const char c : valid_utf8(text)) {
+  for (const char c : xml_text(text)) {
     switch (c) {
       case '&':
         result += "&amp;";
@@ -29,20 +60,26 @@ std::string escape_markup(const std::string& text) {
         result += "&#39;";
         break;
       default:
-        result += static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? ' ' : c;
+        result += c;
     }
   }
   return result;
 }
 
 std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c;
+  // Quotes keep a line break within its field; nothing keeps a terminal from what steers it.
+  std::string field;
+  bool quoted = false;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find_first_of(",\"\n\r\t", begin), text.size());
+    field += display(std::string_view(text).substr(begin, end - begin));
+    if (end < text.size()) {
+      quoted = quoted || text[end] != '\t';
+      field += text[end] == '"' ? "\"\"" : std::string(1, text[end]);
+    }
+    begin = end + 1;
   }
-  return quoted + "\"";
+  return quoted ? "\"" + field + "\"" : field;
 }
 
 std::string csv_number(double value, int digits) {
@@ -51,13 +88,17 @@ std::string csv_number(double value, int digits) {
 
 std::string toml_string(const std::string& text) {
   std::string result = "\"";
-  for (const char c : text) {
+  const std::string valid = valid_utf8(text);
+  for (std::size_t i = 0; i < valid.size(); ++i) {
+    const char c = valid[i];
     const auto code = static_cast<unsigned char>(c);
     if (c == '"' || c == '\\') {
       result += '\\';
       result += c;
     } else if (code < 0x20 || code == 0x7f) {
       result += fmt::format("\\u{:04x}", code);
+    } else if (code == 0xc2 && static_cast<unsigned char>(valid[i + 1]) < 0xa0) {
+      result += fmt::format("\\u{:04x}", static_cast<unsigned char>(valid[++i]));
     } else {
       result += c;
     }
@@ -70,6 +111,7 @@ std::string shell_word(const std::string& word) {
                                           "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
                                           "0123456789._/-+:@%,=") == std::string::npos;
   if (plain) return word;
+  if (display(word) != word) return bash_word(word);
   std::string quoted = "'";
   for (const char c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";

@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <iterator>
 
+#include "base/quote.hpp"
+
 namespace dlo::compare {
 namespace {
+
+constexpr const char* zero_width_space = "\xe2\x80\x8b";
 
 // Pixels of a plot's surroundings in its figure.
 constexpr int left_margin = 76;
@@ -157,15 +161,20 @@ std::string terminal(PictureFormat format, const Canvas& canvas) {
 }  // namespace
 
 std::string gnuplot_string(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) {
-    if (c == '\'') {
-      result += "''";
-    } else {
-      result += static_cast<unsigned char>(c) < ' ' || c == '`' ? ' ' : c;
-    }
+  // gnuplot writes texts into an SVG's CDATA sections, which "]]>" would end.
+  std::string shown = xml_text(text);
+  for (std::size_t at = 0; (at = shown.find("]]>", at)) != std::string::npos;) {
+    shown.insert(at + 2, zero_width_space);
   }
-  return result + "'";
+  // In single quotes an apostrophe is doubled, which gnuplot mistakes at the beginning; and a
+  // backtick runs a command. As octal numbers in double quotes neither is seen before it is drawn.
+  if (shown.find_first_of("'`") == std::string::npos) return "'" + shown + "'";
+  std::string result = "\"";
+  for (const char c : shown) {
+    const bool special = c == '\'' || c == '`' || c == '"' || c == '\\';
+    result += special ? fmt::format("\\{:03o}", static_cast<unsigned>(c)) : std::string(1, c);
+  }
+  return result + "\"";
 }
 
 std::string curve_style(std::size_t i, const char* with) {

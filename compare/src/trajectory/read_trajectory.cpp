@@ -17,6 +17,7 @@
 #include "base/number.hpp"
 #include "base/quote.hpp"
 #include "dlo/compare/error.hpp"
+#include "trajectory/trajectory_files.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -105,13 +106,13 @@ Pose pose_of(const std::vector<std::string_view>& fields, const PoseColumns& col
 /// Relative to the folder of the scene; a pipe or a device could keep a scene from ever being read.
 std::string read_beside(const StrictTable& table, const std::string& name,
                         const std::string& scene_file) {
-  const std::filesystem::path path = std::filesystem::path(scene_file).parent_path() / name;
+  const std::string path = path_beside(name, scene_file);
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) {
     table.fail("trajectory", fmt::format("no such file beside the scene (allowed: a CSV file, {})",
                                          pose_columns_allowed));
   }
-  return read_file(path.string());
+  return read_file(path);
 }
 
 Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const PoseKeys& keys) {

@@ -53,6 +53,35 @@ TEST_F(PlotCommand, SolveDraws) {
   expect_picture(solve, "a.pdf");
 }
 
+TEST_F(PlotCommand, DrawsASceneOfAnyName) {
+  const std::string rest =
+      "[rod]\nlength = 0.4\ndiameter = 0.003\nmaterial = \"silicone\"\n"
+      "[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = 0\n";
+  constexpr std::pair<const char*, const char*> names[] = {
+      {"'round", ">'round<"},
+      {"a''b", ">a''b<"},
+      {"'\\\"`id`", ">'\\\"`id`<"},
+      {"x]]>y", ">x]]\xe2\x80\x8b>y<"},
+      {"n\\uFFFF\\uFFFEm", ">n\xef\xbf\xbd\xef\xbf\xbdm<"},
+      {"e\\u001b[7mf", ">e [7mf<"}};
+  for (const auto& [name, shown] : names) {
+    std::string key = std::string("name = \"") + name + "\"\n";
+    if (std::string_view(name).starts_with("'\\")) {
+      key = std::string("name = '''\n") + name + "'''\n";
+    }
+    const Outcome drawn = run("solve " + scene(key + rest) + " --plot " + path("n.svg"));
+    ASSERT_EQ(drawn.status, 0) << name << drawn.err;
+    std::string picture = read(path("n.svg"));
+    for (const std::string around : {"<![CDATA[", "]]>"}) {
+      // What is left of them is none of a section's own.
+      for (std::size_t at = 0; (at = picture.find(around, at)) != std::string::npos;) {
+        picture.erase(at, around.size());
+      }
+    }
+    EXPECT_THAT(picture, HasSubstr(shown)) << name;
+  }
+}
+
 TEST_F(PlotCommand, CheckDrawsAndKeepsItsVerdict) {
   ASSERT_EQ(
       run("solve " + steel() + " --model chain --law hooke --format csv -o " + path("mine.csv"))

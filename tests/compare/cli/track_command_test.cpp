@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -42,6 +43,72 @@ TEST_F(TrackCommand, TellsFramesAndEventsInEveryFormat) {
   const std::string csv = run(track + " --every 4 --no-force --format csv").out;
   EXPECT_EQ(csv.substr(0, 26), "time_s,energy_J,work_J,rel");
   EXPECT_NE(csv.find(",1 tip,,"), std::string::npos) << csv;
+}
+
+/// A wire whose clamp moves as a file beside the scene says.
+class OutputsOverInputs : public TrackCommand {
+ protected:
+  void SetUp() override {
+    TrackCommand::SetUp();
+    write("move.csv", "time,x,y,z\n0,0,0,0\n0.2,0.01,0.02,0\n");
+    write("m_00001.toml", scene_);
+    write("m_00001.vtk", scene_);
+    std::filesystem::create_hard_link(path("move.csv"), path("hard.csv"));
+    std::filesystem::create_symlink("move.csv", path("soft.csv"));
+  }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path(name)) << text;
+  }
+  /// Refused before any work, and no file is touched.
+  void expect_untouched(const std::string& command, const std::string& file,
+                        const std::string& said) const {
+    const std::string before = read(path(file));
+    expect_error(command, 2, {said});
+    EXPECT_EQ(read(path(file)), before) << command;
+  }
+  [[nodiscard]] std::string track(const std::string& scene, const std::string& more) const {
+    return words({"track", path(scene), "--no-force --frame-rate 10", more});
+  }
+
+ private:
+  std::string scene_ =
+      "[rod]\nlength = 0.25\ndiameter = 0.0006\nmaterial = \"copper\"\n"
+      "[[gripper]]\nat = 0\ndirection = 0\ntrajectory = \"move.csv\"\n";
+};
+
+TEST_F(OutputsOverInputs, TheTrajectoryThatASceneNamesIsAnInput) {
+  for (const char* name : {"move.csv", "./move.csv", "hard.csv", "soft.csv"}) {
+    expect_untouched(track("m_00001.toml", "-o " + path(name)), "move.csv", "is read too");
+  }
+  expect_untouched(words({"solve", path("m_00001.toml"), "-o", path("move.csv")}), "move.csv",
+                   "is read too");
+  expect_untouched(track("m_00001.toml", "--paraview " + path("move.csv")), "move.csv",
+                   "is read too");
+  const Outcome appended =
+      run_line("cd " + path("") + " && " + DLO_COMMAND + " track m_00001.toml >> soft.csv");
+  EXPECT_EQ(appended.status, 2) << appended.err;
+}
+
+TEST_F(OutputsOverInputs, NoFileIsAmongTheFramesOfASeries) {
+  const std::string series = "--paraview " + path("m.vtk.series");
+  expect_untouched(track("m_00001.vtk", series), "m_00001.vtk", "writes frames m_00000.vtk");
+  expect_untouched(track("m_00001.toml", series + " -o " + path("m_00002.vtk")), "m_00001.vtk",
+                   "is written too");
+  std::filesystem::create_hard_link(path("move.csv"), path("m_00003.vtk"));
+  expect_untouched(track("m_00001.toml", series), "move.csv", "is read too");
+  // Names that are no frame's: of another stem, and with a digit too few.
+  std::filesystem::remove(path("m_00003.vtk"));
+  const Outcome beside = run(track("m_00001.toml", series + " -o " + path("m_0001.vtk")));
+  EXPECT_EQ(beside.status, 0) << beside.err;
+}
+
+TEST_F(OutputsOverInputs, TwoOutputsThatAreNotThereYetMayNotBeOneFile) {
+  std::filesystem::create_symlink("there.svg", path("to.svg"));
+  for (const char* other : {"./there.svg", "to.svg"}) {
+    expect_error(track("m_00001.toml", "--paraview " + path("there.svg") + " -o " + path(other)), 2,
+                 {"is written twice"});
+    EXPECT_FALSE(std::filesystem::exists(path("there.svg"))) << other;
+  }
 }
 
 TEST_F(TrackCommand, WritesASeriesForParaView) {
