@@ -13,10 +13,11 @@ namespace {
 struct Call {
   const Objective* objective;
   nlopt_opt optimiser;
-  double gradient_tolerance;
+  const MinimiseOptions* options;
   Eigen::VectorXd gradient;
   Eigen::VectorXd best;  // x where the gradient was small enough
   bool small_gradient = false;
+  bool late = false;
   int evaluations = 0;
   std::exception_ptr thrown;  // by the objective
 };
@@ -30,9 +31,12 @@ double evaluate(unsigned n, const double* x, double* gradient, void* data) {
     const Eigen::Map<const Eigen::VectorXd> point(x, n);
     const double value = (*call.objective)(point, call.gradient);
     if (gradient != nullptr) Eigen::Map<Eigen::VectorXd>(gradient, n) = call.gradient;
-    if (call.gradient.norm() <= call.gradient_tolerance) {
+    if (call.gradient.norm() <= call.options->gradient_tolerance) {
       call.small_gradient = true;
       call.best = point;
+      nlopt_force_stop(call.optimiser);
+    } else if (call.options->deadline.passed()) {
+      call.late = true;
       nlopt_force_stop(call.optimiser);
     }
     return value;
@@ -79,9 +83,10 @@ MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
       nlopt_create(NLOPT_LD_LBFGS, n), nlopt_destroy);
   Call call{&objective,
             optimiser.get(),
-            options.gradient_tolerance,
+            &options,
             Eigen::VectorXd(x.size()),
             Eigen::VectorXd(x.size()),
+            false,
             false,
             0,
             nullptr};
@@ -96,6 +101,8 @@ MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
   if (call.small_gradient) {
     x = call.best;
     result = {SolveStatus::converged, "converged"};
+  } else if (call.late) {
+    result = {SolveStatus::time_limit, to_string(SolveStatus::time_limit)};
   }
   result.evaluations = call.evaluations;
   return result;

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "base/deadline.hpp"
 #include "dlo/energy_model/status.hpp"
 
 namespace dlo::energy_model {
@@ -17,6 +18,7 @@ struct MinimiseOptions {
   int max_evaluations = 0;
   /// Steps that L-BFGS remembers; 0: as many as unknowns, which takes fewer but longer ones.
   int remembered_steps = 0;
+  Deadline deadline{};  ///< asked at every evaluation; the result is then `time_limit`
 };
 
 struct [[nodiscard]] MinimiseResult {

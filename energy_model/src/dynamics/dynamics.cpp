@@ -12,6 +12,7 @@
 #include "dynamics/moving_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
+#include "span/model_size.hpp"
 #include "vibration/inertia.hpp"
 
 namespace dlo::energy_model {
@@ -158,6 +159,9 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   const double begin = times.empty() ? 0 : std::min(0.0, times.front());
   const MovingRod complete = completed(rod, begin);
   const std::vector<PlacedSpan> spans = split(complete.problem);
+  for (const PlacedSpan& placed : spans) {
+    require_affordable(placed.span, options.terms, simulate_name);
+  }
   const std::vector<std::vector<PointMass>> masses = masses_by_span(complete, spans);
 
   Dynamics result;

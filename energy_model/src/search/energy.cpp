@@ -19,6 +19,7 @@
 #include "search/known_shape.hpp"
 #include "search/polygon_fields.hpp"
 #include "search/twist_path.hpp"
+#include "span/model_size.hpp"
 #include "span/search_log.hpp"
 #include "span/span_solver.hpp"
 
@@ -107,6 +108,7 @@ class EnergySolver::State {
       // Contact is not looked for where clamps twist the rod; judge_penetration() tells of it.
       if (span.frames) span.span.rigid_obstacles.clear();
       remove_redundant_obstacles(span.span);
+      require_affordable(span.span, options_.terms, "solve_energy");
     }
     const bool warm = from != From::nothing && remembered_.size() == placed.size();
     const bool only = from == From::last_shape_only;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "search/twist_path.hpp"
+#include "span/model_size.hpp"
 
 namespace dlo::energy_model {
 
@@ -40,6 +41,7 @@ std::vector<PlacedSolution> spans_in_space(const Problem& problem, const Equilib
   for (PlacedSpan& placed : split(problem)) {
     placed.span.rigid_obstacles.clear();
     placed.span.planar = false;
+    require_affordable(placed.span, terms, "vibrations");
     SpanOptions options;
     options.terms = terms;
     options.deadline = deadline;

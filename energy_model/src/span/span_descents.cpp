@@ -8,6 +8,7 @@
 #include "certify/enough_terms.hpp"
 #include "newton/penalty_descent.hpp"
 #include "newton/trust_region.hpp"
+#include "span/model_size.hpp"
 #include "strain/piece.hpp"
 
 namespace dlo::energy_model {
@@ -40,7 +41,8 @@ int SpanDescents::terms() const {
   if (options_.terms > 0) return options_.terms;
   const int layers = traits_.taut || traits_.graded ? layer_terms : 0;
   const int first = traits_.graded ? 0 : first_terms(traits_.load, traits_.longest_piece);
-  return std::max({first, options_.least_terms, layers, traits_.natural_terms});
+  const int wanted = std::max({first, options_.least_terms, layers, traits_.natural_terms});
+  return std::min(wanted, std::max(least_terms, affordable_terms(span_)));
 }
 
 int SpanDescents::coarse_terms() const {
@@ -190,8 +192,11 @@ void SpanDescents::minimise(SpanSolution& solution) const {
                                        Eigen::Ref<Eigen::VectorXd> gradient) {
     return model.value(x, gradient);
   };
-  const MinimiseResult result = minimise_lbfgs(
-      objective, solution.x, {handover_gradient * (1 + traits_.load), options_.max_evaluations});
+  const MinimiseResult result =
+      minimise_lbfgs(objective, solution.x,
+                     {.gradient_tolerance = handover_gradient * (1 + traits_.load),
+                      .max_evaluations = options_.max_evaluations,
+                      .deadline = options_.deadline});
   solution.evaluations += result.evaluations;
   // Newton's method has to prove the shape anyway.
   solution.status = result.is_a_start() ? SolveStatus::roundoff_limited : result.status;

@@ -1,0 +1,53 @@
+// Many point loads: as their distributed limit, and refused before they take the memory.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using test::heavy_cantilever;
+
+/// The weight of a cantilever of Gamma = 12 in as many loads, each in the middle of its part.
+Problem loaded(int count) {
+  Problem problem = heavy_cantilever(0, 10);
+  for (int i = 0; i < count; ++i) {
+    problem.loads.push_back({(i + 0.5) / count, {0, -12.0 / count, 0}});
+  }
+  return problem;
+}
+
+// The middle of a part carries its weight with an error of the square of its length.
+TEST(ManyLoads, BecomeTheWeightWithTheSquareOfTheirNumber) {
+  const std::vector<double> s = {0.5, 1};
+  const Eigen::Matrix3Xd weight = solve_energy(heavy_cantilever(12, 10)).sample(s).points;
+  const auto apart = [&](int count) {
+    const Equilibrium shape = solve_energy(loaded(count));
+    EXPECT_EQ(shape.status, SolveStatus::converged) << shape.message;
+    return (shape.sample(s).points - weight).norm();
+  };
+  const double of_30 = apart(30);
+  EXPECT_LT(of_30, 1e-3);
+  EXPECT_NEAR(of_30 / apart(90), 9, 0.2);
+}
+
+TEST(ManyLoads, AreRefusedWhereTheirModelWouldTakeTheMemory) {
+  try {
+    (void)solve_energy(loaded(2000));
+    FAIL() << "solved";
+  } catch (const std::invalid_argument& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("2000 loads"), std::string::npos) << message;
+    EXPECT_NE(message.find("must be at most"), std::string::npos) << message;
+  }
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
