@@ -178,6 +178,7 @@ Json frame_json(const TrackFrame& frame, const compare::Scene& scene, bool point
                    {"twisting", energy.twisting},
                    {"gravity", energy.gravity},
                    {"load", energy.load},
+                   {"contact", energy.contact},
                    {"total", energy.total()},
                    {"work", frame.work},
                    {"released", frame.released}}}};

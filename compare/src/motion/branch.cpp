@@ -137,7 +137,8 @@ SceneEnergies energies_of(const Moment& moment) {
   SceneEnergies energy{.bending = rod.energy.bending,
                        .twisting = rod.energy.twisting,
                        .gravity = rod.energy.gravity,
-                       .load = rod.energy.load};
+                       .load = rod.energy.load,
+                       .contact = rod.energy.contact};
   energy.gravity -= now.weight_between(0, now.length).dot(zero);
   for (const PointLoad& load : now.loads) energy.load -= load.force.dot(zero);
   return energy;

@@ -75,6 +75,13 @@ void add_errors(const std::vector<DynamicFrame>& frames, DynamicTrack& result) {
   result.force = force;
 }
 
+/// Why the simulation ended early, with what lets it go on.
+std::string why_stopped(const energy_model::Dynamics& moved) {
+  if (moved.status != energy_model::SolveStatus::time_limit) return moved.message;
+  return moved.message +
+         "; a longer one lets it go on, more damping or fewer terms makes it faster";
+}
+
 /// Of the frames at equal times that have the force model beside them.
 void add_lag(const Track& track, double length, double step, DynamicTrack& result) {
   std::vector<Eigen::Matrix3Xd> leader;
@@ -164,10 +171,10 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
     refuse(scene, error.what());
   }
   if (moved.frames.size() < times.size()) {
-    result.stopped = {track.frames[moved.frames.size()].time, moved.message};
+    result.stopped = {track.frames[moved.frames.size()].time, why_stopped(moved)};
   }
   if (moved.frames.empty()) {
-    throw ConvergenceError(fmt::format("{}: --dynamic: {}", scene.file, moved.message));
+    throw ConvergenceError(fmt::format("{}: --dynamic: {}", scene.file, why_stopped(moved)));
   }
   result.steps = moved.steps;
   result.energy_error = moved.energy_error;

@@ -265,9 +265,15 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
   const auto expired = [&] { return deadline.passed() || (planar && left_plane) || too_deep(); };
   std::vector<double> breaks = rod_.breaks;
   std::sort(breaks.begin(), breaks.end());
+  // Grips that share a break strike the span once.
+  const auto same = [&](double a, double b) {
+    return SpanIntegrator::same_instant(a / time_, b / time_);
+  };
+  breaks.erase(std::unique(breaks.begin(), breaks.end(), same), breaks.end());
   auto next_break = std::upper_bound(breaks.begin(), breaks.end(), begin_);
   for (const double time : times) {
-    for (; next_break != breaks.end() && *next_break <= time && !stopped(); ++next_break) {
+    const auto is_due = [&](double at_break) { return at_break <= time || same(at_break, time); };
+    for (; next_break != breaks.end() && is_due(*next_break) && !stopped(); ++next_break) {
       result.message = integrator.advance(at, *next_break / time_, expired);
       if (!stopped()) integrator.strike(at);
     }

@@ -44,6 +44,10 @@ class SpanIntegrator {
   [[nodiscard]] std::string advance(SpanInstant& at, double until,
                                     const std::function<bool()>& expired);
 
+  /// Whether two times differ by rounding only: a break between them is asked for on either side of
+  /// both.
+  [[nodiscard]] static bool same_instant(double a, double b);
+
   /// Brings SpanDynamics to an instant, with its accelerations. @return the grips' multipliers
   [[nodiscard]] Eigen::VectorXd settle(const SpanInstant& at);
 
@@ -94,6 +98,7 @@ class SpanIntegrator {
   double next_ = 0;
   double energy_ = std::numeric_limits<double>::quiet_NaN();  // where the last step ended
   double largest_energy_ = 0;
+  double energy_magnitude_ = 0;  // largest sum of the magnitudes of all energies
   long steps_ = 0;
   double smallest_step_ = std::numeric_limits<double>::infinity();
   double error_ = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -300,6 +301,51 @@ TEST(Lag, IsTheShiftOfASeriesOfShapes) {
     away.back().row(1) *= -1;
   }
   EXPECT_TRUE(std::isnan(lag_of(leader, away, step).time));
+}
+
+/// By which time the leader has to be late to be nearest to the follower: the least of the squares
+/// over shifts of a hundredth of a frame, between whose frames the leader goes straight.
+double nearest_delay(const std::vector<Eigen::Matrix3Xd>& leader,
+                     const std::vector<Eigen::Matrix3Xd>& follower, double frame_time) {
+  double least = std::numeric_limits<double>::infinity();
+  double delay = 0;
+  const double longest = 0.5 * static_cast<double>(leader.size());  // of shifts, frames
+  for (double shift = 0; shift < longest; shift += 0.01) {
+    double sum = 0;
+    for (std::size_t i = 0; i < leader.size(); ++i) {
+      const double at = std::max(0.0, static_cast<double>(i) - shift);
+      const auto before = static_cast<std::size_t>(at);
+      const double share = at - std::floor(at);
+      const std::size_t after = std::min(before + 1, leader.size() - 1);
+      sum += (follower[i] - (1 - share) * leader[before] - share * leader[after]).squaredNorm();
+    }
+    if (!(sum < least)) continue;
+    least = sum;
+    delay = shift * frame_time;
+  }
+  return delay;
+}
+
+// Of the summary, in seconds whatever the frame rate.
+TEST(Track, TheForceModelsLagIsTheDelayAtWhichItIsNearest) {
+  Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
+  scene.track.steps = 6000;
+  for (const double rate : {100.0, 200.0}) {
+    TrackOptions options = at_rate(rate);
+    options.force = ForceBeside::runs;
+    const Track result = track(scene, options);
+    std::vector<Eigen::Matrix3Xd> leader;
+    std::vector<Eigen::Matrix3Xd> follower;
+    for (const TrackFrame& frame : result.frames) {
+      ASSERT_TRUE(frame.force) << result.force.none;
+      leader.push_back(frame.points);
+      follower.push_back(frame.force->points);
+    }
+    const double delay = nearest_delay(leader, follower, 1 / rate);
+    EXPECT_GT(delay, 1 / rate);
+    // A parabola through the squares at whole frames is off by less than a quarter of one.
+    EXPECT_NEAR(result.force.lag, delay, 0.25 / rate);
+  }
 }
 
 ContactPart part(std::size_t obstacle, ContactKind kind, double begin, double end) {

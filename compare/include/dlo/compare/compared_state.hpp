@@ -14,7 +14,7 @@ struct OtherState {
 
 /// Which of a scene's equilibria a shape was compared with.
 struct ComparedState {
-  double energy_J = 0;             ///< bending, gravity and loads
+  double energy_J = 0;             ///< Solution::energy, of all
   int rank = 1;                    ///< among the stable ones by energy, 1: the lowest
   int stable = 1;                  ///< how many stable ones were found
   int unstable = 0;                ///< how many unstable ones were found

@@ -1,0 +1,117 @@
+// Times that differ by rounding, and energies so large that their rounding is seen.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "dlo/energy_model/dynamics.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A clamp that starts at once, which strikes the rod.
+Dynamics struck_at(const std::vector<double>& breaks, double frame) {
+  constexpr double start = 0.3;
+  MovingRod rod;
+  rod.problem = test::heavy_cantilever(0, 0);
+  rod.inertia.mass_per_length = 1;
+  rod.material_damping = 0.01;
+  rod.motions = {[](double time) {
+    const Vector3d velocity(0, 0.4, 0);
+    GripPose pose;
+    pose.position = std::max(0.0, time - start) * velocity;
+    if (time > start + 1e-14) pose.velocity = velocity;
+    return pose;
+  }};
+  rod.breaks = breaks;
+  return simulate(rod, straight_rod(Vector3d::UnitX()), std::vector<double>{frame, 0.4},
+                  {.terms = 8});
+}
+
+// 0.1 + 0.2 is 0.3 and a rounding. Between the two no step can be made, and none is needed; what
+// two grips have in common happens once.
+TEST(DynamicsRounding, FramesAndBreaksThatDifferByRoundingAreOneInstant) {
+  constexpr double sum = 0.1 + 0.2;
+  static_assert(sum > 0.3);
+  const std::vector<double> tip = {1.0};
+  const Dynamics plain = struck_at({0.3}, 0.3);
+  ASSERT_EQ(plain.status, SolveStatus::converged) << plain.message;
+  const std::vector<std::pair<std::vector<double>, double>> alike = {
+      {{0.3}, sum}, {{sum}, 0.3}, {{0.3, 0.3}, 0.3}, {{0.3, sum}, 0.3}, {{sum, 0.3}, sum}};
+  for (std::size_t i = 0; i < alike.size(); ++i) {
+    const Dynamics rounded = struck_at(alike[i].first, alike[i].second);
+    ASSERT_EQ(rounded.status, SolveStatus::converged) << i << ": " << rounded.message;
+    EXPECT_LT(rounded.energy_error, 1e-6) << i;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const Eigen::Matrix3Xd apart =
+          rounded.frames[k].sample(tip).points - plain.frames[k].sample(tip).points;
+      EXPECT_LT(apart.norm(), 1e-9) << i << " " << k;
+    }
+  }
+}
+
+/// Angle from the vertical of a pendulum of unit length, whose pivot goes to the side with constant
+/// acceleration a: theta'' = -g sin(theta) - a cos(theta), by Runge and Kutta's rule of order four.
+double pendulum_angle(double g, double a, double time) {
+  constexpr int steps = 2000;
+  const double h = time / steps;
+  const auto bent = [&](double theta) { return -g * std::sin(theta) - a * std::cos(theta); };
+  double theta = 0;
+  double rate = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double k1 = bent(theta);
+    const double k2 = bent(theta + h / 2 * rate);
+    const double k3 = bent(theta + h / 2 * rate + h * h / 4 * k1);
+    const double k4 = bent(theta + h * rate + h * h / 2 * k2);
+    theta += h * rate + h * h / 6 * (k1 + k2 + k3);
+    rate += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+  }
+  return theta;
+}
+
+// A thread of EI = 2e-6 N m^2 carries 0.3 kg: the potential of the load is 1e6 bending energies,
+// and its rounding is no error of a step. The payload is a pendulum, to the thread's share of the
+// masses.
+TEST(DynamicsRounding, APayloadOnASoftThreadIsAPendulum) {
+  constexpr double g = 9.81;
+  constexpr double acceleration = 1.5;
+  constexpr double thread = 1e-3;
+  constexpr double payload = 0.3;
+  MovingRod rod;
+  rod.problem.length = 1;
+  rod.problem.bending_stiffness = 2e-6;
+  rod.problem.weight_per_length = {0, -thread * g, 0};
+  rod.problem.grips = {{.at = 0, .position = Vector3d::Zero()}};
+  rod.problem.loads = {{1, {0, -payload * g, 0}}};
+  rod.inertia.mass_per_length = thread;
+  rod.inertia.point_masses = {{1, payload}};
+  rod.material_damping = 0.01;
+  rod.motions = {[=](double time) {
+    GripPose pose;
+    pose.position.x() = acceleration * time * time / 2;
+    pose.velocity.x() = acceleration * time;
+    pose.acceleration.x() = acceleration;
+    return pose;
+  }};
+  const std::vector<double> times = {0.25, 0.5};
+  const Dynamics moved =
+      simulate(rod, straight_rod(-Vector3d::UnitY()), times, {.terms = 4, .tolerance = 1e-6});
+  ASSERT_EQ(moved.status, SolveStatus::converged) << moved.message;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    const double pivot = acceleration * times[k] * times[k] / 2;
+    const double theta = pendulum_angle(g, acceleration, times[k]);
+    const Vector3d expected(pivot + std::sin(theta), -std::cos(theta), 0);
+    const Vector3d found = moved.frames[k].sample(std::vector<double>{1.0}).points.col(0);
+    EXPECT_LT((found - expected).norm(), 2 * thread / payload) << k;
+  }
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
