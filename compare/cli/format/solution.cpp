@@ -48,7 +48,8 @@ Json turns_json(const std::vector<compare::Linking>& parts) {
 /// As far as it is known; a fold or bifurcation leaves it open.
 bool is_stable(const compare::Solution& solution) {
   return solution.smallest_curvature >= -1e-7 &&
-         solution.status != energy_model::SolveStatus::near_singular;
+         solution.status != energy_model::SolveStatus::near_singular &&
+         solution.status != energy_model::SolveStatus::saddle;
 }
 
 const char* stability_of(const compare::Solution& solution) {
@@ -152,7 +153,8 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
   for (double* part : {&e.bending, &e.twisting, &e.gravity, &e.load, &e.stretch}) *part += 0.0;
   append(out, "energy     bending {:.9g} J, ", e.bending);
   if (!solution.twists.empty()) append(out, "twisting {:.9g} J, ", e.twisting);
-  append(out, "gravity {:.9g} J, load {:.9g} J, stretch {:.3g} J\n", e.gravity, e.load, e.stretch);
+  append(out, "gravity {:.9g} J, load {:.9g} J, stretch {:.3g} J", e.gravity, e.load, e.stretch);
+  out += e.contact > 0 ? fmt::format(", contact {:.9g} J\n", e.contact) : "\n";
   for (const energy_model::TwistedPart& part : solution.twists) {
     append(out, "twist      {:.6g} rad, torque {:.6g} Nm from s = {:.4g} to {:.4g} m\n", part.angle,
            part.torque, part.begin, part.end);

@@ -62,7 +62,8 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   solution.energy = {.bending = equilibrium.energy.bending,
                      .twisting = equilibrium.energy.twisting,
                      .gravity = equilibrium.energy.gravity,
-                     .load = equilibrium.energy.load};
+                     .load = equilibrium.energy.load,
+                     .contact = equilibrium.energy.contact};
   for (const energy_model::Reaction& reaction : equilibrium.grips) {
     solution.grippers.push_back({reaction.force, reaction.torque});
   }

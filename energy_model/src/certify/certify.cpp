@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "certify/contact_ends.hpp"
 #include "certify/free_turns.hpp"
 #include "linear/newton_system.hpp"
 #include "newton/newton.hpp"
@@ -53,24 +54,24 @@ double scale_of(const SpanSolution& solution, double load) {
 double rounding_of(double scale) { return 8 * std::numeric_limits<double>::epsilon() * scale; }
 
 /// By which the coefficients may be off along the softest direction if the second variation stays
-/// what it is: what Newton's method would still move them by, and what rounding and the modes that
-/// are left out push, divided by the eigenvalue nearest to zero.
+/// what it is: what Newton's method would still move them by, and what rounding, the modes that are
+/// left out and kinks within pieces push, divided by the eigenvalue nearest to zero.
 double linear_error(const SpanSolution& solution, double load) {
   const double scale = scale_of(solution, load);
   // The angle that the last coefficient adds is a_K / (2K); forces feel it as little again.
   const double K = solution.terms;
   const double angle = solution.model->tail(solution.x) / (2 * K);
   const double softest = std::min(solution.softest, 1.0);
-  return solution.next_step + (rounding_of(scale) + scale * angle / (2 * K)) / softest;
+  const double left_out = scale * angle / (2 * K) + misplaced_contact(solution);
+  return solution.next_step + (rounding_of(scale) + left_out) / softest;
 }
 
 /// What the points of a shape may be away from those of an equilibrium, of the length. The
 /// coefficients of strains bound what positions move by; no point of a held rod can be off by more
-/// than twice its length. NaN with soft obstacles, which make kinks inside pieces.
+/// than twice its length.
 /// @param moved  by which the coefficients may be off
 double error_estimate(const SpanSolution& solution, double moved) {
   const SpanEnergy& model = *solution.model;
-  if (model.has_soft_obstacles()) return std::numeric_limits<double>::quiet_NaN();
   // The unit is the rod's smaller bending stiffness.
   double softest_section = 1;
   for (const Span::Part& part : model.span().parts) {
@@ -222,7 +223,7 @@ void certify(SpanSolution& solution, double load, Newton& newton) {
   solution.neutral_directions = found.neutral_directions;
   // As many terms as constraints leave no direction that a fold could be in.
   const bool can_move = found.zero < model.size() - model.constraints();
-  if (can_move && !model.has_soft_obstacles() && may_be_at_fold(solution, load, eta)) {
+  if (can_move && may_be_at_fold(solution, load, eta)) {
     const SoftMode mode =
         soft_mode(system.on_free_directions(), newton.hessian(), jacobian, found.zero);
     const Softening change = softening(solution, mode);
@@ -243,7 +244,13 @@ void certify(SpanSolution& solution, double load, Newton& newton) {
     solution.neutral_directions += found.neutral_directions;
   }
   if (undetermined || !small_step || at_fold) return solution.finish(SolveStatus::near_singular);
-  if (solution.smallest_curvature < -neutral) return solution.finish(SolveStatus::saddle);
+  const MiddlePassed middle = middle_passed(solution);
+  if (middle == MiddlePassed::near) {
+    solution.neutral_directions = std::max(1, solution.neutral_directions);
+    return solution.finish(SolveStatus::near_singular);
+  }
+  if (solution.smallest_curvature < -neutral || middle == MiddlePassed::through_line)
+    return solution.finish(SolveStatus::saddle);
   solution.finish(solution.neutral_directions > 0 ? SolveStatus::near_singular
                                                   : SolveStatus::converged);
 }

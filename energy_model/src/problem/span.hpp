@@ -74,6 +74,8 @@ struct Span {
   /// Where pieces end, instead of where layers are guessed to have decayed (pieces_of()): as a
   /// shape that is known wants it, by growing s; empty: nothing is known.
   std::vector<double> cuts;
+  /// Where pieces end besides: where contact with soft obstacles begins and ends, by growing s.
+  std::vector<double> contact_ends;
   /// About d1, d2 and the tangent of a frame that has first_d1() at the start; about d1 alone if
   /// planar. Of all rods with material directors, zero if the rod is straight.
   NaturalStrains natural;

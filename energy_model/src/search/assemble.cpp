@@ -105,6 +105,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     const Eigen::Vector3d weight = force_unit * (place.frame.transpose() * carried);
     result.energy.gravity += own.gravity * energy_unit - weight.dot(lift);
     result.energy.load += own.load * energy_unit;
+    result.energy.contact += own.contact * energy_unit;
     for (const Span::Load& load : place.span.loads) {
       carried += load.force;
       result.energy.load -= force_unit * (place.frame.transpose() * load.force).dot(lift);

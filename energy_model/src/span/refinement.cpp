@@ -9,6 +9,8 @@
 #include "certify/certify.hpp"
 #include "certify/enough_terms.hpp"
 #include "certify/piece_cuts.hpp"
+#include "span/model_size.hpp"
+#include "span/settle_contact.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -42,11 +44,13 @@ class Refinement {
     const bool touches = !span_.contacts.empty();
     // Contacts cut the rod into short pieces; it still may take the terms of its load.
     const int least = touches ? std::max(32, on_.terms()) : 32;
-    const int affordable = std::max(least, unknowns / (traits_.fields * solution.model->pieces()));
-    // Soft obstacles make kinks inside pieces, where contact begins; more terms help only so far.
-    constexpr int most_with_soft_obstacles = 64;
+    const int affordable =
+        std::min(std::max(least, unknowns / (traits_.fields * solution.model->pieces())),
+                 std::max(solution.terms, affordable_terms(solution.model->span())));
+    // What is not smooth between the ends of contact has gone through a body's middle.
+    constexpr int most_between_contact_ends = 40;
     const int most_terms =
-        std::min(affordable, span_.soft_obstacles.empty() ? max_terms : most_with_soft_obstacles);
+        std::min(affordable, span_.contact_ends.empty() ? max_terms : most_between_contact_ends);
     Tail before;
     bool polished = false;
     while (solution.is_equilibrium()) {
@@ -62,8 +66,6 @@ class Refinement {
         break;
       }
       if (solution.terms >= most_terms) {
-        solution.resolved = !span_.soft_obstacles.empty();
-        if (solution.resolved) break;
         if (std::optional<SpanSolution> graded = graded_anew(solution)) return std::move(*graded);
         solution.fail(solution.too_few_terms());
         break;
@@ -169,7 +171,7 @@ class Refinement {
     const double K = solution.terms;
     // The angle that the last coefficient adds is a_K / (2K); positions feel it as little again.
     if (solution.model->tail(solution.x) > options_.tolerance * 4 * K * K) return false;
-    if (span_.is_plain_cantilever() || !span_.soft_obstacles.empty()) return true;
+    if (span_.is_plain_cantilever()) return true;
     return holds_with_more_terms(solution);
   }
 
@@ -200,7 +202,11 @@ class Refinement {
 }  // namespace
 
 SpanSolution refined(SpanDescents& on, SpanSolution solution) {
-  return Refinement(on).run(std::move(solution));
+  const auto refine = [](SpanDescents& settled, SpanSolution equilibrium) {
+    return Refinement(settled).run(std::move(equilibrium));
+  };
+  if (on.span().soft_obstacles.empty()) return refine(on, std::move(solution));
+  return settle_contact(on, std::move(solution), refine);
 }
 
 std::optional<Span> graded_for(const SpanDescents& on, const SpanSolution& shape) {

@@ -17,6 +17,7 @@
 #include "span/refinement.hpp"
 #include "span/same_shape.hpp"
 #include "span/search_log.hpp"
+#include "span/settle_contact.hpp"
 #include "span/span_descents.hpp"
 #include "span/span_starts.hpp"
 #include "span/start_ranking.hpp"
@@ -321,14 +322,23 @@ class Search {
     }
   }
 
+  /// Each shape has its own ends of contact with obstacles that yield.
+  [[nodiscard]] SpanSolution on_shared_pieces(const SpanSolution& solution) {
+    Span span = solution.model->span();
+    if (span.contact_ends.empty()) return solution;
+    span.contact_ends.clear();
+    SpanDescents own(span, options_, workspace_);
+    return on_other_pieces(own, solution, own.coarse_terms());
+  }
+
   /// Between two minima there is a pass, and a saddle on it: by Newton's method from where the
   /// unknowns of two equilibria are joined.
   void look_between(std::vector<SpanSolution>& found) {
     constexpr std::array<double, 5> shares = {0.2, 0.3, 0.5, 0.7, 0.8};
     for (std::size_t j = 1; j < found.size() && j < most_joined; ++j) {
       for (std::size_t i = 0; i < j && !on_.out_of_time(); ++i) {
-        const SpanSolution a = found[i];
-        const SpanSolution b = found[j];
+        const SpanSolution a = on_shared_pieces(found[i]);
+        const SpanSolution b = on_shared_pieces(found[j]);
         const Span& span = a.model->span();
         if (span.planar != b.model->span().planar || span.cuts != b.model->span().cuts) continue;
         SpanDescents own(span, options_, workspace_);
@@ -399,8 +409,11 @@ class Search {
   [[nodiscard]] std::optional<SpanSolution> leave_saddle(const SpanSolution& solution) {
     constexpr double push = 0.5;
     const std::optional<WayDown> way = way_down(solution);
-    if (!way) return std::nullopt;
-    return pushed_from(way->span, solution, push * way->along);
+    if (way) return pushed_from(way->span, solution, push * way->along);
+    // Through an obstacle's middle it gives way in a mode that its series does not see as unstable.
+    const std::optional<Eigen::VectorXd> softest = softest_of(solution);
+    if (!softest || solution.model->span().soft_obstacles.empty()) return std::nullopt;
+    return pushed_from(solution.model->span(), solution, push * *softest);
   }
 
   [[nodiscard]] SpanSolution pushed_from(const Span& span, const SpanSolution& solution,

@@ -25,7 +25,6 @@ void SoftContact::reset(const Span& span, const std::vector<Piece>& pieces,
 
 double SoftContact::add(const Eigen::MatrixX3d& tangents, Eigen::MatrixX3d& force) {
   const Eigen::MatrixX3d points = position_ * tangents;
-  double energy = 0;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     const Span::SoftObstacle& obstacle = obstacles_[i];
     const double k = obstacle.stiffness;
@@ -36,30 +35,52 @@ double SoftContact::add(const Eigen::MatrixX3d& tangents, Eigen::MatrixX3d& forc
       if (obstacle.body.clearance(point) >= 0) continue;
       pressed_[i].push_back({q, obstacle.body.gap(point)});
       const obstacle::Gap& gap = pressed_[i].back().gap;
-      energy += weights_[q] * k * gap.value * gap.value / 2;
       const double push = -weights_[q] * k * gap.value;
       force.noalias() += push * position_.row(q).transpose() * gap.gradient.transpose();
     }
   }
-  return energy;
+  return energy();
 }
 
 void SoftContact::add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
                               Eigen::Ref<Eigen::MatrixXd> hessian) const {
-  Eigen::MatrixX3d moved(hessian.cols(), 3);
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    if (pressed_[i].empty()) continue;
     const double k = obstacles_[i].stiffness;
-    for (const Pressed& at : pressed_[i]) {
-      for (Eigen::Index axis = 0; axis < 3; ++axis) {
-        moved.col(axis).noalias() = tangents[static_cast<std::size_t>(axis)].transpose() *
-                                    position_.row(at.node).transpose();
-      }
+    const Eigen::Index count = std::ssize(pressed_[i]);
+    Eigen::MatrixXd reach(count, position_.cols());
+    for (Eigen::Index p = 0; p < count; ++p) {
+      reach.row(p) = position_.row(pressed_[i][static_cast<std::size_t>(p)].node);
+    }
+    // Of the points that press, by axis: what the unknowns move them by, and the force of that.
+    std::array<Eigen::MatrixXd, 3> moved;
+    for (std::size_t axis = 0; axis < 3; ++axis) moved[axis].noalias() = reach * tangents[axis];
+    std::array<Eigen::MatrixXd, 3> pushed = moved;
+    for (Eigen::Index p = 0; p < count; ++p) {
+      const Pressed& at = pressed_[i][static_cast<std::size_t>(p)];
       const Eigen::Vector3d& normal = at.gap.gradient;
       const Eigen::Matrix3d spring =
           k * weights_[at.node] * (normal * normal.transpose() + at.gap.value * at.gap.hessian);
-      hessian.noalias() += moved * spring * moved.transpose();
+      for (Eigen::Index axis = 0; axis < 3; ++axis) {
+        pushed[static_cast<std::size_t>(axis)].row(p) = spring(axis, 0) * moved[0].row(p) +
+                                                        spring(axis, 1) * moved[1].row(p) +
+                                                        spring(axis, 2) * moved[2].row(p);
+      }
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      hessian.noalias() += moved[axis].transpose() * pushed[axis];
     }
   }
+}
+
+double SoftContact::energy() const {
+  double energy = 0;
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    for (const Pressed& at : pressed_[i]) {
+      energy += weights_[at.node] * obstacles_[i].stiffness * at.gap.value * at.gap.value / 2;
+    }
+  }
+  return energy;
 }
 
 std::vector<Eigen::Vector3d> SoftContact::forces() const {

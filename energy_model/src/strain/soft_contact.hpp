@@ -27,6 +27,8 @@ class SoftContact {
   void add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
                    Eigen::Ref<Eigen::MatrixXd> hessian) const;
 
+  /// Of the springs at the point of the last add().
+  [[nodiscard]] double energy() const;
   /// Force of each obstacle on the span.
   [[nodiscard]] std::vector<Eigen::Vector3d> forces() const;
   /// Their moment about the anchor.

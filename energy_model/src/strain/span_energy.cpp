@@ -691,6 +691,7 @@ Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
     energies.load -= load.force.dot(point);
   }
   energies.gravity = -force_.cwiseProduct(t_).sum() - energies.load;
+  energies.contact = soft_contact_.energy();
   return energies;
 }
 

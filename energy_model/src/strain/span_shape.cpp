@@ -208,6 +208,7 @@ std::vector<Piece> pieces_of(const Span& span) {
   for (const Span::Contact& contact : span.contacts) {
     cuts.insert(cuts.end(), {contact.begin, contact.end});
   }
+  cuts.insert(cuts.end(), span.contact_ends.begin(), span.contact_ends.end());
   if (span.cuts.empty()) {
     cut_layers(span, cuts);
   } else {

@@ -69,8 +69,9 @@ struct EnergyOptions {
 /// (Equilibrium::penetration) and that no obstacle pulls; what does not settle is `not_resolved`.
 /// Between clamps that twist the rod contact is not looked for: a shape behind an obstacle is
 /// not_resolved there. A lying rod against its exact solution is right to 1e-12 l. Obstacles that
-/// yield are springs along the rod: the curvature has kinks where contact begins, and the shape no
-/// error_estimate.
+/// yield are springs along the rod, and their energy is part of E. Where contact with them begins
+/// and ends the force per length has kinks: pieces end there, at ends that are found with the
+/// shape. What passes through the axis of such an obstacle is no stable equilibrium.
 /// @throws std::invalid_argument if the problem or an option is out of range, with the numbers
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 

@@ -99,9 +99,10 @@ struct Energies {
   double twisting = 0;  ///< int 1/2 GJ tau^2 ds, tau the twist per length that is not natural
   double gravity = 0;   ///< of the rod's weight
   double load = 0;      ///< of point loads
+  double contact = 0;   ///< of obstacles that yield: int 1/2 k d^2 ds, d the depth
 
   /// Of all [J].
-  [[nodiscard]] double total() const { return bending + twisting + gravity + load; }
+  [[nodiscard]] double total() const { return bending + twisting + gravity + load + contact; }
 };
 
 /// What a gripper exerts on the rod, the torque about the gripper's position.

@@ -1,0 +1,168 @@
+#include "certify/contact_ends.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace dlo::energy_model {
+namespace {
+
+/// Arc lengths at which a shape is looked at first.
+constexpr Eigen::Index first_looks = 400;
+
+/// Parts into which a bracket is divided, until it is as short as rounding.
+constexpr int parts = 32;
+constexpr double shortest_bracket = 1e-13;
+
+/// In a bracket the rod passes from one state to another.
+struct Bracket {
+  std::size_t obstacle = 0;
+  double begin = 0;
+  double end = 0;
+};
+
+constexpr int apart = -1;
+
+/// The face, edge or corner that a point presses into; apart if none.
+int state(const obstacle::Body& body, const Eigen::Vector3d& point) {
+  return body.clearance(point) < 0 ? body.feature(point) : apart;
+}
+
+Eigen::Matrix3Xd points_at(const SpanShape& shape, const std::vector<double>& s) {
+  return shape.sample(s).points;
+}
+
+std::vector<double> evenly_spaced(double length) {
+  std::vector<double> s;
+  for (Eigen::Index i = 0; i <= first_looks; ++i) {
+    s.push_back(length * static_cast<double>(i) / static_cast<double>(first_looks));
+  }
+  return s;
+}
+
+/// Evenly between both, which belong to them.
+void append_divided(double begin, double end, std::vector<double>& s) {
+  for (int i = 0; i <= parts; ++i) s.push_back(begin + (end - begin) * i / parts);
+}
+
+/// Those of all obstacles on arc lengths by growing s; also where a dip between two of them may
+/// reach into an obstacle.
+std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacles,
+                                 const SpanShape& shape, double length) {
+  const std::vector<double> s = evenly_spaced(length);
+  const Eigen::Matrix3Xd points = points_at(shape, s);
+  const double spacing = length / static_cast<double>(first_looks);
+  std::vector<Bracket> brackets;
+  std::vector<Bracket> dips;
+  for (std::size_t o = 0; o < obstacles.size(); ++o) {
+    const obstacle::Body& body = obstacles[o].body;
+    const Eigen::VectorXd clearance = body.clearances(points);
+    int before = state(body, points.col(0));
+    for (Eigen::Index i = 1; i < points.cols(); ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const int here = state(body, points.col(i));
+      if (here != before) brackets.push_back({o, s[at - 1], s[at]});
+      before = here;
+      const bool dip = i + 1 < points.cols() && clearance[i] >= 0 && clearance[i] < spacing &&
+                       clearance[i] <= clearance[i - 1] && clearance[i] <= clearance[i + 1];
+      if (dip) dips.push_back({o, s[at - 1], s[at + 1]});
+    }
+  }
+  for (const Bracket& dip : dips) {
+    std::vector<double> fine;
+    append_divided(dip.begin, dip.end, fine);
+    const Eigen::VectorXd clearance =
+        obstacles[dip.obstacle].body.clearances(points_at(shape, fine));
+    for (std::size_t i = 1; i < fine.size(); ++i) {
+      const auto k = static_cast<Eigen::Index>(i);
+      if ((clearance[k - 1] < 0) != (clearance[k] < 0)) {
+        brackets.push_back({dip.obstacle, fine[i - 1], fine[i]});
+      }
+    }
+  }
+  return brackets;
+}
+
+/// Shortens each bracket to the first change in it.
+void narrow(const std::vector<Span::SoftObstacle>& obstacles, const SpanShape& shape,
+            std::vector<Bracket>& brackets) {
+  std::vector<double> s;
+  for (const Bracket& bracket : brackets) append_divided(bracket.begin, bracket.end, s);
+  const Eigen::Matrix3Xd points = points_at(shape, s);
+  std::size_t first = 0;
+  for (Bracket& bracket : brackets) {
+    const obstacle::Body& body = obstacles[bracket.obstacle].body;
+    const int begin = state(body, points.col(static_cast<Eigen::Index>(first)));
+    std::size_t i = first + 1;
+    while (i < first + parts && state(body, points.col(static_cast<Eigen::Index>(i))) == begin) ++i;
+    bracket = {bracket.obstacle, s[i - 1], s[i]};
+    first += parts + 1;
+  }
+}
+
+}  // namespace
+
+std::vector<double> contact_ends(const SpanSolution& solution) {
+  const Span& span = solution.model->span();
+  std::vector<double> ends;
+  if (span.soft_obstacles.empty()) return ends;
+  const SpanShape shape = solution.model->shape(solution.x);
+  std::vector<Bracket> brackets = brackets_of(span.soft_obstacles, shape, span.length);
+  if (brackets.empty()) return ends;
+  for (double width = span.length / first_looks; width > shortest_bracket * span.length;
+       width /= parts) {
+    narrow(span.soft_obstacles, shape, brackets);
+  }
+  for (const Bracket& bracket : brackets) ends.push_back((bracket.begin + bracket.end) / 2);
+  std::sort(ends.begin(), ends.end());
+  const auto close = [](double a, double b) { return b - a < closest_contact_ends; };
+  ends.erase(std::unique(ends.begin(), ends.end(), close), ends.end());
+  return ends;
+}
+
+MiddlePassed middle_passed(const SpanSolution& solution) {
+  const Span& span = solution.model->span();
+  if (span.soft_obstacles.empty()) return MiddlePassed::none;
+  const Eigen::Matrix3Xd points =
+      points_at(solution.model->shape(solution.x), evenly_spaced(span.length));
+  constexpr double lengths_to_see = 4;
+  const double seen = lengths_to_see * span.length / first_looks;
+  MiddlePassed passed = MiddlePassed::none;
+  for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
+    const obstacle::Body& body = obstacle.body;
+    // Of what is thin the forces turn within the way to the middle, which nodes have to see.
+    const bool thin = ((body.upper() - body.lower()).array() == 0).count() >= 2;
+    const Eigen::VectorXd clearance = body.clearances(points);
+    for (Eigen::Index i = 1; i < points.cols(); ++i) {
+      if (clearance[i - 1] >= 0 || clearance[i] >= 0) continue;
+      const bool turns =
+          body.gap(points.col(i - 1)).gradient.dot(body.gap(points.col(i)).gradient) < 0;
+      if (turns && thin) return MiddlePassed::through_line;
+      if (turns || (thin && clearance[i] + body.radius() < seen)) passed = MiddlePassed::near;
+    }
+  }
+  return passed;
+}
+
+double misplaced_contact(const SpanSolution& solution) {
+  const Span& span = solution.model->span();
+  double stiffest = 0;
+  for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
+    stiffest = std::max(stiffest, obstacle.stiffness);
+  }
+  const std::vector<double> ends = contact_ends(solution);
+  if (ends.empty()) return 0;
+  const std::vector<Piece> pieces = pieces_of(span);
+  double force = 0;
+  for (const double end : ends) {
+    double way = std::numeric_limits<double>::infinity();
+    for (const Piece& piece : pieces) {
+      way = std::min({way, std::abs(end - piece.begin), std::abs(end - piece.end())});
+    }
+    force += stiffest * way * way;
+  }
+  return force;
+}
+
+}  // namespace dlo::energy_model

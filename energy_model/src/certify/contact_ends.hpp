@@ -1,0 +1,35 @@
+#pragma once
+
+#include <vector>
+
+#include "strain/span_solution.hpp"
+
+namespace dlo::energy_model {
+
+/// Ends of contact with obstacles that yield, closer than this, in lengths, are one.
+inline constexpr double closest_contact_ends = 1e-7;
+
+/// Where a shape begins and ends to press into an obstacle that yields, and where it passes from
+/// one face, edge or corner of it to the next while it does: there the force per length has a kink.
+/// By growing s.
+[[nodiscard]] std::vector<double> contact_ends(const SpanSolution& solution);
+
+/// Force that the series of a shape may miss because a kink of contact lies within a piece, in the
+/// units of the span: next to an end of contact the force per length is at most k times the way to
+/// it.
+[[nodiscard]] double misplaced_contact(const SpanSolution& solution);
+
+/// How a shape passes the middle of an obstacle that yields.
+enum class MiddlePassed {
+  none,
+  through_line,  ///< the axis of a cylinder or capsule, a ball's centre
+  near,          ///< so near to such a line, or from a box's face to the opposite one, that the
+                 ///< second variation is not seen
+};
+
+/// Beside the axis of a cylinder, r away, the second derivative of a contact's energy is -k R / r
+/// across it: what is integrated along a rod that crosses the axis has no lower bound, so that no
+/// such equilibrium is stable. Series see it only as far as their nodes are from the axis.
+[[nodiscard]] MiddlePassed middle_passed(const SpanSolution& solution);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,82 @@
+#include "span/settle_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "certify/contact_ends.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr int most_rounds = 16;
+
+/// Terms of the rounds before the ends are nearly right, at most; each piece is short.
+constexpr int first_round_terms = 16;
+
+/// By which ends may still move, in lengths, before terms are raised, and in the end.
+constexpr double nearly_settled = 1e-4;
+constexpr double settled = 1e-9;
+
+/// By which ends have moved; infinite where there are more or fewer.
+double moved_by(const std::vector<double>& before, const std::vector<double>& now) {
+  if (before.size() != now.size()) return std::numeric_limits<double>::infinity();
+  double moved = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    moved = std::max(moved, std::abs(now[i] - before[i]));
+  }
+  return moved;
+}
+
+}  // namespace
+
+SpanSolution on_other_pieces(SpanDescents& on, const SpanSolution& solution, int terms) {
+  SpanSolution other = on.empty_solution(terms);
+  const TangentField field = field_of(solution.model->shape(solution.x));
+  other.x = other.model->fit(field(other.model->nodes()));
+  if (on.span().twist)
+    other.x = other.model->with_twist(other.x, solution.model->twist(solution.x));
+  if (other.model->constraints() == solution.multipliers.size()) {
+    other.multipliers = solution.multipliers;
+  }
+  other.evaluations = solution.evaluations;
+  return other;
+}
+
+SpanSolution settle_contact(
+    SpanDescents& on, SpanSolution solution,
+    const std::function<SpanSolution(SpanDescents&, SpanSolution)>& refine) {
+  Span span = on.span();
+  std::vector<double> ends = contact_ends(solution);
+  bool refined = false;
+  for (int round = 0; round < most_rounds && solution.is_equilibrium(); ++round) {
+    if (on.out_of_time()) {
+      solution.finish(SolveStatus::time_limit);
+      return solution;
+    }
+    const bool same_pieces = ends == span.contact_ends;
+    span.contact_ends = ends;
+    SpanDescents own(span, on.options(), on.workspace());
+    if (!same_pieces) {
+      const int terms = refined ? solution.terms : std::min(solution.terms, first_round_terms);
+      solution = on_other_pieces(own, solution, on.options().terms > 0 ? solution.terms : terms);
+      own.newton().polish(solution, own.traits().load);
+      if (!solution.is_equilibrium()) own.descend(solution);
+    }
+    if (refined || same_pieces) solution = refine(own, std::move(solution));
+    if (!solution.is_equilibrium()) return solution;
+    std::vector<double> now = contact_ends(solution);
+    const double moved = moved_by(ends, now);
+    if ((refined || same_pieces) && moved <= settled) return solution;
+    refined = refined || moved <= nearly_settled;
+    ends = std::move(now);
+  }
+  if (solution.is_equilibrium()) {
+    solution.resolved = false;
+    solution.fail("where contact with obstacles that yield begins and ends has not been found");
+  }
+  return solution;
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,20 @@
+#pragma once
+
+#include "span/span_descents.hpp"
+
+namespace dlo::energy_model {
+
+/// An equilibrium on obstacles that yield, on pieces that end where contact with them does
+/// (Span::contact_ends): there the force per length has a kink, which no series takes. The ends are
+/// those of the shape before; what they are off by moves the shape by about its square, so that a
+/// few rounds find both.
+/// @param refine  raises the number of terms of an equilibrium on pieces that stay
+[[nodiscard]] SpanSolution settle_contact(
+    SpanDescents& on, SpanSolution solution,
+    const std::function<SpanSolution(SpanDescents&, SpanSolution)>& refine);
+
+/// The shape of a solution on a span, from its tangents: pieces may end elsewhere. Not polished.
+[[nodiscard]] SpanSolution on_other_pieces(SpanDescents& on, const SpanSolution& solution,
+                                           int terms);
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,135 @@
+// Rods on obstacles that yield: their energy, held by the work that moving an obstacle takes.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "problems.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using test::heavy_cantilever;
+
+struct YieldingScene {
+  std::string name;
+  Problem problem;
+  Eigen::Vector3d way;  // along which the obstacle is moved, unit
+};
+
+std::vector<YieldingScene> yielding_scenes() {
+  using obstacle::Body;
+  std::vector<YieldingScene> scenes;
+  Problem floor = heavy_cantilever(12, 0);
+  floor.obstacles = {{Body::half_space({0, -0.17, 0}, {0, 1, 0}), 130}};
+  scenes.push_back({"floor", floor, {0, 1, 0}});
+  Problem peg = heavy_cantilever(9, 0);
+  peg.grips.push_back({1, {0.75, -0.08, 0}});
+  peg.obstacles = {{Body::cylinder({0.45, -0.36, 0}, {0, 0, 1}, 0.1), 400}};
+  scenes.push_back({"cylinder", peg, {0, 1, 0}});
+  Problem ball = heavy_cantilever(15, 10);
+  ball.grips.push_back({1, {0.6, 0.1, 0.2}, Eigen::Vector3d(1, 0.4, 0.3)});
+  ball.obstacles = {{Body::sphere({0.35, -0.25, 0.1}, 0.15), 300}};
+  scenes.push_back({"ball", ball, {0.3, 0.9, 0.1}});
+  scenes.back().way.normalize();
+  return scenes;
+}
+
+Problem with_moved_obstacle(Problem problem, const Eigen::Vector3d& by) {
+  obstacle::Body& body = problem.obstacles.front().body;
+  body = body.seen_from(-by, Eigen::Matrix3d::Identity(), 1);
+  return problem;
+}
+
+// Moving an obstacle changes the energy at rest by the work of what it pushes with, and of nothing
+// else: grips stand still.
+TEST(SoftContact, EnergyGrowsByTheWorkOfAnObstacleThatIsMoved) {
+  constexpr double h = 1e-4;
+  for (const YieldingScene& scene : yielding_scenes()) {
+    const Equilibrium here = solve_energy(scene.problem);
+    ASSERT_EQ(here.status, SolveStatus::converged) << scene.name << ": " << here.message;
+    const Equilibrium ahead = solve_energy(with_moved_obstacle(scene.problem, h * scene.way));
+    const Equilibrium behind = solve_energy(with_moved_obstacle(scene.problem, -h * scene.way));
+    const double force = here.obstacles.front().dot(scene.way);
+    ASSERT_GT(force, 0.1) << scene.name;
+    EXPECT_GT(here.energy.contact, 0) << scene.name;
+    EXPECT_NEAR((ahead.energy.total() - behind.energy.total()) / (2 * h), force, 1e-5 * force)
+        << scene.name;
+  }
+}
+
+/// One clamp or a clamp and a pin, over or beside one obstacle that yields.
+Problem random_scene(int seed) {
+  using obstacle::Body;
+  std::mt19937 random(static_cast<unsigned>(seed));
+  const auto uniform = [&](double a, double b) {
+    return std::uniform_real_distribution<double>(a, b)(random);
+  };
+  Problem problem = heavy_cantilever(std::pow(10, uniform(0.3, 1.7)), uniform(-40, 40));
+  if (seed % 2 == 1) problem.grips.push_back({1, {uniform(0.5, 0.8), uniform(-0.3, 0.3), 0}});
+  const Eigen::Matrix3Xd points =
+      solve_energy(problem).sample(std::vector<double>{uniform(0.4, 0.7)}).points;
+  const Eigen::Vector3d at = points.col(0);
+  const double deep = uniform(0.01, 0.03);
+  const double radius = uniform(0.08, 0.2);
+  const double turned = uniform(-0.3, 0.3);
+  const Eigen::Matrix3d axes =
+      Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  const Eigen::Vector3d below = at - Eigen::Vector3d(0, radius - deep, 0);
+  const std::array<Body, 5> bodies = {
+      Body::half_space(at + Eigen::Vector3d(0, deep, 0), axes.col(1)),
+      Body::cylinder(below, {0, 0, 1}, radius), Body::sphere(below, radius),
+      Body::capsule(below, axes.col(0), 0.1, radius),
+      Body::box(below, axes, {0.3, 2 * radius, 0.3}, 0.5 * radius)};
+  problem.obstacles = {
+      {bodies[static_cast<std::size_t>(seed / 2) % bodies.size()], std::pow(10, uniform(2, 4))}};
+  return problem;
+}
+
+// Every equilibrium, stable or not, is stationary: an obstacle that is moved does work with its
+// force, and all else stands still. None stands twice in the list, and the lowest one is solved
+// for.
+TEST(SoftContact, RandomScenesListEachEquilibriumOnceWithTheForceOfItsEnergy) {
+  constexpr int scenes = 20;
+  // What shapes are off by moves energies by some 1e-9.
+  constexpr double h = 1e-5;
+  const Eigen::Vector3d way(0, 1, 0);
+  int pressed = 0;
+  for (int seed = 0; seed < scenes; ++seed) {
+    const Problem problem = random_scene(seed);
+    const std::vector<Equilibrium> found = all_energy(problem);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const std::vector<double> s = {0.25, 0.5, 0.75, 1};
+        const double apart = (found[i].sample(s).points - found[j].sample(s).points).norm();
+        EXPECT_GT(apart, 1e-4) << seed << ": " << i << " " << j << ", energies "
+                               << found[i].energy.total() << " " << found[j].energy.total();
+      }
+    }
+    const Equilibrium& lowest = found.front();
+    if (lowest.status != SolveStatus::converged) continue;
+    EXPECT_LT(lowest.error_estimate, 1e-7) << seed;
+    const double force = lowest.obstacles.front().dot(way);
+    if (force == 0) continue;
+    ++pressed;
+    const EnergyOptions from{.start = &lowest};
+    const Equilibrium ahead = solve_energy(with_moved_obstacle(problem, h * way), from);
+    const Equilibrium behind = solve_energy(with_moved_obstacle(problem, -h * way), from);
+    EXPECT_NEAR((ahead.energy.total() - behind.energy.total()) / (2 * h), force,
+                1e-4 * std::max(1.0, std::abs(force)))
+        << seed;
+  }
+  EXPECT_GE(pressed, scenes * 2 / 3);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
