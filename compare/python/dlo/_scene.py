@@ -26,6 +26,18 @@ SceneLike = Union["Scene", str, "os.PathLike[str]"]
 """A scene, or the name of a scene file."""
 
 
+def _copied(key: str, value: Any) -> Any:
+    """A value that is the scene's own."""
+    try:
+        return copy.deepcopy(value)
+    except RecursionError:
+        raise InputError(f"scene: {key}: nested too deep (allowed: 32 levels)", key) from None
+    except (TypeError, copy.Error):
+        raise InputError(
+            f"scene: {key}: a {type(value).__name__} (allowed: a number, text, a list, a table)", key
+        ) from None
+
+
 def _number(value: Any, dimension: str) -> Any:
     """What a document says in SI units; of a list each of its numbers, as an array."""
     if isinstance(value, str):
@@ -81,7 +93,7 @@ class Part:
     def __init__(self, **table: Any) -> None:
         self._owner: Optional[Scene] = None
         self._table: dict[str, Any] = {
-            key: copy.deepcopy(value) for key, value in table.items() if value is not None
+            key: _copied(key, value) for key, value in table.items() if value is not None
         }
 
     def _set(self, key: str, value: Any) -> None:
@@ -89,7 +101,7 @@ class Part:
         if value is None:
             self._table.pop(key, None)
         else:
-            self._table[key] = copy.deepcopy(value)
+            self._table[key] = _copied(key, value)
         if self._owner is None:
             return
         try:
@@ -357,8 +369,8 @@ class Scene:
         data: Optional[_dlo.SceneData] = None,
     ) -> None:
         self._file = file
-        self._top = copy.deepcopy(top)
-        self._rod = copy.deepcopy(rod)
+        self._top = {key: _copied(key, value) for key, value in top.items()}
+        self._rod = {key: _copied(key, value) for key, value in rod.items()}
         self._parts = {key: self._adopted(key, list(some)) for key, some in parts.items()}
         self._settings = ForceModelSettings(**settings)
         self._settings._owner = self
@@ -448,7 +460,7 @@ class Scene:
             table = self._rod if key in _ROD_KEYS else self._top
             table.pop(key, None)
             if value is not None:
-                table[key] = copy.deepcopy(value)
+                table[key] = _copied(key, value)
         elif key in _PART_KEYS:
             self._parts[key] = self._adopted(key, value)
         elif key == "force_model":
