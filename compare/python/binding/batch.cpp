@@ -16,6 +16,7 @@
 #include "long_call.hpp"
 #include "module.hpp"
 #include "parallel/threads.hpp"
+#include "result.hpp"
 #include "scene.hpp"
 
 namespace dlo::python {
@@ -106,8 +107,9 @@ class Batch {
 }  // namespace
 
 void bind_batch(py::module_& module) {
-  py::class_<Batch>(module, "Batch")
-      .def(py::init<const std::vector<SharedScene>&, int>(), py::arg("scenes"), py::arg("threads"))
+  py::class_<Batch> bound(module, "Batch");
+  refuse_pickle(bound, "a new one of its scenes");
+  bound.def(py::init<const std::vector<SharedScene>&, int>(), py::arg("scenes"), py::arg("threads"))
       .def("__len__", &Batch::size)
       .def("step", &Batch::step, py::arg("count") = 1,
            "Makes so many steps of every rod. One that diverges stays where it was, see\n"

@@ -13,6 +13,7 @@
 #include "errors.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
+#include "result.hpp"
 #include "scene.hpp"
 
 namespace dlo::python {
@@ -160,7 +161,9 @@ class ForceModel {
 }  // namespace
 
 void bind_force_model(py::module_& module) {
-  py::class_<ForceModel>(module, "ForceModel")
+  py::class_<ForceModel> bound(module, "ForceModel");
+  refuse_pickle(bound, "a new one of its scene, with points=loop.points()");
+  bound
       .def(py::init<SharedScene, const py::object&, std::optional<double>>(), py::arg("scene"),
            py::arg("points"), py::arg("grip_stiffness"))
       .def("__len__", &ForceModel::size)

@@ -2,14 +2,36 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string>
+
 namespace dlo::python {
 
 namespace py = pybind11;
 
+/// Pickle's older ways would make an object without the C++ object in it, which ends the
+/// interpreter. @param instead  what is allowed
+template <typename Class>
+void refuse_pickle(Class& bound, const char* instead) {
+  bound.def(
+      "__reduce_ex__",
+      [instead](const py::object& self, const py::object& /*protocol*/) -> py::object {
+        throw py::type_error("a dlo." +
+                             py::str(py::type::of(self).attr("__name__")).cast<std::string>() +
+                             " cannot be pickled or copied (allowed: " + instead + ")");
+      },
+      py::arg("protocol"));
+}
+
 /// What all results have besides to_json(): the same as a dict, and a picture.
 template <typename Class>
 void bind_result(Class& bound) {
+  refuse_pickle(bound, "its to_json(), its arrays");
   bound
+      // Never changed, so that one is as good as two.
+      .def("__copy__", [](const py::object& self) { return self; })
+      .def(
+          "__deepcopy__", [](const py::object& self, const py::dict& /*memo*/) { return self; },
+          py::arg("memo"))
       .def_property_readonly(
           "json",
           [](const py::object& self) {
