@@ -142,3 +142,79 @@ def test_memory_does_not_grow(steel, sanitized):
     work(1500)
     # A hundredth of what one solution of eleven points has, each time, would be 40 kB.
     assert resident() - before < 500_000
+
+
+HANDLED = """
+import signal
+import dlo
+scene = dlo.Scene(length=1, diameter="5 mm", material="silicone",
+                  grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=0.0)],
+                  force_model={"points": 2000, "law": "hooke"})
+loop, batch = dlo.ForceModel(scene), dlo.Batch([scene])
+free = dlo.ForceModel(scene)
+def handle(*_):
+    free.step(10)  # one that nobody uses
+    WHAT
+signal.signal(signal.SIGALRM, handle)
+signal.setitimer(signal.ITIMER_REAL, 0.3)
+try:
+    BUSY
+except RuntimeError as error:
+    print(error)
+print(free.steps, len(loop.points()), len(batch.points()))  # nothing is left locked
+"""
+
+
+@pytest.mark.parametrize(
+    "busy, what",
+    [
+        ("loop.step(10**9)", "loop.points()"),
+        ("loop.step(10**9)", "loop.steps"),
+        ("loop.step(10**9)", "loop.step()"),
+        ("loop.rest(1e-15, 10**9, 60)", "loop.rest()"),
+        ("batch.step(10**9)", "batch.points()"),
+        ("batch.step(10**9)", "batch.step()"),
+    ],
+)
+def test_a_handler_that_uses_the_busy_loop_is_told(busy, what, interpreter):
+    script = HANDLED.replace("WHAT", what).replace("BUSY", busy)
+    done = subprocess.run([*interpreter, "-c", script], capture_output=True, text=True, timeout=60)
+    assert "a call of this object within another one of the same thread" in done.stdout, done.stderr
+    assert done.stdout.endswith("\n10 2000 1\n")
+
+
+LEFT = """
+import threading, time
+import dlo
+scene = dlo.Scene(length=1, diameter="5 mm", material="silicone",
+                  grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=0.0)],
+                  force_model={"points": 2000, "law": "hooke"})
+loop, batch = dlo.ForceModel(scene), dlo.Batch([scene])
+def work():
+    while True:
+        WHAT
+for _ in range(3):
+    threading.Thread(target=work, daemon=True).start()
+time.sleep(0.2)
+print("leaving")
+"""
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        "loop.step(30)",
+        "loop.step(10**9)",
+        "loop.step(3); loop.points()",
+        "batch.step(30)",
+        "dlo.solve(scene)",
+        "loop.rest(1e-15, 10**9, 60)",
+    ],
+)
+def test_threads_of_daemons_do_not_disturb_the_end(what, interpreter):
+    script = LEFT.replace("WHAT", what)
+    for _ in range(3):
+        begin = time.monotonic()
+        done = subprocess.run([*interpreter, "-c", script], capture_output=True, text=True, timeout=60)
+        assert (done.returncode, done.stdout, done.stderr) == (0, "leaving\n", "")
+        assert time.monotonic() - begin < 5

@@ -39,7 +39,7 @@ class ForceModel {
     {
       Signals signals;
       {
-        const py::gil_scoped_release release;
+        const GilReleased released;
         const std::lock_guard lock(mutex_);
         while (count > 0 && !diverged) {
           const long block = std::min(count, between_looks);
@@ -132,14 +132,16 @@ class ForceModel {
   /// Of a thread that has the GIL, which another one may be waiting for that has the simulation.
   class Lock {
    public:
-    explicit Lock(std::mutex& mutex) : lock_(mutex, std::try_to_lock) {
+    explicit Lock(CallMutex& mutex) : lock_(mutex, std::try_to_lock) {
       if (lock_.owns_lock()) return;
-      const py::gil_scoped_release release;
+      GilReleased released;
       lock_.lock();
+      // What waits for the end of the process keeps nothing from others.
+      if (!released.take_back()) lock_.unlock();
     }
 
    private:
-    std::unique_lock<std::mutex> lock_;
+    std::unique_lock<CallMutex> lock_;
   };
 
   static ChainRod make_rod(const SceneData& data, const py::object& points,
@@ -151,7 +153,7 @@ class ForceModel {
 
   SharedScene scene_;
   ChainRod rod_;
-  std::mutex mutex_;
+  CallMutex mutex_;
   force_model::Simulation simulation_;
   Eigen::Matrix3Xd positions_;
   Eigen::Matrix3Xd forces_;
