@@ -233,9 +233,9 @@ def sweep(
     takes it, "log:0.1:10:5". The last field changes fastest. model: "energy", "exact", "chain",
     "force", "compare" or "compare-chain". threads: 0: all cores.
 
-    Returns a dict of arrays of shape (rows,), at most a million, by the names of the command's columns: float64 (to ten
-    significant digits, NaN where there is none), or str. A row whose column "status" is not "ok" has
-    no results.
+    Returns a dict of arrays of shape (rows,), at most a million, by the names of the command's columns:
+    float64 (to ten significant digits, NaN where there is none), or str. A row whose column "status"
+    is not "ok" has no results.
     """
     made = as_scene(scene)
     fields = [_axis(field, values) for field, values in vary.items()]
