@@ -238,3 +238,11 @@ def test_results_are_copied_as_they_are_and_not_pickled(results, cable):
         for function in (copy.copy, copy.deepcopy):
             with pytest.raises(TypeError, match=r"copied \(allowed: a new one of its scene"):
                 function(loop)
+
+
+def test_only_functions_make_results(results, cable):
+    for one in results + [cable._data]:
+        kind = type(one)
+        for make in (kind, lambda: kind.__new__(kind), lambda: kind(3)):
+            with pytest.raises(TypeError, match=r"not made by its class \(allowed: "):
+                make()
