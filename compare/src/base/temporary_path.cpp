@@ -171,8 +171,10 @@ void remove_tree(const char* path) {
   if (root < 0) return;
   FreeName free_name;
   // A folder may be changed while it is read, which can hide some of it from one pass.
+  // Each pass takes a level away; whoever goes on writing must not keep this from its end.
+  constexpr int most_passes = 100'000;
   bool changed = true;
-  while (changed) {
+  for (int pass = 0; changed && pass < most_passes; ++pass) {
     changed = false;
     for_each_entry(root, [&](const char* name) {
       if (remove_or_lift(root, name, free_name)) changed = true;
