@@ -1,5 +1,6 @@
 """Errors, signals and threads."""
 
+import itertools
 import os
 import signal
 import subprocess
@@ -69,7 +70,7 @@ except KeyboardInterrupt:
     [
         "dlo.solve(scene, model='force', time_limit=60, rest_tolerance=1e-9)",
         "dlo.ForceModel(scene).step(10**9)",
-        "dlo.sweep(scene, {'gamma': 'lin:1:2:100000000'})",
+        "dlo.sweep(scene, {'gamma': 'lin:1:2:1000000'})",
         "dlo.bench(scene, seconds=600, repeats=1000)",
     ],
 )
@@ -142,3 +143,132 @@ def test_memory_does_not_grow(steel, sanitized):
     work(1500)
     # A hundredth of what one solution of eleven points has, each time, would be 40 kB.
     assert resident() - before < 500_000
+
+
+HANDLED = """
+import signal
+import dlo
+scene = dlo.Scene(length=1, diameter="5 mm", material="silicone",
+                  grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=0.0)],
+                  force_model={"points": 2000, "law": "hooke"})
+loop, batch = dlo.ForceModel(scene), dlo.Batch([scene])
+free = dlo.ForceModel(scene)
+def handle(*_):
+    free.step(10)  # one that nobody uses
+    WHAT
+signal.signal(signal.SIGALRM, handle)
+signal.setitimer(signal.ITIMER_REAL, 0.3)
+try:
+    BUSY
+except RuntimeError as error:
+    print(error)
+print(free.steps, len(loop.points()), len(batch.points()))  # nothing is left locked
+"""
+
+
+@pytest.mark.parametrize(
+    "busy, what",
+    [
+        ("loop.step(10**9)", "loop.points()"),
+        ("loop.step(10**9)", "loop.steps"),
+        ("loop.step(10**9)", "loop.step()"),
+        ("loop.rest(1e-15, 10**9, 60)", "loop.rest()"),
+        ("batch.step(10**9)", "batch.points()"),
+        ("batch.step(10**9)", "batch.step()"),
+    ],
+)
+def test_a_handler_that_uses_the_busy_loop_is_told(busy, what, interpreter):
+    script = HANDLED.replace("WHAT", what).replace("BUSY", busy)
+    done = subprocess.run([*interpreter, "-c", script], capture_output=True, text=True, timeout=60)
+    assert "a call of this object within another one of the same thread" in done.stdout, done.stderr
+    assert done.stdout.endswith("\n10 2000 1\n")
+
+
+LEFT = """
+import threading, time
+import dlo
+scene = dlo.Scene(length=1, diameter="5 mm", material="silicone",
+                  grippers=[dlo.clamp(at=0, position=(0, 0, 0), direction=0.0)],
+                  force_model={"points": 2000, "law": "hooke"})
+loop, batch = dlo.ForceModel(scene), dlo.Batch([scene])
+def work():
+    while True:
+        WHAT
+for _ in range(3):
+    threading.Thread(target=work, daemon=True).start()
+time.sleep(0.2)
+print("leaving")
+"""
+
+
+@pytest.mark.parametrize(
+    "what",
+    [
+        "loop.step(30)",
+        "loop.step(10**9)",
+        "loop.step(3); loop.points()",
+        # Two that wait for the third: the first to get the loop keeps it from nobody.
+        "loop.step(10**9) if threading.current_thread().name[:8] == 'Thread-1' else loop.points()",
+        "batch.step(30)",
+        "dlo.solve(scene)",
+        "loop.rest(1e-15, 10**9, 60)",
+    ],
+)
+def test_threads_of_daemons_do_not_disturb_the_end(what, interpreter):
+    script = LEFT.replace("WHAT", what)
+    for _ in range(3):
+        begin = time.monotonic()
+        done = subprocess.run([*interpreter, "-c", script], capture_output=True, text=True, timeout=60)
+        assert (done.returncode, done.stdout, done.stderr) == (0, "leaving\n", "")
+        assert time.monotonic() - begin < 5
+
+
+def test_arguments_of_a_wrong_kind_are_named(cable):
+    loop, batch = dlo.ForceModel(cable), dlo.Batch([cable])
+    points = loop.points()
+    for call, words in [
+        (lambda: dlo.solve(cable, samples="a"), r"samples = 'a': a str \(allowed: an integer\)"),
+        (lambda: dlo.solve(cable, samples=1.5), r"samples = 1.5: a float \(allowed: an integer\)"),
+        (lambda: dlo.solve(cable, samples=2**40), r"samples = 1099511627776: out of range \(allowed"),
+        (lambda: dlo.solve(cable, model=3), r"model = 3: a int \(allowed: text\)"),
+        (lambda: dlo.solve(cable, model="\ud800"), r"model = .*half a character \(allowed: Unicode"),
+        (lambda: dlo.solve(cable, time_limit="1 s"), r"time_limit = '1 s': a str \(allowed: a number"),
+        (lambda: dlo.solve(cable, max_steps=1.5), r"max_steps = 1.5: a float \(allowed: an integer"),
+        (lambda: dlo.solve(3), r"scene: a int \(allowed: a dlo.Scene, or the name of a scene file"),
+        (lambda: dlo.check(cable, points, min_seen=[1]), r"min_seen = \[1\]: a list \(allowed: a num"),
+        (lambda: dlo.check(cable, points, tolerance=1j), r"tolerance = 1j: a complex \(allowed: a num"),
+        (lambda: dlo.check(cable, points, modulus=points), r"modulus = .*\(allowed: True or False"),
+        (lambda: dlo.calibrate(3), r"scenes = 3: a int \(allowed: a list"),
+        (lambda: dlo.calibrate(cable, [points], segments="5"), r"segments = '5': a str \(allowed: an"),
+        (lambda: dlo.stability(steppers=[1]), r"steppers = \[1\]: a int \(allowed: a list of text"),
+        (lambda: dlo.sweep(cable, 3), r"vary = 3: a int \(allowed: a dict"),
+        (lambda: dlo.sweep(cable, {3: "1"}), r"vary: a field = 3: a int \(allowed: text"),
+        (lambda: dlo.sweep(cable, {"gamma": 3}), r"vary: gamma = 3: a int \(allowed: a list"),
+        (lambda: dlo.track(cable, begin="0 s"), r"begin = '0 s': a str \(allowed: a number"),
+        (lambda: dlo.ForceModel(cable, grip_stiffness="1"), r"grip_stiffness = '1': a str \(allowed"),
+        (lambda: dlo.Batch(cable, threads=1), r"scenes = .*: a Scene \(allowed: a list"),
+        (lambda: loop.step("a"), r"count = 'a': a str \(allowed: an integer\)"),
+        (lambda: loop.move_gripper(-1, (0, 0, 0)), r"gripper = -1: out of range \(allowed: an integer f"),
+        (lambda: loop.rest(tolerance=[]), r"tolerance = \[\]: a list \(allowed: a number"),
+        (lambda: batch.move_gripper(0.5, 0, (0, 0, 0)), r"rod = 0.5: a float \(allowed: an integer f"),
+        (lambda: cable.replace(force_model={1: 2}), r"force_model: a key = 1: a int \(allowed: text"),
+        (lambda: cable.replace(grippers=3), r"grippers = 3: a int \(allowed: a list"),
+        (lambda: dlo.Scene.from_text(b""), r"text = b'': a bytes \(allowed: text"),
+        (lambda: dlo.Scene.from_file("\ud800"), r"scene: a file's name with half a character"),
+    ]:
+        with pytest.raises(dlo.InputError, match=words):
+            call()
+    dlo.solve(cable, samples=numpy.int64(11), time_limit=numpy.float32(20))
+    loop.step(count=numpy.int32(2))
+    assert loop.steps == 2
+
+
+def test_a_sweep_is_a_table_of_at_most_a_million_rows(cable):
+    allowed = r"allowed: 1000000 in a table; more in parts, or by the command dlo sweep"
+    for vary, rows in [
+        ({"gamma": "lin:1:2:1000001"}, 1000001),
+        ({"gamma": "lin:1:2:1001", "rod.length": "lin:1:2:1000"}, 1001000),
+        ({"gamma": itertools.count(1)}, 1000001),
+    ]:
+        with pytest.raises(dlo.InputError, match=rf"sweep: {rows} combinations \({allowed}"):
+            dlo.sweep(cable, vary)

@@ -1,7 +1,9 @@
 """Results: arrays that are views, and the command's own documents."""
 
+import copy
 import gc
 import json
+import pickle
 import subprocess
 
 import numpy
@@ -216,3 +218,31 @@ def test_plots(steel):
     assert len(check.plot(ax=matplotlib.figure().add_subplot()).lines) == 2 + len(check.points)
     dlo.compare(steel, modulus=False).plot()
     matplotlib.close("all")
+
+
+@pytest.fixture
+def results(cable):
+    solution = dlo.solve(cable)
+    return [solution, dlo.solve_all(cable), dlo.compare(cable), dlo.check(cable, solution.points)]
+
+
+def test_results_are_copied_as_they_are_and_not_pickled(results, cable):
+    for result in results:
+        assert copy.copy(result) is result
+        assert copy.deepcopy([result])[0] is result
+    for one in results + [dlo.ForceModel(cable), dlo.Batch([cable]), cable._data]:
+        for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+            with pytest.raises(TypeError, match=rf"a dlo.{type(one).__name__} cannot be pickled or"):
+                pickle.dumps(one, protocol)
+    for loop in [dlo.ForceModel(cable), dlo.Batch([cable])]:
+        for function in (copy.copy, copy.deepcopy):
+            with pytest.raises(TypeError, match=r"copied \(allowed: a new one of its scene"):
+                function(loop)
+
+
+def test_only_functions_make_results(results, cable):
+    for one in results + [cable._data]:
+        kind = type(one)
+        for make in (kind, lambda: kind.__new__(kind), lambda: kind(3)):
+            with pytest.raises(TypeError, match=r"not made by its class \(allowed: "):
+                make()

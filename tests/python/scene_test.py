@@ -159,3 +159,52 @@ def test_every_material_can_be_named(steel):
         steel.material = material["name"]
         assert steel.youngs_modulus == material["youngs_modulus"]
         assert steel.density == material["density"]
+
+
+def values_without_end():
+    itself = [0, 0]
+    itself.append(itself)
+    table = {}
+    table["in"] = table
+    deep = []
+    for _ in range(100_000):
+        deep = [deep]
+
+    class Same:
+        def tolist(self):
+            return self
+
+    class New:
+        def tolist(self):
+            return [New()]
+
+    return [itself, table, deep, Same(), New()]
+
+
+def test_values_that_hold_themselves_are_refused(cable):
+    for value in values_without_end():
+        for key in ("gravity", "length", "natural_curvature", "material"):
+            with pytest.raises(dlo.InputError, match=rf"{key}.*nested too deep \(allowed: 32 levels"):
+                cable.replace(**{key: value})
+        with pytest.raises(dlo.InputError, match="position.*nested too deep"):
+            cable.replace(grippers=[dlo.clamp(at=0, position=value, direction=0)])
+        with pytest.raises(dlo.InputError, match="nested too deep"):
+            cable.force_model.c_b = value
+    doubled = [0.0]
+    for _ in range(30):
+        doubled = [doubled, doubled]
+    with pytest.raises(dlo.InputError, match=r"gravity: too many values \(allowed: 1000000 in"):
+        cable.gravity = doubled
+    assert cable.length == 1
+
+
+def test_values_that_no_file_has_name_their_key(cable):
+    for value, words in [
+        ("\ud800", r"gravity: text with half a character \(allowed: Unicode"),
+        (2**64, r"gravity: an integer out of range \(allowed: up to 64 bits"),
+        ({1: 2}, r"gravity: a key that is a int \(allowed: text"),
+        ((x for x in "abc"), r"gravity: a generator \(allowed: a number, text"),
+        (1j, r"gravity: a complex \(allowed: a number, text"),
+    ]:
+        with pytest.raises(dlo.InputError, match=words):
+            cable.gravity = value

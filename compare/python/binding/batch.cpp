@@ -16,6 +16,7 @@
 #include "long_call.hpp"
 #include "module.hpp"
 #include "parallel/threads.hpp"
+#include "result.hpp"
 #include "scene.hpp"
 
 namespace dlo::python {
@@ -52,7 +53,7 @@ class Batch {
     const Eigen::Vector3d to = vector_from(position, "position");
     const std::optional<Eigen::Vector3d> along =
         direction.is_none() ? std::nullopt : std::optional(vector_from(direction, "direction"));
-    const py::gil_scoped_release release;
+    const GilReleased released;
     const std::lock_guard lock(mutex_);
     batch_.move_grip(rod, gripper, moved_targets(batch_.rod(rod), gripper, to, along), to);
   }
@@ -62,7 +63,7 @@ class Batch {
     py::array_t<double> array = output_array(out, {rods, batch_.rod(0).points(), 3});
     double* to = array.mutable_data();
     {
-      const py::gil_scoped_release release;
+      const GilReleased released;
       const std::lock_guard lock(mutex_);
       for (std::size_t rod = 0; rod < size(); ++rod) {
         const Eigen::Matrix3Xd positions = batch_.points(rod);
@@ -74,7 +75,7 @@ class Batch {
 
   py::array_t<bool> diverged() {
     py::array_t<bool> array(static_cast<py::ssize_t>(size()));
-    const py::gil_scoped_release release;
+    const GilReleased released;
     const std::lock_guard lock(mutex_);
     for (std::size_t rod = 0; rod < size(); ++rod) array.mutable_data()[rod] = batch_.diverged(rod);
     return array;
@@ -100,14 +101,15 @@ class Batch {
 
   force_model::Batch batch_;
   tbb::task_arena arena_;
-  std::mutex mutex_;
+  CallMutex mutex_;
 };
 
 }  // namespace
 
 void bind_batch(py::module_& module) {
-  py::class_<Batch>(module, "Batch")
-      .def(py::init<const std::vector<SharedScene>&, int>(), py::arg("scenes"), py::arg("threads"))
+  py::class_<Batch> bound(module, "Batch");
+  refuse_pickle(bound, "a new one of its scenes");
+  bound.def(py::init<const std::vector<SharedScene>&, int>(), py::arg("scenes"), py::arg("threads"))
       .def("__len__", &Batch::size)
       .def("step", &Batch::step, py::arg("count") = 1,
            "Makes so many steps of every rod. One that diverges stays where it was, see\n"

@@ -4,42 +4,104 @@
 
 #include <cstdint>
 
+#include "base/text_limits.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::python {
 namespace {
 
-toml::array list_from(const py::handle& list, const std::string& path);
+using compare::InputError;
 
-/// Puts a value where `place(value)` wants it.
-template <typename Place>
-void place_value(const py::handle& value, const std::string& path, const Place& place) {
-  if (py::isinstance<py::bool_>(value)) return place(value.cast<bool>());
-  if (py::isinstance<py::str>(value)) return place(value.cast<std::string>());
-  if (py::isinstance<py::dict>(value)) {
-    return place(to_toml(py::reinterpret_borrow<py::dict>(value), path));
+/// How far a value is within others, and how many there have been: lists that hold themselves, or
+/// each other many times, would have no end.
+struct Place {
+  static constexpr long most_values = 1'000'000;
+
+  const std::string& path;  ///< for messages
+  int depth;
+  long& values;
+
+  [[nodiscard]] Place within(const std::string& key) const { return {key, depth + 1, values}; }
+  [[nodiscard]] Place within() const { return within(path); }
+};
+
+void require_within_limits(const Place& place) {
+  if (place.depth > compare::deepest_nesting) {
+    throw InputError(fmt::format("scene: {}: nested too deep (allowed: {} levels)", place.path,
+                                 compare::deepest_nesting));
   }
-  if (py::isinstance<py::float_>(value)) return place(value.cast<double>());
-  const bool is_array = py::hasattr(value, "tolist");  // of NumPy, and its single numbers
-  if (is_array) return place_value(value.attr("tolist")(), path, place);
-  if (PyIndex_Check(value.ptr()) != 0) {
-    const py::int_ integer(py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr())));
-    return place(integer.cast<std::int64_t>());
+  if (++place.values > Place::most_values) {
+    throw InputError(fmt::format("scene: {}: too many values (allowed: {} in a scene)", place.path,
+                                 Place::most_values));
   }
-  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
-    return place(list_from(value, path));
-  }
-  throw compare::InputError(
-      fmt::format("scene: {}: a {} (allowed: a number, text, a list, a table)", path,
-                  Py_TYPE(value.ptr())->tp_name));
 }
 
-toml::array list_from(const py::handle& list, const std::string& path) {
+std::string text_from(const py::handle& text, const std::string& path) {
+  Py_ssize_t size = 0;
+  const char* data = PyUnicode_AsUTF8AndSize(text.ptr(), &size);
+  if (data != nullptr) return {data, static_cast<std::size_t>(size)};
+  PyErr_Clear();
+  throw InputError(fmt::format("scene: {}: text with half a character (allowed: Unicode)", path));
+}
+
+std::int64_t integer_from(const py::handle& number, const std::string& path) {
+  const auto integer = py::reinterpret_steal<py::object>(PyNumber_Index(number.ptr()));
+  if (!integer) throw py::error_already_set();
+  int beyond = 0;
+  const std::int64_t value = PyLong_AsLongLongAndOverflow(integer.ptr(), &beyond);
+  if (beyond == 0) return value;
+  throw InputError(
+      fmt::format("scene: {}: an integer out of range (allowed: up to 64 bits)", path));
+}
+
+toml::table table_from(const py::dict& document, const Place& place);
+toml::array list_from(const py::handle& list, const Place& place);
+
+/// Puts a value where `put(value)` wants it.
+template <typename Put>
+void place_value(const py::handle& value, const Place& place, const Put& put) {
+  require_within_limits(place);
+  if (py::isinstance<py::bool_>(value)) return put(value.cast<bool>());
+  if (py::isinstance<py::str>(value)) return put(text_from(value, place.path));
+  if (py::isinstance<py::dict>(value)) {
+    return put(table_from(py::reinterpret_borrow<py::dict>(value), place));
+  }
+  if (py::isinstance<py::float_>(value)) return put(value.cast<double>());
+  const bool is_array = py::hasattr(value, "tolist");  // of NumPy, and its single numbers
+  if (is_array) return place_value(value.attr("tolist")(), place.within(), put);
+  if (PyIndex_Check(value.ptr()) != 0) return put(integer_from(value, place.path));
+  if (py::isinstance<py::list>(value) || py::isinstance<py::tuple>(value)) {
+    return put(list_from(value, place));
+  }
+  throw InputError(fmt::format("scene: {}: a {} (allowed: a number, text, a list, a table)",
+                               place.path, Py_TYPE(value.ptr())->tp_name));
+}
+
+toml::array list_from(const py::handle& list, const Place& place) {
   toml::array array;
   for (const py::handle& element : list) {
-    place_value(element, path, [&array](auto&& value) { array.push_back(value); });
+    place_value(element, place.within(), [&array](auto&& value) { array.push_back(value); });
   }
   return array;
+}
+
+toml::table table_from(const py::dict& document, const Place& place) {
+  toml::table table;
+  // What a value's tolist() does to the original is not seen.
+  const auto items = py::reinterpret_steal<py::dict>(PyDict_Copy(document.ptr()));
+  if (!items) throw py::error_already_set();
+  for (const auto& [key, value] : items) {
+    if (value.is_none()) continue;
+    if (!py::isinstance<py::str>(key)) {
+      throw InputError(fmt::format("scene: {}: a key that is a {} (allowed: text)", place.path,
+                                   Py_TYPE(key.ptr())->tp_name));
+    }
+    const std::string name = text_from(key, place.path);
+    const std::string path = place.path.empty() ? name : fmt::format("{}.{}", place.path, name);
+    place_value(value, place.within(path),
+                [&](auto&& placed) { table.insert_or_assign(name, placed); });
+  }
+  return table;
 }
 
 py::object python_value(const toml::node& node) {
@@ -59,14 +121,8 @@ py::object python_value(const toml::node& node) {
 }  // namespace
 
 toml::table to_toml(const py::dict& document, const std::string& path) {
-  toml::table table;
-  for (const auto& [key, value] : document) {
-    if (value.is_none()) continue;
-    const auto name = key.cast<std::string>();
-    place_value(value, path.empty() ? name : fmt::format("{}.{}", path, name),
-                [&](auto&& placed) { table.insert_or_assign(name, placed); });
-  }
-  return table;
+  long values = 0;
+  return table_from(document, {path, 0, values});
 }
 
 py::dict to_python(const toml::table& table) {

@@ -13,6 +13,7 @@
 #include "errors.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
+#include "result.hpp"
 #include "scene.hpp"
 
 namespace dlo::python {
@@ -38,7 +39,7 @@ class ForceModel {
     {
       Signals signals;
       {
-        const py::gil_scoped_release release;
+        const GilReleased released;
         const std::lock_guard lock(mutex_);
         while (count > 0 && !diverged) {
           const long block = std::min(count, between_looks);
@@ -131,14 +132,16 @@ class ForceModel {
   /// Of a thread that has the GIL, which another one may be waiting for that has the simulation.
   class Lock {
    public:
-    explicit Lock(std::mutex& mutex) : lock_(mutex, std::try_to_lock) {
+    explicit Lock(CallMutex& mutex) : lock_(mutex, std::try_to_lock) {
       if (lock_.owns_lock()) return;
-      const py::gil_scoped_release release;
+      GilReleased released;
       lock_.lock();
+      // What waits for the end of the process keeps nothing from others.
+      if (!released.take_back()) lock_.unlock();
     }
 
    private:
-    std::unique_lock<std::mutex> lock_;
+    std::unique_lock<CallMutex> lock_;
   };
 
   static ChainRod make_rod(const SceneData& data, const py::object& points,
@@ -150,7 +153,7 @@ class ForceModel {
 
   SharedScene scene_;
   ChainRod rod_;
-  std::mutex mutex_;
+  CallMutex mutex_;
   force_model::Simulation simulation_;
   Eigen::Matrix3Xd positions_;
   Eigen::Matrix3Xd forces_;
@@ -160,7 +163,9 @@ class ForceModel {
 }  // namespace
 
 void bind_force_model(py::module_& module) {
-  py::class_<ForceModel>(module, "ForceModel")
+  py::class_<ForceModel> bound(module, "ForceModel");
+  refuse_pickle(bound, "a new one of its scene, with points=loop.points()");
+  bound
       .def(py::init<SharedScene, const py::object&, std::optional<double>>(), py::arg("scene"),
            py::arg("points"), py::arg("grip_stiffness"))
       .def("__len__", &ForceModel::size)

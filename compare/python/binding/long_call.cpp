@@ -9,7 +9,82 @@ constexpr std::chrono::milliseconds between_looks(100);
 
 thread_local Signals* current = nullptr;
 
+/// Threads with a GilReleased that have not been stopped in it.
+std::atomic<int> calls = 0;
+/// The thread that ends the interpreter, which may still compute; none before.
+std::atomic<std::thread::id> ending_thread{};
+
+bool is_at_exit(std::thread::id thread) {
+  const std::thread::id ending = ending_thread;
+  return ending != std::thread::id() && ending != thread;
+}
+
+/// A thread of a daemon, which ends with the process.
+[[noreturn]] void wait_for_exit() {
+  for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+}
+
+void stop_calls() {
+  // One that does not look in that time does not notice the end either.
+  constexpr std::chrono::seconds longest(5);
+  ending_thread = std::this_thread::get_id();
+  // Those that already wait for the GIL get it, and go on in Python.
+  const py::gil_scoped_release released;
+  const auto begin = std::chrono::steady_clock::now();
+  while (calls > 0 && std::chrono::steady_clock::now() - begin < longest) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
 }  // namespace
+
+GilReleased::GilReleased() {
+  ++calls;
+  state_ = PyEval_SaveThread();
+}
+
+bool GilReleased::take_back() {
+  if (state_ == nullptr) return true;
+  if (is_at_exit(std::this_thread::get_id())) return false;
+  PyEval_RestoreThread(std::exchange(state_, nullptr));
+  --calls;
+  return true;
+}
+
+GilReleased::~GilReleased() {
+  if (take_back()) return;
+  --calls;
+  wait_for_exit();
+}
+
+void stop_calls_at_exit(py::module_& /*module*/) {
+  py::module_::import("atexit").attr("register")(py::cpp_function(&stop_calls));
+}
+
+void CallMutex::lock() {
+  refuse_own_thread();
+  mutex_.lock();
+  owner_ = std::this_thread::get_id();
+}
+
+bool CallMutex::try_lock() {
+  refuse_own_thread();
+  if (!mutex_.try_lock()) return false;
+  owner_ = std::this_thread::get_id();
+  return true;
+}
+
+void CallMutex::unlock() {
+  owner_ = std::thread::id();
+  mutex_.unlock();
+}
+
+void CallMutex::refuse_own_thread() const {
+  if (owner_ != std::this_thread::get_id()) return;
+  throw std::runtime_error(
+      "a call of this object within another one of the same thread (allowed: a signal handler that "
+      "sets a flag or raises an exception)");
+}
 
 Signals::Signals()
     : next_look_(std::chrono::steady_clock::now() + between_looks), before_(current) {
@@ -19,7 +94,7 @@ Signals::Signals()
 Signals::~Signals() { current = before_; }
 
 bool Signals::stop() {
-  if (stopped_.load(std::memory_order_relaxed)) return true;
+  if (stopped_.load(std::memory_order_relaxed) || is_at_exit(owner_)) return true;
   if (std::this_thread::get_id() != owner_) return false;
   const auto now = std::chrono::steady_clock::now();
   if (now < next_look_) return false;

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -13,6 +14,46 @@
 namespace dlo::python {
 
 namespace py = pybind11;
+
+/// No GIL in its scope. At the end of the interpreter Python ends a thread that asks for the GIL in
+/// a way that no destructor lets through: such a thread is stopped here instead, and waits for the
+/// end of the process.
+class GilReleased {
+ public:
+  GilReleased();
+  ~GilReleased();
+  GilReleased(const GilReleased&) = delete;
+  GilReleased& operator=(const GilReleased&) = delete;
+  GilReleased(GilReleased&&) = delete;
+  GilReleased& operator=(GilReleased&&) = delete;
+
+  /// Takes the GIL before the scope's end; false if this thread will be stopped at that.
+  [[nodiscard]] bool take_back();
+
+ private:
+  PyThreadState* state_;
+};
+
+/// Has the interpreter's end stop the calls of other threads, those of daemons, and wait for that.
+/// @param module  the one that is being imported
+void stop_calls_at_exit(py::module_& module);
+
+/// What one call uses at a time. A handler of a signal, which runs within a call of its own thread,
+/// would wait for itself: it is refused.
+class CallMutex {
+ public:
+  /// @throws std::runtime_error if this thread has it
+  void lock();
+  /// @throws std::runtime_error if this thread has it
+  [[nodiscard]] bool try_lock();
+  void unlock();
+
+ private:
+  void refuse_own_thread() const;
+
+  std::mutex mutex_;
+  std::atomic<std::thread::id> owner_{};
+};
 
 /// Looks whether a signal has come, as Ctrl-C, while a computation holds no GIL. Python handles
 /// signals on its main thread only: on others it is never told to stop.
@@ -50,7 +91,7 @@ auto run_long(const Function& function) {
   Signals signals;
   std::optional<decltype(function(signals))> result;
   try {
-    const py::gil_scoped_release release;
+    const GilReleased released;
     const energy_model::Interruption interruption(Signals::asked);
     result.emplace(function(signals));
   } catch (...) {

@@ -1,10 +1,13 @@
 #include "module.hpp"
 
+#include "long_call.hpp"
+
 PYBIND11_MODULE(_dlo, module) {
   module.doc() = "What dlo computes, in C++; import dlo instead.";
   module.attr("__version__") = DLO_VERSION;
   pybind11::options options;
   options.disable_function_signatures();
+  dlo::python::stop_calls_at_exit(module);
   dlo::python::bind_errors(module);
   dlo::python::bind_scene(module);
   dlo::python::bind_solve(module);

@@ -2,14 +2,51 @@
 
 #include <pybind11/pybind11.h>
 
+#include <string>
+
 namespace dlo::python {
 
 namespace py = pybind11;
 
+/// Pickle's older ways would make an object without the C++ object in it, which ends the
+/// interpreter. @param instead  what is allowed
+template <typename Class>
+void refuse_pickle(Class& bound, const char* instead) {
+  bound.def(
+      "__reduce_ex__",
+      [instead](const py::object& self, const py::object& /*protocol*/) -> py::object {
+        throw py::type_error("a dlo." +
+                             py::str(py::type::of(self).attr("__name__")).cast<std::string>() +
+                             " cannot be pickled or copied (allowed: " + instead + ")");
+      },
+      py::arg("protocol"));
+}
+
+/// Of a class whose objects only functions make: an object without the C++ object in it, which
+/// Class.__new__(Class) would be, ends the interpreter when it is used.
+/// @param maker  what makes one
+template <typename Class>
+void refuse_new(Class& bound, const char* maker) {
+  const py::cpp_function refuse(
+      [maker](const py::args& /*all*/, const py::kwargs& /*all*/) -> py::object {
+        throw py::type_error(std::string("not made by its class (allowed: ") + maker + ")");
+      },
+      py::name("__new__"));
+  bound.attr("__new__") =
+      py::reinterpret_steal<py::object>(PyStaticMethod_New(py::object(refuse).ptr()));
+}
+
 /// What all results have besides to_json(): the same as a dict, and a picture.
 template <typename Class>
 void bind_result(Class& bound) {
+  refuse_pickle(bound, "its to_json(), its arrays");
+  refuse_new(bound, "the functions of dlo");
   bound
+      // Never changed, so that one is as good as two.
+      .def("__copy__", [](const py::object& self) { return self; })
+      .def(
+          "__deepcopy__", [](const py::object& self, const py::dict& /*memo*/) { return self; },
+          py::arg("memo"))
       .def_property_readonly(
           "json",
           [](const py::object& self) {

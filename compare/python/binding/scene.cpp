@@ -10,6 +10,7 @@
 #include "dlo/compare/material.hpp"
 #include "document.hpp"
 #include "module.hpp"
+#include "result.hpp"
 #include "scene/read_scene.hpp"
 #include "toml/quantity.hpp"
 #include "toml/strict_table.hpp"
@@ -94,9 +95,11 @@ py::list material_list() {
 void bind_scene(py::module_& module) {
   const auto of = [](auto get) { return [get](const SceneData& data) { return get(data.scene); }; };
   using compare::Scene;
-  py::class_<SceneData, std::shared_ptr<SceneData>>(module, "SceneData",
-                                                    "A scene as the reader has it, in SI units.")
-      .def_property_readonly("name", of([](const Scene& s) { return s.name; }))
+  py::class_<SceneData, std::shared_ptr<SceneData>> bound(
+      module, "SceneData", "A scene as the reader has it, in SI units.");
+  refuse_pickle(bound, "the dlo.Scene");
+  refuse_new(bound, "dlo.Scene");
+  bound.def_property_readonly("name", of([](const Scene& s) { return s.name; }))
       .def_property_readonly("gravity", of([](const Scene& s) { return vector_copy(s.gravity); }))
       .def_property_readonly("length", of([](const Scene& s) { return s.length; }))
       .def_property_readonly("diameter", of([](const Scene& s) { return s.diameter; }))

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <cmath>
@@ -25,6 +26,9 @@ namespace dlo::python {
 namespace {
 
 using StudyDocuments = std::pair<std::string, std::string>;  // text and JSON
+
+/// Rows of a table, which is kept in memory as a whole: about half a gigabyte.
+constexpr std::int64_t largest_table = 1'000'000;
 
 /// @param fields  of each axis the field, and either its values as a scene file spells them or what
 /// --vary takes
@@ -56,6 +60,12 @@ py::dict sweep(
   const Table table = run_long([&](Signals& signals) {
     const compare::Sweep sweep(compare::SceneTemplate(text, file), grid_of(fields),
                                compare::from_name<compare::SweepModel>(model), options);
+    if (sweep.grid().size() > largest_table) {
+      throw compare::InputError(
+          fmt::format("sweep: {} combinations (allowed: {} in a table; more in parts, or by the "
+                      "command dlo sweep)",
+                      sweep.grid().size(), largest_table));
+    }
     Table rows(sweep.header());
     sweep.run({0, sweep.grid().size()}, threads, [&](const std::string& line) {
       signals.throw_if_stopped();
@@ -142,6 +152,7 @@ py::object modes(const SharedScene& scene, int count, double rate, double dampin
 }  // namespace
 
 void bind_studies(py::module_& module) {
+  module.attr("largest_table") = largest_table;
   module.def("sweep", &sweep, py::arg("text"), py::arg("file"), py::arg("fields"), py::arg("model"),
              py::arg("threads"), py::arg("limits"));
   module.def("hard_cases", &hard_cases, py::arg("name_contains"), py::arg("steppers"),

@@ -2,12 +2,26 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any, Iterable, Mapping, Optional, Sequence, Union
 
 import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from . import _dlo
+from ._arguments import (
+    COUNT,
+    INTEGER,
+    LIST,
+    NUMBER,
+    QUANTITY,
+    TABLE,
+    TEXT,
+    TEXTS,
+    TRUTH,
+    checked,
+    require,
+)
 from ._documents import Benchmark, ForceModelFit, MaterialFit, Modes, Plan, Stability, Track
 from ._errors import InputError
 from ._scene import Quantity, Scene, SceneLike, as_scene
@@ -19,6 +33,7 @@ Shape = Union[ArrayLike, tuple[ArrayLike, ArrayLike]]
 def _many(scenes: Union[SceneLike, Iterable[SceneLike]]) -> list[Scene]:
     if isinstance(scenes, Scene) or isinstance(scenes, str) or hasattr(scenes, "__fspath__"):
         return [as_scene(scenes)]  # type: ignore[arg-type]
+    require("scenes", scenes, LIST)
     return [as_scene(scene) for scene in scenes]  # type: ignore[union-attr]
 
 
@@ -26,6 +41,7 @@ def _si(value: Quantity, dimension: str) -> float:
     return _dlo.quantity(value, dimension) if isinstance(value, str) else float(value)
 
 
+@checked(model=TEXT, samples=INTEGER)
 def solve(
     scene: SceneLike, model: str = "energy", samples: Optional[int] = None, **limits: Any
 ) -> _dlo.Solution:
@@ -41,11 +57,21 @@ def solve(
     return _dlo.solve(as_scene(scene)._data, model, samples or 0, limits)
 
 
+@checked(samples=INTEGER)
 def solve_all(scene: SceneLike, samples: Optional[int] = None, **limits: Any) -> _dlo.Equilibria:
     """Every equilibrium that the energy model finds, with its stability: `dlo solve --all`."""
     return _dlo.solve_all(as_scene(scene)._data, samples or 0, limits)
 
 
+@checked(
+    tolerance=QUANTITY,
+    measure=TEXT,
+    min_seen=NUMBER,
+    pose=TEXT,
+    arc_lengths=TEXT,
+    modulus=TRUTH,
+    explain=TRUTH,
+)
 def check(
     scene: SceneLike,
     points: ArrayLike,
@@ -71,17 +97,19 @@ def check(
     "file" (those given), "nearest" or "chord". modulus: look for E*/E. explain: of a shape that
     fails look for what would make it right, which takes longer than all else.
     """
-    asked = (None if tolerance is None else str(tolerance), measure, min_seen, explain)
+    asked = (None if tolerance is None else str(tolerance), measure, min_seen, bool(explain))
     return _dlo.check(
-        as_scene(scene)._data, points, arc_length, asked, pose, arc_lengths, modulus, limits
+        as_scene(scene)._data, points, arc_length, asked, pose, arc_lengths, bool(modulus), limits
     )
 
 
+@checked(modulus=TRUTH)
 def compare(scene: SceneLike, *, modulus: bool = True, **limits: Any) -> _dlo.Comparison:
     """How far the force model is from the energy model, and why: `dlo compare`."""
-    return _dlo.compare(as_scene(scene)._data, modulus, limits)
+    return _dlo.compare(as_scene(scene)._data, bool(modulus), limits)
 
 
+@checked(target=NUMBER, gripper_speed=NUMBER, time_limit=NUMBER)
 def plan(
     scene: SceneLike,
     *,
@@ -97,6 +125,21 @@ def plan(
     return Plan(*_dlo.plan(as_scene(scene)._data, target, gripper_speed, time_limit))
 
 
+@checked(
+    shapes=LIST,
+    holdout=LIST,
+    target=NUMBER,
+    points=INTEGER,
+    pose=TEXT,
+    arc_lengths=TEXT,
+    density=TRUTH,
+    torsional_stiffness=TRUTH,
+    natural_curvature=INTEGER,
+    clamp_angles=QUANTITY,
+    clamp_positions=QUANTITY,
+    noise=QUANTITY,
+    segments=INTEGER,
+)
 def calibrate(
     scenes: Union[SceneLike, Iterable[SceneLike]],
     shapes: Optional[Sequence[Shape]] = None,
@@ -131,12 +174,14 @@ def calibrate(
     if shapes is None:
         held_out = [as_scene(scene)._data for scene in holdout]
         return ForceModelFit(*_dlo.calibrate_force_model(data, held_out, points, target, limits))
-    pairs = [shape if isinstance(shape, tuple) and len(shape) == 2 else (shape, None) for shape in shapes]
+    pairs = [
+        shape if isinstance(shape, tuple) and len(shape) == 2 else (shape, None) for shape in shapes
+    ]
     what = {
         "pose": pose,
         "arc_lengths": arc_lengths,
-        "density": density,
-        "torsional_stiffness": torsional_stiffness,
+        "density": bool(density),
+        "torsional_stiffness": bool(torsional_stiffness),
         "natural_curvature_terms": natural_curvature,
         "clamp_angles": _si(clamp_angles, "angle"),
         "clamp_positions": _si(clamp_positions, "length"),
@@ -146,17 +191,33 @@ def calibrate(
     return MaterialFit(*_dlo.calibrate_material(data, pairs, what, limits))
 
 
-def _spelled(value: Any) -> str:
+def _spelled(field: str, value: Any, depth: int = 0) -> str:
     """As a scene file has it."""
     if isinstance(value, str):
+        require(field, value, TEXT)
         return value
     if isinstance(value, (list, tuple, numpy.ndarray)):
-        return "[" + ", ".join(_spelled(one) for one in value) + "]"
+        if depth > 32:
+            raise InputError(f"sweep: {field}: nested too deep (allowed: 32 levels)")
+        return "[" + ", ".join(_spelled(field, one, depth + 1) for one in value) + "]"
     if isinstance(value, (bool, numpy.bool_)):
         raise InputError(f"sweep: {value} (allowed: numbers, vectors and text)")
+    require(field, value, NUMBER)
     return repr(value.item() if isinstance(value, numpy.generic) else value)
 
 
+def _axis(field: str, values: Union[str, Iterable[Any]]) -> tuple[str, Union[str, list[str]]]:
+    """A field and its values, which may be without end: one more than allowed is enough."""
+    require("vary: a field", field, TEXT)
+    if isinstance(values, str):
+        require(f"vary: {field}", values, TEXT)
+        return field, values
+    require(f"vary: {field}", values, LIST)
+    some = itertools.islice(values, _dlo.largest_table + 1)
+    return field, [_spelled(f"vary: {field}", value) for value in some]
+
+
+@checked(vary=TABLE, model=TEXT, threads=INTEGER)
 def sweep(
     scene: SceneLike,
     vary: Mapping[str, Union[str, Iterable[Any]]],
@@ -172,18 +233,25 @@ def sweep(
     takes it, "log:0.1:10:5". The last field changes fastest. model: "energy", "exact", "chain",
     "force", "compare" or "compare-chain". threads: 0: all cores.
 
-    Returns a dict of arrays of shape (rows,), by the names of the command's columns: float64 (to ten
-    significant digits, NaN where there is none), or str. A row whose column "status" is not "ok" has
-    no results.
+    Returns a dict of arrays of shape (rows,), at most a million, by the names of the command's columns:
+    float64 (to ten significant digits, NaN where there is none), or str. A row whose column "status"
+    is not "ok" has no results.
     """
     made = as_scene(scene)
-    fields: list[tuple[str, Union[str, list[str]]]] = [
-        (field, values if isinstance(values, str) else [_spelled(value) for value in values])
-        for field, values in vary.items()
-    ]
+    fields = [_axis(field, values) for field, values in vary.items()]
     return _dlo.sweep(made.to_toml(), made._file, fields, model, threads, limits)
 
 
+@checked(
+    map=TEXT,
+    case=TEXT,
+    steppers=TEXTS,
+    max_steps=COUNT,
+    columns=INTEGER,
+    rows=INTEGER,
+    map_steps=COUNT,
+    threads=INTEGER,
+)
 def stability(
     scene: Optional[SceneLike] = None,
     *,
@@ -210,6 +278,7 @@ def stability(
     return Stability(*_dlo.stability_map(data, map, columns, rows, map_steps, threads))
 
 
+@checked(seconds=NUMBER, repeats=INTEGER)
 def bench(
     scenes: Union[SceneLike, Iterable[SceneLike]] = (), *, seconds: float = 40.0, repeats: int = 5
 ) -> Benchmark:
@@ -221,6 +290,7 @@ def bench(
     return Benchmark(*_dlo.bench([scene._data for scene in _many(scenes)], seconds, repeats))
 
 
+@checked(count=INTEGER, rate=NUMBER, damping=NUMBER, samples=INTEGER)
 def modes(
     scene: SceneLike,
     *,
@@ -241,6 +311,18 @@ def modes(
     return found
 
 
+@checked(
+    begin=NUMBER,
+    end=NUMBER,
+    frame_rate=NUMBER,
+    obstacle_rate=NUMBER,
+    step_rate=NUMBER,
+    force=TRUTH,
+    dynamic=TRUTH,
+    damping=NUMBER,
+    drag=NUMBER,
+    samples=INTEGER,
+)
 def track(
     scene: SceneLike,
     *,
@@ -270,5 +352,5 @@ def track(
         raise InputError("track: damping and drag are those of a rod with inertia (allowed: dynamic=True)")
     part = [begin, end, frame_rate, obstacle_rate, step_rate]
     loss = (damping, drag) if dynamic else None
-    found: Track = _dlo.track(as_scene(scene)._data, part, force, loss, samples, Track, limits)
+    found: Track = _dlo.track(as_scene(scene)._data, part, bool(force), loss, samples, Track, limits)
     return found

@@ -7,6 +7,7 @@ from typing import Iterable, Optional
 from numpy.typing import ArrayLike
 
 from . import _dlo
+from ._arguments import COUNT, INDEX, INTEGER, LIST, NUMBER, require, told
 from ._scene import SceneLike, as_scene
 
 
@@ -24,7 +25,8 @@ class ForceModel(_dlo.ForceModel):
     its polygon rests. grip_stiffness: of springs that hold the points instead of rigid grips, as a
     haptic device feels them [N/m]; None: rigid. N, law and stepper are scene.force_model's.
 
-    Threads may share one: each call has it to itself. step() lets others run meanwhile.
+    Threads may share one: each call has it to itself. step() lets others run meanwhile. A signal handler
+    that interrupts step() may not call it: RuntimeError.
     """
 
     def __init__(
@@ -34,7 +36,14 @@ class ForceModel(_dlo.ForceModel):
         *,
         grip_stiffness: Optional[float] = None,
     ) -> None:
+        if grip_stiffness is not None:
+            require("grip_stiffness", grip_stiffness, NUMBER)
         super().__init__(as_scene(scene)._data, points, grip_stiffness)
+
+    step = told(_dlo.ForceModel.step, count=COUNT)
+    rest = told(_dlo.ForceModel.rest, tolerance=NUMBER, max_steps=COUNT, time_limit=NUMBER)
+    move_gripper = told(_dlo.ForceModel.move_gripper, gripper=INDEX)
+    move_wall = told(_dlo.ForceModel.move_wall, wall=INDEX)
 
 
 class Batch(_dlo.Batch):
@@ -45,4 +54,9 @@ class Batch(_dlo.Batch):
     """
 
     def __init__(self, scenes: Iterable[SceneLike], *, threads: int = 0) -> None:
+        require("scenes", scenes, LIST)
+        require("threads", threads, INTEGER)
         super().__init__([as_scene(scene)._data for scene in scenes], threads)
+
+    step = told(_dlo.Batch.step, count=COUNT)
+    move_gripper = told(_dlo.Batch.move_gripper, rod=INDEX, gripper=INDEX)

@@ -11,6 +11,7 @@ import numpy
 from numpy.typing import ArrayLike, NDArray
 
 from . import _dlo
+from ._arguments import LIST, TABLE, TEXT, require
 from ._errors import InputError
 
 Quantity = Union[float, str]
@@ -24,6 +25,18 @@ Direction = Union[Quantity, Vector]
 
 SceneLike = Union["Scene", str, "os.PathLike[str]"]
 """A scene, or the name of a scene file."""
+
+
+def _copied(key: str, value: Any) -> Any:
+    """A value that is the scene's own."""
+    try:
+        return copy.deepcopy(value)
+    except RecursionError:
+        raise InputError(f"scene: {key}: nested too deep (allowed: 32 levels)", key) from None
+    except (TypeError, copy.Error):
+        raise InputError(
+            f"scene: {key}: a {type(value).__name__} (allowed: a number, text, a list, a table)", key
+        ) from None
 
 
 def _number(value: Any, dimension: str) -> Any:
@@ -81,7 +94,7 @@ class Part:
     def __init__(self, **table: Any) -> None:
         self._owner: Optional[Scene] = None
         self._table: dict[str, Any] = {
-            key: copy.deepcopy(value) for key, value in table.items() if value is not None
+            key: _copied(key, value) for key, value in table.items() if value is not None
         }
 
     def _set(self, key: str, value: Any) -> None:
@@ -89,7 +102,7 @@ class Part:
         if value is None:
             self._table.pop(key, None)
         else:
-            self._table[key] = copy.deepcopy(value)
+            self._table[key] = _copied(key, value)
         if self._owner is None:
             return
         try:
@@ -189,6 +202,13 @@ class ForceModelSettings(Part):
     c_h = _setting("c_h", "[-]; None: derived.")
     l_s = _setting("l_s", "[m]; None: derived.")
     del _setting
+
+
+def _settings_of(table: Any) -> ForceModelSettings:
+    require("force_model", table, TABLE)
+    for key in table:
+        require("force_model: a key", key, TEXT)
+    return ForceModelSettings(**table)
 
 
 def clamp(
@@ -343,9 +363,10 @@ class Scene:
         rod = {key: given[key] for key in _ROD_KEYS if given[key] is not None}
         parts: dict[str, Iterable[Part]] = {key: given[key] for key in _PART_KEYS}
         settings = (
-            force_model._table if isinstance(force_model, ForceModelSettings) else force_model or {}
+            force_model._table if isinstance(force_model, ForceModelSettings) else force_model
         )
-        self._start("scene", {"name": name or "scene", "gravity": gravity}, rod, parts, settings)
+        top = {"name": "scene" if name is None else name, "gravity": gravity}
+        self._start("scene", top, rod, parts, {} if settings is None else settings)
 
     def _start(
         self,
@@ -357,15 +378,16 @@ class Scene:
         data: Optional[_dlo.SceneData] = None,
     ) -> None:
         self._file = file
-        self._top = copy.deepcopy(top)
-        self._rod = copy.deepcopy(rod)
-        self._parts = {key: self._adopted(key, list(some)) for key, some in parts.items()}
-        self._settings = ForceModelSettings(**settings)
+        self._top = {key: _copied(key, value) for key, value in top.items()}
+        self._rod = {key: _copied(key, value) for key, value in rod.items()}
+        self._parts = {key: self._adopted(key, some) for key, some in parts.items()}
+        self._settings = _settings_of(settings)
         self._settings._owner = self
         self._data = data if data is not None else _dlo.read_scene(self._document(), file)
 
     def _adopted(self, key: str, parts: Iterable[Part]) -> tuple[Part, ...]:
         kind = _PART_KEYS[key][1]
+        require(key, parts, LIST)
         adopted = []
         for part in parts:
             if not isinstance(part, kind):
@@ -415,12 +437,24 @@ class Scene:
     @classmethod
     def from_file(cls, path: Union[str, "os.PathLike[str]"]) -> "Scene":
         """Reads a scene file (TOML)."""
-        name = os.fspath(path)
-        return cls.from_text(_dlo.read_file(name), name)
+        if not isinstance(path, (str, bytes, os.PathLike)):
+            raise InputError(
+                f"scene: a {type(path).__name__} (allowed: a dlo.Scene, or the name of a scene file)"
+            )
+        # A name of a file may be of any bytes, that of a scene is Unicode.
+        try:
+            name = os.fsencode(path)
+        except UnicodeEncodeError:
+            raise InputError("scene: a file's name with half a character (allowed: Unicode)") from None
+        if b"\0" in name:
+            raise InputError("scene: a file's name with a zero byte (allowed: any other)")
+        return cls.from_text(_dlo.read_file(name), name.decode(errors="replace"))
 
     @classmethod
     def from_text(cls, text: str, name: str = "scene") -> "Scene":
         """Reads a scene file's text. name: what messages call it."""
+        require("text", text, TEXT)
+        require("name", name, TEXT)
         data, document = _dlo.parse_scene(text, name)
         return cls._from_document(document, name, data)
 
@@ -448,12 +482,12 @@ class Scene:
             table = self._rod if key in _ROD_KEYS else self._top
             table.pop(key, None)
             if value is not None:
-                table[key] = copy.deepcopy(value)
+                table[key] = _copied(key, value)
         elif key in _PART_KEYS:
             self._parts[key] = self._adopted(key, value)
         elif key == "force_model":
-            table = value._table if isinstance(value, ForceModelSettings) else value or {}
-            self._settings = ForceModelSettings(**table)
+            table = value._table if isinstance(value, ForceModelSettings) else value
+            self._settings = _settings_of({} if table is None else table)
             self._settings._owner = self
         else:
             raise TypeError(f"a scene has no field {key}")

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -18,6 +19,18 @@ namespace {
 [[noreturn]] void refuse_file(const std::string& name, int error, const std::string& more) {
   throw InputError(fmt::format("{}: cannot be read ({}{})", name.empty() ? "\"\"" : name,
                                std::generic_category().message(error), more));
+}
+
+std::string kind_of(mode_t mode) {
+  if (S_ISDIR(mode)) return "a folder";
+  if (S_ISFIFO(mode)) return "a named pipe";
+  if (S_ISSOCK(mode)) return "a socket";
+  return "a device";
+}
+
+void require_regular(const struct stat& status, const std::string& name) {
+  if (S_ISREG(status.st_mode)) return;
+  throw InputError(fmt::format("{}: {} (allowed: a regular file)", name, kind_of(status.st_mode)));
 }
 
 /// People leave the extension out.
@@ -70,5 +83,18 @@ std::string InputFile::read_all(std::size_t largest) {
 }
 
 std::string read_file(const std::string& path) { return InputFile(path).read_all(); }
+
+std::string read_regular_file(const std::string& path, const std::string& name) {
+  struct stat status {};
+  // Before it is opened too, which some devices take for an order.
+  if (::stat(path.c_str(), &status) != 0) refuse_file(name, errno, "");
+  require_regular(status, name);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | O_NONBLOCK);
+  if (descriptor < 0) refuse_file(name, errno, "");
+  InputFile file(descriptor, name);
+  if (::fstat(descriptor, &status) != 0) refuse_file(name, errno, "");
+  require_regular(status, name);
+  return file.read_all();
+}
 
 }  // namespace dlo::compare

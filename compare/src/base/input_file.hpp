@@ -37,4 +37,8 @@ class InputFile {
 /// A whole file. @throws InputError as InputFile
 [[nodiscard]] std::string read_file(const std::string& path);
 
+/// A whole file that others have written, which may be anything: only a regular file is read, also
+/// through a link; nothing is waited for. @param name  for messages @throws InputError as InputFile
+[[nodiscard]] std::string read_regular_file(const std::string& path, const std::string& name);
+
 }  // namespace dlo::compare

@@ -35,12 +35,16 @@ class TemporaryGroup {
   TemporaryGroup& operator=(TemporaryGroup&&) = delete;
 };
 
+/// Removes a file, or a folder with all that is in it, however deep and whatever its permissions,
+/// as far as its owner may; links are not followed. May be called by a signal handler.
+void remove_tree(const char* path);
+
 /// Kills a TemporaryGroup, and removes what OutputFile and write_report() have not finished; may be
 /// called by a signal handler.
 void remove_temporaries();
 
-/// Lets SIGHUP, SIGINT, SIGPIPE and SIGTERM remove_temporaries() before they end the process,
-/// unless they are ignored or handled already. For programs: a library leaves signals alone.
+/// Lets all signals that end the process and can be handled remove_temporaries() before, unless
+/// they are ignored or handled already. For programs: a library leaves signals alone.
 void remove_temporaries_at_signals();
 
 }  // namespace dlo::compare

@@ -64,10 +64,7 @@ std::string with_places(const std::string& word, const std::string& scene,
 class ProgramFolder {
  public:
   ProgramFolder() : path_(made()), at_signals_(path_) {}
-  ~ProgramFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
+  ~ProgramFolder() { remove_tree(path_.c_str()); }
   ProgramFolder(const ProgramFolder&) = delete;
   ProgramFolder& operator=(const ProgramFolder&) = delete;
   ProgramFolder(ProgramFolder&&) = delete;
@@ -75,12 +72,22 @@ class ProgramFolder {
 
   [[nodiscard]] std::string file(const char* name) const { return path_ + "/" + name; }
 
-  /// The file `shape`, or the only one that begins with "shape."; empty if there is none.
+  /// What is named `shape`, or the only thing whose name begins with "shape."; empty if there is
+  /// none. @throws InputError if the program has made away with the folder
   [[nodiscard]] std::string shape_file() const {
-    if (std::filesystem::exists(file("shape"))) return file("shape");
+    namespace fs = std::filesystem;
+    std::error_code error;
+    // The name itself: a link that leads nowhere is told when it is read.
+    if (fs::symlink_status(file("shape"), error).type() != fs::file_type::not_found) {
+      return file("shape");
+    }
     std::vector<std::string> found;
-    for (const auto& entry : std::filesystem::directory_iterator(path_)) {
-      if (entry.path().filename().string().starts_with("shape.")) found.push_back(entry.path());
+    fs::directory_iterator entry(path_, error);
+    for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
+      if (entry->path().filename().string().starts_with("shape.")) found.push_back(entry->path());
+    }
+    if (error) {
+      throw InputError(fmt::format("the folder of {{shape}} cannot be read ({})", error.message()));
     }
     return found.size() == 1 ? found.front() : "";
   }
@@ -113,7 +120,7 @@ std::string last_line(const std::string& text) {
 /// A program may have written anything, of any size.
 std::string last_words(const std::string& file) {
   try {
-    const std::string line = last_line(read_file(file));
+    const std::string line = last_line(read_regular_file(file, "stderr"));
     return line.empty() ? "" : ": " + line;
   } catch (const InputError&) {
     return "";
@@ -199,14 +206,15 @@ ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, d
     result.problem = outcome.problem + last_words(folder.file("stderr"));
     return result;
   }
-  const std::string file = folder.shape_file();
-  if (file.empty()) {
-    result.problem = "wrote no shape" + last_words(folder.file("stderr"));
-    return result;
-  }
   try {
+    const std::string file = folder.shape_file();
+    if (file.empty()) {
+      result.problem = "wrote no shape" + last_words(folder.file("stderr"));
+      return result;
+    }
     // The folder's name is gone when the message is read.
-    result.shape = parse_shape(read_file(file), "its shape");
+    constexpr const char* shape_name = "its shape";
+    result.shape = parse_shape(read_regular_file(file, shape_name), shape_name);
   } catch (const InputError& error) {
     result.problem = error.what();
   }

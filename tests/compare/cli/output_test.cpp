@@ -2,6 +2,7 @@
 // way, and no name or number breaks a format.
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -285,8 +286,10 @@ TEST_F(Output, ASignalLeavesNothingUnfinished) {
       dlo::compare::remove_temporaries_at_signals();
       OutputFile file(path("a.csv"));
       file.append("half");
-      fs::create_directories(path("tree/report/scenes"));
-      write("tree/report/scenes/a.toml", "a");
+      fs::create_directories(path("tree/a/b/c/d/e/f/g"));
+      write("tree/a/b/c/d/e/f/g/a.toml", "a");
+      const rlimit no_core = {0, 0};
+      (void)::setrlimit(RLIMIT_CORE, &no_core);
       const dlo::compare::TemporaryPath tree(path("tree"));
       if (files().size() != 2) ::_exit(9);
       (void)std::raise(number);
@@ -297,10 +300,20 @@ TEST_F(Output, ASignalLeavesNothingUnfinished) {
     ::waitpid(child, &status, 0);
     return status;
   };
-  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) {
+  const int last_of_all = SIGRTMAX;
+  for (const int number :
+       {SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGQUIT, SIGABRT, SIGALRM, SIGUSR1, SIGUSR2, SIGXCPU,
+        SIGXFSZ, SIGPROF, SIGVTALRM, SIGIO, SIGPWR, SIGSYS, SIGTRAP, last_of_all}) {
     const int status = ended_by(number, false);
     EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == number) << number << " " << status;
     EXPECT_EQ(files(), std::vector<std::string>{}) << number;
+  }
+  for (const int number : {SIGCHLD, SIGCONT, SIGURG, SIGWINCH}) {
+    const int status = ended_by(number, false);  // which end nothing
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << number << " " << status;
+    EXPECT_EQ(read(path("a.csv")), "half") << number;
+    fs::remove(path("a.csv"));
+    fs::remove_all(path("tree"));
   }
   const int status = ended_by(SIGHUP, true);  // as nohup does
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;

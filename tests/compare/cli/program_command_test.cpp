@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <csignal>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -88,23 +89,43 @@ TEST_F(ProgramCommand, RegressKeepsAProgramsErrorByItsName) {
   EXPECT_THAT(failed.out, HasSubstr("exit status 1: no"));
 }
 
+TEST_F(ProgramCommand, AProgramThatFailsLeavesTheOthersTheirTurn) {
+  const std::string programs = " --with gone='sh -c \"rm -r \\${0%/*}\" {shape}'" +
+                               std::string(" --with pipe='mkfifo {shape}'") + hinges("mine");
+  const Outcome regress =
+      run("regress --model chain --update --baseline " + path("b.toml") + " " + cable() + programs);
+  EXPECT_EQ(regress.status, 3) << regress.err;
+  EXPECT_THAT(regress.out, HasSubstr("the folder of {shape} cannot be read (No such file"));
+  EXPECT_THAT(regress.out, HasSubstr("its shape: a named pipe (allowed: a regular file)"));
+  EXPECT_THAT(regress.out, HasSubstr("cable (mine, N = 16)"));
+  const Outcome bench = run("bench --seconds 5 --repeats 1 " + cable() + programs);
+  EXPECT_EQ(bench.status, 3) << bench.err;
+  EXPECT_THAT(bench.out, HasSubstr("the folder of {shape} cannot be read (No such file"));
+  EXPECT_THAT(bench.out, HasSubstr("its shape: a named pipe (allowed: a regular file)"));
+}
+
 TEST_F(ProgramCommand, ASignalKillsTheProgramAndRemovesItsFolder) {
-  const std::string line = "mkdir " + path("t") + "; TMPDIR=" + path("t") + " " + DLO_COMMAND +
-                           " bench --seconds 60 " + cable() + " --with slow='sh -c \"touch " +
-                           path("runs") + "; sleep 2; touch " + path("late") +
-                           "\" {shape}' >/dev/null 2>&1 & p=$!; while [ ! -e " + path("runs") +
-                           " ]; do sleep 0.05; done; kill $p; wait $p; echo $?; ls " + path("t") +
-                           "; sleep 2.5; ls " + path("late");
-  EXPECT_EQ(run_line("sh -c '" +
-                     [&] {
-                       std::string quoted;
-                       for (const char c : line)
-                         quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-                       return quoted;
-                     }() +
-                     "'")
-                .out,
-            "143\n");
+  // One of those that people send, and one of a limit of the time.
+  for (const int number : {SIGTERM, SIGXCPU}) {
+    const std::string line = "mkdir " + path("t") + "; TMPDIR=" + path("t") + " " + DLO_COMMAND +
+                             " bench --seconds 60 " + cable() +
+                             " --with slow='sh -c \"mkdir -p \\${0%/*}/a/b/c/d/e/f/g; touch " +
+                             path("runs") + "; sleep 2; touch " + path("late") +
+                             "\" {shape}' >/dev/null 2>&1 & p=$!; while [ ! -e " + path("runs") +
+                             " ]; do sleep 0.05; done; kill -" + std::to_string(number) +
+                             " $p; wait $p; echo $?; ls " + path("t") + "; sleep 2.5; ls " +
+                             path("late") + "; rm -r " + path("t") + " " + path("runs");
+    EXPECT_EQ(run_line("sh -c '" +
+                       [&] {
+                         std::string quoted;
+                         for (const char c : line)
+                           quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+                         return quoted;
+                       }() +
+                       "'")
+                  .out,
+              std::to_string(128 + number) + "\n");
+  }
 }
 
 }  // namespace

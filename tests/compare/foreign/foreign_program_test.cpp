@@ -87,10 +87,41 @@ TEST_F(ForeignFolder, SaysWhatFailedWithTheLastLineOfItsStandardError) {
   EXPECT_EQ(run_shell("true").problem, "wrote no shape");
   EXPECT_THAT(run_shell("kill -9 $$").problem, StartsWith("ended by signal 9"));
   EXPECT_THAT(run_shell("echo hello > $2").problem, HasSubstr("its shape:1: unknown column"));
-  EXPECT_THAT(run_shell("mkdir $2").problem, HasSubstr("shape"));
   EXPECT_THAT(run_shell("touch $2.csv $2.vtk").problem, HasSubstr("wrote no shape"));
   EXPECT_THAT(run_foreign({"none", {"no such program", "{shape}"}}, soft_cable(), 16, 20).problem,
               StartsWith("could not be started: "));
+}
+
+TEST_F(ForeignFolder, ReadsNothingButRegularFiles) {
+  const std::string allowed = " (allowed: a regular file)";
+  EXPECT_EQ(run_shell("mkdir $2").problem, "its shape: a folder" + allowed);
+  EXPECT_EQ(run_shell("mkfifo $2").problem, "its shape: a named pipe" + allowed);
+  EXPECT_EQ(run_shell("mkfifo $2.csv").problem, "its shape: a named pipe" + allowed);
+  EXPECT_EQ(run_shell("ln -s /dev/zero $2").problem, "its shape: a device" + allowed);
+  EXPECT_THAT(run_shell("ln -s shape $2").problem,
+              StartsWith("its shape: cannot be read (Too many levels"));
+  EXPECT_THAT(run_shell("ln -s nothing $2").problem,
+              StartsWith("its shape: cannot be read (No such file"));
+  // Nor are its last words waited for.
+  EXPECT_EQ(run_shell("cd ${2%/*}; rm stderr; mkfifo stderr; exit 3").problem, "exit status 3");
+  EXPECT_EQ(run_shell("printf '0,0,0\\n1,0,0\\n' > $2.txt; ln -s $2.txt $2").problem, "");
+}
+
+TEST_F(ForeignFolder, MayBeMadeAwayWithByTheProgram) {
+  const std::string folder = "the folder of {shape} cannot be read ";
+  EXPECT_EQ(run_shell("rm -r ${2%/*}").problem, folder + "(No such file or directory)");
+  EXPECT_EQ(run_shell("rm -r ${2%/*}; touch ${2%/*}").problem, folder + "(Not a directory)");
+  EXPECT_EQ(run_shell("rm -r ${2%/*}; exit 3").problem, "exit status 3");
+}
+
+TEST_F(ForeignFolder, GoesWithAllThatIsInItHoweverDeep) {
+  // More folders than can be open, of a path longer than a path may be; one that nobody may read.
+  const std::string deep =
+      "cd ${2%/*}; mkdir tree closed closed/in; chmod 0 closed; d=$(printf '/deep%.0s' $(seq "
+      "520)); "
+      "for i in 1 2; do mkdir -p new$d/beside && touch new$d/file && mv tree new$d && "
+      "mv new tree || exit; done";
+  EXPECT_EQ(run_shell(deep).problem, "wrote no shape");
 }
 
 TEST_F(ForeignFolder, IsKilledAtTheTimeLimitWithAllThatItStarted) {

@@ -1,0 +1,153 @@
+"""Arguments of the wrong kind are told by their name, before the extension meets them."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import operator
+import reprlib
+from typing import Any, Callable, Mapping, Optional, TypeVar
+
+from ._errors import InputError
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+Kind = Callable[[Any], Optional[str]]
+"""Why a value is none of this kind: "what it is (allowed: ...)", or None if it is one."""
+
+
+def _a(value: Any) -> str:
+    return f"a {type(value).__name__}"
+
+
+def _whole(least: int, most: int, allowed: str) -> Kind:
+    def problem(value: Any) -> Optional[str]:
+        try:
+            number = operator.index(value)
+        except TypeError:
+            return f"{_a(value)} (allowed: {allowed})"
+        return None if least <= number <= most else f"out of range (allowed: {allowed}, up to {most})"
+
+    return problem
+
+
+def NUMBER(value: Any) -> Optional[str]:
+    if isinstance(value, (str, bytes)):
+        return f"{_a(value)} (allowed: a number)"
+    try:
+        float(value)
+    except OverflowError:
+        return "out of range (allowed: a number up to 1e308)"
+    except (TypeError, ValueError):
+        return f"{_a(value)} (allowed: a number)"
+    return None
+
+
+def TEXT(value: Any) -> Optional[str]:
+    if not isinstance(value, str):
+        return f"{_a(value)} (allowed: text)"
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        return "text with half a character (allowed: Unicode)"
+    return None
+
+
+def QUANTITY(value: Any) -> Optional[str]:
+    if isinstance(value, str):
+        return TEXT(value)
+    problem = NUMBER(value)
+    return problem and problem.replace("a number", 'a number, or text such as "2 mm"')
+
+
+def TRUTH(value: Any) -> Optional[str]:
+    try:
+        bool(value)
+    except Exception:  # such as of an array
+        return f"{_a(value)} (allowed: True or False)"
+    return None
+
+
+def LIST(value: Any) -> Optional[str]:
+    if isinstance(value, (str, bytes)):
+        return f"{_a(value)} (allowed: a list)"
+    try:
+        iter(value)
+    except TypeError:
+        return f"{_a(value)} (allowed: a list)"
+    return None
+
+
+def TEXTS(value: Any) -> Optional[str]:
+    problem = LIST(value) or next(filter(None, map(TEXT, value)), None)
+    return problem and problem.replace("(allowed: ", "(allowed: a list of ").replace(" a list)", " text)")
+
+
+def TABLE(value: Any) -> Optional[str]:
+    return None if isinstance(value, Mapping) else f"{_a(value)} (allowed: a dict)"
+
+
+INTEGER = _whole(-(2**31), 2**31 - 1, "an integer")
+COUNT = _whole(-(2**63), 2**63 - 1, "an integer")
+INDEX = _whole(0, 2**63 - 1, "an integer from 0")
+
+_LIMITS = {
+    "time_limit": NUMBER,
+    "rest_tolerance": NUMBER,
+    "terms": INTEGER,
+    "max_evaluations": INTEGER,
+    "max_steps": COUNT,
+}
+
+
+def require(key: str, value: Any, kind: Kind) -> None:
+    """Raises InputError, with key, value and what is allowed, unless a value is of a kind."""
+    problem = kind(value)
+    if problem is None:
+        return
+    try:
+        shown = reprlib.repr(value)
+    except Exception:  # whatever somebody's __repr__ raises
+        shown = "?"
+    raise InputError(f"{key} = {shown}: {problem}")
+
+
+def checked(**kinds: Kind) -> Callable[[Function], Function]:
+    """A function whose arguments, and limits, are of these kinds; None where it is the default."""
+
+    def decorate(function: Function) -> Function:
+        signature = inspect.signature(function)
+        optional = {key for key, one in signature.parameters.items() if one.default is None}
+
+        @functools.wraps(function)
+        def call(*arguments: Any, **named: Any) -> Any:
+            given = signature.bind(*arguments, **named).arguments
+            limits = given.get("limits", {})
+            for key, kind in kinds.items():
+                if key in given and not (given[key] is None and key in optional):
+                    require(key, given[key], kind)
+            for key, kind in _LIMITS.items():
+                if limits.get(key) is not None:
+                    require(key, limits[key], kind)
+            return function(*arguments, **named)
+
+        return call  # type: ignore[return-value]
+
+    return decorate
+
+
+def told(method: Function, **kinds: Kind) -> Function:
+    """A method of the extension, called a thousand times a second: only if it has refused its arguments,
+    which have these kinds in their order, is looked for the one at fault."""
+
+    @functools.wraps(method)
+    def call(self: Any, *arguments: Any, **named: Any) -> Any:
+        try:
+            return method(self, *arguments, **named)
+        except TypeError:
+            for key, value in [*zip(kinds, arguments), *named.items()]:
+                if key in kinds:
+                    require(key, value, kinds[key])
+            raise
+
+    return call  # type: ignore[return-value]
