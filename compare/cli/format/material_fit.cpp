@@ -26,6 +26,7 @@ std::string value_text(const FittedValue& value, const char* unit) {
   const std::string_view blank = *unit == '\0' ? "" : " ";
   const std::string interval = fmt::format("95 %: {} to {}{}{}", number(value.low, "..."),
                                            number(value.high, "..."), blank, unit);
+  if (!value.low && !value.high) return "not told";
   if (!value.value) return "not told, " + interval;
   return fmt::format("{:.5g}{}{}, {}", *value.value, blank, unit, interval);
 }
@@ -39,13 +40,16 @@ std::optional<double> half_width(const FittedValue& value) {
 /// What makes the interval wider than that of independent errors.
 std::string correlation_text(const MaterialReport& report) {
   const compare::CorrelatedErrors& errors = *report.fit.correlation;
+  const FittedValue& E = report.fit.youngs_modulus;
+  const bool has_interval = E.low || E.high;
   return fmt::format(
       "            errors along the rod are correlated: {:.2g} % of their variance over about "
       "{:.2g} "
-      "m\n            ({:.2g} % of the rod); the interval is {:.3g} times as wide for it ({:.3g} "
-      "degrees of freedom)\n",
+      "m\n            ({:.2g} % of the rod){} ({:.3g} degrees of freedom)\n",
       errors.share * 100, errors.length_m, errors.length_m / report.scenes.front().length * 100,
-      errors.widening, errors.degrees_of_freedom);
+      has_interval ? fmt::format("; the interval is {:.3g} times as wide for it", errors.widening)
+                   : "",
+      errors.degrees_of_freedom);
 }
 
 /// A number beside E, in the units that people read.

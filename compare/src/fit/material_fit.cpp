@@ -16,7 +16,7 @@
 #include "fit/log_profile.hpp"
 #include "fit/shape_misfit.hpp"
 #include "fit/wire_fit.hpp"
-#include "scene/reach.hpp"
+#include "fit/wire_numbers.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -112,18 +112,6 @@ std::string warning_of(double least_squares, double points, double nu, double le
   return {};
 }
 
-bool has_forces_beside_weight(const std::vector<Scene>& scenes) {
-  return std::any_of(scenes.begin(), scenes.end(), [](const Scene& scene) {
-    const bool loaded = std::any_of(scene.loads.begin(), scene.loads.end(),
-                                    [](const PointLoad& l) { return l.force.norm() > 0; });
-    const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
-    const bool yields = std::any_of(in_reach.begin(), in_reach.end(), [&](std::size_t i) {
-      return std::isfinite(scene.obstacles[i].stiffness);
-    });
-    return loaded || yields;
-  });
-}
-
 void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                    const MaterialFitOptions& options) {
   if (scenes.empty() || scenes.size() != shapes.size()) {
@@ -173,9 +161,12 @@ class MaterialFitter {
         shapes_(shapes),
         options_(options),
         misfit_(scenes, shapes, options),
-        both_(options.density && has_forces_beside_weight(scenes)),
-        low_(std::log(options.smallest_ratio)),
-        high_(std::log(options.largest_ratio)) {
+        forced_(std::any_of(scenes.begin(), scenes.end(), is_forced)),
+        both_(options.density &&
+              std::any_of(scenes.begin(), scenes.end(), has_forces_beside_weight)),
+        // Where every E has the same shapes, differences between them are rounding.
+        low_(forced_ ? std::log(options.smallest_ratio) : 0),
+        high_(forced_ ? std::log(options.largest_ratio) : 0) {
     const int unknowns = both_ ? 2 : 1;
     result_.degrees_of_freedom = misfit_.numbers() - unknowns;
     result_.noise_is_estimated = !options.noise;
@@ -209,6 +200,7 @@ class MaterialFitter {
         what_is_not_told(result_.youngs_modulus, found,
                          {stiffness.name, stiffness.unit, stiffness.value}, options_.told_within);
     if (both_) fit_density(least);
+    if (!forced_) result_.not_told = why_unforced(scenes_.front());
     if (options_.density && !both_ && result_.not_told.empty()) {
       result_.not_told = fmt::format(
           "these shapes do not tell the {0}: nothing but gravity bends the rod, so only {0} / {1} "
@@ -398,6 +390,7 @@ class MaterialFitter {
   const std::vector<MeasuredShape>& shapes_;
   const MaterialFitOptions& options_;
   ShapeMisfit misfit_;
+  bool forced_;
   bool both_;
   double low_, high_;
   std::vector<CorrelationEffect> effects_;  // on E, then on the density

@@ -1,5 +1,6 @@
 // The command calibrate as a user runs it.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -140,6 +141,33 @@ TEST_F(CalibrateCommand, SaysWhenTheShapesDoNotTell) {
   EXPECT_TRUE(document.at("interval_95_Pa")[1].is_null());
   EXPECT_TRUE(document.at("not_told").is_string());
   expect_error("calibrate " + stiff + " --shape " + shape + " --format toml", 2, {"do not tell E"});
+}
+
+// A circle of radius 0.5 m: a weightless wire's natural curvature is 2 1/m.
+TEST_F(CalibrateCommand, AWeightlessArcGetsItsCurvatureAndNoStiffness) {
+  const std::string scene = path("arc.toml");
+  std::ofstream(scene)
+      << "gravity = [0, 0, 0]\n[rod]\nlength = 1\nbending_stiffness = \"1e-3 N "
+         "m^2\"\nmass_per_length = \"10 g/m\"\n[[gripper]]\nat = 0\nposition = [0, "
+         "0, 0]\ndirection = \"0 deg\"\n";
+  const std::string shape = path("arc.csv");
+  std::ofstream points(shape);
+  points << "x,y,z,s\n";
+  for (int i = 0; i <= 20; ++i) {
+    const double s = i / 20.0;
+    points << fmt::format("{:.17g},{:.17g},0,{:.17g}\n", std::sin(2 * s) / 2,
+                          (1 - std::cos(2 * s)) / 2, s);
+  }
+  points.close();
+  const std::string command = "calibrate " + scene + " --shape " + shape + " --natural-curvature 1";
+  const Outcome text = run(command);
+  EXPECT_EQ(text.status, 0);
+  EXPECT_EQ(text.out.find("EI          not told   (scene"), 0) << text.out;
+  EXPECT_NE(text.out.find("natural curvature, P_0: 2 1/m"), std::string::npos) << text.out;
+  const json document = json::parse(run(command + " --format json").out);
+  EXPECT_TRUE(document.at("interval_95_Nm2")[0].is_null());
+  EXPECT_NE(document.at("not_told").get<std::string>().find("cannot tell EI"), std::string::npos);
+  expect_error(command + " --format toml", 2, {"no material to write", "cannot tell EI"});
 }
 
 TEST_F(CalibrateCommand, SaysThatErrorsAreCorrelatedInEveryFormat) {

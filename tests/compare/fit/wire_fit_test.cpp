@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "../../sanitized.hpp"
@@ -227,6 +228,73 @@ TEST(WireFit, ANoiseThatIsTooSmallWidensTheIntervalAndWarns) {
   EXPECT_NE(wrong.warning.find("times what the given noise explains"), std::string::npos)
       << wrong.warning;
   EXPECT_NEAR(width(wrong) / width(right), 1, 0.3);
+}
+
+// A free arc of curvature k is a circle, (sin(k s), 1 - cos(k s)) / k, whatever its stiffness. The
+// points are exact, so a derivative by E that is rounding would look like a measurement.
+TEST(WireFit, AWeightlessArcTellsItsCurvatureAndNoStiffness) {
+  constexpr double k = 2.4;
+  const std::vector<double> s = equal_arc_lengths(1, 30);
+  Eigen::Matrix3Xd arc = Eigen::Matrix3Xd::Zero(3, 30);
+  for (Eigen::Index i = 0; i < arc.cols(); ++i) {
+    const double angle = k * s[static_cast<std::size_t>(i)];
+    arc.col(i) << std::sin(angle) / k, (1 - std::cos(angle)) / k, 0;
+  }
+  for (const bool given : {false, true}) {
+    Scene said = test::heavy_scene(1, 0);
+    said.gravity.setZero();
+    if (given) said.given_bending_stiffness = 1e-3;
+    for (const int terms : {0, 1, 4}) {
+      const MaterialFit found =
+          fit({{said, {"arc", arc, s}}}, {.density = true, .natural_curvature_terms = terms});
+      EXPECT_FALSE(found.youngs_modulus.value) << terms;
+      EXPECT_FALSE(found.youngs_modulus.low) << terms;
+      EXPECT_FALSE(found.youngs_modulus.high) << terms;
+      EXPECT_FALSE(found.density) << terms;
+      EXPECT_NE(found.not_told.find("neither weight nor a load"), std::string::npos)
+          << found.not_told;
+      if (terms == 0) continue;
+      EXPECT_NEAR(found.others[0].value, k, 1e-6);
+      EXPECT_LT(found.rms_m, 1e-7);
+    }
+  }
+}
+
+// Where only the ends are held, shapes know ratios of forces and none of them: an arch without
+// weight. With a load in its middle they tell.
+TEST(WireFit, AnArchBetweenTwoClampsTellsItsStiffnessOnlyUnderALoad) {
+  std::mt19937 random(12);
+  Scene said = test::heavy_scene(1, 40);
+  said.gravity.setZero();
+  said.grippers.push_back({.at = 1,
+                           .position = {0.8, 0, 0},
+                           .direction = Eigen::Vector3d(std::cos(0.7), -std::sin(0.7), 0)});
+  for (const bool loaded : {false, true}) {
+    Scene scene = said;
+    if (loaded) scene.loads.push_back({.at = 0.4, .force = {0, -20 * said.bending_stiffness(), 0}});
+    for (const double tolerance : {0.0, 1 * deg}) {
+      const Picture picture = picture_of(scene, scene, 1e-4, 0.02, random);
+      const MaterialFit found = fit({picture}, {.direction_tolerance = tolerance});
+      EXPECT_EQ(found.youngs_modulus.value.has_value(), loaded) << tolerance;
+      EXPECT_EQ(found.youngs_modulus.low.has_value(), loaded) << tolerance;
+      EXPECT_EQ(found.not_told.empty(), loaded) << found.not_told;
+      if (!found.youngs_modulus.value) continue;
+      EXPECT_NEAR(*found.youngs_modulus.value / true_modulus(picture), 1, 0.01);
+    }
+  }
+}
+
+// It has weight, but hangs straight down from a clamp that points down: all its derivatives by E
+// are rounding.
+TEST(WireFit, AHangingStraightRodTellsNoStiffnessBesideItsPlace) {
+  std::mt19937 random(13);
+  const Scene said = test::heavy_scene(10, -90);
+  const MaterialFit found =
+      fit({picture_of(said, said, 0, 0.02, random)}, {.position_tolerance = 1e-3});
+  EXPECT_FALSE(found.youngs_modulus.value);
+  EXPECT_FALSE(found.youngs_modulus.low);
+  EXPECT_FALSE(found.youngs_modulus.high);
+  EXPECT_NE(found.not_told.find("the same with any E"), std::string::npos) << found.not_told;
 }
 
 TEST(WireFit, RefusesNaturalCurvatureThatNoClampHolds) {

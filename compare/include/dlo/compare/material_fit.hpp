@@ -212,6 +212,8 @@ struct MaterialFit {
 ///
 /// E and density are told apart only by forces that do not grow with density, such as loads: the
 /// shape under gravity alone depends on density / E.
+/// Where neither weight nor a load or yielding obstacle acts on the rod, its equilibria are the same
+/// with every E, and E is not looked for; what else is asked for is found as with the scene's E.
 /// @throws InputError if scenes and shapes do not pair, or there are fewer numbers than unknowns;
 /// ConvergenceError if the energy model has a shape at no modulus, if a shape within the interval
 /// is not resolved on its obstacles, or if `solve.time_limit` per scene is over
