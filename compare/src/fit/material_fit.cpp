@@ -223,7 +223,7 @@ class MaterialFitter {
 
  private:
   [[nodiscard]] MaterialFit whole_wire(const MaterialPoint& best, double least) {
-    MaterialFit fit = fit_wire(scenes_, shapes_, options_, best, both_);
+    MaterialFit fit = fit_wire(scenes_, shapes_, options_, best, both_, misfit_.begin());
     refuse_unresolved(least);
     fit.equilibria += misfit_.solves();
     fit.evaluations += misfit_.evaluations();

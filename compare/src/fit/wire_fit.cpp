@@ -36,13 +36,14 @@ constexpr int most_ends = 6;
 class WireFitter {
  public:
   WireFitter(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-             const MaterialFitOptions& options, bool density)
+             const MaterialFitOptions& options, bool density,
+             std::chrono::steady_clock::time_point begin)
       : scenes_(scenes),
         options_(options),
         density_(density),
         curvature_(1 + (density ? 1 : 0) + (options.torsional_stiffness ? 1 : 0)),
         numbers_(wire_numbers(scenes, shapes, options, density)),
-        shapes_(scenes, shapes, options, numbers_),
+        shapes_(scenes, shapes, options, numbers_, begin),
         before_(static_cast<Eigen::Index>(numbers_.size())) {
     for (Eigen::Index k = 0; k < before_.size(); ++k) {
       before_[k] = 1 / numbers_[static_cast<std::size_t>(k)].described.known_before;
@@ -296,15 +297,17 @@ class WireFitter {
     double variance = 0;
     double mean = 0;
     double square = 0;
-    for (const LikelyCovariance& likely : likely_covariances(series_)) {
-      const LinearFit linear = linear_fit(series_, likely.covariance, shapes_.frame_columns());
+    const std::vector<ResidualSeries> few = thinned(series_);
+    for (const LikelyCovariance& likely : likely_covariances(few)) {
+      const LinearFit linear = linear_fit(few, likely.covariance, shapes_.frame_columns());
       const Eigen::MatrixXd inverse = posterior(linear, of_errors(linear), before_);
       const double shift = inverse.row(0).dot(slope(linear, of_errors(linear), before_, values_));
       variance += likely.weight * inverse(0, 0);
       mean += likely.weight * shift;
       square += likely.weight * shift * shift;
     }
-    const double alone = posterior(linear_, of_errors(linear_), before_)(0, 0);
+    const LinearFit likeliest = linear_fit(few, covariance_, shapes_.frame_columns());
+    const double alone = posterior(likeliest, of_errors(likeliest), before_)(0, 0);
     return std::max(1.0, std::sqrt((variance + square - mean * mean) / alone));
   }
 
@@ -456,8 +459,9 @@ bool fits_a_wire(const MaterialFitOptions& options) {
 }
 
 MaterialFit fit_wire(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                     const MaterialFitOptions& options, const MaterialPoint& start, bool density) {
-  return WireFitter(scenes, shapes, options, density).run(start);
+                     const MaterialFitOptions& options, const MaterialPoint& start, bool density,
+                     std::chrono::steady_clock::time_point begin) {
+  return WireFitter(scenes, shapes, options, density, begin).run(start);
 }
 
 }  // namespace dlo::compare

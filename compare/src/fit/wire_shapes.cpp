@@ -34,8 +34,9 @@ Scene with_said_frame(Scene scene) {
 }  // namespace
 
 WireShapes::WireShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                       const MaterialFitOptions& options, const std::vector<WireNumber>& numbers)
-    : scenes_(scenes), options_(options), numbers_(numbers), last_(scenes.size()) {
+                       const MaterialFitOptions& options, const std::vector<WireNumber>& numbers,
+                       std::chrono::steady_clock::time_point begin)
+    : scenes_(scenes), options_(options), numbers_(numbers), last_(scenes.size()), begin_(begin) {
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     aligners_.emplace_back(shapes[i], scenes[i].length,
                            AlignOptions{.pose = options.pose,

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -228,6 +229,38 @@ TEST(WireFit, ANoiseThatIsTooSmallWidensTheIntervalAndWarns) {
   EXPECT_NE(wrong.warning.find("times what the given noise explains"), std::string::npos)
       << wrong.warning;
   EXPECT_NEAR(width(wrong) / width(right), 1, 0.3);
+}
+
+// Many points of three shapes in unknown frames: what is fitted without the wire's own numbers, and
+// with them, has one limit, and the errors' correlation is estimated from few enough of the points.
+TEST(WireFit, ManyPointsEndAtTheTimeLimit) {
+  std::mt19937 random(14);
+  std::vector<Scene> scenes;
+  std::vector<MeasuredShape> shapes;
+  const std::vector<double> s = equal_arc_lengths(1, 1500);
+  for (const double angle : {-30.0, 0.0, 30.0}) {
+    Scene truth = test::heavy_scene(20, angle);
+    scenes.push_back(truth);
+    truth.natural_strain.y() = 2;
+    const Eigen::Matrix3Xd rod = solve_reference(truth, Model::energy).sample(s).points;
+    shapes.push_back(
+        {"seen",
+         test::random_pose(random).applied(rod + test::correlated_noise(s, 0.01, 0.2, random)),
+         {}});
+  }
+  constexpr double limit = 0.4;
+  const auto begin = std::chrono::steady_clock::now();
+  try {
+    (void)fit_material(scenes, shapes,
+                       {.pose = PoseFreedom::rigid,
+                        .natural_curvature_terms = 4,
+                        .direction_tolerance = 2 * deg,
+                        .solve = {.time_limit = limit}});
+  } catch (const ConvergenceError& error) {
+    EXPECT_NE(std::string(error.what()).find("--time-limit"), std::string::npos) << error.what();
+  }
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+  EXPECT_LT(spent.count(), 1.5 * 3 * limit);
 }
 
 // A free arc of curvature k is a circle, (sin(k s), 1 - cos(k s)) / k, whatever its stiffness. The
