@@ -183,12 +183,15 @@ class WireFitter {
   }
 
   /// To the least deviance of the linear problem with log E near. Where E is hardly seen it would
-  /// be far away, and take the others with it.
+  /// be far away, and take the others with it; and no farther than E is looked for.
   [[nodiscard]] Eigen::VectorXd next_step() const {
     const Eigen::VectorXd down = slope(linear_, variance_, before_, values_);
     Eigen::VectorXd step = posterior_ * down;
-    if (std::abs(step[0]) <= longest_log_step) return step;
-    step[0] = std::copysign(longest_log_step, step[0]);
+    const double there =
+        std::clamp(values_[0] + std::clamp(step[0], -longest_log_step, longest_log_step),
+                   std::log(options_.smallest_ratio), std::log(options_.largest_ratio));
+    if (values_[0] + step[0] == there) return step;
+    step[0] = there - values_[0];
     step.tail(step.size() - 1) = step_of_others(linear_, variance_, before_, down, step[0]);
     return step;
   }
@@ -231,7 +234,8 @@ class WireFitter {
     const double wanted = quantile();
     const double least = linear_.residual.squaredNorm() / variance_ + penalty(values_);
     const double linear = wanted * std::sqrt(posterior_(0, 0));
-    const double farthest = std::log(options_.largest_ratio);
+    const double farthest = side > 0 ? std::log(options_.largest_ratio) - values_[0]
+                                     : values_[0] - std::log(options_.smallest_ratio);
     constexpr double jump = 4;
     double distance = linear;
     for (int i = 0; i < most_ends; ++i) {

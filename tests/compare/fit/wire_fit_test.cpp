@@ -1,3 +1,5 @@
+#include "fit/wire_fit.hpp"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -16,6 +18,7 @@
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/solution.hpp"
 #include "fit/between_shapes.hpp"
+#include "fit/error_correlation.hpp"
 #include "measured_shapes.hpp"
 #include "scenes.hpp"
 
@@ -231,36 +234,34 @@ TEST(WireFit, ANoiseThatIsTooSmallWidensTheIntervalAndWarns) {
   EXPECT_NEAR(width(wrong) / width(right), 1, 0.3);
 }
 
-// Many points of three shapes in unknown frames: what is fitted without the wire's own numbers, and
-// with them, has one limit, and the errors' correlation is estimated from few enough of the points.
-TEST(WireFit, ManyPointsEndAtTheTimeLimit) {
+// What is fitted with the wire's own numbers has what is left of the time.
+TEST(WireFit, ItsTimeBeganBeforeIt) {
   std::mt19937 random(14);
-  std::vector<Scene> scenes;
-  std::vector<MeasuredShape> shapes;
-  const std::vector<double> s = equal_arc_lengths(1, 1500);
-  for (const double angle : {-30.0, 0.0, 30.0}) {
-    Scene truth = test::heavy_scene(20, angle);
-    scenes.push_back(truth);
-    truth.natural_strain.y() = 2;
-    const Eigen::Matrix3Xd rod = solve_reference(truth, Model::energy).sample(s).points;
-    shapes.push_back(
-        {"seen",
-         test::random_pose(random).applied(rod + test::correlated_noise(s, 0.01, 0.2, random)),
-         {}});
+  const Scene scene = test::heavy_scene(20, 0);
+  const Picture picture = picture_of(scene, scene, 1e-3, 0.02, random);
+  const MaterialFitOptions options{.natural_curvature_terms = 1, .solve = {.time_limit = 100}};
+  using std::chrono::steady_clock;
+  EXPECT_NO_THROW((void)fit_wire({picture.said}, {picture.seen}, options, {}, false,
+                                 steady_clock::now() - std::chrono::seconds(10)));
+  EXPECT_THROW((void)fit_wire({picture.said}, {picture.seen}, options, {}, false,
+                              steady_clock::now() - std::chrono::seconds(101)),
+               ConvergenceError);
+}
+
+// Of more rows than are needed every so many-th stays, with what belongs to it.
+TEST(WireFit, CorrelationIsEstimatedFromFewEnoughRows) {
+  ResidualSeries many{.arc_length = equal_arc_lengths(1, 1001),
+                      .residual = Eigen::VectorXd::LinSpaced(1001, 0, 1000),
+                      .design = Eigen::VectorXd::LinSpaced(1001, 0, 3)};
+  const ResidualSeries few = thinned({many}).front();
+  EXPECT_LE(few.residual.size(), 250);
+  EXPECT_GE(few.residual.size(), 125);
+  ASSERT_EQ(few.arc_length.size(), static_cast<std::size_t>(few.residual.size()));
+  ASSERT_EQ(few.design.rows(), few.residual.size());
+  for (Eigen::Index i = 0; i < few.residual.size(); ++i) {
+    EXPECT_NEAR(few.residual[i], 1000 * few.arc_length[static_cast<std::size_t>(i)], 1e-9);
+    EXPECT_NEAR(few.design(i, 0), 3 * few.arc_length[static_cast<std::size_t>(i)], 1e-9);
   }
-  constexpr double limit = 0.4;
-  const auto begin = std::chrono::steady_clock::now();
-  try {
-    (void)fit_material(scenes, shapes,
-                       {.pose = PoseFreedom::rigid,
-                        .natural_curvature_terms = 4,
-                        .direction_tolerance = 2 * deg,
-                        .solve = {.time_limit = limit}});
-  } catch (const ConvergenceError& error) {
-    EXPECT_NE(std::string(error.what()).find("--time-limit"), std::string::npos) << error.what();
-  }
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
-  EXPECT_LT(spent.count(), 1.5 * 3 * limit);
 }
 
 // A free arc of curvature k is a circle, (sin(k s), 1 - cos(k s)) / k, whatever its stiffness. The
@@ -289,6 +290,29 @@ TEST(WireFit, AWeightlessArcTellsItsCurvatureAndNoStiffness) {
       if (terms == 0) continue;
       EXPECT_NEAR(found.others[0].value, k, 1e-6);
       EXPECT_LT(found.rms_m, 1e-7);
+    }
+  }
+}
+
+// A circle under weight is the shape of a rod that is curved by nature and stiffer than any: E
+// grows as far as it is looked for, and has no upper bound.
+TEST(WireFit, ACircleUnderWeightIsStifferThanAnyThatIsLookedFor) {
+  constexpr double k = 1.5;
+  std::mt19937 random(16);
+  const std::vector<double> s = equal_arc_lengths(1, 30);
+  for (const double noise : {0.0, 1e-8, 1e-6, 1e-4}) {
+    Eigen::Matrix3Xd arc = test::correlated_noise(s, noise, 1e-3, random);
+    arc.row(2).setZero();
+    for (Eigen::Index i = 0; i < arc.cols(); ++i) {
+      const double angle = k * s[static_cast<std::size_t>(i)];
+      arc.col(i) += Eigen::Vector3d(std::sin(angle) / k, (1 - std::cos(angle)) / k, 0);
+    }
+    for (const int terms : {1, 3}) {
+      const MaterialFit found =
+          fit({{test::heavy_scene(5, 0), {"arc", arc, s}}}, {.natural_curvature_terms = terms});
+      EXPECT_FALSE(found.youngs_modulus.value) << noise << ", " << terms;
+      EXPECT_FALSE(found.youngs_modulus.high) << noise << ", " << terms;
+      EXPECT_NEAR(found.others[0].value, k, 0.01) << noise << ", " << terms;
     }
   }
 }
