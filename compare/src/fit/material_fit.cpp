@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 #include "dlo/compare/deviation.hpp"
@@ -25,6 +26,14 @@ namespace {
 constexpr double least_noise = 1e-8;
 /// Searches for another state between several grippers, at the optimum of the one followed.
 constexpr int most_other_states = 2;
+/// What shapes have in common beyond chance, of all that they could. Smooth residuals have some
+/// three numbers each: two shapes of them are beyond the first in one case of five, beyond the
+/// second in one of eleven, five shapes in one of a hundred and one of two thousand.
+constexpr double maybe_common = 0.5;
+constexpr double surely_common = 0.7;
+/// Share of the residual that an alternative may leave to be told, and to put the fit in doubt.
+constexpr double worth_telling = 0.7;
+constexpr double too_much = 0.5;
 /// Of a fitted rod that is to be drawn.
 constexpr int drawn_samples = 201;
 
@@ -217,6 +226,7 @@ class MaterialFitter {
     for (std::size_t i = 0; i < alignments.size(); ++i) {
       result_.shapes.push_back({scenes_[i].name, alignments[i], {}});
     }
+    if (options_.alternatives) look_for_alternatives(best);
     if (options_.profile_points > 0) draw_profile(found, best, least);
     return std::move(result_);
   }
@@ -233,6 +243,84 @@ class MaterialFitter {
                                scenes_.front().length, std::nullopt);
     }
     return fit;
+  }
+
+  /// What of the residuals all shapes have in common; nothing without a plane.
+  [[nodiscard]] std::optional<double> common_to_shapes(const MaterialPoint& best) {
+    constexpr int samples = 1001;
+    const std::vector<Shape> rods = misfit_.rods(best, samples);
+    if (rods.size() != result_.shapes.size()) return std::nullopt;
+    std::vector<AcrossRod> across;
+    std::optional<Eigen::Vector3d> first;
+    for (std::size_t i = 0; i < rods.size(); ++i) {
+      std::optional<Eigen::Vector3d> normal = scenes_[i].plane_normal();
+      if (!normal) return std::nullopt;
+      if (!first) first = normal;
+      if (normal->dot(*first) < 0) *normal *= -1;
+      across.push_back(across_rod(result_.shapes[i].alignment.shape, rods[i], *normal));
+    }
+    return common_share(across);
+  }
+
+  /// Residuals that no noise leaves: what would remove them?
+  void look_for_alternatives(const MaterialPoint& best) {
+    if (!(result_.rms_m > least_noise * scenes_.front().length)) return;
+    result_.common_share = common_to_shapes(best);
+    const double common =
+        result_.common_share ? beyond_chance(*result_.common_share, scenes_.size()) : 0;
+    const bool explained = options_.noise && result_.warning.empty();
+    if (explained || !(common > maybe_common || result_.correlation)) return;
+    constexpr double tolerance = 5 * std::numbers::pi / 180;
+    for (const auto& [terms, directions] :
+         {std::pair{1, 0.0}, {2, 0.0}, {0, tolerance}, {2, tolerance}}) {
+      MaterialFitOptions options = options_;
+      options.natural_curvature_terms = terms;
+      options.direction_tolerance = directions;
+      options.profile_points = 0;
+      try {
+        const MaterialFit fit = fit_wire(scenes_, shapes_, options, best, both_, misfit_.begin());
+        result_.equilibria += fit.equilibria;
+        result_.evaluations += fit.evaluations;
+        if (!(fit.rms_m <= worth_telling * result_.rms_m)) continue;
+        result_.alternatives.push_back({terms, directions, fit.rms_m, fit.youngs_modulus});
+      } catch (const InputError&) {
+        // No clamp, no plane, or too few points.
+      } catch (const ConvergenceError&) {
+        // No shape, or no time.
+      }
+    }
+    std::stable_sort(
+        result_.alternatives.begin(), result_.alternatives.end(),
+        [](const FitAlternative& a, const FitAlternative& b) { return a.rms_m < b.rms_m; });
+    tell_systematic(common > surely_common);
+  }
+
+  void tell_systematic(bool common) {
+    // Without forces E has no interval that could be wrong.
+    if (!forced_) return;
+    const NamedValue stiffness = scenes_.front().stiffness();
+    if (result_.warning.empty() && !result_.alternatives.empty() &&
+        result_.alternatives.front().rms_m <= too_much * result_.rms_m) {
+      result_.warning = fmt::format(
+          "the residuals are systematic: what is not fitted would leave {:.3g} mm of {:.3g} mm, so "
+          "the interval of {} holds only if the rod is straight by nature and held as said",
+          result_.alternatives.front().rms_m * 1e3, result_.rms_m * 1e3, stiffness.name);
+    } else if (result_.warning.empty() && common) {
+      result_.warning = fmt::format(
+          "the residuals are systematic: {:.2g} % of their mean square is common to all shapes, "
+          "and "
+          "the interval of {} knows nothing of what they have in common",
+          *result_.common_share * 100, stiffness.name);
+    }
+    const bool weight_alone =
+        std::none_of(scenes_.begin(), scenes_.end(), has_forces_beside_weight);
+    if (weight_alone && result_.not_told.empty()) {
+      const NamedValue heaviness = scenes_.front().heaviness();
+      result_.not_told = fmt::format(
+          "these shapes do not tell the {0}: nothing but gravity bends the rod, so a wrong {0} "
+          "leaves no residual and makes {1} wrong by the same factor",
+          heaviness.name, stiffness.name);
+    }
   }
 
   void draw_profile(const Finding& found, const MaterialPoint& best, double least) {

@@ -10,6 +10,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "command_fixture.hpp"
 
@@ -91,6 +93,34 @@ TEST_F(CalibrateCommand, FindsWhatElseAWireHas) {
                {"--clamp-angles", "5 mm", "allowed: rad, deg"});
   expect_error(words({"calibrate", a, "--shape", shape, "--clamp-positions \"0 mm\""}), 2,
                {"--clamp-positions", "allowed: > 0"});
+}
+
+// The same wire taken for straight: what would remove its residuals is told.
+TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
+  std::vector<std::string> scenes;
+  std::vector<std::string> shapes;
+  for (const int angle : {-15, 0, 15}) {
+    const std::string straight = scene_of(fmt::format("s{}.toml", angle), "5 GPa", angle);
+    std::string bent = read(straight);
+    bent.replace(bent.find("[rod]"), 5, "[rod]\nnatural_curvature = \"0.7 1/m\"");
+    scenes.push_back(straight);
+    shapes.push_back(seen(scene(bent), fmt::format("s{}.csv", angle)));
+  }
+  const std::string command =
+      fmt::format("calibrate {} --shape {}", fmt::join(scenes, " "), fmt::join(shapes, " "));
+  const std::string text = run(command).out;
+  EXPECT_NE(text.find("the residuals are systematic"), std::string::npos) << text;
+  EXPECT_NE(text.find("--natural-curvature 1 would leave 0.0"), std::string::npos) << text;
+  EXPECT_NE(text.find("do not tell the density"), std::string::npos) << text;
+  const json document = json::parse(run(command + " --format json").out);
+  EXPECT_GT(document.at("common_share").get<double>(), 0.6);
+  const json& all = document.at("alternatives");
+  const auto named = std::find_if(all.begin(), all.end(), [](const json& one) {
+    return one.at("options") == "--natural-curvature 1";
+  });
+  ASSERT_NE(named, all.end());
+  EXPECT_NEAR(named->at("youngs_modulus_Pa").get<double>(), 5e9, 5e6);
+  EXPECT_LT(named->at("rms_m").get<double>(), 1e-5);
 }
 
 TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
