@@ -34,6 +34,7 @@ constexpr double surely_common = 0.7;
 /// Share of the residual that an alternative may leave to be told, and to put the fit in doubt.
 constexpr double worth_telling = 0.7;
 constexpr double too_much = 0.5;
+constexpr double next_to_nothing = 0.02;
 /// Of a fitted rod that is to be drawn.
 constexpr int drawn_samples = 201;
 
@@ -289,9 +290,12 @@ class MaterialFitter {
         // No shape, or no time.
       }
     }
-    std::stable_sort(
-        result_.alternatives.begin(), result_.alternatives.end(),
-        [](const FitAlternative& a, const FitAlternative& b) { return a.rms_m < b.rms_m; });
+    // Of several that leave next to nothing the simplest, which was tried first.
+    const auto left = [nothing = next_to_nothing * result_.rms_m](const FitAlternative& one) {
+      return std::max(nothing, one.rms_m);
+    };
+    std::stable_sort(result_.alternatives.begin(), result_.alternatives.end(),
+                     [&](const auto& a, const auto& b) { return left(a) < left(b); });
     tell_systematic(common > surely_common);
   }
 
@@ -314,13 +318,14 @@ class MaterialFitter {
     }
     const bool weight_alone =
         std::none_of(scenes_.begin(), scenes_.end(), has_forces_beside_weight);
-    if (weight_alone && result_.not_told.empty()) {
-      const NamedValue heaviness = scenes_.front().heaviness();
-      result_.not_told = fmt::format(
-          "these shapes do not tell the {0}: nothing but gravity bends the rod, so a wrong {0} "
-          "leaves no residual and makes {1} wrong by the same factor",
-          heaviness.name, stiffness.name);
-    }
+    // Where the density was asked for it is said already.
+    if (!weight_alone || options_.density) return;
+    const char* const heaviness = scenes_.front().heaviness().name;
+    result_.not_told += fmt::format(
+        "{} the {}: nothing but gravity bends the rod, so a wrong {} leaves no residual and makes "
+        "{} wrong by the same factor",
+        result_.not_told.empty() ? "these shapes do not tell" : "; nor", heaviness, heaviness,
+        stiffness.name);
   }
 
   void draw_profile(const Finding& found, const MaterialPoint& best, double least) {
