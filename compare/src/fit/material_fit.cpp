@@ -283,20 +283,27 @@ class MaterialFitter {
         result_.equilibria += fit.equilibria;
         result_.evaluations += fit.evaluations;
         if (!(fit.rms_m <= worth_telling * result_.rms_m)) continue;
-        result_.alternatives.push_back({terms, directions, fit.rms_m, fit.youngs_modulus});
+        add_alternative({terms, directions, fit.rms_m, fit.youngs_modulus});
       } catch (const InputError&) {
         // No clamp, no plane, or too few points.
       } catch (const ConvergenceError&) {
         // No shape, or no time.
       }
     }
-    // Of several that leave next to nothing the simplest, which was tried first.
-    const auto left = [nothing = next_to_nothing * result_.rms_m](const FitAlternative& one) {
-      return std::max(nothing, one.rms_m);
-    };
-    std::stable_sort(result_.alternatives.begin(), result_.alternatives.end(),
-                     [&](const auto& a, const auto& b) { return left(a) < left(b); });
+    std::stable_sort(
+        result_.alternatives.begin(), result_.alternatives.end(),
+        [](const FitAlternative& a, const FitAlternative& b) { return a.rms_m < b.rms_m; });
     tell_systematic(common > surely_common);
+  }
+
+  /// Those with fewer numbers come first; one that has theirs and more has to leave less.
+  void add_alternative(const FitAlternative& found) {
+    for (const FitAlternative& one : result_.alternatives) {
+      const bool has_more = found.natural_curvature_terms >= one.natural_curvature_terms &&
+                            found.direction_tolerance >= one.direction_tolerance;
+      if (has_more && found.rms_m > one.rms_m - next_to_nothing * result_.rms_m) return;
+    }
+    result_.alternatives.push_back(found);
   }
 
   void tell_systematic(bool common) {

@@ -202,7 +202,7 @@ TEST(Explanation, NoCauseIsListedTwice) {
   const Matrix3Xd mirrored = Vector3d(-1, 1, 1).asDiagonal() * shape_of(clamped()).points;
   // Nothing explains it, and several directions of gravity explain half of it.
   const Matrix3Xd right = shape_of(clamped()).points;
-  Matrix3Xd wavy = Eigen::AngleAxisd(0.6, Vector3d::UnitZ()) * right;
+  Matrix3Xd wavy = Eigen::AngleAxisd(0.6, Vector3d::UnitZ()).toRotationMatrix() * right;
   wavy.row(2) += 0.05 * right.row(0);
   wavy.row(1).array() += 0.02 * (9 * right.row(0).array()).sin();
   for (const MeasuredShape& shape :
