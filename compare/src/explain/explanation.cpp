@@ -57,6 +57,8 @@ class Search {
   [[nodiscard]] std::vector<Explanation> run() {
     const energy_model::Equilibrium& rod = check_.rod;
     before_ = check_.whole_rms_m;
+    // It fails because too little is seen.
+    if (!(before_ > same_length * scene_.length)) return {};
     if (options_.pose == PoseFreedom::known) {
       for (const FileCause& cause : file_causes(scene_, shape_, check_)) look_at(cause, rod);
     }

@@ -424,6 +424,12 @@ TEST(Explanation, AChainIsHeldAgainstTheMeasureThatWasAsked) {
 
 TEST(Explanation, OfARightShapeThereIsNone) {
   const Scene scene = between_clamps();
+  // The two ends of a rod between pins say nothing of it, nor of its unstable neighbours.
+  Matrix3Xd ends(3, 2);
+  ends << 0, 0.7, 0, 0.1, 0, 0;
+  const Outcome two = judged(held("hold = \"pin\"", "hold = \"pin\""), made(ends));
+  EXPECT_FALSE(two.judgement.pass);
+  EXPECT_TRUE(two.explanations.empty());
   EXPECT_TRUE(judged(scene, shape_of(scene)).judgement.pass);
   EXPECT_TRUE(judged(scene, shape_of(scene, 9)).judgement.pass);
 }
