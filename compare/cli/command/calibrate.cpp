@@ -115,6 +115,7 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
           quantity_of("--clamp-angles", options.clamp_angles, Dimension::angle).value_or(0),
       .position_tolerance =
           quantity_of("--clamp-positions", options.clamp_positions, Dimension::length).value_or(0),
+      .alternatives = true,
       .chain_segments = options.segments,
       .profile_points = options.plot.draws() ? profile_points : 0,
       .noise = quantity_of("--noise", options.noise, Dimension::length),

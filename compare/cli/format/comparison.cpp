@@ -63,6 +63,10 @@ void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, dou
     append(out, ": {}* explains {:.4g} % of the mean square", of.name,
            std::floor(modulus.explained_share * 1e4) / 100);
   }
+  if (modulus.at_bifurcation) {
+    append(out, ", where the equilibrium that is followed ends or bifurcates: no measure of {}",
+           of.name);
+  }
   if (modulus.rms_m > movement_m) out += ", but leaves more than the rod moved";
   out += ")\n";
 }

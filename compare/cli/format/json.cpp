@@ -12,6 +12,7 @@ Json modulus_json(const compare::EffectiveModulus& modulus) {
   return {{"effective_modulus_ratio", modulus.ratio},
           {"rms_at_effective_modulus_m", modulus.rms_m},
           {"effective_modulus_explains_share", modulus.explained_share},
+          {"effective_modulus_at_bifurcation", none ? Json() : Json(modulus.at_bifurcation)},
           {"optimum", none ? Json() : Json(compare::to_string(modulus.optimum))},
           {"why_no_effective_modulus", none ? Json(modulus.why_none) : Json()}};
 }

@@ -26,6 +26,7 @@ std::string value_text(const FittedValue& value, const char* unit) {
   const std::string_view blank = *unit == '\0' ? "" : " ";
   const std::string interval = fmt::format("95 %: {} to {}{}{}", number(value.low, "..."),
                                            number(value.high, "..."), blank, unit);
+  if (!value.low && !value.high) return "not told";
   if (!value.value) return "not told, " + interval;
   return fmt::format("{:.5g}{}{}, {}", *value.value, blank, unit, interval);
 }
@@ -39,13 +40,16 @@ std::optional<double> half_width(const FittedValue& value) {
 /// What makes the interval wider than that of independent errors.
 std::string correlation_text(const MaterialReport& report) {
   const compare::CorrelatedErrors& errors = *report.fit.correlation;
+  const FittedValue& E = report.fit.youngs_modulus;
+  const bool has_interval = E.low || E.high;
   return fmt::format(
       "            errors along the rod are correlated: {:.2g} % of their variance over about "
       "{:.2g} "
-      "m\n            ({:.2g} % of the rod); the interval is {:.3g} times as wide for it ({:.3g} "
-      "degrees of freedom)\n",
+      "m\n            ({:.2g} % of the rod){} ({:.3g} degrees of freedom)\n",
       errors.share * 100, errors.length_m, errors.length_m / report.scenes.front().length * 100,
-      errors.widening, errors.degrees_of_freedom);
+      has_interval ? fmt::format("; the interval is {:.3g} times as wide for it", errors.widening)
+                   : "",
+      errors.degrees_of_freedom);
 }
 
 /// A number beside E, in the units that people read.
@@ -71,6 +75,30 @@ std::string numbers_text(const compare::MaterialFit& fit, const std::optional<st
   std::string out;
   for (const compare::FittedNumber& number : fit.others) {
     if (number.shape == shape) append(out, "            {}\n", text_of(number));
+  }
+  return out;
+}
+
+/// As the command line has it.
+std::string options_of(const compare::FitAlternative& alternative) {
+  std::string out;
+  if (alternative.natural_curvature_terms > 0) {
+    append(out, "--natural-curvature {}", alternative.natural_curvature_terms);
+  }
+  if (alternative.direction_tolerance > 0) {
+    append(out, "{}--clamp-angles \"{:.3g} deg\"", out.empty() ? "" : " ",
+           alternative.direction_tolerance * 180 / std::numbers::pi);
+  }
+  return out;
+}
+
+std::string alternatives_text(const MaterialReport& report) {
+  std::string out;
+  const compare::NamedValue stiffness = report.scenes.front().stiffness();
+  for (const compare::FitAlternative& alternative : report.fit.alternatives) {
+    append(out, "            {} would leave {:.4g} mm, {} {}\n", options_of(alternative),
+           alternative.rms_m * 1e3, stiffness.name,
+           value_text(alternative.youngs_modulus, stiffness.unit));
   }
   return out;
 }
@@ -195,6 +223,19 @@ void add_value(Json& result, const Key& key, const std::string& prefix, const Fi
   result[prefix + "interval_95" + key.unit] = {json_of(value.low), json_of(value.high)};
 }
 
+Json alternatives_json(const MaterialReport& report) {
+  Json result = Json::array();
+  for (const compare::FitAlternative& alternative : report.fit.alternatives) {
+    Json one = {{"options", options_of(alternative)},
+                {"natural_curvature_terms", alternative.natural_curvature_terms},
+                {"direction_tolerance_rad", alternative.direction_tolerance},
+                {"rms_m", alternative.rms_m}};
+    add_value(one, stiffness_key(report.scenes.front()), "", alternative.youngs_modulus);
+    result.push_back(std::move(one));
+  }
+  return result;
+}
+
 }  // namespace
 
 std::string material_text(const MaterialReport& report) {
@@ -226,13 +267,14 @@ std::string material_text(const MaterialReport& report) {
          fit.degrees_of_freedom);
   if (fit.correlation) {
     append(out, "{}", correlation_text(report));
-    if (fit.others.empty()) {
+    if (fit.others.empty() && fit.alternatives.empty()) {
       out +=
           "            (clamps that are off, or a wire that is not straight by nature, leave such "
           "residuals:\n            --clamp-angles, --natural-curvature)\n";
     }
   }
   append(out, "residual    {:.4g} mm between points and rod (RMS)\n", fit.rms_m * 1e3);
+  append(out, "{}", alternatives_text(report));
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {
     const compare::Alignment& a = fit.shapes[i].alignment;
     append(out, "shape       {} on {}: {} points, {}, RMS {:.4g} mm\n",
@@ -306,6 +348,8 @@ Json material_json(const MaterialReport& report) {
   } else {
     result["correlation"] = nullptr;
   }
+  result["common_share"] = json_of(fit.common_share);
+  result["alternatives"] = alternatives_json(report);
   result["others"] = numbers_json(fit);
   result["chains"] = chains_json(fit);
   result["scatter_between_shapes"] = scatter_json(fit.scatter);

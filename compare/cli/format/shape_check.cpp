@@ -74,11 +74,11 @@ Json friction_json(const compare::FrictionCheck& friction) {
 void judge(ShapeCheckReport& report, const compare::MeasuredShape& shape,
            const compare::ShapeCheckOptions& options, Explaining explaining) {
   Verdict& verdict = report.verdict.value();
-  verdict.judgement = compare::judge(report.check, verdict.tolerance);
-  if (verdict.judgement.pass || explaining == Explaining::no) return;
+  verdict.judgement = compare::judge_with_chains(report.scene, report.check, verdict.tolerance);
+  const bool is_near = compare::judge(report.check, verdict.tolerance).pass;
+  if (is_near || explaining == Explaining::no) return;
   report.explanations = compare::explain_shape(report.scene, shape, report.check, options);
-  verdict.judgement =
-      compare::judge_explained(report.check, verdict.tolerance, report.explanations);
+  verdict.judgement = compare::with_explanation(verdict.judgement, report.explanations);
   if (compare::better_than_stiffness(report.check, report.explanations)) {
     report.check.effective_modulus.optimum = compare::Optimum::outdone;
   }

@@ -29,6 +29,8 @@ constexpr double same_share = 0.02;
 constexpr double same_length = 1e-5;
 /// Deviation beyond which a shape is just another one, in lengths.
 constexpr double another_shape = 0.05;
+/// By how much a rod that has left its plane is out of it, in lengths.
+constexpr double another_shape_out = 1e-3;
 constexpr int most_steps = 10;
 /// What a step has to leave less of to be gone, and to be followed by another one.
 constexpr double hardly_better = 0.95;
@@ -55,19 +57,26 @@ class Search {
   [[nodiscard]] std::vector<Explanation> run() {
     const energy_model::Equilibrium& rod = check_.rod;
     before_ = check_.whole_rms_m;
+    // It fails because too little is seen.
+    if (!(before_ > same_length * scene_.length)) return {};
     if (options_.pose == PoseFreedom::known) {
       for (const FileCause& cause : file_causes(scene_, shape_, check_)) look_at(cause, rod);
     }
     look_at_noise();
+    look_at_unstable();
     if (!is_found(0)) look_at_chains(Springs::as_the_rod);
     for (const SceneCause& cause :
-         scene_causes(scene_, check_.polyline_length_m, lies_in_plane())) {
+         scene_causes(scene_, check_.alignment.shape, check_.polyline_length_m, lies_in_plane())) {
       if (!is_found(static_cast<int>(cause.start.size())) && !is_over()) fit(cause, rod);
     }
     if (!is_found(1)) look_at_chains(Springs::fitted);
-    std::stable_sort(found_.begin(), found_.end(),
-                     [this](const auto& a, const auto& b) { return price(a) < price(b); });
-    return std::move(found_);
+    std::stable_sort(found_.begin(), found_.end(), [this](const auto& a, const auto& b) {
+      return price(a.first) < price(b.first);
+    });
+    std::vector<Explanation> result;
+    result.reserve(found_.size());
+    for (auto& [explanation, same_as] : found_) result.push_back(std::move(explanation));
+    return result;
   }
 
  private:
@@ -86,10 +95,11 @@ class Search {
     for (const OwnPolygon& chain : own_polygons(scene_, shape, springs)) {
       const std::string words = words_of(chain.clamp, shape.points.cols() - 1);
       if (springs == Springs::as_the_rod) {
-        add({words, chain.rms_m, 0, ExplanationKind::discretisation, chain.max_m});
+        add({words, chain.rms_m, 0, ExplanationKind::discretisation, chain.max_m}, words);
       } else {
         add({fmt::format("it is {} whose springs are {:.3g} times EI/h", words, chain.stiffness),
-             chain.rms_m, 1, ExplanationKind::scene});
+             chain.rms_m, 1, ExplanationKind::scene},
+            words);
       }
     }
   }
@@ -97,20 +107,55 @@ class Search {
   [[nodiscard]] bool lies_in_plane() const {
     const std::optional<Eigen::Vector3d> normal = scene_.plane_normal();
     if (!normal) return false;
-    const Eigen::RowVectorXd aside =
-        normal->transpose() *
-        (check_.alignment.shape.points.colwise() - scene_.grippers.front().position);
-    return aside.cwiseAbs().maxCoeff() < same_share * before_;
+    return out_of_plane(*normal, check_.alignment.shape.points) < same_share * before_;
   }
 
   [[nodiscard]] double price(const Explanation& explanation) const {
     return price_of(explanation.rms_m, explanation.numbers, before_, scene_.length);
   }
 
-  void add(Explanation explanation) {
+  /// @param same_as  what of several only the best is told; empty: its own words
+  void add(Explanation explanation, std::string same_as = {}) {
     if (!(explanation.rms_m <= most_left * before_)) return;
     if (!best_ || price(explanation) < price(*best_)) best_ = explanation;
-    found_.push_back(std::move(explanation));
+    if (same_as.empty()) same_as = explanation.cause;
+    const auto told = std::find_if(found_.begin(), found_.end(), [&](const auto& other) {
+      return other.second == same_as || other.first.cause == explanation.cause;
+    });
+    if (told == found_.end()) {
+      found_.emplace_back(std::move(explanation), std::move(same_as));
+    } else if (price(explanation) < price(told->first)) {
+      told->first = std::move(explanation);
+    }
+  }
+
+  /// What a solver keeps at rest that does not see which way the rod leaves: one in the plane, or
+  /// one that looks for no minimum.
+  void look_at_unstable() {
+    double least = std::numeric_limits<double>::infinity();
+    for (const OtherState& other : check_.state.others) {
+      if (!other.stable) least = std::min(least, other.rms_from_shape_m);
+    }
+    if (!std::isfinite(least)) return;
+    const std::optional<Eigen::Vector3d> normal = scene_.plane_normal();
+    const double out = normal ? out_of_plane(*normal, check_.reference.points) : 0;
+    const bool left_plane = normal && out > another_shape_out * scene_.length &&
+                            out_of_plane(*normal, check_.alignment.shape.points) < same_share * out;
+    add({left_plane
+             ? fmt::format("the rod keeps to the scene's plane, as a planar model's does: it "
+                           "is unstable there and leaves the plane by up to {:.3g} mm",
+                           out * 1e3)
+             : std::string("the rod rests where it is unstable, as of a solver that looks for "
+                           "no minimum"),
+         least, 0, ExplanationKind::scene});
+  }
+
+  /// The largest distance of points from the scene's plane [m].
+  [[nodiscard]] double out_of_plane(const Eigen::Vector3d& normal,
+                                    const Eigen::Matrix3Xd& points) const {
+    return (normal.transpose() * (points.colwise() - scene_.grippers.front().position))
+        .cwiseAbs()
+        .maxCoeff();
   }
 
   void look_at(const FileCause& cause, const energy_model::Equilibrium& rod) {
@@ -134,7 +179,7 @@ class Search {
         explanation.cause +=
             fmt::format(", [{:.4g}, {:.4g}, {:.4g}] mm away", way.x(), way.y(), way.z());
       }
-      add(std::move(explanation));
+      add(std::move(explanation), cause.same_as);
     } catch (const InputError&) {
       // A file that is none, said in this way.
     }
@@ -193,6 +238,11 @@ class Search {
     Eigen::VectorXd p = cause.start;
     const bool from_here = p.isZero();
     std::optional<Trial> best = attempt(cause.changed(p), from_here ? &rod : nullptr);
+    if (cause.other_state) {
+      std::optional<Trial> lowest = attempt(cause.changed(p), nullptr);
+      if (lowest && !(best && best->rms <= lowest->rms)) best = std::move(lowest);
+    }
+    if (best && p.size() == 0) return add_fit(cause, p, *best);
     for (int step = 0; best && step < most_steps && !is_over(); ++step) {
       Eigen::MatrixXd jacobian(best->residual.size(), p.size());
       for (Eigen::Index i = 0; i < p.size(); ++i) {
@@ -225,7 +275,8 @@ class Search {
   }
 
   void add_fit(const SceneCause& cause, const Eigen::VectorXd& p, const Trial& best) {
-    add({cause.words(p), best.rms, static_cast<int>(p.size()), ExplanationKind::scene});
+    add({cause.words(p), best.rms, static_cast<int>(p.size()), ExplanationKind::scene},
+        cause.same_as);
   }
 
   const Scene& scene_;
@@ -234,7 +285,7 @@ class Search {
   const ShapeCheckOptions& options_;
   AlignOptions align_;
   double before_ = 0;
-  std::vector<Explanation> found_;
+  std::vector<std::pair<Explanation, std::string>> found_;  // and what of several it is the best
   std::optional<Explanation> best_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
@@ -262,32 +313,34 @@ std::optional<Explanation> better_than_stiffness(const ShapeCheck& check,
   return std::nullopt;
 }
 
-ShapeJudgement judge_explained(const ShapeCheck& check, const ShapeTolerance& tolerance,
-                               const std::vector<Explanation>& explanations) {
+ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
+                                 const ShapeTolerance& tolerance) {
   ShapeJudgement result = judge(check, tolerance);
-  if (result.pass || explanations.empty()) return result;
-  const Explanation& best = explanations.front();
-  const auto distance = [&](const Explanation& chain) {
-    return tolerance.largest ? chain.max_m : chain.rms_m;
-  };
-  const auto is_chain = [&](const Explanation& explanation) {
-    return explanation.kind == ExplanationKind::discretisation &&
-           distance(explanation) <= right_chain * tolerance.allowed_m;
-  };
-  const auto chain = std::find_if(explanations.begin(), explanations.end(), is_chain);
-  if (chain != explanations.end()) {
-    result.reason = fmt::format("right for {}, {:.3g} mm away ({})", chain->cause,
-                                distance(*chain) * 1e3, tolerance.largest ? "largest" : "RMS") +
+  if (result.pass) return result;
+  const Shape& shape = check.alignment.shape;
+  for (const OwnPolygon& chain : own_polygons(scene, shape, Springs::as_the_rod)) {
+    const double distance = tolerance.largest ? chain.max_m : chain.rms_m;
+    if (!(distance <= right_chain * tolerance.allowed_m)) continue;
+    result.reason = fmt::format("right for {}, {:.3g} mm away ({})",
+                                words_of(chain.clamp, shape.points.cols() - 1), distance * 1e3,
+                                tolerance.largest ? "largest" : "RMS") +
                     fmt::format("; the rod itself is {:.4g} mm = {:.3g} % of l away, all of it ",
                                 result.judged_m * 1e3, result.judged_m / check.length_m * 100) +
                     "discretisation";
     result.pass = true;
-    return result;
+    break;
   }
-  result.reason += fmt::format(
+  return result;
+}
+
+ShapeJudgement with_explanation(ShapeJudgement judgement,
+                                const std::vector<Explanation>& explanations) {
+  if (judgement.pass || explanations.empty()) return judgement;
+  const Explanation& best = explanations.front();
+  judgement.reason += fmt::format(
       "; it would be {:.4g} mm (RMS) if {}", best.rms_m * 1e3,
       best.kind == ExplanationKind::discretisation ? "it were " + best.cause : best.cause);
-  return result;
+  return judgement;
 }
 
 }  // namespace dlo::compare

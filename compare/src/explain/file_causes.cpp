@@ -134,9 +134,9 @@ void add_lengths(const MeasuredShape& shape, const ShapeCheck& check,
   for (Eigen::Index k = 1; k <= most; ++k) {
     const std::string points = k == 1 ? "point leads" : fmt::format("{} points lead", k);
     causes.push_back({fmt::format("the file's last {} away from the rod: a hook", points),
-                      without(shape, 0, count - k), PoseFreedom::known, 0, true});
+                      without(shape, 0, count - k), PoseFreedom::known, 0, true, "last points"});
     causes.push_back({fmt::format("the file's first {} away from the rod: a hook", points),
-                      without(shape, k, count - k), PoseFreedom::known, 0, true});
+                      without(shape, k, count - k), PoseFreedom::known, 0, true, "first points"});
   }
   const double stretch = check.polyline_length_m / check.length_m;
   if (stretch > 0.5 && stretch < 2 && std::abs(stretch - 1) > 1e-3) {
@@ -160,6 +160,7 @@ std::vector<FileCause> file_causes(const Scene& scene, const MeasuredShape& shap
   for (const Eigen::Matrix3d& axes : other_axes()) {
     causes.push_back({fmt::format("{} ({})", name_of(axes, scene.gravity), axes_text(axes)),
                       turned(shape, axes)});
+    causes.back().same_as = "axes";
   }
   if (!shape.arc_length.empty()) {
     MeasuredShape against = shape;

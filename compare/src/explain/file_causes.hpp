@@ -18,6 +18,8 @@ struct FileCause {
   int numbers = 0;  ///< that this counts as
   /// Only what the shape has of the rod is held against it.
   bool part = false;
+  /// Of several ways to say the same the best is told; empty: there is one.
+  std::string same_as = {};
 };
 
 /// All that can be wrong with a file, in a frame that is said to be the scene's.

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -112,6 +113,97 @@ SceneCause position(const Scene& scene, std::size_t index,
           }};
 }
 
+std::string text_of(const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d shown = direction.unaryExpr([](double x) {
+    constexpr double rounding = 1e-6;
+    return std::abs(x) < rounding ? 0.0 : x;
+  });
+  return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", shown.x(), shown.y(), shown.z());
+}
+
+/// Unit, along the rod.
+Eigen::Vector3d tangent_at(const Shape& shape, double at) {
+  const std::vector<double>& s = shape.arc_length;
+  const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
+  const Eigen::Index i = above - s.begin();
+  const Eigen::Vector3d along = shape.points.col(i) - shape.points.col(i - 1);
+  return along.norm() > 0 ? along.normalized() : Eigen::Vector3d::UnitX();
+}
+
+/// Pins that hold directions all the same, those that the shape has there to begin with.
+SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& pins,
+                           const Shape& shape, const std::optional<Eigen::Vector3d>& normal) {
+  Scene held = scene;
+  std::vector<Eigen::Matrix3Xd> ways;
+  Eigen::Index count = 0;
+  for (const std::size_t i : pins) {
+    Eigen::Vector3d along = tangent_at(shape, scene.grippers[i].at);
+    if (normal) along = (along - along.dot(*normal) * *normal).normalized();
+    held.grippers[i].direction = along;
+    ways.push_back(ways_across(along, normal));
+    count += ways.back().cols();
+  }
+  const auto changed = [held, pins, ways](const Eigen::VectorXd& p) {
+    Scene result = held;
+    Eigen::Index first = 0;
+    for (std::size_t k = 0; k < pins.size(); ++k) {
+      turn_clamp(result.grippers[pins[k]], ways[k] * p.segment(first, ways[k].cols()));
+      first += ways[k].cols();
+    }
+    return result;
+  };
+  SceneCause cause{zeros(count), Eigen::VectorXd::Constant(count, 1 * degree), 40 * degree, changed,
+                   [changed, pins](const Eigen::VectorXd& p) {
+                     const Scene result = changed(p);
+                     if (pins.size() == 1) {
+                       return fmt::format("gripper {} holds its direction, {}: a clamp, not a pin",
+                                          pins[0] + 1,
+                                          text_of(*result.grippers[pins[0]].direction));
+                     }
+                     std::vector<std::string> directions;
+                     for (const std::size_t i : pins) {
+                       directions.push_back(fmt::format("gripper {} {}", i + 1,
+                                                        text_of(*result.grippers[i].direction)));
+                     }
+                     return fmt::format("the pins hold their directions, {}: clamps",
+                                        fmt::join(directions, ", "));
+                   }};
+  cause.other_state = true;
+  return cause;
+}
+
+/// Clamps that let the rod turn all the same.
+SceneCause pins_for_clamps(const Scene& scene, const std::vector<std::size_t>& clamps) {
+  Scene free = scene;
+  for (const std::size_t i : clamps) {
+    free.grippers[i].direction.reset();
+    free.grippers[i].frame.reset();
+  }
+  SceneCause cause{zeros(0), zeros(0), 0, [free](const Eigen::VectorXd& /*none*/) { return free; },
+                   [clamps](const Eigen::VectorXd& /*none*/) {
+                     return clamps.size() == 1
+                                ? fmt::format("gripper {} lets the rod turn: a pin, not a clamp",
+                                              clamps[0] + 1)
+                                : std::string("the clamps let the rod turn: pins");
+                   }};
+  cause.other_state = true;
+  return cause;
+}
+
+/// Each gripper that is a pin for a clamp or the reverse, then all of a kind.
+void add_other_holds(std::vector<SceneCause>& causes, const Scene& scene, const Shape& shape,
+                     const std::optional<Eigen::Vector3d>& normal) {
+  std::vector<std::size_t> pins;
+  std::vector<std::size_t> clamps;
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    (scene.grippers[i].direction ? clamps : pins).push_back(i);
+  }
+  for (const std::size_t i : clamps) causes.push_back(pins_for_clamps(scene, {i}));
+  if (clamps.size() > 1) causes.push_back(pins_for_clamps(scene, clamps));
+  for (const std::size_t i : pins) causes.push_back(clamps_for_pins(scene, {i}, shape, normal));
+  if (pins.size() > 1) causes.push_back(clamps_for_pins(scene, pins, shape, normal));
+}
+
 SceneCause natural_curvature(const Scene& scene) {
   const double unit = 1 / scene.length;
   return {zeros(1), Eigen::VectorXd::Constant(1, 0.02 * unit), 3 * unit,
@@ -149,7 +241,8 @@ SceneCause twist(const Scene& scene, std::size_t last) {
 
 }  // namespace
 
-std::vector<SceneCause> scene_causes(const Scene& scene, double polyline, bool flat) {
+std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, double polyline,
+                                     bool flat) {
   std::vector<SceneCause> causes = {stiffness(scene)};
   std::size_t last = 0;
   std::size_t clamps = 0;
@@ -171,16 +264,22 @@ std::vector<SceneCause> scene_causes(const Scene& scene, double polyline, bool f
     const Gripper& gripper = scene.grippers[i];
     const bool held_frame = gripper.frame && gripper.frame->d1;
     if (gripper.direction && !held_frame) causes.push_back(direction(scene, i, normal));
-    causes.push_back(position(scene, i, normal));
+    // Where the only gripper is, the file's origin says.
+    if (scene.grippers.size() > 1 || !scene.obstacles.empty()) {
+      causes.push_back(position(scene, i, normal));
+    }
   }
+  add_other_holds(causes, scene, shape, normal);
   if (scene.gravity.norm() > 0) {
     const Eigen::Vector3d down = scene.gravity.normalized();
+    const std::size_t first = causes.size();
     causes.push_back(gravity(scene, down));
     const Eigen::Vector3d across = down.unitOrthogonal();
     for (const Eigen::Vector3d& other : {across, Eigen::Vector3d(down.cross(across))}) {
       causes.push_back(gravity(scene, other));
       causes.push_back(gravity(scene, -other));
     }
+    for (std::size_t i = first; i < causes.size(); ++i) causes[i].same_as = "gravity";
   }
   const bool round = !scene.has_material_directors();
   if (!flat && clamps == scene.grippers.size() && clamps > 1 && round) {

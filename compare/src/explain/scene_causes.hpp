@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape.hpp"
 
 namespace dlo::compare {
 
@@ -16,11 +17,17 @@ struct SceneCause {
   double longest_step = 0;  ///< of any number
   std::function<Scene(const Eigen::VectorXd&)> changed;
   std::function<std::string(const Eigen::VectorXd&)> words;
+  /// Of several starts of the same cause the best is told; empty: there is one.
+  std::string same_as = {};
+  /// The rod is held in another way, so that its state may be none that is near.
+  bool other_state = false;
 };
 
 /// All that can be wrong with this scene, what takes longest last.
-/// @param polyline  length of the shape that it is held against [m]
+/// @param shape     that it is held against, in the scene's frame
+/// @param polyline  its length [m]
 /// @param flat      the shape lies in the scene's plane: nothing leads out of it
-[[nodiscard]] std::vector<SceneCause> scene_causes(const Scene& scene, double polyline, bool flat);
+[[nodiscard]] std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape,
+                                                   double polyline, bool flat);
 
 }  // namespace dlo::compare

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace dlo::compare {
 namespace {
@@ -50,7 +51,66 @@ double variance_between(const std::vector<ShapeEstimate>& estimates, double expe
   return high;
 }
 
+/// Linear between its places, constant beyond them.
+double interpolated(const std::vector<double>& s, const std::vector<double>& value, double at) {
+  const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
+  const auto i = static_cast<std::size_t>(above - s.begin());
+  const double step = s[i] - s[i - 1];
+  const double share = step > 0 ? std::clamp((at - s[i - 1]) / step, 0.0, 1.0) : 0;
+  return (1 - share) * value[i - 1] + share * value[i];
+}
+
 }  // namespace
+
+AcrossRod across_rod(const Shape& shape, const Shape& rod, const Eigen::Vector3d& normal) {
+  AcrossRod result;
+  const std::vector<double>& s = rod.arc_length;
+  for (Eigen::Index i = 0; i < shape.points.cols(); ++i) {
+    const double at = shape.arc_length[static_cast<std::size_t>(i)];
+    const auto above = std::upper_bound(s.begin() + 1, s.end() - 1, at);
+    const Eigen::Index k = above - s.begin();
+    const Eigen::Vector3d begin = rod.points.col(k - 1);
+    const Eigen::Vector3d along = (rod.points.col(k) - begin).normalized();
+    result.arc_length.push_back(at);
+    // Across, the rod's piece may be taken for straight; where along it does not matter.
+    result.gap.push_back(normal.cross(along).dot(shape.points.col(i) - begin));
+  }
+  return result;
+}
+
+std::optional<double> common_share(const std::vector<AcrossRod>& shapes) {
+  if (shapes.size() < 2) return std::nullopt;
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  double longest = 0;
+  for (const AcrossRod& one : shapes) {
+    if (one.arc_length.size() < 2) return std::nullopt;
+    low = std::max(low, one.arc_length.front());
+    high = std::min(high, one.arc_length.back());
+    longest = std::max(longest, one.arc_length.back() - one.arc_length.front());
+  }
+  if (!(high - low > longest / 2)) return std::nullopt;
+  constexpr int places = 21;
+  double common = 0;
+  double all = 0;
+  for (int k = 0; k < places; ++k) {
+    const double at = low + (high - low) * k / (places - 1);
+    double sum = 0;
+    for (const AcrossRod& one : shapes) {
+      const double gap = interpolated(one.arc_length, one.gap, at);
+      sum += gap;
+      all += gap * gap;
+    }
+    common += sum * sum / static_cast<double>(shapes.size());
+  }
+  if (!(all > 0)) return std::nullopt;
+  return common / all;
+}
+
+double beyond_chance(double share, std::size_t shapes) {
+  const double by_chance = 1 / static_cast<double>(shapes);
+  return (share - by_chance) / (1 - by_chance);
+}
 
 std::vector<ResidualSeries> series_of_shape(const std::vector<ResidualSeries>& all,
                                             std::size_t shape) {

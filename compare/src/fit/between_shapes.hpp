@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/shape.hpp"
 #include "fit/error_correlation.hpp"
 
 namespace dlo::compare {
@@ -34,6 +35,25 @@ struct Nuisance {
                                               const ErrorCovariance& covariance, double variance,
                                               Eigen::Index column,
                                               const std::vector<Nuisance>& nuisances);
+
+/// What of a shape's points is across its rod, in a plane that all shapes share.
+struct AcrossRod {
+  std::vector<double> arc_length;  ///< grows [m]
+  std::vector<double> gap;         ///< of each point, to the rod's left [m]
+};
+
+/// @param normal  of the plane;  @param shape  as it lies on the rod;  @param rod  at many arc
+///                lengths
+[[nodiscard]] AcrossRod across_rod(const Shape& shape, const Shape& rod,
+                                   const Eigen::Vector3d& normal);
+
+/// Share of the mean square that all have in common at equal arc lengths: N |mean|^2 over the sum
+/// of squares, 1 / N of independent ones, 1 of equal ones; none of fewer than two, or of those
+/// that have less than half of their arc lengths in common.
+[[nodiscard]] std::optional<double> common_share(const std::vector<AcrossRod>& shapes);
+
+/// Between what chance gives, 0, and all of it, 1.
+[[nodiscard]] double beyond_chance(double share, std::size_t shapes);
 
 /// Whether estimates differ by more than their variances explain (Cochran's Q, chance below 1/20),
 /// and what that does to the interval of their mean; none of fewer than two that say something.

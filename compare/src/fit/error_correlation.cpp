@@ -117,7 +117,8 @@ struct Candidate {
 };
 
 /// Independence first; nothing where there are too few residuals.
-std::vector<Candidate> candidates(const std::vector<ResidualSeries>& series) {
+std::vector<Candidate> candidates(const std::vector<ResidualSeries>& whole) {
+  const std::vector<ResidualSeries> series = thinned(whole);
   const Stacked all = stacked(series);
   const Eigen::MatrixXd basis = basis_of(all.design);
   if (basis.rows() - basis.cols() < least_degrees_of_freedom) return {};
@@ -178,6 +179,26 @@ double squared_entries(const std::vector<double>& step, const ErrorCovariance& c
 }
 
 }  // namespace
+
+std::vector<ResidualSeries> thinned(const std::vector<ResidualSeries>& series) {
+  constexpr Eigen::Index most_rows = 250;
+  std::vector<ResidualSeries> result = series;
+  for (ResidualSeries& one : result) {
+    const Eigen::Index every = (one.residual.size() + most_rows - 1) / most_rows;
+    if (every <= 1) continue;
+    const Eigen::Index rows = (one.residual.size() - 1) / every + 1;
+    for (Eigen::Index row = 1; row < rows; ++row) {
+      one.arc_length[static_cast<std::size_t>(row)] =
+          one.arc_length[static_cast<std::size_t>(row * every)];
+      one.residual[row] = one.residual[row * every];
+      one.design.row(row) = one.design.row(row * every);
+    }
+    one.arc_length.resize(static_cast<std::size_t>(rows));
+    one.residual.conservativeResize(rows);
+    one.design.conservativeResize(rows, Eigen::NoChange);
+  }
+  return result;
+}
 
 CorrelationEstimate correlation_of(const std::vector<ResidualSeries>& series) {
   const std::vector<Candidate> all = candidates(series);

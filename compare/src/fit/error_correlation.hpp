@@ -23,6 +23,10 @@ struct ErrorCovariance {
   double length = 0;  ///< of correlation [m]
 };
 
+/// With no more than 250 rows each, equally many left out between two: enough to tell covariances
+/// apart, of which hundreds are tried.
+[[nodiscard]] std::vector<ResidualSeries> thinned(const std::vector<ResidualSeries>& series);
+
 /// What residuals say of the errors' correlation, see correlation_of().
 struct CorrelationEstimate {
   ErrorCovariance covariance;  ///< the most likely one
@@ -33,8 +37,8 @@ struct CorrelationEstimate {
 };
 
 /// The most likely covariance by restricted maximum likelihood, which allows for what the fitted
-/// numbers took out of the residuals. The likelihood is that of a Kalman filter's innovations, so
-/// it costs O(n p) for n residuals.
+/// numbers took out of the residuals; of thinned() series. The likelihood is that of a Kalman
+/// filter's innovations, so it costs O(n p) for n residuals.
 [[nodiscard]] CorrelationEstimate correlation_of(const std::vector<ResidualSeries>& series);
 
 /// A covariance and how likely it is beside others.

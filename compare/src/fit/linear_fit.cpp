@@ -1,6 +1,8 @@
 #include "fit/linear_fit.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
+#include <cmath>
 #include <utility>
 
 namespace dlo::compare {
@@ -9,6 +11,18 @@ namespace {
 /// Columns of frames that are no more than this share of the largest are rounding: a flat shape
 /// does not see its third coordinate.
 constexpr double frame_rank_tolerance = 1e-8;
+/// An eigenvalue of the numbers' information, scaled to a diagonal of ones, that is rounding: two
+/// columns are then alike to its root.
+constexpr double information_tolerance = 1e-12;
+/// Part of a number in a combination of which nothing is known, above rounding.
+constexpr double least_part = 1e-3;
+
+Eigen::MatrixXd information_of(const LinearFit& fit, double variance,
+                               const Eigen::VectorXd& before) {
+  Eigen::MatrixXd information = fit.design.transpose() * fit.design / variance;
+  information.diagonal() += before.cwiseAbs2();
+  return information;
+}
 
 }  // namespace
 
@@ -29,9 +43,25 @@ LinearFit linear_fit(const std::vector<ResidualSeries>& series, const ErrorCovar
 }
 
 Eigen::MatrixXd posterior(const LinearFit& fit, double variance, const Eigen::VectorXd& before) {
-  Eigen::MatrixXd information = fit.design.transpose() * fit.design / variance;
-  information.diagonal() += before.cwiseAbs2();
-  return information.completeOrthogonalDecomposition().pseudoInverse();
+  return information_of(fit, variance, before).completeOrthogonalDecomposition().pseudoInverse();
+}
+
+std::vector<bool> unseen(const LinearFit& fit, double variance, const Eigen::VectorXd& before) {
+  const Eigen::MatrixXd information = information_of(fit, variance, before);
+  const Eigen::VectorXd deviations =
+      information.diagonal().unaryExpr([](double x) { return x > 0 ? 1 / std::sqrt(x) : 0.0; });
+  const Eigen::MatrixXd scaled = deviations.asDiagonal() * information * deviations.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(scaled);
+  std::vector<bool> result(static_cast<std::size_t>(before.size()), false);
+  for (Eigen::Index k = 0; k < before.size(); ++k) {
+    if (eigen.eigenvalues()[k] > information_tolerance) continue;
+    for (Eigen::Index i = 0; i < before.size(); ++i) {
+      if (std::abs(eigen.eigenvectors()(i, k)) > least_part) {
+        result[static_cast<std::size_t>(i)] = true;
+      }
+    }
+  }
+  return result;
 }
 
 Eigen::VectorXd slope(const LinearFit& fit, double variance, const Eigen::VectorXd& before,

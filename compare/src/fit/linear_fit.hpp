@@ -19,11 +19,17 @@ struct LinearFit {
 [[nodiscard]] LinearFit linear_fit(const std::vector<ResidualSeries>& series,
                                    const ErrorCovariance& covariance, Eigen::Index frames);
 
-/// Covariance of the numbers after the fit.
+/// Covariance of the numbers after the fit; of those that are unseen() the least that fits, which
+/// is no variance.
 /// @param variance  of the errors;  @param before  1 over what was known of each, standard
 ///                  deviations about zero
 [[nodiscard]] Eigen::MatrixXd posterior(const LinearFit& fit, double variance,
                                         const Eigen::VectorXd& before);
+
+/// Of each number: neither the points nor what was known before tells it, alone or beside the
+/// others. Its variance is infinite.
+[[nodiscard]] std::vector<bool> unseen(const LinearFit& fit, double variance,
+                                       const Eigen::VectorXd& before);
 
 /// Minus half the derivative of the deviance (sum of squares over the variance, and of what was
 /// known before) by the numbers.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <utility>
 
 #include "dlo/compare/deviation.hpp"
@@ -16,7 +17,7 @@
 #include "fit/log_profile.hpp"
 #include "fit/shape_misfit.hpp"
 #include "fit/wire_fit.hpp"
-#include "scene/reach.hpp"
+#include "fit/wire_numbers.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -25,6 +26,15 @@ namespace {
 constexpr double least_noise = 1e-8;
 /// Searches for another state between several grippers, at the optimum of the one followed.
 constexpr int most_other_states = 2;
+/// What shapes have in common beyond chance, of all that they could. Smooth residuals have some
+/// three numbers each: two shapes of them are beyond the first in one case of five, beyond the
+/// second in one of eleven, five shapes in one of a hundred and one of two thousand.
+constexpr double maybe_common = 0.5;
+constexpr double surely_common = 0.7;
+/// Share of the residual that an alternative may leave to be told, and to put the fit in doubt.
+constexpr double worth_telling = 0.7;
+constexpr double too_much = 0.5;
+constexpr double next_to_nothing = 0.02;
 /// Of a fitted rod that is to be drawn.
 constexpr int drawn_samples = 201;
 
@@ -112,18 +122,6 @@ std::string warning_of(double least_squares, double points, double nu, double le
   return {};
 }
 
-bool has_forces_beside_weight(const std::vector<Scene>& scenes) {
-  return std::any_of(scenes.begin(), scenes.end(), [](const Scene& scene) {
-    const bool loaded = std::any_of(scene.loads.begin(), scene.loads.end(),
-                                    [](const PointLoad& l) { return l.force.norm() > 0; });
-    const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
-    const bool yields = std::any_of(in_reach.begin(), in_reach.end(), [&](std::size_t i) {
-      return std::isfinite(scene.obstacles[i].stiffness);
-    });
-    return loaded || yields;
-  });
-}
-
 void require_pairs(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
                    const MaterialFitOptions& options) {
   if (scenes.empty() || scenes.size() != shapes.size()) {
@@ -173,9 +171,12 @@ class MaterialFitter {
         shapes_(shapes),
         options_(options),
         misfit_(scenes, shapes, options),
-        both_(options.density && has_forces_beside_weight(scenes)),
-        low_(std::log(options.smallest_ratio)),
-        high_(std::log(options.largest_ratio)) {
+        forced_(std::any_of(scenes.begin(), scenes.end(), is_forced)),
+        both_(options.density &&
+              std::any_of(scenes.begin(), scenes.end(), has_forces_beside_weight)),
+        // Where every E has the same shapes, differences between them are rounding.
+        low_(forced_ ? std::log(options.smallest_ratio) : 0),
+        high_(forced_ ? std::log(options.largest_ratio) : 0) {
     const int unknowns = both_ ? 2 : 1;
     result_.degrees_of_freedom = misfit_.numbers() - unknowns;
     result_.noise_is_estimated = !options.noise;
@@ -209,6 +210,7 @@ class MaterialFitter {
         what_is_not_told(result_.youngs_modulus, found,
                          {stiffness.name, stiffness.unit, stiffness.value}, options_.told_within);
     if (both_) fit_density(least);
+    if (!forced_) result_.not_told = why_unforced(scenes_.front());
     if (options_.density && !both_ && result_.not_told.empty()) {
       result_.not_told = fmt::format(
           "these shapes do not tell the {0}: nothing but gravity bends the rod, so only {0} / {1} "
@@ -225,13 +227,14 @@ class MaterialFitter {
     for (std::size_t i = 0; i < alignments.size(); ++i) {
       result_.shapes.push_back({scenes_[i].name, alignments[i], {}});
     }
+    if (options_.alternatives) look_for_alternatives(best);
     if (options_.profile_points > 0) draw_profile(found, best, least);
     return std::move(result_);
   }
 
  private:
   [[nodiscard]] MaterialFit whole_wire(const MaterialPoint& best, double least) {
-    MaterialFit fit = fit_wire(scenes_, shapes_, options_, best, both_);
+    MaterialFit fit = fit_wire(scenes_, shapes_, options_, best, both_, misfit_.begin());
     refuse_unresolved(least);
     fit.equilibria += misfit_.solves();
     fit.evaluations += misfit_.evaluations();
@@ -241,6 +244,95 @@ class MaterialFitter {
                                scenes_.front().length, std::nullopt);
     }
     return fit;
+  }
+
+  /// What of the residuals all shapes have in common; nothing without a plane.
+  [[nodiscard]] std::optional<double> common_to_shapes(const MaterialPoint& best) {
+    constexpr int samples = 1001;
+    const std::vector<Shape> rods = misfit_.rods(best, samples);
+    if (rods.size() != result_.shapes.size()) return std::nullopt;
+    std::vector<AcrossRod> across;
+    std::optional<Eigen::Vector3d> first;
+    for (std::size_t i = 0; i < rods.size(); ++i) {
+      std::optional<Eigen::Vector3d> normal = scenes_[i].plane_normal();
+      if (!normal) return std::nullopt;
+      if (!first) first = normal;
+      if (normal->dot(*first) < 0) *normal *= -1;
+      across.push_back(across_rod(result_.shapes[i].alignment.shape, rods[i], *normal));
+    }
+    return common_share(across);
+  }
+
+  /// Residuals that no noise leaves: what would remove them?
+  void look_for_alternatives(const MaterialPoint& best) {
+    if (!(result_.rms_m > least_noise * scenes_.front().length)) return;
+    result_.common_share = common_to_shapes(best);
+    const double common =
+        result_.common_share ? beyond_chance(*result_.common_share, scenes_.size()) : 0;
+    const bool explained = options_.noise && result_.warning.empty();
+    if (explained || !(common > maybe_common || result_.correlation)) return;
+    constexpr double tolerance = 5 * std::numbers::pi / 180;
+    for (const auto& [terms, directions] :
+         {std::pair{1, 0.0}, {2, 0.0}, {0, tolerance}, {2, tolerance}}) {
+      MaterialFitOptions options = options_;
+      options.natural_curvature_terms = terms;
+      options.direction_tolerance = directions;
+      options.profile_points = 0;
+      try {
+        const MaterialFit fit = fit_wire(scenes_, shapes_, options, best, both_, misfit_.begin());
+        result_.equilibria += fit.equilibria;
+        result_.evaluations += fit.evaluations;
+        if (!(fit.rms_m <= worth_telling * result_.rms_m)) continue;
+        add_alternative({terms, directions, fit.rms_m, fit.youngs_modulus});
+      } catch (const InputError&) {
+        // No clamp, no plane, or too few points.
+      } catch (const ConvergenceError&) {
+        // No shape, or no time.
+      }
+    }
+    std::stable_sort(
+        result_.alternatives.begin(), result_.alternatives.end(),
+        [](const FitAlternative& a, const FitAlternative& b) { return a.rms_m < b.rms_m; });
+    tell_systematic(common > surely_common);
+  }
+
+  /// Those with fewer numbers come first; one that has theirs and more has to leave less.
+  void add_alternative(const FitAlternative& found) {
+    for (const FitAlternative& one : result_.alternatives) {
+      const bool has_more = found.natural_curvature_terms >= one.natural_curvature_terms &&
+                            found.direction_tolerance >= one.direction_tolerance;
+      if (has_more && found.rms_m > one.rms_m - next_to_nothing * result_.rms_m) return;
+    }
+    result_.alternatives.push_back(found);
+  }
+
+  void tell_systematic(bool common) {
+    // Without forces E has no interval that could be wrong.
+    if (!forced_) return;
+    const NamedValue stiffness = scenes_.front().stiffness();
+    if (result_.warning.empty() && !result_.alternatives.empty() &&
+        result_.alternatives.front().rms_m <= too_much * result_.rms_m) {
+      result_.warning = fmt::format(
+          "the residuals are systematic: what is not fitted would leave {:.3g} mm of {:.3g} mm, so "
+          "the interval of {} holds only if the rod is straight by nature and held as said",
+          result_.alternatives.front().rms_m * 1e3, result_.rms_m * 1e3, stiffness.name);
+    } else if (result_.warning.empty() && common) {
+      result_.warning = fmt::format(
+          "the residuals are systematic: {:.2g} % of their mean square is common to all shapes, "
+          "and "
+          "the interval of {} knows nothing of what they have in common",
+          *result_.common_share * 100, stiffness.name);
+    }
+    const bool weight_alone =
+        std::none_of(scenes_.begin(), scenes_.end(), has_forces_beside_weight);
+    // Where the density was asked for it is said already.
+    if (!weight_alone || options_.density) return;
+    const char* const heaviness = scenes_.front().heaviness().name;
+    result_.not_told += fmt::format(
+        "{} the {}: nothing but gravity bends the rod, so a wrong {} leaves no residual and makes "
+        "{} wrong by the same factor",
+        result_.not_told.empty() ? "these shapes do not tell" : "; nor", heaviness, heaviness,
+        stiffness.name);
   }
 
   void draw_profile(const Finding& found, const MaterialPoint& best, double least) {
@@ -398,6 +490,7 @@ class MaterialFitter {
   const std::vector<MeasuredShape>& shapes_;
   const MaterialFitOptions& options_;
   ShapeMisfit misfit_;
+  bool forced_;
   bool both_;
   double low_, high_;
   std::vector<CorrelationEffect> effects_;  // on E, then on the density

@@ -78,6 +78,9 @@ class ShapeMisfit {
   };
   [[nodiscard]] const Unresolved* unresolved_below(double level) const;
 
+  /// When it was made: the time limit is from then on.
+  [[nodiscard]] std::chrono::steady_clock::time_point begin() const { return begin_; }
+
   /// Equilibria solved so far.
   [[nodiscard]] long solves() const { return solves_; }
   /// Of the energy model's objective, for these.

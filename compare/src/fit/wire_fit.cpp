@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
 #include <utility>
 
@@ -35,13 +36,14 @@ constexpr int most_ends = 6;
 class WireFitter {
  public:
   WireFitter(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-             const MaterialFitOptions& options, bool density)
+             const MaterialFitOptions& options, bool density,
+             std::chrono::steady_clock::time_point begin)
       : scenes_(scenes),
         options_(options),
         density_(density),
         curvature_(1 + (density ? 1 : 0) + (options.torsional_stiffness ? 1 : 0)),
         numbers_(wire_numbers(scenes, shapes, options, density)),
-        shapes_(scenes, shapes, options, numbers_),
+        shapes_(scenes, shapes, options, numbers_, begin),
         before_(static_cast<Eigen::Index>(numbers_.size())) {
     for (Eigen::Index k = 0; k < before_.size(); ++k) {
       before_[k] = 1 / numbers_[static_cast<std::size_t>(k)].described.known_before;
@@ -63,6 +65,7 @@ class WireFitter {
       covariance_ = next;
     }
     optimum_ = shapes_.rods();
+    unseen_ = unseen(linear_, variance_, before_);
     return result();
   }
 
@@ -180,12 +183,15 @@ class WireFitter {
   }
 
   /// To the least deviance of the linear problem with log E near. Where E is hardly seen it would
-  /// be far away, and take the others with it.
+  /// be far away, and take the others with it; and no farther than E is looked for.
   [[nodiscard]] Eigen::VectorXd next_step() const {
     const Eigen::VectorXd down = slope(linear_, variance_, before_, values_);
     Eigen::VectorXd step = posterior_ * down;
-    if (std::abs(step[0]) <= longest_log_step) return step;
-    step[0] = std::copysign(longest_log_step, step[0]);
+    const double there =
+        std::clamp(values_[0] + std::clamp(step[0], -longest_log_step, longest_log_step),
+                   std::log(options_.smallest_ratio), std::log(options_.largest_ratio));
+    if (values_[0] + step[0] == there) return step;
+    step[0] = there - values_[0];
     step.tail(step.size() - 1) = step_of_others(linear_, variance_, before_, down, step[0]);
     return step;
   }
@@ -224,10 +230,12 @@ class WireFitter {
   /// Distance in log E to the end of the interval on a side (1: above, -1: below); none: open.
   /// Where the equilibria that are followed end before, linear theory has to do.
   [[nodiscard]] std::optional<double> end(double side) {
+    if (unseen_[0]) return std::nullopt;
     const double wanted = quantile();
     const double least = linear_.residual.squaredNorm() / variance_ + penalty(values_);
     const double linear = wanted * std::sqrt(posterior_(0, 0));
-    const double farthest = std::log(options_.largest_ratio);
+    const double farthest = side > 0 ? std::log(options_.largest_ratio) - values_[0]
+                                     : values_[0] - std::log(options_.smallest_ratio);
     constexpr double jump = 4;
     double distance = linear;
     for (int i = 0; i < most_ends; ++i) {
@@ -271,26 +279,39 @@ class WireFitter {
     return value;
   }
 
+  /// Of the interval of some numbers' sum with that variance; none: open.
+  [[nodiscard]] std::optional<double> half_width(std::initializer_list<Eigen::Index> numbers,
+                                                 double variance, double widening) const {
+    for (const Eigen::Index number : numbers) {
+      // What was known before is no finding.
+      const bool in_no_shape = linear_.design.col(number).isZero(0);
+      if (in_no_shape || unseen_[static_cast<std::size_t>(number)]) return std::nullopt;
+    }
+    return quantile() * std::sqrt(variance) * widening;
+  }
+
   /// The errors' covariance is known from the residuals only: by what the interval is wider when
   /// all that they leave likely is averaged over. Of their variance it takes what the residuals
   /// say, a given noise may be another one.
   [[nodiscard]] double unknown_covariance() const {
-    if (!(covariance_.share > 0)) return 1;
+    if (!(covariance_.share > 0) || unseen_[0]) return 1;
     const auto of_errors = [this](const LinearFit& linear) {
       return linear.residual.squaredNorm() / freedom_;
     };
     double variance = 0;
     double mean = 0;
     double square = 0;
-    for (const LikelyCovariance& likely : likely_covariances(series_)) {
-      const LinearFit linear = linear_fit(series_, likely.covariance, shapes_.frame_columns());
+    const std::vector<ResidualSeries> few = thinned(series_);
+    for (const LikelyCovariance& likely : likely_covariances(few)) {
+      const LinearFit linear = linear_fit(few, likely.covariance, shapes_.frame_columns());
       const Eigen::MatrixXd inverse = posterior(linear, of_errors(linear), before_);
       const double shift = inverse.row(0).dot(slope(linear, of_errors(linear), before_, values_));
       variance += likely.weight * inverse(0, 0);
       mean += likely.weight * shift;
       square += likely.weight * shift * shift;
     }
-    const double alone = posterior(linear_, of_errors(linear_), before_)(0, 0);
+    const LinearFit likeliest = linear_fit(few, covariance_, shapes_.frame_columns());
+    const double alone = posterior(likeliest, of_errors(likeliest), before_)(0, 0);
     return std::max(1.0, std::sqrt((variance + square - mean * mean) / alone));
   }
 
@@ -317,6 +338,7 @@ class WireFitter {
       const std::vector<double> s = equal_arc_lengths(scenes_[i].length, drawn_samples);
       fit.shapes[i].rod = {.arc_length = s, .points = rods[i]->sample(s).points};
     }
+    if (unseen_[0]) return;
     const double unit = scenes_.front().stiffness().value;
     const auto logarithm = [unit](const std::optional<double>& value) {
       return value ? std::optional(std::log(*value / unit)) : std::nullopt;
@@ -344,7 +366,13 @@ class WireFitter {
     };
     const NamedValue stiffness = scenes_.front().stiffness();
     fit.youngs_modulus = told(values_[0], stiffness.value, widened(end(-1)), widened(end(1)));
-    if (!fit.youngs_modulus.value) {
+    if (std::none_of(scenes_.begin(), scenes_.end(), is_forced)) {
+      fit.not_told = why_unforced(scenes_.front());
+    } else if (unseen_[0]) {
+      fit.not_told = fmt::format(
+          "these shapes do not tell {0}: with the rest as it fits they are the same with any {0}",
+          stiffness.name);
+    } else if (!fit.youngs_modulus.value) {
       const FittedValue& E = fit.youngs_modulus;
       fit.not_told = fmt::format(
           "these shapes do not tell {0} beside what else is fitted: {1} to {2} {3} fit (told: "
@@ -354,7 +382,7 @@ class WireFitter {
           E.high ? fmt::format("{:.4g}", *E.high) : "...", stiffness.unit, options_.told_within);
     }
     if (density_) {
-      const double half = quantile() * std::sqrt(posterior_(1, 1)) * widening;
+      const std::optional<double> half = half_width({1}, posterior_(1, 1), widening);
       fit.density = told(values_[1], scenes_.front().heaviness().value, half, half);
     }
     if (options_.torsional_stiffness) {
@@ -363,9 +391,9 @@ class WireFitter {
       const double GJ = scenes_.front().twisting_stiffness();
       const double EI = scenes_.front().mean_bending_stiffness();
       const double variance = posterior_(0, 0) + 2 * posterior_(0, k) + posterior_(k, k);
-      const double half = quantile() * std::sqrt(variance) * widening;
+      const std::optional<double> half = half_width({0, k}, variance, widening);
       fit.torsional_stiffness = told(values_[0] + values_[k], GJ, half, half);
-      const double half_ratio = quantile() * std::sqrt(posterior_(k, k)) * widening;
+      const std::optional<double> half_ratio = half_width({k}, posterior_(k, k), widening);
       fit.torsion_over_bending = told(values_[k], GJ / EI, half_ratio, half_ratio);
     }
     for (Eigen::Index number = curvature_; number < values_.size(); ++number) {
@@ -424,6 +452,7 @@ class WireFitter {
   std::vector<ResidualSeries> series_;
   LinearFit linear_;
   Eigen::MatrixXd posterior_;
+  std::vector<bool> unseen_;  // of the numbers, see unseen()
 };
 
 }  // namespace
@@ -434,8 +463,9 @@ bool fits_a_wire(const MaterialFitOptions& options) {
 }
 
 MaterialFit fit_wire(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                     const MaterialFitOptions& options, const MaterialPoint& start, bool density) {
-  return WireFitter(scenes, shapes, options, density).run(start);
+                     const MaterialFitOptions& options, const MaterialPoint& start, bool density,
+                     std::chrono::steady_clock::time_point begin) {
+  return WireFitter(scenes, shapes, options, density, begin).run(start);
 }
 
 }  // namespace dlo::compare

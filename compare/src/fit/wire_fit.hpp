@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <vector>
 
 #include "dlo/compare/material_fit.hpp"
@@ -12,10 +13,11 @@ namespace dlo::compare {
 
 /// Finds E, with `density` the density, and all other numbers that are asked for together, from the
 /// material that fits best without them. Fills the result but for the degrees of freedom before.
+/// @param begin  from when on the time limit is
 /// @throws ConvergenceError if the steps lead nowhere, or the time limit is over
 [[nodiscard]] MaterialFit fit_wire(const std::vector<Scene>& scenes,
                                    const std::vector<MeasuredShape>& shapes,
                                    const MaterialFitOptions& options, const MaterialPoint& start,
-                                   bool density);
+                                   bool density, std::chrono::steady_clock::time_point begin);
 
 }  // namespace dlo::compare

@@ -11,6 +11,7 @@
 #include "dlo/compare/error.hpp"
 #include "explain/scene_change.hpp"
 #include "fit/residual_series.hpp"
+#include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -116,14 +117,36 @@ void add_positions(std::vector<WireNumber>& numbers, const Scene& scene, std::si
 
 }  // namespace
 
+bool has_forces_beside_weight(const Scene& scene) {
+  const bool loaded = std::any_of(scene.loads.begin(), scene.loads.end(),
+                                  [](const PointLoad& l) { return l.force.norm() > 0; });
+  const std::vector<std::size_t> in_reach = obstacles_in_reach(scene);
+  return loaded || std::any_of(in_reach.begin(), in_reach.end(), [&](std::size_t i) {
+           return std::isfinite(scene.obstacles[i].stiffness);
+         });
+}
+
+bool is_forced(const Scene& scene) {
+  return scene.weight_per_length().norm() > 0 || has_forces_beside_weight(scene);
+}
+
+std::string why_unforced(const Scene& scene) {
+  return fmt::format(
+      "these shapes cannot tell {0}: neither weight nor a load or yielding obstacle acts on the "
+      "rod, so its shapes are the same with any {0} (a known load would tell it)",
+      scene.stiffness().name);
+}
+
 std::vector<WireNumber> wire_numbers(const std::vector<Scene>& scenes,
                                      const std::vector<MeasuredShape>& shapes,
                                      const MaterialFitOptions& options, bool density) {
   std::vector<WireNumber> numbers;
+  // Without forces differences by E are rounding, or a way along equilibria that have neighbours.
+  const bool forced = std::any_of(scenes.begin(), scenes.end(), is_forced);
   const FittedNumber of_wire{
       .name = "", .unit = "", .known_before = unknown, .shape = std::nullopt};
-  numbers.push_back(
-      {of_wire, 1e-3, [](Scene& scene, double value) { scene.scale_modulus(std::exp(value)); }});
+  numbers.push_back({of_wire, forced ? 1e-3 : 0,
+                     [](Scene& scene, double value) { scene.scale_modulus(std::exp(value)); }});
   if (density) {
     numbers.push_back(
         {of_wire, 1e-3, [](Scene& scene, double value) { scene.scale_density(std::exp(value)); }});

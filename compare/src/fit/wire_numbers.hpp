@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "dlo/compare/material_fit.hpp"
@@ -12,9 +13,20 @@ namespace dlo::compare {
 struct WireNumber {
   /// Its value is not in use; nothing known before is an infinite deviation.
   FittedNumber described;
-  double stride = 0;  ///< of differences, in its unit
+  double stride = 0;  ///< of differences, in its unit; 0: it is in no shape
   std::function<void(Scene&, double)> change;
 };
+
+/// Whether a force acts on the rod that does not grow with its stiffness: weight, a load, an
+/// obstacle that yields. Without one its energy is E times a function of the shape alone, so the
+/// scene has the same equilibria with every E.
+[[nodiscard]] bool is_forced(const Scene& scene);
+
+/// What such shapes do not tell, in words.
+[[nodiscard]] std::string why_unforced(const Scene& scene);
+
+/// The same but for its weight, without which it has the same ones with every density / E.
+[[nodiscard]] bool has_forces_beside_weight(const Scene& scene);
 
 /// All that is to be found: first the logarithm of E over the scenes', then, with `density`, of the
 /// density, if asked for of GJ / EI, natural curvature, then each shape's own directions and

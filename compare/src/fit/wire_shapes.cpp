@@ -12,6 +12,9 @@
 namespace dlo::compare {
 namespace {
 
+/// A movement below this share of the length is the solver's error (1e-10 l), not the number's.
+constexpr double least_movement = 1e-9;
+
 /// With its first clamp's frame said, so that it goes on holding it when it is turned out of the
 /// scene's plane.
 Scene with_said_frame(Scene scene) {
@@ -31,8 +34,9 @@ Scene with_said_frame(Scene scene) {
 }  // namespace
 
 WireShapes::WireShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                       const MaterialFitOptions& options, const std::vector<WireNumber>& numbers)
-    : scenes_(scenes), options_(options), numbers_(numbers), last_(scenes.size()) {
+                       const MaterialFitOptions& options, const std::vector<WireNumber>& numbers,
+                       std::chrono::steady_clock::time_point begin)
+    : scenes_(scenes), options_(options), numbers_(numbers), last_(scenes.size()), begin_(begin) {
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     aligners_.emplace_back(shapes[i], scenes[i].length,
                            AlignOptions{.pose = options.pose,
@@ -103,6 +107,10 @@ std::optional<std::vector<Movement>> WireShapes::movements(std::size_t shape,
     const std::optional<std::size_t>& whose = numbers_[k].described.shape;
     if (whose && *whose != shape) continue;
     const auto number = static_cast<Eigen::Index>(k);
+    if (numbers_[k].stride == 0) {
+      result.emplace_back(frame_columns_ + number, Eigen::Matrix3Xd::Zero(3, here.cols()));
+      continue;
+    }
     // The side on which there is a shape: a straight rod's grippers come nearer, not farther.
     for (const double stride : {numbers_[k].stride, -numbers_[k].stride}) {
       Eigen::VectorXd beside = values;
@@ -113,7 +121,9 @@ std::optional<std::vector<Movement>> WireShapes::movements(std::size_t shape,
         continue;
       }
       const Curve curve(rod->sample, scenes_[shape].length);
-      result.emplace_back(frame_columns_ + number, (curve.points(s) - here) / stride);
+      Eigen::Matrix3Xd way = curve.points(s) - here;
+      if (way.colwise().norm().maxCoeff() < least_movement * scenes_[shape].length) way.setZero();
+      result.emplace_back(frame_columns_ + number, way / stride);
       break;
     }
   }

@@ -18,9 +18,11 @@ namespace dlo::compare {
 /// is followed from the last one.
 class WireShapes {
  public:
+  /// @param begin  from when on the time limit is
   /// @throws InputError as align()
   WireShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-             const MaterialFitOptions& options, const std::vector<WireNumber>& numbers);
+             const MaterialFitOptions& options, const std::vector<WireNumber>& numbers,
+             std::chrono::steady_clock::time_point begin);
 
   /// Columns of the design before those of the numbers: each shape's frame.
   [[nodiscard]] Eigen::Index frame_columns() const { return frame_columns_; }
@@ -75,7 +77,7 @@ class WireShapes {
   Rods last_;
   long solves_ = 0;
   long evaluations_ = 0;
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point begin_;
 };
 
 }  // namespace dlo::compare

@@ -50,6 +50,13 @@ class FollowedState {
     return reached != nullptr ? reached->mean_square : std::numeric_limits<double>::infinity();
   }
 
+  /// Smallest eigenvalue of the second variation where the equilibrium is; NaN beyond its end, or
+  /// where the solver did not look.
+  [[nodiscard]] double curvature(double log_ratio) {
+    if (!std::isfinite((*this)(log_ratio))) return NAN;
+    return known_.at(log_ratio).state.smallest_curvature;
+  }
+
   [[nodiscard]] int solves() const { return solves_; }
 
  private:
@@ -162,6 +169,23 @@ double movement_of(const Scene& scene, const energy_model::Equilibrium& state) {
   return straight ? rms(s, *straight - state.sample(s).points) : NAN;
 }
 
+/// Whether the followed equilibrium ends or bifurcates beside a modulus. At a bifurcation the
+/// smallest eigenvalue is zero, and grows to both sides: on one of them it is another branch's.
+bool is_at_bifurcation(FollowedState& state, double log_ratio) {
+  // An equilibrium that ends is followed to this distance from its end.
+  constexpr double beside = 2 * least_step;
+  constexpr double vanishing = 0.25;
+  const double low = log_ratio - beside;
+  const double high = log_ratio + beside;
+  // Beyond its range nothing is known.
+  const bool in_range =
+      low >= std::log(smallest_modulus_ratio) && high <= std::log(largest_modulus_ratio);
+  if (!in_range) return false;
+  if (!std::isfinite(state(low)) || !std::isfinite(state(high))) return true;
+  return std::abs(state.curvature(log_ratio)) <
+         vanishing * std::min(state.curvature(low), state.curvature(high));
+}
+
 EffectiveModulus search(FollowedState& mean_square, double resolution) {
   const Scan values = scan_both_ways(mean_square, resolution);
   const std::size_t best = values.best();
@@ -190,7 +214,8 @@ EffectiveModulus search(FollowedState& mean_square, double resolution) {
   if (std::sqrt(at_own) > resolution) {
     result.explained_share = std::max(0.0, 1 - minimum.value / at_own);
   }
-  if (!bracketed) {
+  result.at_bifurcation = is_at_bifurcation(mean_square, minimum.x);
+  if (!bracketed || result.at_bifurcation) {
     result.optimum = Optimum::one_sided;
     return result;
   }

@@ -1,6 +1,9 @@
 #include "polygon/self_crossing.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 namespace dlo::compare {
 namespace {
@@ -34,32 +37,123 @@ Nearest nearest_of(const Eigen::Vector3d& a, const Eigen::Vector3d& along_a,
   return result;
 }
 
+/// Boxes about runs of segments, halved until a run has few: what is within two boxes that are
+/// farther apart than the nearest pair so far need not be looked at. So of n points the pairs that
+/// are looked at are about n, not n^2 / 2.
+class Crossings {
+ public:
+  Crossings(const Shape& shape, double diameter)
+      : s_(shape.arc_length),
+        points_(shape.points),
+        apart_(neighbouring * diameter),
+        slack_(rounding * points_.cwiseAbs().maxCoeff()),
+        near_(std::max(diameter, slack_)) {
+    (void)add(0, points_.cols() - 1);
+  }
+
+  [[nodiscard]] std::optional<SelfCrossing> nearest() {
+    within(nodes_.size() - 1);
+    return found_;
+  }
+
+ private:
+  static constexpr Eigen::Index most_in_leaf = 4;
+
+  struct Node {
+    Eigen::Index begin = 0, end = 0;    // segments, the last one not in it
+    std::size_t first = 0, second = 0;  // halves, unless it is a leaf
+    Eigen::Vector3d low, high;
+
+    [[nodiscard]] bool is_leaf() const { return end - begin <= most_in_leaf; }
+  };
+
+  std::size_t add(Eigen::Index begin, Eigen::Index end) {
+    Node node{.begin = begin, .end = end, .low = {}, .high = {}};
+    if (!node.is_leaf()) {
+      const Eigen::Index middle = (begin + end) / 2;
+      node.first = add(begin, middle);
+      node.second = add(middle, end);
+    }
+    const auto own = points_.middleCols(begin, end - begin + 1);
+    node.low = own.rowwise().minCoeff();
+    node.high = own.rowwise().maxCoeff();
+    nodes_.push_back(node);
+    return nodes_.size() - 1;
+  }
+
+  void within(std::size_t at) {
+    const Node& node = nodes_[at];
+    if (node.is_leaf()) {
+      look_at(node, node);
+      return;
+    }
+    within(node.first);
+    within(node.second);
+    between(node.first, node.second);
+  }
+
+  /// @param a, b  one before the other along the rod
+  void between(std::size_t at_a, std::size_t at_b) {
+    const Node& a = nodes_[at_a];
+    const Node& b = nodes_[at_b];
+    // Neighbours along the rod throughout.
+    const double farthest =
+        s_[static_cast<std::size_t>(b.end)] - s_[static_cast<std::size_t>(a.begin)];
+    if (farthest < apart_ - rounding * s_.back()) return;
+    const Eigen::Vector3d gap = (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0);
+    if (gap.norm() > near_ + slack_) return;
+    if (a.is_leaf() && b.is_leaf()) {
+      look_at(a, b);
+    } else if (b.is_leaf() || (!a.is_leaf() && a.end - a.begin >= b.end - b.begin)) {
+      between(a.first, at_b);
+      between(a.second, at_b);
+    } else {
+      between(at_a, b.first);
+      between(at_a, b.second);
+    }
+  }
+
+  void look_at(const Node& a, const Node& b) {
+    for (Eigen::Index i = a.begin; i < a.end; ++i) {
+      for (Eigen::Index j = std::max(b.begin, i + 2); j < b.end; ++j) look_at(i, j);
+    }
+  }
+
+  void look_at(Eigen::Index i, Eigen::Index j) {
+    const Eigen::Vector3d along_a = points_.col(i + 1) - points_.col(i);
+    const Eigen::Vector3d along_b = points_.col(j + 1) - points_.col(j);
+    const Nearest at = nearest_of(points_.col(i), along_a, points_.col(j), along_b);
+    const auto arc_length = [&](Eigen::Index k, double share) {
+      const auto index = static_cast<std::size_t>(k);
+      return s_[index] + share * (s_[index + 1] - s_[index]);
+    };
+    const SelfCrossing here = {
+        arc_length(i, at.along_a), arc_length(j, at.along_b),
+        (points_.col(i) + at.along_a * along_a - points_.col(j) - at.along_b * along_b).norm()};
+    if (!(here.second - here.first >= apart_) || !(here.distance <= near_)) return;
+    const std::pair segments{i, j};
+    // Of several that are as near, the first along the rod.
+    if (found_ && here.distance == near_ && !(segments < segments_)) return;
+    found_ = here;
+    segments_ = segments;
+    near_ = here.distance;
+  }
+
+  const std::vector<double>& s_;
+  const Eigen::Matrix3Xd& points_;
+  double apart_;  // along the rod [m]
+  double slack_;  // rounding of a distance [m]
+  double near_;   // distance up to which a pair is one, or of the nearest so far [m]
+  std::vector<Node> nodes_;
+  std::optional<SelfCrossing> found_;
+  std::pair<Eigen::Index, Eigen::Index> segments_;
+};
+
 }  // namespace
 
 std::optional<SelfCrossing> self_crossing(const Shape& shape, double diameter) {
-  const std::vector<double>& s = shape.arc_length;
-  const Eigen::Matrix3Xd& points = shape.points;
-  if (points.cols() < 4) return std::nullopt;
-  const double close = std::max(diameter, rounding * points.cwiseAbs().maxCoeff());
-  std::optional<SelfCrossing> nearest;
-  for (Eigen::Index i = 0; i + 3 < points.cols(); ++i) {
-    const Eigen::Vector3d along_a = points.col(i + 1) - points.col(i);
-    for (Eigen::Index j = i + 2; j + 1 < points.cols(); ++j) {
-      const Eigen::Vector3d along_b = points.col(j + 1) - points.col(j);
-      const Nearest at = nearest_of(points.col(i), along_a, points.col(j), along_b);
-      const auto arc_length = [&](Eigen::Index k, double share) {
-        const auto index = static_cast<std::size_t>(k);
-        return s[index] + share * (s[index + 1] - s[index]);
-      };
-      const SelfCrossing here = {
-          arc_length(i, at.along_a), arc_length(j, at.along_b),
-          (points.col(i) + at.along_a * along_a - points.col(j) - at.along_b * along_b).norm()};
-      const bool apart = here.second - here.first >= neighbouring * diameter;
-      if (!apart || !(here.distance <= close)) continue;
-      if (!nearest || here.distance < nearest->distance) nearest = here;
-    }
-  }
-  return nearest;
+  if (shape.points.cols() < 4) return std::nullopt;
+  return Crossings(shape, diameter).nearest();
 }
 
 }  // namespace dlo::compare

@@ -19,6 +19,10 @@ namespace {
 
 /// Points with which starts are looked for.
 constexpr Eigen::Index most_coarse_points = 200;
+/// Share of the mean square that a step has to take away, or was the last.
+constexpr double least_gain = 1e-9;
+/// Of a mean square: more than noise makes of the points that are left out.
+constexpr double clearly_worse = 4;
 /// Places along the rod at which a part of it may lie.
 constexpr int coarse_places_along = 5;
 
@@ -60,6 +64,8 @@ Aligner::Aligner(const MeasuredShape& shape, double length, const AlignOptions& 
   const double end = rule_ == ArcLengths::nearest ? along.arc_length.back() : length;
   ways_[1].arc_length = mirrored(along.arc_length, end);
 }
+
+bool Aligner::is_dense() const { return points() > most_coarse_points; }
 
 Eigen::Index Aligner::free_coordinates() const {
   constexpr Eigen::Index counts[] = {0, 3, 4, 6};
@@ -109,21 +115,27 @@ Aligner::Placed Aligner::place_given(const Way& way, const Curve& curve) const {
   return placed;
 }
 
-std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve& curve) const {
+Aligner::Way Aligner::thinned(const Way& way) {
   const Eigen::Index every = (way.points.cols() + most_coarse_points - 1) / most_coarse_points;
   const Eigen::Index count = (way.points.cols() - 1) / every + 1;
-  Eigen::Matrix3Xd points(3, count);
-  std::vector<double> guess(static_cast<std::size_t>(count));
+  Way result{Eigen::Matrix3Xd(3, count), std::vector<double>(static_cast<std::size_t>(count))};
   for (Eigen::Index i = 0; i < count; ++i) {
-    points.col(i) = way.points.col(i * every);
-    guess[static_cast<std::size_t>(i)] = way.arc_length[static_cast<std::size_t>(i * every)];
+    result.points.col(i) = way.points.col(i * every);
+    result.arc_length[static_cast<std::size_t>(i)] =
+        way.arc_length[static_cast<std::size_t>(i * every)];
   }
+  return result;
+}
+
+std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve& curve) const {
+  const Way few = thinned(way);
+  const Eigen::Matrix3Xd& points = few.points;
   const double slack = length_ - way.arc_length.back();
   const int places = slack > 0.03 * length_ ? coarse_places_along : 1;
   std::vector<Placed> result;
   for (int place = 0; place < places; ++place) {
     Placed placed;
-    placed.arc_length = guess;
+    placed.arc_length = few.arc_length;
     const double offset = places > 1 ? slack * place / (places - 1) : slack / 2;
     for (double& s : placed.arc_length) s = std::clamp(s + offset, 0.0, length_);
     for (int round = 0; round < 3; ++round) {
@@ -143,6 +155,14 @@ std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve&
 
 Aligner::Placed Aligner::polish(const Way& way, const Curve& curve,
                                 const RigidMotion& start) const {
+  if (free_coordinates() == 0 || !is_dense()) {
+    return polish_all(way, curve, start);
+  }
+  return polish_all(way, curve, polish_all(thinned(way), curve, start).pose);
+}
+
+Aligner::Placed Aligner::polish_all(const Way& way, const Curve& curve,
+                                    const RigidMotion& start) const {
   Placed placed;
   placed.pose = start;
   constexpr int most_rounds = 6;
@@ -193,6 +213,8 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
     A.diagonal().array() += damping;
     const Eigen::VectorXd move = A.ldlt().solve(b);
     if (!move.allFinite()) return;
+    // Nothing to be gained but rounding; it would be tried for at every damping.
+    if (!(b.dot(move) > least_gain * placed.mean_square)) return;
     Eigen::Vector3d turn = Eigen::Vector3d::Zero();
     for (Eigen::Index k = 0; k < turns; ++k) turn += move[k] / length_ * axes.col(k);
     const Eigen::Matrix3d rotation =
@@ -211,7 +233,7 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
       damping *= 30;
       continue;
     }
-    const bool settled = next_cost > (1 - 1e-9) * placed.mean_square;
+    const bool settled = next_cost > (1 - least_gain) * placed.mean_square;
     placed = {next, std::move(next_s), next_cost};
     moved = next_moved;
     damping = std::max(damping / 10, 1e-12);
@@ -222,10 +244,16 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
 Aligner::Placed Aligner::best_place(const Way& way, const Curve& curve) const {
   if (!has_free_arc_lengths()) return place_given(way, curve);
   if (options_.pose == PoseFreedom::known) return polish(way, curve, RigidMotion());
+  const Placed few = best_of_few(way, curve);
+  return is_dense() ? polish_all(way, curve, few.pose) : few;
+}
+
+Aligner::Placed Aligner::best_of_few(const Way& way, const Curve& curve) const {
+  const Way few = thinned(way);
   const std::vector<Placed> coarse = coarse_places(way, curve);
-  Placed best = polish(way, curve, coarse.front().pose);
+  Placed best = polish_all(few, curve, coarse.front().pose);
   if (coarse.size() > 1) {
-    Placed second = polish(way, curve, coarse[1].pose);
+    Placed second = polish_all(few, curve, coarse[1].pose);
     if (second.mean_square < best.mean_square) best = std::move(second);
   }
   return best;
@@ -250,6 +278,17 @@ Alignment Aligner::finished(const Placed& placed, bool reversed, const Curve& cu
 }
 
 Alignment Aligner::align(const Curve& curve) const {
+  if (is_dense() && has_free_arc_lengths() && free_coordinates() > 0) {
+    // That a way is wrong, a part of the points tells.
+    const std::array few = {best_of_few(ways_[0], curve), best_of_few(ways_[1], curve)};
+    for (const std::size_t way : {0, 1}) {
+      const Placed& other = few[1 - way];
+      if (!(other.mean_square > clearly_worse * few[way].mean_square)) continue;
+      Alignment result = finished(polish_all(ways_[way], curve, few[way].pose), way == 1, curve);
+      result.other_rms_m = std::sqrt(other.mean_square);
+      return result;
+    }
+  }
   // With arc lengths in order, which points that run the other way find only out of order.
   Alignment along = finished(best_place(ways_[0], curve), false, curve);
   Alignment against = finished(best_place(ways_[1], curve), true, curve);

@@ -42,9 +42,17 @@ class Aligner {
   [[nodiscard]] RigidMotion closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Matrix3Xd& to,
                                          const Eigen::VectorXd& weight) const;
   [[nodiscard]] Placed place_given(const Way& way, const Curve& curve) const;
+  /// Whether thinned() leaves points out.
+  [[nodiscard]] bool is_dense() const;
+  [[nodiscard]] static Way thinned(const Way& way);
   [[nodiscard]] std::vector<Placed> coarse_places(const Way& way, const Curve& curve) const;
+  [[nodiscard]] Placed polish_all(const Way& way, const Curve& curve,
+                                  const RigidMotion& start) const;
+  /// The same by way of fewer points, so that many need few steps.
   [[nodiscard]] Placed polish(const Way& way, const Curve& curve, const RigidMotion& start) const;
   void gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve, Placed& placed) const;
+  /// Of the thinned points.
+  [[nodiscard]] Placed best_of_few(const Way& way, const Curve& curve) const;
   [[nodiscard]] Placed best_place(const Way& way, const Curve& curve) const;
   [[nodiscard]] Alignment finished(const Placed& placed, bool reversed, const Curve& curve) const;
 

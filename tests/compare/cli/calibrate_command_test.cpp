@@ -1,5 +1,6 @@
 // The command calibrate as a user runs it.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,6 +10,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "command_fixture.hpp"
 
@@ -92,6 +95,35 @@ TEST_F(CalibrateCommand, FindsWhatElseAWireHas) {
                {"--clamp-positions", "allowed: > 0"});
 }
 
+// The same wire taken for straight: what would remove its residuals is told.
+TEST_F(CalibrateCommand, NamesWhatSystematicResidualsAskFor) {
+  std::vector<std::string> scenes;
+  std::vector<std::string> shapes;
+  for (const int angle : {-15, 0, 15}) {
+    const std::string straight = scene_of(fmt::format("s{}.toml", angle), "5 GPa", angle);
+    std::string bent = read(straight);
+    bent.replace(bent.find("[rod]"), 5, "[rod]\nnatural_curvature = \"0.7 1/m\"");
+    scenes.push_back(straight);
+    shapes.push_back(seen(scene(bent), fmt::format("s{}.csv", angle)));
+  }
+  const std::string command =
+      fmt::format("calibrate {} --shape {}", fmt::join(scenes, " "), fmt::join(shapes, " "));
+  const std::string text = run(command).out;
+  EXPECT_NE(text.find("the residuals are systematic"), std::string::npos) << text;
+  EXPECT_NE(text.find("(RMS)\n            --natural-curvature 1 would leave "), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("the density: nothing but gravity"), std::string::npos) << text;
+  const json document = json::parse(run(command + " --format json").out);
+  EXPECT_GT(document.at("common_share").get<double>(), 0.6);
+  const json& all = document.at("alternatives");
+  const auto named = std::find_if(all.begin(), all.end(), [](const json& one) {
+    return one.at("options") == "--natural-curvature 1";
+  });
+  ASSERT_NE(named, all.end());
+  EXPECT_NEAR(named->at("youngs_modulus_Pa").get<double>(), 5e9, 5e6);
+  EXPECT_LT(named->at("rms_m").get<double>(), 1e-5);
+}
+
 TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
   const std::string a = scene_of("a.toml", "5 GPa", 0);
   const std::string chain = words({"calibrate", a, "--shape", seen(a, "a.csv"), "--segments 12"});
@@ -140,6 +172,33 @@ TEST_F(CalibrateCommand, SaysWhenTheShapesDoNotTell) {
   EXPECT_TRUE(document.at("interval_95_Pa")[1].is_null());
   EXPECT_TRUE(document.at("not_told").is_string());
   expect_error("calibrate " + stiff + " --shape " + shape + " --format toml", 2, {"do not tell E"});
+}
+
+// A circle of radius 0.5 m: a weightless wire's natural curvature is 2 1/m.
+TEST_F(CalibrateCommand, AWeightlessArcGetsItsCurvatureAndNoStiffness) {
+  const std::string scene = path("arc.toml");
+  std::ofstream(scene)
+      << "gravity = [0, 0, 0]\n[rod]\nlength = 1\nbending_stiffness = \"1e-3 N "
+         "m^2\"\nmass_per_length = \"10 g/m\"\n[[gripper]]\nat = 0\nposition = [0, "
+         "0, 0]\ndirection = \"0 deg\"\n";
+  const std::string shape = path("arc.csv");
+  std::ofstream points(shape);
+  points << "x,y,z,s\n";
+  for (int i = 0; i <= 20; ++i) {
+    const double s = i / 20.0;
+    points << fmt::format("{:.17g},{:.17g},0,{:.17g}\n", std::sin(2 * s) / 2,
+                          (1 - std::cos(2 * s)) / 2, s);
+  }
+  points.close();
+  const std::string command = "calibrate " + scene + " --shape " + shape + " --natural-curvature 1";
+  const Outcome text = run(command);
+  EXPECT_EQ(text.status, 0);
+  EXPECT_EQ(text.out.find("EI          not told   (scene"), 0) << text.out;
+  EXPECT_NE(text.out.find("natural curvature, P_0: 2 1/m"), std::string::npos) << text.out;
+  const json document = json::parse(run(command + " --format json").out);
+  EXPECT_TRUE(document.at("interval_95_Nm2")[0].is_null());
+  EXPECT_NE(document.at("not_told").get<std::string>().find("cannot tell EI"), std::string::npos);
+  expect_error(command + " --format toml", 2, {"no material to write", "cannot tell EI"});
 }
 
 TEST_F(CalibrateCommand, SaysThatErrorsAreCorrelatedInEveryFormat) {

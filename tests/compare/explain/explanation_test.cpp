@@ -71,7 +71,8 @@ Outcome judged(const Scene& scene, const MeasuredShape& shape, double share = 0.
   if (!judge(check, tolerance).pass) {
     outcome.explanations = explain_shape(scene, shape, check, options);
   }
-  outcome.judgement = judge_explained(check, tolerance, outcome.explanations);
+  outcome.judgement =
+      with_explanation(judge_with_chains(scene, check, tolerance), outcome.explanations);
   return outcome;
 }
 
@@ -165,6 +166,105 @@ TEST(Explanation, NamesWhatIsAnotherScene) {
   expect_named("twisted", two,
                shape_of(between_clamps("torsional_stiffness = 0.76923\n", "roll = \"90 deg\"\n")),
                {"gripper 2 turns the rod", "90 deg (twist)"});
+}
+
+/// A rod between two grippers 0.7 l apart, held as said: "hold = \"pin\"" or a direction.
+Scene held(const std::string& first, const std::string& last) {
+  return parse_scene(
+      "[rod]\nlength = 1\nbending_stiffness = 0.05\nmass_per_length = 0.5\n[[gripper]]\nat = "
+      "0\nposition = [0, 0, 0]\n" +
+          first + "\n[[gripper]]\nat = 1\nposition = [0.7, 0.1, 0]\n" + last + "\n",
+      "held.toml");
+}
+
+TEST(Explanation, NamesAPinThatIsAClampAndTheReverse) {
+  const std::string pin = "hold = \"pin\"";
+  const std::string level = "direction = \"0 deg\"";
+  const std::string up = "direction = \"40 deg\"";
+  expect_named("a pin holds", held(pin, pin), shape_of(held(level, pin)),
+               {"gripper 1 holds its direction, [1, 0, 0]", "a clamp, not a pin"}, 1e-5);
+  expect_named("the other one", held(level, pin), shape_of(held(level, up)),
+               {"gripper 2 holds its direction, [0.766, 0.6428, 0]"}, 1e-5);
+  expect_named("both hold", held(pin, pin), shape_of(held(level, up)),
+               {"the pins hold their directions, gripper 1 [1, 0, 0], gripper 2 [0.766"}, 1e-5);
+  expect_named("a clamp lets go", held(level, pin), shape_of(held(pin, pin)),
+               {"gripper 1 lets the rod turn: a pin, not a clamp"}, 1e-5);
+  expect_named("both let go", held(level, up), shape_of(held(pin, pin)),
+               {"the clamps let the rod turn: pins"}, 1e-5);
+}
+
+TEST(Explanation, NoCauseIsListedTwice) {
+  Scene turned = clamped();
+  turned.gravity = {3, -9, 1};
+  Matrix3Xd hooked = shape_of(clamped()).points;
+  hooked.rightCols<1>() = hooked.col(39) + Vector3d(-0.02, 0.1, 0);
+  const Matrix3Xd moved = shape_of(clamped()).points.colwise() + Vector3d(0, 0.03, 0);
+  const Matrix3Xd mirrored = Vector3d(-1, 1, 1).asDiagonal() * shape_of(clamped()).points;
+  // Nothing explains it, and several directions of gravity explain half of it.
+  const Matrix3Xd right = shape_of(clamped()).points;
+  Matrix3Xd wavy = Eigen::AngleAxisd(0.6, Vector3d::UnitZ()).toRotationMatrix() * right;
+  wavy.row(2) += 0.05 * right.row(0);
+  wavy.row(1).array() += 0.02 * (9 * right.row(0).array()).sin();
+  for (const MeasuredShape& shape :
+       {shape_of(turned), made(hooked), made(moved), made(mirrored), made(wavy)}) {
+    const std::vector<Explanation> found = judged(clamped(), shape, 1e-3).explanations;
+    ASSERT_FALSE(found.empty());
+    for (const char* what : {"gravity is", "lead", "axes", "mirrored", "in the file"}) {
+      EXPECT_LE(std::count_if(found.begin(), found.end(),
+                              [what](const Explanation& one) {
+                                return one.cause.find(what) != std::string::npos;
+                              }),
+                1)
+          << what;
+    }
+    const auto of_place = [](const Explanation& one) {
+      return one.cause.find("gripper is elsewhere") != std::string::npos ||
+             one.cause.find("mm away, by") != std::string::npos;
+    };
+    EXPECT_LE(std::count_if(found.begin(), found.end(), of_place), 1);
+  }
+}
+
+/// An arch on two clamps that point up and down again; it stands if it is stiff, and falls out of
+/// its plane if not.
+Scene arch(double stiffness) {
+  return parse_scene(
+      "[rod]\nlength = 1\nmass_per_length = 0.5\nbending_stiffness = " + std::to_string(stiffness) +
+          "\n[[gripper]]\nat = 0\nposition = [0, 0, 0]\ndirection = \"90 deg\"\n[[gripper]]\nat = "
+          "1\nposition = [0.5, 0, 0]\ndirection = \"-90 deg\"\n",
+      "arch.toml");
+}
+
+// A planar solver's arch stands where it should have fallen. The stiffness at which arches begin to
+// stand fits best of all that are followed, and says nothing of the material.
+TEST(Explanation, PlanarPointsOfARodThatHasLeftItsPlaneAreToldAsSuch) {
+  const Scene scene = arch(0.05);
+  std::optional<MeasuredShape> planar;
+  for (const energy_model::Equilibrium& state : reference_states(scene, {})) {
+    const Matrix3Xd points = state.sample(equal_arc_lengths(1, 41)).points;
+    const bool stands =
+        points.row(2).cwiseAbs().maxCoeff() < 1e-9 && points.row(1).minCoeff() > -1e-9;
+    if (!planar && stands && !energy_model::succeeded(state.status)) planar = made(points);
+  }
+  ASSERT_TRUE(planar);
+  expect_named("planar", scene, *planar, {"keeps to the scene's plane", "unstable"}, 1e-6);
+  const ShapeCheck check = check_shape(scene, *planar);
+  EXPECT_TRUE(check.effective_modulus.at_bifurcation);
+  EXPECT_EQ(check.effective_modulus.optimum, Optimum::one_sided);
+  // Where it begins to stand: its plane is stable above, and not below.
+  const auto stands = [](double stiffness) {
+    const energy_model::Equilibrium rod = solve_reference(arch(stiffness), Model::energy);
+    return rod.sample(equal_arc_lengths(1, 41)).points.row(2).cwiseAbs().maxCoeff() < 1e-6;
+  };
+  const double at = check.effective_modulus.ratio * 0.05;
+  EXPECT_TRUE(stands(1.01 * at));
+  EXPECT_FALSE(stands(0.99 * at));
+  // One that stands has its own.
+  Scene stiff = arch(0.2);
+  const MeasuredShape right = shape_of(arch(0.3));
+  const ShapeCheck other = check_shape(stiff, right);
+  EXPECT_FALSE(other.effective_modulus.at_bifurcation);
+  EXPECT_NEAR(other.effective_modulus.ratio, 1.5, 1e-3);
 }
 
 // E* of a rod that was turned in its clamp explains a part of it, and is no measure of the
@@ -273,6 +373,27 @@ TEST(Explanation, AChainOfHingesIsRightInItsOwnWay) {
   }
 }
 
+// That is so whether or not anything is explained, and whatever else explains it.
+TEST(Explanation, TheVerdictKnowsChainsWithoutAnyExplanation) {
+  const Scene scene = clamped();
+  const MeasuredShape right =
+      made(HingedChain(std::vector<double>(20, 0.05), 0.05, 1, false).points());
+  const ShapeCheck check = check_shape(scene, right, {.modulus = ModulusSearch::no});
+  for (const bool largest : {false, true}) {
+    const ShapeTolerance tolerance{.allowed_m = 0.01, .largest = largest};
+    EXPECT_FALSE(judge(check, tolerance).pass);
+    const ShapeJudgement alone = judge_with_chains(scene, check, tolerance);
+    EXPECT_TRUE(alone.pass) << alone.reason;
+    EXPECT_EQ(with_explanation(alone, explain_shape(scene, right, check, {})).reason, alone.reason);
+  }
+  const ShapeTolerance narrow{.allowed_m = 1e-5};
+  const ShapeJudgement alone = judge_with_chains(scene, check, narrow);
+  EXPECT_FALSE(alone.pass);
+  const ShapeJudgement explained = with_explanation(alone, explain_shape(scene, right, check, {}));
+  EXPECT_FALSE(explained.pass);
+  EXPECT_EQ(explained.reason.find(alone.reason), 0);
+}
+
 // It is nearer to the rod than the others; a tolerance of 0.2 % tells them apart. Its springs are
 // linear in the angle, those of our chains in 2 tan(angle / 2), which is the rest.
 TEST(Explanation, AChainClampedInTheMiddleOfASegmentIsKnown) {
@@ -303,6 +424,12 @@ TEST(Explanation, AChainIsHeldAgainstTheMeasureThatWasAsked) {
 
 TEST(Explanation, OfARightShapeThereIsNone) {
   const Scene scene = between_clamps();
+  // The two ends of a rod between pins say nothing of it, nor of its unstable neighbours.
+  Matrix3Xd ends(3, 2);
+  ends << 0, 0.7, 0, 0.1, 0, 0;
+  const Outcome two = judged(held("hold = \"pin\"", "hold = \"pin\""), made(ends));
+  EXPECT_FALSE(two.judgement.pass);
+  EXPECT_TRUE(two.explanations.empty());
   EXPECT_TRUE(judged(scene, shape_of(scene)).judgement.pass);
   EXPECT_TRUE(judged(scene, shape_of(scene, 9)).judgement.pass);
 }

@@ -83,6 +83,34 @@ TEST(TorsionFit, AWireThatIsNotTwistedDoesNotTellIt) {
   EXPECT_TRUE(test::holds(found.youngs_modulus, turned_wire(0).material.youngs_modulus));
 }
 
+// The same energy times any factor has the same shapes: they tell GJ / EI, and neither of the two.
+TEST(TorsionFit, WithoutWeightOnlyTheRatioIsTold) {
+  Scene truth = turned_wire(half_turn);
+  truth.gravity.setZero();
+  // Clamps on one line would let the arch turn about it.
+  truth.grippers[1].direction = Eigen::Vector3d(0.8, -0.6, 0);
+  const std::vector<double> s = equal_arc_lengths(1, 40);
+  const MeasuredShape seen{"seen", solve_reference(truth, Model::energy).sample(s).points, s};
+  Scene said = truth;
+  said.scale_modulus(1.3);
+  said.scale_torsion(1.5);
+  const MaterialFit found = fit_material({said}, {seen}, {.torsional_stiffness = true});
+  EXPECT_FALSE(found.youngs_modulus.value);
+  EXPECT_FALSE(found.torsional_stiffness->value);
+  EXPECT_FALSE(found.torsional_stiffness->low);
+  ASSERT_TRUE(found.torsion_over_bending->value);
+  EXPECT_NEAR(*found.torsion_over_bending->value, true_share, 1e-5);
+}
+
+// Exact points of a rod without torque: what rounding says of GJ is nothing.
+TEST(TorsionFit, ExactPointsOfAWireThatIsNotTwistedGiveNoBounds) {
+  std::mt19937 random(3);
+  const MaterialFit found = fit_of_turns({0}, 0, random);
+  EXPECT_FALSE(found.torsional_stiffness->value);
+  EXPECT_FALSE(found.torsional_stiffness->low);
+  EXPECT_FALSE(found.torsion_over_bending->high);
+}
+
 TEST(TorsionFit, RefusesScenesWithoutTwist) {
   std::mt19937 random(4);
   const Scene scene = test::heavy_scene(5, 0);

@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <optional>
+#include <random>
 
 namespace dlo::compare {
 namespace {
@@ -67,6 +71,101 @@ TEST(SelfCrossing, BendsAreNone) {
     return radius * Eigen::Vector3d(std::cos(s / radius), std::sin(s / radius), 0);
   });
   EXPECT_FALSE(self_crossing(bend, 0.1));
+}
+
+/// All pairs of segments, each by the least over a fine grid of its two shares and then, from
+/// there, by one after the other.
+std::optional<double> nearest_of_all_pairs(const Shape& shape, double diameter) {
+  std::optional<double> nearest;
+  const auto at = [&](Eigen::Index i, double share) -> Eigen::Vector3d {
+    return (1 - share) * shape.points.col(i) + share * shape.points.col(i + 1);
+  };
+  const auto arc = [&](Eigen::Index i, double share) {
+    const auto k = static_cast<std::size_t>(i);
+    return (1 - share) * shape.arc_length[k] + share * shape.arc_length[k + 1];
+  };
+  const auto foot = [&](const Eigen::Vector3d& p, Eigen::Index i) {
+    const Eigen::Vector3d along = shape.points.col(i + 1) - shape.points.col(i);
+    return std::clamp(along.dot(p - shape.points.col(i)) / along.squaredNorm(), 0.0, 1.0);
+  };
+  for (Eigen::Index i = 0; i + 1 < shape.points.cols(); ++i) {
+    for (Eigen::Index j = i + 2; j + 1 < shape.points.cols(); ++j) {
+      double a = 0.5;
+      double b = 0.5;
+      for (int round = 0; round < 200; ++round) {
+        b = foot(at(i, a), j);
+        a = foot(at(j, b), i);
+      }
+      const double distance = (at(i, a) - at(j, b)).norm();
+      if (arc(j, b) - arc(i, a) < 3 * diameter || distance > diameter) continue;
+      nearest = std::min(nearest.value_or(distance), distance);
+    }
+  }
+  return nearest;
+}
+
+// Random walks, loose and dense, with segments of unlike lengths: the same as all pairs.
+TEST(SelfCrossing, OfRandomPolygonsItIsTheNearestOfAllPairs) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> anywhere(0.02, 1);
+  int crossed = 0;
+  for (int draw = 0; draw < 60; ++draw) {
+    const int count = 5 + 3 * draw % 90;
+    Shape shape;
+    shape.points = Eigen::Matrix3Xd::Zero(3, count);
+    shape.arc_length = {0};
+    for (int i = 1; i < count; ++i) {
+      const double length = anywhere(random) * (i % 7 == 0 ? 5 : 1);
+      const Eigen::Vector3d way(normal(random), normal(random), draw % 3 == 0 ? 0 : normal(random));
+      shape.points.col(i) = shape.points.col(i - 1) + length * way.normalized();
+      shape.arc_length.push_back(shape.arc_length.back() + length);
+    }
+    const double diameter = 0.02 * (1 + draw % 12);
+    const auto expected = nearest_of_all_pairs(shape, diameter);
+    const auto found = self_crossing(shape, diameter);
+    ASSERT_EQ(found.has_value(), expected.has_value()) << draw;
+    if (!found) continue;
+    ++crossed;
+    EXPECT_NEAR(found->distance, *expected, 1e-6 * diameter) << draw;
+  }
+  EXPECT_GE(crossed, 20);
+  EXPECT_LE(crossed, 55);
+}
+
+// Of places that are as near the first one counts: rungs of a ladder that the rod climbs to and
+// fro.
+TEST(SelfCrossing, OfEqualDistancesTheFirstAlongTheRodCounts) {
+  Shape shape;
+  shape.arc_length = equal_arc_lengths(20, 21);
+  shape.points = Eigen::Matrix3Xd::Zero(3, 21);
+  for (int i = 1; i < 21; ++i) {
+    // Right, up, left, up.
+    const Eigen::Vector3d way = i % 4 == 1   ? Eigen::Vector3d(1, 0, 0)
+                                : i % 4 == 3 ? Eigen::Vector3d(-1, 0, 0)
+                                             : Eigen::Vector3d(0, 0.25, 0);
+    shape.points.col(i) = shape.points.col(i - 1) + way;
+  }
+  const auto crossing = self_crossing(shape, 0.5);
+  ASSERT_TRUE(crossing);
+  EXPECT_EQ(crossing->distance, 0.25);
+  EXPECT_LT(crossing->first, 2);
+}
+
+// With all pairs 2e5 points would be 2e10 of them, minutes.
+TEST(SelfCrossing, OfManyPointsItDoesNotLookAtAllPairs) {
+  const double length = 1.25 * std::hypot(2 * pi, 0.1);
+  const Shape fine = curve(length, 200001, [=](double s) {
+    const double angle = 2 * pi * 1.25 * s / length;
+    return Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.1 * angle / (2 * pi));
+  });
+  const auto begin = std::chrono::steady_clock::now();
+  const auto crossing = self_crossing(fine, 0.11);
+  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin;
+  ASSERT_TRUE(crossing);
+  // Two turns of a coil are nearest across both: rise times the cosine of its pitch.
+  EXPECT_NEAR(crossing->distance, 0.1 * 2 * pi / std::hypot(2 * pi, 0.1), 1e-6);
+  EXPECT_LT(spent.count(), 10);
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ enum class Optimum {
   flat,       ///< a modulus twice or half as large fits less than 10 % worse, or no worse than the
               ///< energy model's own error
   one_sided,  ///< the fit still improves where the search ended: at the end of the range, or where
-              ///< the equilibrium that was followed ends
+              ///< the equilibrium that was followed ends or bifurcates
   outdone,    ///< E* is told, but something else leaves far less (better_than_stiffness): it is no
               ///< measure of the material
 };
@@ -54,7 +54,10 @@ struct EffectiveModulus {
   double explained_share = std::numeric_limits<double>::quiet_NaN();
   Optimum optimum = Optimum::none;   ///< what `ratio` is worth
   std::string why_none = "skipped";  ///< why there is no E*; empty if there is one
-  int solves = 0;                    ///< of the energy model
+  /// At E* the equilibrium that is followed ends or bifurcates: beyond it the rod is in another
+  /// state, so E* is where that begins and no measure of the material.
+  bool at_bifurcation = false;
+  int solves = 0;  ///< of the energy model
 };
 
 /// What an optimum is worth beside the RMS way of the rod from straight [m] (NaN: it has no

@@ -42,10 +42,10 @@ struct Explanation {
 
 /// Looks for a single thing that would make a shape right: of the file (its unit, its axes, points
 /// that leave the rod, what it is stretched by, noise), of its simulator (a chain of hinges instead
-/// of a rod) or of the scene (stiffness or weight, the direction of gravity, the length, the place
-/// and direction of a gripper, natural curvature, twist). Each is fitted to the shape in the state
-/// that it was compared with, by Gauss-Newton steps whose derivatives are differences between
-/// solved rods.
+/// of a rod; an unstable equilibrium) or of the scene (stiffness or weight, the direction of
+/// gravity, the length, the place and direction of a gripper, a pin that is a clamp or the reverse,
+/// natural curvature, twist). Each is fitted to the shape in the state that it was compared with,
+/// by Gauss-Newton steps whose derivatives are differences between solved rods.
 /// @param check  of the same scene and shape
 /// @return those that leave no more than half of the deviation, the best first: one that fits with
 ///         fewer numbers before one that fits hardly better with more; empty where none does
@@ -64,10 +64,14 @@ struct Explanation {
 /// measure that the tolerance is of.
 inline constexpr double right_chain = 0.25;
 
-/// As judge(), with the best explanation named where the shape fails. A shape that is right for a
-/// chain of its own points passes: all that it is away from the rod is discretisation.
-[[nodiscard]] ShapeJudgement judge_explained(const ShapeCheck& check,
-                                             const ShapeTolerance& tolerance,
-                                             const std::vector<Explanation>& explanations);
+/// As judge(); and a shape that is right for a chain of its own points passes: all that it is away
+/// from the rod is discretisation.
+[[nodiscard]] ShapeJudgement judge_with_chains(const Scene& scene, const ShapeCheck& check,
+                                               const ShapeTolerance& tolerance);
+
+/// With the best explanation named where the shape fails; whether it does is no matter of these.
+/// @param explanations  of explain_shape(), for the same check
+[[nodiscard]] ShapeJudgement with_explanation(ShapeJudgement judgement,
+                                              const std::vector<Explanation>& explanations);
 
 }  // namespace dlo::compare

@@ -30,6 +30,9 @@ struct MaterialFitOptions {
   double direction_tolerance = 0;
   /// The same of the grippers' positions along each axis [m].
   double position_tolerance = 0;
+  /// Where residuals are systematic, and none of the above is fitted, it is tried what would remove
+  /// them (MaterialFit::alternatives).
+  bool alternatives = false;
   int chain_segments = 0;        ///< of a chain of hinges that is to be as stiff; 0: of none
   int profile_points = 0;        ///< of MaterialFit::profile; 0: of none
   std::optional<double> noise;   ///< standard deviation of one coordinate [m]; else estimated
@@ -70,6 +73,14 @@ struct ScatterBetweenShapes {
   double chance = 1;              ///< of as much without a scatter [-]
   /// Width of the interval of E over that without it.
   double widening = 1;
+};
+
+/// What was not fitted, and what it would leave if it were.
+struct FitAlternative {
+  int natural_curvature_terms = 0;  ///< as in MaterialFitOptions
+  double direction_tolerance = 0;   ///< as in MaterialFitOptions [rad]
+  double rms_m = 0;                 ///< of the distances between points and rod
+  FittedValue youngs_modulus;       ///< as MaterialFit::youngs_modulus
 };
 
 /// The springs with which a chain of equal segments comes nearest to the fitted rod in a scene.
@@ -142,7 +153,8 @@ struct MaterialFit {
   /// What the shapes do not tell, and why; empty if all is told.
   std::string not_told;
   /// Why the fit is not to be believed: residuals far above the given noise (chance 1e-3), or above
-  /// a twentieth of the length; else empty.
+  /// a twentieth of the length, or half of which something would remove that is not fitted; else
+  /// empty.
   std::string warning;
   /// Standard deviation of one coordinate, given, or estimated and then no less than 1e-8 l, the
   /// energy model's own error.
@@ -152,6 +164,12 @@ struct MaterialFit {
   bool correlation_was_tested = false;
   /// If independent errors would look as correlated in less than one case of twenty.
   std::optional<CorrelatedErrors> correlation;
+  /// Share of the residuals' mean square across the rod that all shapes have in common at equal arc
+  /// length; of independent ones 1 over their number. None of a single shape, or without a plane.
+  std::optional<double> common_share;
+  /// Of systematic residuals (correlated along the rod, or common to all shapes): what would leave
+  /// 0.7 of them or less, the least first. The interval of E holds if nothing else is wrong.
+  std::vector<FitAlternative> alternatives;
   std::vector<FittedNumber> others;  ///< those that were asked for, the wire's first
   /// Of the first scene with what was fitted of it: coefficients of P_0, P_1, .. about d1 and d2
   /// [1/m]; empty if it was not asked for.
@@ -212,6 +230,9 @@ struct MaterialFit {
 ///
 /// E and density are told apart only by forces that do not grow with density, such as loads: the
 /// shape under gravity alone depends on density / E.
+/// Where neither weight nor a load or yielding obstacle acts on the rod, its equilibria are the
+/// same with every E, and E is not looked for; what else is asked for is found as with the scene's
+/// E.
 /// @throws InputError if scenes and shapes do not pair, or there are fewer numbers than unknowns;
 /// ConvergenceError if the energy model has a shape at no modulus, if a shape within the interval
 /// is not resolved on its obstacles, or if `solve.time_limit` per scene is over
