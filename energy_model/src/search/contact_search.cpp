@@ -23,8 +23,10 @@
 namespace dlo::energy_model {
 namespace {
 
-/// Shapes from which polygons come to rest.
+/// Shapes from which polygons come to rest: of one clamp, among them those past two bodies on
+/// either side.
 constexpr std::size_t most_starts = 3;
+constexpr std::size_t most_starts_of_one_clamp = 6;
 /// Times that the contacts are mended.
 constexpr int most_rounds = 16;
 /// Times that a shape is left which cannot hold itself.
@@ -220,7 +222,8 @@ class ContactSearch {
   /// the others, and at last the starts themselves, where these lead nowhere.
   void look_from(const std::vector<TangentField>& starts, std::vector<SpanSolution>& found) {
     const auto whole = [&](Segments segments) {
-      const std::size_t count = options_.all ? starts.size() : std::min(most_starts, starts.size());
+      const std::size_t most = span_.holds.empty() ? most_starts_of_one_clamp : most_starts;
+      const std::size_t count = options_.all ? starts.size() : std::min(most, starts.size());
       return polygons_from(count, [&, segments](std::size_t i) {
         return rest_on_obstacles(span_, starts[i], segments, options_.deadline);
       });

@@ -8,9 +8,9 @@
 namespace dlo::energy_model {
 
 /// Shapes that a span's equilibria are searched from, physically chosen: without further grips the
-/// pendulum's profile that turns from the clamp to the load, either way round, and down onto an
-/// obstacle and along it; between grips arches and S-shapes of the right slack to either side, and
-/// loops. Of each pair the one that the load favours comes first.
+/// pendulum's profile that turns from the clamp to the load, either way round, down onto an
+/// obstacle and along it, and past bodies on either side; between grips arches and S-shapes of the
+/// right slack to either side, and loops. Of each pair the one that the load favours comes first.
 [[nodiscard]] std::vector<TangentField> start_fields(const Span& span);
 
 /// The pendulum's profile 4 atan(tan(psi/4) exp(-sqrt(n) s)) from a clamp towards the sum n of
