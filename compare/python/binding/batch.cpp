@@ -108,7 +108,7 @@ class Batch {
 
 void bind_batch(py::module_& module) {
   py::class_<Batch> bound(module, "Batch");
-  refuse_pickle(bound, "a new one of its scenes");
+  refuse_pickle(bound, "pickled or copied", "a new one of its scenes");
   bound.def(py::init<const std::vector<SharedScene>&, int>(), py::arg("scenes"), py::arg("threads"))
       .def("__len__", &Batch::size)
       .def("step", &Batch::step, py::arg("count") = 1,

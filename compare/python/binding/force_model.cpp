@@ -164,7 +164,7 @@ class ForceModel {
 
 void bind_force_model(py::module_& module) {
   py::class_<ForceModel> bound(module, "ForceModel");
-  refuse_pickle(bound, "a new one of its scene, with points=loop.points()");
+  refuse_pickle(bound, "pickled or copied", "a new one of its scene, with points=loop.points()");
   bound
       .def(py::init<SharedScene, const py::object&, std::optional<double>>(), py::arg("scene"),
            py::arg("points"), py::arg("grip_stiffness"))

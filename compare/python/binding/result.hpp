@@ -9,15 +9,15 @@ namespace dlo::python {
 namespace py = pybind11;
 
 /// Pickle's older ways would make an object without the C++ object in it, which ends the
-/// interpreter. @param instead  what is allowed
+/// interpreter. @param what  cannot be done with it  @param instead  what is allowed
 template <typename Class>
-void refuse_pickle(Class& bound, const char* instead) {
+void refuse_pickle(Class& bound, const char* what, const char* instead) {
   bound.def(
       "__reduce_ex__",
-      [instead](const py::object& self, const py::object& /*protocol*/) -> py::object {
+      [what, instead](const py::object& self, const py::object& /*protocol*/) -> py::object {
         throw py::type_error("a dlo." +
                              py::str(py::type::of(self).attr("__name__")).cast<std::string>() +
-                             " cannot be pickled or copied (allowed: " + instead + ")");
+                             " cannot be " + what + " (allowed: " + instead + ")");
       },
       py::arg("protocol"));
 }
@@ -39,7 +39,7 @@ void refuse_new(Class& bound, const char* maker) {
 /// What all results have besides to_json(): the same as a dict, and a picture.
 template <typename Class>
 void bind_result(Class& bound) {
-  refuse_pickle(bound, "its to_json(), its arrays");
+  refuse_pickle(bound, "pickled", "its to_json(), its arrays");
   refuse_new(bound, "the functions of dlo");
   bound
       // Never changed, so that one is as good as two.

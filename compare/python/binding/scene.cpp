@@ -97,7 +97,7 @@ void bind_scene(py::module_& module) {
   using compare::Scene;
   py::class_<SceneData, std::shared_ptr<SceneData>> bound(
       module, "SceneData", "A scene as the reader has it, in SI units.");
-  refuse_pickle(bound, "the dlo.Scene");
+  refuse_pickle(bound, "pickled or copied", "the dlo.Scene");
   refuse_new(bound, "dlo.Scene");
   bound.def_property_readonly("name", of([](const Scene& s) { return s.name; }))
       .def_property_readonly("gravity", of([](const Scene& s) { return vector_copy(s.gravity); }))
