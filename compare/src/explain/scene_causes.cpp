@@ -162,7 +162,7 @@ SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& p
                                           text_of(*result.grippers[pins[0]].direction));
                      }
                      std::vector<std::string> directions;
-        directions.reserve(pins.size());
+                     directions.reserve(pins.size());
                      for (const std::size_t i : pins) {
                        directions.push_back(fmt::format("gripper {} {}", i + 1,
                                                         text_of(*result.grippers[i].direction)));
