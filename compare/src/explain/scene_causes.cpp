@@ -135,6 +135,7 @@ SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& p
                            const Shape& shape, const std::optional<Eigen::Vector3d>& normal) {
   Scene held = scene;
   std::vector<Eigen::Matrix3Xd> ways;
+  ways.reserve(pins.size());
   Eigen::Index count = 0;
   for (const std::size_t i : pins) {
     Eigen::Vector3d along = tangent_at(shape, scene.grippers[i].at);
@@ -161,6 +162,7 @@ SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& p
                                           text_of(*result.grippers[pins[0]].direction));
                      }
                      std::vector<std::string> directions;
+                     directions.reserve(pins.size());
                      for (const std::size_t i : pins) {
                        directions.push_back(fmt::format("gripper {} {}", i + 1,
                                                         text_of(*result.grippers[i].direction)));
