@@ -17,7 +17,7 @@
 #include "base/output_file.hpp"
 #include "dlo/compare/error.hpp"
 #include "option/help.hpp"
-#include "option/series_files.hpp"
+#include "trajectory/series_files.hpp"
 #include "trajectory/trajectory_files.hpp"
 
 namespace dlo::cli {
@@ -110,10 +110,10 @@ void refuse_among_frames(const std::string& series, const std::vector<std::strin
                          const std::vector<std::string>& outputs) {
   for (const std::vector<std::string>* files : {&inputs, &outputs}) {
     for (const std::string& file : *files) {
-      if (!is_frame_of_series(file, series)) continue;
-      throw compare::InputError(
-          fmt::format("--paraview {}: writes frames {}, and {} is {} too (allowed: another file)",
-                      series, frame_names(series), file, files == &inputs ? "read" : "written"));
+      if (!compare::is_frame_of_series(file, series)) continue;
+      throw compare::InputError(fmt::format(
+          "--paraview {}: writes frames {}, and {} is {} too (allowed: another file)", series,
+          compare::frame_names(series), file, files == &inputs ? "read" : "written"));
     }
   }
 }

@@ -7,15 +7,15 @@
 #include "base/output_file.hpp"
 #include "format/json.hpp"
 #include "option/output.hpp"
-#include "option/series_files.hpp"
 #include "shape/write_vtk.hpp"
+#include "trajectory/series_files.hpp"
 
 namespace dlo::cli {
 void write_series(const compare::Track& track, const compare::Scene& scene,
                   const TrackFrames& frames, const std::string& file,
                   const compare::DynamicTrack* dynamic) {
   namespace fs = std::filesystem;
-  const std::string stem = series_stem(file);
+  const std::string stem = compare::series_stem(file);
   const fs::path folder = fs::path(file).parent_path();
   Json files = Json::array();
   const auto write = [](const std::string& path, const std::string& text) {

@@ -12,7 +12,7 @@
 #include "dynamics/moving_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
-#include "span/model_size.hpp"
+#include "span/span_traits.hpp"
 #include "vibration/inertia.hpp"
 
 namespace dlo::energy_model {

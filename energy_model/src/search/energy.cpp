@@ -19,9 +19,9 @@
 #include "search/known_shape.hpp"
 #include "search/polygon_fields.hpp"
 #include "search/twist_path.hpp"
-#include "span/model_size.hpp"
 #include "span/search_log.hpp"
 #include "span/span_solver.hpp"
+#include "span/span_traits.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "search/twist_path.hpp"
-#include "span/model_size.hpp"
+#include "span/span_traits.hpp"
 
 namespace dlo::energy_model {
 

@@ -9,8 +9,8 @@
 #include "certify/certify.hpp"
 #include "certify/enough_terms.hpp"
 #include "certify/piece_cuts.hpp"
-#include "span/model_size.hpp"
 #include "span/settle_contact.hpp"
+#include "span/span_traits.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -8,7 +8,7 @@
 #include "certify/enough_terms.hpp"
 #include "newton/penalty_descent.hpp"
 #include "newton/trust_region.hpp"
-#include "span/model_size.hpp"
+#include "span/span_traits.hpp"
 #include "strain/piece.hpp"
 
 namespace dlo::energy_model {

@@ -1,6 +1,8 @@
 #include "span/span_traits.hpp"
 
 #include <algorithm>
+#include <sstream>
+#include <stdexcept>
 
 #include "certify/enough_terms.hpp"
 #include "problem/segments.hpp"
@@ -19,6 +21,10 @@ double longest_without_load(const Span& span) {
     begin = load.at;
   }
   return std::max(longest, span.length - begin);
+}
+
+int unknowns_by_term(const Span& span) {
+  return SpanTraits::fields_of(span) * static_cast<int>(pieces_of(span).size());
 }
 
 }  // namespace
@@ -46,6 +52,23 @@ SpanTraits::SpanTraits(const Span& span)
   // What the free rod turns by has to be resolved as well.
   const double curvature = span.natural.largest();
   natural_terms = first_terms(curvature * curvature, longest_piece);
+}
+
+int affordable_terms(const Span& span) {
+  return std::max(1, most_model_unknowns / unknowns_by_term(span));
+}
+
+void require_affordable(const Span& span, int terms, std::string_view function) {
+  const int least = terms > 0 ? terms : least_model_terms;
+  if (least <= affordable_terms(span)) return;
+  const std::size_t pieces = pieces_of(span).size();
+  std::ostringstream message;
+  message << function << ": " << span.loads.size() << " loads, " << span.holds.size()
+          << " grips and " << span.parts.size() << " sections of a span cut it into " << pieces
+          << " pieces, must be at most "
+          << most_model_unknowns / (least * SpanTraits::fields_of(span)) << " of " << least
+          << (terms > 0 ? "" : " or more") << " terms";
+  throw std::invalid_argument(message.str());
 }
 
 }  // namespace dlo::energy_model

@@ -163,10 +163,10 @@ TEST(SolutionPicture, NamesObstaclesInTheKeyOfBothKindsOfPicture) {
     const Picture picture = solution_picture(scene, {solve(scene, Model::energy)});
     const Panel& last = picture.rows.front().front().front().panels.back();
     EXPECT_EQ(picture.rows.front().front().front().panels.size(), sideways == 0 ? 1U : 2U);
-    EXPECT_THAT(last.script, HasSubstr("title 'obstacles"));
+    EXPECT_THAT(last.script, HasSubstr("title \"obstacles"));
     std::size_t titles = 0;
-    for (std::size_t at = last.script.find(" title '"); at != std::string::npos;
-         at = last.script.find(" title '", at + 1)) {
+    for (std::size_t at = last.script.find(" title "); at != std::string::npos;
+         at = last.script.find(" title ", at + 1)) {
       ++titles;
     }
     EXPECT_EQ(titles, static_cast<std::size_t>(last.key_rows));
@@ -288,8 +288,8 @@ TEST(PictureScript, NamesItsTerminal) {
   const Figure figure{.name = "a", .title = "it's `a` title", .csv_file = "a.csv", .panels = {{}}};
   const Picture picture{{{{figure}, {figure}}, {{figure, figure}}}};
   EXPECT_THAT(picture_script(picture, PictureFormat::svg, "plot.svg"),
-              AllOf(HasSubstr("set terminal svg size 920,"), HasSubstr("'it''s  a  title'"),
-                    HasSubstr("set output 'plot.svg'")));
+              AllOf(HasSubstr("set terminal svg size 920,"),
+                    HasSubstr(R"("it\047s \140a\140 title")"), HasSubstr("set output 'plot.svg'")));
   EXPECT_THAT(picture_script(picture, PictureFormat::png, "plot.png"),
               HasSubstr("set terminal pngcairo size 1840,"));
   EXPECT_THAT(picture_script(picture, PictureFormat::pdf, "plot.pdf"),

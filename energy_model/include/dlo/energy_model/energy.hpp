@@ -41,10 +41,11 @@ struct EnergyOptions {
 /// begins at once, and NLopt is asked where that does not lead down to a minimum.
 ///
 /// Of several minima the lowest that the search finds is returned: one clamp turns towards the load
-/// by the shorter way, which is the lowest of all under parallel forces; other spans start from the
-/// two of their arches, S-shapes and loops that have the lowest energy and from those that have
-/// about as much (from the others where these lead to nothing stable), and what cannot hold itself
-/// is followed to where it falls, also out of its plane.
+/// by the shorter way, which is the lowest of all under parallel forces where there is no obstacle,
+/// and past the nearest bodies on either side; other spans start from the two of their arches,
+/// S-shapes and loops that have the lowest energy and from those that have about as much (from the
+/// others where these lead to nothing stable), and what cannot hold itself is followed to where it
+/// falls, also out of its plane.
 ///
 /// Twist (Problem) is put in from the lowest shape without it, in turns of the later clamp, each
 /// held against its work; what loses its stability or comes to the end of its branch is followed

@@ -1,4 +1,4 @@
-#include "option/series_files.hpp"
+#include "trajectory/series_files.hpp"
 
 #include <filesystem>
 #include <string_view>
@@ -6,7 +6,7 @@
 
 #include "base/output_file.hpp"
 
-namespace dlo::cli {
+namespace dlo::compare {
 namespace {
 
 namespace fs = std::filesystem;
@@ -46,9 +46,9 @@ bool is_frame_of_series(const std::string& file, const std::string& series) {
   }
   for (const auto& entry : fs::directory_iterator(folder, unknown)) {
     if (!is_frame_name(entry.path().filename().string(), stem)) continue;
-    if (compare::same_file(entry.path().string(), file)) return true;
+    if (same_file(entry.path().string(), file)) return true;
   }
   return false;
 }
 
-}  // namespace dlo::cli
+}  // namespace dlo::compare

@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace dlo::cli {
+namespace dlo::compare {
 
 /// What the names of a series' frames begin with: "rod" of rod.vtk.series.
 [[nodiscard]] std::string series_stem(const std::string& series);
@@ -14,4 +14,4 @@ namespace dlo::cli {
 /// What the frames are called, for messages: "rod_00000.vtk, .." of rod.vtk.series.
 [[nodiscard]] std::string frame_names(const std::string& series);
 
-}  // namespace dlo::cli
+}  // namespace dlo::compare
