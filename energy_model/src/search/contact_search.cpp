@@ -41,6 +41,8 @@ constexpr double flat = 1e-6;
 /// Of polygons with few segments those next to the lowest, over 1 + energy: their energies are off
 /// by about this.
 constexpr double near_lowest = 0.1;
+/// Of polygons with all segments too, where they touch: both are asked for the rod's own energy.
+constexpr double near_tie_of_polygons = 0.02;
 /// Polygons whose energies are this close, over 1 + energy, are the same.
 constexpr double same_polygon = 1e-6;
 
@@ -253,7 +255,8 @@ class ContactSearch {
   }
 
   void look_from(const std::vector<RestingPolygon>& polygons, std::vector<SpanSolution>& found) {
-    for (const RestingPolygon& polygon : polygons) {
+    for (std::size_t i = 0; i < polygons.size(); ++i) {
+      const RestingPolygon& polygon = polygons[i];
       if (options_.deadline.passed() && !found.empty()) {
         if (options_.log != nullptr) options_.log->leave_out("starts after the time limit");
         return;
@@ -261,7 +264,10 @@ class ContactSearch {
       if (add(from_polygon(polygon), found) && options_.log != nullptr) {
         options_.log->found(polygons_at_rest);
       }
-      if (!options_.all && succeeded(found.front().status)) return;
+      const bool tie = i + 1 < polygons.size() &&
+                       polygons[i + 1].energy - polygon.energy <=
+                           near_tie_of_polygons * (1 + std::abs(polygon.energy));
+      if (!options_.all && succeeded(found.front().status) && !tie) return;
     }
   }
 
