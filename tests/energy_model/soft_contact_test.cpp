@@ -95,6 +95,14 @@ Problem random_scene(int seed) {
   return problem;
 }
 
+/// Where a shape comes to rest that a load has pushed out of its plane and left.
+Equilibrium after_a_push(const Problem& problem, const Equilibrium& shape) {
+  Problem pushed = problem;
+  pushed.loads = {{0.6, {0, 0, 0.01}}};
+  const Equilibrium aside = solve_energy(pushed, {.start = &shape});
+  return solve_energy(problem, {.start = &aside});
+}
+
 // Every equilibrium, stable or not, is stationary: an obstacle that is moved does work with its
 // force, and all else stands still. None stands twice in the list, and the lowest one is solved
 // for.

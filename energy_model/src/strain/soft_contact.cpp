@@ -73,6 +73,23 @@ void SoftContact::add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
   }
 }
 
+void SoftContact::add_sideways(const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const {
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    if (pressed_[i].empty()) continue;
+    const Eigen::Index count = std::ssize(pressed_[i]);
+    Eigen::MatrixXd reach(count, position_.cols());
+    Eigen::VectorXd spring(count);
+    for (Eigen::Index p = 0; p < count; ++p) {
+      const Pressed& at = pressed_[i][static_cast<std::size_t>(p)];
+      reach.row(p) = position_.row(at.node);
+      spring[p] = obstacles_[i].stiffness * weights_[at.node] *
+                  (at.gap.gradient.z() * at.gap.gradient.z() + at.gap.value * at.gap.hessian(2, 2));
+    }
+    const Eigen::MatrixXd moved = reach * angle;
+    hessian.noalias() += moved.transpose() * spring.asDiagonal() * moved;
+  }
+}
+
 double SoftContact::energy() const {
   double energy = 0;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {

@@ -27,6 +27,10 @@ class SoftContact {
   void add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
                    Eigen::Ref<Eigen::MatrixXd> hessian) const;
 
+  /// Adds what leaving the plane changes of a planar span. @param angle  nodes x unknowns: tilt of
+  /// the tangents out of the plane
+  void add_sideways(const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const;
+
   /// Of the springs at the point of the last add().
   [[nodiscard]] double energy() const;
   /// Force of each obstacle on the span.

@@ -486,6 +486,7 @@ void SpanEnergy::sideways(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
     contacts_.subtract_sideways(multipliers.segment(first_contact_row(), contacts_.count()), angle_,
                                 hessian);
   }
+  if (has_soft_obstacles()) soft_contact_.add_sideways(angle_, hessian);
   jacobian.resize(reach_.cols() + held_angle_.rows(), columns_);
   jacobian.topRows(reach_.cols()).noalias() = reach_.transpose() * angle_;
   jacobian.bottomRows(held_angle_.rows()) = held_angle_;
