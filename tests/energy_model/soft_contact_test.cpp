@@ -104,10 +104,10 @@ Equilibrium after_a_push(const Problem& problem, const Equilibrium& shape) {
 }
 
 // Every equilibrium, stable or not, is stationary: an obstacle that is moved does work with its
-// force, and all else stands still. None stands twice in the list, and the lowest one is solved
-// for.
+// force, and all else stands still. None stands twice in the list, and what is called stable comes
+// back from a push out of the plane, in which a round obstacle lets it down.
 TEST(SoftContact, RandomScenesListEachEquilibriumOnceWithTheForceOfItsEnergy) {
-  constexpr int scenes = 20;
+  constexpr int scenes = 10;
   // What shapes are off by moves energies by some 1e-9.
   constexpr double h = 1e-5;
   const Eigen::Vector3d way(0, 1, 0);
@@ -122,6 +122,12 @@ TEST(SoftContact, RandomScenesListEachEquilibriumOnceWithTheForceOfItsEnergy) {
         EXPECT_GT(apart, 1e-4) << seed << ": " << i << " " << j << ", energies "
                                << found[i].energy.total() << " " << found[j].energy.total();
       }
+    }
+    for (const Equilibrium& state : found) {
+      if (state.status != SolveStatus::converged) continue;
+      const Equilibrium back = after_a_push(problem, state);
+      if (back.status != SolveStatus::converged) continue;
+      EXPECT_GT(back.energy.total(), state.energy.total() - 1e-6) << seed;
     }
     const Equilibrium& lowest = found.front();
     if (lowest.status != SolveStatus::converged) continue;

@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t most_fields = 12;
 
 /// Of a polygon that is relaxed once more; relaxing takes as many sweeps as it has intervals.
-constexpr double most_intervals = 600;
+constexpr double most_field_intervals = 600;
 
 Eigen::VectorXd middles_of(const RodMesh& mesh) {
   const Eigen::Index count = mesh.intervals();
@@ -55,7 +55,7 @@ TangentField PolygonFields::field(std::size_t index) const {
   Eigen::Matrix3Xd tangents = minimum.polygon.tangents;
   const double force = minimum.polygon.force.colwise().norm().maxCoeff() / softest(*span_);
   const double resolving =
-      std::max(1 / std::sqrt(std::max(force, 1.0)), span_->length / most_intervals);
+      std::max(1 / std::sqrt(std::max(force, 1.0)), span_->length / most_field_intervals);
   if (longest_ > 1.1 * resolving) {
     const RodMesh finer = make_mesh(*span_, resolving);
     middles = middles_of(finer);

@@ -10,14 +10,14 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr int most_rounds = 16;
+constexpr int most_contact_rounds = 16;
 
 /// Terms of the rounds before the ends are nearly right, at most; each piece is short.
 constexpr int first_round_terms = 16;
 
 /// By which ends may still move, in lengths, before terms are raised, and in the end.
-constexpr double nearly_settled = 1e-4;
-constexpr double settled = 1e-9;
+constexpr double ends_nearly_settled = 1e-4;
+constexpr double ends_settled = 1e-9;
 
 /// By which ends have moved; infinite where there are more or fewer.
 double moved_by(const std::vector<double>& before, const std::vector<double>& now) {
@@ -50,7 +50,7 @@ SpanSolution settle_contact(
   Span span = on.span();
   std::vector<double> ends = contact_ends(solution);
   bool refined = false;
-  for (int round = 0; round < most_rounds && solution.is_equilibrium(); ++round) {
+  for (int round = 0; round < most_contact_rounds && solution.is_equilibrium(); ++round) {
     if (on.out_of_time()) {
       solution.finish(SolveStatus::time_limit);
       return solution;
@@ -68,8 +68,8 @@ SpanSolution settle_contact(
     if (!solution.is_equilibrium()) return solution;
     std::vector<double> now = contact_ends(solution);
     const double moved = moved_by(ends, now);
-    if ((refined || same_pieces) && moved <= settled) return solution;
-    refined = refined || moved <= nearly_settled;
+    if ((refined || same_pieces) && moved <= ends_settled) return solution;
+    refined = refined || moved <= ends_nearly_settled;
     ends = std::move(now);
   }
   if (solution.is_equilibrium()) {

@@ -32,6 +32,8 @@ constexpr double infinite = std::numeric_limits<double>::infinity();
 constexpr std::size_t followed_starts = 2;
 /// The same of a rod with material directors, whose lowest shape is harder to guess.
 constexpr std::size_t followed_natural_starts = 6;
+/// The same beside obstacles that yield, which a rod may pass on either side.
+constexpr std::size_t followed_starts_beside_obstacles = 6;
 
 /// Cost over that of the last start that is followed anyway, of what starts fall by, up to which
 /// another one is followed too.
@@ -179,7 +181,8 @@ class Search {
 
   /// Starts that are descended from in any case.
   [[nodiscard]] std::size_t followed() const {
-    return span_.has_material_directors() ? followed_natural_starts : followed_starts;
+    if (span_.has_material_directors()) return followed_natural_starts;
+    return span_.soft_obstacles.empty() ? followed_starts : followed_starts_beside_obstacles;
   }
 
   [[nodiscard]] std::vector<Start> ranked_starts() {
