@@ -80,7 +80,7 @@ std::string numbers_text(const compare::MaterialFit& fit, const std::optional<st
 }
 
 /// As the command line has it.
-std::string options_of(const compare::FitAlternative& alternative) {
+std::string words_of(const compare::FitAlternative& alternative) {
   std::string out;
   if (alternative.natural_curvature_terms > 0) {
     append(out, "--natural-curvature {}", alternative.natural_curvature_terms);
@@ -96,7 +96,7 @@ std::string alternatives_text(const MaterialReport& report) {
   std::string out;
   const compare::NamedValue stiffness = report.scenes.front().stiffness();
   for (const compare::FitAlternative& alternative : report.fit.alternatives) {
-    append(out, "            {} would leave {:.4g} mm, {} {}\n", options_of(alternative),
+    append(out, "            {} would leave {:.4g} mm, {} {}\n", words_of(alternative),
            alternative.rms_m * 1e3, stiffness.name,
            value_text(alternative.youngs_modulus, stiffness.unit));
   }
@@ -226,7 +226,7 @@ void add_value(Json& result, const Key& key, const std::string& prefix, const Fi
 Json alternatives_json(const MaterialReport& report) {
   Json result = Json::array();
   for (const compare::FitAlternative& alternative : report.fit.alternatives) {
-    Json one = {{"options", options_of(alternative)},
+    Json one = {{"options", words_of(alternative)},
                 {"natural_curvature_terms", alternative.natural_curvature_terms},
                 {"direction_tolerance_rad", alternative.direction_tolerance},
                 {"rms_m", alternative.rms_m}};
