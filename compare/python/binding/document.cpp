@@ -17,7 +17,7 @@ using compare::InputError;
 struct Place {
   static constexpr long most_values = 1'000'000;
 
-  const std::string& path;  ///< for messages
+  std::string path;  ///< for messages
   int depth;
   long& values;
 
