@@ -80,7 +80,7 @@ TEST(RedundantObstacles, AreAsIfTheyWereNotThere) {
   int certified = 0;
   for (int i = 0; i < draws; ++i) {
     const RedundantScene scene = scenes.next();
-    const EnergyOptions options{.time_limit = 5};
+    const EnergyOptions options{.time_limit = 60};
     const Equilibrium alone = solve_energy(scene.plain, options);
     const Equilibrium found = solve_energy(scene.with_more, options);
     ASSERT_EQ(found.status, alone.status) << i << " " << found.message;

@@ -264,9 +264,9 @@ class ContactSearch {
       if (add(from_polygon(polygon), found) && options_.log != nullptr) {
         options_.log->found(polygons_at_rest);
       }
-      const bool tie = i + 1 < polygons.size() &&
-                       polygons[i + 1].energy - polygon.energy <=
-                           near_tie_of_polygons * (1 + std::abs(polygon.energy));
+      const bool tie =
+          i + 1 < polygons.size() && polygons[i + 1].energy - polygon.energy <=
+                                         near_tie_of_polygons * (1 + std::abs(polygon.energy));
       if (!options_.all && succeeded(found.front().status) && !tie) return;
     }
   }
