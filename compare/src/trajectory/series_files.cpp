@@ -1,5 +1,6 @@
 #include "trajectory/series_files.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -44,11 +45,11 @@ bool is_frame_of_series(const std::string& file, const std::string& series) {
                                    fs::path(file).filename()}) {
     if (path.parent_path() == folder && is_frame_name(path.filename().string(), stem)) return true;
   }
-  for (const auto& entry : fs::directory_iterator(folder, unknown)) {
-    if (!is_frame_name(entry.path().filename().string(), stem)) continue;
-    if (same_file(entry.path().string(), file)) return true;
-  }
-  return false;
+  const fs::directory_iterator entries(folder, unknown);
+  return std::any_of(fs::begin(entries), fs::end(entries), [&](const fs::directory_entry& entry) {
+    return is_frame_name(entry.path().filename().string(), stem) &&
+           same_file(entry.path().string(), file);
+  });
 }
 
 }  // namespace dlo::compare
