@@ -65,6 +65,26 @@ TEST(ExactContact, ConfirmsRodsThatTouchAFloorOrLieOnIt) {
   EXPECT_GT(lying, 10);
 }
 
+// Out of a plane: a clamp that looks down and a load from the side, over a floor and beside a wall.
+TEST(ExactContact, FollowsARodThatALoadTakesOutOfThePlane) {
+  for (const double side : {0.5, 2.0, 8.0}) {
+    SCOPED_TRACE("side load " + std::to_string(side));
+    Problem problem = over_level_floor(20, 0.15);
+    problem.grips[0].direction = Eigen::Vector3d(1, -0.1, 0.2).normalized();
+    problem.loads = {{0.6, {0, 0, side}}};
+    problem.obstacles.push_back({obstacle::Body::half_space({0, 0, 2}, {0, 0, -1})});
+    const Equilibrium exact = solve_exact(problem);
+    const Equilibrium energy = solve_energy(problem);
+    ASSERT_TRUE(succeeded(exact.status)) << exact.message;
+    ASSERT_TRUE(succeeded(energy.status)) << energy.message;
+    ASSERT_EQ(exact.contacts.size(), 1U);
+    const std::vector<double> at = equal_arc_lengths(problem.length, 101);
+    const Eigen::Matrix3Xd apart = exact.sample(at).points - energy.sample(at).points;
+    EXPECT_LT(apart.colwise().norm().maxCoeff(), 1e-8 * problem.length);
+    EXPECT_LT((exact.contacts[0].force - energy.contacts[0].force).norm(), 1e-6 * 20);
+  }
+}
+
 // One nearly level clamp over floors that rise or fall: up a slope a rod is pressed along itself
 // and cannot stay.
 TEST(ExactContact, ContradictsNoRandomRodOverATiltedFloor) {

@@ -26,7 +26,7 @@
 #include "shooting/second_variation.hpp"
 #include "shooting/span_shooting.hpp"
 #include "touching/confirm_contacts.hpp"
-#include "touching/touching_cantilever.hpp"
+#include "touching/raise_weight.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -235,7 +235,7 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
 Found search_touching(const Problem& problem, const ExactOptions& options,
                       const Deadline& deadline) {
   std::optional<Equilibrium> found = options.start == nullptr
-                                         ? solve_touching_cantilever(problem, deadline)
+                                         ? raise_weight(problem, deadline)
                                          : confirm_contacts(problem, *options.start, deadline);
   require(found.has_value(), "solve_exact", "number of obstacles",
           static_cast<double>(problem.obstacles.size()),

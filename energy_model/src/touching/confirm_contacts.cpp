@@ -83,7 +83,7 @@ class Confirmation {
     integrate(result);
     react(result);
     touch(result);
-    judge(result);
+    look_at_signs(result);
     result.sample = [problem = problem_, chain = chain_](std::span<const double> arc_lengths) {
       Samples samples = sized_samples(arc_lengths, problem.length);
       for (std::size_t i = 0; i < arc_lengths.size(); ++i) {
@@ -100,6 +100,17 @@ class Confirmation {
       return samples;
     };
     return result;
+  }
+
+  /// By the second variation.
+  void judge(Equilibrium& result) const {
+    if (!result.sample || !result.message.empty()) return;
+    result.status = SolveStatus::converged;
+    if (!is_stable(chain_, norm_margin)) {
+      result.status =
+          is_stable(chain_, -norm_margin) ? SolveStatus::near_singular : SolveStatus::saddle;
+    }
+    result.message = to_string(result.status);
   }
 
  private:
@@ -165,7 +176,7 @@ class Confirmation {
       if (a + 1 == arcs) break;
       const FlowState<double> next = state_of(begin + length * (a + 1) / arcs);
       // The pressure up to there is the surface's.
-      node = piece.surface ? flow<double>(piece.surface, chain_.weight, length / arcs, node) : next;
+      node = piece.surface ? flow(piece.surface, chain_.weight, length / arcs, node) : next;
       node.head<9>() = next.head<9>();
     }
     chain_.pieces.push_back(std::move(piece));
@@ -316,28 +327,20 @@ class Confirmation {
     if (!end.grip) least_force_ = std::min(least_force_, end.force);
   }
 
-  void judge(Equilibrium& result) const {
+  void look_at_signs(Equilibrium& result) const {
     double largest = 1 + chain_.weight.norm();
     for (const Reaction& grip : result.grips) {
       largest = std::max(largest, grip.force.norm() / force_unit_);
     }
-    std::string wrong;
+    result.status = SolveStatus::not_resolved;
+    result.message.clear();
     if (result.penetration > confirmed_depth * l_) {
-      wrong = "the rod is " + std::to_string(result.penetration) +
-              " m within an obstacle that it is not said to touch";
+      result.message = "the rod is " + std::to_string(result.penetration) +
+                       " m within an obstacle that it is not said to touch";
     } else if (least_force_ < -allowed_pull * largest ||
                least_pressure_ < -allowed_pull * largest) {
-      wrong = "an obstacle would have to pull";
+      result.message = "an obstacle would have to pull";
     }
-    result.status = SolveStatus::not_resolved;
-    if (wrong.empty()) {
-      result.status = SolveStatus::converged;
-      if (!is_stable(chain_, norm_margin)) {
-        result.status =
-            is_stable(chain_, -norm_margin) ? SolveStatus::near_singular : SolveStatus::saddle;
-      }
-    }
-    result.message = wrong.empty() ? to_string(result.status) : wrong;
   }
 
   const Problem& problem_;
@@ -355,14 +358,33 @@ class Confirmation {
 
 }  // namespace
 
-std::optional<Equilibrium> confirm_contacts(const Problem& problem, const Equilibrium& shape,
-                                            const Deadline& deadline) {
+namespace {
+
+std::optional<Confirmation> laid_out(const Problem& problem, const Equilibrium& shape) {
   if (!is_known(problem) || !shape.sample || shape.grips.size() != problem.grips.size()) {
     return std::nullopt;
   }
   Confirmation confirmation(problem, shape);
   if (!confirmation.lay_out()) return std::nullopt;
-  return confirmation.solve(deadline);
+  return confirmation;
+}
+
+}  // namespace
+
+std::optional<Equilibrium> close_contacts(const Problem& problem, const Equilibrium& shape,
+                                          const Deadline& deadline) {
+  std::optional<Confirmation> confirmation = laid_out(problem, shape);
+  if (!confirmation) return std::nullopt;
+  return confirmation->solve(deadline);
+}
+
+std::optional<Equilibrium> confirm_contacts(const Problem& problem, const Equilibrium& shape,
+                                            const Deadline& deadline) {
+  std::optional<Confirmation> confirmation = laid_out(problem, shape);
+  if (!confirmation) return std::nullopt;
+  Equilibrium result = confirmation->solve(deadline);
+  confirmation->judge(result);
+  return result;
 }
 
 }  // namespace dlo::energy_model

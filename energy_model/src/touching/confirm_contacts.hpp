@@ -19,4 +19,9 @@ namespace dlo::energy_model {
                                                           const Equilibrium& shape,
                                                           const Deadline& deadline);
 
+/// The same without its second variation, on a way to another shape: `not_resolved`.
+[[nodiscard]] std::optional<Equilibrium> close_contacts(const Problem& problem,
+                                                        const Equilibrium& shape,
+                                                        const Deadline& deadline);
+
 }  // namespace dlo::energy_model

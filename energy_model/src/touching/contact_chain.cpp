@@ -5,12 +5,10 @@
 #include <Eigen/SparseQR>
 #include <algorithm>
 #include <cmath>
-#include <complex>
 
 namespace dlo::energy_model {
 namespace {
 
-using Complex = std::complex<double>;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 using Block = Eigen::Matrix<double, Eigen::Dynamic, 12>;
 
@@ -218,19 +216,6 @@ void put(Triplets& triplets, Eigen::Index row, Eigen::Index column,
   }
 }
 
-Eigen::Matrix<double, state, state> transition(const ContactChain& chain, std::size_t p,
-                                               const FlowState<double>& node, double length) {
-  constexpr double tiny = 1e-30;  // of the complex step, whose derivative is exact
-  Eigen::Matrix<double, state, state> by_node;
-  for (Eigen::Index k = 0; k < state; ++k) {
-    FlowState<Complex> start = node.cast<Complex>();
-    start[k] += Complex(0, tiny);
-    by_node.col(k) =
-        flow<Complex>(chain.pieces[p].surface, chain.weight, length, start).imag() / tiny;
-  }
-  return by_node;
-}
-
 ChainSystem chain_system(const ContactChain& chain, const Layout& layout, bool differentiate) {
   ChainSystem system;
   std::vector<double> missed;
@@ -249,8 +234,7 @@ ChainSystem chain_system(const ContactChain& chain, const Layout& layout, bool d
     const auto arcs = static_cast<double>(piece.nodes.size());
     const double length = chain.length(p) / arcs;
     for (std::size_t a = 0; a < piece.nodes.size(); ++a) {
-      const FlowState<double> end =
-          flow<double>(piece.surface, chain.weight, length, piece.nodes[a]);
+      const FlowState<double> end = flow(piece.surface, chain.weight, length, piece.nodes[a]);
       const bool last = a + 1 == piece.nodes.size();
       const bool ends = last && p + 1 == chain.pieces.size();
       const FlowState<double>* next = nullptr;
@@ -275,7 +259,7 @@ ChainSystem chain_system(const ContactChain& chain, const Layout& layout, bool d
       }
       if (!differentiate) continue;
       put(system.derivatives, row, here,
-          join.by_before * transition(chain, p, piece.nodes[a], length));
+          join.by_before * transition(piece.surface, chain.weight, length, piece.nodes[a]));
       const Eigen::VectorXd by_length =
           join.by_before * rate_of(piece.surface, chain.weight, end) / arcs;
       put(system.derivatives, row, layout.place[p + 1], by_length);
@@ -348,8 +332,8 @@ FlowState<double> ContactChain::at(std::size_t piece, double s) const {
   const auto arcs = static_cast<double>(nodes.size());
   const double from = s - stations[piece].s;
   const double arc = std::clamp(std::floor(from / length(piece) * arcs), 0.0, arcs - 1);
-  return flow<double>(pieces[piece].surface, weight, from - length(piece) * arc / arcs,
-                      nodes[static_cast<std::size_t>(arc)]);
+  return flow(pieces[piece].surface, weight, from - length(piece) * arc / arcs,
+              nodes[static_cast<std::size_t>(arc)]);
 }
 
 bool close_chain(ContactChain& chain, const Deadline& deadline) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <unsupported/Eigen/AutoDiff>
 
 namespace dlo::energy_model {
 namespace {
@@ -13,12 +14,15 @@ constexpr std::size_t series_order = 20;
 constexpr double longest_rate = 0.3;
 constexpr double flat = 1e-9;  // of curvature, in 1/l
 
+/// A number and its derivatives by the cross-section at the begin.
+using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, 12, 1>>;
+
 template <class T>
 using Series = std::array<T, series_order + 1>;
 template <class T>
 using VectorSeries = std::array<Eigen::Matrix<T, 3, 1>, series_order + 1>;
 
-/// Coefficient j of the product a.b; without conjugates.
+/// Coefficient j of the product a.b.
 template <class T>
 T product(const VectorSeries<T>& a, const VectorSeries<T>& b, std::size_t j) {
   T sum(0);
@@ -83,6 +87,24 @@ FlowState<T> advance(const std::optional<Surface>& surface, const Eigen::Vector3
   return end;
 }
 
+int steps_of(const std::optional<Surface>& surface, const Eigen::Vector3d& weight, double length,
+             const FlowState<double>& state) {
+  const double turning = state.segment<3>(6).norm();
+  const double pulled = state.segment<3>(9).norm();
+  const double rate = 1 + turning + std::sqrt(pulled + weight.norm() * std::abs(length)) +
+                      (surface ? surface->bend() : 0);
+  return std::max(1, static_cast<int>(std::ceil(std::abs(length) * rate / longest_rate)));
+}
+
+template <class T>
+FlowState<T> follow(const std::optional<Surface>& surface, const Eigen::Vector3d& weight,
+                    double length, FlowState<T> state, int steps) {
+  for (int step = 0; step < steps; ++step) {
+    state = advance<T>(surface, weight, length / steps, state);
+  }
+  return state;
+}
+
 }  // namespace
 
 double Surface::gap(const Eigen::Vector3d& r) const {
@@ -135,24 +157,21 @@ FlowState<double> rate_of(const std::optional<Surface>& surface, const Eigen::Ve
   return rate;
 }
 
-template <class T>
-FlowState<T> flow(const std::optional<Surface>& surface, const Eigen::Vector3d& weight,
-                  double length, FlowState<T> state) {
-  const double turning = state.template segment<3>(6).norm();
-  const double pulled = state.template segment<3>(9).norm();
-  const double rate = 1 + turning + std::sqrt(pulled + weight.norm() * std::abs(length)) +
-                      (surface ? surface->bend() : 0);
-  const int steps =
-      std::max(1, static_cast<int>(std::ceil(std::abs(length) * rate / longest_rate)));
-  for (int step = 0; step < steps; ++step) {
-    state = advance<T>(surface, weight, length / steps, state);
-  }
-  return state;
+FlowState<double> flow(const std::optional<Surface>& surface, const Eigen::Vector3d& weight,
+                       double length, FlowState<double> state) {
+  return follow(surface, weight, length, state, steps_of(surface, weight, length, state));
 }
 
-template FlowState<double> flow(const std::optional<Surface>&, const Eigen::Vector3d&, double,
-                                FlowState<double>);
-template FlowState<std::complex<double>> flow(const std::optional<Surface>&, const Eigen::Vector3d&,
-                                              double, FlowState<std::complex<double>>);
+Eigen::Matrix<double, 12, 12> transition(const std::optional<Surface>& surface,
+                                         const Eigen::Vector3d& weight, double length,
+                                         const FlowState<double>& state) {
+  FlowState<Dual> start;
+  for (Eigen::Index k = 0; k < start.size(); ++k) start[k] = Dual(state[k], 12, k);
+  const FlowState<Dual> end =
+      follow(surface, weight, length, start, steps_of(surface, weight, length, state));
+  Eigen::Matrix<double, 12, 12> by_state;
+  for (Eigen::Index k = 0; k < end.size(); ++k) by_state.row(k) = end[k].derivatives();
+  return by_state;
+}
 
 }  // namespace dlo::energy_model

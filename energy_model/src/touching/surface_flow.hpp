@@ -1,7 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <complex>
+#include <limits>
 #include <optional>
 
 #include "dlo/obstacle/body.hpp"
@@ -45,13 +45,13 @@ struct Surface {
 
 /// Brings a cross-section on by Taylor's series of order 20 in steps that are short against the
 /// distance to a pole. @param surface  on which the rod lies; nothing: it is free
-template <class T>
-[[nodiscard]] FlowState<T> flow(const std::optional<Surface>& surface,
-                                const Eigen::Vector3d& weight, double length, FlowState<T> state);
-extern template FlowState<double> flow(const std::optional<Surface>&, const Eigen::Vector3d&,
-                                       double, FlowState<double>);
-extern template FlowState<std::complex<double>> flow(const std::optional<Surface>&,
-                                                     const Eigen::Vector3d&, double,
-                                                     FlowState<std::complex<double>>);
+[[nodiscard]] FlowState<double> flow(const std::optional<Surface>& surface,
+                                     const Eigen::Vector3d& weight, double length,
+                                     FlowState<double> state);
+
+/// Derivative of flow() by the cross-section that it starts from.
+[[nodiscard]] Eigen::Matrix<double, 12, 12> transition(const std::optional<Surface>& surface,
+                                                       const Eigen::Vector3d& weight, double length,
+                                                       const FlowState<double>& state);
 
 }  // namespace dlo::energy_model

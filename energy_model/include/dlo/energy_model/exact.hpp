@@ -54,9 +54,9 @@ struct ExactOptions {
 /// ends before the whole roll the status is `failed` and the message says how far it came: long
 /// rods whose buckle moves along them for nearly nothing may need a `start`.
 ///
-/// Over rigid half-spaces across its plane a heavy round rod of one section, straight by nature,
-/// with one clamp at its begin and no load is followed while its weight is raised from nothing: its
-/// end is free, touches or lies. The branch's end may be a `saddle` where there is a minimum.
+/// Over rigid half-spaces a loaded round rod of one section, straight by nature, with one clamp at
+/// its begin is followed while weight and loads are raised from nothing: its end is free, touches
+/// or lies. The branch's end may be a `saddle` where there is a minimum.
 ///
 /// Any other contact of a round untwisted rod of one section with rigid bodies needs a `start`
 /// whose contacts say which parts touch what. Multiple shooting confirms or corrects it: where a

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+
+#include "base/deadline.hpp"
+#include "dlo/energy_model/equilibrium.hpp"
+#include "dlo/energy_model/problem.hpp"
+
+namespace dlo::energy_model {
+
+/// A heavy rod with one clamp at its begin over rigid half-spaces: weight and loads are raised from
+/// nothing, and the end comes down, touches and lies as the contact's signs say, each step
+/// confirm_contacts() from the one before.
+/// @return nothing where the problem is another one
+[[nodiscard]] std::optional<Equilibrium> raise_weight(const Problem& problem,
+                                                      const Deadline& deadline);
+
+}  // namespace dlo::energy_model
