@@ -80,10 +80,10 @@ class Confirmation {
       result.message = "Newton's method did not close the shots with the contacts of the start";
       return result;
     }
-    integrate(result);
     react(result);
     touch(result);
-    look_at_signs(result);
+    result.status = SolveStatus::not_resolved;
+    result.message = "not judged";
     result.sample = [problem = problem_, chain = chain_](std::span<const double> arc_lengths) {
       Samples samples = sized_samples(arc_lengths, problem.length);
       for (std::size_t i = 0; i < arc_lengths.size(); ++i) {
@@ -102,9 +102,12 @@ class Confirmation {
     return result;
   }
 
-  /// By the second variation.
-  void judge(Equilibrium& result) const {
-    if (!result.sample || !result.message.empty()) return;
+  /// Energies; what is closed by its depths, by its signs and by its second variation.
+  void judge(Equilibrium& result) {
+    if (!result.sample) return;
+    integrate(result);
+    result.message = objection(result);
+    if (!result.message.empty()) return;
     result.status = SolveStatus::converged;
     if (!is_stable(chain_, norm_margin)) {
       result.status =
@@ -327,20 +330,18 @@ class Confirmation {
     if (!end.grip) least_force_ = std::min(least_force_, end.force);
   }
 
-  void look_at_signs(Equilibrium& result) const {
+  /// Empty: none.
+  [[nodiscard]] std::string objection(const Equilibrium& result) const {
     double largest = 1 + chain_.weight.norm();
     for (const Reaction& grip : result.grips) {
       largest = std::max(largest, grip.force.norm() / force_unit_);
     }
-    result.status = SolveStatus::not_resolved;
-    result.message.clear();
     if (result.penetration > confirmed_depth * l_) {
-      result.message = "the rod is " + std::to_string(result.penetration) +
-                       " m within an obstacle that it is not said to touch";
-    } else if (least_force_ < -allowed_pull * largest ||
-               least_pressure_ < -allowed_pull * largest) {
-      result.message = "an obstacle would have to pull";
+      return "the rod is " + std::to_string(result.penetration) +
+             " m within an obstacle that it is not said to touch";
     }
+    const double least = std::min(least_force_, least_pressure_);
+    return least < -allowed_pull * largest ? "an obstacle would have to pull" : "";
   }
 
   const Problem& problem_;

@@ -19,7 +19,7 @@ namespace dlo::energy_model {
                                                           const Equilibrium& shape,
                                                           const Deadline& deadline);
 
-/// The same without its second variation, on a way to another shape: `not_resolved`.
+/// The same on a way to another shape: not judged, without energies.
 [[nodiscard]] std::optional<Equilibrium> close_contacts(const Problem& problem,
                                                         const Equilibrium& shape,
                                                         const Deadline& deadline);

@@ -16,6 +16,7 @@ constexpr double first_gamma = 1e-3;     // straight but for 1e-4 l
 constexpr double smallest_ratio = 1e-4;  // of a step of ln(weight)
 constexpr double allowed_depth = 1e-9;   // of the tip, in l; a tenth of a converged shape's
 constexpr Eigen::Index sampled = 129;    // points of a shape, to see where it is deepest
+constexpr Eigen::Index compared = 17;    // points of two shapes
 constexpr int most_changes = 4;
 constexpr double longest_step = 0.3;   // of tangents: further away there is another branch
 constexpr double step_of_loss = 1e-2;  // of ln(weight), in which a branch may lose its stability
@@ -120,7 +121,7 @@ std::optional<Equilibrium> settle(const Problem& problem, Equilibrium start,
 }
 
 bool is_next(const Equilibrium& before, const Equilibrium& after, double length) {
-  const std::vector<double> at = equal_arc_lengths(length, sampled);
+  const std::vector<double> at = equal_arc_lengths(length, compared);
   const Eigen::Matrix3Xd change = after.sample(at).tangents - before.sample(at).tangents;
   return change.colwise().norm().maxCoeff() < longest_step;
 }
