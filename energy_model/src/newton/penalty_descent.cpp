@@ -1,10 +1,10 @@
 #include "newton/penalty_descent.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
-#include "linear/free_directions.hpp"
+#include "linear/free_hessian.hpp"
+#include "newton/region_step.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -72,15 +72,17 @@ class PenaltyDescent {
       const bool flat = slope_.norm() <= precision * 1e-3 * (1 + options_.load + nu.norm());
       model_.hessian(nu, hessian_);
       hessian_.noalias() += kappa_ * jacobian_.transpose() * jacobian_;
-      if (!step(radius, flat)) return true;
-      const double predicted = -(slope_.dot(step_) + step_.dot(hessian_ * step_) / 2);
+      free_.compute(hessian_, Eigen::MatrixXd(0, hessian_.cols()));
+      const std::optional<Eigen::VectorXd> step = region_step(free_, slope_, radius, flat, 0);
+      if (!step) return true;
+      const double predicted = -(slope_.dot(*step) + step->dot(hessian_ * *step) / 2);
       const Eigen::VectorXd before_x = solution_.x;
       const double before = value_;
-      solution_.x += step_;
+      solution_.x += *step;
       evaluate();
       const double rounding = 1e-13 * (1 + std::abs(before));
       const double ratio = (before - value_ + rounding) / (predicted + rounding);
-      const double length = step_.norm();
+      const double length = step->norm();
       if (!(ratio > 0.1)) {
         solution_.x = before_x;
         evaluate();
@@ -92,64 +94,6 @@ class PenaltyDescent {
       radius_ = radius;
     }
     return false;
-  }
-
-  /// Into step_: the minimum of the quadratic model in the region. @return whether there is a way
-  /// down
-  [[nodiscard]] bool step(double radius, bool flat) {
-    const double size = hessian_.diagonal().cwiseAbs().maxCoeff();
-    double shift = 0;
-    double low = 0;
-    double high = -1;
-    for (int i = 0; i < 40; ++i) {
-      shifted_ = hessian_;
-      shifted_.diagonal().array() += shift;
-      llt_.compute(shifted_);
-      if (llt_.info() != Eigen::Success) {
-        low = shift;
-        shift = high < 0 ? std::max(1e-3, 4 * shift) : (low + high) / 2;
-        if (shift > 1e3 * size) return false;
-        continue;
-      }
-      step_ = -slope_;
-      llt_.solveInPlace(step_);
-      const double length = step_.norm();
-      if (shift == 0 && length <= radius) return !flat;
-      // A flat point that is no minimum is left in any direction that falls.
-      if (length <= 1.1 * radius &&
-          (length >= 0.5 * radius || i > 12 || shift - low < 1e-3 * shift)) {
-        if (length < 0.5 * radius) add_falling(shift, radius);
-        return true;
-      }
-      // Newton's step on 1/|p| (Moré and Sorensen).
-      Eigen::VectorXd half = step_;
-      llt_.matrixL().solveInPlace(half);
-      const double grow = std::pow(length / half.norm(), 2) * (length - radius) / radius;
-      if (length > radius) {
-        low = std::max(low, shift);
-      } else {
-        high = shift;
-      }
-      shift += grow;
-      if (!(shift > low)) shift = high < 0 ? std::max(1e-3, 2 * low) : (low + high) / 2;
-      if (high > 0 && shift > high) shift = (low + high) / 2;
-    }
-    if (step_.norm() > radius) step_ *= radius / step_.norm();
-    return true;
-  }
-
-  /// To the region's edge along the direction of lowest curvature, by inverse iteration.
-  void add_falling(double shift, double radius) {
-    if (!(shift > 0)) return;
-    Eigen::VectorXd v = Eigen::VectorXd::LinSpaced(step_.size(), 1, 2);
-    for (int i = 0; i < 4; ++i) {
-      llt_.solveInPlace(v);
-      v.normalize();
-    }
-    if (!(v.dot(hessian_ * v) < -neutral)) return;
-    if (v.dot(slope_) > 0) v = -v;
-    const double along = step_.dot(v);
-    step_ += (std::sqrt(along * along + radius * radius - step_.squaredNorm()) - along) * v;
   }
 
   void finish(SolveStatus status) {
@@ -164,9 +108,9 @@ class PenaltyDescent {
   double kappa_ = 0;
   double value_ = 0;
   double radius_ = first_radius;
-  Eigen::VectorXd mu_, gradient_, residual_, slope_, step_;
-  Eigen::MatrixXd jacobian_, hessian_, shifted_;
-  Eigen::LLT<Eigen::MatrixXd> llt_;
+  Eigen::VectorXd mu_, gradient_, residual_, slope_;
+  Eigen::MatrixXd jacobian_, hessian_;
+  FreeHessian free_;
 };
 
 }  // namespace

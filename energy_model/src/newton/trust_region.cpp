@@ -1,14 +1,12 @@
 #include "newton/trust_region.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "linear/free_directions.hpp"
 #include "linear/free_hessian.hpp"
+#include "newton/region_step.hpp"
 #include "newton/restore.hpp"
 
 namespace dlo::energy_model {
@@ -16,34 +14,6 @@ namespace {
 
 /// A region this small moves the shape by less than rounding does.
 constexpr double smallest_radius = 1e-10;
-/// Solution of min g.p + p.diag(d) p / 2 in |p| <= radius for the eigenvalues d, growing.
-Eigen::VectorXd step_in_region(const Eigen::VectorXd& d, const Eigen::VectorXd& g, double radius) {
-  const auto step = [&](double shift) {
-    return Eigen::VectorXd(-g.array() / (d.array() + shift).max(1e-300));
-  };
-  const double scale = std::max(1.0, d.cwiseAbs().maxCoeff());
-  if (d[0] > 1e-12 * scale) {
-    Eigen::VectorXd newton = step(0);
-    if (newton.norm() <= radius) return newton;
-  }
-  // |p(shift)| falls from beyond the radius to zero as the shift grows above -d_0.
-  double low = std::max(0.0, -d[0]);
-  const double least = low + 1e-12 * scale;
-  if (step(least).norm() < radius) {
-    // Hard case: no pull along the lowest curvature; it is followed to the edge.
-    Eigen::VectorXd p = step(least);
-    const double rest = std::sqrt(std::max(0.0, radius * radius - p.squaredNorm()));
-    if (d[0] < -neutral) p[0] += p[0] < 0 ? -rest : rest;
-    return p;
-  }
-  double high = low + g.norm() / radius + 1e-12 * scale;
-  for (int i = 0; i < 60 && high - low > 1e-3 * high; ++i) {
-    const double middle = (low + high) / 2;
-    (step(middle).norm() > radius ? low : high) = middle;
-  }
-  return step(high);
-}
-
 class TrustRegionDescent {
  public:
   TrustRegionDescent(SpanSolution& solution, const TrustRegionOptions& options)
@@ -100,8 +70,7 @@ class TrustRegionDescent {
     (void)model_.value(here.x, gradient_);
     model_.hessian(multipliers_, hessian_);
     if (dependent_) {
-      projected_hessian_.noalias() = basis_.transpose() * hessian_ * basis_;
-      llt_.compute(projected_hessian_);
+      ranked_.compute(basis_.transpose() * hessian_ * basis_, Eigen::MatrixXd(0, basis_.cols()));
     } else {
       free_.compute(hessian_);
     }
@@ -117,50 +86,15 @@ class TrustRegionDescent {
     projected_gradient_ = basis_.transpose() * here.gradient;
   }
 
-  [[nodiscard]] bool is_definite() const {
-    return dependent_ ? llt_.info() == Eigen::Success : free_.is_definite();
-  }
-
-  /// p to the inverse of the projected Hessian times p.
-  void solve_definite(Eigen::VectorXd& p) const {
-    if (dependent_) {
-      llt_.solveInPlace(p);
-    } else {
-      free_.solve_free(p);
-    }
-  }
-
-  [[nodiscard]] Eigen::VectorXd step_by_eigenvalues(double radius) {
-    if (!dependent_) projected_hessian_ = free_.matrix();
-    eigen_.compute(projected_hessian_);
-    return eigen_.eigenvectors() *
-           step_in_region(eigen_.eigenvalues(),
-                          eigen_.eigenvectors().transpose() * projected_gradient_, radius);
-  }
-
   /// Step in the unknowns; nothing where the point is near a minimum already.
   [[nodiscard]] std::optional<Eigen::VectorXd> best_step(double radius, bool flat) {
-    predicted_ = 0;
-    if (projected_gradient_.size() == 0) return std::nullopt;
-    Eigen::VectorXd p = -projected_gradient_;
-    const bool definite = is_definite();
-    if (definite && flat) return std::nullopt;
-    if (definite) {
-      solve_definite(p);
-      if (p.norm() <= options_.nearest) return std::nullopt;
-    }
-    if (!definite || !(p.norm() <= radius)) {
-      p = -projected_gradient_;
-      // What lies between flat and falling takes its eigenvalues.
-      if (flat || dependent_ || !free_.solve_within(radius, p)) {
-        p = step_by_eigenvalues(radius);
-        if (flat && eigen_.eigenvalues()[0] > -neutral) return std::nullopt;
-      }
-    }
-    if (!dependent_) projected_hessian_ = free_.matrix();
-    predicted_ = -(projected_gradient_.dot(p) + p.dot(projected_hessian_ * p) / 2);
-    length_ = p.norm();
-    return dependent_ ? Eigen::VectorXd(basis_ * p) : free_.in_unknowns(p);
+    FreeHessian& hessian = dependent_ ? ranked_ : free_;
+    const std::optional<Eigen::VectorXd> p =
+        region_step(hessian, projected_gradient_, radius, flat, options_.nearest);
+    if (!p) return std::nullopt;
+    predicted_ = -(projected_gradient_.dot(*p) + p->dot(hessian.matrix() * *p) / 2);
+    length_ = p->norm();
+    return dependent_ ? Eigen::VectorXd(basis_ * *p) : free_.in_unknowns(*p);
   }
 
   /// @return the next radius
@@ -194,10 +128,9 @@ class TrustRegionDescent {
   FreeHessian free_;
   bool dependent_ = false;  // constraints, so that basis_ is of what is free
   Eigen::MatrixXd basis_;
-  Eigen::LLT<Eigen::MatrixXd> llt_;
-  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen_;
+  FreeHessian ranked_;  // on that basis
   Eigen::VectorXd multipliers_, gradient_, projected_gradient_;
-  Eigen::MatrixXd hessian_, projected_hessian_;
+  Eigen::MatrixXd hessian_;
   double predicted_ = 0;  // fall of E - lambda.c
   double length_ = 0;     // of the step
 };
