@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -39,10 +40,11 @@ constexpr double shortest_told = 1e-3;
 /// Out of its plane a polygon has tangents with more than this across it.
 constexpr double flat = 1e-6;
 /// Of polygons with few segments those next to the lowest, over 1 + energy: their energies are off
-/// by about this.
-constexpr double near_lowest = 0.1;
-/// Of polygons with all segments too, where they touch: both are asked for the rod's own energy.
-constexpr double near_tie_of_polygons = 0.02;
+/// by about this, since they cut the corners of bodies.
+constexpr double near_lowest = 0.5;
+/// Of polygons with all segments too, whose energies are off by up to 0.03 where they touch: both
+/// are asked for the rod's own energy.
+constexpr double near_tie_of_polygons = 0.06;
 /// Polygons whose energies are this close, over 1 + energy, are the same.
 constexpr double same_polygon = 1e-6;
 
@@ -195,6 +197,7 @@ class ContactSearch {
     SearchLog without_obstacles;
     if (options_.log != nullptr) without_start.log = &without_obstacles;
     std::vector<TangentField> starts;
+    double lowest_within = std::numeric_limits<double>::infinity();
     for (SpanSolution& solution : solve_span(span_, without_start, workspace_)) {
       spent_ += std::exchange(solution.evaluations, 0);
       if (!solution.is_equilibrium()) {
@@ -204,6 +207,7 @@ class ContactSearch {
       SpanShape shape = solution.model->shape(solution.x);
       if (!lowest_points(span_, shape, -deepest * span_.length).empty()) {
         starts.push_back(field_of(std::move(shape)));
+        lowest_within = std::min(lowest_within, solution.energy);
         continue;
       }
       const bool is_new = add(std::move(solution), found);
@@ -214,7 +218,11 @@ class ContactSearch {
     if (options_.log != nullptr) {
       options_.log->add_starts(without_obstacles, ", as if there were no obstacles");
     }
-    if (!options_.all && !found.empty() && succeeded(found.front().status)) return;
+    // What touches beside a shape that obstacles forbid costs more than that, but may cost less
+    // than what stays clear elsewhere.
+    const bool is_clear =
+        !found.empty() && succeeded(found.front().status) && found.front().energy <= lowest_within;
+    if (!options_.all && is_clear) return;
     for (TangentField& start : start_fields(span_)) starts.push_back(std::move(start));
     look_from(starts, found);
   }
@@ -230,7 +238,7 @@ class ContactSearch {
         return rest_on_obstacles(span_, starts[i], segments, options_.deadline);
       });
     };
-    if (!options_.all && starts.size() > 1) {
+    if (starts.size() > 1) {
       const std::vector<RestingPolygon> coarse = whole(Segments::few);
       std::vector<RestingPolygon> near;
       std::vector<RestingPolygon> other;
@@ -247,7 +255,7 @@ class ContactSearch {
                                   return rest_refined(span_, (*from)[i], options_.deadline);
                                 }),
                   found);
-        if (!found.empty() && succeeded(found.front().status)) return;
+        if (!options_.all && !found.empty() && succeeded(found.front().status)) return;
       }
     }
     if (options_.deadline.passed() && !found.empty()) return;
