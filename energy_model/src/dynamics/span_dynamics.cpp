@@ -204,56 +204,92 @@ Eigen::Vector3d SpanDynamics::multiplier_force(const Eigen::Ref<const Eigen::Vec
   return force;
 }
 
-/// Work of forces at nodes, stations and points of the grid, and of couples at the pieces' ends, by
-/// the unknowns.
-Eigen::VectorXd SpanDynamics::pulled(const Eigen::MatrixX3d& at_nodes,
-                                     const std::vector<Eigen::Vector3d>& at_stations,
-                                     const std::vector<Eigen::Vector3d>& couples,
-                                     const std::vector<GridForce>& at_grid) {
+/// Work of forces at nodes, stations and points of the grid, by the tangents at the nodes: the
+/// internal force that they ask for.
+Eigen::MatrixX3d SpanDynamics::by_tangents(const Eigen::MatrixX3d& at_nodes,
+                                           const std::vector<Eigen::Vector3d>& at_stations,
+                                           const std::vector<GridForce>& at_grid) const {
   const Eigen::Index Q = nodes_of_piece();
   Eigen::Vector3d all = at_nodes.colwise().sum().transpose();
   for (const Eigen::Vector3d& force : at_stations) all += force;
   for (const GridForce& at : at_grid) all += at.force;
   // Gradient by the tangents: what a tangent moves is all that lies beyond, seen from the anchor.
-  Eigen::MatrixX3d by_tangents(s_.size(), 3);
+  Eigen::MatrixX3d result(s_.size(), 3);
   Eigen::Vector3d beyond = Eigen::Vector3d::Zero();
   for (std::size_t e = pieces_.size(); e-- > 0;) {
     const Eigen::Index row = static_cast<Eigen::Index>(e) * Q;
     beyond += at_stations[e + 1];
     const Eigen::Vector3d carried = e < anchor_station_ ? Eigen::Vector3d(beyond - all) : beyond;
-    by_tangents.middleRows(row, Q) =
+    result.middleRows(row, Q) =
         pieces_[e].length * (table_->integration.transpose() * at_nodes.middleRows(row, Q) +
                              table_->weights * carried.transpose());
     beyond += at_nodes.middleRows(row, Q).colwise().sum().transpose();
     for (const GridForce& at : at_grid) {
       if (at.piece != e) continue;
-      by_tangents.middleRows(row, Q) +=
+      result.middleRows(row, Q) +=
           pieces_[e].length * grid_.place(e, at.point) * at.force.transpose();
       beyond += at.force;
     }
   }
+  return result;
+}
+
+/// The same, and of couples at the pieces' ends, by the unknowns.
+Eigen::VectorXd SpanDynamics::pulled(const Eigen::MatrixX3d& tangents,
+                                     const std::vector<Eigen::Vector3d>& couples) {
   Eigen::VectorXd result = Eigen::VectorXd::Zero(2 * frames_.columns());
-  frames_.pull({&by_tangents, couples}, 1, state_, result);
+  frames_.pull({&tangents, couples}, 1, state_, result);
   return result.head(size_);
 }
 
-Eigen::VectorXd SpanDynamics::residual(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
+/// Of all that acts on the rod, with these multipliers, by the tangents.
+Eigen::MatrixX3d SpanDynamics::all_by_tangents(
+    const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
   std::vector<Eigen::Vector3d> at_stations = station_forces_;
   for (std::size_t k = 0; k < hold_stations_.size(); ++k) {
     at_stations[hold_stations_[k]] -= multiplier_force(multipliers, k);
-  }
-  std::vector<Eigen::Vector3d> couples(pieces_.size(), Eigen::Vector3d::Zero());
-  const Eigen::Index first = axes_ * static_cast<Eigen::Index>(hold_stations_.size());
-  for (std::size_t i = 0; i < drive_.across_end.size(); ++i) {
-    couples.back() -= multipliers[first + static_cast<Eigen::Index>(i)] *
-                      end_tangent_.value.cross(drive_.across_end[i].value);
   }
   std::vector<GridForce> at_grid;
   for (const Touch& touch : touches_) {
     at_grid.push_back({touch.piece, touch.point, -touch.push * touch.normal});
   }
+  return by_tangents(forces_, at_stations, at_grid);
+}
+
+/// The clamp's at the end, by piece.
+std::vector<Eigen::Vector3d> SpanDynamics::couples(
+    const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
+  std::vector<Eigen::Vector3d> result(pieces_.size(), Eigen::Vector3d::Zero());
+  const Eigen::Index first = axes_ * static_cast<Eigen::Index>(hold_stations_.size());
+  for (std::size_t i = 0; i < drive_.across_end.size(); ++i) {
+    result.back() -= multipliers[first + static_cast<Eigen::Index>(i)] *
+                     end_tangent_.value.cross(drive_.across_end[i].value);
+  }
+  return result;
+}
+
+Eigen::VectorXd SpanDynamics::residual(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
   return elastic_.cwiseProduct(x_ + inertia_.material_damping * v_) +
-         pulled(forces_, at_stations, couples, at_grid);
+         pulled(all_by_tangents(multipliers), couples(multipliers));
+}
+
+/// Of the internal force, which keeps its direction as the tangents turn: nearly all of the
+/// stiffness of a thread under tension T, where bending has a share of EI / (T l^2).
+void SpanDynamics::add_geometric_stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                                           Eigen::MatrixXd& stiffness) {
+  const Eigen::MatrixX3d tangents = all_by_tangents(multipliers);
+  std::vector<Eigen::Matrix3d> curvatures(pieces_.size(), Eigen::Matrix3d::Zero());
+  const Eigen::Index first = axes_ * static_cast<Eigen::Index>(hold_stations_.size());
+  const Eigen::Vector3d& t = end_tangent_.value;
+  for (std::size_t i = 0; i < drive_.across_end.size(); ++i) {
+    const Eigen::Vector3d& e = drive_.across_end[i].value;
+    const Eigen::Matrix3d turned = (e * t.transpose() + t * e.transpose()) / 2;
+    curvatures.back() -= multipliers[first + static_cast<Eigen::Index>(i)] *
+                         (turned - e.dot(t) * Eigen::Matrix3d::Identity());
+  }
+  Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(2 * frames_.columns(), 2 * frames_.columns());
+  frames_.add_hessian({&tangents, couples(multipliers)}, curvatures, state_, hessian);
+  stiffness += hessian.topLeftCorner(size_, size_);
 }
 
 SpanVelocities SpanDynamics::velocities() const {
@@ -273,7 +309,7 @@ Eigen::VectorXd SpanDynamics::impulse(const SpanVelocities& before) {
   for (std::size_t k = 0; k < stations_.size(); ++k) {
     at_stations.emplace_back(inertia_.at_stations[k] * (stations_[k].rate - before.stations[k]));
   }
-  return pulled(at_nodes, at_stations, {}, {});
+  return pulled(by_tangents(at_nodes, at_stations, {}), {});
 }
 
 Eigen::MatrixX3d SpanDynamics::misses() const {

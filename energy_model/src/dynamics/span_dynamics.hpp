@@ -106,8 +106,9 @@ class SpanDynamics {
   /// Derivatives of the constraints by x.
   [[nodiscard]] Eigen::MatrixXd jacobian();
   [[nodiscard]] Eigen::MatrixXd mass_matrix();
-  /// Derivatives of the residual's other parts by x and v, but for geometric ones.
-  [[nodiscard]] Eigen::MatrixXd stiffness();
+  /// Derivatives of the residual by x, at these accelerations and multipliers, but for those of
+  /// the accelerations in space; and by v, but for those of gyroscopic terms.
+  [[nodiscard]] Eigen::MatrixXd stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers);
   [[nodiscard]] Eigen::MatrixXd damping(const Eigen::MatrixXd& mass);
 
   [[nodiscard]] SpanEnergies energies() const;
@@ -138,10 +139,17 @@ class SpanDynamics {
     Eigen::Index point = 0;
     Eigen::Vector3d force = Eigen::Vector3d::Zero();
   };
-  [[nodiscard]] Eigen::VectorXd pulled(const Eigen::MatrixX3d& at_nodes,
-                                       const std::vector<Eigen::Vector3d>& at_stations,
-                                       const std::vector<Eigen::Vector3d>& couples,
-                                       const std::vector<GridForce>& at_grid);
+  [[nodiscard]] Eigen::MatrixX3d by_tangents(const Eigen::MatrixX3d& at_nodes,
+                                             const std::vector<Eigen::Vector3d>& at_stations,
+                                             const std::vector<GridForce>& at_grid) const;
+  [[nodiscard]] Eigen::VectorXd pulled(const Eigen::MatrixX3d& tangents,
+                                       const std::vector<Eigen::Vector3d>& couples);
+  [[nodiscard]] Eigen::MatrixX3d all_by_tangents(
+      const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
+  [[nodiscard]] std::vector<Eigen::Vector3d> couples(
+      const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
+  void add_geometric_stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
+                               Eigen::MatrixXd& stiffness);
   [[nodiscard]] Eigen::VectorXd depth_gradient(const Touch& touch);
   [[nodiscard]] Eigen::Vector3d multiplier_force(
       const Eigen::Ref<const Eigen::VectorXd>& multipliers, std::size_t hold) const;

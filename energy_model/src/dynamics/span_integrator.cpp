@@ -66,11 +66,11 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
   } else if (!renew) {
     return *found;
   }
-  take_mass(at);
+  const Eigen::VectorXd multipliers = settle(at);
   const Eigen::Index n = span_.size();
   const Eigen::Index m = span_.constraints();
   const Eigen::MatrixXd damping = span_.damping(mass_);
-  const Eigen::MatrixXd stiffness = span_.stiffness();
+  const Eigen::MatrixXd stiffness = span_.stiffness(multipliers);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(stage_count * (n + m), stage_count * (n + m));
   for (Eigen::Index i = 0; i < stage_count; ++i) {
     for (Eigen::Index j = 0; j < stage_count; ++j) {

@@ -59,13 +59,15 @@ void SpanDynamics::collect_touches() {
 
 /// By the unknowns.
 Eigen::VectorXd SpanDynamics::depth_gradient(const Touch& touch) {
-  return pulled(Eigen::MatrixX3d::Zero(s_.size(), 3),
-                std::vector<Eigen::Vector3d>(stations_.size(), Eigen::Vector3d::Zero()), {},
-                {{touch.piece, touch.point, -touch.normal}});
+  return pulled(by_tangents(Eigen::MatrixX3d::Zero(s_.size(), 3),
+                            std::vector<Eigen::Vector3d>(stations_.size(), Eigen::Vector3d::Zero()),
+                            {{touch.piece, touch.point, -touch.normal}}),
+                {});
 }
 
-Eigen::MatrixXd SpanDynamics::stiffness() {
+Eigen::MatrixXd SpanDynamics::stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
   Eigen::MatrixXd result = elastic_.asDiagonal();
+  add_geometric_stiffness(multipliers, result);
   for (const Touch& touch : touches_) {
     const Eigen::VectorXd gradient = depth_gradient(touch);
     result += touch.by_depth * gradient * gradient.transpose();
