@@ -31,23 +31,22 @@ inline std::optional<std::vector<std::string>> shell_words(std::string_view line
     } else if (c == '\\') {
       if (++i == line.size() || line[i] == '\n') return std::nullopt;
       // Between two quotes it stands for itself before most characters.
-      if (quotes == Quotes::two && std::string_view("$`\"\\").find(line[i]) == line.npos) add(c);
+      if (quotes == Quotes::two && std::string_view("$`\"\\").find(line[i]) == std::string::npos)
+        add(c);
       add(line[i]);
     } else if (c == '"') {
       quotes = quotes == Quotes::two ? Quotes::none : Quotes::two;
       if (!word) word.emplace();
-    } else if (c == '$' || c == '`') {
+    } else if (c == '$' || c == '`' ||
+               (quotes == Quotes::none &&
+                std::string_view("|><;&*?~[#()\n").find(c) != std::string_view::npos)) {
       return std::nullopt;
-    } else if (quotes == Quotes::two) {
-      add(c);
-    } else if (c == '\'') {
+    } else if (quotes == Quotes::none && c == '\'') {
       quotes = Quotes::one;
       if (!word) word.emplace();
-    } else if (c == ' ' || c == '\t') {
+    } else if (quotes == Quotes::none && (c == ' ' || c == '\t')) {
       if (word) words.push_back(*word);
       word.reset();
-    } else if (std::string_view("|><;&*?~[#()\n").find(c) != std::string_view::npos) {
-      return std::nullopt;
     } else {
       add(c);
     }

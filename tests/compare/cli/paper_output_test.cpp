@@ -177,7 +177,8 @@ TEST(MovingOutput, TextJsonAndCsvTellTheSameNumbers) {
                              row.at("variant").get<std::string>();
     for (const std::string varied : {"none", "unit of c_F: 1 m"}) {
       if (varied != "none" && !report.rows[i].printed) continue;
-      const std::string item = "moving,,\"" + name + "; varied: " + varied + "\",";
+      const std::string item =
+          std::string("moving,,\"").append(name).append("; varied: ").append(varied).append("\",");
       ASSERT_TRUE(csv.contains(item + "steps")) << item;
       EXPECT_EQ(csv.at(item + "steps"), row.at("steps").get<double>());
       EXPECT_EQ(csv.at(item + "average_force_N"), row.at("average_force_N").get<double>());

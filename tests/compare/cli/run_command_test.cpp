@@ -96,7 +96,7 @@ TEST(RedirectedOutputTest, HoldsForAllThreadsUntilItsEnd) {
     std::thread other(say);
     say();
     other.join();
-    EXPECT_EQ(err.size(), 2 * lines * std::string("dlo: a line\n").size());
+    EXPECT_EQ(err.size(), std::size_t{2 * lines} * std::string("dlo: a line\n").size());
   }
   EXPECT_EQ(out, "before outer");
   EXPECT_EQ(inner_out, "inner");

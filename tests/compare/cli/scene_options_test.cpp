@@ -125,7 +125,8 @@ at = 0.12
 force = [-4e-3, 6e-3, 5e-3]
 )");
   for (const std::string limit : {"0.001", "0.01", "0.1", "0.3"}) {
-    const Outcome found = run("solve " + twisted + " --all --format json --time-limit " + limit);
+    const Outcome found =
+        run("solve " + twisted + std::string(" --all --format json --time-limit ").append(limit));
     const bool converged = !found.out.empty() && json::parse(found.out).at("converged").get<bool>();
     EXPECT_EQ(found.status, converged ? 0 : 3) << limit << found.err;
   }
