@@ -5,6 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/output_file.hpp"
+#include "batch/locked_file.hpp"
 #include "batch/regression.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
@@ -80,13 +82,32 @@ std::vector<MeasuredCase> measure_all(const RegressOptions& options) {
   return measured;
 }
 
+/// Of a baseline that may not be there yet: no cases.
+std::vector<compare::BaselineCase> present_baseline(const std::string& file) {
+  std::error_code unknown;  // writing tells what is wrong with a name
+  if (!std::filesystem::exists(file, unknown)) return {};
+  return compare::load_baseline(file);
+}
+
+/// Replaces a baseline that is still as it was read.
+void write_baseline(const std::string& file, const std::vector<compare::BaselineCase>& read,
+                    const std::vector<compare::BaselineCase>& cases) {
+  compare::LockedFile lock(file + ".lock");
+  const bool changed =
+      compare::baseline_text(present_baseline(file)) != compare::baseline_text(read);
+  if (!changed) write_output({.file = file}, compare::baseline_text(cases));
+  lock.remove();
+  if (!changed) return;
+  throw compare::OutputError(file +
+                             ": left as it is: another process has changed it since it was read "
+                             "(allowed: one update at a time)");
+}
+
 void run(const RegressOptions& options) {
   // An unreadable baseline is told before minutes of solving.
-  std::vector<compare::BaselineCase> baseline;
-  std::error_code unknown;  // writing tells what is wrong with a name
-  if (!options.update || std::filesystem::exists(options.baseline, unknown)) {
-    baseline = compare::load_baseline(options.baseline);
-  }
+  const std::vector<compare::BaselineCase> baseline =
+      options.update ? present_baseline(options.baseline)
+                     : compare::load_baseline(options.baseline);
   const std::vector<MeasuredCase> measured = measure_all(options);
   const std::vector<RegressionResult> results =
       compare::judge_regression(baseline, measured, options.tolerance);
@@ -105,7 +126,7 @@ void run(const RegressOptions& options) {
     std::vector<compare::BaselineCase> cases;
     cases.reserve(measured.size());
     for (const MeasuredCase& entry : measured) cases.push_back(entry.entry);
-    write_output({.file = options.baseline}, compare::baseline_text(cases));
+    write_baseline(options.baseline, baseline, cases);
   }
   const bool updated = options.update && solved;
   write_output(options.output, {.text =
