@@ -158,7 +158,7 @@ FlowState<double> rate_of(const std::optional<Surface>& surface, const Eigen::Ve
 }
 
 FlowState<double> flow(const std::optional<Surface>& surface, const Eigen::Vector3d& weight,
-                       double length, FlowState<double> state) {
+                       double length, const FlowState<double>& state) {
   return follow(surface, weight, length, state, steps_of(surface, weight, length, state));
 }
 

@@ -47,7 +47,7 @@ struct Surface {
 /// distance to a pole. @param surface  on which the rod lies; nothing: it is free
 [[nodiscard]] FlowState<double> flow(const std::optional<Surface>& surface,
                                      const Eigen::Vector3d& weight, double length,
-                                     FlowState<double> state);
+                                     const FlowState<double>& state);
 
 /// Derivative of flow() by the cross-section that it starts from.
 [[nodiscard]] Eigen::Matrix<double, 12, 12> transition(const std::optional<Surface>& surface,
