@@ -385,5 +385,44 @@ TEST(Contact, OutOfReachChangesNothing) {
   EXPECT_EQ(free.evaluations, without.evaluations);
 }
 
+// From a rod that touches at a point: kept there, the obstacle would pull with three times the way
+// over l^3, in EI/l^2, at the tip.
+TEST(Contact, APointIsLetGoByAnObstacleThatMovesAway) {
+  const Problem free = heavy_cantilever(0.3, 0);
+  const double reach = -solve_energy(free).sample(std::vector<double>{1}).points(1, 0);
+  const std::vector<double> at = equal_arc_lengths(free.length, 10001);
+  const Eigen::Matrix3Xd alone = solve_energy(free).sample(at).points;
+  // Where the peg's top has to be for its surface to be next to the rod.
+  const auto from_peg = [&](double top) {
+    const Eigen::Vector3d centre(0.7, -top - 0.1, 0);
+    return (alone.colwise() - centre).colwise().norm().minCoeff() - 0.1;
+  };
+  double clear_peg = 0;
+  while (from_peg(clear_peg) < 0) clear_peg += 1e-6;
+  for (const bool peg : {false, true}) {
+    const auto over = [&](double depth) {
+      Problem problem = free;
+      const Eigen::Vector3d top(peg ? 0.7 : 0.0, -depth * (peg ? 0.5 : 1.0), 0);
+      problem.obstacles = {
+          {peg ? obstacle::Body::cylinder(top - Eigen::Vector3d(0, 0.1, 0), {0, 0, 1}, 0.1)
+               : obstacle::Body::half_space(top, {0, 1, 0})}};
+      return problem;
+    };
+    const Equilibrium touching = solve_energy(over(reach - 0.008));
+    ASSERT_EQ(touching.status, SolveStatus::converged);
+    ASSERT_EQ(touching.contacts.size(), 1U);
+    for (const double way : {1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 0.02, 0.1}) {
+      SCOPED_TRACE((peg ? "peg " : "floor ") + std::to_string(way));
+      const double depth = peg ? 2 * clear_peg : reach;
+      for (const Equilibrium* start : {static_cast<const Equilibrium*>(nullptr), &touching}) {
+        const Equilibrium left = solve_energy(over(depth + way), {.start = start});
+        ASSERT_EQ(left.status, SolveStatus::converged) << left.message;
+        EXPECT_TRUE(left.contacts.empty());
+        EXPECT_LT((left.sample(at).points - alone).colwise().norm().maxCoeff(), 1e-8);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dlo::energy_model
