@@ -93,14 +93,19 @@ std::vector<compare::BaselineCase> present_baseline(const std::string& file) {
 void write_baseline(const std::string& file, const std::vector<compare::BaselineCase>& read,
                     const std::vector<compare::BaselineCase>& cases) {
   compare::LockedFile lock(file + ".lock");
-  const bool changed =
-      compare::baseline_text(present_baseline(file)) != compare::baseline_text(read);
-  if (!changed) write_output({.file = file}, compare::baseline_text(cases));
+  try {
+    if (compare::baseline_text(present_baseline(file)) != compare::baseline_text(read)) {
+      throw compare::OutputError(
+          file +
+          ": left as it is: another process has changed it since it was read (allowed: one update "
+          "at a time)");
+    }
+    write_output({.file = file}, compare::baseline_text(cases));
+  } catch (...) {
+    lock.remove();
+    throw;
+  }
   lock.remove();
-  if (!changed) return;
-  throw compare::OutputError(file +
-                             ": left as it is: another process has changed it since it was read "
-                             "(allowed: one update at a time)");
 }
 
 void run(const RegressOptions& options) {

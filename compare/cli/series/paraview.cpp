@@ -11,6 +11,7 @@
 #include "trajectory/series_files.hpp"
 
 namespace dlo::cli {
+
 void write_series(const compare::Track& track, const compare::Scene& scene,
                   const TrackFrames& frames, const std::string& file,
                   const compare::DynamicTrack* dynamic) {

@@ -81,15 +81,12 @@ MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
   const auto n = static_cast<unsigned>(x.size());
   const std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)> optimiser(
       nlopt_create(NLOPT_LD_LBFGS, n), nlopt_destroy);
-  Call call{&objective,
-            optimiser.get(),
-            &options,
-            Eigen::VectorXd(x.size()),
-            Eigen::VectorXd(x.size()),
-            false,
-            false,
-            0,
-            nullptr};
+  Call call{.objective = &objective,
+            .optimiser = optimiser.get(),
+            .options = &options,
+            .gradient = Eigen::VectorXd(x.size()),
+            .best = Eigen::VectorXd(x.size()),
+            .thrown = nullptr};
   nlopt_set_min_objective(optimiser.get(), evaluate, &call);
   nlopt_set_maxeval(optimiser.get(), options.max_evaluations);
   const int remembered = options.remembered_steps;

@@ -11,6 +11,9 @@ namespace {
 /// Arc lengths at which a shape is looked at first.
 constexpr Eigen::Index first_looks = 400;
 
+/// Ends closer than this, in lengths, are one.
+constexpr double closest_contact_ends = 1e-7;
+
 /// Parts into which a bracket is divided, until it is as short as rounding.
 constexpr int parts = 32;
 constexpr double shortest_bracket = 1e-13;

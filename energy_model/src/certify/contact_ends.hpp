@@ -6,9 +6,6 @@
 
 namespace dlo::energy_model {
 
-/// Ends of contact with obstacles that yield, closer than this, in lengths, are one.
-inline constexpr double closest_contact_ends = 1e-7;
-
 /// Where a shape begins and ends to press into an obstacle that yields, and where it passes from
 /// one face, edge or corner of it to the next while it does: there the force per length has a kink.
 /// By growing s.

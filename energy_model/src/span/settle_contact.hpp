@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "span/span_descents.hpp"
 
 namespace dlo::energy_model {
