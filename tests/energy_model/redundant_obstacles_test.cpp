@@ -98,8 +98,8 @@ TEST(RedundantObstacles, AreAsIfTheyWereNotThere) {
 }
 
 TEST(RedundantObstacles, ABodyThatSticksOutCounts) {
-  // A box on the floor under the rod, which carries it higher up than the floor does; beside it one
-  // that stands as far out of the floor but out of the rod's reach.
+  // A box on the floor in the rod's way, which it goes round; and one that stands as far out of the
+  // floor but out of the rod's reach.
   Problem problem = test::heavy_cantilever(80, 0);
   const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   problem.obstacles = {{Body::half_space({0, -0.2, 0}, {0, 1, 0})},
@@ -107,9 +107,41 @@ TEST(RedundantObstacles, ABodyThatSticksOutCounts) {
                        {Body::box({3, -0.2, 0}, axes, {0.3, 0.1, 0.4}, 0.03)}};
   const Equilibrium found = solve_energy(problem);
   ASSERT_TRUE(succeeded(found.status)) << found.message;
-  EXPECT_GT(found.obstacles.at(1).y(), 0);
+  EXPECT_GT(found.obstacles.at(1).norm(), 0);
   EXPECT_EQ(found.obstacles.at(2).norm(), 0);
-  EXPECT_GT(found.sample(std::vector<double>{0.5}).points(1, 0), -0.151);
+  const Eigen::Matrix3Xd points = found.sample(equal_arc_lengths(1, 201)).points;
+  for (const Obstacle& obstacle : problem.obstacles) {
+    EXPECT_GT(obstacle.body.clearances(points).minCoeff(), -1e-8);
+  }
+  // That it lies on the box costs more.
+  EXPECT_LT(found.energy.total(), -9.66);
+}
+
+// What is pushed out of a block by its lower face is caught between that and the floor.
+TEST(RedundantObstacles, ABlockThatStandsOnTheFloorCarriesARodAsADeeperOne) {
+  struct Scene {
+    double gamma, pitch, depth;  // of the block's top
+  };
+  for (const auto& [gamma, pitch, depth] : {Scene{50, -5, 0.15}, {193, 14.7, 0.0826}}) {
+    SCOPED_TRACE(gamma);
+    Problem problem = test::heavy_cantilever(gamma, pitch);
+    const auto on_block = [&, depth = depth](double bottom) {
+      const Eigen::Vector3d size(2.6, bottom - depth, 4);
+      Problem result = problem;
+      result.obstacles = {{Body::half_space({0, -depth - 0.1, 0}, {0, 1, 0})},
+                          {Body::box({0.4 + size.x() / 2, -(depth + bottom) / 2, 0},
+                                     Eigen::Matrix3d::Identity(), size, 0.01)}};
+      return result;
+    };
+    const Equilibrium found = solve_energy(on_block(depth + 0.1));
+    ASSERT_EQ(found.status, SolveStatus::converged) << found.message;
+    EXPECT_GT(found.obstacles.at(1).y(), 0);
+    EXPECT_LT(found.evaluations, 5000);  // from 1180 and 2322; caught there, 9010 and 16250
+    const Equilibrium deeper = solve_energy(on_block(depth + 0.3), {.start = &found});
+    ASSERT_EQ(deeper.status, SolveStatus::converged) << deeper.message;
+    const std::vector<double> s = equal_arc_lengths(1, 33);
+    EXPECT_LT((found.sample(s).points - deeper.sample(s).points).cwiseAbs().maxCoeff(), 1e-8);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contact/tangent_between.hpp"
 #include "dlo/energy_model/polygon.hpp"
@@ -58,6 +59,35 @@ Mesh mesh_of(const Span& span, Segments segments) {
   }
   if (mesh.after) mesh.s.push_back(span.length + h);
   return mesh;
+}
+
+/// A block whose face is on a half-space, or within it, goes on into that: pushed out of that face
+/// a polygon would be caught between the two.
+obstacle::Body founded(const obstacle::Body& body, const Span& span) {
+  constexpr double flush = 1e-6;  // in l
+  Eigen::Vector3d lower = body.lower().array() - body.radius();
+  Eigen::Vector3d upper = body.upper().array() + body.radius();
+  if (!(upper - lower).allFinite() || !(body.lower().array() < body.upper().array()).all()) {
+    return body;
+  }
+  for (const Span::Obstacle& ground : span.rigid_obstacles) {
+    if (!ground.body.is_half_space()) continue;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      for (const bool up : {false, true}) {
+        double highest = -std::numeric_limits<double>::infinity();  // of the face's corners
+        for (int corner = 0; corner < 8; ++corner) {
+          if (((corner >> axis) % 2 == 1) != up) continue;
+          Eigen::Vector3d at = lower;
+          for (int k = 0; k < 3; ++k) at[k] = (corner >> k) % 2 == 1 ? upper[k] : lower[k];
+          highest = std::max(highest, ground.body.clearance(body.centre() + body.axes() * at));
+        }
+        if (highest > flush * span.length) continue;
+        (up ? upper[axis] : lower[axis]) += up ? span.length : -span.length;
+      }
+    }
+  }
+  return obstacle::Body::box(body.centre() + body.axes() * (lower + upper) / 2, body.axes(),
+                             upper - lower, body.radius());
 }
 
 class Resting {
@@ -152,7 +182,7 @@ class Resting {
   }
 
   void add_obstacle(const Span::Obstacle& obstacle, double stiffness) {
-    problem_.obstacles.push_back({obstacle.body, stiffness, looks_at(obstacle)});
+    problem_.obstacles.push_back({founded(obstacle.body, span_), stiffness, looks_at(obstacle)});
   }
 
   [[nodiscard]] Eigen::Index point_at(double at) const {
@@ -327,7 +357,7 @@ RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start, Se
   for (const double round : {1.0, 0.75, 0.5, 0.25}) {
     Span rounder = span;
     for (Span::Obstacle& obstacle : rounder.rigid_obstacles) {
-      obstacle.body = obstacle.body.rounded(round);
+      obstacle.body = founded(obstacle.body, span).rounded(round);
     }
     const RestingPolygon before = Resting(rounder, segments).from(from, deadline);
     evaluations += before.evaluations;
