@@ -74,6 +74,8 @@ obstacle::Body founded(const obstacle::Body& body, const Span& span) {
     if (!ground.body.is_half_space()) continue;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       for (const bool up : {false, true}) {
+        const double outward = (up ? 1 : -1) * ground.body.normal().dot(body.axes().col(axis));
+        if (!(outward < 0)) continue;  // it looks out of the half-space
         double highest = -std::numeric_limits<double>::infinity();  // of the face's corners
         for (int corner = 0; corner < 8; ++corner) {
           if (((corner >> axis) % 2 == 1) != up) continue;
@@ -357,7 +359,7 @@ RestingPolygon rest_on_obstacles(const Span& span, const TangentField& start, Se
   for (const double round : {1.0, 0.75, 0.5, 0.25}) {
     Span rounder = span;
     for (Span::Obstacle& obstacle : rounder.rigid_obstacles) {
-      obstacle.body = founded(obstacle.body, span).rounded(round);
+      obstacle.body = obstacle.body.rounded(round);
     }
     const RestingPolygon before = Resting(rounder, segments).from(from, deadline);
     evaluations += before.evaluations;

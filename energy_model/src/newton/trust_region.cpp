@@ -14,6 +14,7 @@ namespace {
 
 /// A region this small moves the shape by less than rounding does.
 constexpr double smallest_radius = 1e-10;
+
 class TrustRegionDescent {
  public:
   TrustRegionDescent(SpanSolution& solution, const TrustRegionOptions& options)

@@ -23,15 +23,6 @@ constexpr double confirmed_depth = 1e-9;  // in l; a tenth of what a converged s
 constexpr double allowed_pull = 1e-7;     // of forces, over 1 + the largest one
 constexpr double norm_margin = 1e-3;      // of the second variation's norm
 
-bool is_known(const Problem& problem) {
-  const bool rigid =
-      std::none_of(problem.obstacles.begin(), problem.obstacles.end(),
-                   [](const Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
-  const bool twists = std::any_of(problem.grips.begin(), problem.grips.end(),
-                                  [](const Grip& grip) { return grip.frame.has_value(); });
-  return rigid && !twists && problem.sections.empty() && !has_material_directors(problem);
-}
-
 /// A problem in its own units, the shape that it starts from and what it asks of it.
 class Confirmation {
  public:
@@ -357,12 +348,8 @@ class Confirmation {
   double least_pressure_ = 0;
 };
 
-}  // namespace
-
-namespace {
-
 std::optional<Confirmation> laid_out(const Problem& problem, const Equilibrium& shape) {
-  if (!is_known(problem) || !shape.sample || shape.grips.size() != problem.grips.size()) {
+  if (!can_confirm(problem) || !shape.sample || shape.grips.size() != problem.grips.size()) {
     return std::nullopt;
   }
   Confirmation confirmation(problem, shape);
@@ -371,6 +358,15 @@ std::optional<Confirmation> laid_out(const Problem& problem, const Equilibrium& 
 }
 
 }  // namespace
+
+bool can_confirm(const Problem& problem) {
+  const bool rigid =
+      std::none_of(problem.obstacles.begin(), problem.obstacles.end(),
+                   [](const Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
+  const bool twists = std::any_of(problem.grips.begin(), problem.grips.end(),
+                                  [](const Grip& grip) { return grip.frame.has_value(); });
+  return rigid && !twists && problem.sections.empty() && !has_material_directors(problem);
+}
 
 std::optional<Equilibrium> close_contacts(const Problem& problem, const Equilibrium& shape,
                                           const Deadline& deadline) {

@@ -8,6 +8,10 @@
 
 namespace dlo::energy_model {
 
+/// Whether the contacts of a problem's rod can be confirmed: it is round, of one section, straight
+/// by nature and not twisted, and its obstacles are rigid.
+[[nodiscard]] bool can_confirm(const Problem& problem);
+
 /// The equilibrium next to a shape that says which parts of the rod touch which obstacles: of a
 /// round rod of one section, straight by nature and not twisted, held by any grips, on rigid bodies
 /// of any form. Whether it is one is judged here: gaps, forces and pressures of the right sign, a

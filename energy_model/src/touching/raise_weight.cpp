@@ -18,8 +18,7 @@ constexpr double allowed_depth = 1e-9;   // of the tip, in l; a tenth of a conve
 constexpr Eigen::Index sampled = 129;    // points of a shape, to see where it is deepest
 constexpr Eigen::Index compared = 17;    // points of two shapes
 constexpr int most_changes = 4;
-constexpr double longest_step = 0.3;   // of tangents: further away there is another branch
-constexpr double step_of_loss = 1e-2;  // of ln(weight), in which a branch may lose its stability
+constexpr double longest_step = 0.3;  // of tangents: further away there is another branch
 
 double gamma_of(const Problem& problem) {
   const double l = problem.length;
@@ -129,9 +128,9 @@ bool is_next(const Equilibrium& before, const Equilibrium& after, double length)
 bool is_one_clamp_over_planes(const Problem& problem) {
   const Grip& grip = problem.grips.front();
   const bool clamped = problem.grips.size() == 1 && grip.at == 0 && grip.direction && !grip.frame;
-  return clamped && gamma_of(problem) > first_gamma &&
+  return clamped && can_confirm(problem) && gamma_of(problem) > first_gamma &&
          std::ranges::all_of(problem.obstacles, [](const Obstacle& obstacle) {
-           return obstacle.body.is_half_space() && !std::isfinite(obstacle.stiffness);
+           return obstacle.body.is_half_space();
          });
 }
 
@@ -144,8 +143,8 @@ std::optional<Equilibrium> raise_weight(const Problem& problem, const Deadline& 
   double ratio = 0.3;
   std::optional<Equilibrium> shape =
       settle(with_share(problem, share), straight(problem), deadline);
-  if (!shape) return std::nullopt;
-  while (share < 1 && ratio > smallest_ratio && !deadline.passed()) {
+  if (!shape) share = 0;
+  while (shape && share < 1 && ratio > smallest_ratio && !deadline.passed()) {
     const double next = std::min(1.0, share * std::exp(ratio));
     std::optional<Equilibrium> trial =
         settle(with_share(problem, next), scaled(*shape, next / share), deadline);
@@ -164,7 +163,7 @@ std::optional<Equilibrium> raise_weight(const Problem& problem, const Deadline& 
   }
   Equilibrium result;
   result.status = deadline.passed() ? SolveStatus::time_limit : SolveStatus::failed;
-  result.evaluations = shape->evaluations;
+  if (shape) result.evaluations = shape->evaluations;
   result.message = "the end's contact could be followed up to " + std::to_string(share) +
                    " of weight and loads: beyond it folds or another part of the rod touches";
   return result;

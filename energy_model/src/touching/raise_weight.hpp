@@ -8,9 +8,9 @@
 
 namespace dlo::energy_model {
 
-/// A heavy rod with one clamp at its begin over rigid half-spaces: weight and loads are raised from
-/// nothing, and the end comes down, touches and lies as the contact's signs say, each step
-/// confirm_contacts() from the one before.
+/// A loaded rod with one clamp at its begin over rigid half-spaces: weight and loads are raised
+/// from nothing, and the end comes down, touches and lies as the contact's signs say, each step
+/// close_contacts() from the one before; confirm_contacts() judges the last one.
 /// @return nothing where the problem is another one
 [[nodiscard]] std::optional<Equilibrium> raise_weight(const Problem& problem,
                                                       const Deadline& deadline);
