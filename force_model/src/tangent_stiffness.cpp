@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "dlo/force_model/step_size.hpp"
 #include "require.hpp"
 #include "stiffness_factor.hpp"
 #include "stiffness_terms.hpp"
@@ -222,6 +223,12 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
     }
     slow = slow_modes(K, factor);
     result.neutral_modes = static_cast<int>((slow.eigenvalues.array() <= rounding).count());
+    // So many points that rounding hides the rod's own first mode too: which of them have no
+    // stiffness cannot be told.
+    if (rounding > mode_bounds(rod, points).slowest && result.neutral_modes < SlowModes::most) {
+      result.neutral_modes = 0;
+      return result;
+    }
     if (result.neutral_modes == SlowModes::most) {
       // Of how many more? Where no point feels a force none of them moves (the paper's law has no
       // stiffness where the rod is straight); else nothing is known of them.

@@ -86,7 +86,7 @@ Shot shoot(const Problem& problem, const Equilibrium& solution, const Matrix3d& 
   };
   for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
     if (!(stops[i + 1] > stops[i])) continue;
-    constexpr int steps = 400;
+    constexpr int steps = 1600;
     const double h = (stops[i + 1] - stops[i]) / steps;
     for (int k = 0; k < steps; ++k) {
       const double s = stops[i] + k * h;

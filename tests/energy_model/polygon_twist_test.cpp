@@ -14,6 +14,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/polygon.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "polygon/polygon_energy.hpp"
 
 namespace dlo::energy_model {
@@ -67,17 +68,17 @@ struct SpatialRod {
     return s;
   }
 
-  /// The twist that `roll` puts into a polygon that rests without it: the last d1 is turned by it
-  /// from where the polygon brings the first one.
+  /// The twist that the frames put into a polygon that rests without it.
   [[nodiscard]] PolygonTwist twist(const Eigen::Matrix3Xd& rest) const {
     PolygonTwist result;
     result.last_segment = rest.cols() - 2;
-    result.first_d1 = first_direction.unitOrthogonal();
-    result.last_d1 = last_direction.unitOrthogonal();
+    const Problem held = rod();
+    result.first_d1 = held_d1(held, held.grips[0]);
+    result.last_d1 = held_d1(held, held.grips[1]);
     result.compliance = 1 / GJ;
-    const double ahead = polygon_twist_angle(result, rest);
-    result.last_d1 = Eigen::AngleAxisd(roll - ahead, last_direction) * result.last_d1;
-    result.angle = roll;
+    // Less than half a turn from where the polygon brings the first one, and the roll.
+    result.angle = polygon_twist_angle(result, rest) + roll;
+    result.last_d1 = Eigen::AngleAxisd(roll, last_direction) * result.last_d1;
     return result;
   }
 };

@@ -10,6 +10,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "equilibrium_balance.hpp"
 #include "free_basis.hpp"
 #include "linear/free_directions.hpp"
@@ -214,6 +215,16 @@ TEST(Twist, HoldsAHelixUnderItsWrench) {
       const Eigen::AngleAxisd ahead((twist - torsion) * grip.at, point.t);
       grip.frame->d1 = ahead * point.normal;
     }
+    // What is more than half a turn wants to be said.
+    Eigen::Matrix3Xd points(3, 200);
+    for (Eigen::Index i = 0; i < 200; ++i) {
+      points.col(i) = helix(curvature, torsion, static_cast<double>(i) / 199).r;
+    }
+    const Grip& first = problem.grips.front();
+    Grip& last = problem.grips.back();
+    const double turns =
+        twist / (2 * pi) + writhe(points, *first.direction, *last.direction).value();
+    last.frame->roll = 2 * pi * std::round(turns - held_turns(problem, first, last).value());
     const Equilibrium equilibrium = solved(problem);
     EXPECT_NEAR(equilibrium.twists.at(0).angle, twist, 1e-9);
     const double force = std::hypot(curvature, torsion) * (moment - torsion);
@@ -283,7 +294,7 @@ TEST(Twist, IsRefusedWhereItMeansNothing) {
   EXPECT_THROW((void)solve_energy(problem), std::invalid_argument);
 }
 
-// A roll counts from the rod without twist: a shape to start from has another one.
+// A shape to start from has the turns of another roll.
 TEST(Twist, StartedFromAnotherRollItMeetsItsOwn) {
   Problem problem = test::two_clamps(5, 0.7);
   problem.torsional_stiffness = 0.8;

@@ -106,7 +106,7 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
   return fmt::format(
       R"(
 # A clamp lets the rod turn about its direction unless it holds the rod's frame, by one of
-#   roll = "90 deg"             turned on from where the same rod without twist is, turns counted
+#   roll = "90 deg"             turned on from the first such clamp's frame, turns counted
 #   frame = [[1, 0, 0], ..]     rows d1, d2, d3; d3 is the direction
 #   quaternion = [1, 0, 0, 0]   w, x, y, z; it turns the axes x, y, z into d1, d2, d3
 # the latter two with turns = 1, 2, .. for whole turns more. Two such clamps twist the rod between

@@ -7,11 +7,14 @@
 #include <cstddef>
 #include <functional>
 #include <numbers>
+#include <stdexcept>
 
 #include "base/display.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "scene/read_force_model.hpp"
 #include "scene/read_rod.hpp"
+#include "scene/scene_problem.hpp"
 #include "toml/strict_table.hpp"
 #include "trajectory/read_trajectory.hpp"
 
@@ -162,45 +165,14 @@ Gripper read_gripper(StrictTable& table, double length, const std::string& file)
   return gripper;
 }
 
-/// What clamps that hold frames need, and twist that would have to pass a clamp that holds none.
-/// @param entries  the grippers' tables, in the scene's order
-void check_twist(const Scene& scene, const StrictTable& rod,
-                 const std::vector<StrictTable>& entries) {
+/// What clamps that hold frames need.
+void check_twist(const Scene& scene, const StrictTable& rod) {
   if (!scene.holds_twist()) return;
   if (!scene.torsional_stiffness && !scene.assumes_torsion()) {
     rod.fail("torsional_stiffness",
              fmt::format("missing, it is required where two clamps hold the rod's frame (allowed: "
                          "> 0; of a round rod EI / (1 + nu), here {:.3g} N m^2 with nu = 0.3)",
                          scene.bending_stiffness() / (1 + assumed_poisson_ratio)));
-  }
-  std::vector<std::size_t> clamps;  // by arc length
-  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
-    if (scene.grippers[i].direction) clamps.push_back(i);
-  }
-  std::stable_sort(clamps.begin(), clamps.end(), [&](std::size_t a, std::size_t b) {
-    return scene.grippers[a].at < scene.grippers[b].at;
-  });
-  const auto has_d1 = [](const Gripper& clamp) { return clamp.frame && clamp.frame->d1; };
-  const auto is_outer = [&](std::size_t i) { return has_d1(scene.grippers[i]); };
-  const auto first = std::find_if(clamps.begin(), clamps.end(), is_outer);
-  const auto last = std::find_if(clamps.rbegin(), clamps.rend(), is_outer).base();
-  for (auto i = first; i < last; ++i) {
-    const Gripper& inner = scene.grippers[*i];
-    if (!inner.frame || has_d1(inner)) continue;
-    entries[*i].fail("roll",
-                     "between clamps whose frame or quaternion says where d1 is (allowed: frame or "
-                     "quaternion here too)");
-  }
-  // What is turned on from where the rod has it says too late how the rod goes on from there.
-  for (const std::size_t i : clamps) {
-    const Gripper& clamp = scene.grippers[i];
-    const bool ends = i == clamps.front() || clamp.at == scene.length;
-    if (!scene.has_material_directors() || ends || !clamp.frame || has_d1(clamp)) continue;
-    entries[i].fail("roll",
-                    fmt::format("of a rod {} and goes on behind this clamp (allowed: "
-                                "frame or quaternion)",
-                                scene.naturally_bent() ? "that is curved by nature"
-                                                       : "that has two bending stiffnesses"));
   }
 }
 
@@ -218,6 +190,25 @@ void check_material_directors(const Scene& scene, const StrictTable& rod) {
   if (!clamped && scene.has_two_stiffnesses()) rod.fail("bending_stiffness", unheld);
   (void)scene.natural_curvature();
   if (scene.has_two_stiffnesses()) (void)scene.first_frame();
+}
+
+/// That the grips alone say where each roll counts from.
+/// @param entries  the grippers' tables, in the scene's order
+void check_rolls(const Scene& scene, const std::vector<StrictTable>& entries) {
+  if (!scene.holds_twist()) return;
+  if (scene.has_material_directors()) (void)scene.first_frame();
+  const energy_model::Problem problem = scene_problem(scene);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const energy_model::Grip& grip = problem.grips[i];
+    if (!grip.frame || grip.frame->d1) continue;
+    try {
+      (void)energy_model::held_d1(problem, grip);
+    } catch (const std::invalid_argument&) {
+      entries[i].fail("roll",
+                      "leaves open where it counts from: the direction is opposite to the first "
+                      "clamp's and in line with it (allowed: frame or quaternion)");
+    }
+  }
 }
 
 /// Edges of a box: `size` along `axis`, along `normal` and across both.
@@ -352,11 +343,12 @@ Scene read_scene(const toml::table& root, const std::string& file,
         "{}: gripper: none given, nothing would hold the rod (allowed: one or more [[gripper]])",
         file));
   }
-  check_twist(scene, rod, grippers);
+  check_twist(scene, rod);
   for (StrictTable& entry : bounded_tables(table, "load", most_loads)) {
     scene.loads.push_back(read_load(entry, scene));
   }
   check_material_directors(scene, rod);
+  check_rolls(scene, grippers);
   if (auto settings = table.optional_table("force_model")) {
     scene.force_model = read_force_model(*settings);
     check(scene.force_model, settings->where());

@@ -1,8 +1,10 @@
 #include "solve/held_frames.hpp"
 
 #include <Eigen/Geometry>
-#include <numbers>
+#include <optional>
 
+#include "dlo/energy_model/turns.hpp"
+#include "polygon/energy_problems.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {
@@ -29,31 +31,28 @@ force_model::Rod with_frames(const Scene& scene, const Discretisation& discretis
   force_model::Rod rod = discretisation.rod;
   const std::vector<std::size_t> framed = framed_grippers(scene);
   rod.twist.angles.resize(static_cast<Eigen::Index>(framed.size()) - 1);
+  const energy_model::Problem problem = energy_problem(scene);
   for (std::size_t k = 0; k < framed.size(); ++k) {
-    const FrameHold& frame = *scene.grippers[framed[k]].frame;
+    const energy_model::Grip& held = problem.grips[framed[k]];
     force_model::Grip& grip = rod.grips[framed[k]];
     const Eigen::Vector3d axis = direction_of(grip.targets, 0);
-    if (k == 0) {
-      grip.d1 = frame.d1.value_or(axis.unitOrthogonal());
-      continue;
-    }
-    const FrameHold& before = *scene.grippers[framed[k - 1]].frame;
+    const Eigen::Vector3d d1 = energy_model::held_d1(problem, held);
+    grip.d1 = Eigen::AngleAxisd(held.frame->roll, axis) * d1;
+    if (k == 0) continue;
+    const energy_model::Grip& before = problem.grips[framed[k - 1]];
     const force_model::Grip& first = rod.grips[framed[k - 1]];
     force_model::TwistedSpan span;
     span.first_segment = first.first_point;
     span.last_segment = grip.first_point;
-    span.first_d1 = *first.d1;
-    span.last_d1 = frame.d1.value_or(axis.unitOrthogonal());
+    span.first_d1 = energy_model::held_d1(problem, before);
+    span.last_d1 = d1;
     span.compliance = 1;
     const double ahead = force_model::twist_angle(span, untwisted);
-    double& angle = rod.twist.angles[static_cast<Eigen::Index>(k) - 1];
-    angle = frame.roll - before.roll;
-    if (before.d1 && frame.d1) {
-      // Half a turn is half a turn, whatever rounding says.
-      constexpr double rounding = 1e-9;
-      angle += ahead < rounding - std::numbers::pi ? std::numbers::pi : ahead;
-    }
-    grip.d1 = Eigen::AngleAxisd(angle - ahead, axis) * span.last_d1;
+    const Eigen::Index points = span.last_segment - span.first_segment + 1;
+    const std::optional<double> writhe = energy_model::writhe(
+        untwisted.middleCols(span.first_segment, points), direction_of(first.targets, 0), axis);
+    rod.twist.angles[static_cast<Eigen::Index>(k) - 1] = energy_model::turned_angle(
+        energy_model::turns_between(problem, before, held), ahead, writhe);
   }
   return rod;
 }

@@ -9,9 +9,7 @@
 
 namespace dlo::compare {
 
-/// The rod of a discretisation, held by the frames of the scene's clamps. Where d1 is held the
-/// scene says, or else where the polygon that rests without twist has it, turned on by the roll;
-/// the twist (Twist::angles) is what the frames put into that polygon, whole turns counted, as
+/// The rod of a discretisation, held by the frames of the scene's clamps; the twist (Twist::angles) is what the frames put into that polygon, whole turns counted, as
 /// energy_model::Problem counts it.
 /// @param untwisted  where the polygon rests without frames [m]
 [[nodiscard]] force_model::Rod with_frames(const Scene& scene, const Discretisation& discretisation,

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <optional>
+#include <string>
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
@@ -8,14 +8,6 @@
 #include "dlo/energy_model/equilibrium.hpp"
 
 namespace dlo::compare {
-
-/// Writhe of a curve that goes on straight at both ends, to where it closes in the plane of its end
-/// tangents: Gauss's integral over polygons, exact for each (Klenin and Langowski 2000, method 1a).
-/// None where an end's line passes through the curve or the other end's line.
-/// @param points  3 x M, M >= 2;  @param first, last  unit tangents of its ends
-[[nodiscard]] std::optional<double> writhe(const Eigen::Matrix3Xd& points,
-                                           const Eigen::Vector3d& first,
-                                           const Eigen::Vector3d& last);
 
 /// Of each part that is held at both ends by frames. The twist and the writhe add up to the turns
 /// between the frames (Calugareanu, White, Fuller), which no movement changes unless the rod

@@ -2,6 +2,7 @@
 
 #include <nlopt.h>
 
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <memory>
@@ -47,8 +48,6 @@ double evaluate(unsigned n, const double* x, double* gradient, void* data) {
   }
 }
 
-}  // namespace
-
 MinimiseResult translate_nlopt(int code) {
   switch (code) {
     case NLOPT_SUCCESS:
@@ -76,6 +75,17 @@ MinimiseResult translate_nlopt(int code) {
   }
 }
 
+/// NLopt keeps two vectors of n numbers for each step, in one block whose size it counts in an int.
+unsigned remembered_steps(const MinimiseOptions& options, unsigned n) {
+  constexpr unsigned most_numbers = 1U << 24U;  // 128 MB in either half
+  constexpr unsigned fewest_steps = 8;
+  const unsigned wanted =
+      options.remembered_steps > 0 ? static_cast<unsigned>(options.remembered_steps) : n;
+  return std::min(wanted, std::max(fewest_steps, most_numbers / std::max(n, 1U)));
+}
+
+}  // namespace
+
 MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
                               const MinimiseOptions& options) {
   const auto n = static_cast<unsigned>(x.size());
@@ -89,8 +99,7 @@ MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
             .thrown = nullptr};
   nlopt_set_min_objective(optimiser.get(), evaluate, &call);
   nlopt_set_maxeval(optimiser.get(), options.max_evaluations);
-  const int remembered = options.remembered_steps;
-  nlopt_set_vector_storage(optimiser.get(), remembered > 0 ? static_cast<unsigned>(remembered) : n);
+  nlopt_set_vector_storage(optimiser.get(), remembered_steps(options, n));
   double minimum = 0;
   const nlopt_result code = nlopt_optimize(optimiser.get(), x.data(), &minimum);
   if (call.thrown) std::rethrow_exception(call.thrown);

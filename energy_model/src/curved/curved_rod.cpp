@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "dlo/energy_model/turns.hpp"
 #include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
@@ -72,19 +73,19 @@ CurvedRod make_curved_rod(const Problem& problem) {
   for (RodSpan::Part& part : rod.span.parts) {
     part.section.weight = in_axes(rod.axes, part.section.weight);
   }
+  Grip first;
   for (const RodSpan::Hold& hold : rod.span.holds) {
     const Grip& grip = problem.grips[hold.grip];
     if (!grip.direction) continue;
     CurvedRod::Clamp clamp{hold.at, in_axes(rod.axes, grip.direction->normalized()), {}};
     if (rod.clamps.empty()) {
       clamp.direction = Eigen::Vector3d::UnitZ();
-      if (grip.frame) rod.first_roll = grip.frame->roll;
+      first = grip;
+      if (!first.frame) first.frame = FrameHold{};
+      rod.first_roll = first.frame->roll;
     } else if (grip.frame) {
-      clamp.frame = grip.frame;
-      if (grip.frame->d1) {
-        clamp.frame->d1 = frame_of(in_axes(rod.axes, *grip.frame->d1), clamp.direction).col(0);
-      }
-      clamp.frame->roll -= rod.first_roll;
+      clamp.frame = CurvedRod::Clamp::Frame{in_axes(rod.axes, held_d1(problem, grip)),
+                                            turns_between(problem, first, grip)};
     }
     rod.clamps.push_back(clamp);
   }

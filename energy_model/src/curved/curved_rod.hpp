@@ -19,8 +19,12 @@ struct CurvedRod {
   struct Clamp {
     double at = 0;
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
-    /// Of a clamp after the first: d1 is across the direction and unit, the roll less the first's.
-    std::optional<FrameHold> frame;
+    /// Of a clamp after the first that holds its frame.
+    struct Frame {
+      Eigen::Vector3d d1;  ///< across the direction, unit, not rolled
+      HeldTurns turns;     ///< from the first clamp on
+    };
+    std::optional<Frame> frame;
   };
   RodSpan span;               ///< all of the rod, without directions
   std::vector<Clamp> clamps;  ///< by growing s; the first one holds the frame that is 1

@@ -3,13 +3,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include "base/found_equilibria.hpp"
 #include "base/require.hpp"
+#include "base/sized_samples.hpp"
 #include "curved/curved_polygon.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "problem/rod_law.hpp"
 #include "shooting/span_equilibrium.hpp"
 #include "shooting/span_shooting.hpp"
@@ -18,7 +19,6 @@ namespace dlo::energy_model {
 namespace {
 
 using Eigen::Quaterniond;
-using std::numbers::pi;
 
 constexpr double most_force = 1e6;               // of weight and loads, in EI/l^2
 constexpr double same_frames = 1e-6;             // of two equilibria
@@ -181,17 +181,26 @@ class CurvedSearch {
   /// By which the frames are turned from where the rod without them has them.
   [[nodiscard]] std::vector<double> targets_of(const CurvedEquilibrium& released) const {
     std::vector<double> targets;
+    const auto sample = [&](std::span<const double> at) {
+      Samples samples = sized_samples(at, 1);
+      const auto states =
+          curved_states_at(released, rod_, {at.begin(), at.end()}, options_.tolerance);
+      for (std::size_t i = 0; i < states.size(); ++i) {
+        samples.points.col(static_cast<Eigen::Index>(i)) = states[i].r;
+        samples.tangents.col(static_cast<Eigen::Index>(i)) = states[i].R.col(2);
+      }
+      return samples;
+    };
     for (const CurvedRod::Clamp& clamp : rod_.clamps) {
       targets.push_back(0);
       if (!clamp.frame) continue;
-      targets.back() = clamp.frame->roll;
-      if (!clamp.frame->d1) continue;
+      const auto& [d1, turns] = *clamp.frame;
       // From the frame that the rod without rolls would have there.
       const Eigen::Matrix3d own = rolled(frame_at(released, clamp.at), -rod_.first_roll);
-      const double angle =
-          std::atan2(own.col(1).dot(*clamp.frame->d1), own.col(0).dot(*clamp.frame->d1));
-      constexpr double rounding = 1e-9;  // half a turn is half a turn
-      targets.back() += angle < rounding - pi ? pi : angle;
+      const double ahead = std::atan2(own.col(1).dot(d1), own.col(0).dot(d1));
+      std::optional<double> before;
+      if (turns.turns) before = writhe(sample, rod_.clamps.front().at, clamp.at);
+      targets.back() = turned_angle(turns, ahead, before);
     }
     return targets;
   }
@@ -373,12 +382,8 @@ CurvedEquilibrium refine_curved(const CurvedRod& rod, const Problem& problem,
   for (std::size_t k = 0; k < frames.size(); ++k) {
     const CurvedRod::Clamp& clamp = rod.clamps[k];
     if (!clamp.frame) continue;
-    const Eigen::Index node =
-        std::lower_bound(mesh.s.begin(), mesh.s.end(), clamp.at) - mesh.s.begin();
-    frames[k] = clamp.frame->d1
-                    ? rolled(frame_of(*clamp.frame->d1, clamp.direction),
-                             clamp.frame->roll + rod.first_roll)
-                    : frame_of(start[static_cast<std::size_t>(node)].R.col(0), clamp.direction);
+    frames[k] = rolled(frame_of(clamp.frame->d1, clamp.direction),
+                       clamp.frame->turns.roll + rod.first_roll);
   }
   CurvedOptions options;
   options.tolerance = tolerance;

@@ -28,8 +28,7 @@ struct CurvedSearchResult {
 
 /// The equilibrium that Newton's method leads to from a shape of this problem or a similar one: its
 /// frames are those of its d1, or turn from the first clamp's by the torque that its grips imply
-/// where it has none. Frames after the first clamp's are held
-/// where d1 and the rolls say, or without d1 where the shape has them.
+/// where it has none.
 /// @throws std::invalid_argument if there is no clamp
 [[nodiscard]] CurvedEquilibrium refine_curved(const CurvedRod& rod, const Problem& problem,
                                               const Equilibrium& shape, double tolerance,

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/require.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 
@@ -44,21 +45,17 @@ std::optional<Plane> plane_of(const RodSpan& span) {
 }
 
 /// What the clamps at the ends of a span hold; nothing unless both hold the rod's frame.
-std::optional<RodSpan::Twist> twist_between(const std::vector<RodSpan::Part>& parts,
+std::optional<RodSpan::Twist> twist_between(const Problem& problem,
+                                            const std::vector<RodSpan::Part>& parts,
                                             const Grip* start, const Grip* end) {
   if (start == nullptr || end == nullptr || !start->frame || !end->frame) return std::nullopt;
   RodSpan::Twist twist;
   for (const RodSpan::Part& part : parts) {
     twist.compliance += (part.end - part.begin) / part.section.torsion;
   }
-  twist.roll = end->frame->roll - start->frame->roll;
-  if (!start->frame->d1 || !end->frame->d1) return twist;
-  const auto across = [](const Grip& grip) {
-    const Eigen::Vector3d t = grip.direction->normalized();
-    return Eigen::Vector3d((*grip.frame->d1 - grip.frame->d1->dot(t) * t).normalized());
-  };
-  twist.start_d1 = across(*start);
-  twist.end_d1 = across(*end);
+  twist.start_d1 = held_d1(problem, *start);
+  twist.end_d1 = held_d1(problem, *end);
+  twist.turns = turns_between(problem, *start, *end);
   return twist;
 }
 
@@ -110,7 +107,7 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
   std::stable_sort(span.loads.begin(), span.loads.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
   span.plane = plane_of(span);
-  span.twist = twist_between(span.parts, start_clamp, end_clamp);
+  span.twist = twist_between(problem, span.parts, start_clamp, end_clamp);
   return span;
 }
 

@@ -7,6 +7,7 @@
 
 #include "dlo/energy_model/plane.hpp"
 #include "dlo/energy_model/problem.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "kirchhoff/rod_flow.hpp"
 
 namespace dlo::energy_model {
@@ -32,10 +33,9 @@ struct RodSpan {
   };
   /// What clamps at both ends that hold the rod's frame ask for.
   struct Twist {
-    double compliance = 0;  ///< int EI / GJ ds
-    double roll = 0;        ///< of the end less that of the beginning [rad]
-    /// First directors, across the directions, unit; of both ends or of none.
-    std::optional<Eigen::Vector3d> start_d1, end_d1;
+    double compliance = 0;             ///< int EI / GJ ds
+    Eigen::Vector3d start_d1, end_d1;  ///< across the directions, unit, not rolled
+    HeldTurns turns;
   };
   double begin = 0;  ///< arc length of s = 0
   double length = 1;

@@ -9,6 +9,7 @@
 #include "base/require.hpp"
 #include "base/spin.hpp"
 #include "dlo/energy_model/plane.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
 
@@ -109,15 +110,11 @@ double mean_torsion(const Problem& problem, double begin, double end) {
   return (end - begin) / compliance / bending_unit(problem);
 }
 
-/// The frame in which a clamp holds a rod with material directors; it is the first one, or says
-/// where d1 is.
+/// The frame in which a clamp holds a rod with material directors; it is the first one, or holds
+/// its frame.
 Eigen::Matrix3d material_frame(const Problem& problem, const OrderedGrip& clamp) {
   if (clamp.index == first_clamp(problem)) return first_frame(problem);
-  const FrameHold* const frame = clamp.grip->frame ? &*clamp.grip->frame : nullptr;
-  require(frame != nullptr && frame->d1.has_value(), "Problem",
-          "arc length of a clamp after the first one, whose frame lacks d1", clamp.grip->at,
-          "the rod's end, where the rod is not round or not straight by nature");
-  return held_frame(*clamp.grip, *frame->d1);
+  return held_frame(*clamp.grip, held_d1(problem, *clamp.grip));
 }
 
 /// The rod's directors at the start of a span, as columns in the span's axes; its tangent there is
@@ -194,20 +191,14 @@ void place_material_directors(const Problem& problem, PlacedSpan& placed,
 /// What two clamps do with the rod's frame between them, seen in a span's own axes.
 std::optional<HeldFrames> frames_of(const Problem& problem, const OrderedGrip& start,
                                     const Grip& end, const Eigen::Matrix3d& axes) {
-  const bool fixed = has_material_directors(problem);
-  if (!end.frame || !(fixed || start.grip->frame)) return std::nullopt;
-  const double start_roll = start.grip->frame ? start.grip->frame->roll : 0;
-  HeldFrames frames;
-  frames.stiffness = mean_torsion(problem, start.grip->at, end.at);
-  frames.roll = end.frame->roll - start_roll;
-  if (fixed) {
-    const Eigen::Matrix3d held = material_frame(problem, start);
-    frames.start_d1 = axes * (Eigen::AngleAxisd(-start_roll, held.col(2)) * held.col(0));
-  } else if (start.grip->frame->d1) {
-    frames.start_d1 = axes * *start.grip->frame->d1;
-  }
-  if (end.frame->d1) frames.end_d1 = axes * *end.frame->d1;
-  return frames;
+  if (!end.frame || !(has_material_directors(problem) || start.grip->frame)) return std::nullopt;
+  // The first clamp of a rod with material directors holds them, frame or none.
+  Grip first = *start.grip;
+  if (!first.frame) first.frame = FrameHold{};
+  return HeldFrames{.stiffness = mean_torsion(problem, first.at, end.at),
+                    .start_d1 = axes * held_d1(problem, first),
+                    .end_d1 = axes * held_d1(problem, end),
+                    .turns = turns_between(problem, first, end)};
 }
 
 /// The span between arc lengths `begin` and `end`; it runs backwards from a clamp at `end` if there

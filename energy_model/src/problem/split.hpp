@@ -6,15 +6,16 @@
 #include <vector>
 
 #include "dlo/energy_model/problem.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "problem/span.hpp"
 
 namespace dlo::energy_model {
 
 /// What the clamps at both ends of a span do with the rod's frame; in the span's frame.
 struct HeldFrames {
-  double stiffness = 0;                             ///< GJ / EI
-  std::optional<Eigen::Vector3d> start_d1, end_d1;  ///< none: where the untwisted rod has it
-  double roll = 0;                                  ///< of the end, less the start's [rad]
+  double stiffness = 0;              ///< GJ / EI
+  Eigen::Vector3d start_d1, end_d1;  ///< not rolled
+  HeldTurns turns;
 };
 
 /// A span and where it lies in its problem.

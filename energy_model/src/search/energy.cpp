@@ -196,7 +196,7 @@ class EnergySolver::State {
                                                     RememberedTwist& memory) {
     const HeldFrames& held = *placed.frames;
     const auto from_shape = [&](const TangentField& field, double twist,
-                                const std::optional<Eigen::Vector3d>& end_d1) {
+                                const Eigen::Vector3d& end_d1) {
       PlacedSolution to{placed, twist_from(field, twist, end_d1, placed.span, held.stiffness,
                                            options, workspace_)};
       to.placed.span.planar = false;
@@ -210,10 +210,11 @@ class EnergySolver::State {
         options_.start != nullptr && !options.all && !(warm && memory.twisted.model);
     const TwistedPart* part =
         starts ? known_twist(*options_.start, placed, problem.length) : nullptr;
-    const std::optional<Eigen::Vector3d> known_d1 = known_end_d1(held, placed.span);
-    if (part && known_d1) {
-      PlacedSolution to =
-          from_shape(field_of(*options_.start, placed, problem.length), part->angle, known_d1);
+    // A shape of other turns than are asked for is none to start from.
+    if (part && holds_turns(held.turns, part->angle,
+                            writhe(options_.start->sample, part->begin, part->end))) {
+      PlacedSolution to = from_shape(field_of(*options_.start, placed, problem.length), part->angle,
+                                     held_end_d1(held, placed.span));
       if (is_known(to.solution)) return one(std::move(to));
     }
     const Remembered* last = warm && memory.untwisted.model ? &memory.untwisted : nullptr;
@@ -228,13 +229,6 @@ class EnergySolver::State {
     if (!succeeded(untwisted.front().solution.status)) return untwisted;
     const EndFrame frame = end_frame(held, untwisted_shape(untwisted.front().solution, workspace_));
     const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
-    // A roll counts from the rod without twist, of which the shape to start from knows nothing.
-    if (part && !known_d1 && std::abs(frame.twist - part->angle) < std::numbers::pi) {
-      PlacedSolution to =
-          from_shape(field_of(*options_.start, placed, problem.length), part->angle, frame.d1);
-      to.solution.evaluations += untwisted.front().solution.evaluations;
-      if (is_known(to.solution)) return one(std::move(to));
-    }
     if (warm && memory.twisted.model && std::abs(turned) < largest_followed_turn && !options.all) {
       const auto field = [&placed, &memory](const Eigen::VectorXd& s) {
         return follow_field(placed, memory.twisted, s);

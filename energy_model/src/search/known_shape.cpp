@@ -48,8 +48,9 @@ std::vector<PlacedSolution> spans_in_space(const Problem& problem, const Equilib
     const TangentField field = field_of(known, placed, problem.length);
     const TwistedPart* twisted = known_twist(known, placed, problem.length);
     if (placed.frames && twisted != nullptr) {
-      SpanSolution solution = twist_from(field, twisted->angle, std::nullopt, placed.span,
-                                         placed.frames->stiffness, options, workspace);
+      SpanSolution solution =
+          twist_from(field, twisted->angle, held_end_d1(*placed.frames, placed.span), placed.span,
+                     placed.frames->stiffness, options, workspace);
       result.push_back({std::move(placed), std::move(solution)});
       continue;
     }

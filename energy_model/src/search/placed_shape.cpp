@@ -7,6 +7,7 @@
 
 #include "base/sized_samples.hpp"
 #include "base/spin.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "problem/rod_law.hpp"
 
 namespace dlo::energy_model {
@@ -45,16 +46,12 @@ void turn_to(PlacedShape& shape, double length, double arc_length, const Eigen::
   shape.ahead = [by, before = std::move(shape.ahead)](double s) { return by + before(s); };
 }
 
-/// Where the first of the grips that twist holds d1; the frame that its span has if it does not
-/// say.
-Eigen::Vector3d first_d1(const Problem& problem, const PlacedShape& shape, double arc_length) {
-  const Samples span = sample({shape}, problem.length, std::vector<double>{arc_length});
-  for (const Grip& grip : problem.grips) {
-    if (std::abs(grip.at - arc_length) > same_place * problem.length) continue;
-    if (!grip.frame || !grip.frame->d1) continue;
-    return held_frame(grip, *grip.frame->d1).col(0);
-  }
-  return span.d1.col(0);
+/// Where the first of the grips that twist holds d1.
+Eigen::Vector3d first_d1(const Problem& problem, double arc_length) {
+  const auto grip = std::ranges::find_if(problem.grips, [&](const Grip& each) {
+    return each.frame && std::abs(each.at - arc_length) <= same_place * problem.length;
+  });
+  return held_frame(*grip, held_d1(problem, *grip)).col(0);
 }
 
 }  // namespace
@@ -92,7 +89,7 @@ void place_twisted_material(const Problem& problem,
     };
   }
   const auto held = static_cast<std::size_t>(first - solutions.begin());
-  turn_to(shapes[held], l, begins[held], first_d1(problem, shapes[held], begins[held]));
+  turn_to(shapes[held], l, begins[held], first_d1(problem, begins[held]));
   for (std::size_t i = held + 1; i < shapes.size(); ++i) {
     turn_to(shapes[i], l, begins[i], material_at(shapes[i - 1], l, begins[i]).d1);
   }

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <optional>
 #include <string>
 #include <utility>
 
 #include "base/legendre.hpp"
+#include "base/sized_samples.hpp"
 #include "certify/enough_terms.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "linear/free_directions.hpp"
 #include "newton/penalty_descent.hpp"
 #include "newton/trust_region.hpp"
@@ -319,11 +320,10 @@ class TwistPath {
 
 }  // namespace
 
-std::optional<Eigen::Vector3d> known_end_d1(const HeldFrames& held, const Span& span) {
-  if (!held.start_d1 || !held.end_d1) return std::nullopt;
+Eigen::Vector3d held_end_d1(const HeldFrames& held, const Span& span) {
   const Eigen::Vector3d& start = *span.start_direction;
-  const double ahead = angle_about(start, span.first_d1(start), *held.start_d1);
-  return Eigen::AngleAxisd(held.roll - ahead, *span.end_direction) * *held.end_d1;
+  const double ahead = angle_about(start, span.first_d1(start), held.start_d1);
+  return Eigen::AngleAxisd(held.turns.roll - ahead, *span.end_direction) * held.end_d1;
 }
 
 UntwistedShape untwisted_shape(const SpanSolution& solution, SpanWorkspace& workspace) {
@@ -332,17 +332,23 @@ UntwistedShape untwisted_shape(const SpanSolution& solution, SpanWorkspace& work
   const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);
   Eigen::VectorXd gradient(model->size());
   (void)model->value(model->adopt(*solution.model, solution.x), gradient);
-  return {solution, model->transported_d1()};
+  const SpanShape shape = solution.model->shape(solution.x);
+  const auto sample = [&shape, length = span.length](std::span<const double> at) {
+    const SpanSamples own = shape.sample(at);
+    Samples samples = sized_samples(at, length);
+    samples.points = own.points;
+    samples.tangents = own.tangents;
+    return samples;
+  };
+  return {solution, model->transported_d1(), writhe(sample, 0, span.length)};
 }
 
 EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted) {
   const Span& span = untwisted.solution.model->span();
   const Eigen::Vector3d& axis = *span.end_direction;
-  const Eigen::Vector3d& d1 = untwisted.end_d1;
-  const std::optional<Eigen::Vector3d> known = known_end_d1(held, span);
-  if (!known) return {Eigen::AngleAxisd(held.roll, axis) * d1, held.roll};
-  const double least = angle_about(axis, d1, Eigen::AngleAxisd(-held.roll, axis) * *known);
-  return {*known, least + held.roll};
+  const Eigen::Vector3d d1 = held_end_d1(held, span);
+  const double ahead = angle_about(axis, untwisted.end_d1, d1) - held.turns.roll;
+  return {d1, turned_angle(held.turns, ahead, untwisted.writhe)};
 }
 
 SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
@@ -361,13 +367,13 @@ SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
   return solution;
 }
 
-SpanSolution twist_from(const TangentField& field, double twist,
-                        const std::optional<Eigen::Vector3d>& end_d1, const Span& span,
-                        double stiffness, const SpanOptions& options, SpanWorkspace& workspace) {
+SpanSolution twist_from(const TangentField& field, double twist, const Eigen::Vector3d& end_d1,
+                        const Span& span, double stiffness, const SpanOptions& options,
+                        SpanWorkspace& workspace) {
   workspace.newton().limit(options.deadline);
   Span twisted = span;
   twisted.planar = false;
-  twisted.twist = Span::Twist{stiffness, end_d1.value_or(Span::d1(*span.end_direction))};
+  twisted.twist = Span::Twist{stiffness, end_d1};
   SpanSolution solution;
   // The shape does not say how many terms it takes.
   for (int terms = std::max(unknown_terms, options.least_terms);;
@@ -377,13 +383,6 @@ SpanSolution twist_from(const TangentField& field, double twist,
     SpanEnergy& model = *solution.model;
     solution.terms = terms;
     solution.x = model.with_twist(model.fit(field(model.nodes())), twist);
-    if (!end_d1) {
-      Eigen::VectorXd gradient(model.size());
-      (void)model.value(solution.x, gradient);
-      const Eigen::AngleAxisd about(twist, *span.end_direction);
-      twisted.twist->end_d1 = about * model.transported_d1();
-      model.turn_end_clamp(twisted.twist->end_d1);
-    }
     workspace.newton().polish(solution, span.total_load());
     const bool more = terms < max_terms && 3 * model.size() / 2 < most_unknowns;
     if (solution.is_equilibrium()) break;

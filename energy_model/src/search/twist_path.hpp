@@ -13,18 +13,18 @@ struct EndFrame {
   double twist;        ///< of the rod that has been twisted from the untwisted shape [rad]
 };
 
-/// A shape of a span, planar or not, and d1 at its end, transported from Span::first_d1() at its
-/// start.
+/// A shape of a span, planar or not.
 struct UntwistedShape {
   const SpanSolution& solution;
-  Eigen::Vector3d end_d1;
+  Eigen::Vector3d end_d1;  ///< transported from Span::first_d1() at its start
+  std::optional<double> writhe;
 };
 
 [[nodiscard]] UntwistedShape untwisted_shape(const SpanSolution& solution,
                                              SpanWorkspace& workspace);
 
-/// d1 at the end where both clamps say where d1 is, whatever the shape: Span::Twist::end_d1.
-[[nodiscard]] std::optional<Eigen::Vector3d> known_end_d1(const HeldFrames& held, const Span& span);
+/// Span::Twist::end_d1 of a span whose frames are held so.
+[[nodiscard]] Eigen::Vector3d held_end_d1(const HeldFrames& held, const Span& span);
 
 /// Where the later clamp holds d1, and how far that twists this shape, whole turns counted.
 [[nodiscard]] EndFrame end_frame(const HeldFrames& held, const UntwistedShape& untwisted);
@@ -41,10 +41,10 @@ struct UntwistedShape {
 
 /// The equilibrium next to a twisted shape that is known: its tangents, and its twist, whole turns
 /// counted.
-/// @param end_d1  where the end's clamp holds d1; none: where the shape has it
+/// @param end_d1  Span::Twist::end_d1
 [[nodiscard]] SpanSolution twist_from(const TangentField& field, double twist,
-                                      const std::optional<Eigen::Vector3d>& end_d1,
-                                      const Span& span, double stiffness,
-                                      const SpanOptions& options, SpanWorkspace& workspace);
+                                      const Eigen::Vector3d& end_d1, const Span& span,
+                                      double stiffness, const SpanOptions& options,
+                                      SpanWorkspace& workspace);
 
 }  // namespace dlo::energy_model

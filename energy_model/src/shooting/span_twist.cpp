@@ -3,10 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
+#include "base/sized_samples.hpp"
+#include "dlo/energy_model/turns.hpp"
 #include "shooting/gradient_flow.hpp"
 
 namespace dlo::energy_model {
@@ -42,12 +43,6 @@ bool carry_director(const RodMesh& mesh, double tolerance, const Eigen::Vector3d
   return true;
 }
 
-/// The director at the beginning.
-Eigen::Vector3d first_director(const RodSpan& span) {
-  return span.twist->start_d1 ? *span.twist->start_d1
-                              : Eigen::Vector3d(span.start_direction->unitOrthogonal());
-}
-
 /// Directors are of no use in a result, and would have to be followed wherever it is sampled.
 SpanEquilibrium without_directors(SpanEquilibrium equilibrium) {
   for (RodState& node : equilibrium.nodes) node.d.setZero();
@@ -63,7 +58,7 @@ class Continuation {
   SpanEquilibrium run(const SpanEquilibrium& without) {
     now_ = without;
     shots_ = without.shots;
-    if (!carry_director(mesh_at(span_, now_.s), tolerance_, first_director(span_), now_.nodes)) {
+    if (!carry_director(mesh_at(span_, now_.s), tolerance_, span_.twist->start_d1, now_.nodes)) {
       return failure("the integrator gave up on the frame");
     }
     untwisted_end_ = now_.nodes.back().d;
@@ -99,21 +94,26 @@ class Continuation {
 
  private:
   void find_target() {
-    target_ = span_.twist->roll;
-    if (!span_.twist->end_d1) return;
-    const Eigen::Vector3d& d = *span_.twist->end_d1;
-    const Eigen::Vector3d ahead = span_.end_direction->cross(untwisted_end_);
-    const double angle = std::atan2(ahead.dot(d), untwisted_end_.dot(d));
-    // In (-pi, pi]: half a turn is half a turn, whatever rounding says.
-    constexpr double rounding = 1e-9;
-    target_ += angle < rounding - std::numbers::pi ? std::numbers::pi : angle;
+    const Eigen::Vector3d& d1 = span_.twist->end_d1;
+    const Eigen::Vector3d side = span_.end_direction->cross(untwisted_end_);
+    const double ahead = std::atan2(side.dot(d1), untwisted_end_.dot(d1));
+    const auto sample = [this](std::span<const double> at) {
+      Samples samples = sized_samples(at, span_.length);
+      for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
+        const RodState state = state_at(now_, span_, at[static_cast<std::size_t>(i)], tolerance_);
+        samples.points.col(i) = state.r;
+        samples.tangents.col(i) = state.t;
+      }
+      return samples;
+    };
+    target_ = turned_angle(span_.twist->turns, ahead, writhe(sample, 0, span_.length));
   }
 
   [[nodiscard]] ShootingOptions options(double roll) const {
     return {.tolerance = tolerance_,
             .max_iterations = step_iterations,
             .deadline = deadline_,
-            .frames = ShotFrames{first_director(span_),
+            .frames = ShotFrames{span_.twist->start_d1,
                                  turned(untwisted_end_, *span_.end_direction, roll)}};
   }
 
@@ -217,18 +217,17 @@ SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without, 
 SpanEquilibrium refine_twisted(const RodSpan& span, const RodMesh& mesh,
                                std::vector<RodState> start, double tolerance,
                                const Deadline& deadline) {
-  if (!carry_director(mesh, tolerance, first_director(span), start)) {
+  if (!carry_director(mesh, tolerance, span.twist->start_d1, start)) {
     SpanEquilibrium failed;
     failed.message = "the integrator gave up on the frame";
     return failed;
   }
   const Eigen::Vector3d end =
-      span.twist->end_d1 ? turned(*span.twist->end_d1, *span.end_direction, span.twist->roll)
-                         : start.back().d;
+      turned(span.twist->end_d1, *span.end_direction, span.twist->turns.roll);
   return without_directors(shoot_span(span, mesh, std::move(start),
                                       {.tolerance = tolerance,
                                        .deadline = deadline,
-                                       .frames = ShotFrames{first_director(span), end}}));
+                                       .frames = ShotFrames{span.twist->start_d1, end}}));
 }
 
 }  // namespace dlo::energy_model

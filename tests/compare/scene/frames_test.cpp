@@ -148,12 +148,8 @@ TEST(Frames, ErrorsNameFileLineKeyAndWhatIsAllowed) {
        {"my.toml:5", "rod.torsional_stiffness", "> 0"}},
       {rod_without_torsion + "torsional_stiffness = \"1 Nm^2\"\n" + first,
        {"my.toml:5", "rod.torsional_stiffness", "N m^2, N mm^2"}},
-      {rod + "natural_curvature = \"1 1/m\"\n" + gripper(0, directors) +
-           gripper(0.2, plain + "roll = 1\n"),
-       {"gripper.roll = 1", "curved by nature", "frame or quaternion"}},
-      // By arc length it is between the others.
-      {rod + gripper(0, directors) + gripper(0.5, directors) + gripper(0.2, plain + "roll = 1\n"),
-       {"my.toml:21: gripper.roll = 1", "frame or quaternion"}},
+      {rod + first + gripper(0.5, "direction = \"180 deg\"\nroll = 1\n"),
+       {"gripper.roll = 1", "opposite", "frame or quaternion"}},
   };
   for (const BadFrame& bad : cases) {
     std::string text = "no error";

@@ -79,7 +79,7 @@ struct Discretisation {
 /// is that of the mean 1/EI (of the law `paper` c_b goes with it), and its turn at rest the natural
 /// curvature times its length. The law `paper`, and a rod that does not lie in its plane, leave the
 /// natural curvature out. GJ goes with EI where the clamps twist the rod and the law is hooke;
-/// their frames are no part of this, as a roll counts from where the rod rests without twist.
+/// their frames are no part of this, as whole turns are counted from where the rod rests without twist.
 ///
 /// A half-space is a wall of the force model, which acts on points, each with L times the
 /// obstacle's stiffness, as walls have one stiffness for all points (the last point of a free end

@@ -15,8 +15,8 @@ namespace dlo::compare {
 
 /// Keeps a clamped cross-section from turning about its direction.
 struct FrameHold {
-  /// First director of the rod's frame, unit and across the direction; none: where the same rod
-  /// without twist has it.
+  /// First director of the rod's frame, unit and across the direction; none: that of the first
+  /// clamp that holds the frame, carried here by the shortest rotation of its direction.
   std::optional<Eigen::Vector3d> d1;
   double roll = 0;  ///< turned on from there about the direction, whole turns counted [rad]
 

@@ -15,9 +15,8 @@ struct ExactOptions {
   double time_limit = std::numeric_limits<double>::infinity();
   /// A shape to confirm or correct, of this problem or a similar one, with its grips' reactions:
   /// Newton's method starts from it, without a search. Has to outlive the call. Where clamps twist
-  /// the rod it starts with the torque of the shape's `twists` and counts whole turns as they do;
-  /// the frame at the end is held where both clamps' d1 and the rolls say, or without d1 where the
-  /// shape has it. A shape without `twists` is taken for the rod without twist. Of a rod with
+  /// the rod it starts with the torque of the shape's `twists` and counts whole turns as they do. A
+  /// shape without `twists` is taken for the rod without twist. Of a rod with
   /// material directors the frames are those of the shape's d1 or, if it has none, follow from the
   /// first clamp's, of which there has to be one, and from what the grips exert.
   const Equilibrium* start = nullptr;

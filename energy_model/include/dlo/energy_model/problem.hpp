@@ -14,7 +14,8 @@ namespace dlo::energy_model {
 /// Keeps a clamped cross-section from turning about its direction.
 struct FrameHold {
   /// First director of the rod's frame there, of which the part across the direction counts; none:
-  /// where the same rod without twist has it.
+  /// that of the first clamp that holds the frame, carried here by the shortest rotation of that
+  /// clamp's direction into this one's (held_d1() in turns.hpp).
   std::optional<Eigen::Vector3d> d1;
   double roll = 0;  ///< turned on from there about the direction, whole turns counted [rad]
 };
@@ -55,19 +56,20 @@ struct Section {
 /// An inextensible rod, round or of two bending stiffnesses about the principal axes d1 and d2 of
 /// its section, as a ribbon or a flat cable has them.
 ///
-/// Two neighbouring clamps that hold frames twist the rod between them by the difference of their
-/// rolls, the later less the earlier; if both say where d1 is, by the angle in (-pi, pi] more by
-/// which the later one's is turned from the earlier one's as the rod without twist transports it.
-/// That rod is the lowest minimum of the same problem without frames; from there the twist is put
-/// in little by little, and where a shape cannot hold itself any more it falls to the next one.
+/// Two neighbouring clamps that hold frames say by themselves what turns are in the rod between
+/// them, whatever its shape: the angle in (-pi, pi] from the earlier one's d1, carried by the
+/// shortest rotation of its direction, to the later one's, and the later roll less the earlier.
+/// Twist and writhe of a shape of the rod add up to that. It is put in, little by little, from the
+/// lowest minimum of the same problem without frames on, and where a shape cannot hold itself any
+/// more it falls to the next one. Of a rod that is not straight by nature only the frames are
+/// held, and of the turns that they leave open those nearest to the rod without them.
 ///
 /// A rod that is not straight by nature, or that has a bending_stiffness_2 anywhere, has directors
 /// d1 and d2 that are fixed to its material. The first clamp along it holds them: at its
 /// FrameHold::d1, or else d2 is the normal of the plane that grips and forces share, on the side of
 /// +z (of +y, or of +x, where the plane holds those), so that a strain u2 > 0 bends the rod to the
 /// left; its roll turns them on. Where no clamp holds the rod they are free. A later clamp holds
-/// them only if it has a frame; "where the rod without twist has it" then means where the rod has
-/// it without that frame, and its roll counts less the first one's.
+/// them only if it has a frame.
 struct Problem {
   double length = 0;               ///< l [m], > 0
   double bending_stiffness = 0;    ///< EI [N m^2], > 0; about d1 where bending_stiffness_2 is given

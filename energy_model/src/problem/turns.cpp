@@ -1,0 +1,105 @@
+#include "dlo/energy_model/turns.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "base/require.hpp"
+#include "dlo/energy_model/natural_frame.hpp"
+#include "problem/rod_law.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+using std::numbers::pi;
+
+/// In (-pi, pi]: half a turn is half a turn, whatever rounding says.
+double within_half_turn(double angle) {
+  constexpr double rounding = 1e-9;
+  const double least = std::remainder(angle, 2 * pi);
+  return least < rounding - pi ? pi : least;
+}
+
+Eigen::Vector3d part_across(const Eigen::Vector3d& v, const Eigen::Vector3d& direction) {
+  return (v - v.dot(direction) * direction).normalized();
+}
+
+/// The shortest rotation of a clamp's direction into another's; if they are opposite, about the
+/// normal of the plane in which the clamps lie. None: in no one plane.
+std::optional<Eigen::Quaterniond> shortest_rotation(const Grip& from, const Grip& to,
+                                                    double length) {
+  constexpr double opposite = 1e-9;    // of the cosine
+  constexpr double same_place = 1e-9;  // in l
+  const Eigen::Vector3d first = from.direction->normalized();
+  const Eigen::Vector3d last = to.direction->normalized();
+  if (first.dot(last) > opposite - 1) return Eigen::Quaterniond::FromTwoVectors(first, last);
+  const Eigen::Vector3d normal = first.cross(to.position - from.position);
+  if (!(normal.norm() > same_place * length)) return std::nullopt;
+  return Eigen::Quaterniond(Eigen::AngleAxisd(pi, normal.normalized()));
+}
+
+/// The clamp that says where the others without d1 have it.
+const Grip& reference_clamp(const Problem& problem) {
+  if (has_material_directors(problem)) return problem.grips[first_clamp(problem).value()];
+  const Grip* first = nullptr;
+  for (const Grip& grip : problem.grips) {
+    if (grip.frame && (first == nullptr || grip.at < first->at)) first = &grip;
+  }
+  return *first;
+}
+
+/// Its own d1, not rolled.
+Eigen::Vector3d reference_d1(const Problem& problem, const Grip& clamp) {
+  const Eigen::Vector3d direction = clamp.direction->normalized();
+  if (clamp.frame && clamp.frame->d1) return part_across(*clamp.frame->d1, direction);
+  if (!has_material_directors(problem)) return direction.unitOrthogonal();
+  const double roll = clamp.frame ? clamp.frame->roll : 0;
+  return Eigen::AngleAxisd(-roll, direction) * first_frame(problem).col(0);
+}
+
+}  // namespace
+
+Eigen::Vector3d held_d1(const Problem& problem, const Grip& grip) {
+  require(grip.direction && grip.frame, "held_d1", "arc length of a grip that holds no frame",
+          grip.at, "that of a clamp with a frame");
+  if (grip.frame->d1) return part_across(*grip.frame->d1, grip.direction->normalized());
+  const Grip& first = reference_clamp(problem);
+  const Eigen::Vector3d d1 = reference_d1(problem, first);
+  if (first.at == grip.at) return d1;
+  const auto rotation = shortest_rotation(first, grip, problem.length);
+  require(rotation.has_value(), "Problem",
+          "arc length of a clamp whose frame lacks d1 and whose direction is opposite to that of "
+          "the first clamp, in line with it",
+          grip.at, "that of a clamp with d1");
+  return *rotation * d1;
+}
+
+std::optional<double> held_turns(const Problem& problem, const Grip& first, const Grip& last) {
+  const auto rotation = shortest_rotation(first, last, problem.length);
+  if (!rotation) return std::nullopt;
+  const Eigen::Vector3d carried = *rotation * held_d1(problem, first);
+  const Eigen::Vector3d d1 = held_d1(problem, last);
+  const double angle =
+      std::atan2(carried.cross(d1).dot(last.direction->normalized()), carried.dot(d1));
+  return (within_half_turn(angle) + last.frame->roll - first.frame->roll) / (2 * pi);
+}
+
+HeldTurns turns_between(const Problem& problem, const Grip& first, const Grip& last) {
+  HeldTurns held{.roll = last.frame->roll - first.frame->roll, .turns = std::nullopt};
+  if (problem.natural_strains.empty()) held.turns = held_turns(problem, first, last);
+  return held;
+}
+
+double turned_angle(const HeldTurns& held, double ahead, std::optional<double> writhe) {
+  const double angle = within_half_turn(ahead) + held.roll;
+  if (!held.turns || !writhe) return angle;
+  return angle + 2 * pi * std::round(*held.turns - *writhe - angle / (2 * pi));
+}
+
+bool holds_turns(const HeldTurns& held, double twist, std::optional<double> writhe) {
+  if (!held.turns || !writhe) return true;
+  return std::abs(twist / (2 * pi) + *writhe - *held.turns) < 0.5;
+}
+
+}  // namespace dlo::energy_model
