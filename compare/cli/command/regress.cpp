@@ -92,7 +92,7 @@ std::vector<compare::BaselineCase> present_baseline(const std::string& file) {
 /// Replaces a baseline that is still as it was read.
 void write_baseline(const std::string& file, const std::vector<compare::BaselineCase>& read,
                     const std::vector<compare::BaselineCase>& cases) {
-  compare::LockedFile lock(file + ".lock");
+  compare::LockedFile lock(file + ".lock", compare::LockedFile::Held::wait);
   try {
     if (compare::baseline_text(present_baseline(file)) != compare::baseline_text(read)) {
       throw compare::OutputError(

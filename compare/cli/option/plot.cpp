@@ -1,19 +1,15 @@
 #include "option/plot.hpp"
 
 #include <fmt/format.h>
-#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is not in cstdlib
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <optional>
 
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
-#include "base/temporary_path.hpp"
+#include "base/temporary_folder.hpp"
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/layout.hpp"
@@ -27,39 +23,21 @@ namespace fs = std::filesystem;
 /// A new folder for nobody else, gone when it is left.
 class DrawingFolder {
  public:
-  DrawingFolder() {
-    // What mkdtemp replaces by letters that are not taken.
-    std::string name = (fs::temp_directory_path() / "dlo_plot.XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) {
-      throw compare::OutputError(
-          fmt::format("--plot: no folder to draw in: {} ({})", name, std::strerror(errno)));
-    }
-    path_ = name;
-    temporary_ = std::make_unique<compare::TemporaryPath>(name);
-  }
-  ~DrawingFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  DrawingFolder(const DrawingFolder&) = delete;
-  DrawingFolder& operator=(const DrawingFolder&) = delete;
-  DrawingFolder(DrawingFolder&&) = delete;
-  DrawingFolder& operator=(DrawingFolder&&) = delete;
-
   void write(const std::string& name, const std::string& content) const {
-    std::ofstream stream(path_ / name, std::ios::binary);
+    std::ofstream stream(path() / name, std::ios::binary);
     stream << content;
     stream.close();
     if (!stream) {
       throw compare::OutputError(
-          fmt::format("--plot: {}: cannot be written", (path_ / name).string()));
+          fmt::format("--plot: {}: cannot be written", (path() / name).string()));
     }
   }
-  [[nodiscard]] const fs::path& path() const { return path_; }
+  [[nodiscard]] const fs::path& path() const { return folder_.path(); }
 
  private:
-  fs::path path_;
-  std::unique_ptr<compare::TemporaryPath> temporary_;
+  fs::path prefix_ = compare::temporary_directory() / "dlo_plot";
+  compare::TemporaryFolder folder_{
+      fmt::format("--plot: no folder to draw in: {}", prefix_.string()), prefix_};
 };
 
 std::optional<compare::PictureFormat> format_of(const std::string& file) {

@@ -21,7 +21,17 @@ std::string shape_text(const py::array& array) {
   return fmt::format("({}{})", text, array.ndim() == 1 ? "," : "");
 }
 
+/// More than any function takes, asked of what is an array before it is copied.
+constexpr py::ssize_t most_numbers = 3'000'000;
+
 Numbers numbers_from(py::handle values, const std::string& name) {
+  if (py::isinstance<py::array>(values)) {
+    const py::ssize_t size = py::reinterpret_borrow<py::array>(values).size();
+    if (size > most_numbers) {
+      throw compare::InputError(
+          fmt::format("{}: {} numbers (allowed: up to {})", name, size, most_numbers));
+    }
+  }
   Numbers array = Numbers::ensure(values);
   if (!array) {
     PyErr_Clear();

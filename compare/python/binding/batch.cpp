@@ -23,7 +23,7 @@ namespace dlo::python {
 namespace {
 
 /// Many rods that threads of Python share: each call has them to itself.
-class Batch {
+class Batch : public MadeByItsClass {
  public:
   Batch(const std::vector<SharedScene>& scenes, int threads)
       : batch_(make_rods(scenes)), arena_(compare::arena_threads(threads)) {}
@@ -109,7 +109,11 @@ class Batch {
 void bind_batch(py::module_& module) {
   py::class_<Batch> bound(module, "Batch");
   refuse_pickle(bound, "pickled or copied", "a new one of its scenes");
-  bound.def(py::init<const std::vector<SharedScene>&, int>(), py::arg("scenes"), py::arg("threads"))
+  bound
+      .def(py::init([](const std::vector<SharedScene>& scenes, int threads) {
+             return std::unique_ptr<Batch>(::new Batch(scenes, threads));
+           }),
+           py::arg("scenes"), py::arg("threads"))
       .def("__len__", &Batch::size)
       .def("step", &Batch::step, py::arg("count") = 1,
            "Makes so many steps of every rod. One that diverges stays where it was, see\n"

@@ -20,7 +20,7 @@ namespace dlo::python {
 namespace {
 
 /// A simulation that threads of Python share: each call has it to itself.
-class ForceModel {
+class ForceModel : public MadeByItsClass {
  public:
   ForceModel(SharedScene scene, const py::object& points, std::optional<double> grip_stiffness)
       : scene_(std::move(scene)),
@@ -166,8 +166,12 @@ void bind_force_model(py::module_& module) {
   py::class_<ForceModel> bound(module, "ForceModel");
   refuse_pickle(bound, "pickled or copied", "a new one of its scene, with points=loop.points()");
   bound
-      .def(py::init<SharedScene, const py::object&, std::optional<double>>(), py::arg("scene"),
-           py::arg("points"), py::arg("grip_stiffness"))
+      .def(py::init([](SharedScene scene, const py::object& points,
+                       std::optional<double> grip_stiffness) {
+             return std::unique_ptr<ForceModel>(
+                 ::new ForceModel(std::move(scene), points, grip_stiffness));
+           }),
+           py::arg("scene"), py::arg("points"), py::arg("grip_stiffness"))
       .def("__len__", &ForceModel::size)
       .def("step", &ForceModel::step, py::arg("count") = 1,
            "Makes so many steps. Raises ConvergenceError if one diverges; the points stay where\n"

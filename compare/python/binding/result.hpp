@@ -12,15 +12,24 @@ namespace py = pybind11;
 /// interpreter. @param what  cannot be done with it  @param instead  what is allowed
 template <typename Class>
 void refuse_pickle(Class& bound, const char* what, const char* instead) {
-  bound.def(
-      "__reduce_ex__",
-      [what, instead](const py::object& self, const py::object& /*protocol*/) -> py::object {
-        throw py::type_error("a dlo." +
-                             py::str(py::type::of(self).attr("__name__")).cast<std::string>() +
-                             " cannot be " + what + " (allowed: " + instead + ")");
-      },
-      py::arg("protocol"));
+  const auto refuse = [what, instead](const py::object& self,
+                                      const py::args& /*protocol*/) -> py::object {
+    throw py::type_error("a dlo." +
+                         py::str(py::type::of(self).attr("__name__")).cast<std::string>() +
+                         " cannot be " + what + " (allowed: " + instead + ")");
+  };
+  bound.def("__reduce_ex__", refuse).def("__reduce__", refuse);
 }
+
+/// A base of what Python makes by calling its class: an object of Class.__new__(Class) alone has no
+/// C++ object, for which pybind11 would take memory and leave it as it is when it is first used.
+/// Whoever makes one says ::new.
+struct MadeByItsClass {
+  static void* operator new(std::size_t /*size*/) {
+    throw py::type_error("not made by its class (allowed: to call the class)");
+  }
+  static void operator delete(void* memory) { ::operator delete(memory); }
+};
 
 /// Of a class whose objects only functions make: an object without the C++ object in it, which
 /// Class.__new__(Class) would be, ends the interpreter when it is used.

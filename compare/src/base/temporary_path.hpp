@@ -1,5 +1,6 @@
 #pragma once
 
+#include <csignal>
 #include <string>
 
 namespace dlo::compare {
@@ -46,5 +47,19 @@ void remove_temporaries();
 /// Lets all signals that end the process and can be handled remove_temporaries() before, unless
 /// they are ignored or handled already. For programs: a library leaves signals alone.
 void remove_temporaries_at_signals();
+
+/// Holds all signals back while it lives.
+class SignalsHeld {
+ public:
+  SignalsHeld();
+  ~SignalsHeld();
+  SignalsHeld(const SignalsHeld&) = delete;
+  SignalsHeld& operator=(const SignalsHeld&) = delete;
+  SignalsHeld(SignalsHeld&&) = delete;
+  SignalsHeld& operator=(SignalsHeld&&) = delete;
+
+ private:
+  sigset_t before_{};
+};
 
 }  // namespace dlo::compare

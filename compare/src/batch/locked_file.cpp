@@ -15,11 +15,11 @@
 
 namespace dlo::compare {
 
-LockedFile::LockedFile(const std::string& path) : path_(path) {
+LockedFile::LockedFile(const std::string& path, Held held) : path_(path) {
   for (;;) {
     descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     if (descriptor_ < 0) refuse(errno);
-    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    if (::flock(descriptor_, held == Held::wait ? LOCK_EX : LOCK_EX | LOCK_NB) != 0) {
       const int error = errno;
       ::close(descriptor_);
       if (error != EWOULDBLOCK) refuse(error);

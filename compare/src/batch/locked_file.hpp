@@ -10,8 +10,10 @@ namespace dlo::compare {
 /// opening it; its end is where writing goes on. Errors are OutputErrors that name the file.
 class LockedFile {
  public:
-  /// @throws InputError if it cannot be opened, is no regular file, or another process holds it
-  explicit LockedFile(const std::string& path);
+  enum class Held { refuse, wait };  ///< what to do while another process holds it
+
+  /// @throws InputError if it cannot be opened, is no regular file, or is held and that is refused
+  explicit LockedFile(const std::string& path, Held held = Held::refuse);
   ~LockedFile();
   LockedFile(const LockedFile&) = delete;
   LockedFile& operator=(const LockedFile&) = delete;

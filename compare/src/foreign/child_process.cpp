@@ -65,24 +65,6 @@ class SpawnSettings {
   posix_spawn_file_actions_t actions_{};
 };
 
-/// Holds all signals back.
-class SignalsHeld {
- public:
-  SignalsHeld() {
-    sigset_t all;
-    ::sigfillset(&all);
-    ::pthread_sigmask(SIG_BLOCK, &all, &before_);
-  }
-  ~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
-  SignalsHeld(const SignalsHeld&) = delete;
-  SignalsHeld& operator=(const SignalsHeld&) = delete;
-  SignalsHeld(SignalsHeld&&) = delete;
-  SignalsHeld& operator=(SignalsHeld&&) = delete;
-
- private:
-  sigset_t before_{};
-};
-
 /// Waits until a child has ended, which it keeps as it is; false at the time limit. Looks often at
 /// first, then every hundredth of the time so far, so that the wall time is right to a percent.
 bool ended_within(pid_t process, double time_limit, double& seconds) {

@@ -16,7 +16,7 @@
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
 #include "base/quote.hpp"
-#include "base/temporary_path.hpp"
+#include "base/temporary_folder.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
@@ -63,14 +63,7 @@ std::string with_places(const std::string& word, const std::string& scene,
 /// A new folder that nobody else reads, gone with all that is in it at the end.
 class ProgramFolder {
  public:
-  ProgramFolder() : path_(made()), at_signals_(path_) {}
-  ~ProgramFolder() { remove_tree(path_.c_str()); }
-  ProgramFolder(const ProgramFolder&) = delete;
-  ProgramFolder& operator=(const ProgramFolder&) = delete;
-  ProgramFolder(ProgramFolder&&) = delete;
-  ProgramFolder& operator=(ProgramFolder&&) = delete;
-
-  [[nodiscard]] std::string file(const char* name) const { return path_ + "/" + name; }
+  [[nodiscard]] std::string file(const char* name) const { return folder_.path() / name; }
 
   /// What is named `shape`, or the only thing whose name begins with "shape."; empty if there is
   /// none. @throws InputError if the program has made away with the folder
@@ -82,7 +75,7 @@ class ProgramFolder {
       return file("shape");
     }
     std::vector<std::string> found;
-    fs::directory_iterator entry(path_, error);
+    fs::directory_iterator entry(folder_.path(), error);
     for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
       if (entry->path().filename().string().starts_with("shape.")) found.push_back(entry->path());
     }
@@ -93,18 +86,8 @@ class ProgramFolder {
   }
 
  private:
-  static std::string made() {
-    std::error_code unknown;
-    std::string path = std::filesystem::temp_directory_path(unknown);
-    path = (path.empty() ? "/tmp" : path) + "/dlo_foreign_XXXXXX";
-    if (::mkdtemp(path.data()) == nullptr) {
-      throw OutputError(fmt::format("{}: {}", path, std::strerror(errno)));
-    }
-    return path;
-  }
-
-  std::string path_;
-  TemporaryPath at_signals_;
+  std::filesystem::path prefix_ = temporary_directory() / "dlo_foreign";
+  TemporaryFolder folder_{prefix_.string(), prefix_};
 };
 
 /// The last line that is not blank, as a message shows it.

@@ -6,17 +6,15 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <set>
 #include <system_error>
 
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
-#include "base/temporary_path.hpp"
+#include "base/temporary_folder.hpp"
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
 #include "report/figures.hpp"
@@ -73,28 +71,14 @@ std::string foreign_file(const fs::path& folder) {
 /// A new folder beside the target, for nobody else and gone when it is left. The report is made in
 /// a folder in it, which has the permissions that the umask leaves, and the report that it replaces
 /// is moved into it.
-class TemporaryFolder {
+class FolderInMaking {
  public:
-  explicit TemporaryFolder(const fs::path& target) {
-    // What mkdtemp replaces by letters that are not taken.
-    std::string name = target.string() + ".XXXXXX";
-    if (::mkdtemp(name.data()) == nullptr) fail_to_write(target, std::strerror(errno));
-    path_ = name;
-    temporary_ = std::make_unique<TemporaryPath>(name);
+  explicit FolderInMaking(const fs::path& target)
+      : folder_(fmt::format("report: {}: cannot be written", target.string()), target) {
     std::error_code error;
     fs::create_directory(report(), error);
-    if (!error) return;
-    ::rmdir(path_.c_str());
-    fail_to_write(report(), error.message());
+    if (error) fail_to_write(target, error.message());
   }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  TemporaryFolder(TemporaryFolder&&) = delete;
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
 
   void write(const std::string& name, const std::string& content) {
     const fs::path file = report() / name;
@@ -114,11 +98,11 @@ class TemporaryFolder {
     std::string text = std::string(list_head) + "\n";
     for (const std::string& file : files_) text += file + "\n";
     write(list_file, text);
-    const fs::path old = path_ / "old";
+    const fs::path old = folder_.path() / "old";
     std::error_code error;
     const bool replace = fs::exists(to);
     // A signal must not take the old report with it.
-    temporary_->keep();
+    folder_.keep();
     if (replace) fs::rename(to, old, error);
     if (error) fail_to_write(to, error.message());
     fs::rename(report(), to, error);
@@ -128,11 +112,10 @@ class TemporaryFolder {
     fail_to_write(to, error.message());
   }
 
-  [[nodiscard]] fs::path report() const { return path_ / "report"; }
+  [[nodiscard]] fs::path report() const { return folder_.path() / "report"; }
 
  private:
-  fs::path path_;
-  std::unique_ptr<TemporaryPath> temporary_;
+  TemporaryFolder folder_;
   std::set<std::string> files_;
 };
 
@@ -172,7 +155,7 @@ void check_replaceable(const std::string& folder, const fs::path& path) {
   }
 }
 
-PageFigure draw_into(TemporaryFolder& folder, Figure figure) {
+PageFigure draw_into(FolderInMaking& folder, Figure figure) {
   if (!figure.csv.empty()) folder.write(figure.csv_file, figure.csv);
   folder.write(figure.name + ".gp", figure_script(figure));
   PageFigure result;
@@ -217,7 +200,7 @@ void check_report_folder(const std::string& folder) {
   }
   // The one proof that a report can be put here, also on a full or read-only file system.
   try {
-    const TemporaryFolder proof(path);
+    const FolderInMaking proof(path);
   } catch (const OutputError& problem) {
     throw InputError(problem.what());
   }
@@ -227,7 +210,7 @@ WrittenReport write_report(const Report& report, const ReportMaker& maker,
                            const std::string& folder) {
   check_report_folder(folder);
   const fs::path target = target_folder(folder);
-  TemporaryFolder temporary(target);
+  FolderInMaking temporary(target);
   for (const SceneReport& scene : report.scenes) {
     temporary.write("scenes/" + scene.file.name, scene.file.text);
   }

@@ -48,6 +48,17 @@ double evaluate(unsigned n, const double* x, double* gradient, void* data) {
   }
 }
 
+/// NLopt keeps two vectors of n numbers for each step, in one block whose size it counts in an int.
+unsigned remembered_steps(const MinimiseOptions& options, unsigned n) {
+  constexpr unsigned most_numbers = 1U << 24U;  // 128 MB in either half
+  constexpr unsigned fewest_steps = 8;
+  const unsigned wanted =
+      options.remembered_steps > 0 ? static_cast<unsigned>(options.remembered_steps) : n;
+  return std::min(wanted, std::max(fewest_steps, most_numbers / std::max(n, 1U)));
+}
+
+}  // namespace
+
 MinimiseResult translate_nlopt(int code) {
   switch (code) {
     case NLOPT_SUCCESS:
@@ -74,17 +85,6 @@ MinimiseResult translate_nlopt(int code) {
       return {SolveStatus::failed, "NLopt returned an unknown code, " + std::to_string(code)};
   }
 }
-
-/// NLopt keeps two vectors of n numbers for each step, in one block whose size it counts in an int.
-unsigned remembered_steps(const MinimiseOptions& options, unsigned n) {
-  constexpr unsigned most_numbers = 1U << 24U;  // 128 MB in either half
-  constexpr unsigned fewest_steps = 8;
-  const unsigned wanted =
-      options.remembered_steps > 0 ? static_cast<unsigned>(options.remembered_steps) : n;
-  return std::min(wanted, std::max(fewest_steps, most_numbers / std::max(n, 1U)));
-}
-
-}  // namespace
 
 MinimiseResult minimise_lbfgs(const Objective& objective, Eigen::VectorXd& x,
                               const MinimiseOptions& options) {

@@ -249,8 +249,9 @@ void certify(SpanSolution& solution, double load, Newton& newton) {
     solution.neutral_directions = std::max(1, solution.neutral_directions);
     return solution.finish(SolveStatus::near_singular);
   }
-  if (solution.smallest_curvature < -neutral || middle == MiddlePassed::through_line)
+  if (solution.smallest_curvature < -neutral || middle != MiddlePassed::none) {
     return solution.finish(SolveStatus::saddle);
+  }
   solution.finish(solution.neutral_directions > 0 ? SolveStatus::near_singular
                                                   : SolveStatus::converged);
 }

@@ -139,8 +139,9 @@ MiddlePassed middle_passed(const SpanSolution& solution) {
     const Eigen::VectorXd clearance = body.clearances(points);
     for (Eigen::Index i = 1; i < points.cols(); ++i) {
       if (clearance[i - 1] >= 0 || clearance[i] >= 0) continue;
-      const bool turns =
-          body.gap(points.col(i - 1)).gradient.dot(body.gap(points.col(i)).gradient) < 0;
+      const obstacle::Gap gap = body.gap(points.col(i));
+      if (span.planar && is_on_ridge(gap)) return MiddlePassed::on_ridge;
+      const bool turns = body.gap(points.col(i - 1)).gradient.dot(gap.gradient) < 0;
       if (turns && thin) return MiddlePassed::through_line;
       if (turns || (thin && clearance[i] + body.radius() < seen)) passed = MiddlePassed::near;
     }

@@ -20,13 +20,15 @@ namespace dlo::energy_model {
 enum class MiddlePassed {
   none,
   through_line,  ///< the axis of a cylinder or capsule, a ball's centre
+  on_ridge,      ///< in a plane to both sides of which a box is left by as near a face
   near,          ///< so near to such a line, or from a box's face to the opposite one, that the
                  ///< second variation is not seen
 };
 
 /// Beside the axis of a cylinder, r away, the second derivative of a contact's energy is -k R / r
 /// across it: what is integrated along a rod that crosses the axis has no lower bound, so that no
-/// such equilibrium is stable. Series see it only as far as their nodes are from the axis.
+/// such equilibrium is stable. Series see it only as far as their nodes are from the axis. On a
+/// ridge the force turns round with the side, so that no shape on it is an equilibrium.
 [[nodiscard]] MiddlePassed middle_passed(const SpanSolution& solution);
 
 }  // namespace dlo::energy_model

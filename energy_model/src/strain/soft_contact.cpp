@@ -73,6 +73,21 @@ void SoftContact::add_hessian(const std::array<Eigen::MatrixXd, 3>& tangents,
   }
 }
 
+namespace {
+
+/// Of a body that is symmetric about the plane, over its stiffness: what resists leaving the plane.
+/// A force out of it comes of a ridge, where the faces on both sides are equally near, and turns
+/// round there: what the energy falls by over a short way, as if it fell with the square.
+double sideways_spring(const obstacle::Gap& gap) {
+  constexpr double way = 1e-3;
+  if (is_on_ridge(gap)) return 1 + 2 * gap.value / way;
+  return gap.value * gap.hessian(2, 2);
+}
+
+}  // namespace
+
+bool is_on_ridge(const obstacle::Gap& gap) { return std::abs(gap.gradient.z()) > 0.5; }
+
 void SoftContact::add_sideways(const Eigen::MatrixXd& angle, Eigen::MatrixXd& hessian) const {
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     if (pressed_[i].empty()) continue;
@@ -82,8 +97,7 @@ void SoftContact::add_sideways(const Eigen::MatrixXd& angle, Eigen::MatrixXd& he
     for (Eigen::Index p = 0; p < count; ++p) {
       const Pressed& at = pressed_[i][static_cast<std::size_t>(p)];
       reach.row(p) = position_.row(at.node);
-      spring[p] = obstacles_[i].stiffness * weights_[at.node] *
-                  (at.gap.gradient.z() * at.gap.gradient.z() + at.gap.value * at.gap.hessian(2, 2));
+      spring[p] = obstacles_[i].stiffness * weights_[at.node] * sideways_spring(at.gap);
     }
     const Eigen::MatrixXd moved = reach * angle;
     hessian.noalias() += moved.transpose() * spring.asDiagonal() * moved;

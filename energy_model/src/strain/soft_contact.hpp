@@ -9,6 +9,10 @@
 
 namespace dlo::energy_model {
 
+/// Whether a point in the plane z = 0 of a planar span, about which the body is symmetric, is as
+/// near to a face on either side of it: its energy has a ridge there.
+[[nodiscard]] bool is_on_ridge(const obstacle::Gap& gap);
+
 /// Contact of a span's quadrature nodes with its soft obstacles, which are one-sided springs.
 class SoftContact {
  public:
