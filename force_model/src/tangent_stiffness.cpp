@@ -223,9 +223,9 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
     }
     slow = slow_modes(K, factor);
     result.neutral_modes = static_cast<int>((slow.eigenvalues.array() <= rounding).count());
-    // So many points that rounding hides the rod's own first mode too: which of them have no
-    // stiffness cannot be told.
-    if (rounding > mode_bounds(rod, points).slowest && result.neutral_modes < SlowModes::most) {
+    // So many points that rounding hides the rod's own first mode too, and the loads of each of
+    // them: which movements have no stiffness, and no force, cannot be told.
+    if (rounding > mode_bounds(rod, points).slowest && !rod.loads.isZero(0)) {
       result.neutral_modes = 0;
       return result;
     }

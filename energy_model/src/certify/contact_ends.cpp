@@ -87,21 +87,48 @@ std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacle
   return brackets;
 }
 
-/// Shortens each bracket to the first change in it.
-void narrow(const std::vector<Span::SoftObstacle>& obstacles, const SpanShape& shape,
-            std::vector<Bracket>& brackets) {
+/// Each bracket shortened to the changes in it; to the first one where others would be one with it.
+std::vector<Bracket> narrowed(const std::vector<Span::SoftObstacle>& obstacles,
+                              const SpanShape& shape, const std::vector<Bracket>& brackets) {
   std::vector<double> s;
   for (const Bracket& bracket : brackets) append_divided(bracket.begin, bracket.end, s);
   const Eigen::Matrix3Xd points = points_at(shape, s);
+  std::vector<Bracket> result;
   std::size_t first = 0;
-  for (Bracket& bracket : brackets) {
+  for (const Bracket& bracket : brackets) {
     const obstacle::Body& body = obstacles[bracket.obstacle].body;
-    const int begin = state(body, points.col(static_cast<Eigen::Index>(first)));
-    std::size_t i = first + 1;
-    while (i < first + parts && state(body, points.col(static_cast<Eigen::Index>(i))) == begin) ++i;
-    bracket = {bracket.obstacle, s[i - 1], s[i]};
+    const bool all = bracket.end - bracket.begin > closest_contact_ends;
+    int before = state(body, points.col(static_cast<Eigen::Index>(first)));
+    const std::size_t already = result.size();
+    for (std::size_t i = first + 1; i <= first + parts; ++i) {
+      const int here = state(body, points.col(static_cast<Eigen::Index>(i)));
+      if (here != before) result.push_back({bracket.obstacle, s[i - 1], s[i]});
+      if (here != before && !all) break;
+      before = here;
+    }
+    // What rounding has moved out of it is at its end.
+    if (result.size() == already) {
+      result.push_back({bracket.obstacle, s[first + parts - 1], s[first + parts]});
+    }
     first += parts + 1;
   }
+  return result;
+}
+
+/// Whether a rod comes to the core of a body within a bracket, to rounding.
+bool meets_core(const obstacle::Body& body, const SpanShape& shape, Bracket bracket,
+                double length) {
+  constexpr double rounding = 1e-9;
+  while (bracket.end - bracket.begin > rounding * length) {
+    std::vector<double> s;
+    append_divided(bracket.begin, bracket.end, s);
+    Eigen::Index nearest = 0;
+    body.clearances(points_at(shape, s)).minCoeff(&nearest);
+    const auto at = static_cast<std::size_t>(nearest);
+    bracket = {bracket.obstacle, s[at == 0 ? 0 : at - 1], s[std::min<std::size_t>(at + 1, parts)]};
+  }
+  const std::vector<double> s = {(bracket.begin + bracket.end) / 2};
+  return body.clearances(points_at(shape, s))[0] + body.radius() < 2 * rounding * length;
 }
 
 }  // namespace
@@ -115,7 +142,7 @@ std::vector<double> contact_ends(const SpanSolution& solution) {
   if (brackets.empty()) return ends;
   for (double width = span.length / first_looks; width > shortest_bracket * span.length;
        width /= parts) {
-    narrow(span.soft_obstacles, shape, brackets);
+    brackets = narrowed(span.soft_obstacles, shape, brackets);
   }
   for (const Bracket& bracket : brackets) ends.push_back((bracket.begin + bracket.end) / 2);
   std::sort(ends.begin(), ends.end());
@@ -127,8 +154,9 @@ std::vector<double> contact_ends(const SpanSolution& solution) {
 MiddlePassed middle_passed(const SpanSolution& solution) {
   const Span& span = solution.model->span();
   if (span.soft_obstacles.empty()) return MiddlePassed::none;
-  const Eigen::Matrix3Xd points =
-      points_at(solution.model->shape(solution.x), evenly_spaced(span.length));
+  const SpanShape shape = solution.model->shape(solution.x);
+  const std::vector<double> s = evenly_spaced(span.length);
+  const Eigen::Matrix3Xd points = points_at(shape, s);
   constexpr double lengths_to_see = 4;
   const double seen = lengths_to_see * span.length / first_looks;
   MiddlePassed passed = MiddlePassed::none;
@@ -142,7 +170,10 @@ MiddlePassed middle_passed(const SpanSolution& solution) {
       const obstacle::Gap gap = body.gap(points.col(i));
       if (span.planar && is_on_ridge(gap)) return MiddlePassed::on_ridge;
       const bool turns = body.gap(points.col(i - 1)).gradient.dot(gap.gradient) < 0;
-      if (turns && thin) return MiddlePassed::through_line;
+      const auto at = static_cast<std::size_t>(i);
+      if (turns && thin && meets_core(body, shape, {0, s[at - 1], s[at]}, span.length)) {
+        return MiddlePassed::through_line;
+      }
       if (turns || (thin && clearance[i] + body.radius() < seen)) passed = MiddlePassed::near;
     }
   }

@@ -53,6 +53,17 @@ ContactPart in_newtons(ContactPart part, double force_unit, double length) {
   return part;
 }
 
+/// Whether less is claimed of a shape by one status than by another: that it is no equilibrium at
+/// all outweighs what kind of one it is.
+bool is_worse(SolveStatus status, SolveStatus than) {
+  const auto rank = [](SolveStatus s) {
+    if (s == SolveStatus::converged) return 0;
+    if (s == SolveStatus::roundoff_limited) return 1;
+    return s == SolveStatus::saddle || s == SolveStatus::near_singular ? 2 : 3;
+  };
+  return rank(status) > rank(than);
+}
+
 }  // namespace
 
 Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*>& placed,
@@ -87,7 +98,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
         solution.smallest_curvature < result.smallest_curvature) {
       result.smallest_curvature = solution.smallest_curvature;
     }
-    if (solution.status != SolveStatus::converged && succeeded(result.status)) {
+    if (is_worse(solution.status, result.status)) {
       result.status = solution.status;
       result.message = solution.message;
     }

@@ -293,7 +293,10 @@ class EnergySolver::State {
     int spent = 0;
     if (start && !options.all) {
       PlacedSpan own = placed;
-      if (options.known.model) own.span.cuts = options.known.model->span().cuts;
+      if (options.known.model) {
+        own.span.cuts = options.known.model->span().cuts;
+        own.span.contact_ends = options.known.model->span().contact_ends;
+      }
       PlacedSolution followed =
           from_field(own, start, options, shape != nullptr || (last && !last->planar()));
       if (followed.solution.is_equilibrium() || followed.solution.is_left_open() ||

@@ -235,7 +235,8 @@ class Search {
   /// it falls from a saddle.
   [[nodiscard]] SpanSolution from_given_start_to_rest() {
     SpanSolution solution = finish(from_given_start(), options_, workspace_);
-    solution.followed = came_by_newton_;
+    // What gives way to contact that is found on the way may fall elsewhere.
+    solution.followed = came_by_newton_ && solution.x.size() > 0 && is_near_start(solution);
     if (!options_.known.model || options_.only_known || solution.status != SolveStatus::saddle)
       return solution;
     std::optional<SpanSolution> lower = leave_saddle(solution);
