@@ -145,5 +145,45 @@ TEST(SoftContact, RandomScenesListEachEquilibriumOnceWithTheForceOfItsEnergy) {
   EXPECT_GE(pressed, scenes * 2 / 3);
 }
 
+/// In its middle plane a deep box pushes to one side as hard as to the other: the rod slides to one
+/// of them, as it does where the box stands a little aside.
+TEST(SoftContact, ARodInTheMiddlePlaneOfADeepBoxLeavesIt) {
+  const auto solved = [](double aside) {
+    Problem problem = heavy_cantilever(10, 0);
+    Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+    problem.obstacles = {
+        {obstacle::Body::box({0.45, -0.3, aside}, axes, {0.6, 0.5, 0.08}, 0.02), 40}};
+    return solve_energy(problem);
+  };
+  const Equilibrium middle = solved(0);
+  const Equilibrium beside = solved(1e-4);
+  ASSERT_EQ(middle.status, SolveStatus::converged) << middle.message;
+  ASSERT_EQ(beside.status, SolveStatus::converged) << beside.message;
+  const std::vector<double> tip = {1};
+  EXPECT_GT(std::abs(middle.sample(tip).points(2, 0)), 0.01);
+  // By the force across times the way.
+  EXPECT_NEAR(middle.energy.total(), beside.energy.total(),
+              1.2e-4 * std::abs(middle.obstacles.at(0).z()));
+}
+
+/// Contact too short for the nodes of a shape without ends of contact.
+TEST(SoftContact, WhatIsFollowedIsTheShapeThatItWas) {
+  Problem problem = heavy_cantilever(15, 0);
+  problem.grips = {{0, Eigen::Vector3d::Zero()}, {1, {0.58, -0.49, -0.25}}};
+  problem.obstacles = {
+      {obstacle::Body::cylinder({0.186, -0.561, -0.083}, {0.26, -0.03, 0.965}, 0.12), 8e5}};
+  EnergySolver solver;
+  const Equilibrium first = solver.solve(problem);
+  ASSERT_EQ(first.status, SolveStatus::converged) << first.message;
+  const Equilibrium again = solver.follow(problem);
+  const std::vector<double> s = equal_arc_lengths(1, 21);
+  if (solver.followed()) {
+    EXPECT_LT((again.sample(s).points - first.sample(s).points).colwise().norm().maxCoeff(), 1e-6);
+  }
+  const Equilibrium started = solve_energy(problem, {.start = &first});
+  ASSERT_EQ(started.status, SolveStatus::converged) << started.message;
+  EXPECT_NEAR(started.energy.total(), first.energy.total(), 1e-6);
+}
+
 }  // namespace
 }  // namespace dlo::energy_model

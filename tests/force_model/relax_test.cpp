@@ -118,6 +118,15 @@ TEST(AtRest, IsClaimedForARodThatTurnsFreelyAndSaysSo) {
   EXPECT_EQ(check_equilibrium(start.rod, simulation.points()).neutral_modes, 1);
 }
 
+TEST(AtRest, IsNotClaimedWhereRoundingHidesWhatBendsTheRod) {
+  // So many points that a step of rounding is more than the weight of one: straight, as it starts,
+  // nothing seems to pull at them.
+  Start start = between_pins(100'001, 1, 1e3, {BendingLaw::hooke, 1e-3});
+  start.points.row(2).setZero();
+  const EquilibriumCheck check = check_equilibrium(start.rod, start.points);
+  EXPECT_FALSE(check.stable && check.proven);
+}
+
 TEST(AtRest, IsNotClaimedWhereAMovementHasNoStiffnessButAForce) {
   // A free rope without bending stiffness, straight along its load but for a force across.
   Start start = between_pins(5, 1, 1e3, {BendingLaw::hooke, 0});

@@ -246,3 +246,21 @@ def test_only_functions_make_results(results, cable):
         for make in (kind, lambda: kind.__new__(kind), lambda: kind(3)):
             with pytest.raises(TypeError, match=r"not made by its class \(allowed: "):
                 make()
+
+
+def test_an_object_that_its_class_has_not_made_is_refused(cable):
+    for kind in (dlo.ForceModel, dlo.Batch):
+        empty = kind.__new__(kind)
+        with pytest.raises(TypeError, match=r"not made by its class|no attribute"):
+            empty.points()
+        with pytest.raises(TypeError, match="not made by its class"):
+            len(kind.__new__(kind))
+    for one in (dlo.solve(cable), dlo.ForceModel(cable)):
+        with pytest.raises(TypeError, match=r"cannot be"):
+            one.__reduce__()
+
+
+def test_a_huge_array_is_refused_before_it_is_copied(cable):
+    huge = numpy.broadcast_to(numpy.zeros(3, dtype="i1"), (10**9, 3))
+    with pytest.raises(dlo.InputError, match="numbers .allowed: up to"):
+        dlo.check(cable, huge)

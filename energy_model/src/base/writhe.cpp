@@ -110,7 +110,8 @@ std::optional<double> writhe(
   for (int points = first_points; points <= most_points; points *= 2) {
     std::vector<double> arc_lengths(static_cast<std::size_t>(points));
     for (int i = 0; i < points; ++i) {
-      arc_lengths[static_cast<std::size_t>(i)] = begin + (end - begin) * i / (points - 1);
+      arc_lengths[static_cast<std::size_t>(i)] =
+          std::min(begin + (end - begin) * i / (points - 1), end);
     }
     const Samples samples = sample(arc_lengths);
     const std::optional<double> now =

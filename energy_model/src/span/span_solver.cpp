@@ -234,9 +234,14 @@ class Search {
   /// From the caller's own start, certified; a shape that is followed (SpanOptions::known) to where
   /// it falls from a saddle.
   [[nodiscard]] SpanSolution from_given_start_to_rest() {
-    SpanSolution solution = finish(from_given_start(), options_, workspace_);
+    SpanSolution solution = from_given_start();
     // What gives way to contact that is found on the way may fall elsewhere.
-    solution.followed = came_by_newton_ && solution.x.size() > 0 && is_near_start(solution);
+    const bool may_fall = came_by_newton_ && !span_.soft_obstacles.empty();
+    const Eigen::Matrix3Xd near = may_fall ? looked_at(solution) : Eigen::Matrix3Xd();
+    solution = finish(std::move(solution), options_, workspace_);
+    solution.followed =
+        came_by_newton_ &&
+        !(may_fall && (looked_at(solution) - near).cwiseAbs().maxCoeff() > followed_tangents);
     if (!options_.known.model || options_.only_known || solution.status != SolveStatus::saddle)
       return solution;
     std::optional<SpanSolution> lower = leave_saddle(solution);
@@ -262,6 +267,13 @@ class Search {
     solution = follow ? on_.from_start(Start{options_.start}) : on_.near_field(options_.start);
     solution.evaluations += spent;
     return solution;
+  }
+
+  /// Tangents of a shape at arc lengths that are the same for all.
+  [[nodiscard]] Eigen::Matrix3Xd looked_at(const SpanSolution& solution) const {
+    constexpr Eigen::Index looks = 65;
+    const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(looks, 0, span_.length);
+    return solution.model->shape(solution.x).sample({s.data(), s.data() + looks}).tangents;
   }
 
   [[nodiscard]] bool is_near_start(const SpanSolution& solution) const {
