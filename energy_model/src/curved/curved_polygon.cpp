@@ -251,7 +251,8 @@ CurvedPolygon relax_curved(const CurvedRod& rod, const RodMesh& mesh, const Clam
     const MinimiseResult rest = minimise_lbfgs(std::cref(energy), x,
                                                {.gradient_tolerance = polygon_at_rest * unit,
                                                 .max_evaluations = round_evaluations,
-                                                .remembered_steps = remembered});
+                                                .remembered_steps = remembered,
+                                                .deadline = deadline});
     double widest = 0;
     for (GripGap& gap : energy.gaps) {
       const Eigen::Vector3d open = energy.gap(x, gap);

@@ -305,15 +305,15 @@ ChainResult solve_chain(const ChainProblem& problem, const ChainOptions& options
       sum += gradient[i];
       by_turn[i - 1] = sum;
     }
-    // What the minimiser stops at; the status says what it was.
-    if (deadline.passed()) by_turn.setZero();
     return energy;
   };
   const double moment_scale =
       problem.node_forces.colwise().norm().sum() * problem.segment_lengths.sum() +
       largest_natural_moment(problem) + 1e-300;  // a chain without forces is straight at once
-  const MinimiseResult first =
-      minimise_lbfgs(objective, turns, {1e-6 * moment_scale, options.max_evaluations});
+  const MinimiseResult first = minimise_lbfgs(objective, turns,
+                                              {.gradient_tolerance = 1e-6 * moment_scale,
+                                               .max_evaluations = options.max_evaluations,
+                                               .deadline = deadline});
   result.evaluations = first.evaluations;
   Eigen::VectorXd by_turn(n - 1);
   (void)objective(turns, by_turn);
