@@ -55,6 +55,19 @@ def test_check_is_the_commands(root, command):
     assert check.passed == (expected["verdict"] == "pass")
 
 
+def test_deviations_are_those_of_the_document(root, steel):
+    steel.force_model = {"points": 12}
+    points = dlo.solve(steel, model="chain").points
+    for result, document in (
+        (comparison := dlo.compare(steel), comparison.json["cases"][0]),
+        (check := dlo.check(steel, points), check.json),
+    ):
+        told = {k: v for k, v in document["deviation"].items() if v is not None}
+        print(result.deviation, told)
+        assert len(told) >= 5
+        assert told == {k: result.deviation[k] for k in told}
+
+
 def test_compare_is_the_commands(root, command):
     scene = dlo.Scene.from_file(root / "data/scenes/spring_steel_175.toml")
     scene.force_model = {"points": 16, "law": "hooke", "bookkeeping": "consistent"}

@@ -170,6 +170,29 @@ TEST(MaterialFit, TheCorrelationIsMeasured) {
   EXPECT_NEAR(half.correlation->share, 0.5, 0.21);
 }
 
+// Of errors that are alike over a fifth of the rod the fit takes a good part away: what it leaves
+// is less than they were, and the noise that is told is not.
+TEST(MaterialFit, TheNoiseOfCorrelatedErrorsIsWhatTheyWere) {
+  const Scene scene = heavy_scene(5, 0);
+  const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);
+  const std::vector<double> s = equal_arc_lengths(1, 41);
+  std::mt19937 random(14);
+  constexpr int draws = 60;
+  constexpr double sigma = 1e-3;
+  double told = 0;
+  double left = 0;
+  for (int draw = 0; draw < draws; ++draw) {
+    const MeasuredShape seen{"seen",
+                             exact.sample(s).points + correlated_noise(s, sigma, 0.2, random), s};
+    const MaterialFit fit = fit_material({scene}, {seen}, {.pose = PoseFreedom::translation});
+    told += std::pow(fit.noise_m / sigma, 2) / draws;
+    left += std::pow(fit.rms_m / sigma, 2) / 3 / draws;
+  }
+  std::printf("TOLD %g LEFT %g\n", told, left);
+  EXPECT_NEAR(told, 1, 0.25);
+  EXPECT_LT(left, 0.8);
+}
+
 // A piece of a soft rod looks like another piece of a stiffer one: E was told 3 to 20 times too
 // large from these.
 TEST(MaterialFit, APieceInAnUnknownFrameThatFitsTwoModuliTellsNeither) {

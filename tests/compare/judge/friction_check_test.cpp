@@ -78,6 +78,29 @@ TEST(FrictionCheck, TellsWhetherTheCoefficientDoes) {
   EXPECT_EQ(check_friction(scene, own).verdict, FrictionVerdict::none_needed);
 }
 
+// Over a peg to the floor: a factor on both says nothing of one coefficient.
+TEST(FrictionCheck, TellsACoefficientOnlyWhereAllThatIsTouchedHasTheSame) {
+  for (const double of_peg : {0.5, 0.3}) {
+    Scene scene = over_floor(300, 0.05, 0.5);
+    Obstacle peg;
+    peg.body = obstacle::Body::cylinder({0.15, -0.055, 0}, Eigen::Vector3d::UnitZ(), 0.05);
+    peg.friction = of_peg;
+    scene.obstacles.push_back(peg);
+    Scene with = scene;
+    with.loads.push_back({1, {0.1 * with.mass() * with.gravity.norm(), 0, 0}});
+    const energy_model::Equilibrium rod = solve_reference(with, Model::energy);
+    ASSERT_GT(rod.obstacles[0].norm(), 0);
+    ASSERT_GT(rod.obstacles[1].norm(), 0);
+    const FrictionCheck found = check_friction(scene, laid(scene, rod, 41));
+    ASSERT_GT(found.factor, 0) << found.reason;
+    if (of_peg == 0.5) {
+      EXPECT_EQ(found.coefficient, 0.5 * found.factor);
+    } else {
+      EXPECT_TRUE(std::isnan(found.coefficient)) << found.coefficient;
+    }
+  }
+}
+
 TEST(FrictionCheck, IsTheSameInSpace) {
   Scene scene = over_floor(300, 0.05, 0.5);
   const Pulled rod = pulled(scene, 0.1, 21);
