@@ -78,23 +78,24 @@ TEST(FrictionCheck, TellsWhetherTheCoefficientDoes) {
   EXPECT_EQ(check_friction(scene, own).verdict, FrictionVerdict::none_needed);
 }
 
-// Over a peg to the floor: a factor on both says nothing of one coefficient.
+// What lies on two boards, one after the other: a factor on both says nothing of one coefficient.
 TEST(FrictionCheck, TellsACoefficientOnlyWhereAllThatIsTouchedHasTheSame) {
-  for (const double of_peg : {0.5, 0.3}) {
+  const Pulled rod = pulled(over_floor(300, 0.05, 0.5), 0.1, 41);
+  for (const double of_second : {0.5, 0.3}) {
     Scene scene = over_floor(300, 0.05, 0.5);
-    Obstacle peg;
-    peg.body = obstacle::Body::cylinder({0.15, -0.055, 0}, Eigen::Vector3d::UnitZ(), 0.05);
-    peg.friction = of_peg;
-    scene.obstacles.push_back(peg);
-    Scene with = scene;
-    with.loads.push_back({1, {0.1 * with.mass() * with.gravity.norm(), 0, 0}});
-    const energy_model::Equilibrium rod = solve_reference(with, Model::energy);
-    ASSERT_GT(rod.obstacles[0].norm(), 0);
-    ASSERT_GT(rod.obstacles[1].norm(), 0);
-    const FrictionCheck found = check_friction(scene, laid(scene, rod, 41));
+    scene.obstacles.clear();
+    for (const double middle : {0.2, 1.2}) {
+      Obstacle board;
+      board.body =
+          obstacle::Body::box({middle, -0.15, 0}, Eigen::Matrix3d::Identity(), {1, 0.2, 1}, 0);
+      board.friction = middle < 1 ? 0.5 : of_second;
+      scene.obstacles.push_back(board);
+    }
+    const FrictionCheck found = check_friction(scene, rod.check);
     ASSERT_GT(found.factor, 0) << found.reason;
-    if (of_peg == 0.5) {
+    if (of_second == 0.5) {
       EXPECT_EQ(found.coefficient, 0.5 * found.factor);
+      EXPECT_NEAR(found.coefficient, rod.needed, 0.05 * rod.needed);
     } else {
       EXPECT_TRUE(std::isnan(found.coefficient)) << found.coefficient;
     }
