@@ -5,10 +5,12 @@
 #include <Eigen/LU>
 #include <array>
 #include <cmath>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "../sanitized.hpp"
+#include "contact/penetration.hpp"
 #include "dlo/energy_model/energy.hpp"
 #include "equilibrium_balance.hpp"
 #include "problems.hpp"
@@ -420,6 +422,39 @@ TEST(Contact, APointIsLetGoByAnObstacleThatMovesAway) {
         EXPECT_TRUE(left.contacts.empty());
         EXPECT_LT((left.sample(at).points - alone).colwise().norm().maxCoeff(), 1e-8);
       }
+    }
+  }
+}
+
+/// A straight rod along a level floor, so deep below its top, in lengths.
+Equilibrium judged_below_a_floor(double length, double depth) {
+  Problem problem = heavy_cantilever(1, 0);
+  problem.length = length;
+  problem.obstacles = {{obstacle::Body::half_space({0, depth * length, 0}, {0, 1, 0})}};
+  Equilibrium shape;
+  shape.status = SolveStatus::converged;
+  shape.sample = [](std::span<const double> arc_lengths) {
+    Samples samples;
+    samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
+    const auto count = static_cast<Eigen::Index>(arc_lengths.size());
+    samples.points.setZero(3, count);
+    samples.points.row(0) = Eigen::Map<const Eigen::RowVectorXd>(arc_lengths.data(), count);
+    samples.tangents = Eigen::Vector3d::UnitX().replicate(1, count);
+    samples.curvature.setZero(3, count);
+    return samples;
+  };
+  judge_penetration(problem, shape);
+  return shape;
+}
+
+TEST(Penetration, IsAllowedAsAShareOfTheLength) {
+  for (const double length : {0.02, 1.0, 50.0}) {
+    for (const double share : {0.5, 2.0}) {
+      const double depth = share * allowed_penetration;
+      const Equilibrium shape = judged_below_a_floor(length, depth);
+      EXPECT_NEAR(shape.penetration, depth * length, 1e-6 * depth * length);
+      EXPECT_EQ(shape.status, share < 1 ? SolveStatus::converged : SolveStatus::not_resolved)
+          << length << ": " << shape.message;
     }
   }
 }

@@ -389,6 +389,83 @@ TEST(Dynamics, BothSidesOfAClampMoveAlike) {
   }
 }
 
+// Of the sampled shape, by Simpson's rule: the second span hangs at a clamp of its own.
+TEST(Dynamics, GravityAndLoadsAreZeroWherePointsSitAtTheFirstGrip) {
+  MovingRod rod = moving_cantilever(5);
+  rod.problem.grips[0].position = Vector3d(0.1, 0.3, 0);
+  rod.problem.grips.push_back({0.5, {0.5, 0.1, 0}, Vector3d(1, -0.3, 0)});
+  rod.problem.loads = {{0.8, {1, -2, 0}}};
+  const Vector3d first = rod.problem.grips[0].position;
+  const Dynamics result = run(rod, solve_energy(rod.problem).sample, {0.2});
+  const MovingFrame& frame = result.frames[0];
+  constexpr int panels = 1000;
+  double gravity = 0;
+  for (int i = 0; i <= 2 * panels; ++i) {
+    const double share = i == 0 || i == 2 * panels ? 1 : (i % 2 == 1 ? 4 : 2);
+    const Vector3d at = frame.sample(std::vector<double>{i / (2.0 * panels)}).points.col(0);
+    gravity -= share / (6 * panels) * rod.problem.weight_per_length.dot(at - first);
+  }
+  EXPECT_GT(std::abs(gravity), 0.5);
+  EXPECT_NEAR(frame.energy.gravity, gravity, 1e-6);
+  const Vector3d loaded = frame.sample(std::vector<double>{0.8}).points.col(0);
+  EXPECT_NEAR(frame.energy.load, -rod.problem.loads[0].force.dot(loaded - first), 1e-9);
+}
+
+/// A clamp that shakes and turns a rod with damping, drag and a point mass over a floor, which is
+/// so long, stiff and heavy.
+MovingRod shaken_rod(double length, double stiffness, double mass) {
+  const double force = stiffness / (length * length);
+  const double time = std::sqrt(mass * length / force);
+  MovingRod rod = moving_cantilever(5);
+  rod.problem.length = length;
+  rod.problem.bending_stiffness = stiffness;
+  rod.problem.weight_per_length *= force / length;
+  rod.problem.loads = {{0.9 * length, {0, -force, 0}}};
+  rod.problem.obstacles = {{obstacle::Body::half_space({0, -0.3 * length, 0}, {0.1, 1, 0}),
+                            200 * force / (length * length)}};
+  rod.inertia.mass_per_length = mass / length;
+  rod.inertia.point_masses = {{0.6 * length, 0.3 * mass}};
+  rod.material_damping = 0.03 * time;
+  rod.air_drag = 0.7 * mass / (length * time);
+  rod.motions = {moving(Vector3d::Zero(), Vector3d(1, 1, 0), swinging(0.1 * length, 5 / time),
+                        Vector3d::UnitZ(), swinging(0.4, 4 / time))};
+  return rod;
+}
+
+// Lengths in l, forces in EI / l^2, masses in that of the rod.
+TEST(Dynamics, IsTheSameInAllUnits) {
+  const Dynamics unit = run(shaken_rod(1, 1, 1), straight_rod(Vector3d::UnitX()), {0.4, 0.9});
+  EXPECT_GT(unit.frames[1].energy.dissipated, 0.1);
+  EXPECT_GT(unit.frames[1].energy.obstacles, 1e-3);
+  for (const auto& [length, stiffness, mass] :
+       {std::array{0.3, 2e-3, 0.07}, std::array{4.0, 50.0, 9.0}}) {
+    const double force = stiffness / (length * length);
+    const double energy = force * length;
+    const double time = std::sqrt(mass * length / force);
+    const Dynamics other = run(shaken_rod(length, stiffness, mass), straight_rod(Vector3d::UnitX()),
+                               {0.4 * time, 0.9 * time});
+    EXPECT_NEAR(other.error_estimate, unit.error_estimate, 1e-3 * unit.error_estimate);
+    EXPECT_NEAR(other.smallest_step / time, unit.smallest_step, 1e-3 * unit.smallest_step);
+    EXPECT_NEAR(other.largest_energy / energy, unit.largest_energy, 1e-6);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const MovingFrame& a = unit.frames[k];
+      const MovingFrame& b = other.frames[k];
+      EXPECT_LT((tip(a) - b.sample(std::vector<double>{length}).points.col(0) / length).norm(),
+                1e-6);
+      EXPECT_NEAR(b.energy.kinetic / energy, a.energy.kinetic, 1e-6);
+      EXPECT_NEAR(b.energy.bending / energy, a.energy.bending, 1e-6);
+      EXPECT_NEAR(b.energy.gravity / energy, a.energy.gravity, 1e-6);
+      EXPECT_NEAR(b.energy.load / energy, a.energy.load, 1e-6);
+      EXPECT_NEAR(b.energy.obstacles / energy, a.energy.obstacles, 1e-6);
+      EXPECT_NEAR(b.energy.dissipated / energy, a.energy.dissipated, 1e-6);
+      EXPECT_NEAR(b.energy.work / energy, a.energy.work, 1e-6);
+      EXPECT_LT((b.grips[0].force / force - a.grips[0].force).norm(), 1e-4);
+      EXPECT_LT((b.grips[0].torque / energy - a.grips[0].torque).norm(), 1e-4);
+      EXPECT_LT((b.obstacles[0] / force - a.obstacles[0]).norm(), 1e-4);
+    }
+  }
+}
+
 TEST(Dynamics, RefusesWhatItDoesNotKnow) {
   const StartingShape start = straight_rod(Vector3d::UnitX());
   const std::vector<double> times = {1};

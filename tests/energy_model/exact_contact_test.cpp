@@ -9,6 +9,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../sanitized.hpp"
@@ -227,6 +228,60 @@ TEST(ExactContact, ConfirmsACableBetweenTwoClampsOverAFloor) {
   }
   EXPECT_GE(seen.lying, 3);
   EXPECT_EQ(seen.confirmed, seen.touching);
+}
+
+// A weightless rod that is lifted by more than the ball's radius comes down along the ball, about
+// the clamp's axis; lifted by less it stays. On a peg along z there is no way down.
+TEST(ExactContact, ARodOverABallFallsOffWhereItsCentreIsAboveTheClampsAxis) {
+  constexpr double radius = 0.05;
+  const auto with = [](bool ball, double height) {
+    const Eigen::Vector3d centre(0.6, height * radius, 0);
+    Problem problem = heavy_cantilever(0, 0);
+    problem.obstacles = {{ball ? obstacle::Body::sphere(centre, radius)
+                               : obstacle::Body::cylinder(centre, {0, 0, 1}, radius)}};
+    return problem;
+  };
+  for (const bool ball : {true, false}) {
+    Equilibrium last = solve_energy(with(ball, -0.5));
+    ASSERT_TRUE(succeeded(last.status)) << last.message;
+    for (const double height : {-0.5, -0.3, -0.1, 0.1, 0.3, 0.5}) {
+      SCOPED_TRACE((ball ? "ball " : "peg ") + std::to_string(height));
+      Equilibrium exact = solve_exact(with(ball, height), {.start = &last});
+      EXPECT_EQ(exact.status, ball && height > 0 ? SolveStatus::saddle : SolveStatus::converged)
+          << exact.message;
+      ASSERT_EQ(exact.contacts.size(), 1U);
+      EXPECT_GT(exact.contacts[0].force.y(), 0);
+      last = std::move(exact);
+    }
+  }
+}
+
+// From a shape that touches, on what has been moved away: with its contact there is an equilibrium,
+// which no obstacle can hold.
+TEST(ExactContact, NoObstacleIsConfirmedToPull) {
+  const auto over = [](bool peg, double height) {
+    Problem problem = heavy_cantilever(0.3, 0);
+    problem.obstacles = {{peg ? obstacle::Body::cylinder({0.7, height - 0.1, 0}, {0, 0, 1}, 0.1)
+                              : obstacle::Body::half_space({0, height, 0}, {0, 1, 0})}};
+    return problem;
+  };
+  const Equilibrium alone = solve_energy(heavy_cantilever(0.3, 0));
+  const Samples at = alone.sample(std::vector<double>{0.7, 1});
+  // The highest point of a peg under a slope is farther from it than the one beside.
+  const double aside = 0.1 * (1 / at.tangents(0, 0) - 1);
+  for (const bool peg : {false, true}) {
+    const double free = peg ? at.points(1, 0) - aside : at.points(1, 1);
+    const Equilibrium touching = solve_energy(over(peg, free + 0.008));
+    ASSERT_EQ(touching.status, SolveStatus::converged) << touching.message;
+    ASSERT_EQ(touching.contacts.size(), 1U);
+    EXPECT_TRUE(succeeded(solve_exact(over(peg, free + 0.004), {.start = &touching}).status));
+    for (const double way : {1e-4, 1e-3, 0.01}) {
+      SCOPED_TRACE((peg ? "peg " : "floor ") + std::to_string(way));
+      const Equilibrium exact = solve_exact(over(peg, free - way), {.start = &touching});
+      EXPECT_EQ(exact.status, SolveStatus::not_resolved) << exact.message;
+      EXPECT_NE(exact.message.find("pull"), std::string::npos) << exact.message;
+    }
+  }
 }
 
 TEST(ExactContact, EndsWithItsTimeLimitOnTheWay) {

@@ -67,6 +67,29 @@ TEST(SoftContact, EnergyGrowsByTheWorkOfAnObstacleThatIsMoved) {
   }
 }
 
+// Stiff and thin: what touches is a tenth of the way between the arc lengths at which a shape is
+// looked at first, wherever it is. By F = k (4/3) d (2 r d)^(1/2) it is pressed in by 3e-6 of 6e-4,
+// so that it pushes with next to what a rigid one does.
+TEST(SoftContact, AThinPegIsSeenBetweenTwoLooks) {
+  constexpr double radius = 0.002;
+  for (const double at : {0.4, 0.4007, 0.40125, 0.402}) {
+    SCOPED_TRACE(at);
+    Problem problem = heavy_cantilever(5, 0);
+    const Eigen::Vector3d top =
+        solve_energy(problem).sample(std::vector<double>{at}).points.col(0) +
+        Eigen::Vector3d(0, 0.3 * radius, 0);
+    problem.obstacles = {
+        {obstacle::Body::cylinder(top - Eigen::Vector3d(0, radius, 0), {0, 0, 1}, radius)}};
+    const Equilibrium rigid = solve_energy(problem);
+    ASSERT_EQ(rigid.status, SolveStatus::converged) << rigid.message;
+    problem.obstacles[0].stiffness = 1e8;
+    const Equilibrium soft = solve_energy(problem);
+    ASSERT_EQ(soft.status, SolveStatus::converged) << soft.message;
+    EXPECT_LT(soft.obstacles[0].y(), rigid.obstacles[0].y());
+    EXPECT_NEAR(soft.obstacles[0].y() / rigid.obstacles[0].y(), 1, 0.01);
+  }
+}
+
 /// One clamp or a clamp and a pin, over or beside one obstacle that yields.
 Problem random_scene(int seed) {
   using obstacle::Body;

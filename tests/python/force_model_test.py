@@ -67,6 +67,23 @@ def test_it_starts_from_the_points_that_it_is_given(cable):
         dlo.ForceModel(cable, rested.points()[:3])
 
 
+def test_energy_and_reactions_are_of_now_whatever_was_looked_at(cable):
+    loop = dlo.ForceModel(cable)
+    loop.points()
+    loop.rest()
+    energy = loop.energy()
+    loop.points()
+    assert energy == loop.energy() < dlo.ForceModel(cable).energy()
+    loop.move_gripper(0, position=(0, 0.1, 0))
+    loop.rest()
+    assert loop.energy() - energy == pytest.approx(0.1 * cable.mass * 9.81, rel=1e-3)
+    loop.move_gripper(0, position=(0, 0.1, 0), direction=(0, -1, 0))
+    loop.rest()
+    reactions = loop.reactions()
+    loop.points()
+    numpy.testing.assert_array_equal(reactions, loop.reactions())
+
+
 def test_it_says_what_it_cannot_do(cable):
     with pytest.raises(dlo.InputError, match="grip_stiffness = 0: out of range"):
         dlo.ForceModel(cable, grip_stiffness=0)

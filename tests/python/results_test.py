@@ -55,6 +55,17 @@ def test_check_is_the_commands(root, command):
     assert check.passed == (expected["verdict"] == "pass")
 
 
+def test_deviations_are_those_of_the_document(steel):
+    steel.force_model = {"points": 12}
+    comparison = dlo.compare(steel, modulus=False)
+    check = dlo.check(steel, dlo.solve(steel, model="chain").points, modulus=False)
+    for result, document in ((comparison, comparison.json["cases"][0]), (check, check.json)):
+        for name, value in result.deviation.items():
+            told = document["deviation"][name]
+            assert numpy.isnan(value) if told is None else value == told, name
+        assert 0 < result.deviation["rms_m"] < result.deviation["max_m"]
+
+
 def test_compare_is_the_commands(root, command):
     scene = dlo.Scene.from_file(root / "data/scenes/spring_steel_175.toml")
     scene.force_model = {"points": 16, "law": "hooke", "bookkeeping": "consistent"}

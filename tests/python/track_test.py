@@ -53,6 +53,18 @@ def test_track_has_arrays_of_all_frames(swung):
     assert apart[-1, -1] > 0.01
 
 
+def test_a_part_of_a_track_is_the_commands(root, command):
+    scene = root / "data/scenes/corner_routing.toml"
+    found = dlo.track(scene, begin=0.2, end=0.3, frame_rate=50, obstacle_rate=20, force=False, samples=5)
+    options = "--from 0.2 --to 0.3 --frame-rate 50 --obstacle-rate 20 --no-force --samples 5"
+    done = subprocess.run(
+        [command, "track", str(scene), *options.split(), "--shapes", "--format", "json"],
+        capture_output=True, text=True, check=True,
+    )
+    assert without_times(found.json) == without_times(json.loads(done.stdout))
+    numpy.testing.assert_allclose(found.time, [0.2, 0.22, 0.24, 0.26, 0.28, 0.3], rtol=1e-12)
+
+
 def test_track_says_what_is_wrong(swung, root):
     at_rest = dlo.track(swung, end=0.1, frame_rate=50, force=False)
     with pytest.raises(dlo.InputError, match="dynamic=True"):

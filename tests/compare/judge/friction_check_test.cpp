@@ -78,6 +78,30 @@ TEST(FrictionCheck, TellsWhetherTheCoefficientDoes) {
   EXPECT_EQ(check_friction(scene, own).verdict, FrictionVerdict::none_needed);
 }
 
+// What lies on two boards, one after the other: a factor on both says nothing of one coefficient.
+TEST(FrictionCheck, TellsACoefficientOnlyWhereAllThatIsTouchedHasTheSame) {
+  const Pulled rod = pulled(over_floor(300, 0.05, 0.5), 0.1, 41);
+  for (const double of_second : {0.5, 0.3}) {
+    Scene scene = over_floor(300, 0.05, 0.5);
+    scene.obstacles.clear();
+    for (const double middle : {0.2, 1.2}) {
+      Obstacle board;
+      board.body =
+          obstacle::Body::box({middle, -0.15, 0}, Eigen::Matrix3d::Identity(), {1, 0.2, 1}, 0);
+      board.friction = middle < 1 ? 0.5 : of_second;
+      scene.obstacles.push_back(board);
+    }
+    const FrictionCheck found = check_friction(scene, rod.check);
+    ASSERT_GT(found.factor, 0) << found.reason;
+    if (of_second == 0.5) {
+      EXPECT_EQ(found.coefficient, 0.5 * found.factor);
+      EXPECT_NEAR(found.coefficient, rod.needed, 0.05 * rod.needed);
+    } else {
+      EXPECT_TRUE(std::isnan(found.coefficient)) << found.coefficient;
+    }
+  }
+}
+
 TEST(FrictionCheck, IsTheSameInSpace) {
   Scene scene = over_floor(300, 0.05, 0.5);
   const Pulled rod = pulled(scene, 0.1, 21);

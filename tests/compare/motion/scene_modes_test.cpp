@@ -163,6 +163,23 @@ TEST(SceneModes, PhysicalStepsAreStableFromTheirLeastRateOn) {
   }
 }
 
+// A swing exp(-zeta omega_0 t) cos(omega t), omega = omega_0 (1 - zeta^2)^(1/2), that is looked at
+// at the rate of the steps: sum and product of its two multipliers are those of Formula 19.
+TEST(SteppedMode, HasTheDampingOfTheSwingThatItStepsThrough) {
+  constexpr double rate = 200;
+  for (const double omega_0 : {1.0, 30.0, 300.0}) {
+    for (const double zeta : {0.01, 0.3, 0.8}) {
+      const double omega = omega_0 * std::sqrt(1 - zeta * zeta);
+      const double kept = std::exp(-zeta * omega_0 / rate);
+      const double c_F = 1 + kept * kept - 2 * kept * std::cos(omega / rate);
+      const SteppedMode mode = stepped_mode(1, c_F, kept * kept, rate);
+      EXPECT_NEAR(mode.damping, zeta, 1e-9) << omega_0;
+      EXPECT_NEAR(mode.omega, omega, 1e-7 * omega) << zeta;
+      EXPECT_TRUE(mode.is_stable);
+    }
+  }
+}
+
 TEST(SteppedMode, IsVerletWithoutDampingAndUnstableBeyondFour) {
   const SteppedMode slow = stepped_mode(1, 1e-6, 1, 1000);
   EXPECT_NEAR(slow.omega, 1, 1e-6);

@@ -10,6 +10,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "motion/frame_clock.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -273,6 +274,63 @@ TEST(Track, RunsTheForceModelBesideIt) {
   EXPECT_EQ(hasty.steps_per_frame, 200);
   EXPECT_LT(patient.largest, hasty.largest);
   EXPECT_LT(patient.mean, 2 * patient.rest_error + 1e-3);
+}
+
+// Of a rod of 40 cm, by the distances of points at equal arc lengths.
+TEST(Track, ErrorsOfTheForceModelAreSharesOfTheLength) {
+  const Scene scene = load_scene(std::string(DLO_DATA) + "/scenes/swung_rod.toml");
+  TrackOptions options = at_rate(50);
+  options.force = ForceBeside::runs;
+  options.rates.steps = 6000;
+  options.samples = 101;
+  const Track result = track(scene, options);
+  ASSERT_EQ(result.force.none, "");
+  double sum = 0;
+  for (const TrackFrame& frame : result.frames) {
+    const Eigen::Matrix3Xd apart = frame.force->points - frame.points;
+    const double share = std::sqrt(apart.colwise().squaredNorm().mean()) / scene.length;
+    // Points of the rod and of the polygon's segments, at other arc lengths than its own.
+    EXPECT_NEAR(frame.force->error_over_length, share, 0.1 * share + 1e-4) << frame.time;
+    sum += share;
+  }
+  const double mean = sum / static_cast<double>(result.frames.size());
+  EXPECT_GT(mean, 1e-2);
+  EXPECT_NEAR(result.force.mean, mean, 0.1 * mean);
+  EXPECT_LT(result.force.error_without_lag, mean);
+}
+
+// Whatever part of the motion is looked at, and whatever multiple of their rate frames have.
+TEST(FrameClock, ObstaclesAreWhereTheirOwnFrameBeforeHasThem) {
+  const Scene scene = parse_scene(
+      light_wire +
+          "position = [0, 0, 0]\ndirection = \"0 deg\"\n[[obstacle]]\nnormal = [0, 1, 0]\n" +
+          "touches = \"axis\"\n[[obstacle.pose]]\ntime = 0\npoint = [0, -0.7, 0]\n" +
+          "[[obstacle.pose]]\ntime = 1\npoint = [0, -0.2, 0]\n",
+      "floor.toml");
+  constexpr double every = 0.04;
+  for (const double begin : {0.0, 0.13}) {
+    for (const double frames : {100.0, 60.0}) {
+      TrackRates rates;
+      rates.frames = frames;
+      rates.obstacles = 1 / every;
+      const FrameClock clock(scene, {begin, 0.5}, rates);
+      double last = begin;
+      for (std::size_t frame = 0; frame < clock.frames(); ++frame) {
+        const double time = clock.time(frame);
+        const double moved = clock.obstacle_time(frame);
+        EXPECT_LE(moved, time + 1e-9);
+        EXPECT_GT(moved, time - every - 1e-9);
+        const double ticks = (moved - begin) / every;
+        EXPECT_NEAR(ticks, std::round(ticks), 1e-9);
+        const Eigen::Vector3d there(0.3, 0.4, 0);
+        EXPECT_NEAR(clock.scene(scene, frame).obstacles[0].body.clearance(there),
+                    scene_at(scene, moved).obstacles[0].body.clearance(there), 1e-12);
+        EXPECT_GE(moved, last);
+        last = moved;
+      }
+      EXPECT_GT(last, 0.4);
+    }
+  }
 }
 
 TEST(Lag, IsTheShiftOfASeriesOfShapes) {
