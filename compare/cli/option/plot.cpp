@@ -9,7 +9,7 @@
 
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
-#include "base/temporary_folder.hpp"
+#include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
 #include "figure/layout.hpp"

@@ -2,7 +2,9 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
+#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is not in cstdlib
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -16,6 +18,9 @@
 #include <csignal>
 #include <cstdint>
 #include <cstring>
+#include <system_error>
+
+#include "dlo/compare/error.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -137,6 +142,15 @@ extern "C" void remove_and_end(int number) {
   (void)std::raise(number);
 }
 
+std::string made(const std::string& failure, const std::filesystem::path& prefix) {
+  // What mkdtemp replaces by letters that are not taken.
+  std::string path = prefix.string() + ".XXXXXX";
+  if (::mkdtemp(path.data()) == nullptr) {
+    throw OutputError(fmt::format("{} ({})", failure, std::strerror(errno)));
+  }
+  return path;
+}
+
 }  // namespace
 
 TemporaryPath::TemporaryPath(const std::string& path) {
@@ -219,5 +233,21 @@ SignalsHeld::SignalsHeld() {
 }
 
 SignalsHeld::~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+
+TemporaryFolder::TemporaryFolder(const std::string& failure, const std::filesystem::path& prefix)
+    // A signal between making and noting it would leave it behind.
+    : TemporaryFolder(SignalsHeld(), failure, prefix) {}
+
+TemporaryFolder::TemporaryFolder(const SignalsHeld& /*held*/, const std::string& failure,
+                                 const std::filesystem::path& prefix)
+    : path_(made(failure, prefix)), at_signals_(path_.string()) {}
+
+TemporaryFolder::~TemporaryFolder() { remove_tree(path_.c_str()); }
+
+std::filesystem::path temporary_directory() {
+  std::error_code unknown;
+  std::filesystem::path path = std::filesystem::temp_directory_path(unknown);
+  return path.empty() ? "/tmp" : path;
+}
 
 }  // namespace dlo::compare

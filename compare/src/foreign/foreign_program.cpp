@@ -16,7 +16,7 @@
 #include "base/input_file.hpp"
 #include "base/output_file.hpp"
 #include "base/quote.hpp"
-#include "base/temporary_folder.hpp"
+#include "base/temporary_path.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
