@@ -7,6 +7,7 @@
 #include "command/commands.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
+#include "fit/chain_springs.hpp"
 #include "format/force_model_fit.hpp"
 #include "format/json.hpp"
 #include "format/material_fit.hpp"
@@ -132,6 +133,35 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
   options.plot.draw([&] { return compare::fit_picture(report.scenes, report.fit); });
 }
 
+/// Springs for chains of the scenes' own rods, nothing measured.
+void run_chains(const CalibrateOptions& options, bool format_is_given) {
+  const auto refuse = [](const char* format) -> std::string {
+    throw compare::InputError(fmt::format(
+        "--segments without --shape: has no format {} (allowed: text, json, or a shape)", format));
+  };
+  std::vector<compare::ChainSprings> chains;
+  for (const compare::Scene& scene : load_all(options.scenes, options.overrides)) {
+    for (compare::ChainSprings& chain :
+         compare::chain_springs(scene, options.segments, options.overrides.solve())) {
+      chains.push_back(std::move(chain));
+    }
+  }
+  if (chains.empty()) {
+    throw compare::InputError(
+        "--segments: no scene's rod is like a plain chain of hinges (allowed: one section, "
+        "straight "
+        "by nature, not twisted, touching nothing)");
+  }
+  write_report({.text = [&] { return chains_text(chains); },
+                .csv = [&] { return refuse("csv"); },
+                .toml = [&] { return refuse("toml"); },
+                .json =
+                    [&] {
+                      return Json{{"chains", chains_json(chains)}};
+                    }},
+               options.output, format_is_given);
+}
+
 void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
   const std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   const std::vector<compare::Scene> holdouts = load_all(options.holdouts, options.overrides);
@@ -218,10 +248,11 @@ void add_calibrate(CLI::App& app) {
   command
       ->add_option(
           "--segments", options->segments,
-          "of your simulator's chain: also the stiffness of its joints with which it comes "
-          "nearest to the fitted rod, for three ways to hold it")
+          "of your simulator's chain: the stiffness of its joints with which it comes nearest to "
+          "the rod, for three ways to hold it; with --shape: to the fitted one")
       ->check(CLI::Range(4, 200))
-      ->needs(shape)
+      ->excludes(target)
+      ->excludes(holdout)
       ->group(measured);
   options->plot
       .add_to(*command, "points on the fitted rod, and E's profile likelihood,", Sketches::none)
@@ -248,7 +279,9 @@ void add_calibrate(CLI::App& app) {
       "fit.svg");
   command->callback([options, command] {
     const bool format_is_given = command->count("--format") > 0;
-    if (options->shapes.empty()) {
+    if (options->shapes.empty() && options->segments > 0) {
+      run_chains(*options, format_is_given);
+    } else if (options->shapes.empty()) {
       run_force_model(*options, command->count("--points") > 0, format_is_given);
     } else {
       run_material(*options, format_is_given);

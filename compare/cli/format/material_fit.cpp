@@ -115,9 +115,9 @@ const char* text_of(compare::ChainClamp clamp) {
   return "clamped in the middle of a segment";
 }
 
-/// Joints of the chains that come nearest to the fitted rod.
-std::string chains_text(const MaterialReport& report) {
-  const std::vector<compare::ChainSprings>& chains = report.fit.chains;
+}  // namespace
+
+std::string chains_text(const std::vector<compare::ChainSprings>& chains) {
   std::string out;
   for (std::size_t i = 0; i < chains.size(); ++i) {
     const compare::ChainSprings& chain = chains[i];
@@ -134,9 +134,9 @@ std::string chains_text(const MaterialReport& report) {
   return out;
 }
 
-Json chains_json(const compare::MaterialFit& fit) {
+Json chains_json(const std::vector<compare::ChainSprings>& chains) {
   Json result = Json::array();
-  for (const compare::ChainSprings& chain : fit.chains) {
+  for (const compare::ChainSprings& chain : chains) {
     result.push_back({{"scene", chain.scene},
                       {"clamp", compare::to_string(chain.clamp)},
                       {"segments", chain.segments},
@@ -154,6 +154,8 @@ Json chains_json(const compare::MaterialFit& fit) {
   }
   return result;
 }
+
+namespace {
 
 Json numbers_json(const compare::MaterialFit& fit) {
   Json result = Json::array();
@@ -285,7 +287,7 @@ std::string material_text(const MaterialReport& report) {
     if (report.frame_was_found) append(out, "            frame {}\n", pose_text(a.pose));
     append(out, "{}", numbers_text(fit, i));
   }
-  out += chains_text(report);
+  out += chains_text(report.fit.chains);
   return out;
 }
 
@@ -351,7 +353,7 @@ Json material_json(const MaterialReport& report) {
   result["common_share"] = json_of(fit.common_share);
   result["alternatives"] = alternatives_json(report);
   result["others"] = numbers_json(fit);
-  result["chains"] = chains_json(fit);
+  result["chains"] = chains_json(fit.chains);
   result["scatter_between_shapes"] = scatter_json(fit.scatter);
   result["rms_m"] = fit.rms_m;
   Json shapes = Json::array();

@@ -16,6 +16,10 @@ struct MaterialReport {
   bool frame_was_found = false;
 };
 
+/// Joints of the chains that come nearest to a rod.
+[[nodiscard]] std::string chains_text(const std::vector<compare::ChainSprings>& chains);
+[[nodiscard]] Json chains_json(const std::vector<compare::ChainSprings>& chains);
+
 [[nodiscard]] std::string material_text(const MaterialReport& report);
 [[nodiscard]] std::string material_csv(const MaterialReport& report);
 [[nodiscard]] Json material_json(const MaterialReport& report);

@@ -97,4 +97,9 @@ std::string read_regular_file(const std::string& path, const std::string& name) 
   return file.read_all();
 }
 
+std::string_view after_byte_order_mark(std::string_view text) {
+  constexpr std::string_view mark = "\xEF\xBB\xBF";
+  return text.starts_with(mark) ? text.substr(mark.size()) : text;
+}
+
 }  // namespace dlo::compare

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace dlo::compare {
 
@@ -40,5 +41,8 @@ class InputFile {
 /// A whole file that others have written, which may be anything: only a regular file is read, also
 /// through a link; nothing is waited for. @param name  for messages @throws InputError as InputFile
 [[nodiscard]] std::string read_regular_file(const std::string& path, const std::string& name);
+
+/// A text without the mark by which some programs begin UTF-8.
+[[nodiscard]] std::string_view after_byte_order_mark(std::string_view text);
 
 }  // namespace dlo::compare

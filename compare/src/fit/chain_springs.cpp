@@ -81,7 +81,10 @@ std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain) 
       // 1.2.0 stopped dividing it by the length of a segment.
       {"Newton", "add_rod bend_stiffness before 1.2.0", "N m^2", rod},
       {"Newton", "add_rod bend_stiffness since 1.2.0", "N m/rad", joint},
-      {"Newton", "add_joint_cable bend_stiffness", "N m/rad", joint}};
+      {"Newton", "add_joint_cable bend_stiffness", "N m/rad", joint},
+      {"PhysX", "PxD6JointDrive stiffness", "N m/rad", joint},
+      // USD keeps angles in degrees.
+      {"Isaac Sim", "PhysicsDriveAPI:rotX stiffness", "N m/deg", joint * std::numbers::pi / 180}};
   if (chain.equivalent_modulus > 0) {
     all.push_back({"MuJoCo", "cable plugin bend", "Pa", chain.equivalent_modulus});
     // Its first element is held whole, as that of a welded chain.

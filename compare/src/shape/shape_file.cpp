@@ -92,8 +92,7 @@ double arc_length_unit(const RawShape& raw, const std::string& file, double unit
 }
 
 RawShape read_any_shape(std::string_view text, const std::string& file, double unit) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  text = after_byte_order_mark(text);
   const std::size_t start = text.find_first_not_of(" \t\r\n");
   if (start == std::string_view::npos) {
     throw InputError(

@@ -28,6 +28,8 @@ constexpr std::size_t most_poses = 1'000'000;
 constexpr std::array<const char*, 7> pose_columns = {"time", "x", "y", "z", "dx", "dy", "dz"};
 constexpr const char* pose_columns_allowed =
     "(allowed: a header of time,x,y,z or time,x,y,z,dx,dy,dz in any order)";
+constexpr const char* file_allowed =
+    "(allowed: a CSV file with the columns time,x,y,z or time,x,y,z,dx,dy,dz)";
 
 /// What Trajectory says of a pose, without its own name.
 std::string problem_in(const std::invalid_argument& error) {
@@ -109,8 +111,11 @@ std::string read_beside(const StrictTable& table, const std::string& name,
   const std::string path = path_beside(name, scene_file);
   std::error_code unknown;
   if (!std::filesystem::is_regular_file(path, unknown)) {
-    table.fail("trajectory", fmt::format("no such file beside the scene (allowed: a CSV file, {})",
-                                         pose_columns_allowed));
+    const bool is_there = std::filesystem::exists(path, unknown);
+    table.fail(
+        "trajectory",
+        fmt::format("{} {}", is_there ? "not a regular file" : "no such file beside the scene",
+                    file_allowed));
   }
   return read_file(path);
 }
@@ -149,6 +154,7 @@ Trajectory read_rows(StrictTable& table, std::vector<StrictTable>& rows, const P
 Trajectory parse_trajectory(std::string_view text, const std::string& file) {
   std::optional<PoseColumns> columns;
   std::vector<Pose> poses;
+  text = after_byte_order_mark(text);
   for (long number = 1; !text.empty(); ++number) {
     const std::size_t end = text.find('\n');
     const std::string_view line = trimmed(text.substr(0, end));

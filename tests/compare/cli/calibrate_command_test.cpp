@@ -139,6 +139,16 @@ TEST_F(CalibrateCommand, TellsTheJointsOfAChain) {
   EXPECT_NE(text.find("PyElastica youngs_modulus = "), std::string::npos);
   expect_error(words({"calibrate", a, "--shape", path("a.csv"), "--segments 3"}), 2,
                {"--segments", "3"});
+  // Of the scene's own rod, which is that of the shape.
+  const std::string own = words({"calibrate", a, "--segments 12"});
+  const json bare = json::parse(run(own + " --format json").out).at("chains");
+  ASSERT_EQ(bare.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const char* const joint = "joint_stiffness_Nm_per_rad";
+    EXPECT_NEAR(bare[i].at(joint).get<double>() / chains[i].at(joint).get<double>(), 1, 1e-3);
+  }
+  EXPECT_NE(run(own).out.find("Isaac Sim  PhysicsDriveAPI:rotX stiffness = "), std::string::npos);
+  expect_error(own + " --format csv", 2, {"--segments", "csv"});
 }
 
 TEST_F(CalibrateCommand, WritesAMaterialThatScenesCanUse) {

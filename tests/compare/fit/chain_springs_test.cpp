@@ -81,7 +81,7 @@ TEST(ChainSprings, BetweenTwoClampsBothEndsAreHeldAlike) {
 }
 
 // What each simulator makes of its number is the joint that was meant: MuJoCo's plugin takes
-// E pi r^4 / 4 / h, Newton's add_rod divided by h before 1.2.0.
+// E pi r^4 / 4 / h, Newton's add_rod divided by h before 1.2.0, USD counts degrees.
 TEST(ChainSprings, SimulatorsTakeTheSameJointEachByItsOwnNumber) {
   const Scene scene = test::heavy_scene(5, 0);
   for (const auto& [clamp, chain] : springs_of(scene, 24)) {
@@ -90,14 +90,15 @@ TEST(ChainSprings, SimulatorsTakeTheSameJointEachByItsOwnNumber) {
       const double per_unit =
           std::string_view(parameter.unit) == "Pa"
               ? std::numbers::pi * std::pow(scene.diameter / 2, 4) / 4 / chain.segment_length
-          : std::string_view(parameter.unit) == "N m^2" ? 1 / chain.segment_length
-                                                        : 1;
+          : std::string_view(parameter.unit) == "N m^2"   ? 1 / chain.segment_length
+          : std::string_view(parameter.unit) == "N m/deg" ? 180 / std::numbers::pi
+                                                          : 1;
       if (std::string_view(parameter.name) == "add_rod bend_stiffness since 1.2.0") {
         EXPECT_STREQ(parameter.unit, "N m/rad");
       }
       joints[std::string(parameter.simulator) + parameter.name] = parameter.value * per_unit;
     }
-    EXPECT_EQ(joints.size(), clamp == ChainClamp::welded ? 7U : 6U);
+    EXPECT_EQ(joints.size(), clamp == ChainClamp::welded ? 9U : 8U);
     for (const auto& [name, joint] : joints) {
       EXPECT_NEAR(joint / chain.stiffness, 1, 1e-12) << name << ' ' << to_string(clamp);
     }

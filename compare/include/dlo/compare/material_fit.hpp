@@ -99,7 +99,7 @@ struct ChainSprings {
 
 /// One number of a simulator's chain, by the name that it has there.
 struct SimulatorParameter {
-  const char* simulator = "";  ///< MuJoCo, Bullet, PyElastica or Newton
+  const char* simulator = "";  ///< such as MuJoCo
   const char* name = "";       ///< what takes it
   const char* unit = "";       ///< in which it is taken
   double value = 0;            ///< in that unit
@@ -108,8 +108,9 @@ struct SimulatorParameter {
 /// The springs of a chain as the parameters of simulators that have such chains: MuJoCo 3 (joints,
 /// and its plugin `mujoco.elasticity.cable`, which divides E I by h itself), Bullet 3, PyElastica
 /// 0.3 (E of a rod whose first element is held), Newton (`ModelBuilder.add_rod`, which divided
-/// by h before version 1.2.0, and `add_joint_cable`, which does not). Those that take a modulus
-/// only if the diameter is known.
+/// by h before version 1.2.0, and `add_joint_cable`, which does not), the angular drives of D6
+/// joints in PhysX 5, and in USD for Isaac Sim, which has them per degree. Those that take a
+/// modulus only if the diameter is known.
 [[nodiscard]] std::vector<SimulatorParameter> simulator_parameters(const ChainSprings& chain);
 
 /// How one shape was laid on the rod of the fitted modulus.
