@@ -41,6 +41,11 @@ std::vector<YieldingScene> yielding_scenes() {
   ball.obstacles = {{Body::sphere({0.35, -0.25, 0.1}, 0.15), 300}};
   scenes.push_back({"ball", ball, {0.3, 0.9, 0.1}});
   scenes.back().way.normalize();
+  // The axis is a hundredth of the length beside the rod, and forces turn within that way.
+  Problem deep = heavy_cantilever(2, 0);
+  deep.grips.push_back({1, {0.98, 0, 0}, Eigen::Vector3d::UnitX()});
+  deep.obstacles = {{Body::cylinder({0.43, -0.03, 0}, {0, 0, 1}, 0.09), 2e4}};
+  scenes.push_back({"axis", deep, {0.6, 0.8, 0}});
   return scenes;
 }
 

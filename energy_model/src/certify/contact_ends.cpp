@@ -18,6 +18,10 @@ constexpr double closest_contact_ends = 1e-7;
 constexpr int parts = 32;
 constexpr double shortest_bracket = 1e-13;
 
+/// From the core of a cylinder, in lengths: nearer than that its forces turn too fast for the nodes
+/// of a whole piece.
+constexpr double beside = 0.05;
+
 /// In a bracket the rod passes from one state to another.
 struct Bracket {
   std::size_t obstacle = 0;
@@ -49,8 +53,14 @@ void append_divided(double begin, double end, std::vector<double>& s) {
   for (int i = 0; i <= parts; ++i) s.push_back(begin + (end - begin) * i / parts);
 }
 
+/// Whether a body is a cylinder, a capsule or a ball: within it forces turn round at its core.
+bool has_thin_core(const obstacle::Body& body) {
+  return ((body.upper() - body.lower()).array() == 0).count() >= 2;
+}
+
 /// Those of all obstacles on arc lengths by growing s; also where a dip between two of them may
-/// reach into an obstacle.
+/// reach into an obstacle, and, without width, where the rod comes so near to a thin core that
+/// forces turn within a short way, for which nodes have to be close.
 std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacles,
                                  const SpanShape& shape, double length) {
   const std::vector<double> s = evenly_spaced(length);
@@ -70,6 +80,10 @@ std::vector<Bracket> brackets_of(const std::vector<Span::SoftObstacle>& obstacle
       const bool dip = i + 1 < points.cols() && clearance[i] >= 0 && clearance[i] < spacing &&
                        clearance[i] <= clearance[i - 1] && clearance[i] <= clearance[i + 1];
       if (dip) dips.push_back({o, s[at - 1], s[at + 1]});
+      const bool beside_core = i + 1 < points.cols() && clearance[i] < 0 && has_thin_core(body) &&
+                               clearance[i] + body.radius() < beside * length &&
+                               clearance[i] < clearance[i - 1] && clearance[i] <= clearance[i + 1];
+      if (beside_core) brackets.push_back({o, s[at], s[at]});
     }
   }
   for (const Bracket& dip : dips) {
@@ -163,7 +177,7 @@ MiddlePassed middle_passed(const SpanSolution& solution) {
   for (const Span::SoftObstacle& obstacle : span.soft_obstacles) {
     const obstacle::Body& body = obstacle.body;
     // Of what is thin the forces turn within the way to the middle, which nodes have to see.
-    const bool thin = ((body.upper() - body.lower()).array() == 0).count() >= 2;
+    const bool thin = has_thin_core(body);
     const Eigen::VectorXd clearance = body.clearances(points);
     for (Eigen::Index i = 1; i < points.cols(); ++i) {
       if (clearance[i - 1] >= 0 || clearance[i] >= 0) continue;

@@ -81,8 +81,10 @@ std::vector<Equilibrium> combine(const Problem& problem,
     return a.energy.total() < b.energy.total();
   });
   if (lowest.truncated) {
-    result.back().message += "; the " + std::to_string(most_combinations) +
+    for (Equilibrium& equilibrium : result) {
+      equilibrium.message += "; the " + std::to_string(most_combinations) +
                              " lowest combinations of the spans' equilibria, there are more";
+    }
     log.leave_out("combinations of the spans' equilibria beyond the " +
                   std::to_string(most_combinations) + " lowest");
   }
