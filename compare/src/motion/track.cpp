@@ -34,6 +34,15 @@ class Tracker {
   }
 
   [[nodiscard]] Track run(const Progress& progress) {
+    constexpr double most_points = 4e6;  // kept: a document of them takes some 0.5 GB
+    const double points = static_cast<double>(clock_.frames()) * options_.samples;
+    if (points > most_points) {
+      throw InputError(
+          fmt::format("{}: {} frames of {} samples (allowed: {:g} points in all, by a lower frame "
+                      "rate or fewer "
+                      "samples)",
+                      scene_.file, clock_.frames(), options_.samples, most_points));
+    }
     const auto total = static_cast<std::int64_t>(clock_.frames());
     for (std::size_t frame = 0; frame < clock_.frames(); ++frame) {
       if (!add(frame)) break;

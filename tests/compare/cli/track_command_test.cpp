@@ -152,6 +152,9 @@ TEST_F(TrackCommand, OtherCommandsTakeTheSceneAtATime) {
   EXPECT_GT(force("--time 1"), 0.05);
   expect_error(words({"solve", std::string(DLO_DATA) + "/scenes/cable.toml", "--time 1"}), 2,
                {"--time 1", "nothing moves"});
+  expect_error(words({"track", std::string(DLO_DATA) + "/scenes/swung_rod.toml",
+                      "--no-force --frame-rate 100000 --samples 10000"}),
+               2, {"10000 samples", "4e+06 points in all"});
   expect_error(words({"track", std::string(DLO_DATA) + "/scenes/cable.toml"}), 2,
                {"nothing moves", "[[gripper.pose]]"});
   expect_error(words({"track", wire(), "--frame-rate 0"}), 2, {"--frame-rate"});
