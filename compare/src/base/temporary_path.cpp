@@ -20,6 +20,7 @@
 #include <cstring>
 #include <system_error>
 
+#include "base/output_file.hpp"
 #include "dlo/compare/error.hpp"
 
 namespace dlo::compare {

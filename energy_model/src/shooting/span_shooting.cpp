@@ -18,7 +18,7 @@ constexpr double largest_load = 1e6;      // of weight and loads, in EI/l^2
 constexpr double in_plane = 1e-6;         // of tangents
 constexpr double same_tangents = 1e-6;    // of two equilibria
 constexpr std::size_t most_descents = 6;  // polygons that are shot from if one leads to a minimum
-constexpr int most_departures = 8;        // saddles that are left
+constexpr int most_saddles_left = 8;      // saddles that are left
 constexpr double departure = 0.3;         // largest change of a tangent when a saddle is left
 constexpr int finer_polygons = 2;         // after a shot that has failed
 constexpr Eigen::Index most_intervals = 1000;  // of a polygon that is made finer
@@ -157,7 +157,7 @@ class SpanSearch {
   /// An unstable equilibrium below all stable ones shows that a minimum has been missed.
   void leave_saddles() {
     std::vector<double> energies;  // of those that have been left
-    for (int i = 0; i < most_departures && !deadline_.passed(); ++i) {
+    for (int i = 0; i < most_saddles_left && !deadline_.passed(); ++i) {
       const SpanEquilibrium* lowest = missed_minimum(found_, energies);
       if (lowest == nullptr) return;
       energies.push_back(lowest->energy.total());
