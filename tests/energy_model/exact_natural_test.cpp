@@ -11,12 +11,13 @@
 #include <stdexcept>
 
 #include "base/sized_samples.hpp"
-#include "curved/curved_variation.hpp"
+#include "curved/curved_rod.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
 #include "problem/rod_law.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
+#include "shooting/second_variation.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -500,9 +501,9 @@ TEST(ExactNatural, AStraightClampedRodBucklesUnderItsTwist) {
   const CurvedRod rod = make_curved_rod(KirchhoffHelix().problem());
   const ClampFrames frames = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
   const auto smallest = [&](double torque) {
-    return curved_variation(rod, frames, torque * torque,
+    return second_variation(rod.span, frames, torque * torque,
                             [&](const std::vector<double>& arc) {
-                              std::vector<CurvedState> states(arc.size());
+                              std::vector<RodState> states(arc.size());
                               for (std::size_t i = 0; i < arc.size(); ++i) {
                                 states[i].R = rotation_by({0, 0, torque / 0.8 * arc[i]});
                                 states[i].m = {0, 0, torque};

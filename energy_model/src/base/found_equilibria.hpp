@@ -7,7 +7,7 @@
 
 namespace dlo::energy_model {
 
-/// Of what searches find by shooting (SpanEquilibrium, CurvedEquilibrium).
+/// Of what searches find by shooting (SpanEquilibrium).
 template <typename Shape>
 [[nodiscard]] double lowest_stable_energy(const std::vector<Shape>& found) {
   double lowest = std::numeric_limits<double>::infinity();

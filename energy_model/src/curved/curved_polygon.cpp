@@ -35,7 +35,7 @@ Quaterniond turned_about_t(const Quaterniond& frame, double angle) {
 /// The frame of a clamp at which the turn of one that it does not hold is zero.
 Quaterniond clamp_frame(const CurvedRod& rod, const ClampFrames& held, std::size_t k) {
   if (held[k]) return Quaterniond(*held[k]);
-  return Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), rod.clamps[k].direction);
+  return Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), rod.span.clamps[k].direction);
 }
 
 Eigen::Index node_of(const RodMesh& mesh, double s) {
@@ -49,12 +49,12 @@ std::vector<FrameJoint> joints_of(const CurvedRod& rod, const RodMesh& mesh) {
     const double h = mesh.width(i) / 2;
     const double middle = before ? mesh.s[i + 1] - h / 2 : mesh.s[i] + h / 2;
     joints.push_back({before ? i : clamp, before ? clamp : i, before ? i + 1 : i, h, stiffness(i),
-                      rod.natural(middle)});
+                      rod.span.natural(middle)});
   };
   for (Eigen::Index i = 0; i <= mesh.intervals(); ++i) {
-    const CurvedRod::Clamp* clamp = rod.clamp_at(mesh.s[i]);
+    const RodSpan::Clamp* clamp = rod.span.clamp_at(mesh.s[i]);
     if (clamp != nullptr) {
-      const Eigen::Index frame = mesh.intervals() + (clamp - rod.clamps.data());
+      const Eigen::Index frame = mesh.intervals() + (clamp - rod.span.clamps.data());
       if (i > 0) to_clamp(i - 1, frame, true);
       if (i < mesh.intervals()) to_clamp(i, frame, false);
     } else if (i > 0 && i < mesh.intervals()) {
@@ -63,7 +63,7 @@ std::vector<FrameJoint> joints_of(const CurvedRod& rod, const RodMesh& mesh) {
       const Eigen::Vector3d compliance =
           before * stiffness(i - 1).cwiseInverse() + after * stiffness(i).cwiseInverse();
       joints.push_back({i - 1, i, i, before + after, (before + after) * compliance.cwiseInverse(),
-                        rod.natural(mesh.s[i] + (after - before) / 2)});
+                        rod.span.natural(mesh.s[i] + (after - before) / 2)});
     }
   }
   return joints;
@@ -210,7 +210,7 @@ std::vector<Quaterniond> natural_shape(const CurvedRod& rod, const RodMesh& mesh
   std::vector<Quaterniond> shape(static_cast<std::size_t>(mesh.intervals()));
   const auto half = [&](Eigen::Index i, double side) {
     const Eigen::Vector3d turn =
-        side * mesh.width(i) / 2 * rod.natural((mesh.s[i] + mesh.s[i + 1]) / 2);
+        side * mesh.width(i) / 2 * rod.span.natural((mesh.s[i] + mesh.s[i + 1]) / 2);
     return Quaterniond(rotation_by(turn));
   };
   Quaterniond at = frame;
@@ -240,7 +240,7 @@ CurvedPolygon relax_curved(const CurvedRod& rod, const RodMesh& mesh, const Clam
   for (std::size_t k = 0; k < held.size(); ++k) {
     if (held[k]) continue;
     // Turned as the rod beside it is.
-    const Eigen::Index node = node_of(mesh, rod.clamps[k].at);
+    const Eigen::Index node = node_of(mesh, rod.span.clamps[k].at);
     const Quaterniond beside = energy.frame(x, std::min(node, count - 1));
     const Quaterniond turn = clamp_frame(rod, held, k).conjugate() * beside;
     x[4 * count + static_cast<Eigen::Index>(k)] = 2 * std::atan2(turn.z(), turn.w());
@@ -286,11 +286,11 @@ std::vector<std::vector<Quaterniond>> curved_starts(const CurvedRod& rod, const 
     if (share > 1e-6) line = chord.normalized();
   }
   const Quaterniond along = Quaterniond::FromTwoVectors(z, line);
-  const double clamp_place = rod.clamps.empty() ? 0 : rod.clamps.front().at;
+  const double clamp_place = rod.span.clamps.empty() ? 0 : rod.span.clamps.front().at;
   const Eigen::Index clamp_node = node_of(mesh, clamp_place);
   std::vector<std::vector<Quaterniond>> starts;
-  starts.push_back(
-      natural_shape(rod, mesh, clamp_node, rod.clamps.empty() ? along : Quaterniond::Identity()));
+  starts.push_back(natural_shape(rod, mesh, clamp_node,
+                                 rod.span.clamps.empty() ? along : Quaterniond::Identity()));
   starts.emplace_back(static_cast<std::size_t>(count), along);
   const Eigen::Matrix3Xd carried = carried_force(rod.span, mesh).on_interval;
   for (const double side : {1.0, -1.0}) {
@@ -345,11 +345,11 @@ std::vector<std::vector<Quaterniond>> curved_starts(const CurvedRod& rod, const 
   return starts;
 }
 
-std::vector<CurvedState> curved_states_of(const CurvedRod& rod, const RodMesh& mesh,
-                                          const ClampFrames& held, const CurvedPolygon& polygon) {
+std::vector<RodState> curved_states_of(const CurvedRod& rod, const RodMesh& mesh,
+                                       const ClampFrames& held, const CurvedPolygon& polygon) {
   const Eigen::Index last = mesh.intervals();
   const ForceField carried = carried_force(rod.span, mesh);
-  std::vector<CurvedState> states(static_cast<std::size_t>(last + 1));
+  std::vector<RodState> states(static_cast<std::size_t>(last + 1));
   std::vector<Quaterniond> q = polygon.frames;
   for (std::size_t k = 0; k < held.size(); ++k) {
     q.push_back(held[k] ? Quaterniond(*held[k])
@@ -366,12 +366,13 @@ std::vector<CurvedState> curved_states_of(const CurvedRod& rod, const RodMesh& m
   Eigen::Vector3d r = Eigen::Vector3d::Zero();
   Eigen::Vector3d shift = Eigen::Vector3d::Zero();
   for (Eigen::Index i = 0; i <= last; ++i) {
-    CurvedState& state = states[static_cast<std::size_t>(i)];
+    RodState& state = states[static_cast<std::size_t>(i)];
     const auto before = static_cast<std::size_t>(std::max<Eigen::Index>(i - 1, 0));
     const auto after = static_cast<std::size_t>(std::min(i, last - 1));
     state.R = q[before].slerp(0.5, q[after]).toRotationMatrix();
-    if (const CurvedRod::Clamp* clamp = rod.clamp_at(mesh.s[i])) {
-      state.R = q[static_cast<std::size_t>(last + (clamp - rod.clamps.data()))].toRotationMatrix();
+    if (const RodSpan::Clamp* clamp = rod.span.clamp_at(mesh.s[i])) {
+      state.R =
+          q[static_cast<std::size_t>(last + (clamp - rod.span.clamps.data()))].toRotationMatrix();
     }
     state.r = r;
     if (mesh.hold[static_cast<std::size_t>(i)] == &rod.span.holds.front()) {
@@ -385,7 +386,7 @@ std::vector<CurvedState> curved_states_of(const CurvedRod& rod, const RodMesh& m
     state.n = carried.after_node.col(i) + polygon.force.col(i) - carried.on_interval.col(i);
     r += mesh.width(i) * (polygon.frames[static_cast<std::size_t>(i)] * Eigen::Vector3d::UnitZ());
   }
-  for (CurvedState& state : states) state.r += shift;
+  for (RodState& state : states) state.r += shift;
   return states;
 }
 

@@ -39,8 +39,8 @@ struct CurvedPolygon {
                                                                          bool planar);
 
 /// Cross-sections at the nodes of a mesh.
-[[nodiscard]] std::vector<CurvedState> curved_states_of(const CurvedRod& rod, const RodMesh& mesh,
-                                                        const ClampFrames& held,
-                                                        const CurvedPolygon& polygon);
+[[nodiscard]] std::vector<RodState> curved_states_of(const CurvedRod& rod, const RodMesh& mesh,
+                                                     const ClampFrames& held,
+                                                     const CurvedPolygon& polygon);
 
 }  // namespace dlo::energy_model

@@ -31,20 +31,6 @@ Eigen::Matrix3d axes_of(const Problem& problem) {
 
 }  // namespace
 
-Eigen::Matrix3d frame_of(const Eigen::Vector3d& d1, const Eigen::Vector3d& direction) {
-  Eigen::Matrix3d frame;
-  frame.col(0) = (d1 - d1.dot(direction) * direction).normalized();
-  frame.col(1) = direction.cross(Eigen::Vector3d(frame.col(0)));
-  frame.col(2) = direction;
-  return frame;
-}
-
-const CurvedRod::Clamp* CurvedRod::clamp_at(double s) const {
-  const auto found =
-      std::find_if(clamps.begin(), clamps.end(), [&](const Clamp& clamp) { return clamp.at == s; });
-  return found == clamps.end() ? nullptr : &*found;
-}
-
 bool CurvedRod::planar() const {
   bool flat = true;
   for (const RodSpan::Hold& hold : span.holds) {
@@ -52,11 +38,11 @@ bool CurvedRod::planar() const {
   }
   for (const RodSpan::Load& load : span.loads) flat = flat && load.force.y() == 0;
   for (const RodSpan::Part& part : span.parts) flat = flat && part.section.weight.y() == 0;
-  for (const Clamp& clamp : clamps) flat = flat && clamp.direction.y() == 0;
+  for (const RodSpan::Clamp& clamp : span.clamps) flat = flat && clamp.direction.y() == 0;
   // A polynomial of the second strain alone has only zeros of the others.
   constexpr int probes = 24;
   for (int i = 0; i <= probes; ++i) {
-    const Eigen::Vector3d u = natural(static_cast<double>(i) / probes);
+    const Eigen::Vector3d u = span.natural(static_cast<double>(i) / probes);
     flat = flat && u[0] == 0 && u[2] == 0;
   }
   return flat;
@@ -77,28 +63,22 @@ CurvedRod make_curved_rod(const Problem& problem) {
   for (const RodSpan::Hold& hold : rod.span.holds) {
     const Grip& grip = problem.grips[hold.grip];
     if (!grip.direction) continue;
-    CurvedRod::Clamp clamp{hold.at, in_axes(rod.axes, grip.direction->normalized()), {}};
-    if (rod.clamps.empty()) {
+    RodSpan::Clamp clamp{hold.at, in_axes(rod.axes, grip.direction->normalized()), {}};
+    if (rod.span.clamps.empty()) {
       clamp.direction = Eigen::Vector3d::UnitZ();
       first = grip;
       if (!first.frame) first.frame = FrameHold{};
       rod.first_roll = first.frame->roll;
     } else if (grip.frame) {
-      clamp.frame = CurvedRod::Clamp::Frame{in_axes(rod.axes, held_d1(problem, grip)),
-                                            turns_between(problem, first, grip)};
+      clamp.frame = RodSpan::Frame{in_axes(rod.axes, held_d1(problem, grip)),
+                                   turns_between(problem, first, grip)};
     }
-    rod.clamps.push_back(clamp);
+    rod.span.clamps.push_back(clamp);
   }
-  rod.natural = [problem](double s) {
+  rod.span.natural = [problem](double s) {
     return Eigen::Vector3d(problem.length * natural_strain(problem, s * problem.length));
   };
   return rod;
-}
-
-ClampFrames released_frames(const CurvedRod& rod) {
-  ClampFrames frames(rod.clamps.size());
-  if (!frames.empty()) frames.front() = Eigen::Matrix3d::Identity();
-  return frames;
 }
 
 }  // namespace dlo::energy_model

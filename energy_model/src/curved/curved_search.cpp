@@ -35,13 +35,13 @@ constexpr double most_frame_change = 0.7;        // of a tangent in a step of th
 constexpr double most_polygon_change = 1.5;      // of a tangent from a polygon to its equilibrium
 
 /// Largest difference of the components of two shapes' frames.
-double frame_distance(const CurvedRod& rod, const CurvedEquilibrium& a, const CurvedEquilibrium& b,
+double frame_distance(const CurvedRod& rod, const SpanEquilibrium& a, const SpanEquilibrium& b,
                       bool tangents) {
   std::vector<double> probes;
   for (int i = 0; i <= 24; ++i) probes.push_back(i / 24.0);
   constexpr double coarse = 1e-9;
-  const std::vector<CurvedState> first = curved_states_at(a, rod, probes, coarse);
-  const std::vector<CurvedState> second = curved_states_at(b, rod, probes, coarse);
+  const std::vector<RodState> first = states_at(a, rod.span, probes, coarse);
+  const std::vector<RodState> second = states_at(b, rod.span, probes, coarse);
   double distance = 0;
   for (std::size_t i = 0; i < probes.size(); ++i) {
     const Eigen::Matrix3d change = first[i].R - second[i].R;
@@ -63,25 +63,20 @@ double resolving_interval(const CurvedRod& rod, double force) {
   double longest = longest_interval(rod.span, force);
   constexpr int probes = 32;
   for (int i = 0; i <= probes; ++i) {
-    const double bend = rod.natural(static_cast<double>(i) / probes).norm();
+    const double bend = rod.span.natural(static_cast<double>(i) / probes).norm();
     longest = std::min(longest, most_bend / std::max(bend, 1.0));
   }
   return longest;
 }
 
-/// A frame turned about its tangent.
-Eigen::Matrix3d rolled(const Eigen::Matrix3d& frame, double angle) {
-  return rotation_by(angle * Eigen::Vector3d(frame.col(2))) * frame;
-}
-
 /// Frames of the intervals of a mesh beside a shape: turned by the mode of its smallest eigenvalue.
 std::vector<Quaterniond> beside(const CurvedRod& rod, const RodMesh& mesh,
-                                const CurvedEquilibrium& shape, double amplitude) {
+                                const SpanEquilibrium& shape, double amplitude) {
   const Eigen::VectorXd middles =
       (mesh.s.head(mesh.intervals()) + mesh.s.tail(mesh.intervals())) / 2;
   constexpr double coarse = 1e-9;
-  const std::vector<CurvedState> states =
-      curved_states_at(shape, rod, {middles.begin(), middles.end()}, coarse);
+  const std::vector<RodState> states =
+      states_at(shape, rod.span, {middles.begin(), middles.end()}, coarse);
   Eigen::Matrix3Xd spins = Eigen::Matrix3Xd::Zero(3, middles.size());
   if (shape.stability.s.size() > 0) spins = amplitude * shape.stability.spin_at(middles);
   std::vector<Quaterniond> frames;
@@ -102,8 +97,8 @@ class CurvedSearch {
     options_.deadline = deadline;
   }
 
-  CurvedSearchResult run() {
-    const ClampFrames frames = released_frames(rod_);
+  SpanSearchResult run() {
+    const ClampFrames frames = released_frames(rod_.span);
     std::vector<CurvedPolygon> polygons;
     const Deadline relaxing(share_of_polygons * deadline_.remaining());
     if (rod_.planar()) add_polygons(frames, true, relaxing, polygons);
@@ -122,7 +117,7 @@ class CurvedSearch {
       found_.push_back(std::move(failed_));
     }
     sort_by_stability(found_);
-    const bool turned = std::any_of(rod_.clamps.begin(), rod_.clamps.end(),
+    const bool turned = std::any_of(rod_.span.clamps.begin(), rod_.span.clamps.end(),
                                     [](const auto& clamp) { return clamp.frame.has_value(); });
     if (turned && found_.front().converged) found_ = {turn_frames(found_.front())};
     found_.front().shots = shots_;
@@ -142,14 +137,14 @@ class CurvedSearch {
     }
   }
 
-  CurvedEquilibrium shoot_from(const CurvedPolygon& polygon, const ClampFrames& frames) {
-    CurvedEquilibrium shape =
-        shoot_curved(rod_, mesh_, curved_states_of(rod_, mesh_, frames, polygon), frames, options_);
+  SpanEquilibrium shoot_from(const CurvedPolygon& polygon, const ClampFrames& frames) {
+    SpanEquilibrium shape = shoot_span(
+        rod_.span, mesh_, curved_states_of(rod_, mesh_, frames, polygon), frames, options_);
     shots_ += shape.shots;
     return shape;
   }
 
-  void add(CurvedEquilibrium shape) {
+  void add(SpanEquilibrium shape) {
     if (!shape.converged) {
       failed_ = std::move(shape);
       return;
@@ -164,34 +159,34 @@ class CurvedSearch {
   void leave_saddles(const ClampFrames& frames) {
     std::vector<double> left;  // energies
     for (int i = 0; i < most_left && !deadline_.passed(); ++i) {
-      const CurvedEquilibrium* lowest = missed_minimum(found_, left);
+      const SpanEquilibrium* lowest = missed_minimum(found_, left);
       if (lowest == nullptr) return;
       left.push_back(lowest->energy.total());
-      const CurvedEquilibrium saddle = *lowest;
+      const SpanEquilibrium saddle = *lowest;
       for (const double side : {away, -away}) add(relaxed_from(saddle, side, frames));
     }
   }
 
-  CurvedEquilibrium relaxed_from(const CurvedEquilibrium& shape, double amplitude,
-                                 const ClampFrames& frames) {
+  SpanEquilibrium relaxed_from(const SpanEquilibrium& shape, double amplitude,
+                               const ClampFrames& frames) {
     const std::vector<Quaterniond> start = beside(rod_, mesh_, shape, amplitude);
     return shoot_from(relax_curved(rod_, mesh_, frames, start, deadline_), frames);
   }
 
   /// By which the frames are turned from where the rod without them has them.
-  [[nodiscard]] std::vector<double> targets_of(const CurvedEquilibrium& released) const {
+  [[nodiscard]] std::vector<double> targets_of(const SpanEquilibrium& released) const {
     std::vector<double> targets;
     const auto sample = [&](std::span<const double> at) {
       Samples samples = sized_samples(at, 1);
       const auto states =
-          curved_states_at(released, rod_, {at.begin(), at.end()}, options_.tolerance);
+          states_at(released, rod_.span, {at.begin(), at.end()}, options_.tolerance);
       for (std::size_t i = 0; i < states.size(); ++i) {
         samples.points.col(static_cast<Eigen::Index>(i)) = states[i].r;
         samples.tangents.col(static_cast<Eigen::Index>(i)) = states[i].R.col(2);
       }
       return samples;
     };
-    for (const CurvedRod::Clamp& clamp : rod_.clamps) {
+    for (const RodSpan::Clamp& clamp : rod_.span.clamps) {
       targets.push_back(0);
       if (!clamp.frame) continue;
       const auto& [d1, turns] = *clamp.frame;
@@ -199,44 +194,44 @@ class CurvedSearch {
       const Eigen::Matrix3d own = rolled(frame_at(released, clamp.at), -rod_.first_roll);
       const double ahead = std::atan2(own.col(1).dot(d1), own.col(0).dot(d1));
       std::optional<double> before;
-      if (turns.turns) before = writhe(sample, rod_.clamps.front().at, clamp.at);
+      if (turns.turns) before = writhe(sample, rod_.span.clamps.front().at, clamp.at);
       targets.back() = turned_angle(turns, ahead, before);
     }
     return targets;
   }
 
-  [[nodiscard]] Eigen::Matrix3d frame_at(const CurvedEquilibrium& shape, double s) const {
-    return curved_states_at(shape, rod_, {s}, options_.tolerance).front().R;
+  [[nodiscard]] Eigen::Matrix3d frame_at(const SpanEquilibrium& shape, double s) const {
+    return states_at(shape, rod_.span, {s}, options_.tolerance).front().R;
   }
 
   /// The frames after a part of the way to the targets.
   [[nodiscard]] ClampFrames frames_after(double part, const ClampFrames& released,
                                          const std::vector<double>& targets) const {
-    ClampFrames frames = released_frames(rod_);
+    ClampFrames frames = released_frames(rod_.span);
     for (std::size_t k = 0; k < frames.size(); ++k) {
-      if (rod_.clamps[k].frame) frames[k] = rolled(*released[k], part * targets[k]);
+      if (rod_.span.clamps[k].frame) frames[k] = rolled(*released[k], part * targets[k]);
     }
     return frames;
   }
 
-  CurvedEquilibrium turn_frames(const CurvedEquilibrium& without) {
+  SpanEquilibrium turn_frames(const SpanEquilibrium& without) {
     const std::vector<double> targets = targets_of(without);
-    ClampFrames released(rod_.clamps.size());
+    ClampFrames released(rod_.span.clamps.size());
     double widest = 0;
     for (std::size_t k = 0; k < released.size(); ++k) {
-      const CurvedRod::Clamp& clamp = rod_.clamps[k];
+      const RodSpan::Clamp& clamp = rod_.span.clamps[k];
       released[k] = frame_of(frame_at(without, clamp.at).col(0), clamp.direction);
       widest = std::max(widest, std::abs(targets[k]));
     }
     // The frames are held: what turns them costs twist.
-    CurvedEquilibrium now = shoot_curved(rod_, mesh_at(rod_.span, without.s), without.nodes,
-                                         frames_after(0, released, targets), options_);
+    SpanEquilibrium now = shoot_span(rod_.span, mesh_at(rod_.span, without.s), without.nodes,
+                                     frames_after(0, released, targets), options_);
     double reached = 0;
     double step = first_roll_step;
     while (now.converged && reached < widest) {
       const double next = std::min(widest, reached + step);
-      CurvedEquilibrium found = advance(now, frames_after(next / widest, released, targets),
-                                        step / 2 < shortest_roll_step);
+      SpanEquilibrium found = advance(now, frames_after(next / widest, released, targets),
+                                      step / 2 < shortest_roll_step);
       if (found.converged) {
         now = std::move(found);
         reached = next;
@@ -256,17 +251,16 @@ class CurvedSearch {
 
   /// One step of the frames.
   /// @param may_jump  a shape further away will do
-  CurvedEquilibrium advance(const CurvedEquilibrium& from, const ClampFrames& frames,
-                            bool may_jump) {
-    CurvedEquilibrium found =
-        shoot_curved(rod_, mesh_at(rod_.span, from.s), from.nodes, frames, options_);
+  SpanEquilibrium advance(const SpanEquilibrium& from, const ClampFrames& frames, bool may_jump) {
+    SpanEquilibrium found =
+        shoot_span(rod_.span, mesh_at(rod_.span, from.s), from.nodes, frames, options_);
     shots_ += found.shots;
     if (found.stable() && frame_distance(rod_, found, from, true) < most_frame_change) return found;
     const bool near =
         found.converged && frame_distance(rod_, found, from, true) < most_frame_change;
     if (!near && !may_jump) return {};
     for (const double side : {away, -away}) {
-      CurvedEquilibrium left = relaxed_from(near ? found : from, near ? side : 0, frames);
+      SpanEquilibrium left = relaxed_from(near ? found : from, near ? side : 0, frames);
       if (left.stable() &&
           (may_jump || near || frame_distance(rod_, left, from, true) < most_polygon_change)) {
         return left;
@@ -278,9 +272,9 @@ class CurvedSearch {
   const CurvedRod& rod_;
   RodMesh mesh_;
   Deadline deadline_;
-  CurvedOptions options_;
-  std::vector<CurvedEquilibrium> found_;
-  CurvedEquilibrium failed_;
+  ShootingOptions options_;
+  std::vector<SpanEquilibrium> found_;
+  SpanEquilibrium failed_;
   int shots_ = 0;
 };
 
@@ -292,8 +286,9 @@ void check_force(const CurvedRod& rod) {
 
 /// Cross-sections at the nodes of a mesh of a shape: moments from what its grips exert, frames from
 /// its d1 or, as good as a start needs, from the first clamp's on.
-std::vector<CurvedState> states_of_shape(const CurvedRod& rod, const Problem& problem,
-                                         const Equilibrium& shape, const RodMesh& mesh) {
+std::vector<RodState> states_of_shape(const CurvedRod& rod, const Problem& problem,
+                                      const Equilibrium& shape, const RodMesh& mesh,
+                                      double tolerance) {
   constexpr Eigen::Index parts = 8;  // of an interval
   const Eigen::Index count = parts * mesh.intervals();
   std::vector<double> s;
@@ -312,11 +307,11 @@ std::vector<CurvedState> states_of_shape(const CurvedRod& rod, const Problem& pr
   const auto force_at = [&](double at) {
     return Eigen::Vector3d(rod.axes.transpose() * implied_force(problem, shape, at));
   };
-  std::vector<CurvedState> states(static_cast<std::size_t>(count + 1));
+  std::vector<RodState> states(static_cast<std::size_t>(count + 1));
   const double torque_unit = bending_unit(problem) / problem.length;
   Eigen::Vector3d m = Eigen::Vector3d::Zero();
   for (Eigen::Index k = count; k >= 0; --k) {
-    CurvedState& state = states[static_cast<std::size_t>(k)];
+    RodState& state = states[static_cast<std::size_t>(k)];
     const double at = s[static_cast<std::size_t>(k)];
     state.r = r.col(k);
     state.m = m;
@@ -328,48 +323,34 @@ std::vector<CurvedState> states_of_shape(const CurvedRod& rod, const Problem& pr
     const double before = s[static_cast<std::size_t>(k - 1)];
     m -= force_at((before + at) / 2).cross(Eigen::Vector3d(r.col(k) - r.col(k - 1)));
   }
-  const auto first = std::lower_bound(s.begin(), s.end(), rod.clamps.front().at) - s.begin();
-  // The frame of a place from that of its neighbour.
-  const auto carry = [&](Eigen::Index from, Eigen::Index to) {
-    const double h = s[static_cast<std::size_t>(to)] - s[static_cast<std::size_t>(from)];
-    const double middle = s[static_cast<std::size_t>(from)] + h / 2;
-    const CurvedState& state = states[static_cast<std::size_t>(std::min(from, to))];
-    const double u3 =
-        rod.natural(middle).z() + state.m.dot(t.col(from)) / section_at(rod.span, middle).torsion;
-    const Quaterniond transport = Quaterniond::FromTwoVectors(t.col(from), t.col(to));
-    const Eigen::Matrix3d& R = states[static_cast<std::size_t>(from)].R;
-    const Eigen::Matrix3d carried = rolled(transport * R, h * u3);
-    states[static_cast<std::size_t>(to)].R = frame_of(carried.col(0), t.col(to).normalized());
-  };
-  if (samples.d1.cols() > 0) {
-    for (Eigen::Index k = 0; k <= count; ++k) {
-      const Eigen::Vector3d d1 = rod.axes.transpose() * samples.d1.col(k);
-      states[static_cast<std::size_t>(k)].R = frame_of(d1, t.col(k).normalized());
-    }
-  } else {
-    for (Eigen::Index k = first; k < count; ++k) carry(k, k + 1);
-    for (Eigen::Index k = first; k > 0; --k) carry(k, k - 1);
+  for (Eigen::Index k = 0; k <= count; ++k) {
+    const Eigen::Vector3d tangent = t.col(k).normalized();
+    const Eigen::Vector3d d1 = samples.d1.cols() > 0
+                                   ? Eigen::Vector3d(rod.axes.transpose() * samples.d1.col(k))
+                                   : tangent.unitOrthogonal();
+    states[static_cast<std::size_t>(k)].R = frame_of(d1, tangent);
   }
-  std::vector<CurvedState> nodes;
+  std::vector<RodState> nodes;
   for (Eigen::Index k = 0; k <= count; k += parts) {
     nodes.push_back(states[static_cast<std::size_t>(k)]);
   }
+  if (samples.d1.cols() == 0) carry_frames(rod.span, mesh, tolerance, nodes);
   return nodes;
 }
 
 }  // namespace
 
-CurvedSearchResult search_curved(const CurvedRod& rod, double tolerance, const Deadline& deadline) {
+SpanSearchResult search_curved(const CurvedRod& rod, double tolerance, const Deadline& deadline) {
   check_force(rod);
   return CurvedSearch(rod, tolerance, deadline).run();
 }
 
-CurvedEquilibrium refine_curved(const CurvedRod& rod, const Problem& problem,
-                                const Equilibrium& shape, double tolerance,
-                                const Deadline& deadline) {
+SpanEquilibrium refine_curved(const CurvedRod& rod, const Problem& problem,
+                              const Equilibrium& shape, double tolerance,
+                              const Deadline& deadline) {
   check_force(rod);
-  require(!rod.clamps.empty(), "solve_exact", "number of clamps of a curved rod with a start", 0,
-          ">= 1: the frames of the start are not known");
+  require(!rod.span.clamps.empty(), "solve_exact", "number of clamps of a curved rod with a start",
+          0, ">= 1: the frames of the start are not known");
   const double b = softest(rod.span);
   double force = total_load(rod.span) / b;
   for (const Reaction& grip : shape.grips) {
@@ -377,18 +358,18 @@ CurvedEquilibrium refine_curved(const CurvedRod& rod, const Problem& problem,
     force = std::max(force, grip.force.norm() / unit / b);
   }
   const RodMesh mesh = make_mesh(rod.span, resolving_interval(rod, std::min(force, most_force)));
-  std::vector<CurvedState> start = states_of_shape(rod, problem, shape, mesh);
-  ClampFrames frames = released_frames(rod);
+  std::vector<RodState> start = states_of_shape(rod, problem, shape, mesh, tolerance);
+  ClampFrames frames = released_frames(rod.span);
   for (std::size_t k = 0; k < frames.size(); ++k) {
-    const CurvedRod::Clamp& clamp = rod.clamps[k];
+    const RodSpan::Clamp& clamp = rod.span.clamps[k];
     if (!clamp.frame) continue;
     frames[k] = rolled(frame_of(clamp.frame->d1, clamp.direction),
                        clamp.frame->turns.roll + rod.first_roll);
   }
-  CurvedOptions options;
+  ShootingOptions options;
   options.tolerance = tolerance;
   options.deadline = deadline;
-  return shoot_curved(rod, mesh, std::move(start), frames, options);
+  return shoot_span(rod.span, mesh, std::move(start), frames, options);
 }
 
 }  // namespace dlo::energy_model

@@ -17,13 +17,12 @@
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
 #include "base/silence_gsl.hpp"
-#include "base/sized_samples.hpp"
-#include "curved/curved_solution.hpp"
+#include "curved/curved_search.hpp"
+#include "exact/solved_rod.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/reduction.hpp"
 #include "shooting/planar_shooting.hpp"
-#include "shooting/second_variation.hpp"
 #include "shooting/span_shooting.hpp"
 #include "touching/confirm_contacts.hpp"
 #include "touching/raise_weight.hpp"
@@ -32,121 +31,6 @@ namespace dlo::energy_model {
 namespace {
 
 constexpr std::size_t most_results = 64;  // of the spans' equilibria
-
-/// The spans of a rod and an equilibrium of each.
-struct Pieces {
-  std::vector<RodSpan> spans;
-  std::vector<SpanEquilibrium> equilibria;
-};
-
-/// What the grips of a span feel from it: the force that makes up for the jump of n, the torque
-/// that bends and twists the rod as it is at its clamps.
-void add_reactions(const RodSpan& span, const SpanEquilibrium& equilibrium, double force_unit,
-                   double torque_unit, std::vector<Reaction>& reactions) {
-  const auto nodes = static_cast<std::ptrdiff_t>(equilibrium.nodes.size());
-  for (const RodSpan::Hold& hold : span.holds) {
-    const std::ptrdiff_t i = std::lower_bound(equilibrium.s.begin(), equilibrium.s.end(), hold.at) -
-                             equilibrium.s.begin();
-    const RodState& node = equilibrium.nodes[static_cast<std::size_t>(i)];
-    Eigen::Vector3d force = -node.n;
-    if (i > 0) {
-      const double h = equilibrium.s[i] - equilibrium.s[i - 1];
-      const Eigen::Vector3d& weight = section_at(span, equilibrium.s[i - 1] + h / 2).weight;
-      force += equilibrium.nodes[static_cast<std::size_t>(i - 1)].n - h * weight;
-    }
-    for (const RodSpan::Load& load : span.loads) {
-      if (load.at == hold.at) force -= load.force;
-    }
-    Reaction& reaction = reactions[hold.grip];
-    reaction.force += force_unit * force;
-    const double bending = section_at(span, hold.at).bending;
-    Eigen::Vector3d moment = torque_unit * bending * node.t.cross(node.v);
-    if (span.twist) moment += torque_unit * node.torque * node.t;
-    if (i == 0 && span.start_direction) reaction.torque -= moment;
-    if (i + 1 == nodes && span.end_direction) reaction.torque += moment;
-  }
-}
-
-TwistedPart twisted_part(const Problem& problem, const RodSpan& span, double torque) {
-  return {.begin = span.begin * problem.length,
-          .end = (span.begin + span.length) * problem.length,
-          .angle = torque * span.twist->compliance,
-          .torque = torque * problem.bending_stiffness / problem.length};
-}
-
-/// Loads on clamps belong to no span.
-void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
-  for (const Load& load : problem.loads) {
-    const std::optional<std::size_t> clamp = clamp_under(problem, load);
-    if (!clamp) continue;
-    const Eigen::Vector3d& position = problem.grips[*clamp].position;
-    result.grips[*clamp].force -= load.force;
-    result.energy.load -= load.force.dot(position - problem.grips.front().position);
-  }
-}
-
-Samples sample(const Problem& problem, const Pieces& pieces, double tolerance,
-               std::span<const double> arc_lengths) {
-  const double l = problem.length;
-  const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-  Samples samples = sized_samples(arc_lengths, l);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double at = arc_lengths[static_cast<std::size_t>(i)];
-    std::size_t p = 0;
-    while (p + 1 < pieces.spans.size() && at / l > pieces.spans[p + 1].begin) ++p;
-    const RodSpan& span = pieces.spans[p];
-    const RodState state = state_at(pieces.equilibria[p], span, at / l - span.begin, tolerance);
-    samples.points.col(i) = problem.grips.front().position + l * state.r;
-    samples.tangents.col(i) = state.t;
-    samples.curvature.col(i) = state.v / l;
-  }
-  return samples;
-}
-
-Equilibrium assemble(const Problem& problem, const Pieces& pieces, double tolerance) {
-  Equilibrium result;
-  result.grips.resize(problem.grips.size());
-  const double torque_unit = problem.bending_stiffness / problem.length;
-  const double force_unit = torque_unit / problem.length;
-  SecondVariation stability{
-      .negative = 0, .neutral = 0, .smallest = INFINITY, .s = {}, .direction = {}};
-  for (std::size_t i = 0; i < pieces.spans.size(); ++i) {
-    const RodSpan& span = pieces.spans[i];
-    const SpanEquilibrium& equilibrium = pieces.equilibria[i];
-    result.evaluations += equilibrium.shots;
-    result.residual = std::max(result.residual, equilibrium.residual);
-    if (!equilibrium.converged) {
-      result.status = SolveStatus::failed;
-      result.message = "the rod from " + std::to_string(span.begin * problem.length) +
-                       " m on: " + equilibrium.message;
-      continue;
-    }
-    const Energies energy = restore(problem, equilibrium.energy);
-    result.energy.bending += energy.bending;
-    result.energy.twisting += energy.twisting;
-    result.energy.gravity += energy.gravity;
-    result.energy.load += energy.load;
-    add_reactions(span, equilibrium, force_unit, torque_unit, result.grips);
-    if (span.twist) {
-      result.twists.push_back(twisted_part(problem, span, equilibrium.nodes.front().torque));
-    }
-    stability.negative += equilibrium.stability.negative;
-    stability.neutral += equilibrium.stability.neutral;
-    stability.smallest = std::min(stability.smallest, equilibrium.stability.smallest);
-  }
-  if (result.status == SolveStatus::failed) {
-    result.energy = {NAN, NAN, NAN, NAN};
-    result.grips.clear();
-    result.twists.clear();
-    return result;
-  }
-  add_loads_on_clamps(problem, result);
-  judge(stability, result);
-  result.sample = [problem, pieces, tolerance](std::span<const double> arc_lengths) {
-    return sample(problem, pieces, tolerance, arc_lengths);
-  };
-  return result;
-}
 
 /// What a search has found: equilibria, stable ones first, by energy; and what it has not done.
 struct Found {
@@ -157,15 +41,16 @@ struct Found {
 
 /// The lowest combinations of what is found for the spans.
 Found solve_spans(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
-  Pieces pieces;
-  pieces.spans = cut_at_clamps(problem);
+  SolvedRod rod;
+  rod.spans = cut_at_clamps(problem);
   Found result;
   std::vector<std::vector<SpanEquilibrium>> found;
   std::vector<std::vector<SpanCandidate>> candidates;
-  for (const RodSpan& span : pieces.spans) {
+  for (const RodSpan& span : rod.spans) {
     if (options.start == nullptr) {
-      SpanSearchResult search = span.twist ? search_twisted_span(span, options.tolerance, deadline)
-                                           : search_span(span, options.tolerance, deadline);
+      SpanSearchResult search = span.twisted()
+                                    ? search_twisted_span(span, options.tolerance, deadline)
+                                    : search_span(span, options.tolerance, deadline);
       result.out_of_time = result.out_of_time || !search.complete;
       found.push_back(std::move(search.found));
     } else {
@@ -179,13 +64,33 @@ Found solve_spans(const Problem& problem, const ExactOptions& options, const Dea
   }
   const Combinations combinations = lowest_combinations(candidates, most_results);
   for (const std::vector<std::size_t>& choice : combinations.choices) {
-    pieces.equilibria.clear();
-    for (std::size_t i = 0; i < found.size(); ++i) pieces.equilibria.push_back(found[i][choice[i]]);
-    result.equilibria.push_back(assemble(problem, pieces, options.tolerance));
+    rod.equilibria.clear();
+    for (std::size_t i = 0; i < found.size(); ++i) rod.equilibria.push_back(found[i][choice[i]]);
+    result.equilibria.push_back(assemble(problem, rod, options.tolerance));
   }
   if (combinations.truncated) {
     result.left_out =
         "only the lowest " + std::to_string(most_results) + " combinations of spans are listed";
+  }
+  return result;
+}
+
+/// A rod with material directors is not cut.
+Found solve_uncut(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
+  const CurvedRod rod = make_curved_rod(problem);
+  Found result;
+  std::vector<SpanEquilibrium> found;
+  if (options.start == nullptr) {
+    SpanSearchResult search = search_curved(rod, options.tolerance, deadline);
+    found = std::move(search.found);
+    result.out_of_time = !search.complete;
+  } else {
+    found = {refine_curved(rod, problem, *options.start, options.tolerance, deadline)};
+    result.out_of_time = deadline.passed();
+  }
+  for (SpanEquilibrium& shape : found) {
+    result.equilibria.push_back(
+        assemble(problem, {{rod.span}, {std::move(shape)}, rod.axes}, options.tolerance));
   }
   return result;
 }
@@ -218,10 +123,7 @@ void refuse_passed_torque(const Problem& problem) {
 }
 
 Found search(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
-  if (has_material_directors(problem)) {
-    CurvedSolutions curved = solve_curved(problem, options, deadline);
-    return {std::move(curved.equilibria), curved.out_of_time, ""};
-  }
+  if (has_material_directors(problem)) return solve_uncut(problem, options, deadline);
   refuse_passed_torque(problem);
   // The scan knows of one section.
   const std::optional<ReducedCantilever> cantilever =

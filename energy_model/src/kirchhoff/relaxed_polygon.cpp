@@ -65,6 +65,9 @@ double compliance_between(const RodMesh& mesh, Eigen::Index i) {
   return (compliance_in(mesh, i) + compliance_in(mesh, i + 1)) / 2;
 }
 
+const RodSpan::Clamp* start_clamp(const RodSpan& span) { return span.clamp_at(0); }
+const RodSpan::Clamp* end_clamp(const RodSpan& span) { return span.clamp_at(span.length); }
+
 /// Sum of the tangents that an interval's bends to, over the compliances: it pulls the interval.
 Eigen::Vector3d bending_pull(const RodSpan& span, const RodMesh& mesh, const Eigen::Matrix3Xd& t,
                              Eigen::Index i) {
@@ -72,8 +75,11 @@ Eigen::Vector3d bending_pull(const RodSpan& span, const RodMesh& mesh, const Eig
   const double c = compliance_in(mesh, i);
   if (i > 0) pull += t.col(i - 1) / compliance_between(mesh, i - 1);
   if (i + 1 < t.cols()) pull += t.col(i + 1) / compliance_between(mesh, i);
-  if (i == 0 && span.start_direction) pull += 2 / c * *span.start_direction;
-  if (i + 1 == t.cols() && span.end_direction) pull += 2 / c * *span.end_direction;
+  const auto clamp = [&](const RodSpan::Clamp* end) {
+    if (end != nullptr) pull += 2 / c * end->direction;
+  };
+  if (i == 0) clamp(start_clamp(span));
+  if (i + 1 == t.cols()) clamp(end_clamp(span));
   return pull;
 }
 
@@ -102,16 +108,11 @@ double energy_of(const RodSpan& span, const RodMesh& mesh, const RelaxedPolygon&
     energy -= h * carried.col(i).dot(t.col(i));
     if (i < last) energy += (1 - t.col(i).dot(t.col(i + 1))) / compliance_between(mesh, i);
   }
-  const auto to_clamp = [](const Eigen::Vector3d& tangent, const Eigen::Vector3d& clamp, double c) {
-    return 2 * (1 - tangent.dot(clamp)) / c;
+  const auto to_clamp = [&](Eigen::Index i, const RodSpan::Clamp* clamp) {
+    if (clamp == nullptr) return 0.0;
+    return 2 * (1 - t.col(i).dot(clamp->direction)) / compliance_in(mesh, i);
   };
-  if (span.start_direction) {
-    energy += to_clamp(t.col(0), *span.start_direction, compliance_in(mesh, 0));
-  }
-  if (span.end_direction) {
-    energy += to_clamp(t.col(last), *span.end_direction, compliance_in(mesh, last));
-  }
-  return energy;
+  return energy + to_clamp(0, start_clamp(span)) + to_clamp(last, end_clamp(span));
 }
 
 /// A line that the span runs along, more or less, and the share of the span's length that it may
@@ -129,8 +130,7 @@ Line line_of(const RodSpan& span) {
     return {chord.normalized(), chord.norm() / (last.at - first.at)};
   }
   const double share = last.at > first.at ? 0 : 0.7;
-  if (span.start_direction) return {*span.start_direction, share};
-  if (span.end_direction) return {*span.end_direction, share};
+  if (!span.clamps.empty()) return {span.clamps.front().direction, share};
   return {span.plane ? span.plane->x : Eigen::Vector3d::UnitX(), share};
 }
 
@@ -269,19 +269,18 @@ std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
     RodState& state = states[static_cast<std::size_t>(i)];
     const Eigen::Index before = std::max<Eigen::Index>(i - 1, 0);
     const Eigen::Index after = std::min(i, last - 1);
-    state.t = (t.col(before) + t.col(after)).normalized();
+    Eigen::Vector3d tangent = (t.col(before) + t.col(after)).normalized();
     if (before < after) {
-      state.v = (t.col(after) - t.col(before)) /
-                (compliance_between(mesh, before) * mesh.section_of(after).bending);
+      state.m = tangent.cross(t.col(after) - t.col(before)) / compliance_between(mesh, before);
     }
-    if (i == 0 && span.start_direction) {
-      state.t = *span.start_direction;
-      state.v = 2 * (t.col(0) - state.t) / (mesh.s[1] - mesh.s[0]);
+    if (const RodSpan::Clamp* clamp = i == 0 ? start_clamp(span) : nullptr) {
+      tangent = clamp->direction;
+      state.m = 2 / compliance_in(mesh, 0) * tangent.cross(t.col(0));
     }
-    if (i == last && span.end_direction) {
-      state.t = *span.end_direction;
-      state.v = 2 * (state.t - t.col(last - 1)) / (mesh.s[last] - mesh.s[last - 1]);
+    if (const RodSpan::Clamp* clamp = i == last ? end_clamp(span) : nullptr) {
+      tangent = clamp->direction;
     }
+    state.R = frame_of(tangent.unitOrthogonal(), tangent);
     state.r = r;
     if (mesh.hold[static_cast<std::size_t>(i)] == &span.holds.front()) {
       shift = span.holds.front().position - r;
@@ -289,7 +288,7 @@ std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
     if (i == last) break;
     // What the grips add is constant between them.
     state.n = after_node.col(i) + polygon.force.col(i) - carried.col(i);
-    r += (mesh.s[i + 1] - mesh.s[i]) * t.col(i);
+    r += mesh.width(i) * t.col(i);
   }
   for (RodState& state : states) state.r += shift;
   return states;

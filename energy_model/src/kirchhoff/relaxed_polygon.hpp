@@ -46,7 +46,7 @@ struct PolygonMinima {
 [[nodiscard]] PolygonMinima polygon_minima(const RodSpan& span, const RodMesh& mesh, bool planar,
                                            const Deadline& deadline = Deadline());
 
-/// Cross-sections at the nodes of a mesh.
+/// Cross-sections at the nodes of a mesh, with any frames (see carry_frames()).
 [[nodiscard]] std::vector<RodState> states_of(const RodSpan& span, const RodMesh& mesh,
                                               const RelaxedPolygon& polygon);
 

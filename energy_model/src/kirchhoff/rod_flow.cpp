@@ -3,139 +3,152 @@
 #include <gsl/gsl_errno.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "base/integrate.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-/// Layout of the integrated vector: r, t, v, bending, gravity, d without twist if there is one,
-/// then r, t, v and with d its turn, of each parameter.
-constexpr Eigen::Index plain_state = 11;
-constexpr Eigen::Index plain_variation = 9;
+/// Layout of the integrated vector: r, R, m, the four integrals, then r, spin and m of each
+/// parameter.
+constexpr Eigen::Index first_integral = 15;
+constexpr Eigen::Index state_size = 19;
+constexpr Eigen::Index variation_size = 9;
 
 struct FlowPiece {
-  Eigen::Vector3d weight;
-  // Forces and torques over the stiffness: so they bend every section in the same way.
+  const RodSection* section;
+  const NaturalStrain* natural;  // null: a straight rod
+  double begin;
   Eigen::Vector3d n;  // at its beginning
-  double torque;
-  double bending;
-  bool framed;                    // a director comes along
-  const RodVariation* variation;  // whose n and torque are constant along the piece
-
-  [[nodiscard]] Eigen::Index state_size() const { return plain_state + (framed ? 3 : 0); }
-  [[nodiscard]] Eigen::Index variation_size() const { return plain_variation + (framed ? 1 : 0); }
+  const RodVariation* variation;
 };
 
-int rod_rates(double s, const double* y, double* rate, void* data) {
+int rod_rates(double at, const double* y, double* rate, void* data) {
   using Vector = Eigen::Map<const Eigen::Vector3d>;
   using Rate = Eigen::Map<Eigen::Vector3d>;
   const auto& piece = *static_cast<const FlowPiece*>(data);
+  const RodSection& section = *piece.section;
   const Vector r(y);
-  const Vector t(y + 3);
-  const Vector v(y + 6);
-  const Eigen::Vector3d n = piece.n - s / piece.bending * piece.weight;
-  const double pull = n.dot(t) - v.squaredNorm();
+  const Eigen::Map<const Eigen::Matrix3d> R(y + 3);
+  const Vector m(y + 12);
+  const Eigen::Vector3d n = piece.n - at * section.weight;
+  const Eigen::Vector3d t = R.col(2);
+  const Eigen::Vector3d compliance = section.compliance();
+  const Eigen::Vector3d own = R.transpose() * m;
+  const Eigen::Vector3d stretch = compliance.cwiseProduct(own);
+  Eigen::Vector3d u = stretch;
+  if (piece.natural != nullptr) u += (*piece.natural)(piece.begin + at);
+  const Eigen::Vector3d omega = R * u;
   Rate(rate + 0) = t;
-  Rate(rate + 3) = v;
-  Rate(rate + 6) = pull * t - n;
-  rate[9] = v.squaredNorm() / 2;
-  rate[10] = -piece.weight.dot(r);
-  if (piece.torque != 0) Rate(rate + 6) += piece.torque * t.cross(v);
-  if (piece.framed) Rate(rate + plain_state) = -Vector(y + plain_state).dot(v) * t;
-  const RodVariation& variation = *piece.variation;
-  for (Eigen::Index k = 0; k < variation.n.cols(); ++k) {
-    const double* change = y + piece.state_size() + k * piece.variation_size();
-    double* change_rate = rate + piece.state_size() + k * piece.variation_size();
-    const Vector dt(change + 3);
-    const Vector dv(change + 6);
-    const Eigen::Vector3d dn = variation.n.col(k) / piece.bending;
-    const double dpull = dn.dot(t) + n.dot(dt) - 2 * v.dot(dv);
+  for (Eigen::Index k = 0; k < 3; ++k) Rate(rate + 3 + 3 * k) = omega.cross(R.col(k));
+  Rate(rate + 12) = n.cross(t);
+  rate[first_integral] = (own[0] * stretch[0] + own[1] * stretch[1]) / 2;
+  rate[first_integral + 1] = own[2] * stretch[2] / 2;
+  rate[first_integral + 2] = -section.weight.dot(r);
+  rate[first_integral + 3] = u[2];
+  if (piece.variation->n.cols() == 0) return GSL_SUCCESS;
+  const Eigen::Matrix3d yields = R * compliance.asDiagonal() * R.transpose();
+  for (Eigen::Index k = 0; k < piece.variation->n.cols(); ++k) {
+    const double* change = y + state_size + k * variation_size;
+    double* change_rate = rate + state_size + k * variation_size;
+    const Vector spin(change + 3);
+    const Vector dm(change + 6);
+    const Eigen::Vector3d dt = spin.cross(t);
     Rate(change_rate + 0) = dt;
-    Rate(change_rate + 3) = dv;
-    Rate(change_rate + 6) = dpull * t + pull * dt - dn;
-    if (!piece.framed) continue;
-    Rate(change_rate + 6) += piece.torque * (dt.cross(v) + t.cross(dv)) +
-                             variation.torque[k] / piece.bending * t.cross(v);
-    change_rate[plain_variation] = v.dot(t.cross(dt));
+    Rate(change_rate + 3) = yields * (dm + m.cross(spin));
+    Rate(change_rate + 6) = piece.variation->n.col(k).cross(t) + n.cross(dt);
   }
   return GSL_SUCCESS;
 }
 
 }  // namespace
 
-double largest_force(const std::vector<RodState>& states, double bending) {
-  double force = 0;
-  for (const RodState& state : states) {
-    const double torque = state.torque / bending;
-    force = std::max({force, state.n.norm() / bending, state.v.squaredNorm(), torque * torque});
-  }
-  return force;
+Eigen::Vector3d strain_of(const RodSection& section, const NaturalStrain& natural, double s,
+                          const RodState& state) {
+  const Eigen::Vector3d own = (state.R.transpose() * state.m).cwiseProduct(section.compliance());
+  return natural ? Eigen::Vector3d(natural(s) + own) : own;
+}
+
+Eigen::Vector3d curvature_of(const RodSection& section, const NaturalStrain& natural, double s,
+                             const RodState& state) {
+  const Eigen::Vector3d u = strain_of(section, natural, s, state);
+  return u[1] * state.R.col(0) - u[0] * state.R.col(1);
+}
+
+Eigen::Matrix3d stiffness_of(const RodSection& section, const Eigen::Matrix3d& R) {
+  return R * section.stiffness().asDiagonal() * R.transpose();
+}
+
+Eigen::Matrix3d rotation_by(const Eigen::Vector3d& turn) {
+  const double angle = turn.norm();
+  if (angle == 0) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+}
+
+Eigen::Matrix3d rolled(const Eigen::Matrix3d& frame, double angle) {
+  return rotation_by(angle * Eigen::Vector3d(frame.col(2))) * frame;
+}
+
+Eigen::Matrix3d frame_of(const Eigen::Vector3d& d1, const Eigen::Vector3d& direction) {
+  Eigen::Matrix3d frame;
+  frame.col(0) = (d1 - d1.dot(direction) * direction).normalized();
+  frame.col(1) = direction.cross(Eigen::Vector3d(frame.col(0)));
+  frame.col(2) = direction;
+  return frame;
+}
+
+Eigen::Matrix3d transported(const Eigen::Matrix3d& frame, const Eigen::Vector3d& tangent) {
+  const Eigen::Vector3d t = frame.col(2);
+  return frame_of(Eigen::Quaterniond::FromTwoVectors(t, tangent) * frame.col(0), tangent);
 }
 
 Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states) {
   Eigen::Matrix3Xd tangents(3, static_cast<Eigen::Index>(states.size()));
   for (Eigen::Index i = 0; i < tangents.cols(); ++i) {
-    tangents.col(i) = states[static_cast<std::size_t>(i)].t;
+    tangents.col(i) = states[static_cast<std::size_t>(i)].t();
   }
   return tangents;
 }
 
-Eigen::Vector3d turned(const Eigen::Vector3d& d, const Eigen::Vector3d& t, double angle) {
-  return std::cos(angle) * d + std::sin(angle) * t.cross(d);
-}
-
 RodVariation::RodVariation(Eigen::Index parameters)
     : r(Eigen::Matrix3Xd::Zero(3, parameters)),
-      t(Eigen::Matrix3Xd::Zero(3, parameters)),
-      v(Eigen::Matrix3Xd::Zero(3, parameters)),
-      n(Eigen::Matrix3Xd::Zero(3, parameters)),
-      torque(Eigen::RowVectorXd::Zero(parameters)),
-      turn(Eigen::RowVectorXd::Zero(parameters)) {}
+      spin(Eigen::Matrix3Xd::Zero(3, parameters)),
+      m(Eigen::Matrix3Xd::Zero(3, parameters)),
+      n(Eigen::Matrix3Xd::Zero(3, parameters)) {}
 
-bool follow_rod(const RodSection& section, double length, double tolerance, RodState& state,
-                RodVariation& variation, RodIntegrals& integrals) {
+bool follow_rod(const RodSection& section, const NaturalStrain& natural, double begin,
+                double length, double tolerance, RodState& state, RodVariation& variation,
+                RodIntegrals& integrals) {
   const Eigen::Index parameters = variation.n.cols();
-  const bool framed = !state.d.isZero(0);
-  const double b = section.bending;
-  FlowPiece piece{section.weight, state.n / b, state.torque / b, b, framed, &variation};
-  std::vector<double> y(
-      static_cast<std::size_t>(piece.state_size() + parameters * piece.variation_size()), 0.0);
+  FlowPiece piece{&section, natural ? &natural : nullptr, begin, state.n, &variation};
+  std::vector<double> y(static_cast<std::size_t>(state_size + parameters * variation_size), 0.0);
   Eigen::Map<Eigen::VectorXd> all(y.data(), static_cast<Eigen::Index>(y.size()));
-  all.head<9>() << state.r, state.t, state.v;
-  if (framed) all.segment<3>(plain_state) = state.d;
+  all.head<15>() << state.r, state.R.reshaped(), state.m;
   for (Eigen::Index k = 0; k < parameters; ++k) {
-    const Eigen::Index at = piece.state_size() + k * piece.variation_size();
-    all.segment<plain_variation>(at) << variation.r.col(k), variation.t.col(k), variation.v.col(k);
-    if (framed) all[at + plain_variation] = variation.turn[k];
+    all.segment<variation_size>(state_size + k * variation_size) << variation.r.col(k),
+        variation.spin.col(k), variation.m.col(k);
   }
   if (length > 0 && !integrate(rod_rates, &piece, length, tolerance, y)) return false;
   state.r = all.segment<3>(0);
-  state.t = all.segment<3>(3);
-  state.v = all.segment<3>(6);
+  state.R = Eigen::Map<const Eigen::Matrix3d>(y.data() + 3);
+  state.m = all.segment<3>(12);
   state.n -= length * section.weight;
-  if (framed) {
-    const double twist = length * state.torque / section.torsion;
-    state.d = turned(all.segment<3>(plain_state), state.t, twist);
-  }
-  integrals = {b * all[9], all[10]};
+  integrals = {all[first_integral], all[first_integral + 1], all[first_integral + 2],
+               all[first_integral + 3]};
   for (Eigen::Index k = 0; k < parameters; ++k) {
-    const Eigen::Index at = piece.state_size() + k * piece.variation_size();
+    const Eigen::Index at = state_size + k * variation_size;
     variation.r.col(k) = all.segment<3>(at);
-    variation.t.col(k) = all.segment<3>(at + 3);
-    variation.v.col(k) = all.segment<3>(at + 6);
-    if (framed) variation.turn[k] = all[at + plain_variation];
+    variation.spin.col(k) = all.segment<3>(at + 3);
+    variation.m.col(k) = all.segment<3>(at + 6);
   }
   return true;
 }
 
-bool follow_rod(const RodSection& section, double length, double tolerance, RodState& state,
-                RodIntegrals& integrals) {
+bool follow_rod(const RodSection& section, const NaturalStrain& natural, double begin,
+                double length, double tolerance, RodState& state, RodIntegrals& integrals) {
   RodVariation none;
-  return follow_rod(section, length, tolerance, state, none, integrals);
+  return follow_rod(section, natural, begin, length, tolerance, state, none, integrals);
 }
 
 }  // namespace dlo::energy_model

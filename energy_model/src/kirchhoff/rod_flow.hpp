@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -9,7 +10,7 @@ namespace dlo::energy_model {
 /// A section of the rod, in units of the rod.
 struct RodSection {
   double bending = 1;  ///< b, its EI over bending_unit(); about d1 where bending_2 is given
-  double torsion = 0;  ///< c, its GJ over the same unit; > 0 where directors come along
+  double torsion = 0;  ///< c, its GJ over the same unit; 0: the twist is free and costs nothing
   Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< w
   std::optional<double> bending_2 = std::nullopt;    ///< about d2; none: as about d1
 
@@ -17,65 +18,88 @@ struct RodSection {
   [[nodiscard]] Eigen::Vector3d stiffness() const {
     return {bending, bending_2.value_or(bending), torsion};
   }
+  /// K^-1; of a twist that is free zero: no torque twists it.
+  [[nodiscard]] Eigen::Vector3d compliance() const {
+    return {1 / bending, 1 / bending_2.value_or(bending), torsion > 0 ? 1 / torsion : 0.0};
+  }
 };
 
-/// Cross-section of an inextensible, round, naturally straight Kirchhoff rod in units of its length
+/// Cross-section of an inextensible Kirchhoff rod with material directors, in units of its length
 /// and stiffness (l, EI/l, EI/l^2).
 struct RodState {
-  Eigen::Vector3d r = Eigen::Vector3d::Zero();  ///< position
-  Eigen::Vector3d t = Eigen::Vector3d::Zero();  ///< unit tangent
-  Eigen::Vector3d v = Eigen::Vector3d::Zero();  ///< dt/ds, across t; the moment is b t x v + M t
-  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< force of what lies beyond s on what lies before
-  double torque = 0;                            ///< M, about t: the same all along a round rod
-  Eigen::Vector3d d = Eigen::Vector3d::Zero();  ///< director across t; zero: none comes along
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();      ///< position
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< columns d1, d2 and the tangent t
+  Eigen::Vector3d m = Eigen::Vector3d::Zero();  ///< moment of what lies beyond on what lies before
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< force of what lies beyond on what lies before
+
+  [[nodiscard]] Eigen::Vector3d t() const { return R.col(2); }
 };
 
-/// Largest of |n| / b, |v|^2 and (M / b)^2, which bend a rod of the section's stiffness b over
-/// lengths of one over its root; 0 without states.
-[[nodiscard]] double largest_force(const std::vector<RodState>& states, double bending = 1);
+/// Natural strains at s, times l; none: a straight rod.
+using NaturalStrain = std::function<Eigen::Vector3d(double s)>;
+
+/// Strains of a cross-section at s,
+///     u = u0(s) + K^-1 R^T m,   K = diag(b1, b2, c).
+[[nodiscard]] Eigen::Vector3d strain_of(const RodSection& section, const NaturalStrain& natural,
+                                        double s, const RodState& state);
+
+/// The tangent's derivative, R u x t.
+[[nodiscard]] Eigen::Vector3d curvature_of(const RodSection& section, const NaturalStrain& natural,
+                                           double s, const RodState& state);
+
+/// Stiffness in space, R K R^T.
+[[nodiscard]] Eigen::Matrix3d stiffness_of(const RodSection& section, const Eigen::Matrix3d& R);
+
+/// The rotation by a vector's length about it.
+[[nodiscard]] Eigen::Matrix3d rotation_by(const Eigen::Vector3d& turn);
+
+/// A frame turned about its tangent.
+[[nodiscard]] Eigen::Matrix3d rolled(const Eigen::Matrix3d& frame, double angle);
+
+/// The frame with a first director, of which the part across the direction counts.
+[[nodiscard]] Eigen::Matrix3d frame_of(const Eigen::Vector3d& d1, const Eigen::Vector3d& direction);
+
+/// A frame transported to another tangent by the shortest rotation.
+[[nodiscard]] Eigen::Matrix3d transported(const Eigen::Matrix3d& frame,
+                                          const Eigen::Vector3d& tangent);
 
 /// The tangents of states, 3 x states.
 [[nodiscard]] Eigen::Matrix3Xd tangents_of(const std::vector<RodState>& states);
 
-/// A vector across the unit vector t, turned about it.
-[[nodiscard]] Eigen::Vector3d turned(const Eigen::Vector3d& d, const Eigen::Vector3d& t,
-                                     double angle);
-
 /// Derivatives of a RodState by some parameters, one a column.
 struct RodVariation {
   Eigen::Matrix3Xd r;
-  Eigen::Matrix3Xd t;
-  Eigen::Matrix3Xd v;
+  Eigen::Matrix3Xd spin;  ///< of R: dR = spin x R
+  Eigen::Matrix3Xd m;
   Eigen::Matrix3Xd n;
-  Eigen::RowVectorXd torque;
-  /// Of d about t, if the twist stays: dd = turn t x d - (d . dt) t. Zero without d.
-  Eigen::RowVectorXd turn;
 
   explicit RodVariation(Eigen::Index parameters = 0);
 };
 
 /// Integrals over a piece of the rod.
 struct RodIntegrals {
-  double bending = 0;  ///< of b |v|^2 / 2
-  double gravity = 0;  ///< of -w . r
+  double bending = 0;   ///< of (b1 (u - u0)_1^2 + b2 (u - u0)_2^2) / 2
+  double twisting = 0;  ///< of c (u - u0)_3^2 / 2
+  double gravity = 0;   ///< of -w . r
+  double turn = 0;      ///< of u_3: the frame's turn ahead of transport
 };
 
-/// Follows the rod's equations over `length`,
-///     r' = t,   t' = v,   b v' = -(n - (n.t) t) - b |v|^2 t + M t x v,   n' = -w,   M' = 0,
-/// which follow from m' + t x n = 0 with m = b t x v + M t, and their linearisation, with GSL's
-/// rk8pd. No angles, so no chart that could end. Along a piece without weight n and b |v|^2/2 + n.t
-/// stay. A director d and its derivatives come along,
-///     d' = -(d.v) t + M / c t x d,   turn' = v . (t x dt).
-/// @param section    of the piece
+/// Follows the rod's equations from `begin` over `length`,
+///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w,
+/// and their linearisation,
+///     dr' = spin x t,   spin' = R K^-1 R^T (dm + m x spin),   dm' = dn x t + n x (spin x t),
+/// with GSL's rk8pd. Nine components of a rotation and no angles, so no chart that could end.
 /// @param tolerance  local error per step, relative to 1 + |component|
 /// @param[in,out] state, variation  from the beginning of the piece to its end
 /// @param[out] integrals  of the piece
 /// @return false if the integrator gave up
-[[nodiscard]] bool follow_rod(const RodSection& section, double length, double tolerance,
-                              RodState& state, RodVariation& variation, RodIntegrals& integrals);
+[[nodiscard]] bool follow_rod(const RodSection& section, const NaturalStrain& natural, double begin,
+                              double length, double tolerance, RodState& state,
+                              RodVariation& variation, RodIntegrals& integrals);
 
 /// The same without linearisation.
-[[nodiscard]] bool follow_rod(const RodSection& section, double length, double tolerance,
-                              RodState& state, RodIntegrals& integrals);
+[[nodiscard]] bool follow_rod(const RodSection& section, const NaturalStrain& natural, double begin,
+                              double length, double tolerance, RodState& state,
+                              RodIntegrals& integrals);
 
 }  // namespace dlo::energy_model

@@ -22,8 +22,7 @@ double own_arc_length(double at, double length) {
 
 std::optional<Plane> plane_of(const RodSpan& span) {
   std::vector<Eigen::Vector3d> directions;
-  if (span.start_direction) directions.push_back(*span.start_direction);
-  if (span.end_direction) directions.push_back(*span.end_direction);
+  for (const RodSpan::Clamp& clamp : span.clamps) directions.push_back(clamp.direction);
   for (const RodSpan::Hold& hold : span.holds) {
     const Eigen::Vector3d chord = hold.position - span.holds.front().position;
     if (chord.norm() > same_place) directions.emplace_back(chord.normalized());
@@ -42,21 +41,6 @@ std::optional<Plane> plane_of(const RodSpan& span) {
       [](const auto& a, const auto& b) { return a.norm() < b.norm() * (1 - same_place); });
   if (first->norm() == 0) *first = Eigen::Vector3d::UnitX();
   return find_plane(span.holds.front().position, *first, directions);
-}
-
-/// What the clamps at the ends of a span hold; nothing unless both hold the rod's frame.
-std::optional<RodSpan::Twist> twist_between(const Problem& problem,
-                                            const std::vector<RodSpan::Part>& parts,
-                                            const Grip* start, const Grip* end) {
-  if (start == nullptr || end == nullptr || !start->frame || !end->frame) return std::nullopt;
-  RodSpan::Twist twist;
-  for (const RodSpan::Part& part : parts) {
-    twist.compliance += (part.end - part.begin) / part.section.torsion;
-  }
-  twist.start_d1 = held_d1(problem, *start);
-  twist.end_d1 = held_d1(problem, *end);
-  twist.turns = turns_between(problem, *start, *end);
-  return twist;
 }
 
 /// Of the rod from `begin` to `end`, both in units of l.
@@ -89,15 +73,23 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
   span.begin = begin;
   span.length = end - begin;
   span.parts = parts_between(problem, begin, end);
-  const Grip* start_clamp = nullptr;
-  const Grip* end_clamp = nullptr;
+  const Grip* first = nullptr;  // clamp
   for (const OrderedGrip& grip : grips) {
     const double at = own_arc_length(grip.grip->at, l);
     if (at < begin || at > end) continue;
     span.holds.push_back({at - begin, (grip.grip->position - origin) / l, grip.index});
     if (!grip.grip->direction) continue;
-    (at == begin ? span.start_direction : span.end_direction) = grip.grip->direction->normalized();
-    (at == begin ? start_clamp : end_clamp) = grip.grip;
+    RodSpan::Clamp clamp{at - begin, grip.grip->direction->normalized(), {}};
+    if (first == nullptr) {
+      first = grip.grip;
+      const Eigen::Vector3d d1 =
+          first->frame ? held_d1(problem, *first) : clamp.direction.unitOrthogonal();
+      span.first_frame = frame_of(d1, clamp.direction);
+    } else if (first->frame && grip.grip->frame) {
+      clamp.frame =
+          RodSpan::Frame{held_d1(problem, *grip.grip), turns_between(problem, *first, *grip.grip)};
+    }
+    span.clamps.push_back(clamp);
   }
   for (const Load& load : problem.loads) {
     const double at = own_arc_length(load.at, l);
@@ -107,7 +99,6 @@ RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips,
   std::stable_sort(span.loads.begin(), span.loads.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
   span.plane = plane_of(span);
-  span.twist = twist_between(problem, span.parts, start_clamp, end_clamp);
   return span;
 }
 
@@ -119,6 +110,29 @@ std::vector<OrderedGrip> checked_grips(const Problem& problem) {
 }
 
 }  // namespace
+
+const RodSpan::Clamp* RodSpan::clamp_at(double s) const {
+  const auto found =
+      std::find_if(clamps.begin(), clamps.end(), [&](const Clamp& clamp) { return clamp.at == s; });
+  return found == clamps.end() ? nullptr : &*found;
+}
+
+bool RodSpan::twisted() const {
+  return std::any_of(clamps.begin(), clamps.end(),
+                     [](const Clamp& clamp) { return clamp.frame.has_value(); });
+}
+
+bool RodSpan::round() const {
+  return !natural && std::none_of(parts.begin(), parts.end(), [](const Part& part) {
+    return part.section.bending_2.has_value();
+  });
+}
+
+ClampFrames released_frames(const RodSpan& span) {
+  ClampFrames frames(span.clamps.size());
+  if (!frames.empty()) frames.front() = span.first_frame;
+  return frames;
+}
 
 RodSpan uncut(const Problem& problem) {
   const double l = problem.length;
@@ -231,6 +245,10 @@ const RodSection& section_at(const RodSpan& span, double s) {
       std::upper_bound(span.parts.begin(), span.parts.end(), s,
                        [](double at, const RodSpan::Part& part) { return at < part.begin; });
   return (after == span.parts.begin() ? after : after - 1)->section;
+}
+
+double longest_interval(const RodSpan& span, double force) {
+  return std::min(span.length / 16, 1 / std::sqrt(std::max(force, 1.0)));
 }
 
 double softest(const RodSpan& span) {

@@ -31,29 +31,48 @@ struct RodSpan {
     double end = 0;    ///< s
     RodSection section;
   };
-  /// What clamps at both ends that hold the rod's frame ask for.
-  struct Twist {
-    double compliance = 0;             ///< int EI / GJ ds
-    Eigen::Vector3d start_d1, end_d1;  ///< across the directions, unit, not rolled
-    HeldTurns turns;
+  /// Of a clamp that holds the rod's frame, after one that does so too.
+  struct Frame {
+    Eigen::Vector3d d1;  ///< across the direction, unit, not rolled
+    HeldTurns turns;     ///< from the first clamp on
+  };
+  struct Clamp {
+    double at = 0;                                         ///< s
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
+    std::optional<Frame> frame;
   };
   double begin = 0;  ///< arc length of s = 0
   double length = 1;
-  std::vector<Part> parts;                         ///< by growing s, from 0 to its length
-  std::optional<Eigen::Vector3d> start_direction;  ///< unit; free if not given
-  std::optional<Eigen::Vector3d> end_direction;
-  std::vector<Hold> holds;     ///< by growing s, those of the clamps at the ends included
-  std::vector<Load> loads;     ///< by growing s; those on clamps are the gripper's alone
-  std::optional<Plane> plane;  ///< if grips and forces lie in one
-  std::optional<Twist> twist;  ///< nothing: the torque M is zero
+  std::vector<Part> parts;     ///< by growing s, from 0 to its length
+  std::vector<Hold> holds;     ///< by growing s, those of the clamps included
+  std::vector<Clamp> clamps;   ///< by growing s; of a rod that is cut, at its ends
+  std::vector<Load> loads;     ///< by growing s; of a rod that is cut, none on clamps
+  NaturalStrain natural;       ///< none: straight
+  std::optional<Plane> plane;  ///< of a rod that is cut, if grips and forces lie in one
+  /// That the first clamp holds; of a rod that is round() and not twisted() any one will do.
+  Eigen::Matrix3d first_frame = Eigen::Matrix3d::Identity();
+
+  /// Null: no clamp there.
+  [[nodiscard]] const Clamp* clamp_at(double s) const;
+  /// Whether a clamp after the first one holds the rod's frame, so that torque twists it.
+  [[nodiscard]] bool twisted() const;
+  /// Whether all sections are round and the rod is straight by nature: without twist a turn of its
+  /// sections about their tangents changes nothing.
+  [[nodiscard]] bool round() const;
 };
+
+/// Rotations at the clamps of a span, one each; none: the frame may turn about the direction.
+using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
+
+/// The frames that are held if those after the first clamp are let go.
+[[nodiscard]] ClampFrames released_frames(const RodSpan& span);
 
 /// Cuts a problem at its clamps. Grips within 1e-9 l of an end of the rod are at that end.
 /// @throws std::invalid_argument if the problem is out of range, has obstacles, or grips are
 /// further apart than the rod between them
 [[nodiscard]] std::vector<RodSpan> cut_at_clamps(const Problem& problem);
 
-/// All of the rod as one span without directions; loads on clamps are the gripper's and the span's.
+/// All of the rod as one span without clamps; loads on them are the gripper's and the span's.
 /// @throws std::invalid_argument as cut_at_clamps()
 [[nodiscard]] RodSpan uncut(const Problem& problem);
 
@@ -89,6 +108,10 @@ struct ForceField {
 
 /// The section at s; of two that meet there the one after it.
 [[nodiscard]] const RodSection& section_at(const RodSpan& span, double s);
+
+/// Intervals that resolve boundary layers under a force over b, and the bends of a span without
+/// any.
+[[nodiscard]] double longest_interval(const RodSpan& span, double force);
 
 /// Least bending stiffness of a span, about either axis.
 [[nodiscard]] double softest(const RodSpan& span);

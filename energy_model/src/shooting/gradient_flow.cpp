@@ -25,20 +25,21 @@ double widest_turn(const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {
 }
 
 /// One step, from nodes near `aim` and to it.
-ShootingResult step(const RodSpan& span, RodMesh mesh, const std::vector<RodState>& nodes,
-                    const Eigen::Matrix3Xd& aim, double duration, ShootingOptions options) {
+SpanEquilibrium step(const RodSpan& span, RodMesh mesh, const std::vector<RodState>& nodes,
+                     const Eigen::Matrix3Xd& aim, double duration, const ClampFrames& frames,
+                     ShootingOptions options) {
   for (Eigen::Index i = 1; i < mesh.intervals(); ++i) {
     mesh.pull.col(i) = (mesh.s[i + 1] - mesh.s[i - 1]) / (2 * duration) * aim.col(i);
   }
   options.max_iterations = flow_iterations;
-  return shoot(span, mesh, nodes, options);
+  return close_span(span, mesh, nodes, frames, options);
 }
 
 }  // namespace
 
 SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
                                 std::vector<RodState> start, Eigen::Matrix3Xd aim,
-                                const ShootingOptions& options) {
+                                const ClampFrames& frames, const ShootingOptions& options) {
   SpanEquilibrium failed;
   failed.message = "the gradient flow did not settle";
   double duration = first_duration;
@@ -49,7 +50,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
       failed.message = to_string(SolveStatus::time_limit);
       break;
     }
-    ShootingResult result = step(span, mesh, start, aim, duration, options);
+    SpanEquilibrium result = step(span, mesh, start, aim, duration, frames, options);
     failed.shots += result.shots;
     Eigen::Matrix3Xd reached = tangents_of(result.nodes);
     const double turn = widest_turn(reached, aim);
@@ -62,7 +63,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
     start = std::move(result.nodes);
     aim = std::move(reached);
     if (turn < settled_turn && duration > settled_duration) {
-      SpanEquilibrium equilibrium = shoot_span(span, mesh, start, options);
+      SpanEquilibrium equilibrium = shoot_span(span, mesh, start, frames, options);
       equilibrium.shots += failed.shots;
       failed.shots = equilibrium.shots;
       const bool near = equilibrium.converged && equilibrium.s.size() == mesh.s.size() &&
@@ -70,7 +71,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
       if (near && equilibrium.stable()) return equilibrium;
       if (near && equilibrium.stability.s.size() > 0 && ++departures <= most_flow_departures) {
         start = equilibrium.nodes;
-        aim = tangents_of(start) + flow_departure * mode_at(equilibrium.stability, mesh.s);
+        aim = tangents_of(start) + flow_departure * tangent_mode(span, equilibrium, mesh.s);
         aim.colwise().normalize();
         duration = first_duration;
         continue;
@@ -82,6 +83,18 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
   return failed;
 }
 
+Eigen::Matrix3Xd tangent_mode(const RodSpan& span, const SpanEquilibrium& equilibrium,
+                              const Eigen::VectorXd& s) {
+  constexpr double coarse = 1e-9;
+  const Eigen::Matrix3Xd spins = equilibrium.stability.spin_at(s);
+  const std::vector<RodState> states = states_at(equilibrium, span, {s.begin(), s.end()}, coarse);
+  Eigen::Matrix3Xd changes(3, s.size());
+  for (Eigen::Index i = 0; i < s.size(); ++i) {
+    changes.col(i) = spins.col(i).cross(states[static_cast<std::size_t>(i)].t());
+  }
+  return changes / std::max(changes.colwise().norm().maxCoeff(), 1e-300);
+}
+
 SpanEquilibrium leave_saddle(const RodSpan& span, const SpanEquilibrium& saddle,
                              const ShootingOptions& options) {
   SpanEquilibrium failed;
@@ -90,9 +103,10 @@ SpanEquilibrium leave_saddle(const RodSpan& span, const SpanEquilibrium& saddle,
   const RodMesh mesh = mesh_at(span, saddle.s);
   for (const double side : {1.0, -1.0}) {
     Eigen::Matrix3Xd aim =
-        tangents_of(saddle.nodes) + side * flow_departure * mode_at(saddle.stability, mesh.s);
+        tangents_of(saddle.nodes) + side * flow_departure * tangent_mode(span, saddle, mesh.s);
     aim.colwise().normalize();
-    SpanEquilibrium left = follow_gradient(span, mesh, saddle.nodes, std::move(aim), options);
+    SpanEquilibrium left =
+        follow_gradient(span, mesh, saddle.nodes, std::move(aim), saddle.frames, options);
     if (left.converged || options.deadline.passed()) return left;
     failed = std::move(left);
   }

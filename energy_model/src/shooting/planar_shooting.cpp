@@ -14,6 +14,7 @@
 
 #include "base/silence_gsl.hpp"
 #include "shooting/second_variation.hpp"
+#include "shooting/span_equilibrium.hpp"
 #include "shooting/span_shooting.hpp"
 
 namespace dlo::energy_model {
@@ -381,7 +382,7 @@ Energies energies(const PlanarCantilever& rod, const Frame& frame, double start,
 /// Stability of a shape that holds, from its samples and its clamp's force.
 SecondVariation stability_of(const Problem& problem, const RodSpan& span,
                              const Equilibrium& shape) {
-  return second_variation(span, [&](const std::vector<double>& s) {
+  const auto states_of = [&](const std::vector<double>& s) {
     std::vector<double> arc_lengths;
     arc_lengths.reserve(s.size());
     for (const double at : s) arc_lengths.push_back(std::min(at * problem.length, problem.length));
@@ -389,12 +390,18 @@ SecondVariation stability_of(const Problem& problem, const RodSpan& span,
     std::vector<RodState> states(s.size());
     for (std::size_t i = 0; i < s.size(); ++i) {
       const auto column = static_cast<Eigen::Index>(i);
-      states[i].t = samples.tangents.col(column);
-      states[i].v = samples.curvature.col(column) * problem.length;
+      const Eigen::Vector3d t = samples.tangents.col(column);
+      const Eigen::Vector3d curvature = samples.curvature.col(column) * problem.length;
+      states[i].R = frame_of(t.unitOrthogonal(), t);
+      states[i].m = t.cross(curvature);
       states[i].n = implied_force(problem, shape, s[i]);
     }
     return states;
-  });
+  };
+  const Eigen::VectorXd probes = Eigen::VectorXd::LinSpaced(64, 0, 1);
+  return second_variation(span, released_frames(span),
+                          bending_force(span, states_of({probes.begin(), probes.end()})),
+                          states_of);
 }
 
 }  // namespace

@@ -1,215 +1,204 @@
 #include "shooting/second_variation.hpp"
 
 #include <Eigen/Geometry>
-#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "base/moves_for_nothing.hpp"
-#include "shooting/constrained_pencil.hpp"
 #include "shooting/lobatto_element.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-using VariationTriplets = std::vector<Eigen::Triplet<double>>;
-
 constexpr double longest_element = 1.0 / 16;  // [l]
 constexpr double most_elements = 5000;
-/// Elements that are short where the rod changes its shape over a short length, (EI / n)^(1/2).
-Eigen::VectorXd elements_of(const RodSpan& span, const SpanStates& states) {
-  constexpr int probes = 64;
-  std::vector<double> s;
-  s.reserve(probes);
-  for (int i = 0; i < probes; ++i) s.push_back(span.length * (i + 0.5) / probes);
-  const double soft = 1 / std::sqrt(std::max({1.0, total_load(span) / softest(span),
-                                              largest_force(states(s), softest(span))}));
-  const double longest = std::min({span.length / 8, longest_element, soft});
+
+Eigen::Matrix3d hat(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  for (Eigen::Index k = 0; k < 3; ++k) matrix.col(k) = v.cross(Eigen::Vector3d::Unit(k));
+  return matrix;
+}
+
+/// Short where the rod changes its shape over a short length.
+Eigen::VectorXd elements_of(const RodSpan& span, double force) {
+  const double longest = std::min({span.length / 8, longest_element, 1 / std::sqrt(force)});
   return make_mesh(span, std::max(longest, span.length / most_elements)).s;
 }
 
-/// Mass and stiffness of the variations of a span, its constraints and what couples all of it.
+/// The matrices of second_variation().
 class VariationProblem {
  public:
-  VariationProblem(const RodSpan& span, const SpanStates& states)
-      : elements_(elements_of(span, states)) {
-    number_unknowns(span);
-    make_bases(states);
-    add_elements(span, states);
-    second_.resize(size_, size_);
-    second_.setFromTriplets(second_triplets_.begin(), second_triplets_.end());
-    norm_.resize(size_, size_);
-    norm_.setFromTriplets(norm_triplets_.begin(), norm_triplets_.end());
-    fixed_.resize(size_, size_);
-    fixed_.setFromTriplets(fixed_triplets_.begin(), fixed_triplets_.end());
-  }
-
-  [[nodiscard]] ConstrainedPencil pencil() const {
-    return {second_, norm_, fixed_, constraints_ + (turn_unknown_ < 0 ? 0 : 1)};
+  VariationProblem(const RodSpan& span, const ClampFrames& frames, double force,
+                   const SpanStates& states)
+      : span_(span),
+        free_twist_(span.round() && !span.twisted()),
+        elements_(elements_of(span, force)) {
+    number_unknowns(frames);
+    if (free_twist_) leave_out_twist(states);
+    const Eigen::Index count = elements_.size() - 1;
+    const std::vector<RodState> inside = states(gauss_points(elements_));
+    for (Eigen::Index e = 0; e < count; ++e) add_element(e, inside);
+    for (const Eigen::Index multiplier : first_multiplier_) {
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        fixed_.emplace_back(multiplier + i, multiplier + i, -constraint_compliance);
+      }
+    }
   }
 
   [[nodiscard]] bool finite() const { return finite_; }
-  /// Q of a vector of unknowns.
-  [[nodiscard]] double second(const Eigen::VectorXd& x) const {
-    const double bends = x.dot(second_ * x);
-    if (turn_unknown_ < 0) return bends;
-    // The column of its unknown, without its own element.
-    const double turn = fixed_.col(turn_unknown_).dot(x) + turn_compliance_ * x[turn_unknown_];
-    return bends + turn * turn / turn_compliance_;
+
+  [[nodiscard]] ConstrainedPencil pencil() const {
+    ConstrainedPencil result{Sparse(size_, size_), Sparse(size_, size_), Sparse(size_, size_),
+                             static_cast<int>(3 * first_multiplier_.size())};
+    result.second.setFromTriplets(second_.begin(), second_.end());
+    result.norm.setFromTriplets(norm_.begin(), norm_.end());
+    result.fixed.setFromTriplets(fixed_.begin(), fixed_.end());
+    return result;
   }
 
-  /// Changes of the tangents at the nodes of a vector of unknowns.
-  [[nodiscard]] Eigen::Matrix3Xd tangents(const Eigen::VectorXd& x) const {
-    Eigen::Matrix3Xd result = Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(s_.size()));
-    for (std::size_t k = 0; k < s_.size(); ++k) {
-      if (first_unknown_[k] < 0) continue;
-      result.col(static_cast<Eigen::Index>(k)) = across_[k] * x.segment<2>(first_unknown_[k]);
+  [[nodiscard]] Eigen::Matrix3Xd spins(const Eigen::VectorXd& x) const {
+    Eigen::Matrix3Xd result(3, static_cast<Eigen::Index>(nodes_.size()));
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      const SpinNode& node = nodes_[k];
+      result.col(static_cast<Eigen::Index>(k)) =
+          node.basis * x.segment(node.first, node.basis.cols());
     }
     return result;
   }
-  [[nodiscard]] const std::vector<double>& nodes() const { return s_; }
+  [[nodiscard]] Eigen::VectorXd arc_lengths() const {
+    Eigen::VectorXd s(static_cast<Eigen::Index>(nodes_.size()));
+    for (Eigen::Index k = 0; k < s.size(); ++k) s[k] = nodes_[static_cast<std::size_t>(k)].s;
+    return s;
+  }
 
  private:
-  /// Two unknowns a node, none at clamps; three multipliers after the nodes between two grips; last
-  /// the one of the twist.
-  void number_unknowns(const RodSpan& span) {
-    const Eigen::Index count = elements_.size() - 1;
+  using VariationTriplets = std::vector<Eigen::Triplet<double>>;
+
+  struct SpinNode {
+    double s;
+    Eigen::Matrix3Xd basis;  // of the spins that are free, one a column
+    Eigen::Index first;      // unknown
+  };
+
+  /// Three unknowns a node, fewer at clamps; three multipliers after the nodes between two grips.
+  void number_unknowns(const ClampFrames& frames) {
+    const auto add_node = [&](double s) {
+      Eigen::Matrix3Xd basis = Eigen::Matrix3d::Identity();
+      if (const RodSpan::Clamp* clamp = span_.clamp_at(s)) {
+        const bool held =
+            free_twist_ || frames[static_cast<std::size_t>(clamp - span_.clamps.data())];
+        basis = held ? Eigen::Matrix3Xd(3, 0) : Eigen::Matrix3Xd(clamp->direction);
+      }
+      if (free_twist_ && basis.cols() > 0) basis.resize(3, 2);
+      nodes_.push_back({s, basis, size_});
+      size_ += basis.cols();
+    };
     std::size_t next_hold = 1;
-    for (Eigen::Index e = 0; e <= count; ++e) {
-      const bool clamped = (e == 0 && span.start_direction) || (e == count && span.end_direction);
-      s_.push_back(elements_[e]);
-      first_unknown_.push_back(clamped ? -1 : size_);
-      if (!clamped) size_ += 2;
-      if (next_hold < span.holds.size() && span.holds[next_hold].at <= elements_[e]) {
+    for (Eigen::Index e = 0; e < elements_.size(); ++e) {
+      add_node(elements_[e]);
+      if (next_hold < span_.holds.size() && span_.holds[next_hold].at <= elements_[e]) {
         first_multiplier_.push_back(size_);
         size_ += 3;
-        constraints_ += 3;
         ++next_hold;
       }
-      if (e == count) break;
+      if (e + 1 == elements_.size()) break;
       for (std::size_t a = 1; a < element_order; ++a) {
-        s_.push_back(elements_[e] +
-                     (elements_[e + 1] - elements_[e]) * (1 + element_lobatto[a]) / 2);
-        first_unknown_.push_back(size_);
-        size_ += 2;
+        add_node(elements_[e] + (elements_[e + 1] - elements_[e]) * (1 + element_lobatto[a]) / 2);
       }
     }
-    if (!span.twist) return;
-    turn_unknown_ = size_++;
-    turn_compliance_ = span.twist->compliance;
   }
 
-  void make_bases(const SpanStates& states) {
-    for (const RodState& state : states(s_)) {
-      finite_ = finite_ && state.t.allFinite();
-      const Eigen::Vector3d first = state.t.unitOrthogonal();
-      Eigen::Matrix<double, 3, 2> basis;
-      basis << first, state.t.cross(first);
-      across_.push_back(basis);
+  /// Spins across the tangents alone.
+  void leave_out_twist(const SpanStates& states) {
+    const Eigen::VectorXd s = arc_lengths();
+    const std::vector<RodState> at_nodes = states({s.begin(), s.end()});
+    for (std::size_t k = 0; k < nodes_.size(); ++k) {
+      if (nodes_[k].basis.cols() > 0) nodes_[k].basis = at_nodes[k].R.leftCols<2>();
+      finite_ = finite_ && at_nodes[k].R.allFinite();
     }
   }
 
-  void add_elements(const RodSpan& span, const SpanStates& states) {
-    const Eigen::Index count = elements_.size() - 1;
-    const std::vector<RodState> inside = states(gauss_points(elements_));
-    for (Eigen::Index e = 0; e < count; ++e) add_element(e, span, inside);
-    for (const Eigen::Index multiplier : first_multiplier_) {
-      for (Eigen::Index i = 0; i < 3; ++i) {
-        fixed_triplets_.emplace_back(multiplier + i, multiplier + i, -constraint_compliance);
-      }
-    }
-    if (turn_unknown_ < 0) return;
-    fixed_triplets_.emplace_back(turn_unknown_, turn_unknown_, -turn_compliance_);
-  }
-
-  void add_element(Eigen::Index e, const RodSpan& span, const std::vector<RodState>& inside) {
-    const double h = elements_[e + 1] - elements_[e];
-    const double b = section_at(span, elements_[e] + h / 2).bending;
-    constexpr Eigen::Index own = 2 * (element_order + 1);
+  void add_element(Eigen::Index e, const std::vector<RodState>& inside) {
     static const ElementBasis basis;
+    constexpr Eigen::Index own = 3 * (element_order + 1);
+    const double h = elements_[e + 1] - elements_[e];
+    RodSection section = section_at(span_, elements_[e] + h / 2);
+    if (free_twist_) section.torsion = 0;
     Eigen::Matrix<double, own, own> second = Eigen::Matrix<double, own, own>::Zero();
     Eigen::Matrix<double, own, own> norm = Eigen::Matrix<double, own, own>::Zero();
     Eigen::Matrix<double, 3, own> integral = Eigen::Matrix<double, 3, own>::Zero();
-    Eigen::Matrix<double, 1, own> turn = Eigen::Matrix<double, 1, own>::Zero();
-    const auto first_node = static_cast<std::size_t>(e) * element_order;
     for (std::size_t q = 0; q < element_quadrature; ++q) {
       const RodState& state = inside[static_cast<std::size_t>(e) * element_quadrature + q];
-      const Eigen::Vector3d& t = state.t;
-      const Eigen::Vector3d& v = state.v;
       const double weight = h / 2 * element_weight[q];
-      Eigen::Matrix<double, 3, own> eta;
-      Eigen::Matrix<double, 3, own> rate;
-      for (std::size_t a = 0; a <= element_order; ++a) {
-        const auto row = static_cast<Eigen::Index>(q);
-        const auto node = static_cast<Eigen::Index>(a);
-        const Eigen::Matrix<double, 3, 2> z = basis.value(row, node) * across_[first_node + a];
-        const Eigen::Matrix<double, 3, 2> dz =
-            basis.rate(row, node) * 2 / h * across_[first_node + a];
-        // The part across the tangent of what is interpolated, and its derivative.
-        eta.middleCols<2>(2 * node) = z - t * (t.transpose() * z);
-        rate.middleCols<2>(2 * node) =
-            dz - t * (v.transpose() * z + t.transpose() * dz) - v * (t.transpose() * z);
+      const Eigen::Matrix3d stiffness = stiffness_of(section, state.R);
+      const Eigen::Matrix3d moment = hat(state.m);
+      const Eigen::Matrix3d outer = state.n * state.t().transpose();
+      const Eigen::Matrix3d force =
+          outer.trace() * Eigen::Matrix3d::Identity() - (outer + outer.transpose()) / 2;
+      const auto row = static_cast<Eigen::Index>(q);
+      for (Eigen::Index a = 0; a <= static_cast<Eigen::Index>(element_order); ++a) {
+        const double value = basis.value(row, a);
+        const double rate = 2 / h * basis.rate(row, a);
+        integral.middleCols<3>(3 * a) -= weight * value * hat(state.t());
+        for (Eigen::Index b = 0; b <= static_cast<Eigen::Index>(element_order); ++b) {
+          const double other = basis.value(row, b);
+          const double other_rate = 2 / h * basis.rate(row, b);
+          second.block<3, 3>(3 * a, 3 * b) +=
+              weight * (rate * other_rate * stiffness + value * other * force -
+                        (rate * other - value * other_rate) / 2 * moment);
+          norm.block<3, 3>(3 * a, 3 * b).diagonal().array() +=
+              weight * (rate * other_rate + value * other);
+        }
       }
-      const Eigen::Matrix<double, own, own> rates = rate.transpose() * rate;
-      const Eigen::Matrix<double, own, own> values = eta.transpose() * eta;
-      second += weight * (b * rates + (state.n.dot(t) - b * v.squaredNorm()) * values);
-      norm += weight * (rates + values);
-      integral += weight * eta;
-      turn += weight * t.cross(v).transpose() * eta;
-      if (state.torque == 0) continue;
-      Eigen::Matrix<double, 3, own> turned;  // eta x t
-      for (Eigen::Index i = 0; i < own; ++i) turned.col(i) = eta.col(i).cross(t);
-      const Eigen::Matrix<double, own, own> twists = rate.transpose() * turned;
-      second += weight * state.torque / 2 * (twists + twists.transpose());
     }
     finite_ = finite_ && second.allFinite();
-    const Eigen::Index multiplier = multiplier_of(elements_[e] + h / 2, span);
-    for (Eigen::Index i = 0; i < own; ++i) {
-      const Eigen::Index row = unknown(first_node, i);
-      if (row < 0) continue;
-      for (Eigen::Index j = 0; j < own; ++j) {
-        const Eigen::Index column = unknown(first_node, j);
-        if (column < 0) continue;
-        second_triplets_.emplace_back(row, column, second(i, j));
-        norm_triplets_.emplace_back(row, column, norm(i, j));
+    const Eigen::Index multiplier = multiplier_at(elements_[e] + h / 2);
+    const std::size_t first = static_cast<std::size_t>(e) * element_order;
+    for (std::size_t a = 0; a <= element_order; ++a) {
+      const SpinNode& node = nodes_[first + a];
+      const auto at = static_cast<Eigen::Index>(3 * a);
+      for (std::size_t b = 0; b <= element_order; ++b) {
+        const SpinNode& other = nodes_[first + b];
+        const auto to = static_cast<Eigen::Index>(3 * b);
+        add(second_, node.first, other.first,
+            node.basis.transpose() * second.block<3, 3>(at, to) * other.basis);
+        add(norm_, node.first, other.first,
+            node.basis.transpose() * norm.block<3, 3>(at, to) * other.basis);
       }
-      for (Eigen::Index k = 0; k < 3 && multiplier >= 0; ++k) {
-        fixed_triplets_.emplace_back(row, multiplier + k, integral(k, i));
-        fixed_triplets_.emplace_back(multiplier + k, row, integral(k, i));
-      }
-      if (turn_unknown_ < 0) continue;
-      fixed_triplets_.emplace_back(row, turn_unknown_, turn[i]);
-      fixed_triplets_.emplace_back(turn_unknown_, row, turn[i]);
+      if (multiplier < 0) continue;
+      const Eigen::MatrixXd seen = integral.middleCols<3>(at) * node.basis;
+      add(fixed_, multiplier, node.first, seen);
+      add(fixed_, node.first, multiplier, seen.transpose());
     }
   }
 
-  [[nodiscard]] Eigen::Index unknown(std::size_t first_node, Eigen::Index i) const {
-    const Eigen::Index first = first_unknown_[first_node + static_cast<std::size_t>(i / 2)];
-    return first < 0 ? -1 : first + i % 2;
+  static void add(VariationTriplets& triplets, Eigen::Index row, Eigen::Index column,
+                  const Eigen::MatrixXd& block) {
+    for (Eigen::Index i = 0; i < block.rows(); ++i) {
+      for (Eigen::Index j = 0; j < block.cols(); ++j) {
+        triplets.emplace_back(static_cast<int>(row + i), static_cast<int>(column + j), block(i, j));
+      }
+    }
   }
 
   /// Of the constraint that an arc length between two grips belongs to; -1 beyond them.
-  [[nodiscard]] Eigen::Index multiplier_of(double s, const RodSpan& span) const {
+  [[nodiscard]] Eigen::Index multiplier_at(double s) const {
+    const std::vector<RodSpan::Hold>& holds = span_.holds;
     const auto next =
-        std::upper_bound(span.holds.begin(), span.holds.end(), s,
+        std::upper_bound(holds.begin(), holds.end(), s,
                          [](double at, const RodSpan::Hold& hold) { return at < hold.at; });
-    if (next == span.holds.begin() || next == span.holds.end()) return -1;
-    return first_multiplier_[static_cast<std::size_t>(next - span.holds.begin()) - 1];
+    if (next == holds.begin() || next == holds.end()) return -1;
+    return first_multiplier_[static_cast<std::size_t>(next - holds.begin()) - 1];
   }
 
+  const RodSpan& span_;
+  bool free_twist_;           // nothing holds it: spins about the tangent are no unknowns
   Eigen::VectorXd elements_;  // their ends
-  std::vector<double> s_;     // nodes
-  std::vector<Eigen::Index> first_unknown_;
+  std::vector<SpinNode> nodes_;
   std::vector<Eigen::Index> first_multiplier_;
-  std::vector<Eigen::Matrix<double, 3, 2>> across_;
   Eigen::Index size_ = 0;
-  int constraints_ = 0;
-  Eigen::Index turn_unknown_ = -1;  // -1: nothing holds the twist
-  double turn_compliance_ = 0;
   bool finite_ = true;
-  VariationTriplets second_triplets_, norm_triplets_, fixed_triplets_;
-  Sparse second_, norm_, fixed_;
+  VariationTriplets second_, norm_, fixed_;
 };
 
 }  // namespace
@@ -221,35 +210,32 @@ void judge(const SecondVariation& stability, Equilibrium& shape) {
   shape.message += moves_for_nothing(stability.neutral);
 }
 
-Eigen::Matrix3Xd mode_at(const SecondVariation& variation, const Eigen::VectorXd& s) {
-  Eigen::Matrix3Xd result(3, s.size());
-  for (Eigen::Index i = 0; i < s.size(); ++i) {
+Eigen::Matrix3Xd SecondVariation::spin_at(const Eigen::VectorXd& at) const {
+  Eigen::Matrix3Xd result(3, at.size());
+  for (Eigen::Index i = 0; i < at.size(); ++i) {
     const Eigen::Index after = std::clamp<Eigen::Index>(
-        std::upper_bound(variation.s.begin(), variation.s.end(), s[i]) - variation.s.begin(), 1,
-        variation.s.size() - 1);
-    const double part =
-        (s[i] - variation.s[after - 1]) / (variation.s[after] - variation.s[after - 1]);
-    result.col(i) =
-        (1 - part) * variation.direction.col(after - 1) + part * variation.direction.col(after);
+        std::upper_bound(s.begin(), s.end(), at[i]) - s.begin(), 1, s.size() - 1);
+    const double part = (at[i] - s[after - 1]) / (s[after] - s[after - 1]);
+    result.col(i) = (1 - part) * spin.col(after - 1) + part * spin.col(after);
   }
   return result;
 }
 
-SecondVariation second_variation(const RodSpan& span, const SpanStates& states) {
-  const VariationProblem variations(span, states);
+SecondVariation second_variation(const RodSpan& span, const ClampFrames& frames, double force,
+                                 const SpanStates& states) {
+  const VariationProblem variations(span, frames, force, states);
   SecondVariation result;
   if (!variations.finite()) return result;
-  const SmallestMode mode = smallest_mode(
-      variations.pencil(), [&](const Eigen::VectorXd& x) { return variations.second(x); });
+  const ConstrainedPencil pencil = variations.pencil();
+  const SmallestMode mode =
+      smallest_mode(pencil, [&](const Eigen::VectorXd& x) { return x.dot(pencil.second * x); });
   result.negative = mode.negative;
   result.neutral = mode.neutral;
   result.smallest = mode.smallest;
   if (mode.x.size() == 0) return result;
-  result.direction = variations.tangents(mode.x);
-  result.direction /= std::max(result.direction.colwise().norm().maxCoeff(), 1e-300);
-  const std::vector<double>& nodes = variations.nodes();
-  result.s =
-      Eigen::Map<const Eigen::VectorXd>(nodes.data(), static_cast<Eigen::Index>(nodes.size()));
+  result.spin = variations.spins(mode.x);
+  result.spin /= std::max(result.spin.colwise().norm().maxCoeff(), 1e-300);
+  result.s = variations.arc_lengths();
   return result;
 }
 

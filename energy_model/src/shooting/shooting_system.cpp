@@ -1,312 +1,271 @@
 #include "shooting/shooting_system.hpp"
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
 
 namespace dlo::energy_model {
 namespace {
 
-void add_block(Triplets& triplets, Eigen::Index row, Eigen::Index column,
-               const Eigen::Ref<const Eigen::MatrixXd>& block) {
-  for (Eigen::Index i = 0; i < block.rows(); ++i) {
-    for (Eigen::Index j = 0; j < block.cols(); ++j) {
-      triplets.emplace_back(static_cast<int>(row + i), static_cast<int>(column + j), block(i, j));
-    }
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d matrix;
+  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return matrix;
+}
+
+/// The rotation b a^T by its axis, as long as its angle.
+Eigen::Vector3d rotation_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  const Eigen::AngleAxisd rotation(Eigen::Matrix3d(b * a.transpose()));
+  return rotation.angle() * rotation.axis();
+}
+
+/// Its derivative by a spin of b; that by a spin of a is less its transpose.
+Eigen::Matrix3d rotation_rate(const Eigen::Vector3d& rotation) {
+  const double angle = rotation.norm();
+  const double half = angle / 2;
+  // (1 - x cot x) / (2 x)^2 and its limit, whose next term is of the size of rounding.
+  const double share =
+      half < 1e-4 ? 1.0 / 12 : (1 - half * std::cos(half) / std::sin(half)) / (angle * angle);
+  const Eigen::Matrix3d cross = cross_matrix(rotation);
+  return Eigen::Matrix3d::Identity() - cross / 2 + share * cross * cross;
+}
+
+/// Two axes across a direction.
+Eigen::Matrix<double, 3, 2> axes_across(const Eigen::Vector3d& direction) {
+  Eigen::Matrix<double, 3, 2> axes;
+  const Eigen::Vector3d first = direction.unitOrthogonal();
+  axes << first, direction.cross(first);
+  return axes;
+}
+
+double unit_of_force(const RodSpan& span, const std::vector<RodState>& start) {
+  double force = std::max(1.0, total_load(span));
+  for (const RodState& state : start) {
+    force = std::max({force, state.n.norm(), state.m.squaredNorm()});
   }
-}
-
-/// Angle of a director about a node's tangent, from the node's first direction on.
-double frame_angle(const ShootingNode& node, const Eigen::Vector3d& director) {
-  return std::atan2(node.across.col(1).dot(director), node.across.col(0).dot(director));
-}
-
-/// Its change with the director, a row.
-Eigen::RowVector3d frame_angle_rate(const ShootingNode& node, const Eigen::Vector3d& director) {
-  const double x = node.across.col(0).dot(director);
-  const double y = node.across.col(1).dot(director);
-  return (x * node.across.col(1) - y * node.across.col(0)).transpose() / (x * x + y * y);
-}
-
-/// Its change as the node's tangent turns: the directions come along.
-Eigen::RowVector2d frame_angle_by_turn(const ShootingNode& node, const Eigen::Vector3d& director) {
-  const double x = node.across.col(0).dot(director);
-  const double y = node.across.col(1).dot(director);
-  return Eigen::RowVector2d(y, -x) * node.state.t.dot(director) / (x * x + y * y);
+  return force;
 }
 
 }  // namespace
 
-ShootingSystem::ShootingSystem(const RodSpan& span, const RodMesh& mesh,
-                               const ShootingOptions& options, double force)
+/// Equations as they come.
+struct ShootingSystem::Rows {
+  struct Block {
+    Eigen::Index column;
+    Eigen::MatrixXd values;
+  };
+  Eigen::VectorXd values;
+  Triplets* derivatives;
+  Eigen::Index row;
+
+  void add(const Eigen::VectorXd& value, const std::vector<Block>& blocks) {
+    values.segment(row, value.size()) = value;
+    if (derivatives != nullptr) {
+      for (const Block& block : blocks) {
+        for (Eigen::Index i = 0; i < block.values.rows(); ++i) {
+          for (Eigen::Index j = 0; j < block.values.cols(); ++j) {
+            derivatives->emplace_back(static_cast<int>(row + i), static_cast<int>(block.column + j),
+                                      block.values(i, j));
+          }
+        }
+      }
+    }
+    row += value.size();
+  }
+};
+
+ShootingSystem::ShootingSystem(const RodSpan& span, const RodMesh& mesh, const ClampFrames& frames,
+                               const ShootingOptions& options, const std::vector<RodState>& start)
     : span_(span),
       mesh_(mesh),
       tolerance_(options.tolerance),
       deadline_(options.deadline),
-      frames_(options.frames),
-      rate_(std::sqrt(force)) {
+      rate_(std::sqrt(unit_of_force(span, start))),
+      positions_(Eigen::Matrix3d::Identity()),
+      turns_(Eigen::Matrix3d::Identity()) {
   if (options.planar) {
-    axes_.resize(3, 2);
-    axes_ << span.plane->x, span.plane->y;
-  } else {
-    axes_ = Eigen::Matrix3d::Identity();
+    positions_.resize(3, 2);
+    positions_ << span.plane->x, span.plane->y;
+    turns_ = span.plane->x.cross(span.plane->y);
   }
-  layout_.d = axes_.cols();
-  layout_.framed = frames_.has_value();
+  for (const double s : mesh.s) {
+    const RodSpan::Clamp* clamp = span.clamp_at(s);
+    clamps_.push_back(clamp);
+    frames_.push_back(clamp == nullptr
+                          ? std::nullopt
+                          : frames[static_cast<std::size_t>(clamp - span.clamps.data())]);
+  }
+  for (const RodState& state : start) {
+    start_.push_back(options.planar ? in_plane(state) : state);
+  }
 }
 
-ShootingNode ShootingSystem::make_node(const RodState& state) const {
-  ShootingNode node;
-  node.state.t = (axes_ * (axes_.transpose() * state.t)).normalized();
-  node.state.v = axes_ * (axes_.transpose() * state.v);
-  node.state.v -= node.state.v.dot(node.state.t) * node.state.t;
+RodState ShootingSystem::in_plane(const RodState& state) const {
+  const auto projected = [&](const Eigen::Vector3d& v) {
+    return Eigen::Vector3d(positions_ * (positions_.transpose() * v));
+  };
   const Eigen::Vector3d& base = span_.holds.front().position;
-  node.state.r = base + axes_ * (axes_.transpose() * (state.r - base));
-  node.state.n = axes_ * (axes_.transpose() * state.n);
-  const Eigen::Vector3d& t = node.state.t;
-  node.across.resize(3, layout_.d - 1);
-  if (layout_.d == 2) {
-    node.across << span_.plane->x.cross(span_.plane->y).cross(t);
-  } else {
-    const Eigen::Vector3d first =
-        frames_ ? (state.d - state.d.dot(t) * t).normalized() : t.unitOrthogonal();
-    node.across << first, t.cross(first);
-  }
-  if (frames_) {
-    node.state.torque = state.torque;
-    node.state.d = node.across.col(0);
-  }
-  return node;
+  RodState result;
+  result.r = base + projected(state.r - base);
+  result.R = transported(state.R, projected(state.t()).normalized());
+  result.m = turns_ * (turns_.transpose() * state.m);
+  result.n = projected(state.n);
+  return result;
 }
 
-std::vector<ShootingNode> ShootingSystem::moved(const std::vector<ShootingNode>& nodes,
-                                                const Eigen::VectorXd& step) const {
-  std::vector<ShootingNode> result = nodes;
-  for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const Eigen::VectorXd x =
-        step.segment(static_cast<Eigen::Index>(i) * layout_.size(), layout_.size());
-    const ShootingNode& from = nodes[i];
-    RodState& state = result[i].state;
-    state.r += axes_ * x.head(layout_.d);
-    state.n += rate_ * rate_ * (axes_ * x.segment(layout_.n(), layout_.d));
-    state.t = (from.state.t + from.across * x.segment(layout_.t(), layout_.d - 1)).normalized();
-    state.v += rate_ * (from.across * x.segment(layout_.v(), layout_.d - 1));
-    state.v -= state.v.dot(state.t) * state.t;
-    Eigen::Matrix3Xd& across = result[i].across;
-    for (Eigen::Index k = 0; k < across.cols(); ++k) {
-      across.col(k) -= across.col(k).dot(state.t) * state.t;
-      for (Eigen::Index j = 0; j < k; ++j) {
-        across.col(k) -= across.col(k).dot(across.col(j)) * across.col(j);
-      }
-      across.col(k).normalize();
-    }
-    if (!frames_) continue;
-    const Eigen::Matrix3Xd old = across;
-    const double turn = x[layout_.frame()];
-    across.col(0) = std::cos(turn) * old.col(0) + std::sin(turn) * old.col(1);
-    across.col(1) = std::cos(turn) * old.col(1) - std::sin(turn) * old.col(0);
-    state.d = across.col(0);
-    state.torque += rate_ * x[layout_.torque()];
+std::vector<RodState> ShootingSystem::moved(const std::vector<RodState>& nodes,
+                                            const Eigen::VectorXd& step) const {
+  const Eigen::Index positions = positions_.cols();
+  const Eigen::Index turns = turns_.cols();
+  std::vector<RodState> result = nodes;
+  Eigen::Index at = 0;
+  for (RodState& state : result) {
+    state.r += positions_ * step.segment(at, positions);
+    state.R = rotation_by(turns_ * step.segment(at + spin_at(), turns)) * state.R;
+    state.m += rate_ * (turns_ * step.segment(at + m_at(), turns));
+    state.n += rate_ * rate_ * (positions_ * step.segment(at + n_at(), positions));
+    at += per_node();
   }
   return result;
 }
 
-bool ShootingSystem::evaluate(const std::vector<ShootingNode>& nodes, Eigen::VectorXd& equations,
-                              Triplets* derivatives) const {
-  equations.resize(size());
-  const Eigen::Index last = mesh_.intervals();
-  Eigen::Index row = start_equations(nodes.front(), equations, derivatives);
-  for (Eigen::Index i = 0; i < last; ++i) {
-    if (deadline_.passed()) return false;
-    if (!interval_equations(nodes, i, row, equations, derivatives)) return false;
-    row += layout_.size();
+double ShootingSystem::turn(const std::vector<RodState>& nodes, const Eigen::VectorXd& step) const {
+  double largest = 0;
+  Eigen::Index at = spin_at();
+  for (const RodState& node : nodes) {
+    const Eigen::Vector3d spin = turns_ * step.segment(at, turns_.cols());
+    largest = std::max(largest, spin.cross(node.t()).norm());
+    at += per_node();
   }
-  end_equations(nodes.back(), row, equations, derivatives);
+  return largest;
+}
+
+bool ShootingSystem::evaluate(const std::vector<RodState>& nodes, Eigen::VectorXd& equations,
+                              Triplets* derivatives) const {
+  Rows rows{Eigen::VectorXd(size()), derivatives, 0};
+  start_equations(nodes.front(), rows);
+  for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
+    if (out_of_time() || !interval_equations(nodes, i, rows)) return false;
+  }
+  // Where a clamp holds the end, its conditions came in place of what is continuous elsewhere.
+  const Eigen::Index last = mesh_.intervals() * per_node();
+  const auto one = [](Eigen::Index size) { return Eigen::MatrixXd::Identity(size, size); };
+  rows.add(positions_.transpose() * nodes.back().n / (rate_ * rate_),
+           {{last + n_at(), one(positions_.cols())}});
+  rows.add(turns_.transpose() * nodes.back().m / rate_, {{last + m_at(), one(turns_.cols())}});
+  equations = std::move(rows.values);
   return equations.allFinite();
 }
 
-double ShootingSystem::turn(const Eigen::VectorXd& step) const {
-  double largest = 0;
-  for (Eigen::Index i = 0; i < mesh_.s.size(); ++i) {
-    largest =
-        std::max(largest, step.segment(i * layout_.size() + layout_.t(), layout_.d - 1).norm());
-  }
-  return largest;
-}
-
-double ShootingSystem::gap(const std::vector<ShootingNode>& nodes) const {
+double ShootingSystem::gap(const std::vector<RodState>& nodes) const {
   Eigen::VectorXd equations;
-  if (!evaluate(nodes, equations, nullptr)) return INFINITY;
+  if (!evaluate(nodes, equations, nullptr)) return std::numeric_limits<double>::infinity();
   double largest = equations.cwiseAbs().maxCoeff();
-  for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-    RodState end = nodes[i].state;
-    RodIntegrals integrals;
-    const auto k = static_cast<Eigen::Index>(i);
-    if (!follow_rod(mesh_.section_of(k), mesh_.width(k), tolerance_, end, integrals)) {
-      return INFINITY;
-    }
-    largest = std::max(largest, (end.t - nodes[i + 1].state.t).cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    if (clamps_[i] == nullptr) continue;
+    largest = std::max(largest, (nodes[i].t() - clamps_[i]->direction).cwiseAbs().maxCoeff());
   }
   return largest;
 }
 
-Eigen::Index ShootingSystem::start_equations(const ShootingNode& node, Eigen::VectorXd& equations,
-                                             Triplets* derivatives) const {
-  const Eigen::Index d = layout_.d;
-  const RodSpan::Hold* hold = mesh_.hold.front();
-  const Eigen::Vector3d no_force = -mesh_.load.col(0);
-  position_or_force(node, 0, 0, hold, no_force, equations, derivatives);
-  direction_or_moment(node, d, 0, span_.start_direction, equations, derivatives);
-  if (!frames_) return 2 * d - 1;
-  frame_equation(node, 2 * d - 1, 0, frames_->start, equations, derivatives);
-  return 2 * d;
-}
-
-void ShootingSystem::end_equations(const ShootingNode& node, Eigen::Index row,
-                                   Eigen::VectorXd& equations, Triplets* derivatives) const {
-  const Eigen::Index column = mesh_.intervals() * layout_.size();
-  position_or_force(node, row, column, nullptr, Eigen::Vector3d::Zero(), equations, derivatives);
-  direction_or_moment(node, row + layout_.d, column, span_.end_direction, equations, derivatives);
-  if (!frames_) return;
-  frame_equation(node, row + 2 * layout_.d - 1, column, frames_->end, equations, derivatives);
-}
-
-void ShootingSystem::position_or_force(const ShootingNode& node, Eigen::Index row,
-                                       Eigen::Index column, const RodSpan::Hold* hold,
-                                       const Eigen::Vector3d& force, Eigen::VectorXd& equations,
-                                       Triplets* derivatives) const {
-  const Eigen::Index d = layout_.d;
-  equations.segment(row, d) =
-      hold != nullptr
-          ? Eigen::VectorXd(axes_.transpose() * (node.state.r - hold->position))
-          : Eigen::VectorXd(axes_.transpose() * (node.state.n - force) / (rate_ * rate_));
-  if (derivatives == nullptr) return;
-  add_block(*derivatives, row, column + (hold != nullptr ? 0 : layout_.n()),
-            Eigen::MatrixXd::Identity(d, d));
-}
-
-void ShootingSystem::direction_or_moment(const ShootingNode& node, Eigen::Index row,
-                                         Eigen::Index column,
-                                         const std::optional<Eigen::Vector3d>& direction,
-                                         Eigen::VectorXd& equations, Triplets* derivatives) const {
-  const Eigen::Index turns = layout_.d - 1;
-  const Eigen::Matrix3Xd& across = node.across;
-  equations.segment(row, turns) = direction
-                                      ? Eigen::VectorXd(-across.transpose() * *direction)
-                                      : Eigen::VectorXd(across.transpose() * node.state.v / rate_);
-  if (derivatives == nullptr) return;
-  const double rate = direction ? node.state.t.dot(*direction) : 1;
-  add_block(*derivatives, row, column + (direction ? layout_.t() : layout_.v()),
-            rate * Eigen::MatrixXd::Identity(turns, turns));
-}
-
-void ShootingSystem::frame_equation(const ShootingNode& node, Eigen::Index row, Eigen::Index column,
-                                    const Eigen::Vector3d& director, Eigen::VectorXd& equations,
-                                    Triplets* derivatives) const {
-  equations[row] = frame_angle(node, director);
-  if (derivatives == nullptr) return;
-  add_block(*derivatives, row, column + layout_.t(), frame_angle_by_turn(node, director));
-  add_block(*derivatives, row, column + layout_.frame(), Eigen::MatrixXd::Constant(1, 1, -1));
-}
-
-void ShootingSystem::twist_equations(const ShootingNode& node, const ShootingNode& next,
-                                     Eigen::Index i, Eigen::Index row, const RodState& end,
-                                     const RodVariation& change, Eigen::VectorXd& equations,
-                                     Triplets* derivatives) const {
-  const Eigen::Vector3d& director = end.d;
-  equations[row + layout_.frame()] = frame_angle(next, director);
-  equations[row + layout_.torque()] = (node.state.torque - next.state.torque) / rate_;
-  if (derivatives == nullptr) return;
-  const Eigen::RowVector3d rate = frame_angle_rate(next, director);
-  const double rate_by_turn = rate.dot(end.t.cross(director));
-  // The director turns about the tangent, and along with it.
-  const double turn_by_torque = mesh_.width(i) / mesh_.section_of(i).torsion;
-  const Eigen::RowVectorXd turns = change.turn + turn_by_torque * change.torque;
-  const Eigen::RowVectorXd by_parameter =
-      rate_by_turn * turns - rate.dot(end.t) * (director.transpose() * change.t);
-  const Eigen::Index own = i * layout_.size();
-  const Eigen::Index other = own + layout_.size();
-  const Eigen::Index bends = layout_.n();  // of t, v and n
-  add_block(*derivatives, row + layout_.frame(), own + layout_.t(), by_parameter.head(bends));
-  const auto add = [&](Eigen::Index equation, Eigen::Index unknown, double value) {
-    derivatives->emplace_back(static_cast<int>(row + equation), static_cast<int>(unknown), value);
-  };
-  add(layout_.frame(), own + layout_.frame(), rate_by_turn);
-  add(layout_.frame(), own + layout_.torque(), by_parameter[bends]);
-  add_block(*derivatives, row + layout_.frame(), other + layout_.t(),
-            frame_angle_by_turn(next, director));
-  add(layout_.frame(), other + layout_.frame(), -1);
-  add(layout_.torque(), own + layout_.torque(), 1);
-  add(layout_.torque(), other + layout_.torque(), -1);
-  add_block(*derivatives, row, own + layout_.torque(), change.r.col(bends));
-  add_block(*derivatives, row + layout_.t(), own + layout_.torque(),
-            next.across.transpose() * change.t.col(bends));
-  add_block(*derivatives, row + layout_.v(), own + layout_.torque(),
-            mesh_.section_of(i).bending / rate_ * next.across.transpose() * change.v.col(bends));
-}
-
-bool ShootingSystem::interval_equations(const std::vector<ShootingNode>& nodes, Eigen::Index i,
-                                        Eigen::Index row, Eigen::VectorXd& equations,
-                                        Triplets* derivatives) const {
-  const Eigen::Index d = layout_.d;
-  const Eigen::Index turns = d - 1;
-  const ShootingNode& node = nodes[static_cast<std::size_t>(i)];
-  const ShootingNode& next = nodes[static_cast<std::size_t>(i + 1)];
-  const RodSpan::Hold* hold = mesh_.hold[static_cast<std::size_t>(i + 1)];
-  RodState end = node.state;
-  RodIntegrals integrals;
-  const Eigen::Index bends = 2 * turns + d;  // parameters: those of t, v and n
-  RodVariation change(derivatives != nullptr ? bends + (frames_ ? 1 : 0) : 0);
-  if (derivatives != nullptr) {
-    change.t.leftCols(turns) = node.across;
-    change.v.leftCols(turns) = -node.state.t * (node.state.v.transpose() * node.across);
-    change.v.middleCols(turns, turns) = rate_ * node.across;
-    change.n.middleCols(2 * turns, d) = rate_ * rate_ * axes_;
-    if (frames_) change.torque[bends] = rate_;
+Eigen::Matrix3Xd ShootingSystem::frame_equations(const RodState& node, Eigen::Index i,
+                                                 Rows& rows) const {
+  const auto index = static_cast<std::size_t>(i);
+  const Eigen::Index column = i * per_node() + spin_at();
+  if (frames_[index] && turns_.cols() == 3) {
+    const Eigen::Vector3d rotation = rotation_between(*frames_[index], node.R);
+    rows.add(rotation, {{column, rotation_rate(rotation)}});
+    return turns_;
   }
-  if (!follow_rod(mesh_.section_of(i), mesh_.width(i), tolerance_, end, change, integrals)) {
+  if (clamps_[index] == nullptr) return Eigen::Matrix3Xd(3, 0);
+  const Eigen::Vector3d& direction = clamps_[index]->direction;
+  Eigen::Matrix3Xd across = axes_across(direction);
+  if (turns_.cols() == 1) across = Eigen::Vector3d(turns_.col(0)).cross(direction);
+  // d(b . t) = b . (spin x t) = (t x b) . spin
+  Eigen::Matrix3Xd rate(3, across.cols());
+  for (Eigen::Index k = 0; k < across.cols(); ++k) {
+    rate.col(k) = node.t().cross(Eigen::Vector3d(across.col(k)));
+  }
+  rows.add(across.transpose() * node.t(), {{column, rate.transpose() * turns_}});
+  return turns_.cols() == 1 ? turns_ : across;
+}
+
+void ShootingSystem::start_equations(const RodState& node, Rows& rows) const {
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(positions_.cols(), positions_.cols());
+  if (mesh_.hold.front() != nullptr) {
+    rows.add(positions_.transpose() * (node.r - mesh_.hold.front()->position), {{0, one}});
+  } else {
+    const Eigen::Vector3d n = node.n + mesh_.load.col(0);
+    rows.add(positions_.transpose() * n / (rate_ * rate_), {{n_at(), one}});
+  }
+  const Eigen::Index free = frame_equations(node, 0, rows).cols();
+  if (free == turns_.cols()) return;
+  if (free > 0) {
+    const Eigen::RowVector3d direction = clamps_.front()->direction.transpose();
+    rows.add(direction * node.m / rate_, {{m_at(), direction}});
+  } else if (span_.clamps.empty() && span_.round() && turns_.cols() == 3) {
+    const Eigen::Matrix<double, 3, 2> across = axes_across(start_.front().t());
+    rows.add(across.transpose() * node.m / rate_, {{m_at(), across.transpose()}});
+    const Eigen::Vector3d rotation = rotation_between(start_.front().R, node.R);
+    const Eigen::RowVector3d tangent = start_.front().t().transpose();
+    rows.add(tangent * rotation, {{spin_at(), tangent * rotation_rate(rotation)}});
+  } else {
+    rows.add(turns_.transpose() * node.m / rate_,
+             {{m_at(), Eigen::MatrixXd::Identity(turns_.cols(), turns_.cols())}});
+  }
+}
+
+bool ShootingSystem::interval_equations(const std::vector<RodState>& nodes, Eigen::Index i,
+                                        Rows& rows) const {
+  const Eigen::Index positions = positions_.cols();
+  const Eigen::Index turns = turns_.cols();
+  const RodState& node = nodes[static_cast<std::size_t>(i)];
+  const RodState& next = nodes[static_cast<std::size_t>(i + 1)];
+  const double force = rate_ * rate_;
+  RodState end = node;
+  RodVariation change(rows.derivatives != nullptr ? 2 * turns + positions : 0);
+  if (rows.derivatives != nullptr) {
+    change.spin.leftCols(turns) = turns_;
+    change.m.middleCols(turns, turns) = rate_ * turns_;
+    change.n.rightCols(positions) = force * positions_;
+  }
+  RodIntegrals integrals;
+  if (!follow_rod(mesh_.section_of(i), span_.natural, mesh_.s[i], mesh_.width(i), tolerance_, end,
+                  change, integrals)) {
     return false;
   }
-  const double force = rate_ * rate_;
-  // The moment is continuous: b v, with the stiffness on either side; across the tangent.
-  const double before = mesh_.section_of(i).bending;
-  const double after = mesh_.section_of(std::min(i + 1, mesh_.intervals() - 1)).bending;
-  const Eigen::Vector3d bv = before * end.v - mesh_.pull.col(i + 1);
-  equations.segment(row, d) = axes_.transpose() * (end.r - next.state.r);
-  equations.segment(row + layout_.t(), turns) = next.across.transpose() * end.t;
-  equations.segment(row + layout_.v(), turns) =
-      next.across.transpose() * (bv - after * next.state.v) / rate_;
-  if (hold != nullptr) {
-    equations.segment(row + layout_.n(), d) = axes_.transpose() * (next.state.r - hold->position);
+  const Eigen::Index own = i * per_node();
+  const Eigen::Index other = own + per_node();
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(positions, positions);
+  rows.add(positions_.transpose() * (end.r - next.r),
+           {{own, one}, {own + spin_at(), positions_.transpose() * change.r}, {other, -one}});
+  const Eigen::Vector3d rotation = rotation_between(next.R, end.R);
+  const Eigen::Matrix3d rate = rotation_rate(rotation);
+  rows.add(turns_.transpose() * rotation,
+           {{own + spin_at(), turns_.transpose() * rate * change.spin},
+            {other + spin_at(), -turns_.transpose() * rate.transpose() * turns_}});
+  if (const RodSpan::Hold* hold = mesh_.hold[static_cast<std::size_t>(i + 1)]) {
+    rows.add(positions_.transpose() * (next.r - hold->position), {{other, one}});
   } else {
-    equations.segment(row + layout_.n(), d) =
-        axes_.transpose() * (end.n - mesh_.load.col(i + 1) - next.state.n) / force;
+    rows.add(positions_.transpose() * (end.n - mesh_.load.col(i + 1) - next.n) / force,
+             {{own + n_at(), one}, {other + n_at(), -one}});
   }
-  if (frames_) twist_equations(node, next, i, row, end, change, equations, derivatives);
-  if (derivatives == nullptr) return true;
-
-  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(d, d);
-  const Eigen::MatrixXd turn = Eigen::MatrixXd::Identity(turns, turns);
-  const Eigen::Index own = i * layout_.size();
-  const Eigen::Index other = own + layout_.size();
-  add_block(*derivatives, row, own, one);
-  add_block(*derivatives, row, own + d, axes_.transpose() * change.r.leftCols(bends));
-  add_block(*derivatives, row + layout_.t(), own + d,
-            next.across.transpose() * change.t.leftCols(bends));
-  add_block(*derivatives, row + layout_.v(), own + d,
-            before / rate_ * next.across.transpose() * change.v.leftCols(bends));
-  add_block(*derivatives, row, other, -one);
-  // `across` turns with the next tangent, v keeps its components in it.
-  add_block(*derivatives, row + layout_.t(), other + layout_.t(), -next.state.t.dot(end.t) * turn);
-  add_block(*derivatives, row + layout_.v(), other + layout_.t(),
-            -next.state.t.dot(bv) / rate_ * turn);
-  add_block(*derivatives, row + layout_.v(), other + layout_.v(), -after * turn);
-  if (hold != nullptr) {
-    add_block(*derivatives, row + layout_.n(), other, one);
-  } else {
-    add_block(*derivatives, row + layout_.n(), own + layout_.n(), one);
-    add_block(*derivatives, row + layout_.n(), other + layout_.n(), -one);
-  }
+  const Eigen::Matrix3Xd free = frame_equations(next, i + 1, rows);
+  if (free.cols() == turns) return true;
+  // What of the moment is continuous, but for what pulls the tangent: m = ... - t x q.
+  const Eigen::MatrixXd kept =
+      free.cols() == 0
+          ? Eigen::MatrixXd(turns_.transpose())
+          : Eigen::MatrixXd(clamps_[static_cast<std::size_t>(i + 1)]->direction.transpose());
+  const Eigen::Vector3d q = mesh_.pull.col(i + 1);
+  const Eigen::Matrix3d by_spin =
+      next.t() * q.transpose() - next.t().dot(q) * Eigen::Matrix3d::Identity();
+  rows.add(kept * (end.m - next.t().cross(q) - next.m) / rate_,
+           {{own + spin_at(), kept * change.m / rate_},
+            {other + spin_at(), -kept * by_spin * turns_ / rate_},
+            {other + m_at(), -kept * turns_}});
   return true;
 }
 

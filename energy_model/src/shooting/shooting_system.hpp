@@ -1,111 +1,99 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <algorithm>
-#include <optional>
 #include <vector>
 
 #include "base/deadline.hpp"
 #include "kirchhoff/rod_flow.hpp"
 #include "kirchhoff/rod_span.hpp"
-#include "shooting/boundary_value.hpp"
-#include "shooting/close_gaps.hpp"
 
 namespace dlo::energy_model {
 
-/// A node and the directions in which its tangent can turn.
-struct ShootingNode {
-  RodState state;
-  Eigen::Matrix3Xd across;  ///< 3 x 1 in the plane, 3 x 2 in space; the rod's frame if it is held
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+struct ShootingOptions {
+  double tolerance = 1e-13;  ///< of the integrator, see follow_rod
+  bool planar = false;       ///< stay in the span's plane
+  int max_iterations = 60;   ///< Newton steps
+  Deadline deadline{};       ///< the result is a failure once it has passed
 };
 
-/// Newton's unknowns of a node, and the equations of an interval, in this order: r, t, v, n, and if
-/// the rod's frame is held its turn about t and the torque M.
-struct NodeLayout {
-  Eigen::Index d;  ///< dimensions of space
-  bool framed = false;
-  [[nodiscard]] Eigen::Index t() const { return d; }
-  [[nodiscard]] Eigen::Index v() const { return 2 * d - 1; }
-  [[nodiscard]] Eigen::Index n() const { return 3 * d - 2; }
-  [[nodiscard]] Eigen::Index frame() const { return 4 * d - 2; }
-  [[nodiscard]] Eigen::Index torque() const { return 4 * d - 1; }
-  [[nodiscard]] Eigen::Index size() const { return 4 * d - (framed ? 0 : 2); }
-};
-
-/// The equations of multiple shooting (see boundary_value.hpp) and their derivatives. Units: v and
-/// M in sqrt(force), n in force.
+/// The equations of multiple shooting and their derivatives: the span is integrated from every node
+/// of the mesh to the next, and r, R, m and n meet there but for what nodes add. Where a position
+/// is given n is free; at a clamp two of R and two of m, at one that holds the frame all three; at
+/// a free end m = n = 0. Between neighbouring nodes R is compared by the logarithm of the rotation
+/// that is left. At each node Newton moves r, a spin of R, m and n: in the plane two of positions
+/// and forces and one of spins and moments, which is three and three in space.
+///
+/// A rod that is round and not clamped turns about its own line for nothing: the first node's frame
+/// does not, in place of its torque, which is that at the other end.
+///
+/// Well posed for soft rods as long as the intervals are not much longer than |n|^(-1/2), over
+/// which errors grow e-fold.
 class ShootingSystem {
  public:
-  using Node = ShootingNode;
-
   /// @param span, mesh  have to outlive the system
-  ShootingSystem(const RodSpan& span, const RodMesh& mesh, const ShootingOptions& options,
-                 double force);
+  /// @param start       one for each node of the mesh
+  ShootingSystem(const RodSpan& span, const RodMesh& mesh, const ClampFrames& frames,
+                 const ShootingOptions& options, const std::vector<RodState>& start);
 
-  [[nodiscard]] Eigen::Index size() const { return layout_.size() * mesh_.s.size(); }
-
+  [[nodiscard]] Eigen::Index size() const { return per_node() * mesh_.s.size(); }
   [[nodiscard]] bool out_of_time() const { return deadline_.passed(); }
 
   /// Gaps that count as closed: steps of the integrator come and go as the nodes move, so that
   /// they cannot be closed to less than its tolerance.
   [[nodiscard]] double closed() const { return std::max(1e-11, 10 * tolerance_); }
 
-  /// Into the plane, onto |t| = 1 and v.t = 0, with directions across t, along its d if the frame
-  /// is held.
-  [[nodiscard]] ShootingNode make_node(const RodState& state) const;
+  /// The start, in the plane if it has to stay there.
+  [[nodiscard]] std::vector<RodState> start() const { return start_; }
 
-  [[nodiscard]] std::vector<ShootingNode> moved(const std::vector<ShootingNode>& nodes,
-                                                const Eigen::VectorXd& step) const;
+  [[nodiscard]] std::vector<RodState> moved(const std::vector<RodState>& nodes,
+                                            const Eigen::VectorXd& step) const;
 
-  /// All equations, and their derivatives if asked for.
+  /// All equations, and their derivatives if asked for. Units: m in sqrt(force), n in force.
   /// @return false if the integrator gave up or the deadline has passed
-  [[nodiscard]] bool evaluate(const std::vector<ShootingNode>& nodes, Eigen::VectorXd& equations,
+  [[nodiscard]] bool evaluate(const std::vector<RodState>& nodes, Eigen::VectorXd& equations,
                               Triplets* derivatives) const;
 
   /// Largest turn of a tangent in a step.
-  [[nodiscard]] double turn(const Eigen::VectorXd& step) const;
+  [[nodiscard]] double turn(const std::vector<RodState>& nodes, const Eigen::VectorXd& step) const;
 
-  /// Largest gap, the part of the tangent's along itself included: what points backwards is far.
-  [[nodiscard]] double gap(const std::vector<ShootingNode>& nodes) const;
+  /// Largest gap, that of what points backwards at a clamp included.
+  [[nodiscard]] double gap(const std::vector<RodState>& nodes) const;
 
  private:
+  struct Rows;
+
+  [[nodiscard]] Eigen::Index spin_at() const { return positions_.cols(); }
+  [[nodiscard]] Eigen::Index m_at() const { return positions_.cols() + turns_.cols(); }
+  [[nodiscard]] Eigen::Index n_at() const { return positions_.cols() + 2 * turns_.cols(); }
+  [[nodiscard]] Eigen::Index per_node() const { return 2 * (positions_.cols() + turns_.cols()); }
+
+  [[nodiscard]] RodState in_plane(const RodState& state) const;
+
+  /// What a clamp asks of the frame of node i.
+  /// @return directions in which the moment is free: all of them at a clamp that holds the frame,
+  /// those across its direction at another one, none without a clamp; one a column
+  Eigen::Matrix3Xd frame_equations(const RodState& node, Eigen::Index i, Rows& rows) const;
+
   /// Position and direction of a clamp, or no moment and no force but the load.
-  Eigen::Index start_equations(const ShootingNode& node, Eigen::VectorXd& equations,
-                               Triplets* derivatives) const;
+  void start_equations(const RodState& node, Rows& rows) const;
 
-  void end_equations(const ShootingNode& node, Eigen::Index row, Eigen::VectorXd& equations,
-                     Triplets* derivatives) const;
-
-  void position_or_force(const ShootingNode& node, Eigen::Index row, Eigen::Index column,
-                         const RodSpan::Hold* hold, const Eigen::Vector3d& force,
-                         Eigen::VectorXd& equations, Triplets* derivatives) const;
-
-  void direction_or_moment(const ShootingNode& node, Eigen::Index row, Eigen::Index column,
-                           const std::optional<Eigen::Vector3d>& direction,
-                           Eigen::VectorXd& equations, Triplets* derivatives) const;
-
-  /// A held frame comes to the next node turned by M h / c; M stays.
-  void twist_equations(const ShootingNode& node, const ShootingNode& next, Eigen::Index i,
-                       Eigen::Index row, const RodState& end, const RodVariation& change,
-                       Eigen::VectorXd& equations, Triplets* derivatives) const;
-
-  /// The director at a clamp.
-  void frame_equation(const ShootingNode& node, Eigen::Index row, Eigen::Index column,
-                      const Eigen::Vector3d& director, Eigen::VectorXd& equations,
-                      Triplets* derivatives) const;
-
-  [[nodiscard]] bool interval_equations(const std::vector<ShootingNode>& nodes, Eigen::Index i,
-                                        Eigen::Index row, Eigen::VectorXd& equations,
-                                        Triplets* derivatives) const;
+  [[nodiscard]] bool interval_equations(const std::vector<RodState>& nodes, Eigen::Index i,
+                                        Rows& rows) const;
 
   const RodSpan& span_;
   const RodMesh& mesh_;
   double tolerance_;
   Deadline deadline_;
-  std::optional<ShotFrames> frames_;
-  double rate_;  // unit of v; its square is that of n
-  Eigen::Matrix3Xd axes_;
-  NodeLayout layout_{3};
+  double rate_;                                // unit of m; its square is that of n
+  Eigen::Matrix3Xd positions_;                 // axes of positions and forces, one a column
+  Eigen::Matrix3Xd turns_;                     // axes of spins and moments
+  std::vector<const RodSpan::Clamp*> clamps_;  // at each node, null for none
+  ClampFrames frames_;                         // at each node
+  std::vector<RodState> start_;
 };
 
 }  // namespace dlo::energy_model

@@ -2,15 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "shooting/between_nodes.hpp"
+#include "shooting/close_gaps.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_growth = 3;  // of an interval: its length times |n|^(1/2)
+constexpr double largest_growth = 3;  // of an interval: its length times bending_force^(1/2)
 /// Of the integrator for the second variation, whose elements are right to 1e-8.
 constexpr double variation_tolerance = 1e-10;
+
+double longest_of(const RodMesh& mesh) {
+  return (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
+}
 
 void add_energies(const RodSpan& span, const RodMesh& mesh, double tolerance,
                   SpanEquilibrium& equilibrium) {
@@ -19,62 +26,83 @@ void add_energies(const RodSpan& span, const RodMesh& mesh, double tolerance,
     equilibrium.energy.load -= mesh.load.col(i).dot(state.r);
     if (i == mesh.intervals()) break;
     RodIntegrals integrals;
-    if (!follow_rod(mesh.section_of(i), mesh.width(i), tolerance, state, integrals)) {
+    if (!follow_rod(mesh.section_of(i), span.natural, mesh.s[i], mesh.width(i), tolerance, state,
+                    integrals)) {
       equilibrium.converged = false;
       equilibrium.message = "the integrator gave up on the energies";
       equilibrium.energy = {NAN, NAN, NAN, NAN};
       return;
     }
     equilibrium.energy.bending += integrals.bending;
+    equilibrium.energy.twisting += integrals.twisting;
     equilibrium.energy.gravity += integrals.gravity;
+    equilibrium.turns.push_back(integrals.turn);
   }
-  if (!span.twist) return;
-  const double torque = equilibrium.nodes.front().torque;
-  equilibrium.energy.twisting = torque * torque * span.twist->compliance / 2;
 }
 
 }  // namespace
 
-double longest_interval(const RodSpan& span, double force) {
-  return std::min(span.length / 16, 1 / std::sqrt(std::max(force, 1.0)));
+double bending_force(const RodSpan& span, const std::vector<RodState>& states) {
+  const double b = softest(span);
+  double force = 1;
+  for (const RodState& state : states) {
+    force = std::max({force, state.n.norm() / b, state.m.squaredNorm() / (b * b)});
+  }
+  if (!span.natural) return force;
+  constexpr int probes = 16;
+  for (int i = 0; i <= probes; ++i) {
+    force = std::max(force, span.natural(span.length * i / probes).squaredNorm());
+  }
+  return force;
+}
+
+SpanEquilibrium close_span(const RodSpan& span, const RodMesh& mesh,
+                           const std::vector<RodState>& start, const ClampFrames& frames,
+                           const ShootingOptions& options) {
+  const ShootingSystem system(span, mesh, frames, options, start);
+  SpanEquilibrium equilibrium;
+  equilibrium.frames = frames;
+  equilibrium.s = mesh.s;
+  equilibrium.nodes = system.start();
+  const bool drifting = span.round() && span.twisted();
+  ClosedGaps closed = close_gaps(system, equilibrium.nodes, options.max_iterations, drifting);
+  equilibrium.converged = closed.converged;
+  equilibrium.message = std::move(closed.message);
+  equilibrium.shots = closed.shots;
+  equilibrium.residual = system.gap(equilibrium.nodes);
+  if (!equilibrium.converged) return equilibrium;
+  equilibrium.converged = equilibrium.residual <= system.closed();
+  equilibrium.message = equilibrium.converged ? "converged" : "the rod does not close at a node";
+  return equilibrium;
 }
 
 SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh, std::vector<RodState> start,
-                           const ShootingOptions& options) {
+                           const ClampFrames& frames, const ShootingOptions& options) {
   SpanEquilibrium equilibrium;
   for (int level = 0; level < 3; ++level) {
-    ShootingResult result = shoot(span, mesh, start, options);
-    equilibrium.converged = result.converged;
-    equilibrium.message = result.message;
-    equilibrium.residual = result.residual;
-    equilibrium.shots += result.shots;
-    equilibrium.s = mesh.s;
-    equilibrium.nodes = std::move(result.nodes);
-    const double force = largest_force(equilibrium.nodes, softest(span));
-    const double longest =
-        (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
-    if (!result.converged || longest * std::sqrt(force) <= largest_growth) break;
+    const int shots = equilibrium.shots;
+    equilibrium = close_span(span, mesh, start, frames, options);
+    equilibrium.shots += shots;
+    if (!equilibrium.converged) return equilibrium;
+    const double force = bending_force(span, equilibrium.nodes);
+    if (longest_of(mesh) * std::sqrt(force) <= largest_growth) break;
     mesh = make_mesh(span, longest_interval(span, force));
-    start.clear();
-    for (const double s : mesh.s) {
-      start.push_back(state_at(equilibrium, span, s, options.tolerance));
-    }
+    start = states_at(equilibrium, span, {mesh.s.begin(), mesh.s.end()}, options.tolerance);
     start.back().n.setZero();
+    start.back().m.setZero();
   }
-  if (!equilibrium.converged) return equilibrium;
   add_energies(span, mesh, options.tolerance, equilibrium);
-  judge_stability(span, options.tolerance, equilibrium);
+  if (equilibrium.converged) judge_stability(span, options.tolerance, equilibrium);
   return equilibrium;
 }
 
 void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
-  equilibrium.stability = second_variation(span, [&](const std::vector<double>& s) {
-    return states_at(equilibrium, span, s, std::max(tolerance, variation_tolerance));
-  });
-  std::vector<double> probes;
-  for (int i = 0; i <= 32; ++i) probes.push_back(span.length * i / 32);
-  equilibrium.tangents = tangents_of(states_at(equilibrium, span, probes, variation_tolerance));
-  if (equilibrium.stability.negative < 0 || !equilibrium.tangents.allFinite()) {
+  equilibrium.stability = second_variation(
+      span, equilibrium.frames, bending_force(span, equilibrium.nodes),
+      [&](const std::vector<double>& s) {
+        return states_at(equilibrium, span, s, std::max(tolerance, variation_tolerance));
+      });
+  if (equilibrium.stability.negative < 0) {
     equilibrium.converged = false;
     equilibrium.message = "the integrator gave up on the second variation";
   }
@@ -90,12 +118,40 @@ std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpa
   const auto follow = [&](Eigen::Index i, double from, double to, RodState& state) {
     const RodSection& section = section_at(span, (equilibrium.s[i] + equilibrium.s[i + 1]) / 2);
     RodIntegrals integrals;
-    if (follow_rod(section, to - from, tolerance, state, integrals)) return;
-    state.r.setConstant(NAN);
-    state.t.setConstant(NAN);
-    state.v.setConstant(NAN);
+    if (follow_rod(section, span.natural, from, to - from, tolerance, state, integrals)) return;
+    state.r.setConstant(std::numeric_limits<double>::quiet_NaN());
+    state.R.setConstant(std::numeric_limits<double>::quiet_NaN());
   };
   return states_between(equilibrium.s, equilibrium.nodes, s, follow);
+}
+
+void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
+                  std::vector<RodState>& states) {
+  const std::size_t first =
+      span.clamps.empty() ? 0
+                          : static_cast<std::size_t>(std::lower_bound(mesh.s.begin(), mesh.s.end(),
+                                                                      span.clamps.front().at) -
+                                                     mesh.s.begin());
+  RodState& held = states[first];
+  held.R = span.clamps.empty() ? frame_of(held.t().unitOrthogonal(), held.t())
+                               : transported(span.first_frame, held.t());
+  // The frame at the end of an interval that a frame at its begin comes to.
+  const auto carried = [&](std::size_t i) {
+    RodState state = states[i];
+    const auto interval = static_cast<Eigen::Index>(i);
+    RodIntegrals integrals;
+    const bool followed = follow_rod(mesh.section_of(interval), span.natural, mesh.s[interval],
+                                     mesh.width(interval), tolerance, state, integrals);
+    return transported(followed ? state.R : states[i].R, states[i + 1].t());
+  };
+  for (std::size_t i = first; i + 1 < states.size(); ++i) states[i + 1].R = carried(i);
+  for (std::size_t i = first; i > 0; --i) {
+    states[i - 1].R = transported(states[i].R, states[i - 1].t());
+    const Eigen::Matrix3d reached = carried(i - 1);
+    const Eigen::Vector3d d1 = states[i].R.col(0);
+    const double missing = std::atan2(reached.col(1).dot(d1), reached.col(0).dot(d1));
+    states[i - 1].R = rolled(states[i - 1].R, missing);
+  }
 }
 
 }  // namespace dlo::energy_model

@@ -8,7 +8,7 @@
 #include "base/require.hpp"
 #include "kirchhoff/relaxed_polygon.hpp"
 #include "problem/rod_law.hpp"
-#include "shooting/boundary_value.hpp"
+#include "shooting/gradient_flow.hpp"
 #include "shooting/span_twist.hpp"
 
 namespace dlo::energy_model {
@@ -22,8 +22,9 @@ constexpr int most_saddles_left = 8;      // saddles that are left
 constexpr double departure = 0.3;         // largest change of a tangent when a saddle is left
 constexpr int finer_polygons = 2;         // after a shot that has failed
 constexpr Eigen::Index most_intervals = 1000;  // of a polygon that is made finer
-constexpr int search_iterations = 30;   // of Newton's method, which takes 6 to 12 near a minimum
-constexpr double polygons_share = 0.5;  // of the time that is left
+constexpr int search_iterations = 30;     // of Newton's method, which takes 6 to 12 near a minimum
+constexpr double start_tolerance = 1e-6;  // of the integrator along a polygon
+constexpr double polygons_share = 0.5;    // of the time that is left
 
 void check_load(const RodSpan& span) {
   const double load = total_load(span) / softest(span);
@@ -37,8 +38,13 @@ bool stays_in_plane(const RodSpan& span, const Eigen::Matrix3Xd& tangents, doubl
   return (normal.transpose() * tangents).cwiseAbs().maxCoeff() < tolerance;
 }
 
-bool same(const SpanEquilibrium& a, const SpanEquilibrium& b) {
-  return (a.tangents - b.tangents).colwise().norm().maxCoeff() < same_tangents;
+bool same(const RodSpan& span, const SpanEquilibrium& a, const SpanEquilibrium& b) {
+  constexpr double coarse = 1e-10;
+  const Eigen::VectorXd probes = Eigen::VectorXd::LinSpaced(33, 0, span.length);
+  const std::vector<double> s(probes.begin(), probes.end());
+  const Eigen::Matrix3Xd difference =
+      tangents_of(states_at(a, span, s, coarse)) - tangents_of(states_at(b, span, s, coarse));
+  return difference.colwise().norm().maxCoeff() < same_tangents;
 }
 
 /// Tangents of a polygon on another mesh, constant along its intervals.
@@ -113,7 +119,9 @@ class SpanSearch {
 
  private:
   SpanEquilibrium shoot_from(const RodMesh& mesh, const RelaxedPolygon& polygon, bool planar) {
-    SpanEquilibrium equilibrium = shoot_span(span_, mesh, states_of(span_, mesh, polygon),
+    std::vector<RodState> start = states_of(span_, mesh, polygon);
+    carry_frames(span_, mesh, start_tolerance, start);
+    SpanEquilibrium equilibrium = shoot_span(span_, mesh, std::move(start), released_frames(span_),
                                              {.tolerance = tolerance_,
                                               .planar = planar,
                                               .max_iterations = search_iterations,
@@ -149,8 +157,9 @@ class SpanSearch {
       failed_ = std::move(equilibrium);
       return;
     }
-    const bool known = std::any_of(found_.begin(), found_.end(),
-                                   [&](const auto& other) { return same(other, equilibrium); });
+    const bool known = std::any_of(found_.begin(), found_.end(), [&](const auto& other) {
+      return same(span_, other, equilibrium);
+    });
     if (!known) found_.push_back(std::move(equilibrium));
   }
 
@@ -168,16 +177,13 @@ class SpanSearch {
 
   /// Relaxes the polygon from beside a saddle.
   void leave(const SpanEquilibrium& saddle, double amplitude) {
-    const SecondVariation& mode = saddle.stability;
-    if (mode.s.size() == 0) return;
+    if (saddle.stability.s.size() == 0) return;
     const Eigen::VectorXd middles =
         (mesh_.s.head(mesh_.intervals()) + mesh_.s.tail(mesh_.intervals())) / 2;
-    const std::vector<RodState> states =
-        states_at(saddle, span_, {middles.begin(), middles.end()}, tolerance_);
-    Eigen::Matrix3Xd tangents = amplitude * mode_at(mode, middles);
-    for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
-      tangents.col(i) = (states[static_cast<std::size_t>(i)].t + tangents.col(i)).normalized();
-    }
+    Eigen::Matrix3Xd tangents =
+        tangents_of(states_at(saddle, span_, {middles.begin(), middles.end()}, tolerance_)) +
+        amplitude * tangent_mode(span_, saddle, middles);
+    tangents.colwise().normalize();
     const bool planar = stays_in_plane(span_, tangents, in_plane);
     RelaxedPolygon polygon = relax_polygon(span_, mesh_, std::move(tangents), planar, deadline_);
     descend({std::move(polygon), planar});
@@ -194,12 +200,17 @@ class SpanSearch {
 
 /// What a shape says of the twist of a span that holds some; null for nothing.
 const TwistedPart* twist_of(const RodSpan& span, const Problem& problem, const Equilibrium& shape) {
-  if (!span.twist) return nullptr;
+  if (!span.twisted()) return nullptr;
   const double middle = (span.begin + span.length / 2) * problem.length;
   const auto found = std::find_if(shape.twists.begin(), shape.twists.end(), [&](const auto& part) {
     return part.begin < middle && middle < part.end;
   });
   return found == shape.twists.end() ? nullptr : &*found;
+}
+
+RodSpan without_twist(RodSpan span) {
+  for (RodSpan::Clamp& clamp : span.clamps) clamp.frame.reset();
+  return span;
 }
 
 }  // namespace
@@ -227,8 +238,7 @@ Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, 
 
 SpanSearchResult search_twisted_span(const RodSpan& span, double tolerance,
                                      const Deadline& deadline) {
-  RodSpan plain = span;
-  plain.twist.reset();
+  const RodSpan plain = without_twist(span);
   SpanSearchResult search = search_span(plain, tolerance, deadline);
   SpanEquilibrium twisted = twist_span(span, search.found.front(), tolerance, deadline);
   return {{std::move(twisted)}, search.complete && !deadline.passed()};
@@ -259,22 +269,25 @@ SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const E
   std::vector<RodState> start;
   for (Eigen::Index i = 0; i < mesh.s.size(); ++i) {
     RodState state;
+    const Eigen::Vector3d t = samples.tangents.col(i);
     state.r = (samples.points.col(i) - problem.grips.front().position) / problem.length;
-    state.t = samples.tangents.col(i);
-    state.v = samples.curvature.col(i) * problem.length;
-    if (i < mesh.intervals()) state.n = implied_force(problem, shape, span.begin + mesh.s[i]);
-    state.torque = torque;
+    state.R = frame_of(t.unitOrthogonal(), t);
+    if (i < mesh.intervals()) {
+      const Eigen::Vector3d curvature = samples.curvature.col(i) * problem.length;
+      state.m = mesh.section_of(i).bending * t.cross(curvature) + torque * t;
+      state.n = implied_force(problem, shape, span.begin + mesh.s[i]);
+    }
     start.push_back(state);
   }
+  carry_frames(span, mesh, tolerance, start);
   if (twisted != nullptr) return refine_twisted(span, mesh, std::move(start), tolerance, deadline);
-  RodSpan plain = span;
-  plain.twist.reset();
+  const RodSpan plain = without_twist(span);
   SpanEquilibrium equilibrium =
-      shoot_span(plain, mesh_at(plain, mesh.s), std::move(start),
+      shoot_span(plain, mesh_at(plain, mesh.s), std::move(start), released_frames(plain),
                  {.tolerance = tolerance,
                   .planar = stays_in_plane(span, samples.tangents, in_plane),
                   .deadline = deadline});
-  return span.twist ? twist_span(span, equilibrium, tolerance, deadline) : equilibrium;
+  return span.twisted() ? twist_span(span, equilibrium, tolerance, deadline) : equilibrium;
 }
 
 }  // namespace dlo::energy_model

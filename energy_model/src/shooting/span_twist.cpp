@@ -25,30 +25,6 @@ double largest_change(const std::vector<RodState>& a, const std::vector<RodState
   return (tangents_of(a) - tangents_of(b)).colwise().norm().maxCoeff();
 }
 
-/// Lets a director come along from node to node, by the flow and the shortest turn to the next
-/// tangent. @return false if the integrator gave up
-bool carry_director(const RodMesh& mesh, double tolerance, const Eigen::Vector3d& first,
-                    std::vector<RodState>& nodes) {
-  nodes.front().d = first;
-  for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
-    RodState state = nodes[static_cast<std::size_t>(i)];
-    RodState& next = nodes[static_cast<std::size_t>(i + 1)];
-    RodIntegrals integrals;
-    if (!follow_rod(mesh.section_of(i), mesh.width(i), tolerance, state, integrals)) {
-      return false;
-    }
-    next.d = Eigen::Quaterniond::FromTwoVectors(state.t, next.t) * state.d;
-    next.d = (next.d - next.d.dot(next.t) * next.t).normalized();
-  }
-  return true;
-}
-
-/// Directors are of no use in a result, and would have to be followed wherever it is sampled.
-SpanEquilibrium without_directors(SpanEquilibrium equilibrium) {
-  for (RodState& node : equilibrium.nodes) node.d.setZero();
-  return equilibrium;
-}
-
 /// A span on its way from no roll to all of it.
 class Continuation {
  public:
@@ -58,14 +34,13 @@ class Continuation {
   SpanEquilibrium run(const SpanEquilibrium& without) {
     now_ = without;
     shots_ = without.shots;
-    if (!carry_director(mesh_at(span_, now_.s), tolerance_, span_.twist->start_d1, now_.nodes)) {
-      return failure("the integrator gave up on the frame");
-    }
-    untwisted_end_ = now_.nodes.back().d;
+    const RodSpan::Clamp& end = span_.clamps.back();
+    untwisted_end_ = frame_of(now_.nodes.back().R.col(0), end.direction);
     find_target();
     // The frames are held: what turns them costs twist.
+    now_.frames = frames(0);
     judge_stability(span_, tolerance_, now_);
-    if (now_.converged && !now_.stable()) now_ = leave_saddle(span_, now_, options(0));
+    if (now_.converged && !now_.stable()) now_ = leave_saddle(span_, now_, options());
     if (!now_.converged) return failure(now_.message);
     double step = first_step;
     while (reached_ != target_) {
@@ -89,32 +64,33 @@ class Continuation {
       step = first_step / 4;
     }
     now_.shots = shots_;
-    return without_directors(std::move(now_));
+    return std::move(now_);
   }
 
  private:
   void find_target() {
-    const Eigen::Vector3d& d1 = span_.twist->end_d1;
-    const Eigen::Vector3d side = span_.end_direction->cross(untwisted_end_);
-    const double ahead = std::atan2(side.dot(d1), untwisted_end_.dot(d1));
+    const auto& [d1, turns] = *span_.clamps.back().frame;
+    const double ahead = std::atan2(untwisted_end_.col(1).dot(d1), untwisted_end_.col(0).dot(d1));
     const auto sample = [this](std::span<const double> at) {
       Samples samples = sized_samples(at, span_.length);
       for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
         const RodState state = state_at(now_, span_, at[static_cast<std::size_t>(i)], tolerance_);
         samples.points.col(i) = state.r;
-        samples.tangents.col(i) = state.t;
+        samples.tangents.col(i) = state.t();
       }
       return samples;
     };
-    target_ = turned_angle(span_.twist->turns, ahead, writhe(sample, 0, span_.length));
+    target_ = turned_angle(turns, ahead, writhe(sample, 0, span_.length));
   }
 
-  [[nodiscard]] ShootingOptions options(double roll) const {
-    return {.tolerance = tolerance_,
-            .max_iterations = step_iterations,
-            .deadline = deadline_,
-            .frames = ShotFrames{span_.twist->start_d1,
-                                 turned(untwisted_end_, *span_.end_direction, roll)}};
+  [[nodiscard]] ShootingOptions options() const {
+    return {.tolerance = tolerance_, .max_iterations = step_iterations, .deadline = deadline_};
+  }
+
+  [[nodiscard]] ClampFrames frames(double roll) const {
+    ClampFrames held = released_frames(span_);
+    held.back() = rolled(untwisted_end_, roll);
+    return held;
   }
 
   [[nodiscard]] SpanEquilibrium failure(const std::string& message) const {
@@ -135,15 +111,14 @@ class Continuation {
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       RodState& node = nodes[i];
       node.r += part * (node.r - before[i].r);
-      node.t = (node.t + part * (node.t - before[i].t)).normalized();
-      node.v += part * (node.v - before[i].v);
+      node.m += part * (node.m - before[i].m);
       node.n += part * (node.n - before[i].n);
-      // The director turns by many times what tangents turn, on a circle.
-      const Eigen::Vector3d old = before[i].d;
-      const Eigen::Vector3d ahead = now_.nodes[i].t.cross(old);
-      const double turn = std::atan2(ahead.dot(node.d), old.dot(node.d));
-      node.d = turned(node.d, now_.nodes[i].t, part * turn);
-      node.torque += part * (node.torque - before[i].torque);
+      // The frame turns about the tangent by many times what tangents turn, on a circle.
+      const Eigen::Vector3d t = node.t();
+      const Eigen::Matrix3d old = transported(before[i].R, t);
+      const double turn = std::atan2(old.col(1).dot(node.R.col(0)), old.col(0).dot(node.R.col(0)));
+      const Eigen::Vector3d tangent = (t + part * (t - before[i].t())).normalized();
+      node.R = rolled(transported(node.R, tangent), part * turn);
     }
     return nodes;
   }
@@ -153,7 +128,7 @@ class Continuation {
   double advance(double next) {
     const std::vector<RodState> start = predicted(next);
     const RodMesh mesh = mesh_at(span_, now_.s);
-    SpanEquilibrium found = shoot_span(span_, mesh, start, options(next));
+    SpanEquilibrium found = shoot_span(span_, mesh, start, frames(next), options());
     shots_ += found.shots;
     problem_ = found.message;
     if (!found.converged) return 0;
@@ -166,7 +141,7 @@ class Continuation {
       accept(next, std::move(found));
       return factor;
     }
-    SpanEquilibrium left = leave_saddle(span_, found, options(next));
+    SpanEquilibrium left = leave_saddle(span_, found, options());
     shots_ += left.shots;
     problem_ = left.message;
     if (!left.converged) return 0;
@@ -179,7 +154,7 @@ class Continuation {
   bool fall(double next) {
     const RodMesh mesh = mesh_at(span_, now_.s);
     SpanEquilibrium found =
-        follow_gradient(span_, mesh, now_.nodes, tangents_of(now_.nodes), options(next));
+        follow_gradient(span_, mesh, now_.nodes, tangents_of(now_.nodes), frames(next), options());
     shots_ += found.shots;
     problem_ = found.message;
     if (!found.converged) return false;
@@ -196,8 +171,8 @@ class Continuation {
   const RodSpan& span_;
   double tolerance_;
   Deadline deadline_;
-  Eigen::Vector3d untwisted_end_ = Eigen::Vector3d::Zero();  // director
-  double target_ = 0;                                        // roll [rad]
+  Eigen::Matrix3d untwisted_end_ = Eigen::Matrix3d::Identity();  // frame
+  double target_ = 0;                                            // roll [rad]
   double reached_ = 0;
   double reached_before_ = 0;
   SpanEquilibrium now_;
@@ -217,17 +192,11 @@ SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without, 
 SpanEquilibrium refine_twisted(const RodSpan& span, const RodMesh& mesh,
                                std::vector<RodState> start, double tolerance,
                                const Deadline& deadline) {
-  if (!carry_director(mesh, tolerance, span.twist->start_d1, start)) {
-    SpanEquilibrium failed;
-    failed.message = "the integrator gave up on the frame";
-    return failed;
-  }
-  const Eigen::Vector3d end =
-      turned(span.twist->end_d1, *span.end_direction, span.twist->turns.roll);
-  return without_directors(shoot_span(span, mesh, std::move(start),
-                                      {.tolerance = tolerance,
-                                       .deadline = deadline,
-                                       .frames = ShotFrames{span.twist->start_d1, end}}));
+  const RodSpan::Clamp& end = span.clamps.back();
+  ClampFrames frames = released_frames(span);
+  frames.back() = rolled(frame_of(end.frame->d1, end.direction), end.frame->turns.roll);
+  return shoot_span(span, mesh, std::move(start), frames,
+                    {.tolerance = tolerance, .deadline = deadline});
 }
 
 }  // namespace dlo::energy_model

@@ -14,7 +14,7 @@ namespace dlo::energy_model {
 /// not converge or the shape jumps. Where a shape has become unstable, and where the branch ends at
 /// a fold, the rod follows the gradient flow of its energy, by backward Euler, to a shape that is
 /// stable at that roll.
-/// @param span     with `twist`
+/// @param span     twisted()
 /// @param without  equilibrium without frames
 /// @return not converged, and the roll that was reached in the message, if a step failed
 [[nodiscard]] SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without,

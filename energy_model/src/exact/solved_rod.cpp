@@ -1,0 +1,166 @@
+#include "exact/solved_rod.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "base/sized_samples.hpp"
+#include "problem/ordered_grips.hpp"
+#include "problem/reduction.hpp"
+#include "problem/rod_law.hpp"
+#include "shooting/second_variation.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Cross-sections just before what the nodes of a span add to force and moment.
+std::vector<RodState> before_nodes(const RodSpan& span, const SpanEquilibrium& equilibrium,
+                                   double tolerance) {
+  const RodMesh mesh = mesh_at(span, equilibrium.s);
+  std::vector<RodState> before(1);
+  for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
+    RodState end = equilibrium.nodes[static_cast<std::size_t>(i)];
+    RodIntegrals integrals;
+    if (!follow_rod(mesh.section_of(i), span.natural, mesh.s[i], mesh.width(i), tolerance, end,
+                    integrals)) {
+      end.m.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+    before.push_back(end);
+  }
+  return before;
+}
+
+std::size_t node_at(const SpanEquilibrium& equilibrium, double s) {
+  return static_cast<std::size_t>(std::lower_bound(equilibrium.s.begin(), equilibrium.s.end(), s) -
+                                  equilibrium.s.begin());
+}
+
+/// What the grips of a span exert makes up for the jumps of n and m.
+void add_reactions(const Problem& problem, const RodSpan& span, const SpanEquilibrium& equilibrium,
+                   const std::vector<RodState>& before, const Eigen::Matrix3d& axes,
+                   std::vector<Reaction>& reactions) {
+  const double torque_unit = bending_unit(problem) / problem.length;
+  const double force_unit = torque_unit / problem.length;
+  for (const RodSpan::Hold& hold : span.holds) {
+    const std::size_t i = node_at(equilibrium, hold.at);
+    Eigen::Vector3d force = before[i].n - equilibrium.nodes[i].n;
+    for (const RodSpan::Load& load : span.loads) {
+      if (load.at == hold.at) force -= load.force;
+    }
+    Reaction& reaction = reactions[hold.grip];
+    reaction.force += force_unit * (axes * force);
+    if (span.clamp_at(hold.at) == nullptr) continue;
+    reaction.torque += torque_unit * (axes * (before[i].m - equilibrium.nodes[i].m));
+  }
+}
+
+/// Between neighbouring clamps that hold frames, of which the first one is one.
+void add_twists(const Problem& problem, const RodSpan& span, const SpanEquilibrium& equilibrium,
+                const std::vector<RodState>& before, std::vector<TwistedPart>& twists) {
+  if (span.clamps.empty()) return;
+  std::size_t begin = node_at(equilibrium, span.clamps.front().at);
+  for (const RodSpan::Clamp& clamp : span.clamps) {
+    if (!clamp.frame) continue;
+    const std::size_t end = node_at(equilibrium, clamp.at);
+    TwistedPart part;
+    part.begin = (span.begin + equilibrium.s[static_cast<Eigen::Index>(begin)]) * problem.length;
+    part.end = (span.begin + clamp.at) * problem.length;
+    for (std::size_t i = begin; i < end; ++i) part.angle += equilibrium.turns[i];
+    part.torque = before[end].m.dot(clamp.direction) * bending_unit(problem) / problem.length;
+    twists.push_back(part);
+    begin = end;
+  }
+}
+
+/// Loads on clamps belong to no span of a rod that is cut there.
+void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
+  for (const Load& load : problem.loads) {
+    const std::optional<std::size_t> clamp = clamp_under(problem, load);
+    if (!clamp) continue;
+    const Eigen::Vector3d& position = problem.grips[*clamp].position;
+    result.grips[*clamp].force -= load.force;
+    result.energy.load -= load.force.dot(position - problem.grips.front().position);
+  }
+}
+
+Samples sample(const Problem& problem, const SolvedRod& rod, double tolerance,
+               std::span<const double> arc_lengths) {
+  const double l = problem.length;
+  const auto count = static_cast<Eigen::Index>(arc_lengths.size());
+  const bool directors = has_material_directors(problem);
+  Samples samples = sized_samples(arc_lengths, l);
+  if (directors) samples.d1.resize(3, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const double at = arc_lengths[static_cast<std::size_t>(i)] / l;
+    std::size_t p = 0;
+    while (p + 1 < rod.spans.size() && at > rod.spans[p + 1].begin) ++p;
+    const RodSpan& span = rod.spans[p];
+    const double s = at - span.begin;
+    const RodState state = state_at(rod.equilibria[p], span, s, tolerance);
+    const RodSection& section = section_at(span, std::min(s, span.length * (1 - 1e-12)));
+    samples.points.col(i) = problem.grips.front().position + l * (rod.axes * state.r);
+    samples.tangents.col(i) = rod.axes * state.t();
+    samples.curvature.col(i) = rod.axes * curvature_of(section, span.natural, s, state) / l;
+    if (directors) samples.d1.col(i) = rod.axes * state.R.col(0);
+  }
+  return samples;
+}
+
+}  // namespace
+
+Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance) {
+  const auto rod = std::make_shared<const SolvedRod>(std::move(solved));
+  Equilibrium result;
+  result.grips.resize(problem.grips.size());
+  SecondVariation stability{.negative = 0,
+                            .neutral = 0,
+                            .smallest = std::numeric_limits<double>::infinity(),
+                            .s = {},
+                            .spin = {}};
+  Energies energy;
+  for (std::size_t i = 0; i < rod->spans.size(); ++i) {
+    const RodSpan& span = rod->spans[i];
+    const SpanEquilibrium& equilibrium = rod->equilibria[i];
+    result.evaluations += equilibrium.shots;
+    result.residual = std::max(result.residual, equilibrium.residual);
+    if (!equilibrium.converged) {
+      result.status = SolveStatus::failed;
+      result.message = equilibrium.message;
+      if (!has_material_directors(problem)) {
+        result.message = "the rod from " + std::to_string(span.begin * problem.length) +
+                         " m on: " + result.message;
+      }
+      continue;
+    }
+    energy.bending += equilibrium.energy.bending;
+    energy.twisting += equilibrium.energy.twisting;
+    energy.gravity += equilibrium.energy.gravity;
+    energy.load += equilibrium.energy.load;
+    const std::vector<RodState> before = before_nodes(span, equilibrium, tolerance);
+    add_reactions(problem, span, equilibrium, before, rod->axes, result.grips);
+    add_twists(problem, span, equilibrium, before, result.twists);
+    stability.negative += equilibrium.stability.negative;
+    stability.neutral += equilibrium.stability.neutral;
+    stability.smallest = std::min(stability.smallest, equilibrium.stability.smallest);
+  }
+  if (result.status == SolveStatus::failed) {
+    result.energy = {NAN, NAN, NAN, NAN};
+    result.grips.clear();
+    result.twists.clear();
+    return result;
+  }
+  result.energy = restore(problem, energy);
+  if (!has_material_directors(problem)) add_loads_on_clamps(problem, result);
+  judge(stability, result);
+  result.sample = [problem, rod, tolerance](std::span<const double> arc_lengths) {
+    return sample(problem, *rod, tolerance, arc_lengths);
+  };
+  return result;
+}
+
+}  // namespace dlo::energy_model
