@@ -91,17 +91,6 @@ std::vector<std::vector<PointMass>> masses_by_span(const MovingRod& rod,
   return result;
 }
 
-void add(const EnergyBalance& of, EnergyBalance& to) {
-  to.kinetic += of.kinetic;
-  to.bending += of.bending;
-  to.gravity += of.gravity;
-  to.load += of.load;
-  to.obstacles += of.obstacles;
-  to.dissipated += of.dissipated;
-  to.lost += of.lost;
-  to.work += of.work;
-}
-
 /// Spans count gravity and loads from their own anchors.
 void move_zero(const MovingRod& rod, const std::vector<PlacedSpan>& spans, EnergyBalance& energy) {
   const double l = rod.problem.length;
@@ -198,7 +187,7 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
     auto shapes = std::make_shared<std::vector<PlacedShape>>();
     for (const SpanRun& run : runs) {
       const SpanFrame& of = run.frames[k];
-      add(of.energy, frame.energy);
+      add(of.energy, 1, frame.energy);
       for (const auto& [grip, reaction] : of.grips) {
         frame.grips[grip].force += reaction.force;
         frame.grips[grip].torque += reaction.torque;

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "problem/rod_law.hpp"
+#include "search/known_shape.hpp"
+#include "strain/span_shape.hpp"
 #include "vibration/inertia.hpp"
 
 namespace dlo::energy_model {
@@ -128,36 +130,17 @@ SpanDrive MovingSpan::drive(double time, bool planar, bool& left_plane) const {
   return result;
 }
 
-SpanInertia MovingSpan::inertia(const std::vector<Piece>& pieces,
-                                const std::vector<PointMass>& masses) const {
+SpanInertia MovingSpan::inertia(const std::vector<PointMass>& masses) const {
   SpanInertia result;
-  for (const Piece& piece : pieces) {
-    const double middle = piece.begin + piece.length / 2;
-    const double at = placed_.start + (placed_.reversed ? -middle : middle) * length_;
-    result.per_length.push_back(mass_per_length(rod_.problem, rod_.inertia, at) * length_ / mass_);
-  }
-  result.at_stations.assign(pieces.size() + 1, 0);
+  result.per_length =
+      masses_per_length(rod_.problem, rod_.inertia, placed_, pieces_of(placed_.span));
+  for (double& mass : result.per_length) mass /= mass_;
   for (const PointMass& point : masses) {
-    const double s = placed_.s_of(point.at, length_);
-    std::size_t nearest = 0;
-    for (std::size_t k = 1; k <= pieces.size(); ++k) {
-      const double before = nearest == 0 ? 0 : pieces[nearest - 1].end();
-      if (std::abs(pieces[k - 1].end() - s) < std::abs(before - s)) nearest = k;
-    }
-    result.at_stations[nearest] += point.mass / mass_;
+    result.points.push_back({placed_.s_of(point.at, length_), point.mass / mass_});
   }
   result.material_damping = rod_.material_damping / time_;
   result.drag = rod_.air_drag * time_ * length_ / mass_;
   return result;
-}
-
-Eigen::Matrix3Xd MovingSpan::tangents(const StartingShape& start, const Eigen::VectorXd& s) const {
-  std::vector<double> arc_lengths;
-  for (const double at : s) {
-    const double arc = placed_.start + (placed_.reversed ? -at : at) * length_;
-    arc_lengths.push_back(std::clamp(arc, 0.0, length_));
-  }
-  return (placed_.reversed ? -1.0 : 1.0) * (placed_.frame * start(arc_lengths).tangents);
 }
 
 SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
@@ -165,36 +148,23 @@ SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
   SpanFrame result;
   const Eigen::VectorXd multipliers = integrator.settle(at);
   const SpanReactions reactions = model.reactions(multipliers);
-  const SpanEnergies energies = model.energies();
   const double seconds = at.time * time_;
   const Eigen::Matrix3d to_space = to_axes(seconds).transpose();
   const double unit = force_ * length_;
-  result.energy = {energies.kinetic * unit,
-                   energies.bending * unit,
-                   energies.gravity * unit,
-                   energies.load * unit,
-                   energies.obstacles * unit,
-                   at.dissipated * unit,
-                   at.lost * unit,
-                   at.work * unit};
-  const auto add = [&](std::size_t grip, const Eigen::Vector3d& force,
-                       const Eigen::Vector3d& torque) {
+  add(model.energies(), unit, result.energy);
+  add(at.done, unit, result.energy);
+  const auto add_grip = [&](std::size_t grip, const Eigen::Vector3d& force,
+                            const Eigen::Vector3d& torque) {
     result.grips.emplace_back(grip, Reaction{to_space * force * force_, to_space * torque * unit});
   };
-  add(placed_.anchor_grip, reactions.anchor_force, reactions.anchor_torque);
+  add_grip(placed_.anchor_grip, reactions.anchor_force, reactions.anchor_torque);
   for (std::size_t k = 0; k < placed_.hold_grips.size(); ++k) {
     const bool last = placed_.span.end_direction && k + 1 == placed_.hold_grips.size();
-    add(placed_.hold_grips[k], reactions.hold_forces[k],
-        last ? reactions.end_torque : Eigen::Vector3d::Zero().eval());
+    add_grip(placed_.hold_grips[k], reactions.hold_forces[k],
+             last ? reactions.end_torque : Eigen::Vector3d::Zero().eval());
   }
-  for (std::size_t i = 0; i < model.obstacle_forces().size(); ++i) {
-    result.obstacles.emplace_back(placed_.span.soft_obstacles[i].index,
-                                  to_space * model.obstacle_forces()[i] * force_);
-  }
-  const std::vector<Eigen::Vector3d> rigid = model.rigid_forces();
-  for (std::size_t i = 0; i < rigid.size(); ++i) {
-    result.obstacles.emplace_back(placed_.span.rigid_obstacles[i].index,
-                                  to_space * rigid[i] * force_);
+  for (const auto& [obstacle, force] : model.obstacle_forces()) {
+    result.obstacles.emplace_back(obstacle, to_space * force * force_);
   }
   const double end =
       placed_.reversed ? placed_.start : placed_.start + placed_.span.length * length_;
@@ -236,11 +206,14 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
                              const DynamicsOptions& options, bool planar,
                              const Deadline& deadline) const {
   SpanRun result;
-  const std::vector<Piece> pieces = pieces_of(placed_.span);
-  const Eigen::Vector3d first = tangents(start, Eigen::VectorXd::Zero(1)).col(0);
-  SpanDynamics model(placed_.span, pieces, options.terms, planar, first, inertia(pieces, masses),
-                     contact);
-  const Eigen::Matrix3Xd directions = tangents(start, model.nodes());
+  Equilibrium at_rest;
+  at_rest.sample = start;
+  const TangentField tangents = field_of(at_rest, placed_, length_);
+  Span span = placed_.span;
+  span.planar = planar;
+  const Eigen::Vector3d first = tangents(Eigen::VectorXd::Zero(1)).tangents.col(0);
+  SpanDynamics model(std::move(span), options.terms, first, inertia(masses), contact);
+  const Eigen::Matrix3Xd directions = tangents(model.nodes()).tangents;
   if (planar && directions.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
     result.left_plane = true;
     return result;

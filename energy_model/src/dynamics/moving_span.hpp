@@ -54,12 +54,9 @@ class MovingSpan {
                                  bool planar, const Deadline& deadline) const;
   [[nodiscard]] BodyPlace place(std::size_t obstacle, double seconds,
                                 const Eigen::Matrix3d& axes) const;
-  [[nodiscard]] SpanInertia inertia(const std::vector<Piece>& pieces,
-                                    const std::vector<PointMass>& masses) const;
+  [[nodiscard]] SpanInertia inertia(const std::vector<PointMass>& masses) const;
   [[nodiscard]] Eigen::Matrix3d to_axes(double time) const;
   [[nodiscard]] SpanDrive drive(double time, bool planar, bool& left_plane) const;
-  [[nodiscard]] Eigen::Matrix3Xd tangents(const StartingShape& start,
-                                          const Eigen::VectorXd& s) const;
   [[nodiscard]] SpanFrame frame(SpanIntegrator& integrator, SpanDynamics& model,
                                 const SpanInstant& at) const;
   [[nodiscard]] GripPose pose(std::size_t grip, double time) const;

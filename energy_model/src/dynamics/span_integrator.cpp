@@ -121,7 +121,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
     Factor& newton = factor(at, step, renew);
     found.values = guess;
     Eigen::MatrixXd& values = found.values;
-    std::array<SpanPower, stage_count> powers;
+    std::array<EnergyBalance, stage_count> powers;
     Eigen::VectorXd residual(stage_count * (n + m));
     double before = std::numeric_limits<double>::infinity();
     for (int correction = 0; correction < most_corrections; ++correction) {
@@ -151,10 +151,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
         at.state.v += step * (values.topRows(n) * rule_.weights);
         at.time += step;
         for (std::size_t i = 0; i < stage_count; ++i) {
-          const double weight = step * rule_.weights[static_cast<Eigen::Index>(i)];
-          at.work += weight * powers[i].work;
-          at.dissipated += weight * powers[i].dissipated;
-          at.lost += weight * powers[i].lost;
+          add(powers[i], step * rule_.weights[static_cast<Eigen::Index>(i)], at.done);
         }
         found.step = step;
         found.end = at.time;
@@ -259,8 +256,8 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
     if (solved) {
       energy = take_energy(just_before(twice.time), twice);
       depth = span_.depth();
-      const double missed = energy - energy_ + twice.dissipated - at.dissipated + twice.lost -
-                            at.lost - (twice.work - at.work);
+      const double missed = energy - energy_ + twice.done.dissipated - at.done.dissipated +
+                            twice.done.lost - at.done.lost - (twice.done.work - at.done.work);
       const double beyond_rounding = std::abs(missed) - energy_rounding * energy_magnitude_;
       error = std::max(error, beyond_rounding / largest_energy_);
     }
@@ -288,14 +285,13 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
 /// Energy at an instant; the largest one so far is kept.
 double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
   span_.move(drive_(time), at.state.x, at.state.v, Eigen::VectorXd::Zero(span_.size()));
-  const SpanEnergies energies = span_.energies();
+  const EnergyBalance energies = span_.energies();
   largest_energy_ = std::max({largest_energy_, energies.kinetic, energies.bending,
                               energies.obstacles, options_.tolerance});
   energy_magnitude_ =
       std::max(energy_magnitude_, energies.kinetic + energies.bending + std::abs(energies.gravity) +
                                       std::abs(energies.load) + energies.obstacles);
-  return energies.kinetic + energies.bending + energies.gravity + energies.load +
-         energies.obstacles;
+  return energies.total();
 }
 
 void SpanIntegrator::strike(SpanInstant& at) {
@@ -304,17 +300,17 @@ void SpanIntegrator::strike(SpanInstant& at) {
   next_ = 0;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
   span_.move(drive_(just_before(at.time)), at.state.x, at.state.v, zero);
-  const SpanVelocities before = span_.velocities();
+  const Eigen::MatrixX3d before = span_.velocities();
   const double kinetic = span_.energies().kinetic;
   at.state.v += accelerated(just_after(at.time), at.state, &before).head(span_.size());
   span_.move(drive_(just_after(at.time)), at.state.x, at.state.v, zero);
-  at.work += span_.energies().kinetic - kinetic;
+  at.done.work += span_.energies().kinetic - kinetic;
 }
 
 /// Accelerations and multipliers that obey the equations of motion; from velocities before a
 /// strike, what v changes by and the impulses of the grips.
 Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanState& state,
-                                            const SpanVelocities* before) {
+                                            const Eigen::MatrixX3d* before) {
   const Eigen::Index n = span_.size();
   const Eigen::Index m = span_.constraints();
   span_.move(drive_(time), state.x, state.v, Eigen::VectorXd::Zero(n));

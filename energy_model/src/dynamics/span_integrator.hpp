@@ -17,9 +17,7 @@ namespace dlo::energy_model {
 struct SpanInstant {
   double time = 0;
   SpanState state;
-  double work = 0;        ///< of grips, and of obstacles that move
-  double dissipated = 0;  ///< in the material and the air
-  double lost = 0;        ///< to rigid obstacles
+  EnergyBalance done;  ///< what has been dissipated, lost and done, without energies
 };
 
 struct IntegratorOptions {
@@ -85,7 +83,7 @@ class SpanIntegrator {
   void take_mass(const SpanInstant& at);
   [[nodiscard]] double take_energy(double time, const SpanInstant& at);
   [[nodiscard]] Eigen::VectorXd accelerated(double time, const SpanState& state,
-                                            const SpanVelocities* before);
+                                            const Eigen::MatrixX3d* before);
 
   SpanDynamics& span_;
   std::function<SpanDrive(double)> drive_;

@@ -22,13 +22,53 @@ void PointsReach::spread(const Eigen::MatrixXd& by_point,
   by_node.middleRows(first_, own_.rows()).noalias() += own_ * by_point;
 }
 
-NodeReach::NodeReach(const Span& span, std::vector<Piece> pieces, const LegendreTable& table,
-                     const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights)
-    : pieces_(std::move(pieces)),
-      table_(&table),
-      weights_(weights),
-      to_anchor_(
-          (nodes.array() < span.anchor).select(weights, Eigen::VectorXd::Zero(nodes.size()))) {}
+Eigen::VectorXd PointsReach::weights(Eigen::Index point) const {
+  Eigen::VectorXd result = begin_;
+  result.segment(first_, own_.rows()) += own_.col(point);
+  return result;
+}
+
+void tabulate_nodes(const std::vector<Piece>& pieces, const LegendreTable& table,
+                    Eigen::VectorXd& nodes, Eigen::VectorXd& weights) {
+  const Eigen::Index Q = table.nodes.size();
+  const Eigen::Index count = std::ssize(pieces);
+  nodes.resize(count * Q);
+  weights.resize(count * Q);
+  for (Eigen::Index e = 0; e < count; ++e) {
+    const Piece& piece = pieces[static_cast<std::size_t>(e)];
+    nodes.segment(e * Q, Q) = piece.begin + piece.length * table.nodes.array();
+    weights.segment(e * Q, Q) = piece.length * table.weights;
+  }
+}
+
+NodeReach::NodeReach(const Span& span, std::vector<Piece> pieces, const LegendreTable& table)
+    : pieces_(std::move(pieces)), table_(&table), anchor_(span.anchor) {
+  tabulate_nodes(pieces_, table, nodes_, weights_);
+  to_anchor_ = (nodes_.array() < anchor_).select(weights_, Eigen::VectorXd::Zero(nodes_.size()));
+}
+
+std::vector<double> NodeReach::signs(double s) const {
+  std::vector<double> result(pieces_.size(), 0);
+  const auto before = static_cast<std::size_t>(pieces_before(pieces_, s));
+  const auto anchor = static_cast<std::size_t>(pieces_before(pieces_, anchor_));
+  for (std::size_t e = anchor; e < before; ++e) result[e] = 1;
+  for (std::size_t e = before; e < anchor; ++e) result[e] = -1;
+  return result;
+}
+
+/// Weights of the nodes of a piece in the series in Legendre polynomials through what is given at
+/// them, from what the polynomials come to.
+Eigen::VectorXd NodeReach::through(const Eigen::VectorXd& of_terms) const {
+  return table_->weights.cwiseProduct(table_->values * of_terms);
+}
+
+/// Of a point at this share of a piece, seen from its begin, over its length.
+Eigen::VectorXd NodeReach::from_begin(double share) const {
+  Eigen::VectorXd values(table_->nodes.size());
+  Eigen::VectorXd integrals(table_->nodes.size());
+  legendre(share, values, integrals);
+  return through(integrals);
+}
 
 Eigen::VectorXd NodeReach::begin(Eigen::Index piece) const {
   Eigen::VectorXd reach = -to_anchor_;
@@ -59,6 +99,27 @@ PointsReach NodeReach::along(Eigen::Index piece) const {
   return {begin(piece), first, std::move(own)};
 }
 
+PointsReach NodeReach::evenly(Eigen::Index piece, Eigen::Index parts) const {
+  const Eigen::Index Q = table_->nodes.size();
+  Eigen::MatrixXd own(Q, parts + 1);
+  for (Eigen::Index j = 0; j <= parts; ++j) {
+    own.col(j) = pieces_[static_cast<std::size_t>(piece)].length *
+                 from_begin(static_cast<double>(j) / static_cast<double>(parts));
+  }
+  return {begin(piece), piece * Q, std::move(own)};
+}
+
+Eigen::VectorXd NodeReach::at(double s) const {
+  const auto ends_before = [s](const Piece& piece) { return piece.end() <= s; };
+  const Eigen::Index piece = std::min<Eigen::Index>(
+      std::count_if(pieces_.begin(), pieces_.end(), ends_before), std::ssize(pieces_) - 1);
+  const Piece& own = pieces_[static_cast<std::size_t>(piece)];
+  const Eigen::Index Q = table_->nodes.size();
+  Eigen::VectorXd reach = begin(piece);
+  reach.segment(piece * Q, Q) += own.length * from_begin((s - own.begin) / own.length);
+  return reach;
+}
+
 NodeReach::Point NodeReach::at(Eigen::Index piece, double s) const {
   const Eigen::Index Q = table_->nodes.size();
   const Piece& own = pieces_[static_cast<std::size_t>(piece)];
@@ -68,10 +129,6 @@ NodeReach::Point NodeReach::at(Eigen::Index piece, double s) const {
   Eigen::VectorXd slopes(Q);
   legendre(xi, values, integrals);
   legendre_slopes(xi, slopes);
-  // Of the polynomial through what is given at the nodes.
-  const auto through = [&](const Eigen::VectorXd& of_terms) -> Eigen::VectorXd {
-    return table_->weights.cwiseProduct(table_->values * of_terms);
-  };
   Point point;
   point.position = begin(piece);
   point.position.segment(piece * Q, Q) += own.length * through(integrals);
@@ -79,6 +136,44 @@ NodeReach::Point NodeReach::at(Eigen::Index piece, double s) const {
   point.tangent.segment(piece * Q, Q) = through(values);
   point.curvature.segment(piece * Q, Q) = through(slopes) / own.length;
   return point;
+}
+
+SpanReach::SpanReach(const NodeReach& reach) : nodes_(reach.nodes().size()) {
+  const Eigen::Index count = std::ssize(reach.pieces());
+  const Eigen::Index Q = nodes_ / count;
+  weights_.setZero(count * (Q + 2));
+  for (Eigen::Index e = 0; e < count; ++e) {
+    pieces_.push_back(reach.along(e));
+    weights_.segment(e * (Q + 2) + 1, Q) = reach.weights().segment(e * Q, Q);
+  }
+}
+
+Eigen::VectorXd SpanReach::weighed(const std::vector<double>& per_length) const {
+  Eigen::VectorXd result = weights_;
+  for (std::size_t e = 0; e < per_length.size(); ++e) {
+    result.segment(begin(static_cast<Eigen::Index>(e)), piece_points()) *= per_length[e];
+  }
+  return result;
+}
+
+Eigen::MatrixXd SpanReach::sums(const Eigen::MatrixXd& by_node) const {
+  Eigen::MatrixXd result(points(), by_node.cols());
+  for (Eigen::Index e = 0; e < std::ssize(pieces_); ++e) {
+    result.middleRows(begin(e), piece_points()) =
+        pieces_[static_cast<std::size_t>(e)].sums(by_node);
+  }
+  return result;
+}
+
+Eigen::MatrixXd SpanReach::spread(const Eigen::MatrixXd& by_point) const {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(nodes_, by_point.cols());
+  Eigen::MatrixXd of_piece(nodes_, by_point.cols());
+  for (Eigen::Index e = 0; e < std::ssize(pieces_); ++e) {
+    pieces_[static_cast<std::size_t>(e)].spread(by_point.middleRows(begin(e), piece_points()),
+                                                of_piece);
+    result += of_piece;
+  }
+  return result;
 }
 
 }  // namespace dlo::energy_model

@@ -9,14 +9,13 @@
 namespace dlo::energy_model {
 
 void SoftContact::reset(const Span& span, const std::vector<Piece>& pieces,
-                        const LegendreTable& table, const Eigen::VectorXd& nodes,
-                        const Eigen::VectorXd& weights) {
+                        const LegendreTable& table) {
   obstacles_ = span.soft_obstacles;
   if (!any()) return;
-  weights_ = weights;
-  const NodeReach reach(span, pieces, table, nodes, weights);
+  const NodeReach reach(span, pieces, table);
+  weights_ = reach.weights();
   const Eigen::Index Q = table.nodes.size();
-  position_.resize(nodes.size(), nodes.size());
+  position_.resize(weights_.size(), weights_.size());
   for (Eigen::Index e = 0; e < std::ssize(pieces); ++e) {
     position_.middleRows(e * Q, Q) = reach.of_nodes(e).transpose();
   }

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -16,9 +17,10 @@
 #include "problem/rod_law.hpp"
 #include "problem/split.hpp"
 #include "search/known_shape.hpp"
+#include "strain/node_reach.hpp"
+#include "strain/span_energy.hpp"
 #include "vibration/inertia.hpp"
 #include "vibration/span_modes.hpp"
-#include "vibration/span_motion.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -60,10 +62,18 @@ ShapeAxes shape_axes(const Eigen::Matrix3Xd& tangents) {
 /// One span with its modes.
 struct VibratingSpan {
   PlacedSpan placed;
-  std::shared_ptr<SpanEnergy> model;
-  SpanMotion motion;
+  NodeReach reach;
+  std::array<Eigen::MatrixXd, 3> tangents;  ///< by the unknowns, an axis each
   SpanModes modes;
-  ShapeAxes axes;
+  bool flat = false;  ///< its shape
+
+  /// Where a mode (by the tangents, nodes x 3) moves the point at an arc length, along the span's
+  /// axes.
+  [[nodiscard]] Eigen::Vector3d moved(double at, double length,
+                                      const Eigen::MatrixX3d& mode) const {
+    const double s = std::clamp(placed.s_of(at, length), 0.0, placed.span.length);
+    return mode.transpose() * reach.at(s);
+  }
 
   [[nodiscard]] double begin(double length) const {
     return placed.reversed ? placed.start - placed.span.length * length : placed.start;
@@ -125,7 +135,7 @@ class RodVibrations {
   /// Unknowns of the largest span.
   [[nodiscard]] Eigen::Index unknowns() const {
     Eigen::Index most = 0;
-    for (const auto& span : spans_) most = std::max(most, span->model->size());
+    for (const auto& span : spans_) most = std::max(most, span->tangents[0].cols());
     return most;
   }
 
@@ -147,24 +157,44 @@ class RodVibrations {
     model->hessian(found.solution.multipliers, hessian);
     const ShapeAxes axes = shape_axes(model->tangents());
     auto span = std::make_shared<VibratingSpan>(
-        VibratingSpan{placed, model, SpanMotion(*model, axes.rows), {}, axes});
-    const double l = problem_.length;
-    const auto per_length = [&](Eigen::Index e) {
-      const Piece& piece = model->piece(e);
-      const double middle = piece.begin + piece.length / 2;
-      const double at = placed.start + (placed.reversed ? -middle : middle) * l;
-      return l * mass_per_length(problem_, inertia_, at);
-    };
-    std::vector<SpanMass> points;
-    for (const PointMass& point : inertia_.point_masses) {
-      const double s = placed.s_of(point.at, l);
-      // One at a clamp between two spans stands, in whichever it is counted.
-      if (s >= 0 && s <= placed.span.length) points.push_back({s, point.mass});
+        VibratingSpan{placed,
+                      NodeReach(model->span(), pieces_of(model->span()), model->table()),
+                      model->tangent_jacobian(),
+                      {},
+                      axes.flat});
+    // Twist of a round rod moves no point.
+    for (Eigen::MatrixXd& tangents : span->tangents) {
+      const Eigen::Index moving = tangents.cols();
+      tangents.conservativeResize(Eigen::NoChange, model->size());
+      tangents.rightCols(model->size() - moving).setZero();
     }
+    Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(model->size(), model->size());
+    for (const Eigen::MatrixXd& tangents : span->tangents) mass += mass_along(*span, tangents);
+    const Eigen::MatrixXd across = axes.rows(2, 0) * span->tangents[0] +
+                                   axes.rows(2, 1) * span->tangents[1] +
+                                   axes.rows(2, 2) * span->tangents[2];
     // Two of one frequency are told apart together.
-    span->modes =
-        span_modes(hessian, jacobian, span->motion.masses(per_length, points), count_ + 1);
+    span->modes = span_modes(hessian, jacobian, mass, mass_along(*span, across), count_ + 1);
     spans_.push_back(std::move(span));
+  }
+
+  /// Mass matrix of the movement along an axis.
+  /// @param tangents  their component by the unknowns
+  [[nodiscard]] Eigen::MatrixXd mass_along(const VibratingSpan& span,
+                                           const Eigen::MatrixXd& tangents) const {
+    const SpanReach points(span.reach);
+    Eigen::MatrixXd result = mass_matrix(
+        points,
+        points.weighed(masses_per_length(problem_, inertia_, span.placed, span.reach.pieces())),
+        tangents);
+    for (const PointMass& point : inertia_.point_masses) {
+      const double s = span.placed.s_of(point.at, problem_.length);
+      // One at a clamp between two spans stands, in whichever it is counted.
+      if (!(s >= 0 && s <= span.placed.span.length)) continue;
+      const Eigen::VectorXd moved = tangents.transpose() * span.reach.at(s);
+      result += point.mass * moved * moved.transpose();
+    }
+    return result;
   }
 
   [[nodiscard]] VibrationMode mode(const std::shared_ptr<const VibratingSpan>& span,
@@ -173,37 +203,36 @@ class RodVibrations {
     VibrationMode result;
     result.omega_squared = span->modes.lambdas[k] * bending_unit(problem_) / (l * l * l);
     const double outside = span->modes.outside[k];
-    if (span->axes.flat) {
+    if (span->flat) {
       result.plane = outside < rounding_share       ? ModePlane::in
                      : outside > 1 - rounding_share ? ModePlane::out
                                                     : ModePlane::mixed;
     }
     result.begin = span->begin(l);
     result.end = span->end(l);
-    const auto moved = [span, l](double at, const Eigen::VectorXd& unknowns) {
-      const double s = std::clamp(span->placed.s_of(at, l), 0.0, span->placed.span.length);
-      const Eigen::Vector3d own = span->axes.rows.transpose() * (span->motion.at(s) * unknowns);
-      return Eigen::Vector3d(span->placed.frame.transpose() * own);
-    };
+    Eigen::MatrixX3d shape(span->reach.nodes().size(), 3);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      shape.col(static_cast<Eigen::Index>(axis)) = span->tangents[axis] * span->modes.shapes.col(k);
+    }
+    shape *= span->placed.frame;
     // Of the farthest of so many points.
     constexpr int looks = 400;
-    const Eigen::VectorXd shape = span->modes.shapes.col(k);
     Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
     for (int i = 0; i <= looks; ++i) {
       const Eigen::Vector3d here =
-          moved(result.begin + (result.end - result.begin) * i / looks, shape);
+          span->moved(result.begin + (result.end - result.begin) * i / looks, l, shape);
       if (here.norm() > farthest.norm()) farthest = here;
     }
     Eigen::Index axis = 0;
     farthest.cwiseAbs().maxCoeff(&axis);
-    const Eigen::VectorXd scaled = shape / std::copysign(farthest.norm(), farthest[axis]);
-    result.shape = [moved, scaled, l, begin = result.begin,
+    shape /= std::copysign(farthest.norm(), farthest[axis]);
+    result.shape = [span, shape, l, begin = result.begin,
                     end = result.end](std::span<const double> arc_lengths) {
       Eigen::Matrix3Xd points = sized_samples(arc_lengths, l).points;
       for (std::size_t i = 0; i < arc_lengths.size(); ++i) {
         const bool on_span = arc_lengths[i] >= begin && arc_lengths[i] <= end;
         points.col(static_cast<Eigen::Index>(i)) =
-            on_span ? moved(arc_lengths[i], scaled) : Eigen::Vector3d::Zero();
+            on_span ? span->moved(arc_lengths[i], l, shape) : Eigen::Vector3d::Zero();
       }
       return points;
     };
