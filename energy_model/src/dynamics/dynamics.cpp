@@ -8,7 +8,6 @@
 
 #include "base/legendre.hpp"
 #include "base/require.hpp"
-#include "base/sized_samples.hpp"
 #include "dynamics/moving_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
@@ -129,13 +128,10 @@ StartingShape straight_rod(const Eigen::Vector3d& direction) {
   return [unit = direction.normalized().eval()](std::span<const double> arc_lengths) {
     Samples samples;
     samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
-    const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-    samples.points.resize(3, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      samples.points.col(i) = arc_lengths[static_cast<std::size_t>(i)] * unit;
-    }
-    samples.tangents = unit.replicate(1, count);
-    samples.curvature = Eigen::Matrix3Xd::Zero(3, count);
+    const Eigen::Map<const Eigen::RowVectorXd> s(arc_lengths.data(), std::ssize(arc_lengths));
+    samples.points = unit * s;
+    samples.tangents = unit.replicate(1, s.size());
+    samples.curvature = Eigen::Matrix3Xd::Zero(3, s.size());
     return samples;
   };
 }
@@ -160,10 +156,16 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   result.error_estimate = 0;
   std::vector<SpanRun> runs;
   for (std::size_t i = 0; i < spans.size(); ++i) {
-    const MovingSpan span(complete, spans[i], begin);
-    const bool planar = span.may_be_planar() && !options.spatial;
-    SpanRun run = span.run(start, masses[i], times, options, planar, deadline);
-    if (run.left_plane) run = span.run(start, masses[i], times, options, false, deadline);
+    PlacedSpan placed = spans[i];
+    placed.span.planar = placed.span.planar && !options.spatial;
+    const auto run_span = [&] {
+      return MovingSpan(complete, placed, begin).run(start, masses[i], times, options, deadline);
+    };
+    SpanRun run = run_span();
+    if (run.left_plane) {
+      placed.span.planar = false;
+      run = run_span();
+    }
     result.steps += run.steps;
     result.smallest_step = std::min(result.smallest_step, run.smallest_step);
     result.error_estimate += run.error;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/spin.hpp"
 #include "problem/rod_law.hpp"
 #include "search/known_shape.hpp"
 #include "strain/span_shape.hpp"
@@ -20,8 +21,23 @@ constexpr double motion_plane_rounding = 1e-10;
 constexpr double stiffer = 8;
 constexpr int most_repeats = 20;
 
-Moving moved_by(const Eigen::Matrix3d& by, const Moving& moving) {
-  return {by * moving.value, by * moving.rate, by * moving.acceleration};
+/// Whether it moves a planar span out of its plane.
+bool leaves_plane(const SpanDrive& drive) {
+  const auto out = [](const Eigen::Vector3d& along) {
+    return std::abs(along.z()) > motion_plane_rounding * std::max(1.0, along.norm());
+  };
+  const auto leans = [](const Eigen::Vector3d& about) {
+    return about.head<2>().norm() > motion_plane_rounding * std::max(1.0, about.norm());
+  };
+  const auto carries_out = [&](const BodyPlace& place) {
+    return out(place.velocity) || leans(place.spin);
+  };
+  return leans(drive.spin) || leans(drive.end_spin) || out(drive.anchor.value) ||
+         out(drive.anchor.rate) || out(drive.anchor.acceleration) ||
+         std::any_of(drive.holds.begin(), drive.holds.end(),
+                     [&](const Moving& hold) { return out(hold.rate); }) ||
+         std::any_of(drive.soft_obstacles.begin(), drive.soft_obstacles.end(), carries_out) ||
+         std::any_of(drive.rigid_obstacles.begin(), drive.rigid_obstacles.end(), carries_out);
 }
 
 }  // namespace
@@ -69,14 +85,14 @@ BodyPlace MovingSpan::place(std::size_t obstacle, double seconds,
   return result;
 }
 
-SpanDrive MovingSpan::drive(double time, bool planar, bool& left_plane) const {
+SpanDrive MovingSpan::drive(double time) const {
   const double seconds = time * time_;
   const GripPose anchor = pose(placed_.anchor_grip, seconds);
   const Eigen::Matrix3d axes = to_axes(seconds);
   const auto position_of = [&](const GripPose& pose) {
-    return moved_by(
-        axes, {(pose.position - placed_.anchor_position) / length_,
-               pose.velocity * (time_ / length_), pose.acceleration * (time_ * time_ / length_)});
+    return Moving{axes * (pose.position - placed_.anchor_position) / length_,
+                  axes * pose.velocity * (time_ / length_),
+                  axes * pose.acceleration * (time_ * time_ / length_)};
   };
   SpanDrive result;
   result.turn = axes * placed_.frame.transpose();
@@ -88,44 +104,26 @@ SpanDrive MovingSpan::drive(double time, bool planar, bool& left_plane) const {
   for (const std::size_t grip : placed_.hold_grips) {
     result.holds.push_back(position_of(pose(grip, seconds)));
   }
-  const auto out = [&](const Eigen::Vector3d& along) {
-    return std::abs(along.z()) > motion_plane_rounding * std::max(1.0, along.norm());
-  };
-  const auto leans = [&](const Eigen::Vector3d& about) {
-    return about.head<2>().norm() > motion_plane_rounding * std::max(1.0, about.norm());
-  };
   if (placed_.span.end_direction) {
     const GripPose end = pose(placed_.hold_grips.back(), seconds);
     const Eigen::Matrix3d turn = axes * end.turn.toRotationMatrix() * placed_.frame.transpose();
     result.end_spin = axes * end.angular_velocity * time_;
     const Eigen::Vector3d spin_rate = axes * end.angular_acceleration * (time_ * time_);
-    const Eigen::Vector3d direction = *placed_.span.end_direction;
-    const Eigen::Vector3d first = planar ? Eigen::Vector3d::UnitZ().cross(direction).eval()
-                                         : direction.unitOrthogonal().eval();
-    std::vector<Eigen::Vector3d> across = {first};
-    if (!planar) across.emplace_back(direction.cross(first));
-    for (const Eigen::Vector3d& e : across) {
-      Moving moving;
-      moving.value = turn * e;
-      moving.rate = result.end_spin.cross(moving.value);
-      moving.acceleration = spin_rate.cross(moving.value) + result.end_spin.cross(moving.rate);
-      result.across_end.push_back(moving);
+    const Eigen::Matrix3d held =
+        frame_along(*placed_.span.end_direction, Span::d1(*placed_.span.end_direction));
+    // d1 of a planar span is across its plane.
+    for (Eigen::Index i = placed_.span.planar ? 1 : 0; i < 2; ++i) {
+      const Eigen::Vector3d across = turn * held.col(i);
+      const Eigen::Vector3d rate = result.end_spin.cross(across);
+      result.across_end.push_back(
+          {across, rate, spin_rate.cross(across) + result.end_spin.cross(rate)});
     }
-    left_plane = left_plane || leans(result.end_spin);
   }
-  left_plane = left_plane || leans(result.spin) || out(result.anchor.value) ||
-               out(result.anchor.rate) || out(result.anchor.acceleration);
-  for (const Moving& hold : result.holds) left_plane = left_plane || out(hold.rate);
   for (const Span::SoftObstacle& obstacle : placed_.span.soft_obstacles) {
     result.soft_obstacles.push_back(place(obstacle.index, seconds, axes));
   }
   for (const Span::Obstacle& obstacle : placed_.span.rigid_obstacles) {
     result.rigid_obstacles.push_back(place(obstacle.index, seconds, axes));
-  }
-  for (const std::vector<BodyPlace>* places : {&result.soft_obstacles, &result.rigid_obstacles}) {
-    for (const BodyPlace& moved : *places) {
-      left_plane = left_plane || out(moved.velocity) || leans(moved.spin);
-    }
   }
   return result;
 }
@@ -141,6 +139,16 @@ SpanInertia MovingSpan::inertia(const std::vector<PointMass>& masses) const {
   result.material_damping = rod_.material_damping / time_;
   result.drag = rod_.air_drag * time_ * length_ / mass_;
   return result;
+}
+
+/// By growing time, own units. Grips that share one strike the span once.
+std::vector<double> MovingSpan::own_breaks() const {
+  std::vector<double> breaks = rod_.breaks;
+  for (double& time : breaks) time /= time_;
+  std::sort(breaks.begin(), breaks.end());
+  breaks.erase(std::unique(breaks.begin(), breaks.end(), SpanIntegrator::same_instant),
+               breaks.end());
+  return breaks;
 }
 
 SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
@@ -179,7 +187,7 @@ SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
 }
 
 SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>& masses,
-                        std::span<const double> times, const DynamicsOptions& options, bool planar,
+                        std::span<const double> times, const DynamicsOptions& options,
                         const Deadline& deadline) const {
   ContactLaw contact;
   contact.depth = options.contact_depth;
@@ -191,7 +199,7 @@ SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>
   SpanRun result;
   long steps = 0;
   for (int repeat = 0; repeat < most_repeats; ++repeat) {
-    result = run_with(contact, start, masses, times, options, planar, deadline);
+    result = run_with(contact, start, masses, times, options, deadline);
     steps += result.steps;
     result.steps = steps;
     if (result.status == SolveStatus::converged || result.left_plane) break;
@@ -203,31 +211,33 @@ SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>
 
 SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& start,
                              const std::vector<PointMass>& masses, std::span<const double> times,
-                             const DynamicsOptions& options, bool planar,
-                             const Deadline& deadline) const {
+                             const DynamicsOptions& options, const Deadline& deadline) const {
   SpanRun result;
   Equilibrium at_rest;
   at_rest.sample = start;
   const TangentField tangents = field_of(at_rest, placed_, length_);
-  Span span = placed_.span;
-  span.planar = planar;
   const Eigen::Vector3d first = tangents(Eigen::VectorXd::Zero(1)).tangents.col(0);
-  SpanDynamics model(std::move(span), options.terms, first, inertia(masses), contact);
+  SpanDynamics model(placed_.span, options.terms, first, inertia(masses), contact);
   const Eigen::Matrix3Xd directions = tangents(model.nodes()).tangents;
-  if (planar && directions.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
+  if (placed_.span.planar && directions.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
     result.left_plane = true;
     return result;
   }
   bool left_plane = false;
   SpanIntegrator integrator(
-      model, [&](double time) { return drive(time, planar, left_plane); },
+      model,
+      [&](double time) {
+        SpanDrive driven = drive(time);
+        left_plane = left_plane || (placed_.span.planar && leaves_plane(driven));
+        return driven;
+      },
       {options.tolerance, options.step / time_, rod_.material_damping > 0 || model.may_touch()});
   SpanInstant at;
   at.time = begin_ / time_;
   at.state.x = model.fit(directions);
   at.state.v = Eigen::VectorXd::Zero(model.size());
   result.message = integrator.project(at);
-  const auto stopped = [&] { return !result.message.empty() || (planar && left_plane); };
+  const auto stopped = [&] { return !result.message.empty() || left_plane; };
   if (!stopped()) {
     result.frames.push_back(frame(integrator, model, at));
     if (model.depth() > contact.depth) {
@@ -235,26 +245,23 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
     }
   }
   const auto too_deep = [&] { return integrator.depth() > contact.depth; };
-  const auto expired = [&] { return deadline.passed() || (planar && left_plane) || too_deep(); };
-  std::vector<double> breaks = rod_.breaks;
-  std::sort(breaks.begin(), breaks.end());
-  // Grips that share a break strike the span once.
-  const auto same = [&](double a, double b) {
-    return SpanIntegrator::same_instant(a / time_, b / time_);
-  };
-  breaks.erase(std::unique(breaks.begin(), breaks.end(), same), breaks.end());
-  auto next_break = std::upper_bound(breaks.begin(), breaks.end(), begin_);
-  for (const double time : times) {
-    const auto is_due = [&](double at_break) { return at_break <= time || same(at_break, time); };
+  const auto expired = [&] { return deadline.passed() || left_plane || too_deep(); };
+  const std::vector<double> breaks = own_breaks();
+  auto next_break = std::upper_bound(breaks.begin(), breaks.end(), at.time);
+  for (const double seconds : times) {
+    const double time = seconds / time_;
+    const auto is_due = [&](double at_break) {
+      return at_break <= time || SpanIntegrator::same_instant(at_break, time);
+    };
     for (; next_break != breaks.end() && is_due(*next_break) && !stopped(); ++next_break) {
-      result.message = integrator.advance(at, *next_break / time_, expired);
+      result.message = integrator.advance(at, *next_break, expired);
       if (!stopped()) integrator.strike(at);
     }
-    if (!stopped()) result.message = integrator.advance(at, time / time_, expired);
+    if (!stopped()) result.message = integrator.advance(at, time, expired);
     if (stopped()) break;
     result.frames.push_back(frame(integrator, model, at));
   }
-  result.left_plane = planar && left_plane;
+  result.left_plane = left_plane;
   result.steps = integrator.steps();
   result.smallest_step = integrator.smallest_step() * time_;
   result.error = integrator.error();

@@ -40,26 +40,26 @@ class MovingSpan {
   /// @param begin  [s]
   MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin);
 
-  [[nodiscard]] bool may_be_planar() const { return placed_.span.planar; }
   /// @param masses  point masses that no other span carries
   [[nodiscard]] SpanRun run(const StartingShape& start, const std::vector<PointMass>& masses,
                             std::span<const double> times, const DynamicsOptions& options,
-                            bool planar, const Deadline& deadline) const;
+                            const Deadline& deadline) const;
 
  private:
   /// With one law of contact; ends where it lets the rod in too deep.
   [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const StartingShape& start,
                                  const std::vector<PointMass>& masses,
                                  std::span<const double> times, const DynamicsOptions& options,
-                                 bool planar, const Deadline& deadline) const;
+                                 const Deadline& deadline) const;
   [[nodiscard]] BodyPlace place(std::size_t obstacle, double seconds,
                                 const Eigen::Matrix3d& axes) const;
   [[nodiscard]] SpanInertia inertia(const std::vector<PointMass>& masses) const;
   [[nodiscard]] Eigen::Matrix3d to_axes(double time) const;
-  [[nodiscard]] SpanDrive drive(double time, bool planar, bool& left_plane) const;
+  [[nodiscard]] SpanDrive drive(double time) const;
   [[nodiscard]] SpanFrame frame(SpanIntegrator& integrator, SpanDynamics& model,
                                 const SpanInstant& at) const;
   [[nodiscard]] GripPose pose(std::size_t grip, double time) const;
+  [[nodiscard]] std::vector<double> own_breaks() const;
 
   const MovingRod& rod_;
   PlacedSpan placed_;

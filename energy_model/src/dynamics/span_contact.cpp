@@ -27,9 +27,10 @@ ContactGrid::ContactGrid(const std::vector<Span::Obstacle>& obstacles, const Nod
                                 [](const Span::Obstacle& o) { return o.body.is_half_space(); });
   const double spacing = flat ? widest : std::clamp(2 * law.depth, closest, widest);
   for (const Piece& piece : reach.pieces()) {
-    const double parts = std::max(2.0, std::ceil(piece.length / spacing));
-    spacings_.push_back(piece.length / parts);
-    pieces_.push_back(reach.evenly(std::ssize(pieces_), static_cast<Eigen::Index>(parts)));
+    const auto parts = static_cast<Eigen::Index>(std::max(2.0, std::ceil(piece.length / spacing)));
+    spacings_.push_back(piece.length / static_cast<double>(parts));
+    pieces_.push_back(
+        reach.points(std::ssize(pieces_), Eigen::VectorXd::LinSpaced(parts + 1, 0, 1)));
   }
 }
 

@@ -131,10 +131,10 @@ Eigen::VectorXd SpanDynamics::residual(const Eigen::Ref<const Eigen::VectorXd>& 
          pulled({&tangents, couples(multipliers)});
 }
 
-/// Of the internal force, which keeps its direction as the tangents turn: nearly all of the
-/// stiffness of a thread under tension T, where bending has a share of EI / (T l^2).
-void SpanDynamics::add_geometric_stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                                           Eigen::MatrixXd& stiffness) {
+/// Of bending, of touches, and of the internal force, which keeps its direction as the tangents
+/// turn: nearly all of the stiffness of a thread under tension T, where bending has a share of
+/// EI / (T l^2).
+Eigen::MatrixXd SpanDynamics::stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
   const Eigen::MatrixX3d tangents = all_by_tangents(multipliers);
   std::vector<Eigen::Matrix3d> curvatures(nodes_.pieces().size(), Eigen::Matrix3d::Zero());
   Eigen::Index row = axes_ * std::ssize(held_);
@@ -143,7 +143,19 @@ void SpanDynamics::add_geometric_stiffness(const Eigen::Ref<const Eigen::VectorX
   }
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(2 * frames_.columns(), 2 * frames_.columns());
   frames_.add_hessian({&tangents, couples(multipliers)}, curvatures, state_, hessian);
-  stiffness += hessian.topLeftCorner(size(), size());
+  Eigen::MatrixXd result = hessian.topLeftCorner(size(), size());
+  result.diagonal() += elastic_;
+  add_touches(&Touch::by_depth, result);
+  return result;
+}
+
+Eigen::MatrixXd SpanDynamics::damping(const Eigen::MatrixXd& mass) {
+  // Drag acts as masses do, where those are the same all along.
+  const double rod = points_.weighed(inertia_.per_length).sum();
+  Eigen::MatrixXd result = (rod > 0 ? inertia_.drag * span_.length / rod : 0) * mass;
+  result.diagonal() += inertia_.material_damping * elastic_;
+  add_touches(&Touch::by_rate, result);
+  return result;
 }
 
 Eigen::VectorXd SpanDynamics::impulse(const Eigen::MatrixX3d& before) {

@@ -125,9 +125,7 @@ class SpanDynamics {
       const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
   [[nodiscard]] std::vector<Eigen::Vector3d> couples(
       const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
-  void add_geometric_stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers,
-                               Eigen::MatrixXd& stiffness);
-  [[nodiscard]] Eigen::VectorXd depth_gradient(const Touch& touch);
+  void add_touches(double Touch::*derivative, Eigen::MatrixXd& matrix);
   [[nodiscard]] Eigen::Vector3d multiplier_force(
       const Eigen::Ref<const Eigen::VectorXd>& multipliers, std::size_t hold) const;
 

@@ -39,15 +39,15 @@ SpanIntegrator::SpanIntegrator(SpanDynamics& span, std::function<SpanDrive(doubl
     : span_(span),
       drive_(std::move(drive)),
       options_(options),
-      rule_(options.damped ? radau_rule(stage_count) : gauss_rule(stage_count)) {}
+      rule_(options.damped ? radau_rule(stage_count) : gauss_rule(stage_count)),
+      newton_enough_(std::clamp(newton_share * options_.tolerance, newton_least, newton_most)) {}
 
 bool SpanIntegrator::same_instant(double a, double b) {
   return std::abs(a - b) <= 2 * instant(std::max(std::abs(a), std::abs(b)));
 }
 
-void SpanIntegrator::take_mass(const SpanInstant& at) {
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
-  span_.move(drive_(at.time), at.state.x, at.state.v, zero);
+void SpanIntegrator::take_mass(double time, const SpanState& state) {
+  span_.move(drive_(time), state.x, state.v, Eigen::VectorXd::Zero(span_.size()));
   mass_ = span_.mass_matrix();
   jacobian_ = span_.jacobian();
 }
@@ -167,7 +167,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
 
 std::string SpanIntegrator::project(SpanInstant& at) {
   if (span_.constraints() == 0) return {};
-  if (mass_.size() == 0) take_mass(at);
+  if (mass_.size() == 0) take_mass(at.time, at.state);
   const Eigen::LLT<Eigen::MatrixXd> mass(mass_);
   const SpanDrive drive = drive_(just_before(at.time));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
@@ -198,11 +198,9 @@ std::string SpanIntegrator::project(SpanInstant& at) {
 
 std::string SpanIntegrator::advance(SpanInstant& at, double until,
                                     const std::function<bool()>& expired) {
-  const double order = 2 * stage_count + 1;
-  const double enough = std::clamp(newton_share * options_.tolerance, newton_least, newton_most);
+  const bool fixed = options_.step > 0;
   while (at.time < until) {
     if (expired()) return "time limit";
-    const double left = until - at.time;
     // A frame and a break that differ by the rounding of their times: a step between them would ask
     // the motion for what is before the break.
     if (same_instant(at.time, until)) {
@@ -210,79 +208,73 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
       last_.end = until;
       break;
     }
-    if (!std::isfinite(energy_) && options_.step == 0) {
-      energy_ = take_energy(just_after(at.time), at);
-    }
-    if (options_.step > 0) {
-      const double count = std::ceil(left / options_.step * (1 - 1e-9));
-      const double step = left / count;
-      smallest_step_ = std::min(smallest_step_, step);
-      Stages next;
-      if (!try_step(at, step, predicted(at, step, last_), enough, next)) {
-        return "the equations of a step are not solved";
-      }
-      last_ = std::move(next);
-      if (count <= 1) at.time = until;
-      last_.end = at.time;
-      if (span_.may_touch()) {
-        (void)take_energy(just_before(at.time), at);
-        depth_ = std::max(depth_, span_.depth());
-      }
-      continue;
-    }
-    if (!(next_ > 0)) next_ = 1e-3;
-    const double step = left / std::ceil(left / next_ * (1 - 1e-9));
-    if (step < least_step && step < left) {
+    const double left = until - at.time;
+    const double count = std::ceil(left / (fixed ? options_.step : next_) * (1 - 1e-9));
+    const double step = left / count;
+    if (!fixed && step < least_step && count > 1) {
       return "steps have become too small; more damping or fewer terms makes them longer";
     }
-    // One step against two of half the size, which say where it begins and by much less than its
-    // own error what it comes to.
-    SpanInstant once = at;
-    SpanInstant twice = at;
-    Stages first, second, whole;
-    const bool solved =
-        try_step(twice, step / 2, predicted(at, step / 2, last_), enough, first) &&
-        try_step(twice, step / 2, predicted(twice, step / 2, first), enough, second) &&
-        try_step(once, step, joined(first, second), 1e-2 * options_.tolerance, whole);
-    double apart = 0;
-    double error = std::numeric_limits<double>::infinity();
-    if (solved) {
-      const Eigen::VectorXd change = once.state.x - twice.state.x;
-      apart = std::sqrt(std::max(0.0, change.dot(mass_ * change)));
-      error = apart;
-    }
-    double energy = 0;
-    double depth = 0;
-    if (solved) {
-      energy = take_energy(just_before(twice.time), twice);
-      depth = span_.depth();
-      const double missed = energy - energy_ + twice.done.dissipated - at.done.dissipated +
-                            twice.done.lost - at.done.lost - (twice.done.work - at.done.work);
-      const double beyond_rounding = std::abs(missed) - energy_rounding * energy_magnitude_;
-      error = std::max(error, beyond_rounding / largest_energy_);
-    }
-    const double better =
-        solved ? 0.9 * std::pow(options_.tolerance / std::max(error, 1e-300), 1 / order) : 0.3;
-    const double grown = std::clamp(better, 0.25, 2.0);
-    if (!(error <= options_.tolerance)) {
-      next_ = step * std::min(0.7, grown);
+    if (!(fixed ? take_step(at, step) : take_two_halves(at, step))) {
+      if (fixed) return "the equations of a step are not solved";
       continue;
     }
-    energy_ = energy;
-    depth_ = std::max(depth_, depth);
-    error_ += apart;
-    smallest_step_ = std::min(smallest_step_, step / 2);
-    const bool reached = step >= left * (1 - 1e-9);
-    at = std::move(twice);
-    if (reached) at.time = until;
-    last_ = std::move(second);
+    if (count <= 1) at.time = until;
     last_.end = at.time;
-    if (grown > 1.4 || grown < 0.9) next_ = step * grown;
   }
   return {};
 }
 
-/// Energy at an instant; the largest one so far is kept.
+bool SpanIntegrator::take_step(SpanInstant& at, double step) {
+  smallest_step_ = std::min(smallest_step_, step);
+  Stages next;
+  if (!try_step(at, step, predicted(at, step, last_), newton_enough_, next)) return false;
+  last_ = std::move(next);
+  if (span_.may_touch()) {
+    (void)take_energy(just_before(at.time), at);
+    depth_ = std::max(depth_, span_.depth());
+  }
+  return true;
+}
+
+/// One step against two of half the size, which say where it begins and by much less than its own
+/// error what it comes to. @return whether they differ by less than the tolerance
+bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
+  if (!std::isfinite(energy_)) energy_ = take_energy(just_after(at.time), at);
+  SpanInstant once = at;
+  SpanInstant twice = at;
+  Stages first, second, whole;
+  const bool solved =
+      try_step(twice, step / 2, predicted(at, step / 2, last_), newton_enough_, first) &&
+      try_step(twice, step / 2, predicted(twice, step / 2, first), newton_enough_, second) &&
+      try_step(once, step, joined(first, second), 1e-2 * options_.tolerance, whole);
+  if (!solved) {
+    next_ = 0.3 * step;
+    return false;
+  }
+  const Eigen::VectorXd change = once.state.x - twice.state.x;
+  const double apart = std::sqrt(std::max(0.0, change.dot(mass_ * change)));
+  const double energy = take_energy(just_before(twice.time), twice);
+  const double missed = std::abs(energy - energy_) - energy_rounding * energy_magnitude_;
+  const double error = std::max(apart, missed / largest_energy_);
+  constexpr double order = 2 * stage_count + 1;
+  const double better = std::pow(options_.tolerance / std::max(error, 1e-300), 1 / order);
+  const double grown = std::clamp(0.9 * better, 0.25, 2.0);
+  if (!(error <= options_.tolerance)) {
+    next_ = step * std::min(0.7, grown);
+    return false;
+  }
+  energy_ = energy;
+  depth_ = std::max(depth_, span_.depth());
+  error_ += apart;
+  smallest_step_ = std::min(smallest_step_, step / 2);
+  at = std::move(twice);
+  last_ = std::move(second);
+  if (grown > 1.4 || grown < 0.9) next_ = step * grown;
+  return true;
+}
+
+/// Energy at an instant with what has gone so far, which stays the same; the largest energy is
+/// kept.
 double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
   span_.move(drive_(time), at.state.x, at.state.v, Eigen::VectorXd::Zero(span_.size()));
   const EnergyBalance energies = span_.energies();
@@ -291,13 +283,13 @@ double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
   energy_magnitude_ =
       std::max(energy_magnitude_, energies.kinetic + energies.bending + std::abs(energies.gravity) +
                                       std::abs(energies.load) + energies.obstacles);
-  return energies.total();
+  return energies.total() + at.done.dissipated + at.done.lost - at.done.work;
 }
 
 void SpanIntegrator::strike(SpanInstant& at) {
   last_ = {};
   energy_ = std::numeric_limits<double>::quiet_NaN();
-  next_ = 0;
+  next_ = first_step;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
   span_.move(drive_(just_before(at.time)), at.state.x, at.state.v, zero);
   const Eigen::MatrixX3d before = span_.velocities();
@@ -313,9 +305,7 @@ Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanState& state,
                                             const Eigen::MatrixX3d* before) {
   const Eigen::Index n = span_.size();
   const Eigen::Index m = span_.constraints();
-  span_.move(drive_(time), state.x, state.v, Eigen::VectorXd::Zero(n));
-  mass_ = span_.mass_matrix();
-  jacobian_ = span_.jacobian();
+  take_mass(time, state);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
   matrix.topLeftCorner(n, n) = mass_;
   matrix.topRightCorner(n, m) = -jacobian_.transpose();

@@ -61,6 +61,8 @@ class SpanIntegrator {
   [[nodiscard]] double depth() const { return depth_; }
 
  private:
+  /// Where nothing is known yet.
+  static constexpr double first_step = 1e-3;
   /// Newton's matrix for one size of step.
   struct Factor {
     double step = 0;
@@ -79,8 +81,10 @@ class SpanIntegrator {
   [[nodiscard]] Eigen::MatrixXd joined(const Stages& first, const Stages& second) const;
   [[nodiscard]] bool try_step(SpanInstant& at, double step, const Eigen::MatrixXd& guess,
                               double enough, Stages& found);
+  [[nodiscard]] bool take_step(SpanInstant& at, double step);
+  [[nodiscard]] bool take_two_halves(SpanInstant& at, double step);
   [[nodiscard]] Factor& factor(const SpanInstant& at, double step, bool renew);
-  void take_mass(const SpanInstant& at);
+  void take_mass(double time, const SpanState& state);
   [[nodiscard]] double take_energy(double time, const SpanInstant& at);
   [[nodiscard]] Eigen::VectorXd accelerated(double time, const SpanState& state,
                                             const Eigen::MatrixX3d* before);
@@ -93,7 +97,8 @@ class SpanIntegrator {
   Eigen::MatrixXd jacobian_;
   std::vector<Factor> factors_;
   Stages last_;
-  double next_ = 0;
+  double newton_enough_;      // what a correction of a step may still move
+  double next_ = first_step;  // its size
   double energy_ = std::numeric_limits<double>::quiet_NaN();  // where the last step ended
   double largest_energy_ = 0;
   double energy_magnitude_ = 0;  // largest sum of the magnitudes of all energies

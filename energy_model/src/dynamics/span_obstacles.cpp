@@ -47,32 +47,14 @@ Eigen::MatrixX3d SpanDynamics::at_tangents(const Touch& touch, const Eigen::Vect
   return grid_.points(touch.piece).weights(touch.point) * force.transpose();
 }
 
-/// By the unknowns.
-Eigen::VectorXd SpanDynamics::depth_gradient(const Touch& touch) {
-  const Eigen::MatrixX3d tangents = at_tangents(touch, -touch.normal);
-  return pulled({&tangents, {}});
-}
-
-Eigen::MatrixXd SpanDynamics::stiffness(const Eigen::Ref<const Eigen::VectorXd>& multipliers) {
-  Eigen::MatrixXd result = elastic_.asDiagonal();
-  add_geometric_stiffness(multipliers, result);
+/// What the pushes change by, by the unknowns.
+/// @param derivative  Touch::by_depth or Touch::by_rate
+void SpanDynamics::add_touches(double Touch::*derivative, Eigen::MatrixXd& matrix) {
   for (const Touch& touch : touches_) {
-    const Eigen::VectorXd gradient = depth_gradient(touch);
-    result += touch.by_depth * gradient * gradient.transpose();
+    const Eigen::MatrixX3d tangents = at_tangents(touch, -touch.normal);
+    const Eigen::VectorXd depth_gradient = pulled({&tangents, {}});
+    matrix += touch.*derivative * depth_gradient * depth_gradient.transpose();
   }
-  return result;
-}
-
-Eigen::MatrixXd SpanDynamics::damping(const Eigen::MatrixXd& mass) {
-  // Drag acts as masses do, where those are the same all along.
-  const double rod = points_.weighed(inertia_.per_length).sum();
-  Eigen::MatrixXd result = (rod > 0 ? inertia_.drag * span_.length / rod : 0) * mass;
-  result.diagonal() += inertia_.material_damping * elastic_;
-  for (const Touch& touch : touches_) {
-    const Eigen::VectorXd gradient = depth_gradient(touch);
-    result += touch.by_rate * gradient * gradient.transpose();
-  }
-  return result;
 }
 
 std::vector<std::pair<std::size_t, Eigen::Vector3d>> SpanDynamics::obstacle_forces() const {

@@ -56,20 +56,6 @@ std::vector<double> NodeReach::signs(double s) const {
   return result;
 }
 
-/// Weights of the nodes of a piece in the series in Legendre polynomials through what is given at
-/// them, from what the polynomials come to.
-Eigen::VectorXd NodeReach::through(const Eigen::VectorXd& of_terms) const {
-  return table_->weights.cwiseProduct(table_->values * of_terms);
-}
-
-/// Of a point at this share of a piece, seen from its begin, over its length.
-Eigen::VectorXd NodeReach::from_begin(double share) const {
-  Eigen::VectorXd values(table_->nodes.size());
-  Eigen::VectorXd integrals(table_->nodes.size());
-  legendre(share, values, integrals);
-  return through(integrals);
-}
-
 Eigen::VectorXd NodeReach::begin(Eigen::Index piece) const {
   Eigen::VectorXd reach = -to_anchor_;
   const Eigen::Index before = piece * table_->nodes.size();
@@ -77,16 +63,23 @@ Eigen::VectorXd NodeReach::begin(Eigen::Index piece) const {
   return reach;
 }
 
-Eigen::MatrixXd NodeReach::of_nodes(Eigen::Index piece) const {
-  const Eigen::Index Q = table_->nodes.size();
-  Eigen::MatrixXd reach = begin(piece).replicate(1, Q);
-  const double length = pieces_[static_cast<std::size_t>(piece)].length;
-  reach.middleRows(piece * Q, Q) += length * table_->integration.transpose();
-  return reach;
-}
-
 PointsReach NodeReach::at_begin(Eigen::Index piece) const {
   return {begin(piece), 0, Eigen::MatrixXd::Zero(0, 1)};
+}
+
+/// Weights of a piece's nodes in the series in Legendre polynomials through what is given at them.
+/// @param of_terms  what the polynomials come to
+Eigen::MatrixXd NodeReach::through(const Eigen::MatrixXd& of_terms) const {
+  return table_->weights.asDiagonal() * (table_->values * of_terms);
+}
+
+PointsReach NodeReach::points(Eigen::Index piece, const Eigen::VectorXd& shares) const {
+  const Eigen::Index Q = table_->nodes.size();
+  Eigen::VectorXd values(Q);
+  Eigen::MatrixXd integrals(Q, shares.size());
+  for (Eigen::Index j = 0; j < shares.size(); ++j) legendre(shares[j], values, integrals.col(j));
+  const double length = pieces_[static_cast<std::size_t>(piece)].length;
+  return {begin(piece), piece * Q, length * through(integrals)};
 }
 
 PointsReach NodeReach::along(Eigen::Index piece) const {
@@ -99,42 +92,27 @@ PointsReach NodeReach::along(Eigen::Index piece) const {
   return {begin(piece), first, std::move(own)};
 }
 
-PointsReach NodeReach::evenly(Eigen::Index piece, Eigen::Index parts) const {
-  const Eigen::Index Q = table_->nodes.size();
-  Eigen::MatrixXd own(Q, parts + 1);
-  for (Eigen::Index j = 0; j <= parts; ++j) {
-    own.col(j) = pieces_[static_cast<std::size_t>(piece)].length *
-                 from_begin(static_cast<double>(j) / static_cast<double>(parts));
-  }
-  return {begin(piece), piece * Q, std::move(own)};
-}
-
 Eigen::VectorXd NodeReach::at(double s) const {
   const auto ends_before = [s](const Piece& piece) { return piece.end() <= s; };
   const Eigen::Index piece = std::min<Eigen::Index>(
       std::count_if(pieces_.begin(), pieces_.end(), ends_before), std::ssize(pieces_) - 1);
-  const Piece& own = pieces_[static_cast<std::size_t>(piece)];
-  const Eigen::Index Q = table_->nodes.size();
-  Eigen::VectorXd reach = begin(piece);
-  reach.segment(piece * Q, Q) += own.length * from_begin((s - own.begin) / own.length);
-  return reach;
+  return at(piece, s).position;
 }
 
 NodeReach::Point NodeReach::at(Eigen::Index piece, double s) const {
   const Eigen::Index Q = table_->nodes.size();
   const Piece& own = pieces_[static_cast<std::size_t>(piece)];
   const double xi = (s - own.begin) / own.length;
-  Eigen::VectorXd values(Q);
-  Eigen::VectorXd integrals(Q);
-  Eigen::VectorXd slopes(Q);
-  legendre(xi, values, integrals);
-  legendre_slopes(xi, slopes);
+  Eigen::MatrixXd of_terms(Q, 3);
+  legendre(xi, of_terms.col(1), of_terms.col(0));
+  legendre_slopes(xi, of_terms.col(2));
+  const Eigen::MatrixXd weights = through(of_terms);
   Point point;
   point.position = begin(piece);
-  point.position.segment(piece * Q, Q) += own.length * through(integrals);
+  point.position.segment(piece * Q, Q) += own.length * weights.col(0);
   point.tangent = point.curvature = Eigen::VectorXd::Zero(weights_.size());
-  point.tangent.segment(piece * Q, Q) = through(values);
-  point.curvature.segment(piece * Q, Q) = through(slopes) / own.length;
+  point.tangent.segment(piece * Q, Q) = weights.col(1);
+  point.curvature.segment(piece * Q, Q) = weights.col(2) / own.length;
   return point;
 }
 

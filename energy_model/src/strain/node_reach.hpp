@@ -63,14 +63,12 @@ class NodeReach {
 
   /// Of where a piece begins; of the number of pieces: of the span's end.
   [[nodiscard]] Eigen::VectorXd begin(Eigen::Index piece) const;
-  /// Of a piece's nodes, nodes x nodes of the piece.
-  [[nodiscard]] Eigen::MatrixXd of_nodes(Eigen::Index piece) const;
+  /// Of points of a piece. @param shares  of its length, where they are
+  [[nodiscard]] PointsReach points(Eigen::Index piece, const Eigen::VectorXd& shares) const;
   /// Of where a piece begins, as the only point.
   [[nodiscard]] PointsReach at_begin(Eigen::Index piece) const;
   /// Of where a piece begins, of its nodes, and of where it ends.
   [[nodiscard]] PointsReach along(Eigen::Index piece) const;
-  /// Of `parts` + 1 points of a piece, evenly from where it begins to where it ends.
-  [[nodiscard]] PointsReach evenly(Eigen::Index piece, Eigen::Index parts) const;
   /// Of a point of the span.
   [[nodiscard]] Eigen::VectorXd at(double s) const;
 
@@ -82,8 +80,7 @@ class NodeReach {
   [[nodiscard]] Point at(Eigen::Index piece, double s) const;
 
  private:
-  [[nodiscard]] Eigen::VectorXd through(const Eigen::VectorXd& of_terms) const;
-  [[nodiscard]] Eigen::VectorXd from_begin(double share) const;
+  [[nodiscard]] Eigen::MatrixXd through(const Eigen::MatrixXd& of_terms) const;
 
   std::vector<Piece> pieces_;
   const LegendreTable* table_ = nullptr;
