@@ -90,6 +90,28 @@ std::vector<std::vector<PointMass>> masses_by_span(const MovingRod& rod,
   return result;
 }
 
+/// What the spans have together at one of the times that they came to.
+MovingFrame frame_of_all(const MovingRod& rod, const std::vector<SpanRun>& runs, std::size_t k) {
+  MovingFrame frame;
+  frame.grips.resize(rod.problem.grips.size());
+  frame.obstacles.assign(rod.problem.obstacles.size(), Eigen::Vector3d::Zero());
+  auto shapes = std::make_shared<std::vector<PlacedShape>>();
+  for (const SpanRun& run : runs) {
+    const SpanFrame& of = run.frames[k];
+    add(of.energy, 1, frame.energy);
+    for (const auto& [grip, reaction] : of.grips) {
+      frame.grips[grip].force += reaction.force;
+      frame.grips[grip].torque += reaction.torque;
+    }
+    for (const auto& [obstacle, force] : of.obstacles) frame.obstacles[obstacle] += force;
+    shapes->push_back(of.shape);
+  }
+  frame.sample = [shapes, l = rod.problem.length](std::span<const double> arc_lengths) {
+    return energy_model::sample(*shapes, l, arc_lengths);
+  };
+  return frame;
+}
+
 /// Spans count gravity and loads from their own anchors.
 void move_zero(const MovingRod& rod, const std::vector<PlacedSpan>& spans, EnergyBalance& energy) {
   const double l = rod.problem.length;
@@ -182,26 +204,10 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   EnergyBalance first;
   double largest_miss = 0;
   for (std::size_t k = 0; k < reached; ++k) {
-    MovingFrame frame;
+    MovingFrame frame = frame_of_all(complete, runs, k);
     frame.time = k == 0 ? begin : times[k - 1];
-    frame.grips.resize(complete.problem.grips.size());
-    frame.obstacles.assign(complete.problem.obstacles.size(), Eigen::Vector3d::Zero());
-    auto shapes = std::make_shared<std::vector<PlacedShape>>();
-    for (const SpanRun& run : runs) {
-      const SpanFrame& of = run.frames[k];
-      add(of.energy, 1, frame.energy);
-      for (const auto& [grip, reaction] : of.grips) {
-        frame.grips[grip].force += reaction.force;
-        frame.grips[grip].torque += reaction.torque;
-      }
-      for (const auto& [obstacle, force] : of.obstacles) frame.obstacles[obstacle] += force;
-      shapes->push_back(of.shape);
-    }
     move_zero(complete, spans, frame.energy);
     add_loads_on_clamps(complete, begin, frame);
-    frame.sample = [shapes, l = complete.problem.length](std::span<const double> arc_lengths) {
-      return energy_model::sample(*shapes, l, arc_lengths);
-    };
     if (k == 0) first = frame.energy;
     const EnergyBalance& energy = frame.energy;
     largest_miss = std::max(largest_miss, std::abs(energy.total() - first.total() +

@@ -32,12 +32,11 @@ bool leaves_plane(const SpanDrive& drive) {
   const auto carries_out = [&](const BodyPlace& place) {
     return out(place.velocity) || leans(place.spin);
   };
-  return leans(drive.spin) || leans(drive.end_spin) || out(drive.anchor.value) ||
-         out(drive.anchor.rate) || out(drive.anchor.acceleration) ||
-         std::any_of(drive.holds.begin(), drive.holds.end(),
-                     [&](const Moving& hold) { return out(hold.rate); }) ||
-         std::any_of(drive.soft_obstacles.begin(), drive.soft_obstacles.end(), carries_out) ||
-         std::any_of(drive.rigid_obstacles.begin(), drive.rigid_obstacles.end(), carries_out);
+  return leans(drive.spin) || leans(drive.end_spin) || out(drive.grips.front().value) ||
+         out(drive.grips.front().acceleration) ||
+         std::any_of(drive.grips.begin(), drive.grips.end(),
+                     [&](const Moving& grip) { return out(grip.rate); }) ||
+         std::any_of(drive.obstacles.begin(), drive.obstacles.end(), carries_out);
 }
 
 }  // namespace
@@ -45,11 +44,13 @@ bool leaves_plane(const SpanDrive& drive) {
 MovingSpan::MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin)
     : rod_(rod),
       placed_(std::move(placed)),
+      grips_(placed_.hold_grips),
       begin_(begin),
       length_(rod.problem.length),
       force_(bending_unit(rod.problem) / (length_ * length_)),
       mass_(total_mass(rod.problem, rod.inertia)) {
   time_ = std::sqrt(mass_ * length_ / force_);
+  grips_.insert(grips_.begin(), placed_.anchor_grip);
   for (const GripMotion& motion : rod_.motions) {
     first_turns_.push_back(motion(begin).turn.normalized());
   }
@@ -87,25 +88,23 @@ BodyPlace MovingSpan::place(std::size_t obstacle, double seconds,
 
 SpanDrive MovingSpan::drive(double time) const {
   const double seconds = time * time_;
-  const GripPose anchor = pose(placed_.anchor_grip, seconds);
   const Eigen::Matrix3d axes = to_axes(seconds);
-  const auto position_of = [&](const GripPose& pose) {
-    return Moving{axes * (pose.position - placed_.anchor_position) / length_,
-                  axes * pose.velocity * (time_ / length_),
-                  axes * pose.acceleration * (time_ * time_ / length_)};
-  };
   SpanDrive result;
   result.turn = axes * placed_.frame.transpose();
-  result.anchor = position_of(anchor);
-  if (placed_.span.start_direction) {
-    result.spin = axes * anchor.angular_velocity * time_;
-    result.spin_rate = axes * anchor.angular_acceleration * (time_ * time_);
+  std::vector<GripPose> poses;
+  for (const std::size_t grip : grips_) {
+    poses.push_back(pose(grip, seconds));
+    const GripPose& now = poses.back();
+    result.grips.push_back({axes * (now.position - placed_.anchor_position) / length_,
+                            axes * now.velocity * (time_ / length_),
+                            axes * now.acceleration * (time_ * time_ / length_)});
   }
-  for (const std::size_t grip : placed_.hold_grips) {
-    result.holds.push_back(position_of(pose(grip, seconds)));
+  if (placed_.span.start_direction) {
+    result.spin = axes * poses.front().angular_velocity * time_;
+    result.spin_rate = axes * poses.front().angular_acceleration * (time_ * time_);
   }
   if (placed_.span.end_direction) {
-    const GripPose end = pose(placed_.hold_grips.back(), seconds);
+    const GripPose& end = poses.back();
     const Eigen::Matrix3d turn = axes * end.turn.toRotationMatrix() * placed_.frame.transpose();
     result.end_spin = axes * end.angular_velocity * time_;
     const Eigen::Vector3d spin_rate = axes * end.angular_acceleration * (time_ * time_);
@@ -119,11 +118,8 @@ SpanDrive MovingSpan::drive(double time) const {
           {across, rate, spin_rate.cross(across) + result.end_spin.cross(rate)});
     }
   }
-  for (const Span::SoftObstacle& obstacle : placed_.span.soft_obstacles) {
-    result.soft_obstacles.push_back(place(obstacle.index, seconds, axes));
-  }
-  for (const Span::Obstacle& obstacle : placed_.span.rigid_obstacles) {
-    result.rigid_obstacles.push_back(place(obstacle.index, seconds, axes));
+  for (std::size_t i = 0; i < rod_.problem.obstacles.size(); ++i) {
+    result.obstacles.push_back(place(i, seconds, axes));
   }
   return result;
 }
@@ -155,28 +151,22 @@ SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
                             const SpanInstant& at) const {
   SpanFrame result;
   const Eigen::VectorXd multipliers = integrator.settle(at);
-  const SpanReactions reactions = model.reactions(multipliers);
+  const std::vector<Reaction> reactions = model.reactions(multipliers);
   const double seconds = at.time * time_;
   const Eigen::Matrix3d to_space = to_axes(seconds).transpose();
   const double unit = force_ * length_;
   add(model.energies(), unit, result.energy);
   add(at.done, unit, result.energy);
-  const auto add_grip = [&](std::size_t grip, const Eigen::Vector3d& force,
-                            const Eigen::Vector3d& torque) {
-    result.grips.emplace_back(grip, Reaction{to_space * force * force_, to_space * torque * unit});
-  };
-  add_grip(placed_.anchor_grip, reactions.anchor_force, reactions.anchor_torque);
-  for (std::size_t k = 0; k < placed_.hold_grips.size(); ++k) {
-    const bool last = placed_.span.end_direction && k + 1 == placed_.hold_grips.size();
-    add_grip(placed_.hold_grips[k], reactions.hold_forces[k],
-             last ? reactions.end_torque : Eigen::Vector3d::Zero().eval());
+  for (std::size_t k = 0; k < grips_.size(); ++k) {
+    result.grips.emplace_back(grips_[k], Reaction{to_space * reactions[k].force * force_,
+                                                  to_space * reactions[k].torque * unit});
   }
   for (const auto& [obstacle, force] : model.obstacle_forces()) {
     result.obstacles.emplace_back(obstacle, to_space * force * force_);
   }
   const double end =
       placed_.reversed ? placed_.start : placed_.start + placed_.span.length * length_;
-  result.shape = {model.shape(at.state.x),
+  result.shape = {model.shape(at.x),
                   placed_.reversed,
                   placed_.start,
                   end,
@@ -209,6 +199,14 @@ SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>
   return result;
 }
 
+/// What an integrator has come to.
+void MovingSpan::take(const SpanIntegrator& integrator, SpanRun& run) const {
+  run.steps = integrator.steps();
+  run.smallest_step = integrator.smallest_step() * time_;
+  run.error = integrator.error();
+  run.depth = integrator.depth() * length_;
+}
+
 SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& start,
                              const std::vector<PointMass>& masses, std::span<const double> times,
                              const DynamicsOptions& options, const Deadline& deadline) const {
@@ -234,15 +232,13 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
       {options.tolerance, options.step / time_, rod_.material_damping > 0 || model.may_touch()});
   SpanInstant at;
   at.time = begin_ / time_;
-  at.state.x = model.fit(directions);
-  at.state.v = Eigen::VectorXd::Zero(model.size());
+  at.x = model.fit(directions);
+  at.v = Eigen::VectorXd::Zero(model.size());
   result.message = integrator.project(at);
   const auto stopped = [&] { return !result.message.empty() || left_plane; };
   if (!stopped()) {
     result.frames.push_back(frame(integrator, model, at));
-    if (model.depth() > contact.depth) {
-      result.message = "the rod begins within a rigid obstacle";
-    }
+    if (model.depth() > contact.depth) result.message = "the rod begins within a rigid obstacle";
   }
   const auto too_deep = [&] { return integrator.depth() > contact.depth; };
   const auto expired = [&] { return deadline.passed() || left_plane || too_deep(); };
@@ -262,10 +258,7 @@ SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& sta
     result.frames.push_back(frame(integrator, model, at));
   }
   result.left_plane = left_plane;
-  result.steps = integrator.steps();
-  result.smallest_step = integrator.smallest_step() * time_;
-  result.error = integrator.error();
-  result.depth = integrator.depth() * length_;
+  take(integrator, result);
   if (too_deep() && !deadline.passed()) {
     result.message = "a rigid obstacle is struck too hard for the depth that contact may have";
   }

@@ -60,9 +60,11 @@ class MovingSpan {
                                 const SpanInstant& at) const;
   [[nodiscard]] GripPose pose(std::size_t grip, double time) const;
   [[nodiscard]] std::vector<double> own_breaks() const;
+  void take(const SpanIntegrator& integrator, SpanRun& run) const;
 
   const MovingRod& rod_;
   PlacedSpan placed_;
+  std::vector<std::size_t> grips_;  // that hold it, the anchor first
   double begin_;
   double length_, force_, time_, mass_;  // units
   std::vector<Eigen::Quaterniond> first_turns_;

@@ -27,33 +27,35 @@ EnergyBalance SpanDynamics::energies() const {
   return result;
 }
 
-SpanReactions SpanDynamics::reactions(const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
-  SpanReactions result;
-  const Eigen::Vector3d anchor = drive_.anchor.value;
+std::vector<Reaction> SpanDynamics::reactions(
+    const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
+  std::vector<Reaction> result(drive_.grips.size());
+  Reaction& anchor = result.front();
   const auto add = [&](const Eigen::Vector3d& at, const Eigen::Vector3d& needed) {
-    result.anchor_force += needed;
-    result.anchor_torque += (at - anchor).cross(needed);
+    anchor.force += needed;
+    anchor.torque += (at - drive_.grips.front().value).cross(needed);
   };
   for (Eigen::Index point = 0; point < points_.points(); ++point) {
     add(position_.row(point).transpose(), forces_.row(point).transpose());
   }
   for (const Touch& touch : touches_) add(touch.at, -touch.force());
   for (std::size_t k = 0; k < held_.size(); ++k) {
-    result.hold_forces.push_back(multiplier_force(multipliers, k));
-    add(position_.row(held_[k]).transpose(), -result.hold_forces.back());
+    result[k + 1].force = multiplier_force(multipliers, k);
+    add(position_.row(held_[k]).transpose(), -result[k + 1].force);
   }
-  result.end_torque = -couples(multipliers).back();
-  result.anchor_torque -= result.end_torque;
+  // Of a clamp at the end, which is the last grip.
+  const Eigen::Vector3d end_torque = -couples(multipliers).back();
+  result.back().torque += end_torque;
+  anchor.torque -= end_torque;
   return result;
 }
 
-EnergyBalance SpanDynamics::power(const SpanReactions& reactions) const {
+EnergyBalance SpanDynamics::power(const std::vector<Reaction>& reactions) const {
   EnergyBalance result;
-  result.work = reactions.anchor_force.dot(drive_.anchor.rate) +
-                reactions.anchor_torque.dot(drive_.spin) +
-                reactions.end_torque.dot(drive_.end_spin);
-  for (std::size_t k = 0; k < reactions.hold_forces.size(); ++k) {
-    result.work += reactions.hold_forces[k].dot(drive_.holds[k].rate);
+  result.work =
+      reactions.front().torque.dot(drive_.spin) + reactions.back().torque.dot(drive_.end_spin);
+  for (std::size_t k = 0; k < reactions.size(); ++k) {
+    result.work += reactions[k].force.dot(drive_.grips[k].rate);
   }
   for (const std::vector<Touch>* touches : {&soft_touches_, &touches_}) {
     for (const Touch& touch : *touches) {

@@ -21,7 +21,7 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
       axes_(span_.planar ? 2 : 3) {
   // In the plane d1 is across it, so that the first strain bends the rod within it.
   const Eigen::Vector3d tangent = span_.start_direction.value_or(first).normalized();
-  start_frame_ = frame_along(tangent, span_.planar ? Eigen::Vector3d::UnitZ() : Span::d1(tangent));
+  start_frame_ = frame_along(tangent, Span::d1(tangent));
   const bool free_start = !span_.start_direction;
   frames_.reset(nodes_.pieces(), terms_, start_frame_, free_start, {});
   frames_.resize(state_);
@@ -77,9 +77,10 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   tangents << t_, t_rate_,
       cross_rows(spins.accelerations, t_) + cross_rows(spins.velocities, t_rate_);
   const Eigen::MatrixXd moved = points_.sums(tangents);
-  position_ = moved.leftCols<3>().rowwise() + drive.anchor.value.transpose();
-  velocity_ = moved.middleCols<3>(3).rowwise() + drive.anchor.rate.transpose();
-  acceleration_ = moved.rightCols<3>().rowwise() + drive.anchor.acceleration.transpose();
+  const Moving& anchor = drive.grips.front();
+  position_ = moved.leftCols<3>().rowwise() + anchor.value.transpose();
+  velocity_ = moved.middleCols<3>(3).rowwise() + anchor.rate.transpose();
+  acceleration_ = moved.rightCols<3>().rowwise() + anchor.acceleration.transpose();
   forces_ = masses_.asDiagonal() * acceleration_;
   forces_ += (inertia_.drag * points_.weights()).asDiagonal() * velocity_;
   forces_ -= (weights_ + loads_) * drive.turn.transpose();
@@ -168,9 +169,9 @@ Eigen::MatrixX3d SpanDynamics::misses() const {
   Eigen::Index row = 0;
   for (std::size_t k = 0; k < held_.size(); ++k) {
     Eigen::Matrix3d miss;
-    miss.col(0) = position_.row(held_[k]).transpose() - drive_.holds[k].value;
-    miss.col(1) = velocity_.row(held_[k]).transpose() - drive_.holds[k].rate;
-    miss.col(2) = acceleration_.row(held_[k]).transpose() - drive_.holds[k].acceleration;
+    miss.col(0) = position_.row(held_[k]).transpose() - drive_.grips[k + 1].value;
+    miss.col(1) = velocity_.row(held_[k]).transpose() - drive_.grips[k + 1].rate;
+    miss.col(2) = acceleration_.row(held_[k]).transpose() - drive_.grips[k + 1].acceleration;
     result.middleRows(row, axes_) = miss.topRows(axes_);
     row += axes_;
   }

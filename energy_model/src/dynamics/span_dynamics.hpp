@@ -23,15 +23,14 @@ struct Moving {
 /// clamp at the start (the span's frame where there is none).
 struct SpanDrive {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();   ///< from the span's frame to these axes
-  Moving anchor;                                        ///< its value from where it was at first
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();       ///< angular velocity of the axes
   Eigen::Vector3d spin_rate = Eigen::Vector3d::Zero();  ///< and its derivative
-  std::vector<Moving> holds;                            ///< of Span::holds, value from the anchor
+  /// Positions, seen from where the anchor was at first: of the anchor and of Span::holds.
+  std::vector<Moving> grips;
   /// Directions across that of the clamp at the end, which the tangent there has none of.
   std::vector<Moving> across_end;
   Eigen::Vector3d end_spin = Eigen::Vector3d::Zero();  ///< of that clamp
-  std::vector<BodyPlace> soft_obstacles;               ///< of Span::soft_obstacles
-  std::vector<BodyPlace> rigid_obstacles;              ///< of Span::rigid_obstacles
+  std::vector<BodyPlace> obstacles;                    ///< of the problem's
 };
 
 /// What a span has besides its shape; own units.
@@ -42,21 +41,8 @@ struct SpanInertia {
   double drag = 0;                 ///< per length
 };
 
-/// Unknowns, their rates and second derivatives.
-struct SpanState {
-  Eigen::VectorXd x, v;
-};
-
 /// Adds so many times each entry.
 void add(const EnergyBalance& of, double times, EnergyBalance& to);
-
-/// Forces and torques of the grips on a span along SpanDrive's axes, torques about each.
-struct SpanReactions {
-  Eigen::Vector3d anchor_force = Eigen::Vector3d::Zero();
-  Eigen::Vector3d anchor_torque = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> hold_forces;
-  Eigen::Vector3d end_torque = Eigen::Vector3d::Zero();
-};
 
 /// Equations of motion of a span in its strains x,
 ///     int rho A r''.dr + c r'.dr ds + x.dx + tau x'.dx = int w.dr ds + loads + grips + obstacles,
@@ -101,10 +87,11 @@ class SpanDynamics {
 
   /// What is dissipated, lost and done aside.
   [[nodiscard]] EnergyBalance energies() const;
-  /// With these multipliers, for which residual() has been asked last.
-  [[nodiscard]] SpanReactions reactions(const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
+  /// Of SpanDrive::grips on the span, with these multipliers; torques about each.
+  [[nodiscard]] std::vector<Reaction> reactions(
+      const Eigen::Ref<const Eigen::VectorXd>& multipliers) const;
   /// What is dissipated, lost and done, by time.
-  [[nodiscard]] EnergyBalance power(const SpanReactions& reactions) const;
+  [[nodiscard]] EnergyBalance power(const std::vector<Reaction>& reactions) const;
   /// On the span, at each point within one, by the obstacle's index in the problem.
   [[nodiscard]] std::vector<std::pair<std::size_t, Eigen::Vector3d>> obstacle_forces() const;
   [[nodiscard]] bool may_touch() const { return !grid_.empty(); }

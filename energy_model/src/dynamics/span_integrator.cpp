@@ -46,8 +46,8 @@ bool SpanIntegrator::same_instant(double a, double b) {
   return std::abs(a - b) <= 2 * instant(std::max(std::abs(a), std::abs(b)));
 }
 
-void SpanIntegrator::take_mass(double time, const SpanState& state) {
-  span_.move(drive_(time), state.x, state.v, Eigen::VectorXd::Zero(span_.size()));
+void SpanIntegrator::take_mass(double time, const SpanInstant& at) {
+  span_.move(drive_(time), at.x, at.v, Eigen::VectorXd::Zero(span_.size()));
   mass_ = span_.mass_matrix();
   jacobian_ = span_.jacobian();
 }
@@ -61,7 +61,7 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
   if (found == factors_.end()) {
     constexpr std::size_t most_factors = 6;
     if (factors_.size() == most_factors) factors_.erase(factors_.begin());
-    factors_.push_back({step, -1, {}});
+    factors_.push_back({step, {}});
     found = factors_.end() - 1;
   } else if (!renew) {
     return *found;
@@ -82,7 +82,6 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
     matrix.block(i * (n + m) + n, i * (n + m), m, n) = jacobian_;
   }
   found->lu.compute(matrix);
-  found->made = steps_;
   return *found;
 }
 
@@ -126,8 +125,8 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
     double before = std::numeric_limits<double>::infinity();
     for (int correction = 0; correction < most_corrections; ++correction) {
       const Eigen::MatrixXd v =
-          (step * values.topRows(n) * rule_.inner.transpose()).colwise() + at.state.v;
-      const Eigen::MatrixXd x = (step * v * rule_.inner.transpose()).colwise() + at.state.x;
+          (step * values.topRows(n) * rule_.inner.transpose()).colwise() + at.v;
+      const Eigen::MatrixXd x = (step * v * rule_.inner.transpose()).colwise() + at.x;
       for (Eigen::Index i = 0; i < stage_count; ++i) {
         const auto stage = static_cast<std::size_t>(i);
         span_.move(drives[stage], x.col(i), v.col(i), values.col(i).head(n));
@@ -146,9 +145,8 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
       values -= change;
       const bool stalled = size >= before && size < 1e3 * enough;
       if (size < enough || stalled) {
-        at.state.x +=
-            step * at.state.v + step * step * (values.topRows(n) * rule_.last.transpose());
-        at.state.v += step * (values.topRows(n) * rule_.weights);
+        at.x += step * at.v + step * step * (values.topRows(n) * rule_.last.transpose());
+        at.v += step * (values.topRows(n) * rule_.weights);
         at.time += step;
         for (std::size_t i = 0; i < stage_count; ++i) {
           add(powers[i], step * rule_.weights[static_cast<Eigen::Index>(i)], at.done);
@@ -167,7 +165,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
 
 std::string SpanIntegrator::project(SpanInstant& at) {
   if (span_.constraints() == 0) return {};
-  if (mass_.size() == 0) take_mass(at.time, at.state);
+  if (mass_.size() == 0) take_mass(at.time, at);
   const Eigen::LLT<Eigen::MatrixXd> mass(mass_);
   const SpanDrive drive = drive_(just_before(at.time));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
@@ -175,7 +173,7 @@ std::string SpanIntegrator::project(SpanInstant& at) {
   constexpr double held = 1e-13;
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most_projections; ++i) {
-    span_.move(drive, at.state.x, at.state.v, zero);
+    span_.move(drive, at.x, at.v, zero);
     const Eigen::MatrixX3d misses = span_.misses();
     const Eigen::MatrixXd jacobian = span_.jacobian();
     const Eigen::MatrixXd yields = mass.solve(jacobian.transpose());
@@ -183,14 +181,14 @@ std::string SpanIntegrator::project(SpanInstant& at) {
     const Eigen::LDLT<Eigen::MatrixXd> solver(held_by);
     const double missed = misses.col(0).norm();
     if (missed < held || (missed >= before && missed < 1e3 * held)) {
-      at.state.v -= yields * solver.solve(misses.col(1));
+      at.v -= yields * solver.solve(misses.col(1));
       return {};
     }
     Eigen::VectorXd step = yields * solver.solve(misses.col(0));
     if (!step.allFinite()) break;
     constexpr double longest = 0.5;
     if (step.norm() > longest) step *= longest / step.norm();
-    at.state.x -= step;
+    at.x -= step;
     before = missed;
   }
   return "the grips cannot be reached by the rod, or hold it straight between them";
@@ -251,7 +249,7 @@ bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
     next_ = 0.3 * step;
     return false;
   }
-  const Eigen::VectorXd change = once.state.x - twice.state.x;
+  const Eigen::VectorXd change = once.x - twice.x;
   const double apart = std::sqrt(std::max(0.0, change.dot(mass_ * change)));
   const double energy = take_energy(just_before(twice.time), twice);
   const double missed = std::abs(energy - energy_) - energy_rounding * energy_magnitude_;
@@ -276,7 +274,7 @@ bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
 /// Energy at an instant with what has gone so far, which stays the same; the largest energy is
 /// kept.
 double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
-  span_.move(drive_(time), at.state.x, at.state.v, Eigen::VectorXd::Zero(span_.size()));
+  span_.move(drive_(time), at.x, at.v, Eigen::VectorXd::Zero(span_.size()));
   const EnergyBalance energies = span_.energies();
   largest_energy_ = std::max({largest_energy_, energies.kinetic, energies.bending,
                               energies.obstacles, options_.tolerance});
@@ -291,21 +289,21 @@ void SpanIntegrator::strike(SpanInstant& at) {
   energy_ = std::numeric_limits<double>::quiet_NaN();
   next_ = first_step;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
-  span_.move(drive_(just_before(at.time)), at.state.x, at.state.v, zero);
+  span_.move(drive_(just_before(at.time)), at.x, at.v, zero);
   const Eigen::MatrixX3d before = span_.velocities();
   const double kinetic = span_.energies().kinetic;
-  at.state.v += accelerated(just_after(at.time), at.state, &before).head(span_.size());
-  span_.move(drive_(just_after(at.time)), at.state.x, at.state.v, zero);
+  at.v += accelerated(just_after(at.time), at, &before).head(span_.size());
+  span_.move(drive_(just_after(at.time)), at.x, at.v, zero);
   at.done.work += span_.energies().kinetic - kinetic;
 }
 
 /// Accelerations and multipliers that obey the equations of motion; from velocities before a
 /// strike, what v changes by and the impulses of the grips.
-Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanState& state,
+Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanInstant& at,
                                             const Eigen::MatrixX3d* before) {
   const Eigen::Index n = span_.size();
   const Eigen::Index m = span_.constraints();
-  take_mass(time, state);
+  take_mass(time, at);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
   matrix.topLeftCorner(n, n) = mass_;
   matrix.topRightCorner(n, m) = -jacobian_.transpose();
@@ -319,8 +317,8 @@ Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanState& state,
 
 Eigen::VectorXd SpanIntegrator::settle(const SpanInstant& at) {
   const double time = just_after(at.time);
-  const Eigen::VectorXd found = accelerated(time, at.state, nullptr);
-  span_.move(drive_(time), at.state.x, at.state.v, found.head(span_.size()));
+  const Eigen::VectorXd found = accelerated(time, at, nullptr);
+  span_.move(drive_(time), at.x, at.v, found.head(span_.size()));
   return found.tail(span_.constraints());
 }
 

@@ -16,8 +16,8 @@ namespace dlo::energy_model {
 /// A span at one time, with what has been done to it since the begin. Own units.
 struct SpanInstant {
   double time = 0;
-  SpanState state;
-  EnergyBalance done;  ///< what has been dissipated, lost and done, without energies
+  Eigen::VectorXd x, v;  ///< unknowns and their rates
+  EnergyBalance done;    ///< what has been dissipated, lost and done, without energies
 };
 
 struct IntegratorOptions {
@@ -66,7 +66,6 @@ class SpanIntegrator {
   /// Newton's matrix for one size of step.
   struct Factor {
     double step = 0;
-    long made = -1;  // when
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
   };
   /// Accelerations and multipliers at the rule's points of a step.
@@ -84,9 +83,9 @@ class SpanIntegrator {
   [[nodiscard]] bool take_step(SpanInstant& at, double step);
   [[nodiscard]] bool take_two_halves(SpanInstant& at, double step);
   [[nodiscard]] Factor& factor(const SpanInstant& at, double step, bool renew);
-  void take_mass(double time, const SpanState& state);
+  void take_mass(double time, const SpanInstant& at);
   [[nodiscard]] double take_energy(double time, const SpanInstant& at);
-  [[nodiscard]] Eigen::VectorXd accelerated(double time, const SpanState& state,
+  [[nodiscard]] Eigen::VectorXd accelerated(double time, const SpanInstant& at,
                                             const Eigen::MatrixX3d* before);
 
   SpanDynamics& span_;

@@ -9,9 +9,8 @@ namespace dlo::energy_model {
 
 void SpanDynamics::collect_soft_touches() {
   soft_touches_.clear();
-  for (std::size_t i = 0; i < span_.soft_obstacles.size(); ++i) {
-    const Span::SoftObstacle& obstacle = span_.soft_obstacles[i];
-    const BodyPlace& place = drive_.soft_obstacles[i];
+  for (const Span::SoftObstacle& obstacle : span_.soft_obstacles) {
+    const BodyPlace& place = drive_.obstacles[obstacle.index];
     for (Eigen::Index point = 0; point < points_.points(); ++point) {
       const double stiffness = obstacle.stiffness * points_.weights()[point];
       const Eigen::Vector3d at = position_.row(point).transpose();
@@ -30,8 +29,8 @@ void SpanDynamics::collect_touches() {
   if (grid_.empty()) return;
   for (std::size_t e = 0; e < nodes_.pieces().size(); ++e) {
     const Eigen::Vector3d begin = position_.row(points_.begin(static_cast<Eigen::Index>(e)));
-    for (std::size_t i = 0; i < span_.rigid_obstacles.size(); ++i) {
-      grid_.find(e, span_.rigid_obstacles[i], drive_.rigid_obstacles[i], begin, t_, touches_);
+    for (const Span::Obstacle& obstacle : span_.rigid_obstacles) {
+      grid_.find(e, obstacle, drive_.obstacles[obstacle.index], begin, t_, touches_);
     }
   }
   for (Touch& touch : touches_) {

@@ -1,6 +1,7 @@
 // How cross-sections turn as the strains change.
 
 #include "base/spin.hpp"
+#include "linear/dense_products.hpp"
 #include "strain/rod_frames.hpp"
 
 namespace dlo::energy_model {
@@ -29,14 +30,16 @@ FrameSpins RodFrames::spins(const Eigen::Ref<const Eigen::VectorXd>& v,
   for (const Panel& panel : panels_) {
     const LegendreTable& table = *panel.table;
     const Eigen::MatrixX3d changed = strains_in_space(panel, v, state);
-    Eigen::MatrixX3d velocities = panel.length * (table.integration * changed);
-    velocities.rowwise() += result.end_velocity.transpose();
+    Eigen::MatrixX3d velocities(panel.nodes(), 3);
+    multiply(table.integration, changed, velocities);
+    velocities = (panel.length * velocities).rowwise() + result.end_velocity.transpose();
     const Eigen::MatrixX3d changed_on =
         strains_in_space(panel, a, state) + cross_rows(velocities, changed);
     if (panel.node >= turn_nodes_) {
       auto accelerations = result.accelerations.middleRows(panel.node - turn_nodes_, panel.nodes());
-      accelerations = panel.length * (table.integration * changed_on);
-      accelerations.rowwise() += result.end_acceleration.transpose();
+      multiply(table.integration, changed_on, accelerations);
+      accelerations =
+          (panel.length * accelerations).rowwise() + result.end_acceleration.transpose();
       result.velocities.middleRows(panel.node - turn_nodes_, panel.nodes()) = velocities;
     }
     result.end_velocity += panel.length * (changed.transpose() * table.weights);

@@ -4,12 +4,6 @@
 
 namespace dlo::energy_model {
 
-Eigen::Matrix3Xd PointsReach::positions(const Eigen::MatrixX3d& tangents) const {
-  Eigen::Matrix3Xd result = tangents.middleRows(first_, own_.rows()).transpose() * own_;
-  result.colwise() += Eigen::Vector3d(tangents.transpose() * begin_);
-  return result;
-}
-
 Eigen::MatrixXd PointsReach::sums(const Eigen::MatrixXd& by_node) const {
   Eigen::MatrixXd result = own_.transpose() * by_node.middleRows(first_, own_.rows());
   result.rowwise() += Eigen::RowVectorXd(begin_.transpose() * by_node);
@@ -96,7 +90,8 @@ Eigen::VectorXd NodeReach::at(double s) const {
   const auto ends_before = [s](const Piece& piece) { return piece.end() <= s; };
   const Eigen::Index piece = std::min<Eigen::Index>(
       std::count_if(pieces_.begin(), pieces_.end(), ends_before), std::ssize(pieces_) - 1);
-  return at(piece, s).position;
+  const Piece& own = pieces_[static_cast<std::size_t>(piece)];
+  return points(piece, Eigen::VectorXd::Constant(1, (s - own.begin) / own.length)).weights(0);
 }
 
 NodeReach::Point NodeReach::at(Eigen::Index piece, double s) const {

@@ -31,7 +31,9 @@ class PointsReach {
     return tangents.middleRows(first_, own_.rows()).transpose() * own_.col(point);
   }
   /// 3 x points. @param tangents  nodes x 3
-  [[nodiscard]] Eigen::Matrix3Xd positions(const Eigen::MatrixX3d& tangents) const;
+  [[nodiscard]] Eigen::Matrix3Xd positions(const Eigen::MatrixX3d& tangents) const {
+    return sums(tangents).transpose();
+  }
   /// Reach^T A, points x columns of A. @param by_node  nodes x columns
   [[nodiscard]] Eigen::MatrixXd sums(const Eigen::MatrixXd& by_node) const;
   /// Reach B, nodes x columns of B. @param by_point  points x columns

@@ -47,12 +47,6 @@ double nearest_turn(double angle, double target) {
 
 }  // namespace
 
-void SpanEnergy::tabulate_nodes() {
-  table_ = span_.planar ? &legendre_table(terms_) : &director_table(terms_);
-  columns_ = free_start_ + std::ssize(pieces_) * terms_;
-  energy_model::tabulate_nodes(pieces_, *table_, s_, weights_);
-}
-
 void SpanEnergy::tabulate_angles() {
   const Eigen::Index Q = table_->nodes.size();
   const Eigen::Index K = terms_;
@@ -127,7 +121,11 @@ void SpanEnergy::reset(const Span& span, int terms) {
   axes_ = span.planar ? 2 : 3;
   free_start_ = span.start_direction ? 0 : 1;
   pieces_ = std::move(pieces);
-  if (!has_angles) tabulate_nodes();
+  if (!has_angles) {
+    table_ = span.planar ? &legendre_table(terms) : &director_table(terms);
+    columns_ = free_start_ + std::ssize(pieces_) * terms;
+    tabulate_nodes(pieces_, *table_, s_, weights_);
+  }
   tabulate_forces();
   if (span.twist) twist_root_ = std::sqrt(span.twist->stiffness / span.length);
   contacts_.reset(span, pieces_, terms, *table_);
