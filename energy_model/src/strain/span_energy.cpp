@@ -662,10 +662,12 @@ Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
   const Eigen::Index bends = std::min<Eigen::Index>(fields(), 2) * columns_;
   energies.bending = stored.head(bends).squaredNorm() / 2;
   energies.twisting = stored.tail(stored.size() - bends).squaredNorm() / 2;
-  const NodeReach reach(span_, pieces_, *table_);
-  for (const Span::Load& load : span_.loads) {
-    const Eigen::VectorXd at = reach.begin(pieces_before(pieces_, load.at));
-    energies.load -= load.force.dot(t_.transpose() * at);
+  if (!span_.loads.empty()) {
+    const NodeReach reach(span_, pieces_, *table_);
+    for (const Span::Load& load : span_.loads) {
+      const Eigen::VectorXd at = reach.begin(pieces_before(pieces_, load.at));
+      energies.load -= load.force.dot(t_.transpose() * at);
+    }
   }
   energies.gravity = -force_.cwiseProduct(t_).sum() - energies.load;
   energies.contact = soft_contact_.energy();
