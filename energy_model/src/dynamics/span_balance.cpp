@@ -20,7 +20,7 @@ EnergyBalance SpanDynamics::energies() const {
   result.kinetic = masses_.dot(velocity_.rowwise().squaredNorm()) / 2;
   result.bending = x_.cwiseProduct(elastic_).squaredNorm() / 2;
   const Eigen::MatrixX3d along_span = position_ * drive_.turn;
-  result.gravity = -weights_.cwiseProduct(along_span).sum();
+  result.gravity = -gravity_.cwiseProduct(along_span).sum();
   result.load = -loads_.cwiseProduct(along_span).sum();
   for (const Touch& touch : soft_touches_) result.obstacles += touch.kept;
   for (const Touch& touch : touches_) result.obstacles += touch.kept;

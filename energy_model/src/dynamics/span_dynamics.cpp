@@ -25,6 +25,7 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
   const bool free_start = !span_.start_direction;
   frames_.reset(nodes_.pieces(), terms_, start_frame_, free_start, {});
   frames_.resize(state_);
+  // One strain in the plane, two in space.
   elastic_ = Eigen::VectorXd::Ones((axes_ - 1) * frames_.columns());
   for (Eigen::Index f = 0; free_start && f < elastic_.size(); f += frames_.columns()) {
     elastic_[f] = 0;
@@ -39,12 +40,12 @@ SpanDynamics::SpanDynamics(Span span, int terms, const Eigen::Vector3d& first, S
   if (span_.end_direction) constraints_ += axes_ - 1;
   masses_ = points_.weighed(inertia_.per_length);
   for (const PointMass& mass : inertia_.points) masses_[point_at(mass.at)] += mass.mass;
-  weights_.resize(points_.points(), 3);
+  gravity_.resize(points_.points(), 3);
   for (std::size_t e = 0; e < pieces.size(); ++e) {
     const Eigen::Index begin = points_.begin(static_cast<Eigen::Index>(e));
     const Eigen::Index count = points_.piece_points();
     const Eigen::Vector3d weight = span_.weight_between(pieces[e].begin, pieces[e].end());
-    weights_.middleRows(begin, count) =
+    gravity_.middleRows(begin, count) =
         points_.weights().segment(begin, count) * weight.transpose() / pieces[e].length;
   }
   loads_.setZero(points_.points(), 3);
@@ -83,7 +84,7 @@ void SpanDynamics::move(const SpanDrive& drive, const Eigen::Ref<const Eigen::Ve
   acceleration_ = moved.rightCols<3>().rowwise() + anchor.acceleration.transpose();
   forces_ = masses_.asDiagonal() * acceleration_;
   forces_ += (inertia_.drag * points_.weights()).asDiagonal() * velocity_;
-  forces_ -= (weights_ + loads_) * drive.turn.transpose();
+  forces_ -= (gravity_ + loads_) * drive.turn.transpose();
   collect_soft_touches();
   collect_touches();
 }

@@ -131,7 +131,7 @@ class SpanDynamics {
   std::vector<std::vector<double>> signs_;  // NodeReach::signs() of each hold
   // Of the points; forces along the span's frame.
   Eigen::VectorXd masses_;
-  Eigen::MatrixX3d weights_, loads_;
+  Eigen::MatrixX3d gravity_, loads_;
 
   // At the last move()
   SpanDrive drive_;
