@@ -115,6 +115,40 @@ TEST(RodFrames, FreeStartTurnsTheRodAsAWhole) {
   EXPECT_LT((b.t.bottomRows(a.t.rows()) - expected).cwiseAbs().maxCoeff(), 1e-13);
 }
 
+// t' = omega x t and t'' = alpha x t + omega x t' of x + v time + a time^2 / 2.
+TEST(RodFrames, SpinsAreThoseOfDifferences) {
+  const std::vector<Piece> pieces = {{0, 0.3}, {0.3, 0.7}};
+  for (const bool free_start : {false, true}) {
+    const RodFrames frames(pieces, 5, Eigen::Matrix3d::Identity(), free_start);
+    const Eigen::Index size = 2 * frames.columns();
+    const Eigen::VectorXd all = random_strains(3 * size, 1);
+    const Eigen::VectorXd x = all.head(size);
+    const Eigen::VectorXd v = all.segment(size, size);
+    const Eigen::VectorXd a = all.tail(size);
+    const RodFrames::State now = evaluated(frames, x);
+    const FrameSpins spins =
+        frames.spins(v, a, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), now);
+    const double h = 1e-3;
+    const RodFrames::State after = evaluated(frames, x + h * v + h * h / 2 * a);
+    const RodFrames::State before = evaluated(frames, x - h * v + h * h / 2 * a);
+    const auto expect_spin = [&](const Eigen::Vector3d& t, const Eigen::Vector3d& later,
+                                 const Eigen::Vector3d& earlier, const Eigen::Vector3d& omega,
+                                 const Eigen::Vector3d& alpha) {
+      const Eigen::Vector3d rate = omega.cross(t);
+      EXPECT_LT((rate - (later - earlier) / (2 * h)).norm(), 1e-5) << free_start;
+      const Eigen::Vector3d acceleration = alpha.cross(t) + omega.cross(rate);
+      EXPECT_LT((acceleration - (later - 2 * t + earlier) / (h * h)).norm(), 1e-4) << free_start;
+    };
+    const Eigen::Index first = frames.turn_nodes();
+    for (Eigen::Index q = 0; q < spins.velocities.rows(); ++q) {
+      expect_spin(now.t.row(first + q), after.t.row(first + q), before.t.row(first + q),
+                  spins.velocities.row(q), spins.accelerations.row(q));
+    }
+    expect_spin(now.end_frame().col(2), after.end_frame().col(2), before.end_frame().col(2),
+                spins.end_velocity, spins.end_acceleration);
+  }
+}
+
 TEST(RodFrames, AreFittedToTheirOwnTangents) {
   for (const bool free_start : {false, true}) {
     const std::vector<Piece> pieces = {{0, 0.3}, {0.3, 0.7}};

@@ -13,6 +13,15 @@ inline Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return m;
 }
 
+/// Row by row.
+inline Eigen::MatrixX3d cross_rows(const Eigen::MatrixX3d& a, const Eigen::MatrixX3d& b) {
+  Eigen::MatrixX3d result(a.rows(), 3);
+  result.col(0) = a.col(1).cwiseProduct(b.col(2)) - a.col(2).cwiseProduct(b.col(1));
+  result.col(1) = a.col(2).cwiseProduct(b.col(0)) - a.col(0).cwiseProduct(b.col(2));
+  result.col(2) = a.col(0).cwiseProduct(b.col(1)) - a.col(1).cwiseProduct(b.col(0));
+  return result;
+}
+
 /// The rotation about v by the angle |v|.
 inline Eigen::Quaterniond from_rotation_vector(const Eigen::Vector3d& v) {
   const double angle = v.norm();

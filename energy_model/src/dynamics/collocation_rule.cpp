@@ -33,9 +33,9 @@ CollocationRule rule_at(const Eigen::VectorXd& nodes) {
     at_nodes.row(i) = values;
     integrated.row(i) = integrals;
   }
-  const Eigen::MatrixXd coefficients = at_nodes.inverse();
-  rule.inner = integrated * coefficients;
-  rule.weights = coefficients.row(0).transpose();
+  rule.through = at_nodes.inverse();
+  rule.inner = integrated * rule.through;
+  rule.weights = rule.through.row(0).transpose();
   rule.twice = rule.inner * rule.inner;
   rule.last = rule.weights.transpose() * rule.inner;
   return rule;
@@ -44,14 +44,10 @@ CollocationRule rule_at(const Eigen::VectorXd& nodes) {
 }  // namespace
 
 Eigen::RowVectorXd CollocationRule::interpolation(double at) const {
-  const Eigen::Index stages = nodes.size();
-  Eigen::RowVectorXd result = Eigen::RowVectorXd::Ones(stages);
-  for (Eigen::Index i = 0; i < stages; ++i) {
-    for (Eigen::Index j = 0; j < stages; ++j) {
-      if (j != i) result[i] *= (at - nodes[j]) / (nodes[i] - nodes[j]);
-    }
-  }
-  return result;
+  Eigen::VectorXd values(nodes.size());
+  Eigen::VectorXd integrals(nodes.size());
+  legendre(at, values, integrals);
+  return values.transpose() * through;
 }
 
 Eigen::MatrixXd CollocationRule::extrapolation(double ratio) const {

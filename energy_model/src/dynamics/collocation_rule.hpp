@@ -10,6 +10,7 @@ struct CollocationRule {
   Eigen::VectorXd weights;  ///< b
   Eigen::MatrixXd inner;    ///< a_ij: from stages to int_0^c_i
   Eigen::MatrixXd twice;    ///< a a
+  Eigen::MatrixXd through;  ///< from stages to coefficients of Legendre's polynomials
   Eigen::RowVectorXd last;  ///< b a: from stages to the double integral over the step
 
   /// From the stages to a time within the step, as a share of it, by the polynomial through them.

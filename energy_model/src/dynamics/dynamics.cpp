@@ -8,7 +8,6 @@
 
 #include "base/legendre.hpp"
 #include "base/require.hpp"
-#include "base/sized_samples.hpp"
 #include "dynamics/moving_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/rod_law.hpp"
@@ -91,15 +90,26 @@ std::vector<std::vector<PointMass>> masses_by_span(const MovingRod& rod,
   return result;
 }
 
-void add(const EnergyBalance& of, EnergyBalance& to) {
-  to.kinetic += of.kinetic;
-  to.bending += of.bending;
-  to.gravity += of.gravity;
-  to.load += of.load;
-  to.obstacles += of.obstacles;
-  to.dissipated += of.dissipated;
-  to.lost += of.lost;
-  to.work += of.work;
+/// What the spans have together at one of the times that they came to.
+MovingFrame frame_of_all(const MovingRod& rod, const std::vector<SpanRun>& runs, std::size_t k) {
+  MovingFrame frame;
+  frame.grips.resize(rod.problem.grips.size());
+  frame.obstacles.assign(rod.problem.obstacles.size(), Eigen::Vector3d::Zero());
+  auto shapes = std::make_shared<std::vector<PlacedShape>>();
+  for (const SpanRun& run : runs) {
+    const SpanFrame& of = run.frames[k];
+    add(of.energy, 1, frame.energy);
+    for (const auto& [grip, reaction] : of.grips) {
+      frame.grips[grip].force += reaction.force;
+      frame.grips[grip].torque += reaction.torque;
+    }
+    for (const auto& [obstacle, force] : of.obstacles) frame.obstacles[obstacle] += force;
+    shapes->push_back(of.shape);
+  }
+  frame.sample = [shapes, l = rod.problem.length](std::span<const double> arc_lengths) {
+    return energy_model::sample(*shapes, l, arc_lengths);
+  };
+  return frame;
 }
 
 /// Spans count gravity and loads from their own anchors.
@@ -140,13 +150,10 @@ StartingShape straight_rod(const Eigen::Vector3d& direction) {
   return [unit = direction.normalized().eval()](std::span<const double> arc_lengths) {
     Samples samples;
     samples.arc_length.assign(arc_lengths.begin(), arc_lengths.end());
-    const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-    samples.points.resize(3, count);
-    for (Eigen::Index i = 0; i < count; ++i) {
-      samples.points.col(i) = arc_lengths[static_cast<std::size_t>(i)] * unit;
-    }
-    samples.tangents = unit.replicate(1, count);
-    samples.curvature = Eigen::Matrix3Xd::Zero(3, count);
+    const Eigen::Map<const Eigen::RowVectorXd> s(arc_lengths.data(), std::ssize(arc_lengths));
+    samples.points = unit * s;
+    samples.tangents = unit.replicate(1, s.size());
+    samples.curvature = Eigen::Matrix3Xd::Zero(3, s.size());
     return samples;
   };
 }
@@ -171,10 +178,16 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   result.error_estimate = 0;
   std::vector<SpanRun> runs;
   for (std::size_t i = 0; i < spans.size(); ++i) {
-    const MovingSpan span(complete, spans[i], begin);
-    const bool planar = span.may_be_planar() && !options.spatial;
-    SpanRun run = span.run(start, masses[i], times, options, planar, deadline);
-    if (run.left_plane) run = span.run(start, masses[i], times, options, false, deadline);
+    PlacedSpan placed = spans[i];
+    placed.span.planar = placed.span.planar && !options.spatial;
+    const auto run_span = [&] {
+      return MovingSpan(complete, placed, begin).run(start, masses[i], times, options, deadline);
+    };
+    SpanRun run = run_span();
+    if (run.left_plane) {
+      placed.span.planar = false;
+      run = run_span();
+    }
     result.steps += run.steps;
     result.smallest_step = std::min(result.smallest_step, run.smallest_step);
     result.error_estimate += run.error;
@@ -191,26 +204,10 @@ Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<co
   EnergyBalance first;
   double largest_miss = 0;
   for (std::size_t k = 0; k < reached; ++k) {
-    MovingFrame frame;
+    MovingFrame frame = frame_of_all(complete, runs, k);
     frame.time = k == 0 ? begin : times[k - 1];
-    frame.grips.resize(complete.problem.grips.size());
-    frame.obstacles.assign(complete.problem.obstacles.size(), Eigen::Vector3d::Zero());
-    auto shapes = std::make_shared<std::vector<PlacedShape>>();
-    for (const SpanRun& run : runs) {
-      const SpanFrame& of = run.frames[k];
-      add(of.energy, frame.energy);
-      for (const auto& [grip, reaction] : of.grips) {
-        frame.grips[grip].force += reaction.force;
-        frame.grips[grip].torque += reaction.torque;
-      }
-      for (const auto& [obstacle, force] : of.obstacles) frame.obstacles[obstacle] += force;
-      shapes->push_back(of.shape);
-    }
     move_zero(complete, spans, frame.energy);
     add_loads_on_clamps(complete, begin, frame);
-    frame.sample = [shapes, l = complete.problem.length](std::span<const double> arc_lengths) {
-      return energy_model::sample(*shapes, l, arc_lengths);
-    };
     if (k == 0) first = frame.energy;
     const EnergyBalance& energy = frame.energy;
     largest_miss = std::max(largest_miss, std::abs(energy.total() - first.total() +

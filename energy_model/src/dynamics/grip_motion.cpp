@@ -13,27 +13,17 @@ namespace {
 /// Second derivatives of the cubic spline at its rows, at whose ends it stands.
 Eigen::MatrixX3d spline_curvatures(const std::vector<TimedPose>& poses) {
   const auto n = static_cast<Eigen::Index>(poses.size());
-  Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(n, n);
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n, n);
   Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(n, 3);
-  for (Eigen::Index i = 1; i + 1 < n; ++i) {
+  // What each interval has of the slopes at its two rows, which are the same from either side.
+  for (Eigen::Index i = 0; i + 1 < n; ++i) {
     const auto k = static_cast<std::size_t>(i);
-    const double before = poses[k].time - poses[k - 1].time;
-    const double after = poses[k + 1].time - poses[k].time;
-    matrix.row(i).segment<3>(i - 1) << before / 6, (before + after) / 3, after / 6;
-    right.row(i) = ((poses[k + 1].position - poses[k].position) / after -
-                    (poses[k].position - poses[k - 1].position) / before)
-                       .transpose();
+    const double h = poses[k + 1].time - poses[k].time;
+    const Eigen::Vector3d slope = (poses[k + 1].position - poses[k].position) / h;
+    matrix.block<2, 2>(i, i) += (Eigen::Matrix2d() << h / 3, h / 6, h / 6, h / 3).finished();
+    right.row(i) += slope.transpose();
+    right.row(i + 1) -= slope.transpose();
   }
-  const auto end = [&](Eigen::Index row, Eigen::Index beside) {
-    const auto a = static_cast<std::size_t>(row);
-    const auto b = static_cast<std::size_t>(beside);
-    const double h = std::abs(poses[b].time - poses[a].time);
-    matrix(row, row) = h / 3;
-    matrix(row, beside) = h / 6;
-    right.row(row) = ((poses[b].position - poses[a].position) / h).transpose();
-  };
-  end(0, 1);
-  end(n - 1, n - 2);
   return matrix.partialPivLu().solve(right);
 }
 
@@ -45,13 +35,7 @@ MotionValue quintic(double x) {
 
 }  // namespace
 
-GripMotion standing(const Eigen::Vector3d& position) {
-  return [position](double) {
-    GripPose pose;
-    pose.position = position;
-    return pose;
-  };
-}
+GripMotion standing(const Eigen::Vector3d& position) { return moving(position, {}, {}, {}, {}); }
 
 GripMotion moving(const Eigen::Vector3d& position, const Eigen::Vector3d& along,
                   std::function<MotionValue(double)> distance, const Eigen::Vector3d& about,

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/spin.hpp"
 #include "problem/rod_law.hpp"
+#include "search/known_shape.hpp"
+#include "strain/span_shape.hpp"
 #include "vibration/inertia.hpp"
 
 namespace dlo::energy_model {
@@ -18,8 +21,22 @@ constexpr double motion_plane_rounding = 1e-10;
 constexpr double stiffer = 8;
 constexpr int most_repeats = 20;
 
-Moving moved_by(const Eigen::Matrix3d& by, const Moving& moving) {
-  return {by * moving.value, by * moving.rate, by * moving.acceleration};
+/// Whether it moves a planar span out of its plane.
+bool leaves_plane(const SpanDrive& drive) {
+  const auto out = [](const Eigen::Vector3d& along) {
+    return std::abs(along.z()) > motion_plane_rounding * std::max(1.0, along.norm());
+  };
+  const auto leans = [](const Eigen::Vector3d& about) {
+    return about.head<2>().norm() > motion_plane_rounding * std::max(1.0, about.norm());
+  };
+  const auto carries_out = [&](const BodyPlace& place) {
+    return out(place.velocity) || leans(place.spin);
+  };
+  return leans(drive.spin) || leans(drive.end_spin) || out(drive.grips.front().value) ||
+         out(drive.grips.front().acceleration) ||
+         std::any_of(drive.grips.begin(), drive.grips.end(),
+                     [&](const Moving& grip) { return out(grip.rate); }) ||
+         std::any_of(drive.obstacles.begin(), drive.obstacles.end(), carries_out);
 }
 
 }  // namespace
@@ -27,11 +44,13 @@ Moving moved_by(const Eigen::Matrix3d& by, const Moving& moving) {
 MovingSpan::MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin)
     : rod_(rod),
       placed_(std::move(placed)),
+      grips_(placed_.hold_grips),
       begin_(begin),
       length_(rod.problem.length),
       force_(bending_unit(rod.problem) / (length_ * length_)),
       mass_(total_mass(rod.problem, rod.inertia)) {
   time_ = std::sqrt(mass_ * length_ / force_);
+  grips_.insert(grips_.begin(), placed_.anchor_grip);
   for (const GripMotion& motion : rod_.motions) {
     first_turns_.push_back(motion(begin).turn.normalized());
   }
@@ -67,138 +86,87 @@ BodyPlace MovingSpan::place(std::size_t obstacle, double seconds,
   return result;
 }
 
-SpanDrive MovingSpan::drive(double time, bool planar, bool& left_plane) const {
+SpanDrive MovingSpan::drive(double time) const {
   const double seconds = time * time_;
-  const GripPose anchor = pose(placed_.anchor_grip, seconds);
   const Eigen::Matrix3d axes = to_axes(seconds);
-  const auto position_of = [&](const GripPose& pose) {
-    return moved_by(
-        axes, {(pose.position - placed_.anchor_position) / length_,
-               pose.velocity * (time_ / length_), pose.acceleration * (time_ * time_ / length_)});
-  };
   SpanDrive result;
   result.turn = axes * placed_.frame.transpose();
-  result.anchor = position_of(anchor);
+  std::vector<GripPose> poses;
+  for (const std::size_t grip : grips_) {
+    poses.push_back(pose(grip, seconds));
+    const GripPose& now = poses.back();
+    result.grips.push_back({axes * (now.position - placed_.anchor_position) / length_,
+                            axes * now.velocity * (time_ / length_),
+                            axes * now.acceleration * (time_ * time_ / length_)});
+  }
   if (placed_.span.start_direction) {
-    result.spin = axes * anchor.angular_velocity * time_;
-    result.spin_rate = axes * anchor.angular_acceleration * (time_ * time_);
+    result.spin = axes * poses.front().angular_velocity * time_;
+    result.spin_rate = axes * poses.front().angular_acceleration * (time_ * time_);
   }
-  for (const std::size_t grip : placed_.hold_grips) {
-    result.holds.push_back(position_of(pose(grip, seconds)));
-  }
-  const auto out = [&](const Eigen::Vector3d& along) {
-    return std::abs(along.z()) > motion_plane_rounding * std::max(1.0, along.norm());
-  };
-  const auto leans = [&](const Eigen::Vector3d& about) {
-    return about.head<2>().norm() > motion_plane_rounding * std::max(1.0, about.norm());
-  };
   if (placed_.span.end_direction) {
-    const GripPose end = pose(placed_.hold_grips.back(), seconds);
+    const GripPose& end = poses.back();
     const Eigen::Matrix3d turn = axes * end.turn.toRotationMatrix() * placed_.frame.transpose();
     result.end_spin = axes * end.angular_velocity * time_;
     const Eigen::Vector3d spin_rate = axes * end.angular_acceleration * (time_ * time_);
-    const Eigen::Vector3d direction = *placed_.span.end_direction;
-    const Eigen::Vector3d first = planar ? Eigen::Vector3d::UnitZ().cross(direction).eval()
-                                         : direction.unitOrthogonal().eval();
-    std::vector<Eigen::Vector3d> across = {first};
-    if (!planar) across.emplace_back(direction.cross(first));
-    for (const Eigen::Vector3d& e : across) {
-      Moving moving;
-      moving.value = turn * e;
-      moving.rate = result.end_spin.cross(moving.value);
-      moving.acceleration = spin_rate.cross(moving.value) + result.end_spin.cross(moving.rate);
-      result.across_end.push_back(moving);
+    const Eigen::Matrix3d held =
+        frame_along(*placed_.span.end_direction, Span::d1(*placed_.span.end_direction));
+    // d1 of a planar span is across its plane.
+    for (Eigen::Index i = placed_.span.planar ? 1 : 0; i < 2; ++i) {
+      const Eigen::Vector3d across = turn * held.col(i);
+      const Eigen::Vector3d rate = result.end_spin.cross(across);
+      result.across_end.push_back(
+          {across, rate, spin_rate.cross(across) + result.end_spin.cross(rate)});
     }
-    left_plane = left_plane || leans(result.end_spin);
   }
-  left_plane = left_plane || leans(result.spin) || out(result.anchor.value) ||
-               out(result.anchor.rate) || out(result.anchor.acceleration);
-  for (const Moving& hold : result.holds) left_plane = left_plane || out(hold.rate);
-  for (const Span::SoftObstacle& obstacle : placed_.span.soft_obstacles) {
-    result.soft_obstacles.push_back(place(obstacle.index, seconds, axes));
-  }
-  for (const Span::Obstacle& obstacle : placed_.span.rigid_obstacles) {
-    result.rigid_obstacles.push_back(place(obstacle.index, seconds, axes));
-  }
-  for (const std::vector<BodyPlace>* places : {&result.soft_obstacles, &result.rigid_obstacles}) {
-    for (const BodyPlace& moved : *places) {
-      left_plane = left_plane || out(moved.velocity) || leans(moved.spin);
-    }
+  for (std::size_t i = 0; i < rod_.problem.obstacles.size(); ++i) {
+    result.obstacles.push_back(place(i, seconds, axes));
   }
   return result;
 }
 
-SpanInertia MovingSpan::inertia(const std::vector<Piece>& pieces,
-                                const std::vector<PointMass>& masses) const {
+SpanInertia MovingSpan::inertia(const std::vector<PointMass>& masses) const {
   SpanInertia result;
-  for (const Piece& piece : pieces) {
-    const double middle = piece.begin + piece.length / 2;
-    const double at = placed_.start + (placed_.reversed ? -middle : middle) * length_;
-    result.per_length.push_back(mass_per_length(rod_.problem, rod_.inertia, at) * length_ / mass_);
-  }
-  result.at_stations.assign(pieces.size() + 1, 0);
+  result.per_length =
+      masses_per_length(rod_.problem, rod_.inertia, placed_, pieces_of(placed_.span));
+  for (double& mass : result.per_length) mass /= mass_;
   for (const PointMass& point : masses) {
-    const double s = placed_.s_of(point.at, length_);
-    std::size_t nearest = 0;
-    for (std::size_t k = 1; k <= pieces.size(); ++k) {
-      const double before = nearest == 0 ? 0 : pieces[nearest - 1].end();
-      if (std::abs(pieces[k - 1].end() - s) < std::abs(before - s)) nearest = k;
-    }
-    result.at_stations[nearest] += point.mass / mass_;
+    result.points.push_back({placed_.s_of(point.at, length_), point.mass / mass_});
   }
   result.material_damping = rod_.material_damping / time_;
   result.drag = rod_.air_drag * time_ * length_ / mass_;
   return result;
 }
 
-Eigen::Matrix3Xd MovingSpan::tangents(const StartingShape& start, const Eigen::VectorXd& s) const {
-  std::vector<double> arc_lengths;
-  for (const double at : s) {
-    const double arc = placed_.start + (placed_.reversed ? -at : at) * length_;
-    arc_lengths.push_back(std::clamp(arc, 0.0, length_));
-  }
-  return (placed_.reversed ? -1.0 : 1.0) * (placed_.frame * start(arc_lengths).tangents);
+/// By growing time, own units. Grips that share one strike the span once.
+std::vector<double> MovingSpan::own_breaks() const {
+  std::vector<double> breaks = rod_.breaks;
+  for (double& time : breaks) time /= time_;
+  std::sort(breaks.begin(), breaks.end());
+  breaks.erase(std::unique(breaks.begin(), breaks.end(), SpanIntegrator::same_instant),
+               breaks.end());
+  return breaks;
 }
 
 SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
                             const SpanInstant& at) const {
   SpanFrame result;
   const Eigen::VectorXd multipliers = integrator.settle(at);
-  const SpanReactions reactions = model.reactions(multipliers);
-  const SpanEnergies energies = model.energies();
+  const std::vector<Reaction> reactions = model.reactions(multipliers);
   const double seconds = at.time * time_;
   const Eigen::Matrix3d to_space = to_axes(seconds).transpose();
   const double unit = force_ * length_;
-  result.energy = {energies.kinetic * unit,
-                   energies.bending * unit,
-                   energies.gravity * unit,
-                   energies.load * unit,
-                   energies.obstacles * unit,
-                   at.dissipated * unit,
-                   at.lost * unit,
-                   at.work * unit};
-  const auto add = [&](std::size_t grip, const Eigen::Vector3d& force,
-                       const Eigen::Vector3d& torque) {
-    result.grips.emplace_back(grip, Reaction{to_space * force * force_, to_space * torque * unit});
-  };
-  add(placed_.anchor_grip, reactions.anchor_force, reactions.anchor_torque);
-  for (std::size_t k = 0; k < placed_.hold_grips.size(); ++k) {
-    const bool last = placed_.span.end_direction && k + 1 == placed_.hold_grips.size();
-    add(placed_.hold_grips[k], reactions.hold_forces[k],
-        last ? reactions.end_torque : Eigen::Vector3d::Zero().eval());
+  add(model.energies(), unit, result.energy);
+  add(at.done, unit, result.energy);
+  for (std::size_t k = 0; k < grips_.size(); ++k) {
+    result.grips.emplace_back(grips_[k], Reaction{to_space * reactions[k].force * force_,
+                                                  to_space * reactions[k].torque * unit});
   }
-  for (std::size_t i = 0; i < model.obstacle_forces().size(); ++i) {
-    result.obstacles.emplace_back(placed_.span.soft_obstacles[i].index,
-                                  to_space * model.obstacle_forces()[i] * force_);
-  }
-  const std::vector<Eigen::Vector3d> rigid = model.rigid_forces();
-  for (std::size_t i = 0; i < rigid.size(); ++i) {
-    result.obstacles.emplace_back(placed_.span.rigid_obstacles[i].index,
-                                  to_space * rigid[i] * force_);
+  for (const auto& [obstacle, force] : model.obstacle_forces()) {
+    result.obstacles.emplace_back(obstacle, to_space * force * force_);
   }
   const double end =
       placed_.reversed ? placed_.start : placed_.start + placed_.span.length * length_;
-  result.shape = {model.shape(at.state.x),
+  result.shape = {model.shape(at.x),
                   placed_.reversed,
                   placed_.start,
                   end,
@@ -209,7 +177,7 @@ SpanFrame MovingSpan::frame(SpanIntegrator& integrator, SpanDynamics& model,
 }
 
 SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>& masses,
-                        std::span<const double> times, const DynamicsOptions& options, bool planar,
+                        std::span<const double> times, const DynamicsOptions& options,
                         const Deadline& deadline) const {
   ContactLaw contact;
   contact.depth = options.contact_depth;
@@ -221,7 +189,7 @@ SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>
   SpanRun result;
   long steps = 0;
   for (int repeat = 0; repeat < most_repeats; ++repeat) {
-    result = run_with(contact, start, masses, times, options, planar, deadline);
+    result = run_with(contact, start, masses, times, options, deadline);
     steps += result.steps;
     result.steps = steps;
     if (result.status == SolveStatus::converged || result.left_plane) break;
@@ -231,61 +199,66 @@ SpanRun MovingSpan::run(const StartingShape& start, const std::vector<PointMass>
   return result;
 }
 
+/// What an integrator has come to.
+void MovingSpan::take(const SpanIntegrator& integrator, SpanRun& run) const {
+  run.steps = integrator.steps();
+  run.smallest_step = integrator.smallest_step() * time_;
+  run.error = integrator.error();
+  run.depth = integrator.depth() * length_;
+}
+
 SpanRun MovingSpan::run_with(const ContactLaw& contact, const StartingShape& start,
                              const std::vector<PointMass>& masses, std::span<const double> times,
-                             const DynamicsOptions& options, bool planar,
-                             const Deadline& deadline) const {
+                             const DynamicsOptions& options, const Deadline& deadline) const {
   SpanRun result;
-  const std::vector<Piece> pieces = pieces_of(placed_.span);
-  const Eigen::Vector3d first = tangents(start, Eigen::VectorXd::Zero(1)).col(0);
-  SpanDynamics model(placed_.span, pieces, options.terms, planar, first, inertia(pieces, masses),
-                     contact);
-  const Eigen::Matrix3Xd directions = tangents(start, model.nodes());
-  if (planar && directions.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
+  Equilibrium at_rest;
+  at_rest.sample = start;
+  const TangentField tangents = field_of(at_rest, placed_, length_);
+  const Eigen::Vector3d first = tangents(Eigen::VectorXd::Zero(1)).tangents.col(0);
+  SpanDynamics model(placed_.span, options.terms, first, inertia(masses), contact);
+  const Eigen::Matrix3Xd directions = tangents(model.nodes()).tangents;
+  if (placed_.span.planar && directions.row(2).cwiseAbs().maxCoeff() > motion_plane_rounding) {
     result.left_plane = true;
     return result;
   }
   bool left_plane = false;
   SpanIntegrator integrator(
-      model, [&](double time) { return drive(time, planar, left_plane); },
+      model,
+      [&](double time) {
+        SpanDrive driven = drive(time);
+        left_plane = left_plane || (placed_.span.planar && leaves_plane(driven));
+        return driven;
+      },
       {options.tolerance, options.step / time_, rod_.material_damping > 0 || model.may_touch()});
   SpanInstant at;
   at.time = begin_ / time_;
-  at.state.x = model.fit(directions);
-  at.state.v = Eigen::VectorXd::Zero(model.size());
+  at.x = model.fit(directions);
+  at.v = Eigen::VectorXd::Zero(model.size());
   result.message = integrator.project(at);
-  const auto stopped = [&] { return !result.message.empty() || (planar && left_plane); };
+  const auto stopped = [&] { return !result.message.empty() || left_plane; };
   if (!stopped()) {
     result.frames.push_back(frame(integrator, model, at));
-    if (model.depth() > contact.depth) {
-      result.message = "the rod begins within a rigid obstacle";
-    }
+    if (model.depth() > contact.depth) result.message = "the rod begins within a rigid obstacle";
   }
   const auto too_deep = [&] { return integrator.depth() > contact.depth; };
-  const auto expired = [&] { return deadline.passed() || (planar && left_plane) || too_deep(); };
-  std::vector<double> breaks = rod_.breaks;
-  std::sort(breaks.begin(), breaks.end());
-  // Grips that share a break strike the span once.
-  const auto same = [&](double a, double b) {
-    return SpanIntegrator::same_instant(a / time_, b / time_);
-  };
-  breaks.erase(std::unique(breaks.begin(), breaks.end(), same), breaks.end());
-  auto next_break = std::upper_bound(breaks.begin(), breaks.end(), begin_);
-  for (const double time : times) {
-    const auto is_due = [&](double at_break) { return at_break <= time || same(at_break, time); };
+  const auto expired = [&] { return deadline.passed() || left_plane || too_deep(); };
+  const std::vector<double> breaks = own_breaks();
+  auto next_break = std::upper_bound(breaks.begin(), breaks.end(), at.time);
+  for (const double seconds : times) {
+    const double time = seconds / time_;
+    const auto is_due = [&](double at_break) {
+      return at_break <= time || SpanIntegrator::same_instant(at_break, time);
+    };
     for (; next_break != breaks.end() && is_due(*next_break) && !stopped(); ++next_break) {
-      result.message = integrator.advance(at, *next_break / time_, expired);
+      result.message = integrator.advance(at, *next_break, expired);
       if (!stopped()) integrator.strike(at);
     }
-    if (!stopped()) result.message = integrator.advance(at, time / time_, expired);
+    if (!stopped()) result.message = integrator.advance(at, time, expired);
     if (stopped()) break;
     result.frames.push_back(frame(integrator, model, at));
   }
-  result.left_plane = planar && left_plane;
-  result.steps = integrator.steps();
-  result.smallest_step = integrator.smallest_step() * time_;
-  result.error = integrator.error();
-  result.depth = integrator.depth() * length_;
+  result.left_plane = left_plane;
+  take(integrator, result);
   if (too_deep() && !deadline.passed()) {
     result.message = "a rigid obstacle is struck too hard for the depth that contact may have";
   }

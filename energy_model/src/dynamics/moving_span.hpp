@@ -40,32 +40,31 @@ class MovingSpan {
   /// @param begin  [s]
   MovingSpan(const MovingRod& rod, PlacedSpan placed, double begin);
 
-  [[nodiscard]] bool may_be_planar() const { return placed_.span.planar; }
   /// @param masses  point masses that no other span carries
   [[nodiscard]] SpanRun run(const StartingShape& start, const std::vector<PointMass>& masses,
                             std::span<const double> times, const DynamicsOptions& options,
-                            bool planar, const Deadline& deadline) const;
+                            const Deadline& deadline) const;
 
  private:
   /// With one law of contact; ends where it lets the rod in too deep.
   [[nodiscard]] SpanRun run_with(const ContactLaw& contact, const StartingShape& start,
                                  const std::vector<PointMass>& masses,
                                  std::span<const double> times, const DynamicsOptions& options,
-                                 bool planar, const Deadline& deadline) const;
+                                 const Deadline& deadline) const;
   [[nodiscard]] BodyPlace place(std::size_t obstacle, double seconds,
                                 const Eigen::Matrix3d& axes) const;
-  [[nodiscard]] SpanInertia inertia(const std::vector<Piece>& pieces,
-                                    const std::vector<PointMass>& masses) const;
+  [[nodiscard]] SpanInertia inertia(const std::vector<PointMass>& masses) const;
   [[nodiscard]] Eigen::Matrix3d to_axes(double time) const;
-  [[nodiscard]] SpanDrive drive(double time, bool planar, bool& left_plane) const;
-  [[nodiscard]] Eigen::Matrix3Xd tangents(const StartingShape& start,
-                                          const Eigen::VectorXd& s) const;
+  [[nodiscard]] SpanDrive drive(double time) const;
   [[nodiscard]] SpanFrame frame(SpanIntegrator& integrator, SpanDynamics& model,
                                 const SpanInstant& at) const;
   [[nodiscard]] GripPose pose(std::size_t grip, double time) const;
+  [[nodiscard]] std::vector<double> own_breaks() const;
+  void take(const SpanIntegrator& integrator, SpanRun& run) const;
 
   const MovingRod& rod_;
   PlacedSpan placed_;
+  std::vector<std::size_t> grips_;  // that hold it, the anchor first
   double begin_;
   double length_, force_, time_, mass_;  // units
   std::vector<Eigen::Quaterniond> first_turns_;

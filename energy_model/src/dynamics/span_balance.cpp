@@ -6,73 +6,65 @@
 
 namespace dlo::energy_model {
 
-SpanEnergies SpanDynamics::energies() const {
-  SpanEnergies result;
-  const Eigen::Index Q = nodes_of_piece();
+void add(const EnergyBalance& of, double times, EnergyBalance& to) {
+  for (double EnergyBalance::*entry :
+       {&EnergyBalance::kinetic, &EnergyBalance::bending, &EnergyBalance::gravity,
+        &EnergyBalance::load, &EnergyBalance::obstacles, &EnergyBalance::dissipated,
+        &EnergyBalance::lost, &EnergyBalance::work}) {
+    to.*entry += times * of.*entry;
+  }
+}
+
+EnergyBalance SpanDynamics::energies() const {
+  EnergyBalance result;
+  result.kinetic = masses_.dot(velocity_.rowwise().squaredNorm()) / 2;
   result.bending = x_.cwiseProduct(elastic_).squaredNorm() / 2;
-  result.obstacles = obstacle_energy_;
+  const Eigen::MatrixX3d along_span = position_ * drive_.turn;
+  result.gravity = -gravity_.cwiseProduct(along_span).sum();
+  result.load = -loads_.cwiseProduct(along_span).sum();
+  for (const Touch& touch : soft_touches_) result.obstacles += touch.kept;
   for (const Touch& touch : touches_) result.obstacles += touch.kept;
-  for (std::size_t e = 0; e < pieces_.size(); ++e) {
-    const Eigen::Index row = static_cast<Eigen::Index>(e) * Q;
-    const double length = pieces_[e].length;
-    const Eigen::VectorXd squares = velocity_.middleRows(row, Q).rowwise().squaredNorm();
-    result.kinetic += inertia_.per_length[e] * length * table_->weights.dot(squares) / 2;
-    const Eigen::Vector3d middle = position_.middleRows(row, Q).transpose() * table_->weights;
-    result.gravity -=
-        middle.dot(drive_.turn * span_.weight_between(pieces_[e].begin, pieces_[e].end()));
-  }
-  for (std::size_t k = 0; k < stations_.size(); ++k) {
-    result.kinetic += inertia_.at_stations[k] * stations_[k].rate.squaredNorm() / 2;
-    result.load -= stations_[k].value.dot(drive_.turn * station_loads_[k]);
-  }
   return result;
 }
 
-SpanReactions SpanDynamics::reactions(const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
-  SpanReactions result;
-  const Eigen::Vector3d anchor = drive_.anchor.value;
+std::vector<Reaction> SpanDynamics::reactions(
+    const Eigen::Ref<const Eigen::VectorXd>& multipliers) const {
+  std::vector<Reaction> result(drive_.grips.size());
+  Reaction& anchor = result.front();
   const auto add = [&](const Eigen::Vector3d& at, const Eigen::Vector3d& needed) {
-    result.anchor_force += needed;
-    result.anchor_torque += (at - anchor).cross(needed);
+    anchor.force += needed;
+    anchor.torque += (at - drive_.grips.front().value).cross(needed);
   };
-  for (Eigen::Index node = 0; node < s_.size(); ++node) {
-    add(position_.row(node).transpose(), forces_.row(node).transpose());
+  for (Eigen::Index point = 0; point < points_.points(); ++point) {
+    add(position_.row(point).transpose(), forces_.row(point).transpose());
   }
-  for (std::size_t k = 0; k < stations_.size(); ++k) add(stations_[k].value, station_forces_[k]);
-  for (const Touch& touch : touches_) add(touch.at, -touch.push * touch.normal);
-  for (std::size_t k = 0; k < hold_stations_.size(); ++k) {
-    result.hold_forces.push_back(multiplier_force(multipliers, k));
-    add(stations_[hold_stations_[k]].value, -result.hold_forces.back());
+  for (const Touch& touch : touches_) add(touch.at, -touch.force());
+  for (std::size_t k = 0; k < held_.size(); ++k) {
+    result[k + 1].force = multiplier_force(multipliers, k);
+    add(position_.row(held_[k]).transpose(), -result[k + 1].force);
   }
-  const Eigen::Index first = axes_ * static_cast<Eigen::Index>(hold_stations_.size());
-  for (std::size_t i = 0; i < drive_.across_end.size(); ++i) {
-    result.end_torque += multipliers[first + static_cast<Eigen::Index>(i)] *
-                         end_tangent_.value.cross(drive_.across_end[i].value);
-  }
-  result.anchor_torque -= result.end_torque;
+  // Of a clamp at the end, which is the last grip.
+  const Eigen::Vector3d end_torque = -couples(multipliers).back();
+  result.back().torque += end_torque;
+  anchor.torque -= end_torque;
   return result;
 }
 
-SpanPower SpanDynamics::power(const SpanReactions& reactions) const {
-  SpanPower result;
-  result.work = obstacle_work_ + reactions.anchor_force.dot(drive_.anchor.rate) +
-                reactions.anchor_torque.dot(drive_.spin) +
-                reactions.end_torque.dot(drive_.end_spin);
-  for (std::size_t k = 0; k < reactions.hold_forces.size(); ++k) {
-    result.work += reactions.hold_forces[k].dot(drive_.holds[k].rate);
+EnergyBalance SpanDynamics::power(const std::vector<Reaction>& reactions) const {
+  EnergyBalance result;
+  result.work =
+      reactions.front().torque.dot(drive_.spin) + reactions.back().torque.dot(drive_.end_spin);
+  for (std::size_t k = 0; k < reactions.size(); ++k) {
+    result.work += reactions[k].force.dot(drive_.grips[k].rate);
   }
-  for (const Touch& touch : touches_) {
-    result.work += touch.push * touch.normal.dot(touch.velocity);
-    result.lost += touch.lost;
+  for (const std::vector<Touch>* touches : {&soft_touches_, &touches_}) {
+    for (const Touch& touch : *touches) {
+      result.work += touch.force().dot(touch.velocity);
+      result.lost += touch.lost;
+    }
   }
-  const Eigen::VectorXd strains = v_.cwiseProduct(elastic_);
-  result.dissipated = inertia_.material_damping * strains.squaredNorm();
-  const Eigen::Index Q = nodes_of_piece();
-  for (std::size_t e = 0; e < pieces_.size(); ++e) {
-    const Eigen::VectorXd squares =
-        velocity_.middleRows(static_cast<Eigen::Index>(e) * Q, Q).rowwise().squaredNorm();
-    result.dissipated += inertia_.drag * pieces_[e].length * table_->weights.dot(squares);
-  }
+  result.dissipated = inertia_.material_damping * v_.cwiseProduct(elastic_).squaredNorm() +
+                      inertia_.drag * points_.weights().dot(velocity_.rowwise().squaredNorm());
   return result;
 }
 

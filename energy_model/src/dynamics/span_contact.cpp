@@ -2,13 +2,22 @@
 
 #include "dynamics/span_contact.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 namespace dlo::energy_model {
 
-ContactGrid::ContactGrid(const std::vector<Span::Obstacle>& obstacles,
-                         const std::vector<Piece>& pieces, const LegendreTable& table,
+Touch::Touch(const Span::Obstacle& of, const BodyPlace& place, const Eigen::Vector3d& where)
+    : obstacle(of.index),
+      at(where),
+      velocity(place.velocity + place.spin.cross(where - place.origin)) {
+  const obstacle::Gap gap = of.body.gap(place.inside(where));
+  normal = place.turn * gap.gradient;
+  depth = -gap.value;
+}
+
+ContactGrid::ContactGrid(const std::vector<Span::Obstacle>& obstacles, const NodeReach& reach,
                          const ContactLaw& law)
     : law_(law) {
   if (obstacles.empty()) return;
@@ -17,54 +26,40 @@ ContactGrid::ContactGrid(const std::vector<Span::Obstacle>& obstacles,
   const bool flat = std::all_of(obstacles.begin(), obstacles.end(),
                                 [](const Span::Obstacle& o) { return o.body.is_half_space(); });
   const double spacing = flat ? widest : std::clamp(2 * law.depth, closest, widest);
-  const Eigen::Index Q = table.nodes.size();
-  Eigen::VectorXd values(Q);
-  Eigen::VectorXd integrals(Q);
-  const Eigen::MatrixXd of_integrals = table.values.transpose() * table.weights.asDiagonal();
-  for (const Piece& piece : pieces) {
-    const auto count = static_cast<Eigen::Index>(std::max(2.0, std::ceil(piece.length / spacing)));
-    Eigen::MatrixXd places(Q, count + 1);
-    for (Eigen::Index j = 0; j <= count; ++j) {
-      legendre(static_cast<double>(j) / static_cast<double>(count), values, integrals);
-      places.col(j) = of_integrals.transpose() * integrals;
-    }
-    spacings_.push_back(piece.length / static_cast<double>(count));
-    places_.push_back(std::move(places));
+  for (const Piece& piece : reach.pieces()) {
+    const auto parts = static_cast<Eigen::Index>(std::max(2.0, std::ceil(piece.length / spacing)));
+    spacings_.push_back(piece.length / static_cast<double>(parts));
+    pieces_.push_back(
+        reach.points(std::ssize(pieces_), Eigen::VectorXd::LinSpaced(parts + 1, 0, 1)));
   }
 }
 
-void ContactGrid::find(const obstacle::Body& body, const BodyPlace& place, const Touch& of,
-                       const Eigen::Vector3d& begin, const Eigen::MatrixX3d& along,
+void ContactGrid::find(std::size_t piece, const Span::Obstacle& obstacle, const BodyPlace& place,
+                       const Eigen::Vector3d& begin, const Eigen::MatrixX3d& tangents,
                        std::vector<Touch>& found) const {
-  const Eigen::MatrixXd& places = places_[of.piece];
-  for (Eigen::Index j = 0; j < places.cols();) {
-    const Eigen::Vector3d at = begin + along.transpose() * places.col(j);
-    const double clearance = body.clearance(place.inside(at));
+  const PointsReach& points = pieces_[piece];
+  for (Eigen::Index j = 0; j < points.points();) {
+    const Eigen::Vector3d at = begin + points.from_begin(j, tangents);
+    const double clearance = obstacle.body.clearance(place.inside(at));
     if (clearance < 0) {
-      const obstacle::Gap gap = body.gap(place.inside(at));
-      Touch touch = of;
-      touch.point = j;
-      touch.at = at;
-      touch.normal = place.turn * gap.gradient;
-      touch.velocity = place.velocity_at(at);
-      touch.depth = -gap.value;
-      found.push_back(touch);
+      found.emplace_back(obstacle, place, at);
+      found.back().piece = piece;
+      found.back().point = j;
     }
     // The rod cannot come to the body within as much of its length; less, as polynomials do.
     constexpr double sure = 0.9;
     j += std::max<Eigen::Index>(
-        1, static_cast<Eigen::Index>(std::min(sure * clearance / spacings_[of.piece], 1e6)));
+        1, static_cast<Eigen::Index>(std::min(sure * clearance / spacings_[piece], 1e6)));
   }
 }
 
 void ContactGrid::resist(double rate, Touch& touch) const {
   // Ends have half of the length that others stand for.
-  const bool inside = touch.point > 0 && touch.point + 1 < places_[touch.piece].cols();
+  const bool inside = touch.point > 0 && touch.point + 1 < pieces_[touch.piece].points();
   const double stiffness = law_.stiffness * spacings_[touch.piece] * (inside ? 1 : 0.5);
   const double d = touch.depth;
   const double elastic = stiffness * d * d;
   const double factor = std::max(0.0, 1 + rate / law_.rebound);
-  touch.rate = rate;
   touch.push = elastic * factor;
   touch.kept = elastic * d / 3;
   touch.lost = (touch.push - elastic) * rate;

@@ -4,9 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "base/legendre.hpp"
 #include "problem/span.hpp"
-#include "strain/piece.hpp"
+#include "strain/node_reach.hpp"
 
 namespace dlo::energy_model {
 
@@ -30,26 +29,26 @@ struct BodyPlace {
   [[nodiscard]] Eigen::Vector3d inside(const Eigen::Vector3d& at) const {
     return turn.transpose() * (at - origin);
   }
-  [[nodiscard]] Eigen::Vector3d velocity_at(const Eigen::Vector3d& at) const {
-    return velocity + spin.cross(at - origin);
-  }
 };
 
-/// A point of a ContactGrid within an obstacle.
+/// A point of a span within an obstacle, and what that does.
 struct Touch {
-  std::size_t obstacle = 0;  ///< of Span::rigid_obstacles
-  std::size_t piece = 0;
-  Eigen::Index point = 0;  ///< of the piece's
+  std::size_t obstacle = 0;  ///< of the problem's
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
   Eigen::Vector3d normal = Eigen::Vector3d::UnitY();   ///< unit, out of the obstacle
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the obstacle there
   double depth = 0;                                    ///< > 0
-  double rate = 0;                                     ///< d'
+  std::size_t piece = 0;                               ///< where it is in a ContactGrid
+  Eigen::Index point = 0;                              ///< of the piece's, the same
   double push = 0;                                     ///< force on the rod along the normal
   double kept = 0;                                     ///< energy
   double lost = 0;                                     ///< by time
   double by_depth = 0;                                 ///< derivative of the push
   double by_rate = 0;                                  ///< the same
+
+  /// Up to `depth`.
+  Touch(const Span::Obstacle& of, const BodyPlace& place, const Eigen::Vector3d& where);
+  [[nodiscard]] Eigen::Vector3d force() const { return push * normal; }
 };
 
 /// Points of a span at which it is held against rigid obstacles: evenly on each piece, both ends
@@ -60,20 +59,16 @@ class ContactGrid {
   /// Points that are no farther apart than 1/128; on a body that is not flat twice law.depth, where
   /// that is less, so that what bears on one point is known to be there to law.depth, and an edge
   /// does not come between two by more.
-  ContactGrid(const std::vector<Span::Obstacle>& obstacles, const std::vector<Piece>& pieces,
-              const LegendreTable& table, const ContactLaw& law);
+  ContactGrid(const std::vector<Span::Obstacle>& obstacles, const NodeReach& reach,
+              const ContactLaw& law);
 
-  [[nodiscard]] bool empty() const { return places_.empty(); }
-  /// A point of a piece from its begin, over its length: weights of the tangents at its Q nodes.
-  [[nodiscard]] Eigen::Block<const Eigen::MatrixXd, Eigen::Dynamic, 1, true> place(
-      std::size_t piece, Eigen::Index point) const {
-    return places_[piece].col(point);
-  }
-  /// Adds those of a piece that are within an obstacle. Their `normal`, `depth`, `velocity` and
-  /// `at` are set.
-  /// @param begin  of the piece;  @param along  its length times the tangents at its nodes, Q x 3
-  void find(const obstacle::Body& body, const BodyPlace& place, const Touch& of,
-            const Eigen::Vector3d& begin, const Eigen::MatrixX3d& along,
+  [[nodiscard]] bool empty() const { return pieces_.empty(); }
+  /// Points of a piece.
+  [[nodiscard]] const PointsReach& points(std::size_t piece) const { return pieces_[piece]; }
+  /// Adds those of a piece that are within an obstacle.
+  /// @param begin  of the piece;  @param tangents  nodes x 3
+  void find(std::size_t piece, const Span::Obstacle& obstacle, const BodyPlace& place,
+            const Eigen::Vector3d& begin, const Eigen::MatrixX3d& tangents,
             std::vector<Touch>& found) const;
   /// Takes in the rate at which the depth grows. Sets what the law says.
   void resist(double rate, Touch& touch) const;
@@ -81,7 +76,7 @@ class ContactGrid {
  private:
   ContactLaw law_;
   std::vector<double> spacings_;
-  std::vector<Eigen::MatrixXd> places_;  // Q x M
+  std::vector<PointsReach> pieces_;
 };
 
 }  // namespace dlo::energy_model

@@ -39,15 +39,15 @@ SpanIntegrator::SpanIntegrator(SpanDynamics& span, std::function<SpanDrive(doubl
     : span_(span),
       drive_(std::move(drive)),
       options_(options),
-      rule_(options.damped ? radau_rule(stage_count) : gauss_rule(stage_count)) {}
+      rule_(options.damped ? radau_rule(stage_count) : gauss_rule(stage_count)),
+      newton_enough_(std::clamp(newton_share * options_.tolerance, newton_least, newton_most)) {}
 
 bool SpanIntegrator::same_instant(double a, double b) {
   return std::abs(a - b) <= 2 * instant(std::max(std::abs(a), std::abs(b)));
 }
 
-void SpanIntegrator::take_mass(const SpanInstant& at) {
-  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
-  span_.move(drive_(at.time), at.state.x, at.state.v, zero);
+void SpanIntegrator::take_mass(double time, const SpanInstant& at) {
+  span_.move(drive_(time), at.x, at.v, Eigen::VectorXd::Zero(span_.size()));
   mass_ = span_.mass_matrix();
   jacobian_ = span_.jacobian();
 }
@@ -61,7 +61,7 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
   if (found == factors_.end()) {
     constexpr std::size_t most_factors = 6;
     if (factors_.size() == most_factors) factors_.erase(factors_.begin());
-    factors_.push_back({step, -1, {}});
+    factors_.push_back({step, {}});
     found = factors_.end() - 1;
   } else if (!renew) {
     return *found;
@@ -82,7 +82,6 @@ SpanIntegrator::Factor& SpanIntegrator::factor(const SpanInstant& at, double ste
     matrix.block(i * (n + m) + n, i * (n + m), m, n) = jacobian_;
   }
   found->lu.compute(matrix);
-  found->made = steps_;
   return *found;
 }
 
@@ -121,13 +120,13 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
     Factor& newton = factor(at, step, renew);
     found.values = guess;
     Eigen::MatrixXd& values = found.values;
-    std::array<SpanPower, stage_count> powers;
+    std::array<EnergyBalance, stage_count> powers;
     Eigen::VectorXd residual(stage_count * (n + m));
     double before = std::numeric_limits<double>::infinity();
     for (int correction = 0; correction < most_corrections; ++correction) {
       const Eigen::MatrixXd v =
-          (step * values.topRows(n) * rule_.inner.transpose()).colwise() + at.state.v;
-      const Eigen::MatrixXd x = (step * v * rule_.inner.transpose()).colwise() + at.state.x;
+          (step * values.topRows(n) * rule_.inner.transpose()).colwise() + at.v;
+      const Eigen::MatrixXd x = (step * v * rule_.inner.transpose()).colwise() + at.x;
       for (Eigen::Index i = 0; i < stage_count; ++i) {
         const auto stage = static_cast<std::size_t>(i);
         span_.move(drives[stage], x.col(i), v.col(i), values.col(i).head(n));
@@ -146,15 +145,11 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
       values -= change;
       const bool stalled = size >= before && size < 1e3 * enough;
       if (size < enough || stalled) {
-        at.state.x +=
-            step * at.state.v + step * step * (values.topRows(n) * rule_.last.transpose());
-        at.state.v += step * (values.topRows(n) * rule_.weights);
+        at.x += step * at.v + step * step * (values.topRows(n) * rule_.last.transpose());
+        at.v += step * (values.topRows(n) * rule_.weights);
         at.time += step;
         for (std::size_t i = 0; i < stage_count; ++i) {
-          const double weight = step * rule_.weights[static_cast<Eigen::Index>(i)];
-          at.work += weight * powers[i].work;
-          at.dissipated += weight * powers[i].dissipated;
-          at.lost += weight * powers[i].lost;
+          add(powers[i], step * rule_.weights[static_cast<Eigen::Index>(i)], at.done);
         }
         found.step = step;
         found.end = at.time;
@@ -170,7 +165,7 @@ bool SpanIntegrator::try_step(SpanInstant& at, double step, const Eigen::MatrixX
 
 std::string SpanIntegrator::project(SpanInstant& at) {
   if (span_.constraints() == 0) return {};
-  if (mass_.size() == 0) take_mass(at);
+  if (mass_.size() == 0) take_mass(at.time, at);
   const Eigen::LLT<Eigen::MatrixXd> mass(mass_);
   const SpanDrive drive = drive_(just_before(at.time));
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
@@ -178,7 +173,7 @@ std::string SpanIntegrator::project(SpanInstant& at) {
   constexpr double held = 1e-13;
   double before = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most_projections; ++i) {
-    span_.move(drive, at.state.x, at.state.v, zero);
+    span_.move(drive, at.x, at.v, zero);
     const Eigen::MatrixX3d misses = span_.misses();
     const Eigen::MatrixXd jacobian = span_.jacobian();
     const Eigen::MatrixXd yields = mass.solve(jacobian.transpose());
@@ -186,14 +181,14 @@ std::string SpanIntegrator::project(SpanInstant& at) {
     const Eigen::LDLT<Eigen::MatrixXd> solver(held_by);
     const double missed = misses.col(0).norm();
     if (missed < held || (missed >= before && missed < 1e3 * held)) {
-      at.state.v -= yields * solver.solve(misses.col(1));
+      at.v -= yields * solver.solve(misses.col(1));
       return {};
     }
     Eigen::VectorXd step = yields * solver.solve(misses.col(0));
     if (!step.allFinite()) break;
     constexpr double longest = 0.5;
     if (step.norm() > longest) step *= longest / step.norm();
-    at.state.x -= step;
+    at.x -= step;
     before = missed;
   }
   return "the grips cannot be reached by the rod, or hold it straight between them";
@@ -201,11 +196,9 @@ std::string SpanIntegrator::project(SpanInstant& at) {
 
 std::string SpanIntegrator::advance(SpanInstant& at, double until,
                                     const std::function<bool()>& expired) {
-  const double order = 2 * stage_count + 1;
-  const double enough = std::clamp(newton_share * options_.tolerance, newton_least, newton_most);
+  const bool fixed = options_.step > 0;
   while (at.time < until) {
     if (expired()) return "time limit";
-    const double left = until - at.time;
     // A frame and a break that differ by the rounding of their times: a step between them would ask
     // the motion for what is before the break.
     if (same_instant(at.time, until)) {
@@ -213,113 +206,104 @@ std::string SpanIntegrator::advance(SpanInstant& at, double until,
       last_.end = until;
       break;
     }
-    if (!std::isfinite(energy_) && options_.step == 0) {
-      energy_ = take_energy(just_after(at.time), at);
-    }
-    if (options_.step > 0) {
-      const double count = std::ceil(left / options_.step * (1 - 1e-9));
-      const double step = left / count;
-      smallest_step_ = std::min(smallest_step_, step);
-      Stages next;
-      if (!try_step(at, step, predicted(at, step, last_), enough, next)) {
-        return "the equations of a step are not solved";
-      }
-      last_ = std::move(next);
-      if (count <= 1) at.time = until;
-      last_.end = at.time;
-      if (span_.may_touch()) {
-        (void)take_energy(just_before(at.time), at);
-        depth_ = std::max(depth_, span_.depth());
-      }
-      continue;
-    }
-    if (!(next_ > 0)) next_ = 1e-3;
-    const double step = left / std::ceil(left / next_ * (1 - 1e-9));
-    if (step < least_step && step < left) {
+    const double left = until - at.time;
+    const double count = std::ceil(left / (fixed ? options_.step : next_) * (1 - 1e-9));
+    const double step = left / count;
+    if (!fixed && step < least_step && count > 1) {
       return "steps have become too small; more damping or fewer terms makes them longer";
     }
-    // One step against two of half the size, which say where it begins and by much less than its
-    // own error what it comes to.
-    SpanInstant once = at;
-    SpanInstant twice = at;
-    Stages first, second, whole;
-    const bool solved =
-        try_step(twice, step / 2, predicted(at, step / 2, last_), enough, first) &&
-        try_step(twice, step / 2, predicted(twice, step / 2, first), enough, second) &&
-        try_step(once, step, joined(first, second), 1e-2 * options_.tolerance, whole);
-    double apart = 0;
-    double error = std::numeric_limits<double>::infinity();
-    if (solved) {
-      const Eigen::VectorXd change = once.state.x - twice.state.x;
-      apart = std::sqrt(std::max(0.0, change.dot(mass_ * change)));
-      error = apart;
-    }
-    double energy = 0;
-    double depth = 0;
-    if (solved) {
-      energy = take_energy(just_before(twice.time), twice);
-      depth = span_.depth();
-      const double missed = energy - energy_ + twice.dissipated - at.dissipated + twice.lost -
-                            at.lost - (twice.work - at.work);
-      const double beyond_rounding = std::abs(missed) - energy_rounding * energy_magnitude_;
-      error = std::max(error, beyond_rounding / largest_energy_);
-    }
-    const double better =
-        solved ? 0.9 * std::pow(options_.tolerance / std::max(error, 1e-300), 1 / order) : 0.3;
-    const double grown = std::clamp(better, 0.25, 2.0);
-    if (!(error <= options_.tolerance)) {
-      next_ = step * std::min(0.7, grown);
+    if (!(fixed ? take_step(at, step) : take_two_halves(at, step))) {
+      if (fixed) return "the equations of a step are not solved";
       continue;
     }
-    energy_ = energy;
-    depth_ = std::max(depth_, depth);
-    error_ += apart;
-    smallest_step_ = std::min(smallest_step_, step / 2);
-    const bool reached = step >= left * (1 - 1e-9);
-    at = std::move(twice);
-    if (reached) at.time = until;
-    last_ = std::move(second);
+    if (count <= 1) at.time = until;
     last_.end = at.time;
-    if (grown > 1.4 || grown < 0.9) next_ = step * grown;
   }
   return {};
 }
 
-/// Energy at an instant; the largest one so far is kept.
+bool SpanIntegrator::take_step(SpanInstant& at, double step) {
+  smallest_step_ = std::min(smallest_step_, step);
+  Stages next;
+  if (!try_step(at, step, predicted(at, step, last_), newton_enough_, next)) return false;
+  last_ = std::move(next);
+  if (span_.may_touch()) {
+    (void)take_energy(just_before(at.time), at);
+    depth_ = std::max(depth_, span_.depth());
+  }
+  return true;
+}
+
+/// One step against two of half the size, which say where it begins and by much less than its own
+/// error what it comes to. @return whether they differ by less than the tolerance
+bool SpanIntegrator::take_two_halves(SpanInstant& at, double step) {
+  if (!std::isfinite(energy_)) energy_ = take_energy(just_after(at.time), at);
+  SpanInstant once = at;
+  SpanInstant twice = at;
+  Stages first, second, whole;
+  const bool solved =
+      try_step(twice, step / 2, predicted(at, step / 2, last_), newton_enough_, first) &&
+      try_step(twice, step / 2, predicted(twice, step / 2, first), newton_enough_, second) &&
+      try_step(once, step, joined(first, second), 1e-2 * options_.tolerance, whole);
+  if (!solved) {
+    next_ = 0.3 * step;
+    return false;
+  }
+  const Eigen::VectorXd change = once.x - twice.x;
+  const double apart = std::sqrt(std::max(0.0, change.dot(mass_ * change)));
+  const double energy = take_energy(just_before(twice.time), twice);
+  const double missed = std::abs(energy - energy_) - energy_rounding * energy_magnitude_;
+  const double error = std::max(apart, missed / largest_energy_);
+  constexpr double order = 2 * stage_count + 1;
+  const double better = std::pow(options_.tolerance / std::max(error, 1e-300), 1 / order);
+  const double grown = std::clamp(0.9 * better, 0.25, 2.0);
+  if (!(error <= options_.tolerance)) {
+    next_ = step * std::min(0.7, grown);
+    return false;
+  }
+  energy_ = energy;
+  depth_ = std::max(depth_, span_.depth());
+  error_ += apart;
+  smallest_step_ = std::min(smallest_step_, step / 2);
+  at = std::move(twice);
+  last_ = std::move(second);
+  if (grown > 1.4 || grown < 0.9) next_ = step * grown;
+  return true;
+}
+
+/// Energy at an instant with what has gone so far, which stays the same; the largest energy is
+/// kept.
 double SpanIntegrator::take_energy(double time, const SpanInstant& at) {
-  span_.move(drive_(time), at.state.x, at.state.v, Eigen::VectorXd::Zero(span_.size()));
-  const SpanEnergies energies = span_.energies();
+  span_.move(drive_(time), at.x, at.v, Eigen::VectorXd::Zero(span_.size()));
+  const EnergyBalance energies = span_.energies();
   largest_energy_ = std::max({largest_energy_, energies.kinetic, energies.bending,
                               energies.obstacles, options_.tolerance});
   energy_magnitude_ =
       std::max(energy_magnitude_, energies.kinetic + energies.bending + std::abs(energies.gravity) +
                                       std::abs(energies.load) + energies.obstacles);
-  return energies.kinetic + energies.bending + energies.gravity + energies.load +
-         energies.obstacles;
+  return energies.total() + at.done.dissipated + at.done.lost - at.done.work;
 }
 
 void SpanIntegrator::strike(SpanInstant& at) {
   last_ = {};
   energy_ = std::numeric_limits<double>::quiet_NaN();
-  next_ = 0;
+  next_ = first_step;
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(span_.size());
-  span_.move(drive_(just_before(at.time)), at.state.x, at.state.v, zero);
-  const SpanVelocities before = span_.velocities();
+  span_.move(drive_(just_before(at.time)), at.x, at.v, zero);
+  const Eigen::MatrixX3d before = span_.velocities();
   const double kinetic = span_.energies().kinetic;
-  at.state.v += accelerated(just_after(at.time), at.state, &before).head(span_.size());
-  span_.move(drive_(just_after(at.time)), at.state.x, at.state.v, zero);
-  at.work += span_.energies().kinetic - kinetic;
+  at.v += accelerated(just_after(at.time), at, &before).head(span_.size());
+  span_.move(drive_(just_after(at.time)), at.x, at.v, zero);
+  at.done.work += span_.energies().kinetic - kinetic;
 }
 
 /// Accelerations and multipliers that obey the equations of motion; from velocities before a
 /// strike, what v changes by and the impulses of the grips.
-Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanState& state,
-                                            const SpanVelocities* before) {
+Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanInstant& at,
+                                            const Eigen::MatrixX3d* before) {
   const Eigen::Index n = span_.size();
   const Eigen::Index m = span_.constraints();
-  span_.move(drive_(time), state.x, state.v, Eigen::VectorXd::Zero(n));
-  mass_ = span_.mass_matrix();
-  jacobian_ = span_.jacobian();
+  take_mass(time, at);
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + m, n + m);
   matrix.topLeftCorner(n, n) = mass_;
   matrix.topRightCorner(n, m) = -jacobian_.transpose();
@@ -333,8 +317,8 @@ Eigen::VectorXd SpanIntegrator::accelerated(double time, const SpanState& state,
 
 Eigen::VectorXd SpanIntegrator::settle(const SpanInstant& at) {
   const double time = just_after(at.time);
-  const Eigen::VectorXd found = accelerated(time, at.state, nullptr);
-  span_.move(drive_(time), at.state.x, at.state.v, found.head(span_.size()));
+  const Eigen::VectorXd found = accelerated(time, at, nullptr);
+  span_.move(drive_(time), at.x, at.v, found.head(span_.size()));
   return found.tail(span_.constraints());
 }
 

@@ -16,10 +16,8 @@ namespace dlo::energy_model {
 /// A span at one time, with what has been done to it since the begin. Own units.
 struct SpanInstant {
   double time = 0;
-  SpanState state;
-  double work = 0;        ///< of grips, and of obstacles that move
-  double dissipated = 0;  ///< in the material and the air
-  double lost = 0;        ///< to rigid obstacles
+  Eigen::VectorXd x, v;  ///< unknowns and their rates
+  EnergyBalance done;    ///< what has been dissipated, lost and done, without energies
 };
 
 struct IntegratorOptions {
@@ -63,10 +61,11 @@ class SpanIntegrator {
   [[nodiscard]] double depth() const { return depth_; }
 
  private:
+  /// Where nothing is known yet.
+  static constexpr double first_step = 1e-3;
   /// Newton's matrix for one size of step.
   struct Factor {
     double step = 0;
-    long made = -1;  // when
     Eigen::PartialPivLU<Eigen::MatrixXd> lu;
   };
   /// Accelerations and multipliers at the rule's points of a step.
@@ -81,11 +80,13 @@ class SpanIntegrator {
   [[nodiscard]] Eigen::MatrixXd joined(const Stages& first, const Stages& second) const;
   [[nodiscard]] bool try_step(SpanInstant& at, double step, const Eigen::MatrixXd& guess,
                               double enough, Stages& found);
+  [[nodiscard]] bool take_step(SpanInstant& at, double step);
+  [[nodiscard]] bool take_two_halves(SpanInstant& at, double step);
   [[nodiscard]] Factor& factor(const SpanInstant& at, double step, bool renew);
-  void take_mass(const SpanInstant& at);
+  void take_mass(double time, const SpanInstant& at);
   [[nodiscard]] double take_energy(double time, const SpanInstant& at);
-  [[nodiscard]] Eigen::VectorXd accelerated(double time, const SpanState& state,
-                                            const SpanVelocities* before);
+  [[nodiscard]] Eigen::VectorXd accelerated(double time, const SpanInstant& at,
+                                            const Eigen::MatrixX3d* before);
 
   SpanDynamics& span_;
   std::function<SpanDrive(double)> drive_;
@@ -95,7 +96,8 @@ class SpanIntegrator {
   Eigen::MatrixXd jacobian_;
   std::vector<Factor> factors_;
   Stages last_;
-  double next_ = 0;
+  double newton_enough_;      // what a correction of a step may still move
+  double next_ = first_step;  // its size
   double energy_ = std::numeric_limits<double>::quiet_NaN();  // where the last step ended
   double largest_energy_ = 0;
   double energy_magnitude_ = 0;  // largest sum of the magnitudes of all energies

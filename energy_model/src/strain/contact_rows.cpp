@@ -81,11 +81,7 @@ void ContactRows::add_clearance(const Span& span, std::size_t contact,
                                 const std::vector<Piece>& pieces) {
   const Span::Contact& own = span.contacts[contact];
   contacts_[contact].clearance = linear_.cols();
-  Eigen::Index piece = 0;  // that begins there, or the span's end
-  while (piece < std::ssize(pieces) &&
-         pieces[static_cast<std::size_t>(piece)].begin < own.begin - closest_cuts) {
-    ++piece;
-  }
+  const Eigen::Index piece = pieces_before(pieces, own.begin);
   if (!own.lies() && own.slides && piece > 0 && piece < std::ssize(pieces)) {
     Touch touch;
     touch.contact = contact;
@@ -160,16 +156,15 @@ void ContactRows::add_slopes(const Span& span, std::size_t contact,
 }
 
 void ContactRows::reset(const Span& span, const std::vector<Piece>& pieces, int terms,
-                        const LegendreTable& table, const Eigen::VectorXd& nodes,
-                        const Eigen::VectorXd& weights) {
+                        const LegendreTable& table) {
   contacts_.assign(span.contacts.size(), {});
   curved_.clear();
   touches_.clear();
   normals_.clear();
-  linear_.resize(nodes.size(), 0);
+  linear_.resize(std::ssize(pieces) * table.nodes.size(), 0);
   normal_.resize(3, 0);
   offset_.resize(0);
-  if (!span.contacts.empty()) reach_ = NodeReach(span, pieces, table, nodes, weights);
+  if (!span.contacts.empty()) reach_ = NodeReach(span, pieces, table);
   for (std::size_t i = 0; i < span.contacts.size(); ++i) {
     const Span::Contact& contact = span.contacts[i];
     const obstacle::Body& body = contact.obstacle.body;

@@ -37,10 +37,9 @@ struct ContactForce {
 /// taken from clearances alone, int phi g' = [phi g] - int phi' g.
 class ContactRows {
  public:
-  /// @param terms  of a piece's strains;  @param nodes, weights  of the span's quadrature
+  /// @param terms  of a piece's strains
   void reset(const Span& span, const std::vector<Piece>& pieces, int terms,
-             const LegendreTable& table, const Eigen::VectorXd& nodes,
-             const Eigen::VectorXd& weights);
+             const LegendreTable& table);
 
   [[nodiscard]] Eigen::Index count() const { return linear_.cols(); }
   /// Looks where the rod is; all below is at these tangents. @param tangents  nodes x 3

@@ -4,12 +4,6 @@
 
 namespace dlo::energy_model {
 
-Eigen::Matrix3Xd PointsReach::positions(const Eigen::MatrixX3d& tangents) const {
-  Eigen::Matrix3Xd result = tangents.middleRows(first_, own_.rows()).transpose() * own_;
-  result.colwise() += Eigen::Vector3d(tangents.transpose() * begin_);
-  return result;
-}
-
 Eigen::MatrixXd PointsReach::sums(const Eigen::MatrixXd& by_node) const {
   Eigen::MatrixXd result = own_.transpose() * by_node.middleRows(first_, own_.rows());
   result.rowwise() += Eigen::RowVectorXd(begin_.transpose() * by_node);
@@ -22,13 +16,39 @@ void PointsReach::spread(const Eigen::MatrixXd& by_point,
   by_node.middleRows(first_, own_.rows()).noalias() += own_ * by_point;
 }
 
-NodeReach::NodeReach(const Span& span, std::vector<Piece> pieces, const LegendreTable& table,
-                     const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights)
-    : pieces_(std::move(pieces)),
-      table_(&table),
-      weights_(weights),
-      to_anchor_(
-          (nodes.array() < span.anchor).select(weights, Eigen::VectorXd::Zero(nodes.size()))) {}
+Eigen::VectorXd PointsReach::weights(Eigen::Index point) const {
+  Eigen::VectorXd result = begin_;
+  result.segment(first_, own_.rows()) += own_.col(point);
+  return result;
+}
+
+void tabulate_nodes(const std::vector<Piece>& pieces, const LegendreTable& table,
+                    Eigen::VectorXd& nodes, Eigen::VectorXd& weights) {
+  const Eigen::Index Q = table.nodes.size();
+  const Eigen::Index count = std::ssize(pieces);
+  nodes.resize(count * Q);
+  weights.resize(count * Q);
+  for (Eigen::Index e = 0; e < count; ++e) {
+    const Piece& piece = pieces[static_cast<std::size_t>(e)];
+    nodes.segment(e * Q, Q) = piece.begin + piece.length * table.nodes.array();
+    weights.segment(e * Q, Q) = piece.length * table.weights;
+  }
+}
+
+NodeReach::NodeReach(const Span& span, std::vector<Piece> pieces, const LegendreTable& table)
+    : pieces_(std::move(pieces)), table_(&table), anchor_(span.anchor) {
+  tabulate_nodes(pieces_, table, nodes_, weights_);
+  to_anchor_ = (nodes_.array() < anchor_).select(weights_, Eigen::VectorXd::Zero(nodes_.size()));
+}
+
+std::vector<double> NodeReach::signs(double s) const {
+  std::vector<double> result(pieces_.size(), 0);
+  const auto before = static_cast<std::size_t>(pieces_before(pieces_, s));
+  const auto anchor = static_cast<std::size_t>(pieces_before(pieces_, anchor_));
+  for (std::size_t e = anchor; e < before; ++e) result[e] = 1;
+  for (std::size_t e = before; e < anchor; ++e) result[e] = -1;
+  return result;
+}
 
 Eigen::VectorXd NodeReach::begin(Eigen::Index piece) const {
   Eigen::VectorXd reach = -to_anchor_;
@@ -37,16 +57,23 @@ Eigen::VectorXd NodeReach::begin(Eigen::Index piece) const {
   return reach;
 }
 
-Eigen::MatrixXd NodeReach::of_nodes(Eigen::Index piece) const {
-  const Eigen::Index Q = table_->nodes.size();
-  Eigen::MatrixXd reach = begin(piece).replicate(1, Q);
-  const double length = pieces_[static_cast<std::size_t>(piece)].length;
-  reach.middleRows(piece * Q, Q) += length * table_->integration.transpose();
-  return reach;
-}
-
 PointsReach NodeReach::at_begin(Eigen::Index piece) const {
   return {begin(piece), 0, Eigen::MatrixXd::Zero(0, 1)};
+}
+
+/// Weights of a piece's nodes in the series in Legendre polynomials through what is given at them.
+/// @param of_terms  what the polynomials come to
+Eigen::MatrixXd NodeReach::through(const Eigen::MatrixXd& of_terms) const {
+  return table_->weights.asDiagonal() * (table_->values * of_terms);
+}
+
+PointsReach NodeReach::points(Eigen::Index piece, const Eigen::VectorXd& shares) const {
+  const Eigen::Index Q = table_->nodes.size();
+  Eigen::VectorXd values(Q);
+  Eigen::MatrixXd integrals(Q, shares.size());
+  for (Eigen::Index j = 0; j < shares.size(); ++j) legendre(shares[j], values, integrals.col(j));
+  const double length = pieces_[static_cast<std::size_t>(piece)].length;
+  return {begin(piece), piece * Q, length * through(integrals)};
 }
 
 PointsReach NodeReach::along(Eigen::Index piece) const {
@@ -59,26 +86,67 @@ PointsReach NodeReach::along(Eigen::Index piece) const {
   return {begin(piece), first, std::move(own)};
 }
 
+Eigen::VectorXd NodeReach::at(double s) const {
+  const auto ends_before = [s](const Piece& piece) { return piece.end() <= s; };
+  const Eigen::Index piece = std::min<Eigen::Index>(
+      std::count_if(pieces_.begin(), pieces_.end(), ends_before), std::ssize(pieces_) - 1);
+  const Piece& own = pieces_[static_cast<std::size_t>(piece)];
+  return points(piece, Eigen::VectorXd::Constant(1, (s - own.begin) / own.length)).weights(0);
+}
+
 NodeReach::Point NodeReach::at(Eigen::Index piece, double s) const {
   const Eigen::Index Q = table_->nodes.size();
   const Piece& own = pieces_[static_cast<std::size_t>(piece)];
   const double xi = (s - own.begin) / own.length;
-  Eigen::VectorXd values(Q);
-  Eigen::VectorXd integrals(Q);
-  Eigen::VectorXd slopes(Q);
-  legendre(xi, values, integrals);
-  legendre_slopes(xi, slopes);
-  // Of the polynomial through what is given at the nodes.
-  const auto through = [&](const Eigen::VectorXd& of_terms) -> Eigen::VectorXd {
-    return table_->weights.cwiseProduct(table_->values * of_terms);
-  };
+  Eigen::MatrixXd of_terms(Q, 3);
+  legendre(xi, of_terms.col(1), of_terms.col(0));
+  legendre_slopes(xi, of_terms.col(2));
+  const Eigen::MatrixXd weights = through(of_terms);
   Point point;
   point.position = begin(piece);
-  point.position.segment(piece * Q, Q) += own.length * through(integrals);
+  point.position.segment(piece * Q, Q) += own.length * weights.col(0);
   point.tangent = point.curvature = Eigen::VectorXd::Zero(weights_.size());
-  point.tangent.segment(piece * Q, Q) = through(values);
-  point.curvature.segment(piece * Q, Q) = through(slopes) / own.length;
+  point.tangent.segment(piece * Q, Q) = weights.col(1);
+  point.curvature.segment(piece * Q, Q) = weights.col(2) / own.length;
   return point;
+}
+
+SpanReach::SpanReach(const NodeReach& reach) : nodes_(reach.nodes().size()) {
+  const Eigen::Index count = std::ssize(reach.pieces());
+  const Eigen::Index Q = nodes_ / count;
+  weights_.setZero(count * (Q + 2));
+  for (Eigen::Index e = 0; e < count; ++e) {
+    pieces_.push_back(reach.along(e));
+    weights_.segment(e * (Q + 2) + 1, Q) = reach.weights().segment(e * Q, Q);
+  }
+}
+
+Eigen::VectorXd SpanReach::weighed(const std::vector<double>& per_length) const {
+  Eigen::VectorXd result = weights_;
+  for (std::size_t e = 0; e < per_length.size(); ++e) {
+    result.segment(begin(static_cast<Eigen::Index>(e)), piece_points()) *= per_length[e];
+  }
+  return result;
+}
+
+Eigen::MatrixXd SpanReach::sums(const Eigen::MatrixXd& by_node) const {
+  Eigen::MatrixXd result(points(), by_node.cols());
+  for (Eigen::Index e = 0; e < std::ssize(pieces_); ++e) {
+    result.middleRows(begin(e), piece_points()) =
+        pieces_[static_cast<std::size_t>(e)].sums(by_node);
+  }
+  return result;
+}
+
+Eigen::MatrixXd SpanReach::spread(const Eigen::MatrixXd& by_point) const {
+  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(nodes_, by_point.cols());
+  Eigen::MatrixXd of_piece(nodes_, by_point.cols());
+  for (Eigen::Index e = 0; e < std::ssize(pieces_); ++e) {
+    pieces_[static_cast<std::size_t>(e)].spread(by_point.middleRows(begin(e), piece_points()),
+                                                of_piece);
+    result += of_piece;
+  }
+  return result;
 }
 
 }  // namespace dlo::energy_model

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace dlo::energy_model {
 
@@ -25,5 +27,11 @@ struct Piece {
     return std::sqrt(length / stiffness[field]);
   }
 };
+
+/// How many pieces lie before an arc length at which one begins or ends.
+[[nodiscard]] inline Eigen::Index pieces_before(const std::vector<Piece>& pieces, double s) {
+  return std::count_if(pieces.begin(), pieces.end(),
+                       [s](const Piece& piece) { return piece.begin + piece.length / 2 < s; });
+}
 
 }  // namespace dlo::energy_model

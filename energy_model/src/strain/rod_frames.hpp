@@ -21,6 +21,12 @@ struct FrameGradient {
   std::span<const Eigen::Vector3d> couples;
 };
 
+/// How cross-sections turn: at the pieces' nodes (nodes x 3) and at the end.
+struct FrameSpins {
+  Eigen::MatrixX3d velocities, accelerations;
+  Eigen::Vector3d end_velocity, end_acceleration;
+};
+
 /// A rod's directors in space from its body strains,
 ///     R' = R hat(u),  R = (d1, d2, t),  u = natural strains + what the rod's energy is of,
 /// the latter expanded in orthonormal Legendre polynomials on every piece (Piece), so that energy
@@ -118,6 +124,16 @@ class RodFrames {
   /// Derivatives of the tangents at the nodes by x: three matrices, one an axis, nodes x unknowns.
   [[nodiscard]] std::array<Eigen::MatrixXd, 3> tangent_jacobian(State& state) const;
 
+  /// Angular velocities and accelerations in space of a rod whose unknowns have these rates v and
+  /// accelerations a,
+  ///     omega_s = R u',  alpha_s = R u'' + omega x R u',
+  /// collocated as the directors are.
+  /// @param spin, spin_rate  of the start, without the turn of a free one
+  [[nodiscard]] FrameSpins spins(const Eigen::Ref<const Eigen::VectorXd>& v,
+                                 const Eigen::Ref<const Eigen::VectorXd>& a,
+                                 const Eigen::Vector3d& spin, const Eigen::Vector3d& spin_rate,
+                                 const State& state) const;
+
   /// Coefficients whose tangents at the nodes are these (3 x nodes), by least squares on each
   /// piece; without twist.
   /// @param most_steps  of Newton's method towards them
@@ -145,6 +161,9 @@ class RodFrames {
   [[nodiscard]] static const Eigen::MatrixX3d& director(const State& state, Eigen::Index field) {
     return field == 0 ? state.d1 : field == 1 ? state.d2 : state.t;
   }
+  [[nodiscard]] Eigen::MatrixX3d strains_in_space(const Panel& panel,
+                                                  const Eigen::Ref<const Eigen::VectorXd>& rates,
+                                                  const State& state) const;
   void resize_for_hessian(State& state) const;
   void integrate(const Panel& panel, Eigen::Quaterniond& at, State& state) const;
   void multiply_by_strains(const Eigen::Ref<const Eigen::MatrixX4d, 0, Eigen::OuterStride<>>& q,

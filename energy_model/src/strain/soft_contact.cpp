@@ -9,16 +9,18 @@
 namespace dlo::energy_model {
 
 void SoftContact::reset(const Span& span, const std::vector<Piece>& pieces,
-                        const LegendreTable& table, const Eigen::VectorXd& nodes,
-                        const Eigen::VectorXd& weights) {
+                        const LegendreTable& table) {
   obstacles_ = span.soft_obstacles;
   if (!any()) return;
-  weights_ = weights;
-  const NodeReach reach(span, pieces, table, nodes, weights);
+  const NodeReach reach(span, pieces, table);
+  weights_ = reach.weights();
   const Eigen::Index Q = table.nodes.size();
-  position_.resize(nodes.size(), nodes.size());
+  position_.resize(weights_.size(), weights_.size());
   for (Eigen::Index e = 0; e < std::ssize(pieces); ++e) {
-    position_.middleRows(e * Q, Q) = reach.of_nodes(e).transpose();
+    const PointsReach along = reach.along(e);
+    for (Eigen::Index q = 0; q < Q; ++q) {
+      position_.row(e * Q + q) = along.weights(q + 1).transpose();
+    }
   }
   pressed_.assign(obstacles_.size(), {});
 }
@@ -27,16 +29,13 @@ double SoftContact::add(const Eigen::MatrixX3d& tangents, Eigen::MatrixX3d& forc
   const Eigen::MatrixX3d points = position_ * tangents;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     const Span::SoftObstacle& obstacle = obstacles_[i];
-    const double k = obstacle.stiffness;
     pressed_[i].clear();
     // p = max(0, -k d), energy p^2 / 2k, d the clearance
     for (Eigen::Index q = 0; q < weights_.size(); ++q) {
       const Eigen::Vector3d point = points.row(q);
       if (obstacle.body.clearance(point) >= 0) continue;
       pressed_[i].push_back({q, obstacle.body.gap(point)});
-      const obstacle::Gap& gap = pressed_[i].back().gap;
-      const double push = -weights_[q] * k * gap.value;
-      force.noalias() += push * position_.row(q).transpose() * gap.gradient.transpose();
+      force.noalias() += position_.row(q).transpose() * push(i, pressed_[i].back()).transpose();
     }
   }
   return energy();

@@ -16,9 +16,7 @@ namespace dlo::energy_model {
 /// Contact of a span's quadrature nodes with its soft obstacles, which are one-sided springs.
 class SoftContact {
  public:
-  /// @param nodes, weights  of the span's quadrature
-  void reset(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table,
-             const Eigen::VectorXd& nodes, const Eigen::VectorXd& weights);
+  void reset(const Span& span, const std::vector<Piece>& pieces, const LegendreTable& table);
 
   [[nodiscard]] bool any() const { return !obstacles_.empty(); }
 

@@ -47,20 +47,6 @@ double nearest_turn(double angle, double target) {
 
 }  // namespace
 
-void SpanEnergy::tabulate_nodes() {
-  table_ = span_.planar ? &legendre_table(terms_) : &director_table(terms_);
-  const Eigen::Index Q = table_->nodes.size();
-  const auto count = static_cast<Eigen::Index>(pieces_.size());
-  columns_ = free_start_ + count * terms_;
-  s_.resize(count * Q);
-  weights_.resize(count * Q);
-  for (Eigen::Index e = 0; e < count; ++e) {
-    const Piece& piece = pieces_[static_cast<std::size_t>(e)];
-    s_.segment(e * Q, Q) = piece.begin + piece.length * table_->nodes.array();
-    weights_.segment(e * Q, Q) = piece.length * table_->weights;
-  }
-}
-
 void SpanEnergy::tabulate_angles() {
   const Eigen::Index Q = table_->nodes.size();
   const Eigen::Index K = terms_;
@@ -107,20 +93,14 @@ void SpanEnergy::tabulate_forces() {
     }
     force_.row(q) = weights_[q] * n.transpose();
   }
-  reach_.setZero(nodes, static_cast<Eigen::Index>(span_.holds.size()));
-  const Eigen::Index Q = table_->nodes.size();
-  reach_signs_.assign(span_.holds.size(), std::vector<double>(pieces_.size(), 0));
+  reach_.resize(nodes, std::ssize(span_.holds));
+  reach_signs_.clear();
+  if (span_.holds.empty()) return;
+  const NodeReach reach(span_, pieces_, *table_);
   for (Eigen::Index j = 0; j < reach_.cols(); ++j) {
     const double at = span_.holds[static_cast<std::size_t>(j)].at;
-    for (Eigen::Index q = 0; q < nodes; ++q) {
-      if (s_[q] > span_.anchor && s_[q] < at) reach_(q, j) = weights_[q];
-      if (s_[q] < span_.anchor && s_[q] > at) reach_(q, j) = -weights_[q];
-    }
-    for (std::size_t e = 0; e < pieces_.size(); ++e) {
-      // All nodes of a piece are on one side of the grips.
-      const Eigen::Index q = static_cast<Eigen::Index>(e) * Q;
-      reach_signs_[static_cast<std::size_t>(j)][e] = reach_(q, j) / weights_[q];
-    }
+    reach_.col(j) = reach.begin(pieces_before(pieces_, at));
+    reach_signs_.push_back(reach.signs(at));
   }
 }
 
@@ -141,10 +121,14 @@ void SpanEnergy::reset(const Span& span, int terms) {
   axes_ = span.planar ? 2 : 3;
   free_start_ = span.start_direction ? 0 : 1;
   pieces_ = std::move(pieces);
-  if (!has_angles) tabulate_nodes();
+  if (!has_angles) {
+    table_ = span.planar ? &legendre_table(terms) : &director_table(terms);
+    columns_ = free_start_ + std::ssize(pieces_) * terms;
+    tabulate_nodes(pieces_, *table_, s_, weights_);
+  }
   tabulate_forces();
   if (span.twist) twist_root_ = std::sqrt(span.twist->stiffness / span.length);
-  contacts_.reset(span, pieces_, terms, *table_, s_, weights_);
+  contacts_.reset(span, pieces_, terms, *table_);
   list_director_rows();
   constraints_ = first_director_row() + static_cast<Eigen::Index>(director_rows_.size());
   const Eigen::Index nodes = s_.size();
@@ -173,7 +157,7 @@ void SpanEnergy::reset(const Span& span, int terms) {
   x_.setZero(size());
   gradient_.setZero(size());
   evaluated_ = false;
-  soft_contact_.reset(span_, pieces_, *table_, s_, weights_);
+  soft_contact_.reset(span_, pieces_, *table_);
 }
 
 /// The directions of the clamps inside the span and at its end; there of d1 too if it is held.
@@ -188,11 +172,7 @@ void SpanEnergy::list_director_rows() {
   for (Eigen::Index j = 0; j < holds; ++j) {
     const Span::Hold& hold = span_.holds[static_cast<std::size_t>(j)];
     if (!hold.direction) continue;
-    const auto ends_there = [&](const Piece& piece) {
-      return std::abs(piece.end() - hold.at) < closest_cuts;
-    };
-    const auto piece = std::find_if(pieces_.begin(), pieces_.end(), ends_there);
-    add(j, piece - pieces_.begin(), *hold.direction);
+    add(j, pieces_before(pieces_, hold.at) - 1, *hold.direction);
   }
   if (!span_.end_direction) return;
   add(holds - 1, pieces() - 1, *span_.end_direction);
@@ -682,14 +662,12 @@ Energies SpanEnergy::energies(const Eigen::VectorXd& x) {
   const Eigen::Index bends = std::min<Eigen::Index>(fields(), 2) * columns_;
   energies.bending = stored.head(bends).squaredNorm() / 2;
   energies.twisting = stored.tail(stored.size() - bends).squaredNorm() / 2;
-  // A load's point is the sum of the tangents between it and the anchor.
-  for (const Span::Load& load : span_.loads) {
-    Eigen::Vector3d point = Eigen::Vector3d::Zero();
-    for (Eigen::Index q = 0; q < s_.size(); ++q) {
-      if (s_[q] > span_.anchor && s_[q] < load.at) point += weights_[q] * t_.row(q).transpose();
-      if (s_[q] < span_.anchor && s_[q] > load.at) point -= weights_[q] * t_.row(q).transpose();
+  if (!span_.loads.empty()) {
+    const NodeReach reach(span_, pieces_, *table_);
+    for (const Span::Load& load : span_.loads) {
+      const Eigen::VectorXd at = reach.begin(pieces_before(pieces_, load.at));
+      energies.load -= load.force.dot(t_.transpose() * at);
     }
-    energies.load -= load.force.dot(point);
   }
   energies.gravity = -force_.cwiseProduct(t_).sum() - energies.load;
   energies.contact = soft_contact_.energy();

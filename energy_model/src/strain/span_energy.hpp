@@ -165,7 +165,6 @@ class SpanEnergy {
     return 2 * columns_ + free_start_ + piece * terms_;
   }
   [[nodiscard]] bool has_psi() const { return span_.twist && !span_.has_material_directors(); }
-  void tabulate_nodes();
   void tabulate_angles();
   void tabulate_natural_angles();
   void tabulate_forces();

@@ -16,13 +16,24 @@ double total_mass(const Problem& problem, const Inertia& inertia) {
   return mass;
 }
 
-double mass_per_length(const Problem& problem, const Inertia& inertia, double at) {
+std::vector<double> masses_per_length(const Problem& problem, const Inertia& inertia,
+                                      const PlacedSpan& placed, const std::vector<Piece>& pieces) {
+  std::vector<double> result(pieces.size(), inertia.mass_per_length * problem.length);
   for (std::size_t i = 0; i < problem.sections.size(); ++i) {
-    if (at > problem.sections[i].begin && at < problem.sections[i].end) {
-      return inertia.of_sections[i];
+    const double begin = placed.s_of(problem.sections[i].begin, problem.length);
+    const double end = placed.s_of(problem.sections[i].end, problem.length);
+    for (std::size_t e = 0; e < pieces.size(); ++e) {
+      const double middle = pieces[e].begin + pieces[e].length / 2;
+      if ((begin < middle) == (middle < end)) result[e] = inertia.of_sections[i] * problem.length;
     }
   }
-  return inertia.mass_per_length;
+  return result;
+}
+
+Eigen::MatrixXd mass_matrix(const SpanReach& reach, const Eigen::VectorXd& masses,
+                            const Eigen::MatrixXd& tangents) {
+  const Eigen::MatrixXd moved = masses.cwiseSqrt().asDiagonal() * reach.sums(tangents);
+  return moved.transpose() * moved;
 }
 
 void check(const Problem& problem, const Inertia& inertia, std::string_view function) {

@@ -22,7 +22,7 @@ Eigen::MatrixXd directions_left(const Eigen::MatrixXd& jacobian) {
 }
 
 /// Modes of one frequency are any two that span them; these are told apart by where they move.
-void separate(SpanModes& modes, const Eigen::MatrixXd& last) {
+void separate(SpanModes& modes, const Eigen::MatrixXd& outside) {
   constexpr double same = 1e-7;
   const Eigen::Index count = modes.lambdas.size();
   for (Eigen::Index begin = 0; begin < count;) {
@@ -33,8 +33,8 @@ void separate(SpanModes& modes, const Eigen::MatrixXd& last) {
     }
     if (end - begin > 1) {
       auto equal = modes.shapes.middleCols(begin, end - begin);
-      const Eigen::MatrixXd outside = equal.transpose() * last * equal;
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turned(outside);
+      const Eigen::MatrixXd of_equal = equal.transpose() * outside * equal;
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> turned(of_equal);
       equal = (equal * turned.eigenvectors()).eval();
     }
     begin = end;
@@ -44,22 +44,23 @@ void separate(SpanModes& modes, const Eigen::MatrixXd& last) {
 }  // namespace
 
 SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
-                     const std::array<Eigen::MatrixXd, 3>& masses, Eigen::Index count) {
+                     const Eigen::MatrixXd& mass, const Eigen::MatrixXd& outside,
+                     Eigen::Index count) {
   const Eigen::MatrixXd free = directions_left(jacobian);
   const Eigen::MatrixXd stiffness = free.transpose() * hessian * free;
-  const Eigen::MatrixXd mass = free.transpose() * (masses[0] + masses[1] + masses[2]) * free;
+  const Eigen::MatrixXd free_mass = free.transpose() * mass * free;
   // 1 / (lambda + shift) are eigenvalues of M against H + shift M, which has to be definite: of an
   // unstable shape, or one that turns for nothing, only with a shift. So the lowest come out best.
-  double shift = 1 / mass.trace();
+  double shift = 1 / free_mass.trace();
   Eigen::LLT<Eigen::MatrixXd> factor;
   constexpr int most_shifts = 40;
   for (int i = 0; i < most_shifts; ++i, shift *= 8) {
-    factor.compute(stiffness + shift * mass);
+    factor.compute(stiffness + shift * free_mass);
     if (factor.info() == Eigen::Success) break;
   }
   SpanModes modes;
   if (factor.info() != Eigen::Success) return modes;
-  Eigen::MatrixXd inverse = factor.matrixL().solve(mass);
+  Eigen::MatrixXd inverse = factor.matrixL().solve(free_mass);
   inverse = factor.matrixL().solve(inverse.transpose()).eval();
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(inverse);
   const Eigen::VectorXd& values = solver.eigenvalues();  // growing
@@ -77,8 +78,8 @@ SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jaco
   for (Eigen::Index k = 0; k < found; ++k) {
     modes.shapes.col(k) *= std::sqrt(modes.lambdas[k] + shift);
   }
-  separate(modes, masses[2]);
-  modes.outside = (modes.shapes.transpose() * masses[2] * modes.shapes).diagonal();
+  separate(modes, outside);
+  modes.outside = (modes.shapes.transpose() * outside * modes.shapes).diagonal();
   return modes;
 }
 

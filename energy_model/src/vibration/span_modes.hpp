@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 
 namespace dlo::energy_model {
 
@@ -9,14 +8,15 @@ namespace dlo::energy_model {
 struct SpanModes {
   Eigen::VectorXd lambdas;
   Eigen::MatrixXd shapes;   ///< v, by column, v^T M v = 1
-  Eigen::VectorXd outside;  ///< share of the kinetic energy along the last axis [-]
+  Eigen::VectorXd outside;  ///< share of the kinetic energy of the movement outside [-]
 };
 
-/// @param masses    by axis of movement; M is their sum
-/// @param count     of modes, fewer if there are not as many that have inertia
-/// Modes of one frequency are those that move along the last axis most and least.
+/// @param mass     M
+/// @param outside  of it, that of the movement along an axis
+/// @param count    of modes, fewer if there are not as many that have inertia
+/// Modes of one frequency are those that move outside most and least.
 [[nodiscard]] SpanModes span_modes(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian,
-                                   const std::array<Eigen::MatrixXd, 3>& masses,
+                                   const Eigen::MatrixXd& mass, const Eigen::MatrixXd& outside,
                                    Eigen::Index count);
 
 }  // namespace dlo::energy_model

@@ -1,10 +1,7 @@
 #include "dlo/energy_model/vibrations.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -12,255 +9,21 @@
 
 #include "base/deadline.hpp"
 #include "base/require.hpp"
-#include "base/sized_samples.hpp"
 #include "problem/rod_law.hpp"
 #include "problem/split.hpp"
 #include "search/known_shape.hpp"
+#include "strain/span_energy.hpp"
 #include "vibration/inertia.hpp"
-#include "vibration/span_modes.hpp"
-#include "vibration/span_motion.hpp"
+#include "vibration/resolved_vibrations.hpp"
 
 namespace dlo::energy_model {
 namespace {
-
-/// What a mode has of its kinetic energy elsewhere may be rounding.
-constexpr double rounding_share = 1e-9;
-/// Components of tangents across its plane that a planar shape may have.
-constexpr double plane_rounding = 1e-9;
-
-/// By which tangents of one equilibrium that was solved twice may differ.
-constexpr double found_again = 1e-6;
-/// Of omega_squared, over EI / (m l^3): what is less is a rod that turns for nothing, and rounding.
-constexpr double neutral_share = 1e-2;
 
 void check_options(const VibrationOptions& options) {
   const char* where = "vibrations";
   require(options.count > 0, where, "count", options.count, "> 0");
   require(options.tolerance > 0, where, "tolerance", options.tolerance, "> 0");
   require(options.time_limit > 0, where, "time_limit", options.time_limit, "> 0");
-}
-
-/// Axes of which the last one is across the plane of a shape.
-struct ShapeAxes {
-  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
-  bool flat = false;  ///< there is such a plane
-};
-
-/// @param tangents  3 x nodes
-ShapeAxes shape_axes(const Eigen::Matrix3Xd& tangents) {
-  ShapeAxes result;
-  result.flat = tangents.row(2).cwiseAbs().maxCoeff() < plane_rounding;
-  if (result.flat) return result;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(tangents * tangents.transpose());
-  result.rows = solver.eigenvectors().rowwise().reverse().transpose();
-  result.flat = (result.rows.row(2) * tangents).cwiseAbs().maxCoeff() < plane_rounding;
-  return result;
-}
-
-/// One span with its modes.
-struct VibratingSpan {
-  PlacedSpan placed;
-  std::shared_ptr<SpanEnergy> model;
-  SpanMotion motion;
-  SpanModes modes;
-  ShapeAxes axes;
-
-  [[nodiscard]] double begin(double length) const {
-    return placed.reversed ? placed.start - placed.span.length * length : placed.start;
-  }
-  [[nodiscard]] double end(double length) const {
-    return begin(length) + placed.span.length * length;
-  }
-};
-
-/// The spans of a rod at rest with so many terms, bent out of their planes too.
-using SpansAtRest = std::function<std::vector<PlacedSolution>(int terms, SpanWorkspace&)>;
-
-class RodVibrations {
- public:
-  /// @param known  shape that `spans` has to find again; null: there is no other one
-  RodVibrations(const Problem& problem, const Inertia& inertia, SpansAtRest spans,
-                const Equilibrium* known, const VibrationOptions& options)
-      : problem_(problem),
-        inertia_(inertia),
-        spans_at_rest_(std::move(spans)),
-        known_(known),
-        count_(options.count) {}
-
-  /// @return why there are none; empty: there are
-  [[nodiscard]] std::string find(int terms) {
-    spans_.clear();
-    farthest_ = 0;
-    for (PlacedSolution& found : spans_at_rest_(terms, workspace_)) {
-      SpanSolution& solution = found.solution;
-      if (!solution.is_equilibrium() && solution.status != SolveStatus::near_singular) {
-        return solution.message;
-      }
-      add(found);
-    }
-    return {};
-  }
-
-  /// Modes of all spans together, the slowest first.
-  [[nodiscard]] std::vector<VibrationMode> modes() const {
-    std::vector<VibrationMode> result;
-    for (const std::shared_ptr<const VibratingSpan>& span : spans_) {
-      for (Eigen::Index k = 0; k < span->modes.lambdas.size(); ++k) {
-        result.push_back(mode(span, k));
-      }
-    }
-    std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) {
-      return a.omega_squared < b.omega_squared;
-    });
-    if (result.size() > static_cast<std::size_t>(count_)) {
-      result.resize(static_cast<std::size_t>(count_));
-    }
-    return result;
-  }
-
-  /// Whether the shape that vibrates is the known one: Newton's method may have gone to another,
-  /// and with few terms it is not resolved.
-  [[nodiscard]] bool is_known() const { return farthest_ <= found_again; }
-
-  /// Unknowns of the largest span.
-  [[nodiscard]] Eigen::Index unknowns() const {
-    Eigen::Index most = 0;
-    for (const auto& span : spans_) most = std::max(most, span->model->size());
-    return most;
-  }
-
- private:
-  void add(const PlacedSolution& found) {
-    const PlacedSpan& placed = found.placed;
-    const std::shared_ptr<SpanEnergy>& model = found.solution.model;
-    Eigen::VectorXd gradient(model->size());
-    (void)model->value(found.solution.x, gradient);
-    if (known_ != nullptr) {
-      const Eigen::Matrix3Xd known =
-          field_of(*known_, placed, problem_.length)(model->nodes()).tangents;
-      farthest_ = std::max(farthest_, (known - model->tangents()).cwiseAbs().maxCoeff());
-    }
-    Eigen::VectorXd residual(model->constraints());
-    Eigen::MatrixXd jacobian(model->constraints(), model->size());
-    model->constraint(residual, jacobian);
-    Eigen::MatrixXd hessian;
-    model->hessian(found.solution.multipliers, hessian);
-    const ShapeAxes axes = shape_axes(model->tangents());
-    auto span = std::make_shared<VibratingSpan>(
-        VibratingSpan{placed, model, SpanMotion(*model, axes.rows), {}, axes});
-    const double l = problem_.length;
-    const auto per_length = [&](Eigen::Index e) {
-      const Piece& piece = model->piece(e);
-      const double middle = piece.begin + piece.length / 2;
-      const double at = placed.start + (placed.reversed ? -middle : middle) * l;
-      return l * mass_per_length(problem_, inertia_, at);
-    };
-    std::vector<SpanMass> points;
-    for (const PointMass& point : inertia_.point_masses) {
-      const double s = placed.s_of(point.at, l);
-      // One at a clamp between two spans stands, in whichever it is counted.
-      if (s >= 0 && s <= placed.span.length) points.push_back({s, point.mass});
-    }
-    // Two of one frequency are told apart together.
-    span->modes =
-        span_modes(hessian, jacobian, span->motion.masses(per_length, points), count_ + 1);
-    spans_.push_back(std::move(span));
-  }
-
-  [[nodiscard]] VibrationMode mode(const std::shared_ptr<const VibratingSpan>& span,
-                                   Eigen::Index k) const {
-    const double l = problem_.length;
-    VibrationMode result;
-    result.omega_squared = span->modes.lambdas[k] * bending_unit(problem_) / (l * l * l);
-    const double outside = span->modes.outside[k];
-    if (span->axes.flat) {
-      result.plane = outside < rounding_share       ? ModePlane::in
-                     : outside > 1 - rounding_share ? ModePlane::out
-                                                    : ModePlane::mixed;
-    }
-    result.begin = span->begin(l);
-    result.end = span->end(l);
-    const auto moved = [span, l](double at, const Eigen::VectorXd& unknowns) {
-      const double s = std::clamp(span->placed.s_of(at, l), 0.0, span->placed.span.length);
-      const Eigen::Vector3d own = span->axes.rows.transpose() * (span->motion.at(s) * unknowns);
-      return Eigen::Vector3d(span->placed.frame.transpose() * own);
-    };
-    // Of the farthest of so many points.
-    constexpr int looks = 400;
-    const Eigen::VectorXd shape = span->modes.shapes.col(k);
-    Eigen::Vector3d farthest = Eigen::Vector3d::Zero();
-    for (int i = 0; i <= looks; ++i) {
-      const Eigen::Vector3d here =
-          moved(result.begin + (result.end - result.begin) * i / looks, shape);
-      if (here.norm() > farthest.norm()) farthest = here;
-    }
-    Eigen::Index axis = 0;
-    farthest.cwiseAbs().maxCoeff(&axis);
-    const Eigen::VectorXd scaled = shape / std::copysign(farthest.norm(), farthest[axis]);
-    result.shape = [moved, scaled, l, begin = result.begin,
-                    end = result.end](std::span<const double> arc_lengths) {
-      Eigen::Matrix3Xd points = sized_samples(arc_lengths, l).points;
-      for (std::size_t i = 0; i < arc_lengths.size(); ++i) {
-        const bool on_span = arc_lengths[i] >= begin && arc_lengths[i] <= end;
-        points.col(static_cast<Eigen::Index>(i)) =
-            on_span ? moved(arc_lengths[i], scaled) : Eigen::Vector3d::Zero();
-      }
-      return points;
-    };
-    return result;
-  }
-
-  const Problem& problem_;
-  const Inertia& inertia_;
-  SpansAtRest spans_at_rest_;
-  const Equilibrium* known_;
-  Eigen::Index count_;
-  SpanWorkspace workspace_;
-  std::vector<std::shared_ptr<const VibratingSpan>> spans_;
-  double farthest_ = 0;  // component by which tangents are not the known shape's
-};
-
-/// With more and more terms, until the modes do not change.
-Vibrations resolved(RodVibrations& rod, const Problem& problem, const Inertia& inertia,
-                    const VibrationOptions& options) {
-  Vibrations result;
-  result.status = SolveStatus::failed;
-  int terms = std::max(16, options.count + 8);
-  std::vector<double> last;
-  const double neutral_square = neutral_share * bending_unit(problem) /
-                                (total_mass(problem, inertia) * std::pow(problem.length, 3));
-  while (true) {
-    const std::string problem_found = rod.find(terms);
-    if (!problem_found.empty()) {
-      result.message = problem_found;
-      return result;
-    }
-    result.modes = rod.modes();
-    result.terms = terms;
-    const bool as_many = result.modes.size() == last.size();
-    double largest = 0;
-    for (std::size_t i = 0; i < result.modes.size() && i < last.size(); ++i) {
-      const double square = result.modes[i].omega_squared;
-      // d omega / omega is half of that of the square.
-      result.modes[i].error =
-          std::abs(square - last[i]) / (2 * std::max(std::abs(square), neutral_square));
-      largest = std::max(largest, result.modes[i].error);
-    }
-    if (as_many && largest <= options.tolerance && rod.is_known()) {
-      result.status = SolveStatus::converged;
-      result.message = to_string(result.status);
-      return result;
-    }
-    last.clear();
-    for (const VibrationMode& mode : result.modes) last.push_back(mode.omega_squared);
-    const int next = terms + std::max(6, terms / 2);
-    if (next > max_terms || rod.unknowns() * next > Eigen::Index{most_unknowns} * terms) break;
-    terms = next;
-  }
-  result.status = SolveStatus::not_resolved;
-  result.message = rod.is_known() ? "the slowest modes still change with the number of terms"
-                                  : "the shape is not found again with the terms of its modes";
-  return result;
 }
 
 /// Rounding of what holds a rod straight.
@@ -316,13 +79,12 @@ Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equi
     return result;
   }
   const Deadline deadline(options.time_limit);
-  RodVibrations rod(
+  return resolved_vibrations(
       problem, inertia,
       [&](int terms, SpanWorkspace& workspace) {
         return spans_in_space(problem, known, terms, deadline, workspace);
       },
       &known, options);
-  return resolved(rod, problem, inertia, options);
 }
 
 bool is_held_straight(const Problem& problem) {
@@ -353,7 +115,7 @@ Vibrations taut_vibrations(const Problem& problem, const Inertia& inertia, doubl
                                 ": clamps do not hold the rod straight along its whole length");
   }
   const double force_unit = bending_unit(problem) / (problem.length * problem.length);
-  RodVibrations rod(
+  return resolved_vibrations(
       slack, inertia,
       [&](int terms, SpanWorkspace& workspace) {
         std::vector<PlacedSolution> spans;
@@ -376,7 +138,6 @@ Vibrations taut_vibrations(const Problem& problem, const Inertia& inertia, doubl
         return spans;
       },
       nullptr, options);
-  return resolved(rod, slack, inertia, options);
 }
 
 }  // namespace dlo::energy_model
