@@ -83,13 +83,13 @@ void FreeHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
   independent_ = (diagonal_.array().abs() > dependent * largest).all();
 }
 
-/// Factors Z^T H Z less a multiple of one. @return whether it is positive definite
-bool FreeHessian::factor(double shift, Eigen::MatrixXd& lower) const {
+/// Factors Z^T H Z + mu. @return whether it is positive definite
+bool FreeHessian::factor(double mu, Eigen::MatrixXd& lower) const {
   const Eigen::Index left = free();
   lower.resize(padded(left), left);
   lower.topRows(left) = turned_.bottomRightCorner(left, left);
   lower.bottomRows(lower.rows() - left).setZero();
-  lower.diagonal().array() -= shift;
+  lower.diagonal().array() += mu;
   return dense_kernel().factor({lower.data(), left, left, lower.rows()});
 }
 
@@ -137,66 +137,6 @@ FreeHessian::Balance FreeHessian::balance(const Eigen::VectorXd& gradient) {
 }
 
 void FreeHessian::solve_free(Eigen::VectorXd& z) const { solve_by(factor_, z); }
-
-/// By Newton's method on 1 / |z(mu)|, which is all but straight, between bounds of mu: below the
-/// lower one Z^T H Z + mu is not positive definite, or z too long (Moré and Sorensen, 1983).
-bool FreeHessian::solve_within(double length, Eigen::VectorXd& z) {
-  constexpr int most_steps = 40;
-  constexpr double longest = 1.01;   // over `length`
-  constexpr double shortest = 0.75;  // likewise
-  constexpr double closed = 1e-2;    // bounds are one another
-  right_ = z;
-  double low = 0;
-  double high = std::numeric_limits<double>::infinity();
-  double mu = 0;
-  const auto turned = turned_.bottomRightCorner(free(), free());
-  // An eigenvalue that is zero but for rounding.
-  const double least =
-      std::numeric_limits<double>::epsilon() * turned.diagonal().cwiseAbs().maxCoeff();
-  if (!definite_) {
-    low = std::max(0.0, -turned.diagonal().minCoeff());
-    mu = 1.1 * low + right_.norm() / length;
-  }
-  const auto between = [&] {
-    if (std::isinf(high)) return std::max(4 * mu, least);
-    return low > 0.1 * high ? (low + high) / 2 : std::sqrt(std::max(low, 1e-4 * high) * high);
-  };
-  for (int step = 0; step < most_steps; ++step) {
-    if (!factor(-mu, proof_)) {
-      low = mu;
-      mu = between();
-      continue;
-    }
-    z = right_;
-    solve_by(proof_, z);
-    const double size = z.norm();
-    if (!std::isfinite(size)) return false;
-    if (size <= longest * length && (size >= shortest * length || mu == 0)) return true;
-    if (size > length) {
-      low = mu;
-    } else {
-      high = mu;
-    }
-    if ((high - low <= closed * high || high <= least) && size < length) {
-      // Nothing pulls along the smallest eigenvalue.
-      along_.setLinSpaced(z.size(), 1, 2);
-      for (int i = 0; i < 3; ++i) {
-        along_.normalize();
-        solve_by(proof_, along_);
-      }
-      along_.normalize();
-      const double part = z.dot(along_);
-      const double rest = std::sqrt(part * part + length * length - size * size);
-      z += (part < 0 ? -part - rest : rest - part) * along_;
-      return true;
-    }
-    along_ = z;
-    solve_by(proof_, along_);
-    const double next = mu + size * size / z.dot(along_) * (size - length) / length;
-    mu = next > low && next < high ? std::max(next, least) : between();
-  }
-  return false;
-}
 
 void FreeHessian::compute(const Eigen::MatrixXd& hessian) {
   n_ = hessian.rows();
@@ -281,7 +221,7 @@ std::optional<double> FreeHessian::smallest_of_definite() {
   constexpr Eigen::Index most_steps = 24;
   if (!definite_ || free() == 0) return std::nullopt;
   const double smallest = 1 / look_for_smallest(settled, most_steps).largest;
-  if (!factor((1 - slack) * smallest, proof_)) return std::nullopt;
+  if (!factor_shifted(-(1 - slack) * smallest)) return std::nullopt;
   return smallest;
 }
 

@@ -34,11 +34,12 @@ class FreeHessian {
   [[nodiscard]] bool is_definite() const { return definite_; }
   /// z to (Z^T H Z)^-1 z, if it is positive definite.
   void solve_free(Eigen::VectorXd& z) const;
-  /// z to (Z^T H Z + mu)^-1 z with a mu >= 0 that makes Z^T H Z + mu positive definite and z about
-  /// as long as this, if it has to be shorter than without; where no mu does, along the smallest
-  /// eigenvalue as well.
-  /// @return whether it is; false if rounding is in the way
-  [[nodiscard]] bool solve_within(double length, Eigen::VectorXd& z);
+  /// Factors Z^T H Z + mu. @return whether it is positive definite, which solve_shifted() needs
+  [[nodiscard]] bool factor_shifted(double mu) { return factor(mu, shifted_); }
+  /// z to (Z^T H Z + mu)^-1 z, with the mu of the last factor_shifted()
+  void solve_shifted(Eigen::VectorXd& z) const { solve_by(shifted_, z); }
+  /// Of Z^T H Z.
+  [[nodiscard]] Eigen::VectorXd diagonal() const { return turned_.diagonal().tail(free()); }
 
   /// Whether Z^T H Z is positive definite (of no free direction it is) and the constraints are
   /// independent: what solve() needs.
@@ -75,7 +76,7 @@ class FreeHessian {
   void turn_back(Vector v) const;
   void solve_triangle(Vector mu) const;
   void solve_by(const Eigen::MatrixXd& lower, Vector z) const;
-  [[nodiscard]] bool factor(double shift, Eigen::MatrixXd& lower) const;
+  [[nodiscard]] bool factor(double mu, Eigen::MatrixXd& lower) const;
   /// Vectors krylov_ of Lanczos' method with the inverse, and the matrix that they make of it.
   struct Lanczos {
     Eigen::VectorXd along, beside;  // diagonal, and what is next to it
@@ -90,8 +91,8 @@ class FreeHessian {
   Eigen::MatrixXd triangle_;  // R above its diagonal
   Eigen::MatrixXd turned_;    // Q^T H Q
   Eigen::MatrixXd factor_;    // L
-  Eigen::MatrixXd proof_;     // of a shifted matrix
-  Eigen::VectorXd scratch_, turned_right_, right_, along_;
+  Eigen::MatrixXd shifted_;   // the same of a shifted matrix
+  Eigen::VectorXd scratch_, turned_right_;
   Eigen::MatrixXd krylov_;
 };
 

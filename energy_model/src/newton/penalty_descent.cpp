@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "linear/free_hessian.hpp"
-#include "newton/region_step.hpp"
+#include "linear/trust_region_step.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -69,11 +69,13 @@ class PenaltyDescent {
       if (out_of_time()) return false;
       const Eigen::VectorXd nu = forces();
       slope_ = gradient_ - jacobian_.transpose() * nu;
-      const bool flat = slope_.norm() <= precision * 1e-3 * (1 + options_.load + nu.norm());
       model_.hessian(nu, hessian_);
       hessian_.noalias() += kappa_ * jacobian_.transpose() * jacobian_;
       free_.compute(hessian_, Eigen::MatrixXd(0, hessian_.cols()));
-      const std::optional<Eigen::VectorXd> step = region_step(free_, slope_, radius, flat, 0);
+      const std::optional<Eigen::VectorXd> step = trust_region_step(
+          free_, slope_,
+          {.radius = radius,
+           .gradient_tolerance = precision * 1e-3 * (1 + options_.load + nu.norm())});
       if (!step) return true;
       const double predicted = -(slope_.dot(*step) + step->dot(hessian_ * *step) / 2);
       const Eigen::VectorXd before_x = solution_.x;

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "linear/free_hessian.hpp"
-#include "newton/region_step.hpp"
+#include "linear/trust_region_step.hpp"
 #include "newton/restore.hpp"
 
 namespace dlo::energy_model {
@@ -39,9 +39,7 @@ class TrustRegionDescent {
         return solution_.finish(SolveStatus::time_limit);
       }
       linearise(here);
-      const double slope = projected_gradient_.norm();
-      const bool flat = slope <= options_.gradient_tolerance * (1 + options_.load);
-      const std::optional<Eigen::VectorXd> step = best_step(radius, flat);
+      const std::optional<Eigen::VectorXd> step = best_step(radius);
       if (!step) {
         keep(here);
         return solution_.finish(SolveStatus::converged);
@@ -88,10 +86,13 @@ class TrustRegionDescent {
   }
 
   /// Step in the unknowns; nothing where the point is near a minimum already.
-  [[nodiscard]] std::optional<Eigen::VectorXd> best_step(double radius, bool flat) {
+  [[nodiscard]] std::optional<Eigen::VectorXd> best_step(double radius) {
     FreeHessian& hessian = dependent_ ? ranked_ : free_;
     const std::optional<Eigen::VectorXd> p =
-        region_step(hessian, projected_gradient_, radius, flat, options_.nearest);
+        trust_region_step(hessian, projected_gradient_,
+                          {.radius = radius,
+                           .gradient_tolerance = options_.gradient_tolerance * (1 + options_.load),
+                           .least_step = options_.nearest});
     if (!p) return std::nullopt;
     predicted_ = -(projected_gradient_.dot(*p) + p->dot(hessian.matrix() * *p) / 2);
     length_ = p->norm();
