@@ -34,20 +34,15 @@ constexpr double largest_change = 0.01;
 /// or less, those of positions three times counted, over the scale of forces.
 constexpr double largest_third_derivative = 4;
 
-/// Norm of Newton's step from here; in neutral directions it stands still.
+/// Norm of Newton's step from here; it has no part along near-null modes.
 double newton_step(NewtonSystem& system, const Eigen::VectorXd& gradient,
                    const Eigen::VectorXd& residual) {
   Eigen::VectorXd right(gradient.size() + residual.size());
   right << -gradient, -residual;
   Eigen::VectorXd step;
   system.solve(right, step);
-  if (!system.is_met(right, step, largest_next_step)) step = system.across_neutral(right);
+  if (!system.is_met(right, step, largest_next_step)) step = system.minimum_norm_step(right);
   return step.head(gradient.size()).norm();
-}
-
-/// Of forces.
-double scale_of(const SpanSolution& solution, double load) {
-  return 1 + load + solution.multipliers.norm();
 }
 
 /// Rounding of forces, whose scale is this.
@@ -57,7 +52,7 @@ double rounding_of(double scale) { return 8 * std::numeric_limits<double>::epsil
 /// what it is: what Newton's method would still move them by, and what rounding, the modes that are
 /// left out and kinks within pieces push, divided by the eigenvalue nearest to zero.
 double linear_error(const SpanSolution& solution, double load) {
-  const double scale = scale_of(solution, load);
+  const double scale = scale_of_forces(solution, load);
   // The angle that the last coefficient adds is a_K / (2K); forces feel it as little again.
   const double K = solution.terms;
   const double angle = solution.model->tail(solution.x) / (2 * K);
@@ -113,13 +108,13 @@ struct SoftMode {
   Eigen::VectorXd direction, multipliers;
 };
 
-SoftMode soft_mode(FreeHessian& on_free_directions, const Eigen::MatrixXd& hessian,
-                   const Eigen::MatrixXd& jacobian, Eigen::Index free) {
+SoftMode soft_mode(NewtonSystem& system, const Eigen::MatrixXd& jacobian, Eigen::Index free) {
   SoftMode mode;
-  mode.direction = direction_by_size(on_free_directions, free);
+  mode.direction = direction_by_size(system.on_free_directions(), free);
   mode.multipliers = Eigen::VectorXd::Zero(jacobian.rows());
   if (jacobian.rows() > 0) {
-    mode.multipliers = jacobian.transpose().householderQr().solve(hessian * mode.direction);
+    mode.multipliers =
+        jacobian.transpose().householderQr().solve(system.hessian() * mode.direction);
   }
   return mode;
 }
@@ -155,23 +150,24 @@ Softening softening(SpanSolution& solution, const SoftMode& mode) {
 }
 
 /// By how much the eigenvalues of the second variation on the free directions may differ from those
-/// at the point that Newton's factor is of: by third derivatives, and as the constraints turn what
-/// is free.
-double change_since(Newton& newton, const SpanSolution& solution, double scale) {
-  return newton.distance_of_factor(solution) * largest_third_derivative * scale /
-         std::min(1.0, newton.system().on_free_directions().least_constraint());
+/// at the point that the solution's factor is of: by third derivatives, and as the constraints turn
+/// what is free.
+double change_since_factor(const SpanSolution& solution, double scale) {
+  const NewtonFactor& factor = *solution.factor;
+  return factor.distance(solution, scale) * largest_third_derivative * scale /
+         std::min(1.0, factor.system.on_free_directions().least_constraint());
 }
 
 /// Whether the second variation might change so much within `eta` that h is above its limit; false
 /// where the largest forces there are could not do it.
 bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
-  return !(eta * largest_third_derivative * scale_of(solution, load) <=
+  return !(eta * largest_third_derivative * scale_of_forces(solution, load) <=
            largest_h * solution.softest);
 }
 
 }  // namespace
 
-void certify(SpanSolution& solution, double load, Newton& newton) {
+void certify(SpanSolution& solution, double load, NewtonFactors& factors) {
   // Newton's method leaves those undetermined whose terms nobody has looked at.
   const bool undetermined = solution.status == SolveStatus::near_singular;
   if (!solution.is_equilibrium() && !undetermined) return;
@@ -186,7 +182,7 @@ void certify(SpanSolution& solution, double load, Newton& newton) {
   if (!(solution.multipliers.norm() <= largest_pull * (1 + load))) {
     return solution.fail("the grips would have to pull without bound");
   }
-  const double scale = scale_of(solution, load);
+  const double scale = scale_of_forces(solution, load);
   solution.residual = std::hypot(gradient.norm(), scale * residual.norm());
   if (!(solution.residual <= largest_next_step * scale)) {
     return solution.fail("the residual of the returned shape is not small");
@@ -196,15 +192,15 @@ void certify(SpanSolution& solution, double load, Newton& newton) {
   // Obstacles leave movements free that are not looked for: those that are zero but for rounding.
   const bool obstacles = model.has_soft_obstacles() || !model.span().contacts.empty();
   const double nothing = obstacles ? 128 * rounding_of(scale) : -1;
-  NewtonSystem& system = newton.system();
   double bound = neutral;
   double eta = 0;
   bool small_step = false;
   Softness found;
-  for (bool near = !obstacles && newton.has_factor_of(&model);; near = false) {
-    const double change = near ? change_since(newton, solution, scale) : 0;
+  for (bool near = !obstacles && solution.factor != nullptr;; near = false) {
+    const double change = near ? change_since_factor(solution, scale) : 0;
     near = near && change < largest_h;
-    if (!near) newton.factor_at(solution, jacobian);
+    if (!near) factors.factor_at(solution, jacobian, load);
+    NewtonSystem& system = solution.factor->system;
     solution.next_step = newton_step(system, gradient, residual);
     small_step = solution.next_step <= largest_next_step;
     // Below it what is left of the residual makes a step that is not small.
@@ -224,8 +220,7 @@ void certify(SpanSolution& solution, double load, Newton& newton) {
   // As many terms as constraints leave no direction that a fold could be in.
   const bool can_move = found.zero < model.size() - model.constraints();
   if (can_move && may_be_at_fold(solution, load, eta)) {
-    const SoftMode mode =
-        soft_mode(system.on_free_directions(), newton.hessian(), jacobian, found.zero);
+    const SoftMode mode = soft_mode(solution.factor->system, jacobian, found.zero);
     const Softening change = softening(solution, mode);
     const double kappa = std::abs(change.first) + std::abs(change.second) * eta;
     const double h = eta * kappa / solution.softest;
@@ -256,7 +251,7 @@ void certify(SpanSolution& solution, double load, Newton& newton) {
                                                   : SolveStatus::converged);
 }
 
-void certify_sideways(SpanSolution& solution, double load, Newton& newton) {
+void certify_sideways(SpanSolution& solution, double load, NewtonFactors& factors) {
   const Span& span = solution.model->span();
   // Only a rod that is pulled along its clamp turns freely, about that; few are.
   const auto is_along = [&](const Eigen::Vector3d& force) {
@@ -272,7 +267,7 @@ void certify_sideways(SpanSolution& solution, double load, Newton& newton) {
   const bool unsure =
       looked_at && (solution.softest <= neutral || may_be_at_fold(solution, load, eta));
   if (unsure || solution.status == SolveStatus::near_singular)
-    return certify(solution, load, newton);
+    return certify(solution, load, factors);
   if (!solution.is_equilibrium()) return;
   solution.error = error_estimate(solution, eta);
   if (solution.status != SolveStatus::converged) return;

@@ -3,7 +3,7 @@
 namespace dlo::energy_model {
 
 void NewtonSystem::compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
-  hessian_ = &hessian;
+  hessian_ = hessian;
   jacobian_ = jacobian;
   across_.reset();
   free_.compute(hessian, jacobian);
@@ -11,10 +11,10 @@ void NewtonSystem::compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd
 }
 
 Eigen::MatrixXd NewtonSystem::whole() const {
-  const Eigen::Index n = hessian_->rows();
+  const Eigen::Index n = hessian_.rows();
   const Eigen::Index m = jacobian_.rows();
   Eigen::MatrixXd system(n + m, n + m);
-  system << *hessian_, -jacobian_.transpose(), jacobian_, Eigen::MatrixXd::Zero(m, m);
+  system << hessian_, -jacobian_.transpose(), jacobian_, Eigen::MatrixXd::Zero(m, m);
   return system;
 }
 
@@ -28,16 +28,16 @@ void NewtonSystem::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
 
 bool NewtonSystem::is_met(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
                           double longest) {
-  const Eigen::Index n = hessian_->rows();
+  const Eigen::Index n = hessian_.rows();
   const Eigen::Index m = jacobian_.rows();
   left_ = right;
-  left_.head(n).noalias() -= *hessian_ * step.head(n);
+  left_.head(n).noalias() -= hessian_ * step.head(n);
   left_.head(n).noalias() += jacobian_.transpose() * step.tail(m);
   left_.tail(m).noalias() -= jacobian_ * step.head(n);
   return left_.norm() <= 1e-6 * right.norm() && step.head(n).norm() <= longest;
 }
 
-Eigen::VectorXd NewtonSystem::across_neutral(const Eigen::VectorXd& right) {
+Eigen::VectorXd NewtonSystem::minimum_norm_step(const Eigen::VectorXd& right) {
   if (!across_) across_.emplace(whole());
   return across_->step(right);
 }

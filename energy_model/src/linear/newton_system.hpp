@@ -15,14 +15,15 @@ namespace dlo::energy_model {
 /// as a whole where it is not. Buffers survive from one compute() to the next.
 class NewtonSystem {
  public:
-  /// @param hessian   n x n, symmetric; has to outlive what is asked for below, unchanged
+  /// @param hessian   n x n, symmetric
   /// @param jacobian  m x n
   void compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
 
   /// Whether it has been computed of so many unknowns and constraints.
   [[nodiscard]] bool is_of(Eigen::Index unknowns, Eigen::Index constraints) const {
-    return hessian_ != nullptr && hessian_->rows() == unknowns && jacobian_.rows() == constraints;
+    return hessian_.rows() == unknowns && jacobian_.rows() == constraints;
   }
+  [[nodiscard]] const Eigen::MatrixXd& hessian() const { return hessian_; }
 
   /// @param right      (a, b), n + m
   /// @param[out] step  (x, mu), another vector
@@ -32,17 +33,17 @@ class NewtonSystem {
   [[nodiscard]] bool is_met(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
                             double longest);
 
-  /// By least squares: stands still in neutral directions.
-  [[nodiscard]] Eigen::VectorXd across_neutral(const Eigen::VectorXd& right);
+  /// The minimum-norm step, by least squares: it has no part along near-null modes.
+  [[nodiscard]] Eigen::VectorXd minimum_norm_step(const Eigen::VectorXd& right);
 
   /// H on the free directions, of a system with constraints; of one without H itself.
   [[nodiscard]] FreeHessian& on_free_directions() { return free_; }
+  [[nodiscard]] const FreeHessian& on_free_directions() const { return free_; }
 
  private:
   [[nodiscard]] Eigen::MatrixXd whole() const;
 
-  const Eigen::MatrixXd* hessian_ = nullptr;
-  Eigen::MatrixXd jacobian_;
+  Eigen::MatrixXd hessian_, jacobian_;
   FreeHessian free_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   std::optional<AcrossNeutral> across_;  // once it was asked for

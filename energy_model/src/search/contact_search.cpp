@@ -54,9 +54,7 @@ constexpr const char* polygons_at_rest = "polygons at rest on the obstacles";
 class ContactSearch {
  public:
   ContactSearch(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
-      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
-    workspace_.newton().limit(options.deadline);
-  }
+      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {}
 
   [[nodiscard]] std::vector<SpanSolution> run() {
     std::vector<SpanSolution> found;
@@ -185,7 +183,7 @@ class ContactSearch {
       solution.x = known.x + share * (known.x - before.x);
       solution.multipliers += share * (known.multipliers - before.multipliers);
     }
-    workspace_.newton().polish(solution, load_);
+    newton(solution);
     return solution;
   }
 
@@ -336,6 +334,8 @@ class ContactSearch {
       if (!found.front().is_equilibrium()) found.clear();
     }
     const bool is_equilibrium = solution.is_equilibrium();
+    // Of many equilibria it would take much memory.
+    if (options_.all) solution.factor.reset();
     found.push_back(std::move(solution));
     std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
       const bool a_stable = succeeded(a.status);
@@ -434,16 +434,20 @@ class ContactSearch {
     const Eigen::VectorXd start = solution.x;
     // Newton's method would go back to the saddle, or into the plane, that a shape has left.
     const bool has_left = options_.approach == Approach::descend || span.planar != span_.planar;
-    if (!has_left) workspace_.newton().polish(solution, load_);
+    if (!has_left) newton(solution);
     if (!solution.is_equilibrium()) {
       solution.x = start;
       descend_in_trust_region(
           solution,
           {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
-      if (succeeded(solution.status)) workspace_.newton().polish(solution, load_);
+      if (succeeded(solution.status)) newton(solution);
     }
     spent_ += std::exchange(solution.evaluations, 0);
     return solution;
+  }
+
+  void newton(SpanSolution& solution) {
+    newton_solve(solution, {.load = load_, .deadline = &options_.deadline}, workspace_.newton());
   }
 
   [[nodiscard]] int terms(const Span& span) const {
@@ -481,7 +485,7 @@ class ContactSearch {
       next.model = workspace_.model(solution.model->span(), finer);
       next.x = next.model->adopt(*solution.model, solution.x);
       next.multipliers = next.model->adopt_multipliers(*solution.model, solution.multipliers);
-      workspace_.newton().polish(next, load_);
+      newton(next);
       if (!next.is_equilibrium()) return solution;
       solution = std::move(next);
       spent_ += settle_lift_offs(solution, options_.deadline, workspace_);

@@ -172,7 +172,8 @@ class EnergySolver::State {
   struct Remembered {
     std::shared_ptr<const SpanEnergy> model;  // none after a failure
     Eigen::VectorXd x, multipliers;
-    KnownShape before;  // the one before it
+    std::shared_ptr<NewtonFactor> factor;
+    KnownShape before;  // the one before it, without a factor
     Eigen::Matrix3d frame;
 
     [[nodiscard]] bool planar() const { return !model || model->span().planar; }
@@ -286,7 +287,7 @@ class EnergySolver::State {
       start = field_of(*shape, placed, problem.length);
     } else if (last != nullptr && last->model) {
       options.least_terms = last->model->terms();
-      options.known = {last->model, last->x, last->multipliers};
+      options.known = {last->model, last->x, last->multipliers, last->factor};
       options.before = last->before;
       start = [&placed, last = *last](const Eigen::VectorXd& s) {
         return follow_field(placed, last, s);
@@ -459,6 +460,7 @@ class EnergySolver::State {
                    std::move(last.x), std::move(last.multipliers)};
     last.x = found.solution.x;
     last.multipliers = found.solution.multipliers;
+    last.factor = found.solution.factor;
     last.frame = found.placed.frame;
   }
 

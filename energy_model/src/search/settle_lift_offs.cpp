@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -31,17 +32,13 @@ constexpr double largest_room_share = 0.45;
 /// Of a difference, over the room.
 constexpr double difference = 1e-6;
 
-/// How hard an equilibrium is looked for.
-enum class Effort {
-  nearby,  // a few steps of Newton's method
-  all,
-};
-
 class Settling {
  public:
-  Settling(SpanSolution& solution, SpanWorkspace& workspace)
+  Settling(SpanSolution& solution, const Deadline& deadline, SpanWorkspace& workspace)
       : solution_(solution),
+        deadline_(deadline),
         workspace_(workspace),
+        factor_(solution.factor),
         ends_(lift_offs(solution.model->span())),
         miss_(missed_by(solution)),
         jacobian_(miss_.size(), miss_.size()),
@@ -49,10 +46,10 @@ class Settling {
         multipliers_by_ends_(solution.multipliers.size(), miss_.size()),
         gaps_(gaps_of(solution)) {}
 
-  int run(const Deadline& deadline) {
+  int run() {
     if (ends_.empty()) return spent_;
     double before = INFINITY;
-    for (int step = 0; step < most_settling_steps && !deadline.passed(); ++step) {
+    for (int step = 0; step < most_settling_steps && !deadline_.passed(); ++step) {
       const double missed = miss_.cwiseAbs().maxCoeff();
       if (missed < nothing_missed) break;
       if (missed < nearly_nothing_missed && missed > before / 2) break;
@@ -111,7 +108,7 @@ class Settling {
   }
 
   /// The equilibrium with ends that are moved, from where the derivatives by them lead.
-  [[nodiscard]] SpanSolution with_moved(const Eigen::VectorXd& way, Effort effort) {
+  [[nodiscard]] SpanSolution with_moved(const Eigen::VectorXd& way, NewtonMethod method) {
     Span span = solution_.model->span();
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       ends_[i].move(span, way[static_cast<Eigen::Index>(i)]);
@@ -119,18 +116,19 @@ class Settling {
     SpanSolution result;
     result.terms = solution_.terms;
     result.model = workspace_.model(span, result.terms);
-    Newton& newton = workspace_.newton();
+    NewtonOptions options = {.load = span.total_load(), .deadline = &deadline_};
     if (result.model->pieces() == solution_.model->pieces()) {
       result.x = result.model->adopt(*solution_.model, solution_.x);
       result.x += x_by_ends_ * way;
       result.multipliers = solution_.multipliers + multipliers_by_ends_ * way;
-      effort == Effort::nearby ? newton.polish_nearby(result, span.total_load())
-                               : newton.polish(result, span.total_load());
+      options.method = method;
+      if (method == NewtonMethod::simplified) options.first_factor = factor_;
     } else {
       const TangentField near = field_of(solution_.model->shape(solution_.x));
       result.x = result.model->fit(near(result.model->nodes()));
-      newton.polish(result, span.total_load());
     }
+    newton_solve(result, options, workspace_.newton());
+    if (result.factor) factor_ = result.factor;
     spent_ += std::exchange(result.evaluations, 0);
     return result;
   }
@@ -140,12 +138,12 @@ class Settling {
   [[nodiscard]] bool move(Eigen::VectorXd& way) {
     const Eigen::VectorXd whole = way;
     SpanSolution trial;
-    for (const Effort effort : {Effort::nearby, Effort::all}) {
+    for (const NewtonMethod method : {NewtonMethod::simplified, NewtonMethod::newton}) {
       way = whole;
-      trial = with_moved(way, effort);
+      trial = with_moved(way, method);
       for (int cut = 0; cut < most_cuts && !trial.is_equilibrium(); ++cut) {
         way /= 4;
-        trial = with_moved(way, effort);
+        trial = with_moved(way, method);
       }
       if (trial.is_equilibrium()) break;
     }
@@ -186,8 +184,8 @@ class Settling {
       }
       const Room room = room_of(solution_.model->span(), end);
       way[i] = difference * (room.down > room.up ? -room.down : room.up);
-      SpanSolution beside = with_moved(way, Effort::nearby);
-      if (!beside.is_equilibrium()) beside = with_moved(way, Effort::all);
+      SpanSolution beside = with_moved(way, NewtonMethod::simplified);
+      if (!beside.is_equilibrium()) beside = with_moved(way, NewtonMethod::newton);
       if (!beside.is_equilibrium()) return false;
       jacobian_.col(i) = (missed_by(beside) - miss_) / way[i];
       if (is_alike(beside)) {
@@ -200,7 +198,9 @@ class Settling {
   }
 
   SpanSolution& solution_;
+  const Deadline& deadline_;
   SpanWorkspace& workspace_;
+  std::shared_ptr<NewtonFactor> factor_;  // the last one, of ends that were hardly elsewhere
   std::vector<LiftOff> ends_;
   Eigen::VectorXd miss_;
   // Derivatives by the ends: of what is missed, and of an equilibrium's unknowns and multipliers.
@@ -212,7 +212,7 @@ class Settling {
 }  // namespace
 
 int settle_lift_offs(SpanSolution& solution, const Deadline& deadline, SpanWorkspace& workspace) {
-  return Settling(solution, workspace).run(deadline);
+  return Settling(solution, deadline, workspace).run();
 }
 
 }  // namespace dlo::energy_model

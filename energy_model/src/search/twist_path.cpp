@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -82,7 +83,6 @@ class TwistPath {
         tolerance_(tolerance),
         load_(span.total_load()),
         first_d1_(untwisted.end_d1) {
-    workspace_.newton().limit(options.deadline);
     span_.planar = false;
     span_.cuts = untwisted.solution.model->span().cuts;
     span_.twist = Span::Twist{stiffness, first_d1_};
@@ -92,7 +92,7 @@ class TwistPath {
   }
 
   [[nodiscard]] SpanSolution run(double whole) {
-    workspace_.newton().polish_along_branch(here_, load_);
+    newton(here_, NewtonMethod::corrector);
     if (here_.is_equilibrium()) stiff_ = is_stable(here_) && stiff_;
     double turn = std::copysign(first_turn, whole);
     while (here_.is_equilibrium() && angle_ != whole) {
@@ -177,11 +177,7 @@ class TwistPath {
     }
     const Eigen::VectorXd predicted = next.x;
     // Where nothing is neutral the factor that has told the stability of the last shape serves.
-    if (stiff_) {
-      workspace_.newton().polish_nearby(next, load_);
-    } else {
-      workspace_.newton().polish_along_branch(next, load_);
-    }
+    newton(next, stiff_ ? NewtonMethod::simplified : NewtonMethod::corrector);
     spent_ += next.evaluations;
     if (!next.is_equilibrium()) return std::nullopt;
     // On the same branch the energy has risen by the torque's work. The shape tells less: it may
@@ -194,6 +190,16 @@ class TwistPath {
     smooth_ = leap <= smooth_share * unit + rounding;
     aside_ = (next.x - predicted).norm() > (predicted - here_.x).norm();
     return next;
+  }
+
+  /// @param how  simplified: with the solution's own factor
+  void newton(SpanSolution& solution, NewtonMethod how) {
+    newton_solve(solution,
+                 {.load = load_,
+                  .method = how,
+                  .first_factor = how == NewtonMethod::simplified ? solution.factor : nullptr,
+                  .deadline = &options_.deadline},
+                 workspace_.newton());
   }
 
   [[nodiscard]] static double torque(const SpanSolution& solution) {
@@ -219,7 +225,7 @@ class TwistPath {
                           here_.terms >= terms_under_twist(here_);
     if (resolved || !affordable) return false;
     here_ = with_terms(here_, std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
-    workspace_.newton().polish_along_branch(here_, load_);
+    newton(here_, NewtonMethod::corrector);
     spent_ += here_.evaluations;
     here_.evaluations = 0;
     slope_x_.resize(0);
@@ -227,27 +233,31 @@ class TwistPath {
     return true;
   }
 
-  [[nodiscard]] bool is_stable(const SpanSolution& solution) {
-    Newton& newton = workspace_.newton();
+  [[nodiscard]] bool is_stable(SpanSolution& solution) {
     stiff_ = false;
-    if (!(newton.distance_of_factor(solution) <= nearest_factor)) {
-      place(solution);
-      newton.factor_at(solution, jacobian_);
-    }
-    FreeHessian& on_free_directions = newton.system().on_free_directions();
-    if (on_free_directions.has_solutions()) {
-      const std::optional<double> smallest = on_free_directions.smallest_of_definite();
+    if (!(distance_of_factor(solution) <= nearest_factor)) factor_at(solution);
+    FreeHessian& near = solution.factor->system.on_free_directions();
+    if (near.has_solutions()) {
+      const std::optional<double> smallest = near.smallest_of_definite();
       stiff_ = smallest && *smallest > softest_stiff;
       if (stiff_) return true;
     }
-    if (newton.distance_of_factor(solution) > 0) {
-      place(solution);
-      newton.factor_at(solution, jacobian_);
-    }
-    Eigen::MatrixXd projected = on_free_directions.matrix();
+    if (distance_of_factor(solution) > 0) factor_at(solution);
+    Eigen::MatrixXd projected = solution.factor->system.on_free_directions().matrix();
     // Under large forces what is next to neutral is lost in rounding, whichever sign it has.
     projected.diagonal().array() += rounded_curvature * solution.multipliers.norm();
     return is_minimum(projected);
+  }
+
+  /// Infinite where there is none.
+  [[nodiscard]] double distance_of_factor(const SpanSolution& solution) const {
+    if (!solution.factor) return std::numeric_limits<double>::infinity();
+    return solution.factor->distance(solution, scale_of_forces(solution, load_));
+  }
+
+  void factor_at(SpanSolution& solution) {
+    place(solution);
+    workspace_.factors().factor_at(solution, jacobian_, load_);
   }
 
   /// Into gradient_, residual_ and jacobian_.
@@ -288,7 +298,7 @@ class TwistPath {
                                        .deadline = &options_.deadline});
         push *= 3;
       }
-      if (succeeded(next.status)) workspace_.newton().polish(next, load_);
+      if (succeeded(next.status)) newton(next, NewtonMethod::newton);
       spent_ += next.evaluations;
       next.evaluations = 0;
       if (!next.is_equilibrium() || !is_stable(next)) continue;
@@ -370,7 +380,6 @@ SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
 SpanSolution twist_from(const TangentField& field, double twist, const Eigen::Vector3d& end_d1,
                         const Span& span, double stiffness, const SpanOptions& options,
                         SpanWorkspace& workspace) {
-  workspace.newton().limit(options.deadline);
   Span twisted = span;
   twisted.planar = false;
   twisted.twist = Span::Twist{stiffness, end_d1};
@@ -383,7 +392,8 @@ SpanSolution twist_from(const TangentField& field, double twist, const Eigen::Ve
     SpanEnergy& model = *solution.model;
     solution.terms = terms;
     solution.x = model.with_twist(model.fit(field(model.nodes())), twist);
-    workspace.newton().polish(solution, span.total_load());
+    newton_solve(solution, {.load = span.total_load(), .deadline = &options.deadline},
+                 workspace.newton());
     const bool more = terms < max_terms && 3 * model.size() / 2 < most_unknowns;
     if (solution.is_equilibrium()) break;
     if (!more || options.deadline.passed()) return solution;

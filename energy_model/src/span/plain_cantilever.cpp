@@ -54,7 +54,7 @@ SpanSolution plain_cantilever(SpanDescents& on) {
   } else {
     at_once.x = at_once.model->fit(soft_field(on.span())(at_once.model->nodes()));
   }
-  on.newton().polish(at_once, on.traits().load);
+  on.newton(at_once);
   at_once = refined(on, std::move(at_once));
   if (succeeded(at_once.status) && at_once.evaluations <= on.options().max_evaluations &&
       turns_to_load(on.span(), at_once.model->tangents())) {

@@ -52,12 +52,12 @@ class Refinement {
     const int most_terms =
         std::min(affordable, span_.contact_ends.empty() ? max_terms : most_between_contact_ends);
     Tail before;
-    bool polished = false;
+    bool solved_again = false;
     while (solution.is_equilibrium()) {
       solution.resolved = options_.terms > 0 || resolved(solution);
-      if (solution.resolved && solution.next_step > coarsest_step && !polished) {
-        newton().polish(solution, traits_.load);
-        polished = true;
+      if (solution.resolved && solution.next_step > coarsest_step && !solved_again) {
+        on_.newton(solution);
+        solved_again = true;
         continue;
       }
       if (solution.resolved) break;
@@ -79,15 +79,12 @@ class Refinement {
       }
       if (before.terms == 0) more = std::max(more, terms_by_own_decay(solution));
       before = {solution.terms, solution.model->tail(solution.x)};
-      const bool hessian_known = newton().has_factor_of(solution.model.get());
-      solution = with_terms(solution, std::min(most_terms, more), hessian_known);
+      solution = with_terms(solution, std::min(most_terms, more));
     }
     return solution;
   }
 
  private:
-  [[nodiscard]] Newton& newton() const { return on_.newton(); }
-
   /// Where the terms that can be afforded do not resolve a shape, its pieces may end in the wrong
   /// places.
   [[nodiscard]] std::optional<SpanSolution> graded_anew(const SpanSolution& solution) {
@@ -102,7 +99,7 @@ class Refinement {
     }
     finer.multipliers = solution.multipliers;
     finer.evaluations = solution.evaluations;
-    newton().polish(finer, traits_.load);
+    on_.newton(finer);
     finer = refined(graded, std::move(finer));
     if (!finer.is_equilibrium()) return std::nullopt;
     return finer;
@@ -143,15 +140,16 @@ class Refinement {
     return K + more;
   }
 
-  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms,
-                                        bool hessian_known) {
+  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) {
     SpanSolution finer = on_.empty_solution(terms);
     finer.x = finer.model->adopt(*solution.model, solution.x);
     finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
-    if (hessian_known) {
-      newton().polish_with_more_terms(finer, solution, traits_.load);
+    if (solution.factor) {
+      const Eigen::MatrixXd hessian =
+          prolonged(solution.factor->system.hessian(), *solution.model, *finer.model);
+      on_.newton(finer, {.first_hessian = &hessian});
     } else {
-      newton().polish(finer, traits_.load);
+      on_.newton(finer);
     }
     const bool descends = finer.model->size() <= most_descended;
     if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles()))
@@ -223,9 +221,8 @@ std::optional<Span> graded_for(const SpanDescents& on, const SpanSolution& shape
 }
 
 int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& workspace) {
-  Newton& newton = workspace.newton();
   const double load = solution.model->span().total_load();
-  certify(solution, load, newton);
+  certify(solution, load, workspace.factors());
   const bool asks = solution.status == SolveStatus::near_singular ||
                     (counts(solution, options) && solution.error > largest_told_error);
   const int more = std::min(max_terms, 3 * solution.terms / 2);
@@ -240,11 +237,11 @@ int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& wor
   SpanSolution finer = on.empty_solution(more);
   finer.x = finer.model->adopt(*solution.model, solution.x);
   finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
-  newton.polish(finer, load);
+  on.newton(finer);
   // Of what Newton's method left open before nobody has asked whether its terms resolve it.
   if (!solution.resolved) finer = refined(on, std::move(finer));
   finer.resolved = finer.resolved || solution.resolved;
-  certify(finer, load, newton);
+  certify(finer, load, workspace.factors());
   const int spent = finer.evaluations;
   const int evaluations = solution.evaluations + spent;
   if (finer.error < solution.error) solution = std::move(finer);

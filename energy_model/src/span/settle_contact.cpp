@@ -61,7 +61,7 @@ SpanSolution settle_contact(
     if (!same_pieces) {
       const int terms = refined ? solution.terms : std::min(solution.terms, first_round_terms);
       solution = on_other_pieces(own, solution, on.options().terms > 0 ? solution.terms : terms);
-      own.newton().polish(solution, own.traits().load);
+      own.newton(solution);
       if (!solution.is_equilibrium()) own.descend(solution);
     }
     if (refined || same_pieces) solution = refine(own, std::move(solution));

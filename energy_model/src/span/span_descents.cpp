@@ -33,9 +33,7 @@ Eigen::VectorXd unknowns_of(const Start& start, SpanEnergy& model) {
 }  // namespace
 
 SpanDescents::SpanDescents(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
-    : span_(span), options_(options), workspace_(workspace), traits_(span) {
-  newton().limit(options.deadline);
-}
+    : span_(span), options_(options), workspace_(workspace), traits_(span) {}
 
 int SpanDescents::terms() const {
   if (options_.terms > 0) return options_.terms;
@@ -63,6 +61,12 @@ SpanSolution SpanDescents::empty_solution(int terms) {
   return solution;
 }
 
+void SpanDescents::newton(SpanSolution& solution, NewtonOptions how) const {
+  how.load = traits_.load;
+  how.deadline = &options_.deadline;
+  newton_solve(solution, how, workspace_.newton());
+}
+
 SpanSolution SpanDescents::from_start(const Start& from) {
   SpanSolution solution;
   int spent = 0;
@@ -73,7 +77,7 @@ SpanSolution SpanDescents::from_start(const Start& from) {
     const Eigen::VectorXd start = solution.x;
     // Where the rod is taut such a start is near to the shape already.
     const bool is_near = traits_.taut && !solution.model->has_soft_obstacles();
-    if (is_near) newton().polish(solution, traits_.load);
+    if (is_near) newton(solution);
     if (falls_by_newton(solution)) return solution;
     if (!is_near || (!solution.is_equilibrium() && !out_of_time())) {
       solution.x = start;
@@ -108,9 +112,9 @@ bool SpanDescents::falls_by_newton(SpanSolution& solution) {
   Eigen::VectorXd gradient(model.size());
   const double energy = model.value(start, gradient);
   if (solution.terms < terms()) {
-    newton().polish_roughly(solution, traits_.load);
+    newton(solution, {.step_tolerance = rough_step});
   } else {
-    newton().polish(solution, traits_.load);
+    newton(solution);
   }
   if (succeeded(solution.status) && solution.energy <= energy &&
       (solution.x - start).norm() < far && solution.evaluations <= options_.max_evaluations) {
@@ -124,22 +128,22 @@ void SpanDescents::pull_to_grips(SpanSolution& solution) {
   descend_by_penalty(
       solution,
       {.load = traits_.load, .deadline = &options_.deadline, .stiffness = traits_.stiffness});
-  if (succeeded(solution.status)) newton().polish(solution, traits_.load);
+  if (succeeded(solution.status)) newton(solution);
 }
 
 SpanSolution SpanDescents::near_field(const TangentField& field) {
   SpanSolution solution = empty_solution(terms());
   const StartShape wanted = field(solution.model->nodes());
+  const KnownShape& known = options_.known;
   if (!adopt_known(wanted, solution)) {
     solution.x = solution.model->fit(wanted);
-    newton().polish(solution, traits_.load);
-  } else if (newton().has_factor_of(options_.known.model.get())) {
-    solution.multipliers =
-        solution.model->adopt_multipliers(*options_.known.model, options_.known.multipliers);
-    newton().polish_from_neighbour(solution, traits_.load);
-  } else {
-    newton().polish(solution, traits_.load);
+    newton(solution);
+    return solution;
   }
+  if (known.factor) {
+    solution.multipliers = solution.model->adopt_multipliers(*known.model, known.multipliers);
+  }
+  newton(solution, {.first_factor = known.factor});
   return solution;
 }
 
@@ -162,20 +166,20 @@ bool SpanDescents::adopt_known(const StartShape& wanted, SpanSolution& solution)
 void SpanDescents::descend(SpanSolution& solution) {
   minimise(solution);
   if (!succeeded(solution.status)) return;
-  // A cantilever is polished once it has all its terms.
+  // Newton's method follows once a cantilever has all its terms.
   if (span_.is_plain_cantilever() && solution.terms < terms()) return;
   if (solution.terms < terms()) {
-    polish_before_more_terms(solution);
+    newton_before_more_terms(solution);
   } else {
-    newton().polish(solution, traits_.load);
+    newton(solution);
   }
 }
 
-void SpanDescents::polish_before_more_terms(SpanSolution& solution) const {
+void SpanDescents::newton_before_more_terms(SpanSolution& solution) const {
   if (options_.all || options_.terms > 0 || solution.model->constraints() == 0) {
-    newton().polish(solution, traits_.load);
+    newton(solution);
   } else {
-    newton().polish_roughly(solution, traits_.load);
+    newton(solution, {.step_tolerance = rough_step});
   }
 }
 

@@ -31,7 +31,6 @@ class SpanDescents {
   [[nodiscard]] const Span& span() const { return span_; }
   [[nodiscard]] const SpanOptions& options() const { return options_; }
   [[nodiscard]] SpanWorkspace& workspace() const { return workspace_; }
-  [[nodiscard]] Newton& newton() const { return workspace_.newton(); }
   [[nodiscard]] const SpanTraits& traits() const { return traits_; }
   [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
 
@@ -42,6 +41,8 @@ class SpanDescents {
   /// With a model but no unknowns yet.
   [[nodiscard]] SpanSolution empty_solution(int terms);
 
+  /// Newton's method with the span's load, to the search's deadline.
+  void newton(SpanSolution& solution, NewtonOptions how = {}) const;
   /// From a field to an equilibrium, with as many terms as it takes to meet the grips.
   [[nodiscard]] SpanSolution from_start(const Start& from);
   /// By Newton's method from next to a field.
@@ -54,7 +55,7 @@ class SpanDescents {
  private:
   [[nodiscard]] bool falls_by_newton(SpanSolution& solution);
   [[nodiscard]] bool adopt_known(const StartShape& wanted, SpanSolution& solution) const;
-  void polish_before_more_terms(SpanSolution& solution) const;
+  void newton_before_more_terms(SpanSolution& solution) const;
   void minimise(SpanSolution& solution) const;
 
   const Span& span_;

@@ -25,6 +25,8 @@ struct KnownShape {
   std::shared_ptr<const SpanEnergy> model;  ///< none: nothing is known
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;
+  std::shared_ptr<NewtonFactor> factor =
+      nullptr;  ///< of Newton's method there; null: there is none
 };
 
 /// Tangents by which a shape may differ from the known one that it follows [-]: beyond, Newton's

@@ -39,7 +39,8 @@ constexpr std::size_t followed_starts_beside_obstacles = 6;
 /// another one is followed too.
 constexpr double near_tie = 0.1;
 
-/// Difference of points over the length up to which what is only roughly polished is one shape.
+/// Difference of points over the length up to which what Newton's method has only come near to is
+/// one shape.
 constexpr double same_coarse_points = 10 * rough_step;
 
 /// Unstable equilibria that are left for what lies below them.
@@ -92,7 +93,7 @@ class Search {
     std::vector<SpanSolution> found;
     if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
       SpanSolution solution = plain_cantilever(on_);
-      certify_sideways(solution, traits_.load, workspace_.newton());
+      certify_sideways(solution, traits_.load, workspace_.factors());
       if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
       add(std::move(solution), found);
     }
@@ -246,7 +247,7 @@ class Search {
       return solution;
     std::optional<SpanSolution> lower = leave_saddle(solution);
     if (!lower) return solution;
-    certify(*lower, traits_.load, workspace_.newton());
+    certify(*lower, traits_.load, workspace_.factors());
     lower->evaluations += solution.evaluations;
     return succeeded(lower->status) ? std::move(*lower) : std::move(solution);
   }
@@ -317,6 +318,8 @@ class Search {
     }
     if (!found.empty() && !counts(found.front(), options_)) found.clear();
     if (is_known(solution, found)) return false;
+    // Of many equilibria it would take much memory, and nothing goes on from most of them.
+    if (options_.all) solution.factor.reset();
     found.push_back(std::move(solution));
     return true;
   }
@@ -365,7 +368,7 @@ class Search {
           between.x += share * model.adopt(*b.model, b.x);
           between.multipliers = (1 - share) * model.adopt_multipliers(*a.model, a.multipliers) +
                                 share * model.adopt_multipliers(*b.model, b.multipliers);
-          workspace_.newton().polish(between, traits_.load);
+          own.newton(between);
           note(between_found, add(refined(own, std::move(between)), found));
         }
       }
@@ -393,7 +396,7 @@ class Search {
         SpanSolution beside = own.empty_solution(model->terms());
         beside.x = beside.model->adopt(*model, x) + step * *softest;
         beside.multipliers = beside.model->adopt_multipliers(*model, multipliers);
-        workspace_.newton().polish(beside, traits_.load);
+        own.newton(beside);
         note(beside_found, add(refined(own, std::move(beside)), found));
       }
     }

@@ -12,11 +12,12 @@ namespace dlo::energy_model {
 class SpanWorkspace {
  public:
   [[nodiscard]] std::shared_ptr<SpanEnergy> model(const Span& span, int terms);
-  [[nodiscard]] Newton& newton() { return newton_; }
+  [[nodiscard]] NewtonBuffers& newton() { return newton_; }
+  [[nodiscard]] NewtonFactors& factors() { return newton_.factors; }
 
  private:
   std::vector<std::shared_ptr<SpanEnergy>> models_;
-  Newton newton_;
+  NewtonBuffers newton_;
 };
 
 }  // namespace dlo::energy_model

@@ -10,6 +10,8 @@
 
 namespace dlo::energy_model {
 
+struct NewtonFactor;
+
 struct [[nodiscard]] SpanSolution {
   SolveStatus status = SolveStatus::not_run;
   std::string message = "never ran";
@@ -34,6 +36,9 @@ struct [[nodiscard]] SpanSolution {
   std::shared_ptr<SpanEnergy> model;
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;
+  /// Of `model` at a point on the way to x, which the last steps of Newton's method were made with
+  /// or certify() has asked; null: there is none.
+  std::shared_ptr<NewtonFactor> factor;
 
   void finish(SolveStatus how) {
     status = how;
