@@ -83,8 +83,8 @@ TEST(Certify, AsksTheFactorOnlyNextToThePointThatItIsOf) {
     certified.factor = beside.factor;
     certify(certified, span.total_load(), factors);
     EXPECT_EQ(certified.status, SolveStatus::converged) << certified.message;
-    EXPECT_NEAR(certified.smallest_curvature, alone.smallest_curvature,
-                0.02 * alone.smallest_curvature);
+    EXPECT_NEAR(certified.smallest_eigenvalue, alone.smallest_eigenvalue,
+                0.02 * alone.smallest_eigenvalue);
     EXPECT_NEAR(certified.factor->distance(certified, 1), away < 1e-3 ? away : 0, 1e-15);
   }
 }
@@ -107,8 +107,8 @@ TEST(Certify, AFollowedShapeIsTheOneThatIsSearchedFor) {
   EXPECT_TRUE(followed.followed);
   EXPECT_LT(followed.next_step, 1e-10);
   EXPECT_NEAR(followed.energy, searched.energy, 1e-9);
-  EXPECT_NEAR(followed.smallest_curvature, searched.smallest_curvature,
-              0.02 * searched.smallest_curvature);
+  EXPECT_NEAR(followed.smallest_eigenvalue, searched.smallest_eigenvalue,
+              0.02 * searched.smallest_eigenvalue);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ using test::with_eigenvalues;
 
 Eigen::VectorXd smallest_eigenvalues(const Eigen::MatrixXd& hessian,
                                      const Eigen::MatrixXd& jacobian) {
-  FreeHessian free;
+  ReducedHessian free;
   free.compute(hessian, jacobian);
   return energy_model::smallest_eigenvalues(free, 0);
 }
@@ -74,7 +74,7 @@ TEST(FreeDirections, SmallestEigenvalueOfManyThatAreHardlyLargerIsNoneBelowThem)
 
 TEST(FreeDirections, AllEigenvaluesAreToldWhereTheSmallestIsNotAbove) {
   const Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(12, 0.1, 2);
-  FreeHessian free;
+  ReducedHessian free;
   free.compute(with_eigenvalues(eigenvalues), Eigen::MatrixXd(0, 12));
   EXPECT_EQ(energy_model::smallest_eigenvalues(free, 0.05).size(), 1);
   EXPECT_LT((energy_model::smallest_eigenvalues(free, 0.2) - eigenvalues).norm(), 1e-13);
@@ -87,9 +87,9 @@ TEST(FreeDirections, SoftestDirectionIsTheEigenvectorOnWhatIsFree) {
     eigenvalues[0] = 1e-3;
     const Eigen::MatrixXd hessian = with_eigenvalues(eigenvalues);
     const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(m, n);
-    FreeHessian free;
+    ReducedHessian free;
     free.compute(hessian, jacobian);
-    const std::optional<Eigen::VectorXd> softest = free.softest_of_definite();
+    const std::optional<Eigen::VectorXd> softest = free.lowest_mode_of_definite();
     ASSERT_TRUE(softest);
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(free.matrix());
     // As near as the residual over the distance to the next eigenvalue.
@@ -97,9 +97,9 @@ TEST(FreeDirections, SoftestDirectionIsTheEigenvectorOnWhatIsFree) {
     EXPECT_NEAR(softest->norm(), 1, 1e-12);
     EXPECT_LT((jacobian * direction_by_size(free, 0)).norm(), 1e-12);
   }
-  FreeHessian saddle;
+  ReducedHessian saddle;
   saddle.compute(with_eigenvalues(Eigen::VectorXd::LinSpaced(8, -0.1, 2)), Eigen::MatrixXd(0, 8));
-  EXPECT_FALSE(saddle.softest_of_definite());
+  EXPECT_FALSE(saddle.lowest_mode_of_definite());
 }
 
 TEST(FreeDirections, StepIsThatOfTheWholeSystem) {
@@ -108,7 +108,7 @@ TEST(FreeDirections, StepIsThatOfTheWholeSystem) {
     const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(m, n);
     const Eigen::MatrixXd hessian = with_eigenvalues(Eigen::VectorXd::LinSpaced(n, 0.1, 2));
     const Eigen::VectorXd right = Eigen::VectorXd::Random(n + m);
-    FreeHessian free;
+    ReducedHessian free;
     free.compute(hessian, jacobian);
     ASSERT_TRUE(free.has_solutions());
     Eigen::VectorXd step;
@@ -120,7 +120,7 @@ TEST(FreeDirections, StepIsThatOfTheWholeSystem) {
 }
 
 TEST(FreeDirections, NoStepWithoutMinimumOrWithDependentConstraints) {
-  FreeHessian free;
+  ReducedHessian free;
   free.compute(with_eigenvalues(Eigen::VectorXd::LinSpaced(8, -0.1, 2)), Eigen::MatrixXd(0, 8));
   EXPECT_FALSE(free.has_solutions());
   Eigen::MatrixXd jacobian = Eigen::MatrixXd::Random(3, 8);

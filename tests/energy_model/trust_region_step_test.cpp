@@ -28,7 +28,7 @@ TEST(TrustRegionStep, IsTheLowestWithinTheRadius) {
         const Eigen::VectorXd soft = eigen.eigenvectors().col(0);
         Eigen::VectorXd right = Eigen::VectorXd::Random(n);
         right += (pulled_along_it - 1) * right.dot(soft) * soft;
-        FreeHessian free;
+        ReducedHessian free;
         free.compute(hessian, Eigen::MatrixXd(0, n));
         const std::optional<Eigen::VectorXd> step_within =
             trust_region_step(free, -right, {.radius = length});
@@ -79,7 +79,7 @@ TEST(TrustRegionStep, WithoutAGradientOnlyNegativeCurvatureLeadsOn) {
     Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(n, 0.7, 4);
     eigenvalues[0] = smallest;
     const Eigen::MatrixXd hessian = with_eigenvalues(eigenvalues);
-    FreeHessian free;
+    ReducedHessian free;
     free.compute(hessian, Eigen::MatrixXd(0, n));
     const std::optional<Eigen::VectorXd> step = trust_region_step(free, tiny, region);
     ASSERT_EQ(step.has_value(), smallest < -neutral) << smallest;
@@ -92,7 +92,7 @@ TEST(TrustRegionStep, WithoutAGradientOnlyNegativeCurvatureLeadsOn) {
 
 TEST(TrustRegionStep, NoneWhereNewtonsIsShort) {
   const Eigen::VectorXd gradient = Eigen::VectorXd::Constant(4, 0.01);
-  FreeHessian free;
+  ReducedHessian free;
   free.compute(Eigen::MatrixXd::Identity(4, 4), Eigen::MatrixXd(0, 4));
   EXPECT_FALSE(trust_region_step(free, gradient, {.radius = 1, .least_step = 0.03}));
   EXPECT_TRUE(trust_region_step(free, gradient, {.radius = 1, .least_step = 0.01}));

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "certify/contact_ends.hpp"
-#include "certify/free_turns.hpp"
+#include "certify/rigid_body_modes.hpp"
 #include "linear/newton_system.hpp"
 #include "newton/newton.hpp"
 
@@ -48,7 +48,7 @@ double newton_step(NewtonSystem& system, const Eigen::VectorXd& gradient,
 /// Rounding of forces, whose scale is this.
 double rounding_of(double scale) { return 8 * std::numeric_limits<double>::epsilon() * scale; }
 
-/// By which the coefficients may be off along the softest direction if the second variation stays
+/// By which the coefficients may be off along the mode nearest zero if the second variation stays
 /// what it is: what Newton's method would still move them by, and what rounding, the modes that are
 /// left out and kinks within pieces push, divided by the eigenvalue nearest to zero.
 double linear_error(const SpanSolution& solution, double load) {
@@ -56,9 +56,9 @@ double linear_error(const SpanSolution& solution, double load) {
   // The angle that the last coefficient adds is a_K / (2K); forces feel it as little again.
   const double K = solution.terms;
   const double angle = solution.model->tail(solution.x) / (2 * K);
-  const double softest = std::min(solution.softest, 1.0);
+  const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
   const double left_out = scale * angle / (2 * K) + misplaced_contact(solution);
-  return solution.next_step + (rounding_of(scale) + left_out) / softest;
+  return solution.next_step + (rounding_of(scale) + left_out) / smallest;
 }
 
 /// What the points of a shape may be away from those of an equilibrium, of the length. The
@@ -68,28 +68,29 @@ double linear_error(const SpanSolution& solution, double load) {
 double error_estimate(const SpanSolution& solution, double moved) {
   const SpanEnergy& model = *solution.model;
   // The unit is the rod's smaller bending stiffness.
-  double softest_section = 1;
+  double least_stiffness = 1;
   for (const Span::Part& part : model.span().parts) {
-    softest_section = std::min(softest_section, part.stiffness.head<2>().minCoeff());
+    least_stiffness = std::min(least_stiffness, part.stiffness.head<2>().minCoeff());
   }
   const double angle = model.tail(solution.x) / (2.0 * solution.terms);
-  return std::min(moved / std::sqrt(softest_section) + angle, largest_error);
+  return std::min(moved / std::sqrt(least_stiffness) + angle, largest_error);
 }
 
 /// Eigenvalues of the second variation in some directions, as far as they were looked at.
-struct Softness {
-  double smallest = 0;         // eigenvalue
-  double nearest_zero = 0;     // size of the eigenvalue nearest to zero that is no free turn's
-  int neutral_directions = 0;  // that are no free turns
+struct SmallEigenvalues {
+  double smallest = 0;      // eigenvalue
+  double nearest_zero = 0;  // size of the eigenvalue nearest to zero that is no rigid-body mode's
+  int neutral_directions = 0;  // that are no rigid-body modes
   Eigen::Index zero = 0;       // those that are free, or zero whatever they are
 };
 
 /// @param bound    size up to which an eigenvalue counts as neutral
 /// @param free     turns of the rod as a whole, whose eigenvalues are zero
 /// @param nothing  size up to which one is zero whatever its direction is; negative: none is
-Softness softness(FreeHessian& hessian, double bound, Eigen::Index free, double nothing) {
+SmallEigenvalues small_eigenvalues(ReducedHessian& hessian, double bound, Eigen::Index free,
+                                   double nothing) {
   const Eigen::VectorXd eigenvalues = smallest_eigenvalues(hessian, 2 * bound);
-  Softness result;
+  SmallEigenvalues result;
   result.smallest = eigenvalues.size() > 0 ? eigenvalues[0] : 1;
   result.nearest_zero = std::abs(result.smallest);
   if (result.smallest > 2 * bound) return result;
@@ -110,7 +111,7 @@ struct SoftMode {
 
 SoftMode soft_mode(NewtonSystem& system, const Eigen::MatrixXd& jacobian, Eigen::Index free) {
   SoftMode mode;
-  mode.direction = direction_by_size(system.on_free_directions(), free);
+  mode.direction = direction_by_size(system.reduced_hessian(), free);
   mode.multipliers = Eigen::VectorXd::Zero(jacobian.rows());
   if (jacobian.rows() > 0) {
     mode.multipliers =
@@ -123,11 +124,11 @@ SoftMode soft_mode(NewtonSystem& system, const Eigen::MatrixXd& jacobian, Eigen:
 /// the eigenvalue changes along its own direction, to second order with what the constraints and
 /// the stiff directions do to it. The first is the coefficient of a fold, zero by symmetry at a
 /// bifurcation.
-struct Softening {
+struct EigenvalueDerivatives {
   double first = 0, second = 0;
 };
 
-Softening softening(SpanSolution& solution, const SoftMode& mode) {
+EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftMode& mode) {
   constexpr double step = 1e-3;  // error step^2, rounding eps / step and eps / step^2
   SpanEnergy& model = *solution.model;
   Eigen::VectorXd gradient(model.size());
@@ -155,14 +156,14 @@ Softening softening(SpanSolution& solution, const SoftMode& mode) {
 double change_since_factor(const SpanSolution& solution, double scale) {
   const NewtonFactor& factor = *solution.factor;
   return factor.distance(solution, scale) * largest_third_derivative * scale /
-         std::min(1.0, factor.system.on_free_directions().least_constraint());
+         std::min(1.0, factor.system.reduced_hessian().least_constraint());
 }
 
 /// Whether the second variation might change so much within `eta` that h is above its limit; false
 /// where the largest forces there are could not do it.
 bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
   return !(eta * largest_third_derivative * scale_of_forces(solution, load) <=
-           largest_h * solution.softest);
+           largest_h * solution.eigenvalue_nearest_zero);
 }
 
 }  // namespace
@@ -187,15 +188,15 @@ void certify(SpanSolution& solution, double load, NewtonFactors& factors) {
   if (!(solution.residual <= largest_next_step * scale)) {
     return solution.fail("the residual of the returned shape is not small");
   }
-  const FreeTurns free = free_turns(model.span(), model.tangents());
-  solution.free_turns = static_cast<int>(free.all());
+  const RigidBodyModes free = rigid_body_modes(model.span(), model.tangents());
+  solution.rigid_body_modes = static_cast<int>(free.all());
   // Obstacles leave movements free that are not looked for: those that are zero but for rounding.
   const bool obstacles = model.has_soft_obstacles() || !model.span().contacts.empty();
   const double nothing = obstacles ? 128 * rounding_of(scale) : -1;
   double bound = neutral;
   double eta = 0;
   bool small_step = false;
-  Softness found;
+  SmallEigenvalues found;
   for (bool near = !obstacles && solution.factor != nullptr;; near = false) {
     const double change = near ? change_since_factor(solution, scale) : 0;
     near = near && change < largest_h;
@@ -205,9 +206,9 @@ void certify(SpanSolution& solution, double load, NewtonFactors& factors) {
     small_step = solution.next_step <= largest_next_step;
     // Below it what is left of the residual makes a step that is not small.
     bound = std::max(neutral, small_step ? 0 : solution.residual / largest_next_step);
-    found = softness(system.on_free_directions(), bound, free.in_plane, nothing);
-    solution.smallest_curvature = found.smallest;
-    solution.softest = found.nearest_zero;
+    found = small_eigenvalues(system.reduced_hessian(), bound, free.in_plane, nothing);
+    solution.smallest_eigenvalue = found.smallest;
+    solution.eigenvalue_nearest_zero = found.nearest_zero;
     eta = linear_error(solution, load);
     const bool tells = small_step && found.smallest > 2 * bound &&
                        change <= largest_change * found.smallest &&
@@ -221,9 +222,9 @@ void certify(SpanSolution& solution, double load, NewtonFactors& factors) {
   const bool can_move = found.zero < model.size() - model.constraints();
   if (can_move && may_be_at_fold(solution, load, eta)) {
     const SoftMode mode = soft_mode(solution.factor->system, jacobian, found.zero);
-    const Softening change = softening(solution, mode);
+    const EigenvalueDerivatives change = eigenvalue_derivatives(solution, mode);
     const double kappa = std::abs(change.first) + std::abs(change.second) * eta;
-    const double h = eta * kappa / solution.softest;
+    const double h = eta * kappa / solution.eigenvalue_nearest_zero;
     moved = h <= 0.5 ? 2 * eta / (1 + std::sqrt(1 - 2 * h)) : largest_error;
     at_fold = h > largest_h;
     if (at_fold) solution.neutral_directions = std::max(1, solution.neutral_directions);
@@ -232,10 +233,10 @@ void certify(SpanSolution& solution, double load, NewtonFactors& factors) {
   if (model.span().planar) {
     Eigen::MatrixXd hessian;
     model.sideways(solution.multipliers, hessian, jacobian);
-    FreeHessian beside;
+    ReducedHessian beside;
     beside.compute(hessian, jacobian);
-    found = softness(beside, bound, free.sideways, nothing);
-    solution.smallest_curvature = std::min(solution.smallest_curvature, found.smallest);
+    found = small_eigenvalues(beside, bound, free.out_of_plane, nothing);
+    solution.smallest_eigenvalue = std::min(solution.smallest_eigenvalue, found.smallest);
     solution.neutral_directions += found.neutral_directions;
   }
   if (undetermined || !small_step || at_fold) return solution.finish(SolveStatus::near_singular);
@@ -244,14 +245,14 @@ void certify(SpanSolution& solution, double load, NewtonFactors& factors) {
     solution.neutral_directions = std::max(1, solution.neutral_directions);
     return solution.finish(SolveStatus::near_singular);
   }
-  if (solution.smallest_curvature < -neutral || middle != MiddlePassed::none) {
+  if (solution.smallest_eigenvalue < -neutral || middle != MiddlePassed::none) {
     return solution.finish(SolveStatus::saddle);
   }
   solution.finish(solution.neutral_directions > 0 ? SolveStatus::near_singular
                                                   : SolveStatus::converged);
 }
 
-void certify_sideways(SpanSolution& solution, double load, NewtonFactors& factors) {
+void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& factors) {
   const Span& span = solution.model->span();
   // Only a rod that is pulled along its clamp turns freely, about that; few are.
   const auto is_along = [&](const Eigen::Vector3d& force) {
@@ -259,13 +260,14 @@ void certify_sideways(SpanSolution& solution, double load, NewtonFactors& factor
   };
   if (is_along(span.weight) && std::all_of(span.loads.begin(), span.loads.end(),
                                            [&](const auto& l) { return is_along(l.force); })) {
-    solution.free_turns = static_cast<int>(free_turns(span, solution.model->tangents()).all());
+    solution.rigid_body_modes =
+        static_cast<int>(rigid_body_modes(span, solution.model->tangents()).all());
   }
   const double eta = linear_error(solution, load);
   // Of what is no minimum in the plane the factor tells nothing.
-  const bool looked_at = solution.is_equilibrium() && !std::isnan(solution.softest);
-  const bool unsure =
-      looked_at && (solution.softest <= neutral || may_be_at_fold(solution, load, eta));
+  const bool looked_at = solution.is_equilibrium() && !std::isnan(solution.eigenvalue_nearest_zero);
+  const bool unsure = looked_at && (solution.eigenvalue_nearest_zero <= neutral ||
+                                    may_be_at_fold(solution, load, eta));
   if (unsure || solution.status == SolveStatus::near_singular)
     return certify(solution, load, factors);
   if (!solution.is_equilibrium()) return;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "linear/free_directions.hpp"
-#include "linear/free_hessian.hpp"
+#include "linear/reduced_hessian.hpp"
 
 namespace dlo::energy_model {
 
@@ -37,14 +37,14 @@ class NewtonSystem {
   [[nodiscard]] Eigen::VectorXd minimum_norm_step(const Eigen::VectorXd& right);
 
   /// H on the free directions, of a system with constraints; of one without H itself.
-  [[nodiscard]] FreeHessian& on_free_directions() { return free_; }
-  [[nodiscard]] const FreeHessian& on_free_directions() const { return free_; }
+  [[nodiscard]] ReducedHessian& reduced_hessian() { return free_; }
+  [[nodiscard]] const ReducedHessian& reduced_hessian() const { return free_; }
 
  private:
   [[nodiscard]] Eigen::MatrixXd whole() const;
 
   Eigen::MatrixXd hessian_, jacobian_;
-  FreeHessian free_;
+  ReducedHessian free_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   std::optional<AcrossNeutral> across_;  // once it was asked for
   Eigen::VectorXd left_;

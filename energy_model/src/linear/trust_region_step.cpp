@@ -32,7 +32,7 @@ struct ShiftBounds {
 };
 
 /// p on along the smallest eigenvalue of what is factored, found by inverse iteration, to a length.
-void extend_along_smallest(const FreeHessian& hessian, double length, Eigen::VectorXd& p) {
+void extend_along_smallest(const ReducedHessian& hessian, double length, Eigen::VectorXd& p) {
   Eigen::VectorXd along = Eigen::VectorXd::LinSpaced(p.size(), 1, 2);
   for (int i = 0; i < 3; ++i) {
     along.normalize();
@@ -47,8 +47,8 @@ void extend_along_smallest(const FreeHessian& hessian, double length, Eigen::Vec
 /// Where Newton's step is longer than the radius or H not positive definite: Newton's method on
 /// 1 / |p(mu)|, which is all but straight.
 /// @param low  mu has to be larger
-Eigen::VectorXd step_to_edge(FreeHessian& hessian, const Eigen::VectorXd& gradient, double radius,
-                             double low) {
+Eigen::VectorXd step_to_edge(ReducedHessian& hessian, const Eigen::VectorXd& gradient,
+                             double radius, double low) {
   constexpr int most_steps = 60;
   const Eigen::VectorXd diagonal = hessian.diagonal();
   ShiftBounds bounds;
@@ -93,7 +93,7 @@ Eigen::VectorXd step_to_edge(FreeHessian& hessian, const Eigen::VectorXd& gradie
 
 }  // namespace
 
-std::optional<Eigen::VectorXd> trust_region_step(FreeHessian& hessian,
+std::optional<Eigen::VectorXd> trust_region_step(ReducedHessian& hessian,
                                                  const Eigen::VectorXd& gradient,
                                                  const TrustRegion& region) {
   if (gradient.size() == 0) return std::nullopt;

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "linear/free_hessian.hpp"
+#include "linear/reduced_hessian.hpp"
 
 namespace dlo::energy_model {
 
@@ -22,7 +22,7 @@ struct TrustRegion {
 /// with mu = 0 or, to between 0.75 and 1.01 of it, |p| = radius. Where the gradient has no part
 /// along the smallest eigenvalue (the hard case) p goes on along that to the region's edge.
 /// @return nothing next to a minimum: there all eigenvalues are above -neutral
-[[nodiscard]] std::optional<Eigen::VectorXd> trust_region_step(FreeHessian& hessian,
+[[nodiscard]] std::optional<Eigen::VectorXd> trust_region_step(ReducedHessian& hessian,
                                                                const Eigen::VectorXd& gradient,
                                                                const TrustRegion& region);
 

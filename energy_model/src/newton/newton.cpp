@@ -58,7 +58,7 @@ class NewtonIteration {
           return finish();
         case Outcome::singular:
           solution_.residual = size_;
-          if (step_.is_minimum()) solution_.softest = step_.smallest_eigenvalue();
+          if (step_.is_minimum()) solution_.eigenvalue_nearest_zero = step_.smallest_eigenvalue();
           return solution_.finish(SolveStatus::near_singular);
         case Outcome::diverged:
           break;
@@ -205,7 +205,7 @@ NewtonIteration::Outcome NewtonIteration::judge_move(double moved) {
 
 void NewtonIteration::finish() {
   solution_.residual = size_;
-  solution_.softest =
+  solution_.eigenvalue_nearest_zero =
       step_.is_minimum() ? step_.smallest_eigenvalue() : std::numeric_limits<double>::quiet_NaN();
   if (!(solution_.multipliers.norm() <= largest_pull * (1 + options_.load))) {
     return solution_.fail("Newton's method left for forces without bound");

@@ -73,7 +73,7 @@ void NewtonStep::deflate() {
 void NewtonStep::solve() {
   if (is_minimum()) {
     buffers_.step = -buffers_.gradient;
-    factor_->system.on_free_directions().solve_free(buffers_.step);
+    factor_->system.reduced_hessian().solve_free(buffers_.step);
     return;
   }
   Eigen::VectorXd& right = buffers_.right;
@@ -114,7 +114,7 @@ double NewtonStep::smallest_eigenvalue() {
   double grows = 1;
   for (int i = 0; i < iterations; ++i) {
     mode /= mode.norm();
-    factor_->system.on_free_directions().solve_free(mode);
+    factor_->system.reduced_hessian().solve_free(mode);
     grows = mode.norm();
   }
   return 1 / grows;

@@ -44,7 +44,7 @@ class NewtonStep {
 
   /// Whether no constraints bind it, and the factor's Hessian is positive definite.
   [[nodiscard]] bool is_minimum() const {
-    return buffers_.residual.size() == 0 && factor_->system.on_free_directions().is_definite();
+    return buffers_.residual.size() == 0 && factor_->system.reduced_hessian().is_definite();
   }
   /// Of that Hessian, by inverse iteration from a vector that low modes share: not below the
   /// smallest eigenvalue, and next to it where that is far below the others.

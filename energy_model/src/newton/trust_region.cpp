@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "linear/free_hessian.hpp"
+#include "linear/reduced_hessian.hpp"
 #include "linear/trust_region_step.hpp"
 #include "newton/restore.hpp"
 
@@ -60,7 +60,7 @@ class TrustRegionDescent {
     if (dependent_) {
       project_on_rank(here);
     } else {
-      FreeHessian::Balance balance = free_.balance(here.gradient);
+      ReducedHessian::Balance balance = free_.balance(here.gradient);
       multipliers_ = std::move(balance.multipliers);
       projected_gradient_ = std::move(balance.left);
     }
@@ -87,7 +87,7 @@ class TrustRegionDescent {
 
   /// Step in the unknowns; nothing where the point is near a minimum already.
   [[nodiscard]] std::optional<Eigen::VectorXd> best_step(double radius) {
-    FreeHessian& hessian = dependent_ ? ranked_ : free_;
+    ReducedHessian& hessian = dependent_ ? ranked_ : free_;
     const std::optional<Eigen::VectorXd> p =
         trust_region_step(hessian, projected_gradient_,
                           {.radius = radius,
@@ -127,10 +127,10 @@ class TrustRegionDescent {
   const TrustRegionOptions& options_;
   PointOnSpan trial_;
   RestoreScratch scratch_;
-  FreeHessian free_;
+  ReducedHessian free_;
   bool dependent_ = false;  // constraints, so that basis_ is of what is free
   Eigen::MatrixXd basis_;
-  FreeHessian ranked_;  // on that basis
+  ReducedHessian ranked_;  // on that basis
   Eigen::VectorXd multipliers_, gradient_, projected_gradient_;
   Eigen::MatrixXd hessian_;
   double predicted_ = 0;  // fall of E - lambda.c

@@ -14,12 +14,12 @@
 #include "contact/mend.hpp"
 #include "contact/resting_polygon.hpp"
 #include "newton/trust_region.hpp"
-#include "search/settle_lift_offs.hpp"
+#include "search/free_boundary_newton.hpp"
+#include "span/negative_curvature.hpp"
 #include "span/refinement.hpp"
 #include "span/same_shape.hpp"
 #include "span/search_log.hpp"
 #include "span/span_starts.hpp"
-#include "span/way_down.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -60,7 +60,7 @@ class ContactSearch {
     std::vector<SpanSolution> found;
     if (options_.known.model && options_.start && !options_.all) {
       SpanSolution followed = follow();
-      if (followed.is_equilibrium() || followed.is_left_open() || options_.only_known) {
+      if (followed.is_equilibrium() || followed.is_singular_point() || options_.only_known) {
         found.push_back(std::move(followed));
       }
     }
@@ -99,7 +99,7 @@ class ContactSearch {
     if (share > 0 && !solution.is_equilibrium()) solution = next_to_known(span, 0);
     // Where a point begins to lie it slides with no least gap, and a part is too short to be told.
     if (!solution.is_equilibrium() && hold_points(span)) {
-      solution = near_field(span, options_.start);
+      solution = newton_from(span, options_.start);
     }
     if (!solution.is_equilibrium()) return solution;
     const Eigen::Matrix3Xd turned =
@@ -108,7 +108,7 @@ class ContactSearch {
     spent_ += std::exchange(solution.evaluations, 0);
     span = solution.model->span();
     solution = with_right_contacts(std::move(span), {}, std::move(solution));
-    solution.followed = succeeded(solution.status) || solution.is_left_open();
+    solution.followed = succeeded(solution.status) || solution.is_singular_point();
     return solution;
   }
 
@@ -307,11 +307,11 @@ class ContactSearch {
   /// Where a shape that gives way comes to rest, out of its plane too.
   void leave(std::vector<SpanSolution>& found) {
     constexpr double push = 0.5;
-    const std::optional<WayDown> way = way_down(found.front());
+    const std::optional<NegativeCurvature> way = negative_curvature(found.front());
     if (!way || options_.deadline.passed()) return;
     SpanEnergy pushed(way->span, found.front().terms);
     const Eigen::VectorXd x =
-        pushed.adopt(*found.front().model, found.front().x) + push * way->along;
+        pushed.adopt(*found.front().model, found.front().x) + push * way->direction;
     Span span = span_;
     span.planar = way->span.planar;
     SpanOptions options = options_;
@@ -359,10 +359,10 @@ class ContactSearch {
                                                  SpanSolution solution) {
     for (int round = 0; round < most_rounds; ++round) {
       const bool found_already = round == 0 && solution.is_equilibrium();
-      if (!found_already) solution = near_field(span, near);
-      if (!solution.is_equilibrium() && hold_points(span)) solution = near_field(span, near);
+      if (!found_already) solution = newton_from(span, near);
+      if (!solution.is_equilibrium() && hold_points(span)) solution = newton_from(span, near);
       if (!solution.is_equilibrium()) break;
-      spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
+      spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
       std::optional<std::vector<Span::Contact>> next = mended(solution, load_, Terms::some);
       if (!next) {
         const TangentField here = field_of(solution.model->shape(solution.x));
@@ -370,7 +370,7 @@ class ContactSearch {
         solution = with_all_terms(std::move(solution));
         // Where two points are about to become a part that lies neither slides with a least gap.
         if (!solution.is_equilibrium() && hold_points(span)) {
-          solution = near_field(span, here);
+          solution = newton_from(span, here);
           if (solution.is_equilibrium()) solution = with_all_terms(std::move(solution));
         }
         if (!solution.is_equilibrium()) break;
@@ -426,7 +426,7 @@ class ContactSearch {
     return true;
   }
 
-  [[nodiscard]] SpanSolution near_field(const Span& span, const TangentField& near) {
+  [[nodiscard]] SpanSolution newton_from(const Span& span, const TangentField& near) {
     SpanSolution solution;
     solution.terms = terms(span);
     solution.model = workspace_.model(span, solution.terms);
@@ -474,7 +474,7 @@ class ContactSearch {
       const int before = solution.terms;
       solution = finished(std::move(solution));
       if (solution.is_equilibrium() && solution.terms > before) {
-        spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
+        spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
         solution = finished(std::move(solution));
       }
       const int finer = solution.terms + solution.terms / 2;
@@ -488,7 +488,7 @@ class ContactSearch {
       newton(next);
       if (!next.is_equilibrium()) return solution;
       solution = std::move(next);
-      spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
+      spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
     }
   }
 

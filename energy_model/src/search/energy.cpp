@@ -10,7 +10,7 @@
 #include "base/legendre.hpp"
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
-#include "certify/free_turns.hpp"
+#include "certify/rigid_body_modes.hpp"
 #include "contact/penetration.hpp"
 #include "problem/redundant_obstacles.hpp"
 #include "problem/split.hpp"
@@ -207,7 +207,7 @@ class EnergySolver::State {
     };
     // A shape that is followed may be one that a bifurcation leaves open.
     const auto is_known = [](const SpanSolution& solution) {
-      return solution.is_equilibrium() || solution.is_left_open();
+      return solution.is_equilibrium() || solution.is_singular_point();
     };
     const bool starts =
         options_.start != nullptr && !options.all && !(warm && memory.twisted.model);
@@ -302,7 +302,7 @@ class EnergySolver::State {
       }
       PlacedSolution followed =
           from_field(own, start, options, shape != nullptr || (last && !last->planar()));
-      if (followed.solution.is_equilibrium() || followed.solution.is_left_open() ||
+      if (followed.solution.is_equilibrium() || followed.solution.is_singular_point() ||
           options.only_known) {
         return one(std::move(followed));
       }
@@ -369,7 +369,7 @@ class EnergySolver::State {
       PlacedSolution solution = from_field(placed, fields.field(i), own, true);
       spent += solution.solution.evaluations;
       const auto counts = [&](const SpanSolution& one) {
-        return one.is_equilibrium() || (options.all && one.is_left_open());
+        return one.is_equilibrium() || (options.all && one.is_singular_point());
       };
       if (!counts(solution.solution)) continue;
       const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
@@ -455,7 +455,7 @@ class EnergySolver::State {
   }
 
   static void remember(const PlacedSolution& found, Remembered& last) {
-    const bool is_known = succeeded(found.solution.status) || found.solution.is_left_open();
+    const bool is_known = succeeded(found.solution.status) || found.solution.is_singular_point();
     last.before = {std::exchange(last.model, is_known ? found.solution.model : nullptr),
                    std::move(last.x), std::move(last.multipliers)};
     last.x = found.solution.x;

@@ -14,7 +14,7 @@
 #include "certify/enough_terms.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "linear/free_directions.hpp"
-#include "newton/penalty_descent.hpp"
+#include "newton/augmented_lagrangian.hpp"
 #include "newton/trust_region.hpp"
 #include "span/refinement.hpp"
 
@@ -42,10 +42,10 @@ constexpr double rounded_curvature = 1e-9;
 /// Distance of unknowns up to which a factor tells the stability of a stiff shape, and curvature
 /// from which it is one.
 constexpr double nearest_factor = 1e-3;
-constexpr double softest_stiff = 1e-2;
+constexpr double least_stiff_eigenvalue = 1e-2;
 
 /// Leaps to other branches, which would go on without an end where each leads to the next.
-constexpr int most_leaps = 60;
+constexpr int most_branch_jumps = 60;
 
 /// Push along the direction in which a shape gives way, and how often it is made larger.
 constexpr double first_push = 0.1;
@@ -185,9 +185,9 @@ class TwistPath {
     const double work = (torque(here_) + torque(next)) / 2 * turn;
     const double unit = span_.twist->stiffness / span_.length * turn * turn;
     const double rounding = 1e-9 * (1 + load_ + std::abs(next.energy));
-    const double leap = std::abs(next.energy - here_.energy - work);
-    if (!(leap <= branch_share * unit + rounding)) return std::nullopt;
-    smooth_ = leap <= smooth_share * unit + rounding;
+    const double jump = std::abs(next.energy - here_.energy - work);
+    if (!(jump <= branch_share * unit + rounding)) return std::nullopt;
+    smooth_ = jump <= smooth_share * unit + rounding;
     aside_ = (next.x - predicted).norm() > (predicted - here_.x).norm();
     return next;
   }
@@ -236,14 +236,14 @@ class TwistPath {
   [[nodiscard]] bool is_stable(SpanSolution& solution) {
     stiff_ = false;
     if (!(distance_of_factor(solution) <= nearest_factor)) factor_at(solution);
-    FreeHessian& near = solution.factor->system.on_free_directions();
+    ReducedHessian& near = solution.factor->system.reduced_hessian();
     if (near.has_solutions()) {
-      const std::optional<double> smallest = near.smallest_of_definite();
-      stiff_ = smallest && *smallest > softest_stiff;
+      const std::optional<double> smallest = near.smallest_eigenvalue_of_definite();
+      stiff_ = smallest && *smallest > least_stiff_eigenvalue;
       if (stiff_) return true;
     }
     if (distance_of_factor(solution) > 0) factor_at(solution);
-    Eigen::MatrixXd projected = solution.factor->system.on_free_directions().matrix();
+    Eigen::MatrixXd projected = solution.factor->system.reduced_hessian().matrix();
     // Under large forces what is next to neutral is lost in rounding, whichever sign it has.
     projected.diagonal().array() += rounded_curvature * solution.multipliers.norm();
     return is_minimum(projected);
@@ -278,9 +278,10 @@ class TwistPath {
 
   /// Downhill to what is stable, from beside here.
   void leave() {
-    if (++leaps_ > most_leaps) return here_.fail("the rod leaps from branch to branch");
+    if (++branch_jumps_ > most_branch_jumps)
+      return here_.fail("the rod jumps from branch to branch");
     derive(here_);
-    std::optional<Eigen::VectorXd> way = falling_direction(hessian_, jacobian_);
+    std::optional<Eigen::VectorXd> way = negative_curvature_direction(hessian_, jacobian_);
     // Next to a fold the branch goes where the rod gives way.
     if (!way && last_step_.norm() > 0) way = last_step_.normalized();
     if (!way) way = softest_direction(hessian_, jacobian_);
@@ -291,7 +292,7 @@ class TwistPath {
       next.evaluations = 0;
       if (way) next.x += push * *way;
       if (i % 2 == 0) {
-        descend_by_penalty(next, {.load = load_, .deadline = &options_.deadline});
+        descend_by_augmented_lagrangian(next, {.load = load_, .deadline = &options_.deadline});
       } else {
         descend_in_trust_region(next, {.load = load_,
                                        .gradient_tolerance = handover_gradient,
@@ -318,11 +319,11 @@ class TwistPath {
   SpanSolution here_;
   double angle_ = 0;
   int spent_ = 0;
-  int leaps_ = 0;
+  int branch_jumps_ = 0;
   bool smooth_ = false;  // the last step was shorter than it need be
   bool aside_ = false;   // the last step has gone aside from where it pointed at
   Eigen::VectorXd last_step_;
-  Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a leap
+  Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a jump
   Eigen::VectorXd gradient_, residual_;
   Eigen::MatrixXd jacobian_, hessian_;
   bool stiff_ = false;  // nothing is next to neutral at the shape that was last asked about

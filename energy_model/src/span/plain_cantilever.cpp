@@ -47,7 +47,7 @@ void bend_slightly(SpanSolution& solution) {
 
 }  // namespace
 
-SpanSolution plain_cantilever(SpanDescents& on) {
+SpanSolution plain_cantilever(LocalSolver& on) {
   SpanSolution at_once = on.empty_solution(on.terms());
   if (on.traits().load < soft_load) {
     bend_slightly(at_once);

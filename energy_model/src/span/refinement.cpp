@@ -16,7 +16,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Unknowns that a shape may have whose pieces end where it wants it.
-constexpr int most_graded_unknowns = 2 * most_unknowns;
+constexpr int most_adapted_unknowns = 2 * most_unknowns;
 
 /// Error over the length above which a shape is asked about with more terms than it takes to look
 /// right.
@@ -36,11 +36,11 @@ struct Tail {
 
 class Refinement {
  public:
-  explicit Refinement(SpanDescents& on)
+  explicit Refinement(LocalSolver& on)
       : on_(on), span_(on.span()), options_(on.options()), traits_(on.traits()) {}
 
   [[nodiscard]] SpanSolution run(SpanSolution solution) {
-    const int unknowns = traits_.graded ? most_graded_unknowns : most_unknowns;
+    const int unknowns = traits_.adapted ? most_adapted_unknowns : most_unknowns;
     const bool touches = !span_.contacts.empty();
     // Contacts cut the rod into short pieces; it still may take the terms of its load.
     const int least = touches ? std::max(32, on_.terms()) : 32;
@@ -66,14 +66,15 @@ class Refinement {
         break;
       }
       if (solution.terms >= most_terms) {
-        if (std::optional<SpanSolution> graded = graded_anew(solution)) return std::move(*graded);
+        if (std::optional<SpanSolution> adapted = on_adapted_mesh(solution))
+          return std::move(*adapted);
         solution.fail(solution.too_few_terms());
         break;
       }
       const bool too_few = solution.terms < on_.terms() && !touches;
       int more = too_few ? on_.terms() : terms_by_decay(solution, before);
       // Grips may pull harder than weight and loads do.
-      if (solution.multipliers.size() > 0 && !traits_.taut && !traits_.graded) {
+      if (solution.multipliers.size() > 0 && !traits_.taut && !traits_.adapted) {
         more = std::max(
             more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), traits_.longest_piece));
       }
@@ -87,11 +88,11 @@ class Refinement {
  private:
   /// Where the terms that can be afforded do not resolve a shape, its pieces may end in the wrong
   /// places.
-  [[nodiscard]] std::optional<SpanSolution> graded_anew(const SpanSolution& solution) {
-    const std::optional<Span> span = graded_for(on_, solution);
+  [[nodiscard]] std::optional<SpanSolution> on_adapted_mesh(const SpanSolution& solution) {
+    const std::optional<Span> span = adapted_mesh(on_, solution);
     if (!span) return std::nullopt;
-    SpanDescents graded(*span, options_, on_.workspace());
-    SpanSolution finer = graded.empty_solution(graded.terms());
+    LocalSolver adapted(*span, options_, on_.workspace());
+    SpanSolution finer = adapted.empty_solution(adapted.terms());
     const TangentField field = field_of(solution.model->shape(solution.x));
     finer.x = finer.model->fit(field(finer.model->nodes()));
     if (span->twist) {
@@ -100,7 +101,7 @@ class Refinement {
     finer.multipliers = solution.multipliers;
     finer.evaluations = solution.evaluations;
     on_.newton(finer);
-    finer = refined(graded, std::move(finer));
+    finer = refined(adapted, std::move(finer));
     if (!finer.is_equilibrium()) return std::nullopt;
     return finer;
   }
@@ -157,7 +158,7 @@ class Refinement {
     if (!finer.is_equilibrium() && !finer.model->has_soft_obstacles()) {
       finer.x = finer.model->adopt(*solution.model, solution.x);
       finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
-      on_.pull_to_grips(finer);
+      on_.by_augmented_lagrangian(finer);
     }
     finer.evaluations += solution.evaluations;
     return finer;
@@ -191,7 +192,7 @@ class Refinement {
            residual.norm() < largest_gap * options_.tolerance;
   }
 
-  SpanDescents& on_;
+  LocalSolver& on_;
   const Span& span_;
   const SpanOptions& options_;
   const SpanTraits& traits_;
@@ -199,19 +200,19 @@ class Refinement {
 
 }  // namespace
 
-SpanSolution refined(SpanDescents& on, SpanSolution solution) {
-  const auto refine = [](SpanDescents& settled, SpanSolution equilibrium) {
+SpanSolution refined(LocalSolver& on, SpanSolution solution) {
+  const auto refine = [](LocalSolver& settled, SpanSolution equilibrium) {
     return Refinement(settled).run(std::move(equilibrium));
   };
   if (on.span().soft_obstacles.empty()) return refine(on, std::move(solution));
   return settle_contact(on, std::move(solution), refine);
 }
 
-std::optional<Span> graded_for(const SpanDescents& on, const SpanSolution& shape) {
+std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shape) {
   const Span& span = on.span();
   const bool touches =
       !span.rigid_obstacles.empty() || !span.contacts.empty() || shape.model->has_soft_obstacles();
-  if (on.traits().graded || touches || span.has_material_directors() || on.options().terms > 0) {
+  if (on.traits().adapted || touches || span.has_material_directors() || on.options().terms > 0) {
     return std::nullopt;
   }
   Span result = shape.model->span();
@@ -233,7 +234,7 @@ int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& wor
   }
   // The shape may have left the plane, or have pieces of its own.
   const Span own = solution.model->span();
-  SpanDescents on(own, options, workspace);
+  LocalSolver on(own, options, workspace);
   SpanSolution finer = on.empty_solution(more);
   finer.x = finer.model->adopt(*solution.model, solution.x);
   finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
@@ -251,7 +252,7 @@ int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& wor
 
 SpanSolution finish(SpanSolution solution, const SpanOptions& options, SpanWorkspace& workspace) {
   const Span own = solution.model->span();
-  SpanDescents on(own, options, workspace);
+  LocalSolver on(own, options, workspace);
   solution = refined(on, std::move(solution));
   (void)judge(solution, options, workspace);
   return solution;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "certify/free_turns.hpp"
+#include "certify/rigid_body_modes.hpp"
 #include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {

@@ -10,18 +10,18 @@
 
 #include "base/legendre.hpp"
 #include "certify/certify.hpp"
-#include "certify/free_turns.hpp"
+#include "certify/rigid_body_modes.hpp"
 #include "linear/free_directions.hpp"
 #include "newton/restore.hpp"
+#include "span/local_solver.hpp"
+#include "span/negative_curvature.hpp"
 #include "span/plain_cantilever.hpp"
 #include "span/refinement.hpp"
 #include "span/same_shape.hpp"
 #include "span/search_log.hpp"
 #include "span/settle_contact.hpp"
-#include "span/span_descents.hpp"
 #include "span/span_starts.hpp"
 #include "span/start_ranking.hpp"
-#include "span/way_down.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -93,7 +93,7 @@ class Search {
     std::vector<SpanSolution> found;
     if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
       SpanSolution solution = plain_cantilever(on_);
-      certify_sideways(solution, traits_.load, workspace_.factors());
+      certify_out_of_plane(solution, traits_.load, workspace_.factors());
       if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
       add(std::move(solution), found);
     }
@@ -114,7 +114,7 @@ class Search {
         note(kind + ", downhill", !known && add(refined(on_, coarse.back()), found));
         // Descending leaves unstable equilibria; Newton's method alone stays near them.
         note(kind + ", by Newton's method",
-             add(refined(on_, on_.near_field(starts[i].field)), found));
+             add(refined(on_, on_.newton_from(starts[i].field)), found));
       }
       if (i + 1 == first && may_lead_lower(starts, first, coarse)) ++first;
       if (i + 1 < first) continue;
@@ -255,17 +255,17 @@ class Search {
   [[nodiscard]] SpanSolution from_given_start() {
     const bool follow = options_.approach == Approach::follow;
     SpanSolution solution =
-        follow ? on_.near_field(options_.start) : on_.from_start(Start{options_.start});
+        follow ? on_.newton_from(options_.start) : on_.from_start(Start{options_.start});
     came_by_newton_ = follow && options_.known.model != nullptr && solution.is_equilibrium() &&
                       is_near_start(solution);
     if (succeeded(solution.status) && (came_by_newton_ || !options_.known.model)) return solution;
     if (options_.only_known) return solution;
     const int spent = solution.evaluations;
-    if (std::optional<SpanSolution> graded = graded_start()) {
-      graded->evaluations += spent;
-      return std::move(*graded);
+    if (std::optional<SpanSolution> adapted = start_on_adapted_mesh()) {
+      adapted->evaluations += spent;
+      return std::move(*adapted);
     }
-    solution = follow ? on_.from_start(Start{options_.start}) : on_.near_field(options_.start);
+    solution = follow ? on_.from_start(Start{options_.start}) : on_.newton_from(options_.start);
     solution.evaluations += spent;
     return solution;
   }
@@ -284,22 +284,22 @@ class Search {
 
   /// From a start next to which Newton's method has found nothing, with pieces for the start's own
   /// shape, downhill if need be.
-  [[nodiscard]] std::optional<SpanSolution> graded_start() {
+  [[nodiscard]] std::optional<SpanSolution> start_on_adapted_mesh() {
     if (options_.known.model || span_.holds.empty()) return std::nullopt;
     SpanSolution looked = on_.empty_solution(max_terms);
     PointOnSpan point;
     point.x = looked.x = looked.model->fit(options_.start(looked.model->nodes()));
     evaluate(looked, point);
     looked.multipliers = point.jacobian.transpose().householderQr().solve(point.gradient);
-    const std::optional<Span> span = graded_for(on_, looked);
+    const std::optional<Span> span = adapted_mesh(on_, looked);
     if (!span) return std::nullopt;
-    SpanDescents own(*span, options_, workspace_);
-    SpanSolution solution = own.near_field(options_.start);
+    LocalSolver own(*span, options_, workspace_);
+    SpanSolution solution = own.newton_from(options_.start);
     const int spent = solution.evaluations;
     if (!solution.is_equilibrium()) {
       solution = own.empty_solution(own.terms());
       solution.x = solution.model->fit(options_.start(solution.model->nodes()));
-      own.pull_to_grips(solution);
+      own.by_augmented_lagrangian(solution);
       solution.evaluations += spent;
     }
     solution = refined(own, std::move(solution));
@@ -346,7 +346,7 @@ class Search {
     Span span = solution.model->span();
     if (span.contact_ends.empty()) return solution;
     span.contact_ends.clear();
-    SpanDescents own(span, options_, workspace_);
+    LocalSolver own(span, options_, workspace_);
     return on_other_pieces(own, solution, own.coarse_terms());
   }
 
@@ -360,7 +360,7 @@ class Search {
         const SpanSolution b = on_shared_pieces(found[j]);
         const Span& span = a.model->span();
         if (span.planar != b.model->span().planar || span.cuts != b.model->span().cuts) continue;
-        SpanDescents own(span, options_, workspace_);
+        LocalSolver own(span, options_, workspace_);
         for (const double share : shares) {
           SpanSolution between = own.empty_solution(std::max(a.terms, b.terms));
           SpanEnergy& model = *between.model;
@@ -379,7 +379,7 @@ class Search {
     }
   }
 
-  /// At a fold two equilibria come from one, and lie on both sides of it along its softest
+  /// At a fold two equilibria come from one, and lie on both sides of it along its mode
   /// direction: by Newton's method from beside those found, also those found that way.
   void look_beside(std::vector<SpanSolution>& found) {
     constexpr std::array<double, 6> steps = {0.5, -0.5, 1, -1, 2, -2};
@@ -389,12 +389,12 @@ class Search {
       const std::shared_ptr<SpanEnergy> model = found[i].model;
       const Eigen::VectorXd x = found[i].x;
       const Eigen::VectorXd multipliers = found[i].multipliers;
-      const std::optional<Eigen::VectorXd> softest = softest_of(found[i]);
-      if (!softest) continue;
-      SpanDescents own(model->span(), options_, workspace_);
+      const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(found[i]);
+      if (!mode) continue;
+      LocalSolver own(model->span(), options_, workspace_);
       for (const double step : steps) {
         SpanSolution beside = own.empty_solution(model->terms());
-        beside.x = beside.model->adopt(*model, x) + step * *softest;
+        beside.x = beside.model->adopt(*model, x) + step * *mode;
         beside.multipliers = beside.model->adopt_multipliers(*model, multipliers);
         own.newton(beside);
         note(beside_found, add(refined(own, std::move(beside)), found));
@@ -406,8 +406,9 @@ class Search {
   }
 
   /// Unit vector along the eigenvalue of the projected second variation that is nearest to zero,
-  /// free turns left aside; none if the constraints leave no other.
-  [[nodiscard]] static std::optional<Eigen::VectorXd> softest_of(const SpanSolution& solution) {
+  /// rigid-body modes left aside; none if the constraints leave no other.
+  [[nodiscard]] static std::optional<Eigen::VectorXd> mode_nearest_zero(
+      const SpanSolution& solution) {
     SpanEnergy& model = *solution.model;
     Eigen::VectorXd gradient(model.size());
     (void)model.value(solution.x, gradient);
@@ -416,28 +417,28 @@ class Search {
     model.constraint(residual, jacobian);
     Eigen::MatrixXd hessian;
     model.hessian(solution.multipliers, hessian);
-    FreeHessian on_free_directions;
-    on_free_directions.compute(hessian, jacobian);
-    const Eigen::Index free = free_turns(model.span(), model.tangents()).in_plane;
+    ReducedHessian reduced;
+    reduced.compute(hessian, jacobian);
+    const Eigen::Index free = rigid_body_modes(model.span(), model.tangents()).in_plane;
     if (free >= model.size() - model.constraints()) return std::nullopt;
-    return direction_by_size(on_free_directions, free);
+    return direction_by_size(reduced, free);
   }
 
   /// Where an equilibrium that cannot hold itself comes to rest; out of its plane if that is the
   /// only way in which it gives way.
   [[nodiscard]] std::optional<SpanSolution> leave_saddle(const SpanSolution& solution) {
     constexpr double push = 0.5;
-    const std::optional<WayDown> way = way_down(solution);
-    if (way) return pushed_from(way->span, solution, push * way->along);
+    const std::optional<NegativeCurvature> way = negative_curvature(solution);
+    if (way) return pushed_from(way->span, solution, push * way->direction);
     // Through an obstacle's middle it gives way in a mode that its series does not see as unstable.
-    const std::optional<Eigen::VectorXd> softest = softest_of(solution);
-    if (!softest || solution.model->span().soft_obstacles.empty()) return std::nullopt;
-    return pushed_from(solution.model->span(), solution, push * *softest);
+    const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(solution);
+    if (!mode || solution.model->span().soft_obstacles.empty()) return std::nullopt;
+    return pushed_from(solution.model->span(), solution, push * *mode);
   }
 
   [[nodiscard]] SpanSolution pushed_from(const Span& span, const SpanSolution& solution,
                                          const Eigen::VectorXd& disturbance) {
-    SpanDescents own(span, options_, workspace_);
+    LocalSolver own(span, options_, workspace_);
     const std::shared_ptr<SpanEnergy> model = workspace_.model(span, solution.terms);
     const Eigen::VectorXd pushed = model->adopt(*solution.model, solution.x) + disturbance;
     SpanSolution lower = own.empty_solution(std::min(solution.terms, own.coarse_terms()));
@@ -467,7 +468,7 @@ class Search {
   const Span& span_;
   const SpanOptions& options_;
   SpanWorkspace& workspace_;
-  SpanDescents on_;
+  LocalSolver on_;
   const SpanTraits& traits_;
   // Of the last equilibrium that was refined, and by how much its energy fell.
   double lowest_coarse_ = infinite;

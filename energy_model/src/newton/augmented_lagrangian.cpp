@@ -1,9 +1,9 @@
-#include "newton/penalty_descent.hpp"
+#include "newton/augmented_lagrangian.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "linear/free_hessian.hpp"
+#include "linear/reduced_hessian.hpp"
 #include "linear/trust_region_step.hpp"
 
 namespace dlo::energy_model {
@@ -15,9 +15,9 @@ constexpr double least_penalty_radius = 1e-9;
 constexpr double close_enough = 1e-7;
 constexpr int most_updates = 40;
 
-class PenaltyDescent {
+class AugmentedLagrangian {
  public:
-  PenaltyDescent(SpanSolution& solution, const TrustRegionOptions& options)
+  AugmentedLagrangian(SpanSolution& solution, const TrustRegionOptions& options)
       : solution_(solution), model_(*solution.model), options_(options) {}
 
   void run() {
@@ -112,13 +112,13 @@ class PenaltyDescent {
   double radius_ = first_radius;
   Eigen::VectorXd mu_, gradient_, residual_, slope_;
   Eigen::MatrixXd jacobian_, hessian_;
-  FreeHessian free_;
+  ReducedHessian free_;
 };
 
 }  // namespace
 
-void descend_by_penalty(SpanSolution& solution, const TrustRegionOptions& options) {
-  PenaltyDescent(solution, options).run();
+void descend_by_augmented_lagrangian(SpanSolution& solution, const TrustRegionOptions& options) {
+  AugmentedLagrangian(solution, options).run();
 }
 
 }  // namespace dlo::energy_model

@@ -1,4 +1,4 @@
-#include "linear/free_hessian.hpp"
+#include "linear/reduced_hessian.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -60,7 +60,7 @@ Eigen::Index padded(Eigen::Index rows) { return (rows + padding - 1) / padding *
 }  // namespace
 
 /// Householder's reflections of J^T, column by column.
-void FreeHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
+void ReducedHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
   reflections_ = jacobian.topRows(constraints_).transpose();
   tau_.resize(constraints_);
   diagonal_.resize(constraints_);
@@ -84,7 +84,7 @@ void FreeHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
 }
 
 /// Factors Z^T H Z + mu. @return whether it is positive definite
-bool FreeHessian::factor(double mu, Eigen::MatrixXd& lower) const {
+bool ReducedHessian::factor(double mu, Eigen::MatrixXd& lower) const {
   const Eigen::Index left = free();
   lower.resize(padded(left), left);
   lower.topRows(left) = turned_.bottomRightCorner(left, left);
@@ -93,30 +93,30 @@ bool FreeHessian::factor(double mu, Eigen::MatrixXd& lower) const {
   return dense_kernel().factor({lower.data(), left, left, lower.rows()});
 }
 
-void FreeHessian::constrain(const Eigen::MatrixXd& jacobian) {
+void ReducedHessian::constrain(const Eigen::MatrixXd& jacobian) {
   n_ = jacobian.cols();
   constraints_ = std::min(jacobian.rows(), n_);
   reflect_constraints(jacobian);
   independent_ = independent_ && constraints_ == jacobian.rows();
 }
 
-void FreeHessian::reflect(Eigen::Index i, Vector& v) const {
+void ReducedHessian::reflect(Eigen::Index i, Vector& v) const {
   const auto w = reflections_.col(i);
   v -= (tau_[i] * w.dot(v)) * w;
 }
 
 /// v to Q^T v
-void FreeHessian::turn(Vector v) const {
+void ReducedHessian::turn(Vector v) const {
   for (Eigen::Index i = 0; i < constraints_; ++i) reflect(i, v);
 }
 
 /// v to Q v
-void FreeHessian::turn_back(Vector v) const {
+void ReducedHessian::turn_back(Vector v) const {
   for (Eigen::Index i = constraints_; i-- > 0;) reflect(i, v);
 }
 
 /// mu to R^-1 mu
-void FreeHessian::solve_triangle(Vector mu) const {
+void ReducedHessian::solve_triangle(Vector mu) const {
   for (Eigen::Index i = constraints_; i-- > 0;) {
     mu[i] /= diagonal_[i];
     mu.head(i) -= mu[i] * triangle_.col(i).head(i);
@@ -124,11 +124,11 @@ void FreeHessian::solve_triangle(Vector mu) const {
 }
 
 /// z to (L L^T)^-1 z
-void FreeHessian::solve_by(const Eigen::MatrixXd& lower, Vector z) const {
+void ReducedHessian::solve_by(const Eigen::MatrixXd& lower, Vector z) const {
   dense_kernel().solve({lower.data(), free(), free(), lower.rows()}, z.data());
 }
 
-FreeHessian::Balance FreeHessian::balance(const Eigen::VectorXd& gradient) {
+ReducedHessian::Balance ReducedHessian::balance(const Eigen::VectorXd& gradient) {
   turned_right_ = gradient;
   turn(turned_right_);
   Balance result{turned_right_.head(constraints_), turned_right_.tail(free())};
@@ -136,9 +136,9 @@ FreeHessian::Balance FreeHessian::balance(const Eigen::VectorXd& gradient) {
   return result;
 }
 
-void FreeHessian::solve_free(Eigen::VectorXd& z) const { solve_by(factor_, z); }
+void ReducedHessian::solve_free(Eigen::VectorXd& z) const { solve_by(factor_, z); }
 
-void FreeHessian::compute(const Eigen::MatrixXd& hessian) {
+void ReducedHessian::compute(const Eigen::MatrixXd& hessian) {
   n_ = hessian.rows();
   turned_ = hessian;
   scratch_.resize(n_);
@@ -149,7 +149,7 @@ void FreeHessian::compute(const Eigen::MatrixXd& hessian) {
   definite_ = factor(0, factor_);
 }
 
-void FreeHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
+void ReducedHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
   const Eigen::Index left = free();
   step.resize(right.size());
   turned_right_ = right.head(n_);
@@ -174,7 +174,7 @@ void FreeHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
 
 /// Each vector is made orthogonal to all before. Ends where the largest eigenvalue, looked at from
 /// time to time, has changed by less than `settled` of itself.
-FreeHessian::Lanczos FreeHessian::look_for_smallest(double settled, Eigen::Index most_steps) {
+ReducedHessian::Lanczos ReducedHessian::look_for_smallest(double settled, Eigen::Index most_steps) {
   const auto is_time_to_look = [](Eigen::Index k) { return k == 4 || (k >= 8 && k % 6 == 2); };
   // A vector that has become so much shorter is not orthogonal to the others yet, and what it
   // lacks would grow by as much with each step.
@@ -215,7 +215,7 @@ FreeHessian::Lanczos FreeHessian::look_for_smallest(double settled, Eigen::Index
   return result;
 }
 
-std::optional<double> FreeHessian::smallest_of_definite() {
+std::optional<double> ReducedHessian::smallest_eigenvalue_of_definite() {
   constexpr double slack = 0.01;
   constexpr double settled = 1e-4;  // between two looks, of which the later is right to its square
   constexpr Eigen::Index most_steps = 24;
@@ -225,7 +225,7 @@ std::optional<double> FreeHessian::smallest_of_definite() {
   return smallest;
 }
 
-std::optional<Eigen::VectorXd> FreeHessian::softest_of_definite() {
+std::optional<Eigen::VectorXd> ReducedHessian::lowest_mode_of_definite() {
   constexpr double settled = 1e-12;
   constexpr Eigen::Index most_steps = 80;
   if (!definite_ || free() == 0) return std::nullopt;
@@ -236,14 +236,14 @@ std::optional<Eigen::VectorXd> FreeHessian::softest_of_definite() {
   return Eigen::VectorXd(krylov_.leftCols(steps) * eigen.eigenvectors().col(steps - 1));
 }
 
-double FreeHessian::least_constraint() const {
+double ReducedHessian::least_constraint() const {
   return constraints_ > 0 ? diagonal_.cwiseAbs().minCoeff()
                           : std::numeric_limits<double>::infinity();
 }
 
-Eigen::MatrixXd FreeHessian::matrix() const { return turned_.bottomRightCorner(free(), free()); }
+Eigen::MatrixXd ReducedHessian::matrix() const { return turned_.bottomRightCorner(free(), free()); }
 
-Eigen::VectorXd FreeHessian::in_unknowns(const Eigen::VectorXd& v) const {
+Eigen::VectorXd ReducedHessian::in_unknowns(const Eigen::VectorXd& v) const {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n_);
   x.tail(free()) = v;
   turn_back(x);

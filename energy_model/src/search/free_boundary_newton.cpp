@@ -1,4 +1,4 @@
-#include "search/settle_lift_offs.hpp"
+#include "search/free_boundary_newton.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -211,7 +211,8 @@ class Settling {
 
 }  // namespace
 
-int settle_lift_offs(SpanSolution& solution, const Deadline& deadline, SpanWorkspace& workspace) {
+int free_boundary_newton(SpanSolution& solution, const Deadline& deadline,
+                         SpanWorkspace& workspace) {
   return Settling(solution, deadline, workspace).run();
 }
 

@@ -10,6 +10,7 @@ namespace dlo::energy_model {
 /// of theirs. Ends that do not settle are left where they came to.
 /// @param[in,out] solution  an equilibrium with its contacts
 /// @return evaluations of the energy
-int settle_lift_offs(SpanSolution& solution, const Deadline& deadline, SpanWorkspace& workspace);
+int free_boundary_newton(SpanSolution& solution, const Deadline& deadline,
+                         SpanWorkspace& workspace);
 
 }  // namespace dlo::energy_model

@@ -10,7 +10,7 @@ namespace dlo::energy_model {
 ///     Z^T H Z = L L^T.
 /// It tells whether it is positive definite, what its smallest eigenvalue is, and Newton's step.
 /// Buffers survive from one compute() to the next.
-class FreeHessian {
+class ReducedHessian {
  public:
   /// @param hessian   n x n, symmetric
   /// @param jacobian  of the constraints, m x n; m may be 0 or exceed n
@@ -53,10 +53,10 @@ class FreeHessian {
 
   /// Of Z^T H Z, if it is positive definite, below which by less than a hundredth of it lies no
   /// other one, which a factor proves; none if it is not or the proof fails.
-  [[nodiscard]] std::optional<double> smallest_of_definite();
+  [[nodiscard]] std::optional<double> smallest_eigenvalue_of_definite();
   /// A unit vector of the free directions along that eigenvalue, to where it changes no more; none
   /// if Z^T H Z is not positive definite.
-  [[nodiscard]] std::optional<Eigen::VectorXd> softest_of_definite();
+  [[nodiscard]] std::optional<Eigen::VectorXd> lowest_mode_of_definite();
 
   /// Smallest element of R's diagonal, by size: by how much a turn of the constraints' derivatives
   /// turns the free directions more than that; infinite without constraints.

@@ -23,10 +23,10 @@ inline constexpr int few_terms = 10;
 inline constexpr Eigen::Index most_descended = 160;
 
 /// From starts to equilibria of a span, with few terms or all that its load takes.
-class SpanDescents {
+class LocalSolver {
  public:
   /// All of them have to outlive it.
-  SpanDescents(const Span& span, const SpanOptions& options, SpanWorkspace& workspace);
+  LocalSolver(const Span& span, const SpanOptions& options, SpanWorkspace& workspace);
 
   [[nodiscard]] const Span& span() const { return span_; }
   [[nodiscard]] const SpanOptions& options() const { return options_; }
@@ -46,14 +46,14 @@ class SpanDescents {
   /// From a field to an equilibrium, with as many terms as it takes to meet the grips.
   [[nodiscard]] SpanSolution from_start(const Start& from);
   /// By Newton's method from next to a field.
-  [[nodiscard]] SpanSolution near_field(const TangentField& field);
+  [[nodiscard]] SpanSolution newton_from(const TangentField& field);
   /// Downhill from solution.x, by NLopt or between grips in a trust region, then Newton's method.
   void descend(SpanSolution& solution);
   /// By springs at the grips that become stiffer, then Newton's method.
-  void pull_to_grips(SpanSolution& solution);
+  void by_augmented_lagrangian(SpanSolution& solution);
 
  private:
-  [[nodiscard]] bool falls_by_newton(SpanSolution& solution);
+  [[nodiscard]] bool reaches_minimum_by_newton(SpanSolution& solution);
   [[nodiscard]] bool adopt_known(const StartShape& wanted, SpanSolution& solution) const;
   void newton_before_more_terms(SpanSolution& solution) const;
   void minimise(SpanSolution& solution) const;
