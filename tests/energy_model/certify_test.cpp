@@ -100,7 +100,6 @@ TEST(Certify, AFollowedShapeIsTheOneThatIsSearchedFor) {
   const auto tangents = [&](const Eigen::VectorXd&) { return before.model->tangents(); };
   options.start = tangents;
   options.known = {before.model, before.x, before.multipliers, before.factor};
-  options.least_terms = before.terms;
   const SpanSolution followed = std::move(solve_span(span, options, workspace).front());
   const SpanSolution searched = std::move(solve_span(span, SpanOptions(), workspace).front());
   ASSERT_EQ(followed.status, SolveStatus::converged) << followed.message;

@@ -7,8 +7,10 @@
 
 #include "certify/contact_ends.hpp"
 #include "certify/rigid_body_modes.hpp"
+#include "linear/free_directions.hpp"
 #include "linear/newton_system.hpp"
 #include "newton/newton.hpp"
+#include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -35,14 +37,13 @@ constexpr double largest_change = 0.01;
 constexpr double largest_third_derivative = 4;
 
 /// Norm of Newton's step from here; it has no part along near-null modes.
-double newton_step(NewtonSystem& system, const Eigen::VectorXd& gradient,
-                   const Eigen::VectorXd& residual) {
-  Eigen::VectorXd right(gradient.size() + residual.size());
-  right << -gradient, -residual;
+double newton_step(NewtonSystem& system, const PointOnSpan& point) {
+  Eigen::VectorXd right(point.gradient.size() + point.residual.size());
+  right << -point.gradient, -point.residual;
   Eigen::VectorXd step;
   system.solve(right, step);
   if (!system.is_met(right, step, largest_next_step)) step = system.minimum_norm_step(right);
-  return step.head(gradient.size()).norm();
+  return step.head(point.gradient.size()).norm();
 }
 
 /// Rounding of forces, whose scale is this.
@@ -130,23 +131,17 @@ struct EigenvalueDerivatives {
 
 EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftMode& mode) {
   constexpr double step = 1e-3;  // error step^2, rounding eps / step and eps / step^2
-  SpanEnergy& model = *solution.model;
-  Eigen::VectorXd gradient(model.size());
-  Eigen::VectorXd residual(model.constraints());
-  Eigen::MatrixXd jacobian(model.constraints(), model.size());
-  Eigen::MatrixXd hessian;
-  const auto curvature = [&](double t) {
-    (void)model.value(solution.x + t * mode.direction, gradient);
-    model.constraint(residual, jacobian);
-    model.hessian(solution.multipliers + t * mode.multipliers, hessian);
+  const auto eigenvalue = [&](double t) {
+    const SecondVariation at = second_variation(*solution.model, solution.x + t * mode.direction,
+                                                solution.multipliers + t * mode.multipliers);
     ++solution.evaluations;
-    return mode.direction.dot(hessian * mode.direction) -
-           2 * mode.multipliers.dot(jacobian * mode.direction);
+    return mode.direction.dot(at.hessian * mode.direction) -
+           2 * mode.multipliers.dot(at.jacobian * mode.direction);
   };
-  const double ahead = curvature(step);
-  const double behind = curvature(-step);
+  const double ahead = eigenvalue(step);
+  const double behind = eigenvalue(-step);
   // Last, so that the model is left where the solution is.
-  const double here = curvature(0);
+  const double here = eigenvalue(0);
   return {(ahead - behind) / (2 * step), (ahead - 2 * here + behind) / (step * step)};
 }
 
@@ -166,90 +161,133 @@ bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
            largest_h * solution.eigenvalue_nearest_zero);
 }
 
+class Certification {
+ public:
+  Certification(SpanSolution& solution, double load, NewtonFactors& factors)
+      : solution_(solution),
+        model_(*solution.model),
+        load_(load),
+        factors_(factors),
+        scale_(scale_of_forces(solution, load)),
+        obstacles_(model_.has_soft_obstacles() || !model_.span().contacts.empty()) {}
+
+  void run() {
+    // Newton's method leaves those undetermined whose terms nobody has looked at.
+    const bool undetermined = solution_.status == SolveStatus::near_singular;
+    if (!evaluate()) return;
+    rigid_ = rigid_body_modes(model_.span(), model_.tangents());
+    solution_.rigid_body_modes = static_cast<int>(rigid_.all());
+    ask_factor();
+    const bool at_fold = estimate_error();
+    if (model_.span().planar) look_out_of_plane();
+    if (undetermined || !small_step_ || at_fold) {
+      return solution_.finish(SolveStatus::near_singular);
+    }
+    const MiddlePassed middle = middle_passed(solution_);
+    if (middle == MiddlePassed::near) {
+      solution_.neutral_directions = std::max(1, solution_.neutral_directions);
+      return solution_.finish(SolveStatus::near_singular);
+    }
+    if (solution_.smallest_eigenvalue < -neutral || middle != MiddlePassed::none) {
+      return solution_.finish(SolveStatus::saddle);
+    }
+    solution_.finish(solution_.neutral_directions > 0 ? SolveStatus::near_singular
+                                                      : SolveStatus::converged);
+  }
+
+ private:
+  /// @return whether it meets the equations of equilibrium
+  [[nodiscard]] bool evaluate() {
+    point_ = evaluated(model_, solution_.x);
+    ++solution_.evaluations;
+    solution_.energy = point_.energy;
+    point_.gradient -= point_.jacobian.transpose() * solution_.multipliers;
+    if (!(solution_.multipliers.norm() <= largest_pull * (1 + load_))) {
+      solution_.fail("the grips would have to pull without bound");
+      return false;
+    }
+    solution_.residual = std::hypot(point_.gradient.norm(), scale_ * point_.residual.norm());
+    if (solution_.residual <= largest_next_step * scale_) return true;
+    solution_.fail("the residual of the returned shape is not small");
+    return false;
+  }
+
+  [[nodiscard]] SmallEigenvalues eigenvalues_of(ReducedHessian& hessian, Eigen::Index rigid) const {
+    // Obstacles leave movements free that are not looked for: those that are zero but for rounding.
+    return small_eigenvalues(hessian, bound_, rigid, obstacles_ ? 128 * rounding_of(scale_) : -1);
+  }
+
+  /// Newton's step and the second variation, by the solution's factor or one of its own.
+  void ask_factor() {
+    for (bool near = !obstacles_ && solution_.factor != nullptr;; near = false) {
+      const double change = near ? change_since_factor(solution_, scale_) : 0;
+      near = near && change < largest_h;
+      if (!near) factors_.factor_at(solution_, point_.jacobian, load_);
+      NewtonSystem& system = solution_.factor->system;
+      solution_.next_step = newton_step(system, point_);
+      small_step_ = solution_.next_step <= largest_next_step;
+      // Below it what is left of the residual makes a step that is not small.
+      bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
+      found_ = eigenvalues_of(system.reduced_hessian(), rigid_.in_plane);
+      solution_.smallest_eigenvalue = found_.smallest;
+      solution_.eigenvalue_nearest_zero = found_.nearest_zero;
+      eta_ = linear_error(solution_, load_);
+      const bool tells = small_step_ && found_.smallest > 2 * bound_ &&
+                         change <= largest_change * found_.smallest &&
+                         !may_be_at_fold(solution_, load_, eta_);
+      if (!near || tells) break;
+    }
+    solution_.neutral_directions = found_.neutral_directions;
+  }
+
+  /// @return whether it is next to a fold, so that there may be no equilibrium
+  [[nodiscard]] bool estimate_error() {
+    double moved = eta_;
+    bool at_fold = false;
+    // As many terms as constraints leave no direction that a fold could be in.
+    const bool can_move = found_.zero < model_.size() - model_.constraints();
+    if (can_move && may_be_at_fold(solution_, load_, eta_)) {
+      const SoftMode mode = soft_mode(solution_.factor->system, point_.jacobian, found_.zero);
+      const EigenvalueDerivatives change = eigenvalue_derivatives(solution_, mode);
+      const double kappa = std::abs(change.first) + std::abs(change.second) * eta_;
+      const double h = eta_ * kappa / solution_.eigenvalue_nearest_zero;
+      moved = h <= 0.5 ? 2 * eta_ / (1 + std::sqrt(1 - 2 * h)) : largest_error;
+      at_fold = h > largest_h;
+      if (at_fold) solution_.neutral_directions = std::max(1, solution_.neutral_directions);
+    }
+    solution_.error = error_estimate(solution_, moved);
+    return at_fold;
+  }
+
+  void look_out_of_plane() {
+    SecondVariation across;
+    model_.sideways(solution_.multipliers, across.hessian, across.jacobian);
+    ReducedHessian beside;
+    beside.compute(across.hessian, across.jacobian);
+    const SmallEigenvalues found = eigenvalues_of(beside, rigid_.out_of_plane);
+    solution_.smallest_eigenvalue = std::min(solution_.smallest_eigenvalue, found.smallest);
+    solution_.neutral_directions += found.neutral_directions;
+  }
+
+  SpanSolution& solution_;
+  SpanEnergy& model_;
+  const double load_;
+  NewtonFactors& factors_;
+  const double scale_;  // of forces
+  const bool obstacles_;
+  PointOnSpan point_;
+  RigidBodyModes rigid_;
+  double bound_ = neutral;  // size up to which an eigenvalue counts as neutral
+  double eta_ = 0;          // by which the coefficients may be off, without a fold
+  bool small_step_ = false;
+  SmallEigenvalues found_;
+};
+
 }  // namespace
 
 void certify(SpanSolution& solution, double load, NewtonFactors& factors) {
-  // Newton's method leaves those undetermined whose terms nobody has looked at.
-  const bool undetermined = solution.status == SolveStatus::near_singular;
-  if (!solution.is_equilibrium() && !undetermined) return;
-  SpanEnergy& model = *solution.model;
-  Eigen::VectorXd gradient(model.size());
-  solution.energy = model.value(solution.x, gradient);
-  ++solution.evaluations;
-  Eigen::MatrixXd jacobian(model.constraints(), model.size());
-  Eigen::VectorXd residual(model.constraints());
-  model.constraint(residual, jacobian);
-  gradient -= jacobian.transpose() * solution.multipliers;
-  if (!(solution.multipliers.norm() <= largest_pull * (1 + load))) {
-    return solution.fail("the grips would have to pull without bound");
-  }
-  const double scale = scale_of_forces(solution, load);
-  solution.residual = std::hypot(gradient.norm(), scale * residual.norm());
-  if (!(solution.residual <= largest_next_step * scale)) {
-    return solution.fail("the residual of the returned shape is not small");
-  }
-  const RigidBodyModes free = rigid_body_modes(model.span(), model.tangents());
-  solution.rigid_body_modes = static_cast<int>(free.all());
-  // Obstacles leave movements free that are not looked for: those that are zero but for rounding.
-  const bool obstacles = model.has_soft_obstacles() || !model.span().contacts.empty();
-  const double nothing = obstacles ? 128 * rounding_of(scale) : -1;
-  double bound = neutral;
-  double eta = 0;
-  bool small_step = false;
-  SmallEigenvalues found;
-  for (bool near = !obstacles && solution.factor != nullptr;; near = false) {
-    const double change = near ? change_since_factor(solution, scale) : 0;
-    near = near && change < largest_h;
-    if (!near) factors.factor_at(solution, jacobian, load);
-    NewtonSystem& system = solution.factor->system;
-    solution.next_step = newton_step(system, gradient, residual);
-    small_step = solution.next_step <= largest_next_step;
-    // Below it what is left of the residual makes a step that is not small.
-    bound = std::max(neutral, small_step ? 0 : solution.residual / largest_next_step);
-    found = small_eigenvalues(system.reduced_hessian(), bound, free.in_plane, nothing);
-    solution.smallest_eigenvalue = found.smallest;
-    solution.eigenvalue_nearest_zero = found.nearest_zero;
-    eta = linear_error(solution, load);
-    const bool tells = small_step && found.smallest > 2 * bound &&
-                       change <= largest_change * found.smallest &&
-                       !may_be_at_fold(solution, load, eta);
-    if (!near || tells) break;
-  }
-  double moved = eta;
-  bool at_fold = false;
-  solution.neutral_directions = found.neutral_directions;
-  // As many terms as constraints leave no direction that a fold could be in.
-  const bool can_move = found.zero < model.size() - model.constraints();
-  if (can_move && may_be_at_fold(solution, load, eta)) {
-    const SoftMode mode = soft_mode(solution.factor->system, jacobian, found.zero);
-    const EigenvalueDerivatives change = eigenvalue_derivatives(solution, mode);
-    const double kappa = std::abs(change.first) + std::abs(change.second) * eta;
-    const double h = eta * kappa / solution.eigenvalue_nearest_zero;
-    moved = h <= 0.5 ? 2 * eta / (1 + std::sqrt(1 - 2 * h)) : largest_error;
-    at_fold = h > largest_h;
-    if (at_fold) solution.neutral_directions = std::max(1, solution.neutral_directions);
-  }
-  solution.error = error_estimate(solution, moved);
-  if (model.span().planar) {
-    Eigen::MatrixXd hessian;
-    model.sideways(solution.multipliers, hessian, jacobian);
-    ReducedHessian beside;
-    beside.compute(hessian, jacobian);
-    found = small_eigenvalues(beside, bound, free.out_of_plane, nothing);
-    solution.smallest_eigenvalue = std::min(solution.smallest_eigenvalue, found.smallest);
-    solution.neutral_directions += found.neutral_directions;
-  }
-  if (undetermined || !small_step || at_fold) return solution.finish(SolveStatus::near_singular);
-  const MiddlePassed middle = middle_passed(solution);
-  if (middle == MiddlePassed::near) {
-    solution.neutral_directions = std::max(1, solution.neutral_directions);
-    return solution.finish(SolveStatus::near_singular);
-  }
-  if (solution.smallest_eigenvalue < -neutral || middle != MiddlePassed::none) {
-    return solution.finish(SolveStatus::saddle);
-  }
-  solution.finish(solution.neutral_directions > 0 ? SolveStatus::near_singular
-                                                  : SolveStatus::converged);
+  if (!solution.is_equilibrium() && solution.status != SolveStatus::near_singular) return;
+  Certification(solution, load, factors).run();
 }
 
 void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& factors) {

@@ -5,16 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 namespace dlo::energy_model {
-
-AcrossNeutral::AcrossNeutral(const Eigen::MatrixXd& system)
-    : factor_(system.rows(), system.cols()) {
-  factor_.setThreshold(neutral / std::max(1.0, system.cwiseAbs().maxCoeff()));
-  factor_.compute(system);
-}
 
 Eigen::VectorXd smallest_eigenvalues(ReducedHessian& hessian, double above) {
   const std::optional<double> smallest = hessian.smallest_eigenvalue_of_definite();
@@ -46,39 +39,11 @@ bool is_minimum(const Eigen::MatrixXd& hessian) {
   return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(shifted).info() == Eigen::Success;
 }
 
-namespace {
-
-struct Softest {
-  double eigenvalue;
-  Eigen::VectorXd direction;
-};
-
-std::optional<Softest> softest(const ReducedHessian& reduced) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(reduced.matrix());
-  if (eigen.eigenvalues().size() == 0) return std::nullopt;
-  return Softest{eigen.eigenvalues()[0],
-                 reduced.in_unknowns(eigen.eigenvectors().col(0)).normalized()};
-}
-
-}  // namespace
-
-std::optional<Eigen::VectorXd> softest_direction(const Eigen::MatrixXd& hessian,
-                                                 const Eigen::MatrixXd& jacobian) {
-  ReducedHessian reduced;
-  reduced.compute(hessian, jacobian);
-  std::optional<Softest> found = softest(reduced);
-  if (!found) return std::nullopt;
-  return std::move(found->direction);
-}
-
-std::optional<Eigen::VectorXd> negative_curvature_direction(const Eigen::MatrixXd& hessian,
-                                                            const Eigen::MatrixXd& jacobian) {
-  ReducedHessian reduced;
-  reduced.compute(hessian, jacobian);
-  if (reduced.is_definite()) return std::nullopt;
-  std::optional<Softest> found = softest(reduced);
-  if (!found || found->eigenvalue > -neutral) return std::nullopt;
-  return std::move(found->direction);
+std::optional<Eigen::VectorXd> negative_curvature_direction(const ReducedHessian& hessian) {
+  if (hessian.is_definite()) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.matrix());
+  if (eigen.eigenvalues().size() == 0 || eigen.eigenvalues()[0] > -neutral) return std::nullopt;
+  return hessian.in_unknowns(eigen.eigenvectors().col(0)).normalized();
 }
 
 }  // namespace dlo::energy_model

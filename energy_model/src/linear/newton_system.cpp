@@ -1,11 +1,15 @@
 #include "linear/newton_system.hpp"
 
+#include <algorithm>
+
+#include "linear/free_directions.hpp"
+
 namespace dlo::energy_model {
 
 void NewtonSystem::compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian) {
   hessian_ = hessian;
   jacobian_ = jacobian;
-  across_.reset();
+  orthogonal_.reset();
   free_.compute(hessian, jacobian);
   if (!free_.has_solutions()) lu_.compute(whole());
 }
@@ -38,8 +42,13 @@ bool NewtonSystem::is_met(const Eigen::VectorXd& right, const Eigen::VectorXd& s
 }
 
 Eigen::VectorXd NewtonSystem::minimum_norm_step(const Eigen::VectorXd& right) {
-  if (!across_) across_.emplace(whole());
-  return across_->step(right);
+  if (!orthogonal_) {
+    const Eigen::MatrixXd system = whole();
+    orthogonal_.emplace(system.rows(), system.cols());
+    orthogonal_->setThreshold(neutral / std::max(1.0, system.cwiseAbs().maxCoeff()));
+    orthogonal_->compute(system);
+  }
+  return orthogonal_->solve(right);
 }
 
 }  // namespace dlo::energy_model

@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <optional>
 
-#include "linear/free_directions.hpp"
 #include "linear/reduced_hessian.hpp"
 
 namespace dlo::energy_model {
@@ -46,7 +46,8 @@ class NewtonSystem {
   Eigen::MatrixXd hessian_, jacobian_;
   ReducedHessian free_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
-  std::optional<AcrossNeutral> across_;  // once it was asked for
+  /// Of the whole system, once it was asked for.
+  std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>> orthogonal_;
   Eigen::VectorXd left_;
 };
 

@@ -71,9 +71,9 @@ class AugmentedLagrangian {
       slope_ = gradient_ - jacobian_.transpose() * nu;
       model_.hessian(nu, hessian_);
       hessian_.noalias() += kappa_ * jacobian_.transpose() * jacobian_;
-      free_.compute(hessian_, Eigen::MatrixXd(0, hessian_.cols()));
+      reduced_.compute(hessian_, Eigen::MatrixXd(0, hessian_.cols()));
       const std::optional<Eigen::VectorXd> step = trust_region_step(
-          free_, slope_,
+          reduced_, slope_,
           {.radius = radius,
            .gradient_tolerance = precision * 1e-3 * (1 + options_.load + nu.norm())});
       if (!step) return true;
@@ -112,7 +112,7 @@ class AugmentedLagrangian {
   double radius_ = first_radius;
   Eigen::VectorXd mu_, gradient_, residual_, slope_;
   Eigen::MatrixXd jacobian_, hessian_;
-  ReducedHessian free_;
+  ReducedHessian reduced_;
 };
 
 }  // namespace

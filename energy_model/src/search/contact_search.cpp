@@ -58,24 +58,24 @@ class ContactSearch {
 
   [[nodiscard]] std::vector<SpanSolution> run() {
     std::vector<SpanSolution> found;
-    if (options_.known.model && options_.start && !options_.all) {
+    if (options_.known.model && options_.start && !options_.wants_all()) {
       SpanSolution followed = follow();
-      if (followed.is_equilibrium() || followed.is_singular_point() || options_.only_known) {
+      if (followed.is_equilibrium() || followed.is_singular_point() || options_.only_follows()) {
         found.push_back(std::move(followed));
       }
     }
     if (found.empty()) {
-      if (options_.start && !options_.all) look_from({options_.start}, found);
+      if (options_.start && !options_.wants_all()) look_from({options_.start}, found);
       if (found.empty() || !succeeded(found.front().status)) search(found);
     }
-    const int departures = options_.only_known ? 0 : most_departures;
+    const int departures = options_.only_follows() ? 0 : most_departures;
     for (int i = 0; i < departures && found.front().status == SolveStatus::saddle; ++i) {
       const double energy = found.front().energy;
       leave(found);
       if (!(found.front().energy < energy)) break;
     }
     found.front().evaluations = spent_;
-    if (!options_.all) found.resize(1);
+    if (!options_.wants_all()) found.resize(1);
     return found;
   }
 
@@ -166,9 +166,8 @@ class ContactSearch {
       span.contacts[i].begin = begin;
       span.contacts[i].end = at.lies() ? end : begin;
     }
-    SpanSolution solution;
-    solution.terms = share > 0 ? enough_terms_of_known() : known.model->terms();
-    solution.model = workspace_.model(span, solution.terms);
+    SpanSolution solution =
+        workspace_.empty_solution(span, share > 0 ? enough_terms_of_known() : known.model->terms());
     SpanEnergy& model = *solution.model;
     if (model.pieces() != known.model->pieces()) return {};
     const bool fits = span.planar || span.has_material_directors();
@@ -193,7 +192,7 @@ class ContactSearch {
     SpanOptions without_start = options_;
     without_start.start = nullptr;
     SearchLog without_obstacles;
-    if (options_.log != nullptr) without_start.log = &without_obstacles;
+    if (options_.wants_all()) without_start.log = &without_obstacles;
     std::vector<TangentField> starts;
     double lowest_within = std::numeric_limits<double>::infinity();
     for (SpanSolution& solution : solve_span(span_, without_start, workspace_)) {
@@ -209,18 +208,17 @@ class ContactSearch {
         continue;
       }
       const bool is_new = add(std::move(solution), found);
-      if (options_.log == nullptr) continue;
-      options_.log->tried(clear_of_obstacles);
-      if (is_new) options_.log->found(clear_of_obstacles);
+      note_tried(options_.log, clear_of_obstacles);
+      if (is_new) note_found(options_.log, clear_of_obstacles);
     }
-    if (options_.log != nullptr) {
+    if (options_.wants_all()) {
       options_.log->add_starts(without_obstacles, ", as if there were no obstacles");
     }
     // What touches beside a shape that obstacles forbid costs more than that, but may cost less
     // than what stays clear elsewhere.
     const bool is_clear =
         !found.empty() && succeeded(found.front().status) && found.front().energy <= lowest_within;
-    if (!options_.all && is_clear) return;
+    if (!options_.wants_all() && is_clear) return;
     for (TangentField& start : start_fields(span_)) starts.push_back(std::move(start));
     look_from(starts, found);
   }
@@ -231,7 +229,8 @@ class ContactSearch {
   void look_from(const std::vector<TangentField>& starts, std::vector<SpanSolution>& found) {
     const auto whole = [&](Segments segments) {
       const std::size_t most = span_.holds.empty() ? most_starts_of_one_clamp : most_starts;
-      const std::size_t count = options_.all ? starts.size() : std::min(most, starts.size());
+      const std::size_t count =
+          options_.wants_all() ? starts.size() : std::min(most, starts.size());
       return polygons_from(count, [&, segments](std::size_t i) {
         return rest_on_obstacles(span_, starts[i], segments, options_.deadline);
       });
@@ -253,7 +252,7 @@ class ContactSearch {
                                   return rest_refined(span_, (*from)[i], options_.deadline);
                                 }),
                   found);
-        if (!options_.all && !found.empty() && succeeded(found.front().status)) return;
+        if (!options_.wants_all() && !found.empty() && succeeded(found.front().status)) return;
       }
     }
     if (options_.deadline.passed() && !found.empty()) return;
@@ -264,16 +263,14 @@ class ContactSearch {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       const RestingPolygon& polygon = polygons[i];
       if (options_.deadline.passed() && !found.empty()) {
-        if (options_.log != nullptr) options_.log->leave_out("starts after the time limit");
+        note_left_out(options_.log, "starts after the time limit");
         return;
       }
-      if (add(from_polygon(polygon), found) && options_.log != nullptr) {
-        options_.log->found(polygons_at_rest);
-      }
+      if (add(from_polygon(polygon), found)) note_found(options_.log, polygons_at_rest);
       const bool tie =
           i + 1 < polygons.size() && polygons[i + 1].energy - polygon.energy <=
                                          near_tie_of_polygons * (1 + std::abs(polygon.energy));
-      if (!options_.all && succeeded(found.front().status) && !tie) return;
+      if (!options_.wants_all() && succeeded(found.front().status) && !tie) return;
     }
   }
 
@@ -283,10 +280,10 @@ class ContactSearch {
     std::vector<RestingPolygon> polygons;
     for (std::size_t i = 0; i < count; ++i) {
       if (options_.deadline.passed() && !polygons.empty()) {
-        if (options_.log != nullptr) options_.log->leave_out("starts after the time limit");
+        note_left_out(options_.log, "starts after the time limit");
         break;
       }
-      if (options_.log != nullptr) options_.log->tried(polygons_at_rest);
+      note_tried(options_.log, polygons_at_rest);
       RestingPolygon polygon = rest(i);
       spent_ += polygon.evaluations;
       const bool known = std::any_of(polygons.begin(), polygons.end(), [&](const auto& other) {
@@ -335,13 +332,9 @@ class ContactSearch {
     }
     const bool is_equilibrium = solution.is_equilibrium();
     // Of many equilibria it would take much memory.
-    if (options_.all) solution.factor.reset();
+    if (options_.wants_all()) solution.factor.reset();
     found.push_back(std::move(solution));
-    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
-      const bool a_stable = succeeded(a.status);
-      const bool b_stable = succeeded(b.status);
-      return a_stable != b_stable ? a_stable : a.energy < b.energy;
-    });
+    std::stable_sort(found.begin(), found.end(), is_better);
     return is_equilibrium;
   }
 
@@ -427,9 +420,7 @@ class ContactSearch {
   }
 
   [[nodiscard]] SpanSolution newton_from(const Span& span, const TangentField& near) {
-    SpanSolution solution;
-    solution.terms = terms(span);
-    solution.model = workspace_.model(span, solution.terms);
+    SpanSolution solution = workspace_.empty_solution(span, terms(span));
     solution.x = solution.model->fit(near(solution.model->nodes()));
     const Eigen::VectorXd start = solution.x;
     // Newton's method would go back to the saddle, or into the plane, that a shape has left.
@@ -453,8 +444,7 @@ class ContactSearch {
   [[nodiscard]] int terms(const Span& span) const {
     if (options_.terms > 0) return options_.terms;
     // What is followed takes about as many as it has taken before.
-    const int known = options_.known.model ? options_.least_terms : 0;
-    return std::max(terms_of_load(span), known);
+    return std::max(terms_of_load(span), options_.known.terms());
   }
 
   [[nodiscard]] int terms_of_load(const Span& span) const {
@@ -480,11 +470,7 @@ class ContactSearch {
       const int finer = solution.terms + solution.terms / 2;
       const bool more = options_.terms == 0 && finer <= max_terms && hardly_behind(solution);
       if (!more || options_.deadline.passed()) return solution;
-      SpanSolution next;
-      next.terms = finer;
-      next.model = workspace_.model(solution.model->span(), finer);
-      next.x = next.model->adopt(*solution.model, solution.x);
-      next.multipliers = next.model->adopt_multipliers(*solution.model, solution.multipliers);
+      SpanSolution next = workspace_.with_terms(solution, finer);
       newton(next);
       if (!next.is_equilibrium()) return solution;
       solution = std::move(next);

@@ -113,9 +113,7 @@ class Settling {
     for (std::size_t i = 0; i < ends_.size(); ++i) {
       ends_[i].move(span, way[static_cast<Eigen::Index>(i)]);
     }
-    SpanSolution result;
-    result.terms = solution_.terms;
-    result.model = workspace_.model(span, result.terms);
+    SpanSolution result = workspace_.empty_solution(span, solution_.terms);
     NewtonOptions options = {.load = span.total_load(), .deadline = &deadline_};
     if (result.model->pieces() == solution_.model->pieces()) {
       result.x = result.model->adopt(*solution_.model, solution_.x);

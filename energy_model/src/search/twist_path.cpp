@@ -17,6 +17,7 @@
 #include "newton/augmented_lagrangian.hpp"
 #include "newton/trust_region.hpp"
 #include "span/refinement.hpp"
+#include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -155,9 +156,7 @@ class TwistPath {
   }
 
   [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) const {
-    SpanSolution other;
-    other.model = workspace_.model(span_, terms);
-    other.terms = terms;
+    SpanSolution other = workspace_.empty_solution(span_, terms);
     other.x = other.model->adopt(*solution.model, solution.x);
     other.multipliers = solution.multipliers;
     turn_clamp(other, angle_);
@@ -256,35 +255,21 @@ class TwistPath {
   }
 
   void factor_at(SpanSolution& solution) {
-    place(solution);
-    workspace_.factors().factor_at(solution, jacobian_, load_);
-  }
-
-  /// Into gradient_, residual_ and jacobian_.
-  void place(const SpanSolution& solution) {
-    SpanEnergy& model = *solution.model;
-    gradient_.resize(model.size());
-    residual_.resize(model.constraints());
-    jacobian_.resize(model.constraints(), model.size());
-    (void)model.value(solution.x, gradient_);
-    model.constraint(residual_, jacobian_);
-  }
-
-  /// Into hessian_ and jacobian_.
-  void derive(const SpanSolution& solution) {
-    place(solution);
-    solution.model->hessian(solution.multipliers, hessian_);
+    const PointOnSpan point = evaluated(*solution.model, solution.x);
+    workspace_.factors().factor_at(solution, point.jacobian, load_);
   }
 
   /// Downhill to what is stable, from beside here.
   void leave() {
     if (++branch_jumps_ > most_branch_jumps)
       return here_.fail("the rod jumps from branch to branch");
-    derive(here_);
-    std::optional<Eigen::VectorXd> way = negative_curvature_direction(hessian_, jacobian_);
+    const SecondVariation at = second_variation(here_);
+    ReducedHessian reduced;
+    reduced.compute(at.hessian, at.jacobian);
+    std::optional<Eigen::VectorXd> way = negative_curvature_direction(reduced);
     // Next to a fold the branch goes where the rod gives way.
     if (!way && last_step_.norm() > 0) way = last_step_.normalized();
-    if (!way) way = softest_direction(hessian_, jacobian_);
+    if (!way) way = direction_by_size(reduced, 0);
     slope_x_.resize(0);
     double push = first_push;
     for (int i = 0; i < 2 * most_pushes; ++i) {
@@ -324,8 +309,6 @@ class TwistPath {
   bool aside_ = false;   // the last step has gone aside from where it pointed at
   Eigen::VectorXd last_step_;
   Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a jump
-  Eigen::VectorXd gradient_, residual_;
-  Eigen::MatrixXd jacobian_, hessian_;
   bool stiff_ = false;  // nothing is next to neutral at the shape that was last asked about
 };
 
@@ -386,12 +369,9 @@ SpanSolution twist_from(const TangentField& field, double twist, const Eigen::Ve
   twisted.twist = Span::Twist{stiffness, end_d1};
   SpanSolution solution;
   // The shape does not say how many terms it takes.
-  for (int terms = std::max(unknown_terms, options.least_terms);;
-       terms = std::min(max_terms, 3 * terms / 2)) {
-    solution = SpanSolution();
-    solution.model = workspace.model(twisted, terms);
+  for (int terms = unknown_terms;; terms = std::min(max_terms, 3 * terms / 2)) {
+    solution = workspace.empty_solution(twisted, terms);
     SpanEnergy& model = *solution.model;
-    solution.terms = terms;
     solution.x = model.with_twist(model.fit(field(model.nodes())), twist);
     newton_solve(solution, {.load = span.total_load(), .deadline = &options.deadline},
                  workspace.newton());

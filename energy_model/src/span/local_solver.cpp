@@ -39,7 +39,7 @@ int LocalSolver::terms() const {
   if (options_.terms > 0) return options_.terms;
   const int layers = traits_.taut || traits_.adapted ? layer_terms : 0;
   const int first = traits_.adapted ? 0 : first_terms(traits_.load, traits_.longest_piece);
-  const int wanted = std::max({first, options_.least_terms, layers, traits_.natural_terms});
+  const int wanted = std::max({first, options_.known.terms(), layers, traits_.natural_terms});
   return std::min(wanted, std::max(least_terms, affordable_terms(span_)));
 }
 
@@ -52,13 +52,6 @@ int LocalSolver::coarse_terms() const {
     coarse = std::min(coarse, coarse_unknowns / (traits_.fields * pieces));
   }
   return std::max(least_terms, coarse);
-}
-
-SpanSolution LocalSolver::empty_solution(int terms) {
-  SpanSolution solution;
-  solution.model = workspace_.model(span_, terms);
-  solution.terms = terms;
-  return solution;
 }
 
 void LocalSolver::newton(SpanSolution& solution, NewtonOptions how) const {
@@ -104,18 +97,14 @@ SpanSolution LocalSolver::from_start(const Start& from) {
 bool LocalSolver::reaches_minimum_by_newton(SpanSolution& solution) {
   constexpr double far = 2;  // of strains, as much as Newton's method goes in one step
   SpanEnergy& model = *solution.model;
-  if (options_.all || !span_.start_direction || span_.has_material_directors() ||
+  if (options_.wants_all() || !span_.start_direction || span_.has_material_directors() ||
       span_.is_plain_cantilever() || model.constraints() > 0 || model.has_soft_obstacles()) {
     return false;
   }
   const Eigen::VectorXd start = solution.x;
   Eigen::VectorXd gradient(model.size());
   const double energy = model.value(start, gradient);
-  if (solution.terms < terms()) {
-    newton(solution, {.step_tolerance = rough_step});
-  } else {
-    newton(solution);
-  }
+  newton(solution, {.step_tolerance = solution.terms < terms() ? rough_step : finest_step});
   if (succeeded(solution.status) && solution.energy <= energy &&
       (solution.x - start).norm() < far && solution.evaluations <= options_.max_evaluations) {
     return true;
@@ -166,21 +155,12 @@ bool LocalSolver::adopt_known(const StartShape& wanted, SpanSolution& solution) 
 void LocalSolver::descend(SpanSolution& solution) {
   minimise(solution);
   if (!succeeded(solution.status)) return;
+  const bool gets_more = solution.terms < terms();
   // Newton's method follows once a cantilever has all its terms.
-  if (span_.is_plain_cantilever() && solution.terms < terms()) return;
-  if (solution.terms < terms()) {
-    newton_before_more_terms(solution);
-  } else {
-    newton(solution);
-  }
-}
-
-void LocalSolver::newton_before_more_terms(SpanSolution& solution) const {
-  if (options_.all || options_.terms > 0 || solution.model->constraints() == 0) {
-    newton(solution);
-  } else {
-    newton(solution, {.step_tolerance = rough_step});
-  }
+  if (gets_more && span_.is_plain_cantilever()) return;
+  const bool is_rough = gets_more && !options_.wants_all() && options_.terms == 0 &&
+                        solution.model->constraints() > 0;
+  newton(solution, {.step_tolerance = is_rough ? rough_step : finest_step});
 }
 
 void LocalSolver::minimise(SpanSolution& solution) const {

@@ -39,7 +39,9 @@ class LocalSolver {
   /// NLopt comes near with few terms; Newton's method adds the others.
   [[nodiscard]] int coarse_terms() const;
   /// With a model but no unknowns yet.
-  [[nodiscard]] SpanSolution empty_solution(int terms);
+  [[nodiscard]] SpanSolution empty_solution(int terms) const {
+    return workspace_.empty_solution(span_, terms);
+  }
 
   /// Newton's method with the span's load, to the search's deadline.
   void newton(SpanSolution& solution, NewtonOptions how = {}) const;
@@ -55,7 +57,6 @@ class LocalSolver {
  private:
   [[nodiscard]] bool reaches_minimum_by_newton(SpanSolution& solution);
   [[nodiscard]] bool adopt_known(const StartShape& wanted, SpanSolution& solution) const;
-  void newton_before_more_terms(SpanSolution& solution) const;
   void minimise(SpanSolution& solution) const;
 
   const Span& span_;

@@ -11,6 +11,7 @@
 #include "certify/piece_cuts.hpp"
 #include "span/settle_contact.hpp"
 #include "span/span_traits.hpp"
+#include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -142,9 +143,9 @@ class Refinement {
   }
 
   [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) {
-    SpanSolution finer = on_.empty_solution(terms);
-    finer.x = finer.model->adopt(*solution.model, solution.x);
-    finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
+    SpanSolution finer = on_.workspace().with_terms(solution, terms);
+    const Eigen::VectorXd x = finer.x;
+    const Eigen::VectorXd multipliers = finer.multipliers;
     if (solution.factor) {
       const Eigen::MatrixXd hessian =
           prolonged(solution.factor->system.hessian(), *solution.model, *finer.model);
@@ -156,8 +157,8 @@ class Refinement {
     if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles()))
       on_.descend(finer);
     if (!finer.is_equilibrium() && !finer.model->has_soft_obstacles()) {
-      finer.x = finer.model->adopt(*solution.model, solution.x);
-      finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
+      finer.x = x;
+      finer.multipliers = multipliers;
       on_.by_augmented_lagrangian(finer);
     }
     finer.evaluations += solution.evaluations;
@@ -180,16 +181,11 @@ class Refinement {
   [[nodiscard]] bool holds_with_more_terms(const SpanSolution& solution) {
     const std::shared_ptr<SpanEnergy> model =
         on_.workspace().model(span_, std::min(max_terms, 3 * solution.terms / 2));
-    const Eigen::VectorXd x = model->adopt(*solution.model, solution.x);
-    Eigen::VectorXd gradient(model->size());
-    (void)model->value(x, gradient);
-    Eigen::VectorXd residual(model->constraints());
-    Eigen::MatrixXd jacobian(model->constraints(), model->size());
-    model->constraint(residual, jacobian);
-    gradient -=
-        jacobian.transpose() * model->adopt_multipliers(*solution.model, solution.multipliers);
-    return gradient.norm() < largest_residual * (1 + traits_.load) &&
-           residual.norm() < largest_gap * options_.tolerance;
+    PointOnSpan point = evaluated(*model, model->adopt(*solution.model, solution.x));
+    point.gradient -= point.jacobian.transpose() *
+                      model->adopt_multipliers(*solution.model, solution.multipliers);
+    return point.gradient.norm() < largest_residual * (1 + traits_.load) &&
+           point.residual.norm() < largest_gap * options_.tolerance;
   }
 
   LocalSolver& on_;
@@ -235,9 +231,7 @@ int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& wor
   // The shape may have left the plane, or have pieces of its own.
   const Span own = solution.model->span();
   LocalSolver on(own, options, workspace);
-  SpanSolution finer = on.empty_solution(more);
-  finer.x = finer.model->adopt(*solution.model, solution.x);
-  finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
+  SpanSolution finer = workspace.with_terms(solution, more);
   on.newton(finer);
   // Of what Newton's method left open before nobody has asked whether its terms resolve it.
   if (!solution.resolved) finer = refined(on, std::move(finer));

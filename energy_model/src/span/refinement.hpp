@@ -9,7 +9,7 @@ namespace dlo::energy_model {
 /// Whether a solution is one of those that are looked for: among all equilibria those that a fold
 /// or a bifurcation leaves open count too.
 [[nodiscard]] inline bool counts(const SpanSolution& solution, const SpanOptions& options) {
-  return solution.is_equilibrium() || (options.all && solution.is_singular_point());
+  return solution.is_equilibrium() || (options.wants_all() && solution.is_singular_point());
 }
 
 /// Raises the number of terms of an equilibrium until the last ones do not matter any more; where

@@ -26,4 +26,12 @@ bool is_same_shape(const SpanSolution& a, const SpanSolution& b, double toleranc
   return !planar && is_turned_copy(span, of_a, of_b);
 }
 
+bool is_better(const SpanSolution& a, const SpanSolution& b) {
+  const auto rank = [](const SpanSolution& solution) {
+    if (succeeded(solution.status)) return 0;
+    return solution.is_equilibrium() ? 1 : 2;
+  };
+  return rank(a) != rank(b) ? rank(a) < rank(b) : a.energy < b.energy;
+}
+
 }  // namespace dlo::energy_model

@@ -12,4 +12,7 @@ inline constexpr double same_points = 1e-6;
 [[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b,
                                  double tolerance = same_points);
 
+/// The order of what is found: stable shapes, other equilibria, the rest, each by energy.
+[[nodiscard]] bool is_better(const SpanSolution& a, const SpanSolution& b);
+
 }  // namespace dlo::energy_model

@@ -12,7 +12,6 @@
 #include "certify/certify.hpp"
 #include "certify/rigid_body_modes.hpp"
 #include "linear/free_directions.hpp"
-#include "newton/restore.hpp"
 #include "span/local_solver.hpp"
 #include "span/negative_curvature.hpp"
 #include "span/plain_cantilever.hpp"
@@ -22,6 +21,7 @@
 #include "span/settle_contact.hpp"
 #include "span/span_starts.hpp"
 #include "span/start_ranking.hpp"
+#include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -91,16 +91,16 @@ class Search {
   [[nodiscard]] std::vector<SpanSolution> run() {
     if (options_.start) return list_of(from_given_start_to_rest());
     std::vector<SpanSolution> found;
-    if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
+    if (!options_.wants_all() && span_.is_plain_cantilever() && span_.pulled_one_way()) {
       SpanSolution solution = plain_cantilever(on_);
       certify_out_of_plane(solution, traits_.load, workspace_.factors());
       if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
       add(std::move(solution), found);
     }
     const std::vector<Start> starts = ranked_starts();
-    std::size_t first = options_.all ? starts.size() : std::min(followed(), starts.size());
+    std::size_t first = options_.wants_all() ? starts.size() : std::min(followed(), starts.size());
     std::vector<SpanSolution> coarse;
-    const std::string kind = options_.log != nullptr ? starts_of(span_) : std::string();
+    const std::string kind = options_.wants_all() ? starts_of(span_) : std::string();
     for (std::size_t i = 0; i < starts.size() && !on_.out_of_time(); ++i) {
       // The other starts only where the first ones and what they lead to do not hold.
       if (i >= first && has_stable_lowest(found)) break;
@@ -108,9 +108,9 @@ class Search {
       spent_ += solution.evaluations;
       solution.evaluations = 0;
       const bool known =
-          is_known(solution, coarse, options_.all ? same_points : same_coarse_points);
+          is_known(solution, coarse, options_.wants_all() ? same_points : same_coarse_points);
       if (!known) coarse.push_back(std::move(solution));
-      if (options_.all) {
+      if (options_.wants_all()) {
         note(kind + ", downhill", !known && add(refined(on_, coarse.back()), found));
         // Descending leaves unstable equilibria; Newton's method alone stays near them.
         note(kind + ", by Newton's method",
@@ -118,15 +118,15 @@ class Search {
       }
       if (i + 1 == first && may_lead_lower(starts, first, coarse)) ++first;
       if (i + 1 < first) continue;
-      if (!options_.all) refine_lowest(std::exchange(coarse, {}), found);
+      if (!options_.wants_all()) refine_lowest(std::exchange(coarse, {}), found);
       leave_saddles(found);
     }
-    if (options_.all) {
+    if (options_.wants_all()) {
       look_between(found);
       look_beside(found);
     }
     if (span_.planar && span_.has_material_directors()) look_in_space(found);
-    if (options_.log != nullptr) tell_what_was_left_out(found);
+    if (options_.wants_all()) tell_what_was_left_out(found);
     return sorted(std::move(found));
   }
 
@@ -151,9 +151,8 @@ class Search {
 
   /// Of one start.
   void note(const std::string& strategy, bool is_new) const {
-    if (options_.log == nullptr) return;
-    options_.log->tried(strategy);
-    if (is_new) options_.log->found(strategy);
+    note_tried(options_.log, strategy);
+    if (is_new) note_found(options_.log, strategy);
   }
 
   void tell_what_was_left_out(const std::vector<SpanSolution>& found) const {
@@ -170,7 +169,7 @@ class Search {
   /// those: next to what these have fallen by, that is no difference.
   [[nodiscard]] bool may_lead_lower(const std::vector<Start>& starts, std::size_t next,
                                     const std::vector<SpanSolution>& found) const {
-    if (options_.all || traits_.taut || next >= starts.size() || !starts.front().model)
+    if (options_.wants_all() || traits_.taut || next >= starts.size() || !starts.front().model)
       return false;
     double lowest = infinite;
     for (const SpanSolution& solution : found) {
@@ -192,7 +191,7 @@ class Search {
          span_.has_material_directors() ? natural_fields(span_) : start_fields(span_)) {
       starts.emplace_back().field = std::move(field);
     }
-    if (options_.all) return starts;
+    if (options_.wants_all()) return starts;
     const int coarse = on_.coarse_terms();
     // What is looked at with the terms that it is left with need not be fitted twice.
     const bool keeps = coarse <= few_terms && span_.holds.empty() && span_.contacts.empty();
@@ -216,17 +215,17 @@ class Search {
     const auto is_saddle = [](const auto& solution) {
       return solution.status == SolveStatus::saddle;
     };
-    if (!options_.all && std::none_of(found.begin(), found.end(), is_saddle)) return;
+    if (!options_.wants_all() && std::none_of(found.begin(), found.end(), is_saddle)) return;
     Span space = span_;
     space.planar = false;
     SearchLog own;
     SpanOptions options = options_;
-    if (options_.log != nullptr) options.log = &own;
+    if (options_.wants_all()) options.log = &own;
     int first = 0;
     for (SpanSolution& solution : Search(space, options, workspace_).run()) {
       if (add(std::move(solution), found)) ++first;
     }
-    if (options_.log == nullptr) return;
+    if (!options_.wants_all()) return;
     options_.log->tried(out_of_plane, own.starts());
     options_.log->found(out_of_plane, first);
     for (const std::string& what : own.not_looked()) options_.log->leave_out(what);
@@ -243,7 +242,7 @@ class Search {
     solution.followed =
         came_by_newton_ &&
         !(may_fall && (looked_at(solution) - near).cwiseAbs().maxCoeff() > followed_tangents);
-    if (!options_.known.model || options_.only_known || solution.status != SolveStatus::saddle)
+    if (!options_.known.model || options_.only_follows() || solution.status != SolveStatus::saddle)
       return solution;
     std::optional<SpanSolution> lower = leave_saddle(solution);
     if (!lower) return solution;
@@ -253,13 +252,13 @@ class Search {
   }
 
   [[nodiscard]] SpanSolution from_given_start() {
-    const bool follow = options_.approach == Approach::follow;
+    const bool follow = options_.approach != Approach::descend;
     SpanSolution solution =
         follow ? on_.newton_from(options_.start) : on_.from_start(Start{options_.start});
     came_by_newton_ = follow && options_.known.model != nullptr && solution.is_equilibrium() &&
                       is_near_start(solution);
     if (succeeded(solution.status) && (came_by_newton_ || !options_.known.model)) return solution;
-    if (options_.only_known) return solution;
+    if (options_.only_follows()) return solution;
     const int spent = solution.evaluations;
     if (std::optional<SpanSolution> adapted = start_on_adapted_mesh()) {
       adapted->evaluations += spent;
@@ -287,9 +286,8 @@ class Search {
   [[nodiscard]] std::optional<SpanSolution> start_on_adapted_mesh() {
     if (options_.known.model || span_.holds.empty()) return std::nullopt;
     SpanSolution looked = on_.empty_solution(max_terms);
-    PointOnSpan point;
-    point.x = looked.x = looked.model->fit(options_.start(looked.model->nodes()));
-    evaluate(looked, point);
+    looked.x = looked.model->fit(options_.start(looked.model->nodes()));
+    const PointOnSpan point = evaluated(*looked.model, looked.x);
     looked.multipliers = point.jacobian.transpose().householderQr().solve(point.gradient);
     const std::optional<Span> span = adapted_mesh(on_, looked);
     if (!span) return std::nullopt;
@@ -319,7 +317,7 @@ class Search {
     if (!found.empty() && !counts(found.front(), options_)) found.clear();
     if (is_known(solution, found)) return false;
     // Of many equilibria it would take much memory, and nothing goes on from most of them.
-    if (options_.all) solution.factor.reset();
+    if (options_.wants_all()) solution.factor.reset();
     found.push_back(std::move(solution));
     return true;
   }
@@ -334,7 +332,7 @@ class Search {
   /// Descends from the unstable equilibria, once more from those that it leads to.
   void leave_saddles(std::vector<SpanSolution>& found) {
     for (; left_ < found.size() && left_ < most_saddles && !on_.out_of_time(); ++left_) {
-      if (!options_.all && has_stable_lowest(found)) return;
+      if (!options_.wants_all() && has_stable_lowest(found)) return;
       if (found[left_].status != SolveStatus::saddle) continue;
       std::optional<SpanSolution> lower = leave_saddle(found[left_]);
       if (lower) note(left_downhill, add(std::move(*lower), found));
@@ -373,7 +371,7 @@ class Search {
         }
       }
     }
-    if (options_.log != nullptr && found.size() > most_joined) {
+    if (found.size() > most_joined) {
       options_.log->leave_out("what lies between the equilibria found, but for the first " +
                               std::to_string(most_joined));
     }
@@ -386,21 +384,18 @@ class Search {
     std::size_t i = 0;
     for (; i < found.size() && i < most_saddles && !on_.out_of_time(); ++i) {
       if (!counts(found[i], options_)) continue;
-      const std::shared_ptr<SpanEnergy> model = found[i].model;
-      const Eigen::VectorXd x = found[i].x;
-      const Eigen::VectorXd multipliers = found[i].multipliers;
-      const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(found[i]);
+      const SpanSolution from = found[i];
+      const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(from);
       if (!mode) continue;
-      LocalSolver own(model->span(), options_, workspace_);
+      LocalSolver own(from.model->span(), options_, workspace_);
       for (const double step : steps) {
-        SpanSolution beside = own.empty_solution(model->terms());
-        beside.x = beside.model->adopt(*model, x) + step * *mode;
-        beside.multipliers = beside.model->adopt_multipliers(*model, multipliers);
+        SpanSolution beside = workspace_.with_terms(from, from.terms);
+        beside.x += step * *mode;
         own.newton(beside);
         note(beside_found, add(refined(own, std::move(beside)), found));
       }
     }
-    if (options_.log == nullptr || i >= found.size()) return;
+    if (i >= found.size()) return;
     options_.log->leave_out("what lies beside the equilibria found, but for the first " +
                             std::to_string(i));
   }
@@ -410,15 +405,9 @@ class Search {
   [[nodiscard]] static std::optional<Eigen::VectorXd> mode_nearest_zero(
       const SpanSolution& solution) {
     SpanEnergy& model = *solution.model;
-    Eigen::VectorXd gradient(model.size());
-    (void)model.value(solution.x, gradient);
-    Eigen::VectorXd residual(model.constraints());
-    Eigen::MatrixXd jacobian(model.constraints(), model.size());
-    model.constraint(residual, jacobian);
-    Eigen::MatrixXd hessian;
-    model.hessian(solution.multipliers, hessian);
+    const SecondVariation at = second_variation(solution);
     ReducedHessian reduced;
-    reduced.compute(hessian, jacobian);
+    reduced.compute(at.hessian, at.jacobian);
     const Eigen::Index free = rigid_body_modes(model.span(), model.tangents()).in_plane;
     if (free >= model.size() - model.constraints()) return std::nullopt;
     return direction_by_size(reduced, free);
@@ -448,12 +437,7 @@ class Search {
   }
 
   [[nodiscard]] std::vector<SpanSolution> sorted(std::vector<SpanSolution> found) {
-    std::stable_sort(found.begin(), found.end(), [](const SpanSolution& a, const SpanSolution& b) {
-      const bool a_stable = succeeded(a.status);
-      const bool b_stable = succeeded(b.status);
-      if (a_stable != b_stable) return a_stable;
-      return a.energy < b.energy;
-    });
+    std::stable_sort(found.begin(), found.end(), is_better);
     if (found.empty()) {
       found.push_back(on_.empty_solution(on_.terms()));
       found.back().x.setZero(found.back().model->size());
@@ -461,7 +445,7 @@ class Search {
       found.back().finish(SolveStatus::time_limit);
     }
     found.front().evaluations = spent_;
-    if (!options_.all) found.resize(1);
+    if (!options_.wants_all()) found.resize(1);
     return found;
   }
 
