@@ -57,17 +57,17 @@ Span spatial_arch(double lean) {
 
 // A factor of a point nearby tells what one of the shape's own does; one from farther away is not
 // taken.
-TEST(Certify, AsksTheLastFactorOnlyNextToThePointThatItIsOf) {
+TEST(Certify, AsksTheFactorOnlyNextToThePointThatItIsOf) {
   SpanWorkspace workspace;
-  Newton& newton = workspace.newton();
+  NewtonFactors& factors = workspace.factors();
   const Span span = spatial_arch(0.3);
   SpanSolution solution = std::move(solve_span(span, SpanOptions(), workspace).front());
   ASSERT_EQ(solution.status, SolveStatus::converged) << solution.message;
   const SpanSolution alone = [&] {
     SpanSolution copy = solution;
-    Newton another;
-    certify(copy, span.total_load(), another);
-    EXPECT_EQ(another.distance_of_factor(copy), 0);
+    copy.factor.reset();
+    certify(copy, span.total_load(), factors);
+    EXPECT_EQ(copy.factor->distance(copy, 1), 0);
     return copy;
   }();
   Eigen::VectorXd gradient(solution.model->size());
@@ -78,13 +78,14 @@ TEST(Certify, AsksTheLastFactorOnlyNextToThePointThatItIsOf) {
     beside.x[1] += away;
     (void)beside.model->value(beside.x, gradient);
     beside.model->constraint(residual, jacobian);
-    newton.factor_at(beside, jacobian);
+    factors.factor_at(beside, jacobian, span.total_load());
     SpanSolution certified = solution;
-    certify(certified, span.total_load(), newton);
+    certified.factor = beside.factor;
+    certify(certified, span.total_load(), factors);
     EXPECT_EQ(certified.status, SolveStatus::converged) << certified.message;
-    EXPECT_NEAR(certified.smallest_curvature, alone.smallest_curvature,
-                0.02 * alone.smallest_curvature);
-    EXPECT_NEAR(newton.distance_of_factor(certified), away < 1e-3 ? away : 0, 1e-15);
+    EXPECT_NEAR(certified.smallest_eigenvalue, alone.smallest_eigenvalue,
+                0.02 * alone.smallest_eigenvalue);
+    EXPECT_NEAR(certified.factor->distance(certified, 1), away < 1e-3 ? away : 0, 1e-15);
   }
 }
 
@@ -93,21 +94,20 @@ TEST(Certify, AFollowedShapeIsTheOneThatIsSearchedFor) {
   SpanWorkspace workspace;
   const SpanSolution before =
       std::move(solve_span(spatial_arch(0.3), SpanOptions(), workspace).front());
-  ASSERT_TRUE(workspace.newton().has_factor_of(before.model.get()));
+  ASSERT_TRUE(before.factor);
   const Span span = spatial_arch(0.28);
   SpanOptions options;
   const auto tangents = [&](const Eigen::VectorXd&) { return before.model->tangents(); };
   options.start = tangents;
-  options.known = {before.model, before.x, before.multipliers};
-  options.least_terms = before.terms;
+  options.known = {before.model, before.x, before.multipliers, before.factor};
   const SpanSolution followed = std::move(solve_span(span, options, workspace).front());
   const SpanSolution searched = std::move(solve_span(span, SpanOptions(), workspace).front());
   ASSERT_EQ(followed.status, SolveStatus::converged) << followed.message;
   EXPECT_TRUE(followed.followed);
   EXPECT_LT(followed.next_step, 1e-10);
   EXPECT_NEAR(followed.energy, searched.energy, 1e-9);
-  EXPECT_NEAR(followed.smallest_curvature, searched.smallest_curvature,
-              0.02 * searched.smallest_curvature);
+  EXPECT_NEAR(followed.smallest_eigenvalue, searched.smallest_eigenvalue,
+              0.02 * searched.smallest_eigenvalue);
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "dlo/energy_model/energy.hpp"
 #include "dlo/energy_model/exact.hpp"
-#include "newton/penalty_descent.hpp"
+#include "newton/augmented_lagrangian.hpp"
 #include "problem/segments.hpp"
 #include "span/span_starts.hpp"
 
@@ -109,13 +109,13 @@ TEST(Taut, AgreesWithMultipleShooting) {
             1e-7 * exact.grips[0].force.norm());
 }
 
-TEST(PenaltyDescent, MeetsTheGripsFromAStartThatIsFarFromThem) {
+TEST(AugmentedLagrangian, MeetsTheGripsFromAStartThatIsFarFromThem) {
   const Span span = span_of(stretched(0.05, 1, -0.5, false));
   SpanSolution solution;
   solution.model = std::make_shared<SpanEnergy>(span, 16);
   solution.terms = 16;
   solution.x.setZero(solution.model->size());
-  descend_by_penalty(solution, {.load = span.total_load()});
+  descend_by_augmented_lagrangian(solution, {.load = span.total_load()});
   ASSERT_EQ(solution.status, SolveStatus::converged) << solution.message;
   Eigen::VectorXd gradient(solution.model->size());
   Eigen::VectorXd missed(solution.model->constraints());

@@ -6,9 +6,11 @@
 #include <limits>
 
 #include "certify/contact_ends.hpp"
-#include "certify/free_turns.hpp"
+#include "certify/rigid_body_modes.hpp"
+#include "linear/free_directions.hpp"
 #include "linear/newton_system.hpp"
 #include "newton/newton.hpp"
+#include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -34,36 +36,30 @@ constexpr double largest_change = 0.01;
 /// or less, those of positions three times counted, over the scale of forces.
 constexpr double largest_third_derivative = 4;
 
-/// Norm of Newton's step from here; in neutral directions it stands still.
-double newton_step(NewtonSystem& system, const Eigen::VectorXd& gradient,
-                   const Eigen::VectorXd& residual) {
-  Eigen::VectorXd right(gradient.size() + residual.size());
-  right << -gradient, -residual;
+/// Norm of Newton's step from here; it has no part along near-null modes.
+double newton_step(NewtonSystem& system, const PointOnSpan& point) {
+  Eigen::VectorXd right(point.gradient.size() + point.residual.size());
+  right << -point.gradient, -point.residual;
   Eigen::VectorXd step;
   system.solve(right, step);
-  if (!system.is_met(right, step, largest_next_step)) step = system.across_neutral(right);
-  return step.head(gradient.size()).norm();
-}
-
-/// Of forces.
-double scale_of(const SpanSolution& solution, double load) {
-  return 1 + load + solution.multipliers.norm();
+  if (!system.is_met(right, step, largest_next_step)) step = system.minimum_norm_step(right);
+  return step.head(point.gradient.size()).norm();
 }
 
 /// Rounding of forces, whose scale is this.
 double rounding_of(double scale) { return 8 * std::numeric_limits<double>::epsilon() * scale; }
 
-/// By which the coefficients may be off along the softest direction if the second variation stays
+/// By which the coefficients may be off along the mode nearest zero if the second variation stays
 /// what it is: what Newton's method would still move them by, and what rounding, the modes that are
 /// left out and kinks within pieces push, divided by the eigenvalue nearest to zero.
 double linear_error(const SpanSolution& solution, double load) {
-  const double scale = scale_of(solution, load);
+  const double scale = scale_of_forces(solution, load);
   // The angle that the last coefficient adds is a_K / (2K); forces feel it as little again.
   const double K = solution.terms;
   const double angle = solution.model->tail(solution.x) / (2 * K);
-  const double softest = std::min(solution.softest, 1.0);
+  const double smallest = std::min(solution.eigenvalue_nearest_zero, 1.0);
   const double left_out = scale * angle / (2 * K) + misplaced_contact(solution);
-  return solution.next_step + (rounding_of(scale) + left_out) / softest;
+  return solution.next_step + (rounding_of(scale) + left_out) / smallest;
 }
 
 /// What the points of a shape may be away from those of an equilibrium, of the length. The
@@ -73,28 +69,29 @@ double linear_error(const SpanSolution& solution, double load) {
 double error_estimate(const SpanSolution& solution, double moved) {
   const SpanEnergy& model = *solution.model;
   // The unit is the rod's smaller bending stiffness.
-  double softest_section = 1;
+  double least_stiffness = 1;
   for (const Span::Part& part : model.span().parts) {
-    softest_section = std::min(softest_section, part.stiffness.head<2>().minCoeff());
+    least_stiffness = std::min(least_stiffness, part.stiffness.head<2>().minCoeff());
   }
   const double angle = model.tail(solution.x) / (2.0 * solution.terms);
-  return std::min(moved / std::sqrt(softest_section) + angle, largest_error);
+  return std::min(moved / std::sqrt(least_stiffness) + angle, largest_error);
 }
 
 /// Eigenvalues of the second variation in some directions, as far as they were looked at.
-struct Softness {
-  double smallest = 0;         // eigenvalue
-  double nearest_zero = 0;     // size of the eigenvalue nearest to zero that is no free turn's
-  int neutral_directions = 0;  // that are no free turns
+struct SmallEigenvalues {
+  double smallest = 0;      // eigenvalue
+  double nearest_zero = 0;  // size of the eigenvalue nearest to zero that is no rigid-body mode's
+  int neutral_directions = 0;  // that are no rigid-body modes
   Eigen::Index zero = 0;       // those that are free, or zero whatever they are
 };
 
 /// @param bound    size up to which an eigenvalue counts as neutral
 /// @param free     turns of the rod as a whole, whose eigenvalues are zero
 /// @param nothing  size up to which one is zero whatever its direction is; negative: none is
-Softness softness(FreeHessian& hessian, double bound, Eigen::Index free, double nothing) {
+SmallEigenvalues small_eigenvalues(ReducedHessian& hessian, double bound, Eigen::Index free,
+                                   double nothing) {
   const Eigen::VectorXd eigenvalues = smallest_eigenvalues(hessian, 2 * bound);
-  Softness result;
+  SmallEigenvalues result;
   result.smallest = eigenvalues.size() > 0 ? eigenvalues[0] : 1;
   result.nearest_zero = std::abs(result.smallest);
   if (result.smallest > 2 * bound) return result;
@@ -113,13 +110,13 @@ struct SoftMode {
   Eigen::VectorXd direction, multipliers;
 };
 
-SoftMode soft_mode(FreeHessian& on_free_directions, const Eigen::MatrixXd& hessian,
-                   const Eigen::MatrixXd& jacobian, Eigen::Index free) {
+SoftMode soft_mode(NewtonSystem& system, const Eigen::MatrixXd& jacobian, Eigen::Index free) {
   SoftMode mode;
-  mode.direction = direction_by_size(on_free_directions, free);
+  mode.direction = direction_by_size(system.reduced_hessian(), free);
   mode.multipliers = Eigen::VectorXd::Zero(jacobian.rows());
   if (jacobian.rows() > 0) {
-    mode.multipliers = jacobian.transpose().householderQr().solve(hessian * mode.direction);
+    mode.multipliers =
+        jacobian.transpose().householderQr().solve(system.hessian() * mode.direction);
   }
   return mode;
 }
@@ -128,135 +125,172 @@ SoftMode soft_mode(FreeHessian& on_free_directions, const Eigen::MatrixXd& hessi
 /// the eigenvalue changes along its own direction, to second order with what the constraints and
 /// the stiff directions do to it. The first is the coefficient of a fold, zero by symmetry at a
 /// bifurcation.
-struct Softening {
+struct EigenvalueDerivatives {
   double first = 0, second = 0;
 };
 
-Softening softening(SpanSolution& solution, const SoftMode& mode) {
+EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftMode& mode) {
   constexpr double step = 1e-3;  // error step^2, rounding eps / step and eps / step^2
-  SpanEnergy& model = *solution.model;
-  Eigen::VectorXd gradient(model.size());
-  Eigen::VectorXd residual(model.constraints());
-  Eigen::MatrixXd jacobian(model.constraints(), model.size());
-  Eigen::MatrixXd hessian;
-  const auto curvature = [&](double t) {
-    (void)model.value(solution.x + t * mode.direction, gradient);
-    model.constraint(residual, jacobian);
-    model.hessian(solution.multipliers + t * mode.multipliers, hessian);
+  const auto eigenvalue = [&](double t) {
+    const SecondVariation at = second_variation(*solution.model, solution.x + t * mode.direction,
+                                                solution.multipliers + t * mode.multipliers);
     ++solution.evaluations;
-    return mode.direction.dot(hessian * mode.direction) -
-           2 * mode.multipliers.dot(jacobian * mode.direction);
+    return mode.direction.dot(at.hessian * mode.direction) -
+           2 * mode.multipliers.dot(at.jacobian * mode.direction);
   };
-  const double ahead = curvature(step);
-  const double behind = curvature(-step);
+  const double ahead = eigenvalue(step);
+  const double behind = eigenvalue(-step);
   // Last, so that the model is left where the solution is.
-  const double here = curvature(0);
+  const double here = eigenvalue(0);
   return {(ahead - behind) / (2 * step), (ahead - 2 * here + behind) / (step * step)};
 }
 
 /// By how much the eigenvalues of the second variation on the free directions may differ from those
-/// at the point that Newton's factor is of: by third derivatives, and as the constraints turn what
-/// is free.
-double change_since(Newton& newton, const SpanSolution& solution, double scale) {
-  return newton.distance_of_factor(solution) * largest_third_derivative * scale /
-         std::min(1.0, newton.system().on_free_directions().least_constraint());
+/// at the point that the solution's factor is of: by third derivatives, and as the constraints turn
+/// what is free.
+double change_since_factor(const SpanSolution& solution, double scale) {
+  const NewtonFactor& factor = *solution.factor;
+  return factor.distance(solution, scale) * largest_third_derivative * scale /
+         std::min(1.0, factor.system.reduced_hessian().least_constraint());
 }
 
 /// Whether the second variation might change so much within `eta` that h is above its limit; false
 /// where the largest forces there are could not do it.
 bool may_be_at_fold(const SpanSolution& solution, double load, double eta) {
-  return !(eta * largest_third_derivative * scale_of(solution, load) <=
-           largest_h * solution.softest);
+  return !(eta * largest_third_derivative * scale_of_forces(solution, load) <=
+           largest_h * solution.eigenvalue_nearest_zero);
 }
+
+class Certification {
+ public:
+  Certification(SpanSolution& solution, double load, NewtonFactors& factors)
+      : solution_(solution),
+        model_(*solution.model),
+        load_(load),
+        factors_(factors),
+        scale_(scale_of_forces(solution, load)),
+        obstacles_(model_.has_soft_obstacles() || !model_.span().contacts.empty()) {}
+
+  void run() {
+    // Newton's method leaves those undetermined whose terms nobody has looked at.
+    const bool undetermined = solution_.status == SolveStatus::near_singular;
+    if (!evaluate()) return;
+    rigid_ = rigid_body_modes(model_.span(), model_.tangents());
+    solution_.rigid_body_modes = static_cast<int>(rigid_.all());
+    ask_factor();
+    const bool at_fold = estimate_error();
+    if (model_.span().planar) look_out_of_plane();
+    if (undetermined || !small_step_ || at_fold) {
+      return solution_.finish(SolveStatus::near_singular);
+    }
+    const MiddlePassed middle = middle_passed(solution_);
+    if (middle == MiddlePassed::near) {
+      solution_.neutral_directions = std::max(1, solution_.neutral_directions);
+      return solution_.finish(SolveStatus::near_singular);
+    }
+    if (solution_.smallest_eigenvalue < -neutral || middle != MiddlePassed::none) {
+      return solution_.finish(SolveStatus::saddle);
+    }
+    solution_.finish(solution_.neutral_directions > 0 ? SolveStatus::near_singular
+                                                      : SolveStatus::converged);
+  }
+
+ private:
+  /// @return whether it meets the equations of equilibrium
+  [[nodiscard]] bool evaluate() {
+    point_ = evaluated(model_, solution_.x);
+    ++solution_.evaluations;
+    solution_.energy = point_.energy;
+    point_.gradient -= point_.jacobian.transpose() * solution_.multipliers;
+    if (!(solution_.multipliers.norm() <= largest_pull * (1 + load_))) {
+      solution_.fail("the grips would have to pull without bound");
+      return false;
+    }
+    solution_.residual = std::hypot(point_.gradient.norm(), scale_ * point_.residual.norm());
+    if (solution_.residual <= largest_next_step * scale_) return true;
+    solution_.fail("the residual of the returned shape is not small");
+    return false;
+  }
+
+  [[nodiscard]] SmallEigenvalues eigenvalues_of(ReducedHessian& hessian, Eigen::Index rigid) const {
+    // Obstacles leave movements free that are not looked for: those that are zero but for rounding.
+    return small_eigenvalues(hessian, bound_, rigid, obstacles_ ? 128 * rounding_of(scale_) : -1);
+  }
+
+  /// Newton's step and the second variation, by the solution's factor or one of its own.
+  void ask_factor() {
+    for (bool near = !obstacles_ && solution_.factor != nullptr;; near = false) {
+      const double change = near ? change_since_factor(solution_, scale_) : 0;
+      near = near && change < largest_h;
+      if (!near) factors_.factor_at(solution_, point_.jacobian, load_);
+      NewtonSystem& system = solution_.factor->system;
+      solution_.next_step = newton_step(system, point_);
+      small_step_ = solution_.next_step <= largest_next_step;
+      // Below it what is left of the residual makes a step that is not small.
+      bound_ = std::max(neutral, small_step_ ? 0 : solution_.residual / largest_next_step);
+      found_ = eigenvalues_of(system.reduced_hessian(), rigid_.in_plane);
+      solution_.smallest_eigenvalue = found_.smallest;
+      solution_.eigenvalue_nearest_zero = found_.nearest_zero;
+      eta_ = linear_error(solution_, load_);
+      const bool tells = small_step_ && found_.smallest > 2 * bound_ &&
+                         change <= largest_change * found_.smallest &&
+                         !may_be_at_fold(solution_, load_, eta_);
+      if (!near || tells) break;
+    }
+    solution_.neutral_directions = found_.neutral_directions;
+  }
+
+  /// @return whether it is next to a fold, so that there may be no equilibrium
+  [[nodiscard]] bool estimate_error() {
+    double moved = eta_;
+    bool at_fold = false;
+    // As many terms as constraints leave no direction that a fold could be in.
+    const bool can_move = found_.zero < model_.size() - model_.constraints();
+    if (can_move && may_be_at_fold(solution_, load_, eta_)) {
+      const SoftMode mode = soft_mode(solution_.factor->system, point_.jacobian, found_.zero);
+      const EigenvalueDerivatives change = eigenvalue_derivatives(solution_, mode);
+      const double kappa = std::abs(change.first) + std::abs(change.second) * eta_;
+      const double h = eta_ * kappa / solution_.eigenvalue_nearest_zero;
+      moved = h <= 0.5 ? 2 * eta_ / (1 + std::sqrt(1 - 2 * h)) : largest_error;
+      at_fold = h > largest_h;
+      if (at_fold) solution_.neutral_directions = std::max(1, solution_.neutral_directions);
+    }
+    solution_.error = error_estimate(solution_, moved);
+    return at_fold;
+  }
+
+  void look_out_of_plane() {
+    SecondVariation across;
+    model_.sideways(solution_.multipliers, across.hessian, across.jacobian);
+    ReducedHessian beside;
+    beside.compute(across.hessian, across.jacobian);
+    const SmallEigenvalues found = eigenvalues_of(beside, rigid_.out_of_plane);
+    solution_.smallest_eigenvalue = std::min(solution_.smallest_eigenvalue, found.smallest);
+    solution_.neutral_directions += found.neutral_directions;
+  }
+
+  SpanSolution& solution_;
+  SpanEnergy& model_;
+  const double load_;
+  NewtonFactors& factors_;
+  const double scale_;  // of forces
+  const bool obstacles_;
+  PointOnSpan point_;
+  RigidBodyModes rigid_;
+  double bound_ = neutral;  // size up to which an eigenvalue counts as neutral
+  double eta_ = 0;          // by which the coefficients may be off, without a fold
+  bool small_step_ = false;
+  SmallEigenvalues found_;
+};
 
 }  // namespace
 
-void certify(SpanSolution& solution, double load, Newton& newton) {
-  // Newton's method leaves those undetermined whose terms nobody has looked at.
-  const bool undetermined = solution.status == SolveStatus::near_singular;
-  if (!solution.is_equilibrium() && !undetermined) return;
-  SpanEnergy& model = *solution.model;
-  Eigen::VectorXd gradient(model.size());
-  solution.energy = model.value(solution.x, gradient);
-  ++solution.evaluations;
-  Eigen::MatrixXd jacobian(model.constraints(), model.size());
-  Eigen::VectorXd residual(model.constraints());
-  model.constraint(residual, jacobian);
-  gradient -= jacobian.transpose() * solution.multipliers;
-  if (!(solution.multipliers.norm() <= largest_pull * (1 + load))) {
-    return solution.fail("the grips would have to pull without bound");
-  }
-  const double scale = scale_of(solution, load);
-  solution.residual = std::hypot(gradient.norm(), scale * residual.norm());
-  if (!(solution.residual <= largest_next_step * scale)) {
-    return solution.fail("the residual of the returned shape is not small");
-  }
-  const FreeTurns free = free_turns(model.span(), model.tangents());
-  solution.free_turns = static_cast<int>(free.all());
-  // Obstacles leave movements free that are not looked for: those that are zero but for rounding.
-  const bool obstacles = model.has_soft_obstacles() || !model.span().contacts.empty();
-  const double nothing = obstacles ? 128 * rounding_of(scale) : -1;
-  NewtonSystem& system = newton.system();
-  double bound = neutral;
-  double eta = 0;
-  bool small_step = false;
-  Softness found;
-  for (bool near = !obstacles && newton.has_factor_of(&model);; near = false) {
-    const double change = near ? change_since(newton, solution, scale) : 0;
-    near = near && change < largest_h;
-    if (!near) newton.factor_at(solution, jacobian);
-    solution.next_step = newton_step(system, gradient, residual);
-    small_step = solution.next_step <= largest_next_step;
-    // Below it what is left of the residual makes a step that is not small.
-    bound = std::max(neutral, small_step ? 0 : solution.residual / largest_next_step);
-    found = softness(system.on_free_directions(), bound, free.in_plane, nothing);
-    solution.smallest_curvature = found.smallest;
-    solution.softest = found.nearest_zero;
-    eta = linear_error(solution, load);
-    const bool tells = small_step && found.smallest > 2 * bound &&
-                       change <= largest_change * found.smallest &&
-                       !may_be_at_fold(solution, load, eta);
-    if (!near || tells) break;
-  }
-  double moved = eta;
-  bool at_fold = false;
-  solution.neutral_directions = found.neutral_directions;
-  // As many terms as constraints leave no direction that a fold could be in.
-  const bool can_move = found.zero < model.size() - model.constraints();
-  if (can_move && may_be_at_fold(solution, load, eta)) {
-    const SoftMode mode =
-        soft_mode(system.on_free_directions(), newton.hessian(), jacobian, found.zero);
-    const Softening change = softening(solution, mode);
-    const double kappa = std::abs(change.first) + std::abs(change.second) * eta;
-    const double h = eta * kappa / solution.softest;
-    moved = h <= 0.5 ? 2 * eta / (1 + std::sqrt(1 - 2 * h)) : largest_error;
-    at_fold = h > largest_h;
-    if (at_fold) solution.neutral_directions = std::max(1, solution.neutral_directions);
-  }
-  solution.error = error_estimate(solution, moved);
-  if (model.span().planar) {
-    Eigen::MatrixXd hessian;
-    model.sideways(solution.multipliers, hessian, jacobian);
-    FreeHessian beside;
-    beside.compute(hessian, jacobian);
-    found = softness(beside, bound, free.sideways, nothing);
-    solution.smallest_curvature = std::min(solution.smallest_curvature, found.smallest);
-    solution.neutral_directions += found.neutral_directions;
-  }
-  if (undetermined || !small_step || at_fold) return solution.finish(SolveStatus::near_singular);
-  const MiddlePassed middle = middle_passed(solution);
-  if (middle == MiddlePassed::near) {
-    solution.neutral_directions = std::max(1, solution.neutral_directions);
-    return solution.finish(SolveStatus::near_singular);
-  }
-  if (solution.smallest_curvature < -neutral || middle != MiddlePassed::none) {
-    return solution.finish(SolveStatus::saddle);
-  }
-  solution.finish(solution.neutral_directions > 0 ? SolveStatus::near_singular
-                                                  : SolveStatus::converged);
+void certify(SpanSolution& solution, double load, NewtonFactors& factors) {
+  if (!solution.is_equilibrium() && solution.status != SolveStatus::near_singular) return;
+  Certification(solution, load, factors).run();
 }
 
-void certify_sideways(SpanSolution& solution, double load, Newton& newton) {
+void certify_out_of_plane(SpanSolution& solution, double load, NewtonFactors& factors) {
   const Span& span = solution.model->span();
   // Only a rod that is pulled along its clamp turns freely, about that; few are.
   const auto is_along = [&](const Eigen::Vector3d& force) {
@@ -264,15 +298,16 @@ void certify_sideways(SpanSolution& solution, double load, Newton& newton) {
   };
   if (is_along(span.weight) && std::all_of(span.loads.begin(), span.loads.end(),
                                            [&](const auto& l) { return is_along(l.force); })) {
-    solution.free_turns = static_cast<int>(free_turns(span, solution.model->tangents()).all());
+    solution.rigid_body_modes =
+        static_cast<int>(rigid_body_modes(span, solution.model->tangents()).all());
   }
   const double eta = linear_error(solution, load);
   // Of what is no minimum in the plane the factor tells nothing.
-  const bool looked_at = solution.is_equilibrium() && !std::isnan(solution.softest);
-  const bool unsure =
-      looked_at && (solution.softest <= neutral || may_be_at_fold(solution, load, eta));
+  const bool looked_at = solution.is_equilibrium() && !std::isnan(solution.eigenvalue_nearest_zero);
+  const bool unsure = looked_at && (solution.eigenvalue_nearest_zero <= neutral ||
+                                    may_be_at_fold(solution, load, eta));
   if (unsure || solution.status == SolveStatus::near_singular)
-    return certify(solution, load, newton);
+    return certify(solution, load, factors);
   if (!solution.is_equilibrium()) return;
   solution.error = error_estimate(solution, eta);
   if (solution.status != SolveStatus::converged) return;

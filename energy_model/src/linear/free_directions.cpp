@@ -5,19 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 #include <vector>
 
 namespace dlo::energy_model {
 
-AcrossNeutral::AcrossNeutral(const Eigen::MatrixXd& system)
-    : factor_(system.rows(), system.cols()) {
-  factor_.setThreshold(neutral / std::max(1.0, system.cwiseAbs().maxCoeff()));
-  factor_.compute(system);
-}
-
-Eigen::VectorXd smallest_eigenvalues(FreeHessian& hessian, double above) {
-  const std::optional<double> smallest = hessian.smallest_of_definite();
+Eigen::VectorXd smallest_eigenvalues(ReducedHessian& hessian, double above) {
+  const std::optional<double> smallest = hessian.smallest_eigenvalue_of_definite();
   if (smallest && *smallest > above) return Eigen::VectorXd::Constant(1, *smallest);
   const Eigen::MatrixXd projected = hessian.matrix();
   if (projected.size() == 0) return {};
@@ -25,10 +18,10 @@ Eigen::VectorXd smallest_eigenvalues(FreeHessian& hessian, double above) {
       .eigenvalues();
 }
 
-Eigen::VectorXd direction_by_size(FreeHessian& hessian, Eigen::Index index) {
+Eigen::VectorXd direction_by_size(ReducedHessian& hessian, Eigen::Index index) {
   if (index == 0) {
-    if (const std::optional<Eigen::VectorXd> softest = hessian.softest_of_definite()) {
-      return hessian.in_unknowns(*softest);
+    if (const std::optional<Eigen::VectorXd> mode = hessian.lowest_mode_of_definite()) {
+      return hessian.in_unknowns(*mode);
     }
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.matrix());
@@ -46,39 +39,11 @@ bool is_minimum(const Eigen::MatrixXd& hessian) {
   return Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>>(shifted).info() == Eigen::Success;
 }
 
-namespace {
-
-struct Softest {
-  double eigenvalue;
-  Eigen::VectorXd direction;
-};
-
-std::optional<Softest> softest(const FreeHessian& on_free_directions) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(on_free_directions.matrix());
-  if (eigen.eigenvalues().size() == 0) return std::nullopt;
-  return Softest{eigen.eigenvalues()[0],
-                 on_free_directions.in_unknowns(eigen.eigenvectors().col(0)).normalized()};
-}
-
-}  // namespace
-
-std::optional<Eigen::VectorXd> softest_direction(const Eigen::MatrixXd& hessian,
-                                                 const Eigen::MatrixXd& jacobian) {
-  FreeHessian on_free_directions;
-  on_free_directions.compute(hessian, jacobian);
-  std::optional<Softest> found = softest(on_free_directions);
-  if (!found) return std::nullopt;
-  return std::move(found->direction);
-}
-
-std::optional<Eigen::VectorXd> falling_direction(const Eigen::MatrixXd& hessian,
-                                                 const Eigen::MatrixXd& jacobian) {
-  FreeHessian on_free_directions;
-  on_free_directions.compute(hessian, jacobian);
-  if (on_free_directions.is_definite()) return std::nullopt;
-  std::optional<Softest> found = softest(on_free_directions);
-  if (!found || found->eigenvalue > -neutral) return std::nullopt;
-  return std::move(found->direction);
+std::optional<Eigen::VectorXd> negative_curvature_direction(const ReducedHessian& hessian) {
+  if (hessian.is_definite()) return std::nullopt;
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(hessian.matrix());
+  if (eigen.eigenvalues().size() == 0 || eigen.eigenvalues()[0] > -neutral) return std::nullopt;
+  return hessian.in_unknowns(eigen.eigenvectors().col(0)).normalized();
 }
 
 }  // namespace dlo::energy_model

@@ -2,10 +2,10 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
+#include <Eigen/QR>
 #include <optional>
 
-#include "linear/free_directions.hpp"
-#include "linear/free_hessian.hpp"
+#include "linear/reduced_hessian.hpp"
 
 namespace dlo::energy_model {
 
@@ -15,13 +15,16 @@ namespace dlo::energy_model {
 /// as a whole where it is not. Buffers survive from one compute() to the next.
 class NewtonSystem {
  public:
-  /// @param hessian   n x n, symmetric; has to outlive what is asked for below, unchanged
-  /// @param jacobian  m x n
-  void compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
+  /// @param[in,out] hessian  n x n, symmetric; taken over, so that it becomes another matrix
+  /// @param jacobian         m x n
+  void compute(Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
 
   /// Whether it has been computed of so many unknowns and constraints.
   [[nodiscard]] bool is_of(Eigen::Index unknowns, Eigen::Index constraints) const {
-    return hessian_ != nullptr && hessian_->rows() == unknowns && jacobian_.rows() == constraints;
+    return hessian().rows() == unknowns && jacobian_.rows() == constraints;
+  }
+  [[nodiscard]] const Eigen::MatrixXd& hessian() const {
+    return jacobian_.rows() > 0 ? hessian_ : reduced_.unconstrained();
   }
 
   /// @param right      (a, b), n + m
@@ -32,20 +35,22 @@ class NewtonSystem {
   [[nodiscard]] bool is_met(const Eigen::VectorXd& right, const Eigen::VectorXd& step,
                             double longest);
 
-  /// By least squares: stands still in neutral directions.
-  [[nodiscard]] Eigen::VectorXd across_neutral(const Eigen::VectorXd& right);
+  /// The minimum-norm step, by least squares: it has no part along near-null modes.
+  [[nodiscard]] Eigen::VectorXd minimum_norm_step(const Eigen::VectorXd& right);
 
   /// H on the free directions, of a system with constraints; of one without H itself.
-  [[nodiscard]] FreeHessian& on_free_directions() { return free_; }
+  [[nodiscard]] ReducedHessian& reduced_hessian() { return reduced_; }
+  [[nodiscard]] const ReducedHessian& reduced_hessian() const { return reduced_; }
 
  private:
   [[nodiscard]] Eigen::MatrixXd whole() const;
 
-  const Eigen::MatrixXd* hessian_ = nullptr;
+  Eigen::MatrixXd hessian_;  // only where there are constraints
   Eigen::MatrixXd jacobian_;
-  FreeHessian free_;
+  ReducedHessian reduced_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
-  std::optional<AcrossNeutral> across_;  // once it was asked for
+  /// Of the whole system, once it was asked for.
+  std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>> orthogonal_;
   Eigen::VectorXd left_;
 };
 

@@ -1,11 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "base/deadline.hpp"
-#include "linear/dense_factor.hpp"
-#include "linear/newton_system.hpp"
 #include "newton/broyden.hpp"
+#include "newton/newton_factor.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
@@ -18,108 +18,54 @@ inline constexpr double largest_pull = 1e10;
 /// taken for a solution [rad].
 inline constexpr double coarsest_step = 1e-8;
 
-/// Newton's next step from what is only roughly polished [rad]: its energy, of
+/// Newton's next step, of which the shape's error is a part, at which it need not go on [rad].
+inline constexpr double finest_step = 1e-11;
+
+/// Newton's next step of a shape that is given more terms anyway [rad]: its energy, of
 /// which the square is a part, is right to rounding in what tells shapes apart.
 inline constexpr double rough_step = 1e-5;
 
-/// Newton's method on the gradient of E - mu . c and on the constraints, with
-/// its buffers. Without constraints and obstacles it allocates nothing once
-/// they have their size.
-class Newton {
- public:
-  /// From now on: what has not come to its end by then ends as `time_limit`.
-  void limit(const Deadline& deadline) { deadline_ = deadline; }
-  /// From solution.x to where the residual is at rounding and Newton's next step, evaluated there,
-  /// is below 1e-8; steps are cut while the next one, with the same factor, is no shorter. Without
-  /// constraints the Hessian then tells a minimum (`converged`) from a `saddle`; with them the
-  /// caller has to look. Ends as `near_singular` where the residual is at rounding and the step is
-  /// not, and as `failed` where the residual does not fall; between grips it tries once more as
-  /// polish_along_branch().
-  /// @param load  sum of weight and loads, the scale of the residuals
-  void polish(SpanSolution& solution, double load);
-  /// The same between grips, the first steps with the factor of the last polish(), if it was of as
-  /// many unknowns: for a shape next to that one. Where there is none within a few steps it ends as
-  /// `failed`, without a second try and without least squares.
-  void polish_nearby(SpanSolution& solution, double load);
-  /// polish(), the first steps with the factor of the last one and the last ones with a factor of
-  /// its own, which has_factor_near() then finds.
-  void polish_from_neighbour(SpanSolution& solution, double load);
-  /// The same to where Newton's next step is below `rough_step`, for a shape
-  /// that is given more terms anyway.
-  void polish_roughly(SpanSolution& solution, double load);
-  /// The same, standing still in directions in which the rod moves for next to
-  /// nothing, where rounding would make any step: for one of many steps along a
-  /// branch.
-  void polish_along_branch(SpanSolution& solution, double load);
-  /// The same between grips for the solution of the last polish() with more
-  /// terms: the first steps with its Hessian and, in the new terms, that of
-  /// bending alone.
-  /// @param fewer  that solution
-  void polish_with_more_terms(SpanSolution& solution, const SpanSolution& fewer, double load);
-
-  /// Factors the second variation of E - mu . c and the constraints at solution.x, where the
-  /// model's last value() was: what the next steps nearby begin with.
-  /// @param jacobian  of the constraints there
-  void factor_at(const SpanSolution& solution, const Eigen::MatrixXd& jacobian);
-  /// The last factor, and the Hessian that it is of.
-  [[nodiscard]] NewtonSystem& system();
-  [[nodiscard]] const Eigen::MatrixXd& hessian() const { return hessian_; }
-  /// Whether the last factor is of this model, at whatever point.
-  [[nodiscard]] bool has_factor_of(const SpanEnergy* model) const {
-    return model != nullptr && model == factored_.model;
-  }
-  /// By which unknowns, and multipliers over the scale of forces, differ from those that the last
-  /// factor is of; infinite if it is another model's.
-  [[nodiscard]] double distance_of_factor(const SpanSolution& solution) const;
-
- private:
-  void run(SpanSolution& solution, double load);
-  void begin(SpanSolution& solution);
-  [[nodiscard]] double evaluate(SpanSolution& solution);
-  void factor(SpanSolution& solution);
-  void factor_system();
-  void prolong(const SpanEnergy& model, const SpanEnergy& fewer);
-  void find_neutral();
-  void stand_still();
-  void solve();
-  void stand_still_where_neutral();
-  void move(SpanSolution& solution, double length);
-  [[nodiscard]] double step_length(SpanSolution& solution, double size);
-  [[nodiscard]] double step_length_by_energy(SpanSolution& solution);
-  [[nodiscard]] double length_of(const SpanSolution& solution) const;
-  /// Of forces, with which residuals are compared.
-  [[nodiscard]] double scale_of(const SpanSolution& solution) const;
-  /// Whether rounding may be what is left of a residual of this size.
-  [[nodiscard]] bool is_at_rounding(const SpanSolution& solution, double size) const;
-  [[nodiscard]] double softest_of_factor();
-  void remember_factor(const SpanSolution& solution);
-  [[nodiscard]] bool has_factor_for(const SpanEnergy& model) const;
-  [[nodiscard]] bool natural_move(SpanSolution& solution, double& size);
-  void update_step();
-
-  Deadline deadline_;
-  double load_ = 0;
-  bool stands_still_ = false;
-  bool rough_ = false;
-  bool nearby_ = false;
-  bool borrows_ = false;  // the factor of the last polish()
-  bool ends_on_own_factor_ = false;
-  double pull_ = 1;  // scale of forces
-  Eigen::VectorXd gradient_, residual_, right_, step_, first_step_;
-  Eigen::MatrixXd jacobian_, hessian_, neutral_;
-  DenseFactor definite_factor_;
-  NewtonSystem system_;   // where the Hessian has no definite_factor_
-  BroydenSteps broyden_;  // with system_, multipliers over pull_
-  /// What system_ is of; no model where it is none of a single point.
-  struct {
-    const SpanEnergy* model = nullptr;
-    Eigen::VectorXd x, multipliers;
-  } factored_;
-  bool prolonged_ = false;     // hessian_ is that of fewer terms
-  bool prolong_next_ = false;  // and what the next step begins with
-  bool definite_ = false;      // definite_factor_ is what the system is solved with
-  bool system_known_ = true;   // system_ is of hessian_, too
-  Eigen::VectorXd trial_x_, trial_multipliers_, trial_gradient_, soft_;
+enum class NewtonMethod {
+  /// To an equilibrium, stable or not. What is borrowed for the first steps makes room for a factor
+  /// of its own before the last ones. Between grips, where it does not converge, once more as the
+  /// corrector.
+  newton,
+  /// Between grips, for a shape next to another one, with whose factor it begins. Where there is
+  /// none within a few steps it ends as `failed`, without a second try and without least squares.
+  simplified,
+  /// For one of many steps along a branch: near-null modes, along which rounding would make any
+  /// step, are deflated, so that steps have no part along them.
+  corrector,
 };
+
+struct NewtonOptions {
+  double load = 0;  ///< sum of weight and loads, the scale of the residuals
+  NewtonMethod method = NewtonMethod::newton;
+  /// Its next step at which it ends [rad]; the residual is at rounding, or as small as that.
+  double step_tolerance = finest_step;
+  /// Of another shape, for the first steps between grips, if it is of as many unknowns.
+  std::shared_ptr<NewtonFactor> first_factor = nullptr;
+  /// Likewise, factored with the own constraints' Jacobian.
+  const Eigen::MatrixXd* first_hessian = nullptr;
+  const Deadline* deadline = nullptr;  ///< beyond, it ends as `time_limit`; null: none
+};
+
+/// What newton_solve() works in; buffers survive from one call to the next.
+struct NewtonBuffers {
+  NewtonFactors factors;
+  BroydenSteps broyden;
+  Eigen::VectorXd gradient, residual, right, step, first_step;
+  Eigen::VectorXd trial_x, trial_multipliers, trial_gradient, lowest_mode;
+  Eigen::MatrixXd jacobian, near_null_modes;
+};
+
+/// Newton's method on the gradient of E - mu . c and on the constraints: from solution.x to where
+/// the residual is at rounding and Newton's next step, evaluated there, is below 1e-8; steps are
+/// cut while the next one, with the same factor, is no shorter. Without constraints the Hessian
+/// then tells a minimum (`converged`) from a `saddle`; with them the caller has to look. Ends as
+/// `near_singular` where the residual is at rounding and the step is not, and as `failed` where the
+/// residual does not fall. The solution is left with the last factor of its own, if it has made
+/// one. Without constraints and obstacles it allocates nothing once buffers have their size.
+void newton_solve(SpanSolution& solution, const NewtonOptions& options, NewtonBuffers& buffers);
 
 }  // namespace dlo::energy_model

@@ -23,16 +23,6 @@ void bend(SpanSolution& solution, PointOnSpan& point, int which) {
 
 }  // namespace
 
-void evaluate(SpanSolution& solution, PointOnSpan& point) {
-  SpanEnergy& model = *solution.model;
-  point.gradient.resize(model.size());
-  point.residual.resize(model.constraints());
-  point.jacobian.resize(model.constraints(), model.size());
-  point.energy = model.value(point.x, point.gradient);
-  model.constraint(point.residual, point.jacobian);
-  ++solution.evaluations;
-}
-
 bool restore(SpanSolution& solution, PointOnSpan& point, double gap, RestoreScratch& scratch,
              double most_energy) {
   if (solution.model->constraints() == 0) return std::isfinite(point.energy);
@@ -55,9 +45,9 @@ bool restore(SpanSolution& solution, PointOnSpan& point, double gap, RestoreScra
     for (; mu < 1e3 && !shorter; mu *= 10) {
       normal = square;
       normal.diagonal().array() += mu * scale;
-      if (!scratch.factor.compute(normal)) continue;
+      if (scratch.factor.compute(normal).info() != Eigen::Success) continue;
       scratch.along = point.residual;
-      scratch.factor.solve(scratch.along);
+      scratch.factor.solveInPlace(scratch.along);
       scratch.step.noalias() = point.jacobian.transpose() * scratch.along;
       if (!(scratch.step.norm() <= longest)) continue;
       trial.x = point.x - scratch.step;

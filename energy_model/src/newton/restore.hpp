@@ -1,9 +1,10 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <limits>
 
-#include "linear/dense_factor.hpp"
+#include "strain/point_on_span.hpp"
 #include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
@@ -11,21 +12,11 @@ namespace dlo::energy_model {
 /// Gap at the grips from which a descent starts, and the most that it leaves on its way.
 inline constexpr double loosest_gap = 1e-5;
 
-/// Energy, its derivatives and the constraints at a point.
-struct PointOnSpan {
-  Eigen::VectorXd x, gradient, residual;
-  Eigen::MatrixXd jacobian;
-  double energy = 0;
-};
-
-/// Evaluates a solution's model at a point, and counts it.
-void evaluate(SpanSolution& solution, PointOnSpan& point);
-
 /// What restore() works in; buffers survive from one call to the next.
 struct RestoreScratch {
   PointOnSpan trial;
   Eigen::MatrixXd square, normal;
-  DenseFactor factor;
+  Eigen::LLT<Eigen::MatrixXd> factor;
   Eigen::VectorXd along, step;
 };
 

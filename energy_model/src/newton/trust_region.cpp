@@ -5,8 +5,8 @@
 #include <cmath>
 #include <utility>
 
-#include "linear/free_hessian.hpp"
-#include "newton/region_step.hpp"
+#include "linear/reduced_hessian.hpp"
+#include "linear/trust_region_step.hpp"
 #include "newton/restore.hpp"
 
 namespace dlo::energy_model {
@@ -39,9 +39,7 @@ class TrustRegionDescent {
         return solution_.finish(SolveStatus::time_limit);
       }
       linearise(here);
-      const double slope = projected_gradient_.norm();
-      const bool flat = slope <= options_.gradient_tolerance * (1 + options_.load);
-      const std::optional<Eigen::VectorXd> step = best_step(radius, flat);
+      const std::optional<Eigen::VectorXd> step = best_step(radius);
       if (!step) {
         keep(here);
         return solution_.finish(SolveStatus::converged);
@@ -57,45 +55,44 @@ class TrustRegionDescent {
  private:
   /// Multipliers, what is free, projected gradient and Hessian at a point.
   void linearise(const PointOnSpan& here) {
-    free_.constrain(here.jacobian);
-    dependent_ = !free_.is_independent();
-    if (dependent_) {
-      project_on_rank(here);
-    } else {
-      FreeHessian::Balance balance = free_.balance(here.gradient);
+    reduced_.constrain(here.jacobian);
+    if (reduced_.is_independent()) {
+      ReducedHessian::Balance balance = reduced_.balance(here.gradient);
       multipliers_ = std::move(balance.multipliers);
       projected_gradient_ = std::move(balance.left);
+    } else {
+      balance_independent(here);
     }
     // The model's Hessian is that of its last value().
     gradient_.resize(model_.size());
     (void)model_.value(here.x, gradient_);
     model_.hessian(multipliers_, hessian_);
-    if (dependent_) {
-      ranked_.compute(basis_.transpose() * hessian_ * basis_, Eigen::MatrixXd(0, basis_.cols()));
-    } else {
-      free_.compute(hessian_);
-    }
+    reduced_.compute(hessian_);
   }
 
-  /// Where constraints depend on each other, as of a straight rod.
-  void project_on_rank(const PointOnSpan& here) {
+  /// Where constraints depend on each other, as of a straight rod: with those that do not.
+  void balance_independent(const PointOnSpan& here) {
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(here.jacobian.transpose());
     qr.setThreshold(1e-10);
-    multipliers_ = qr.solve(here.gradient);
-    const Eigen::MatrixXd turns = qr.householderQ();
-    basis_ = turns.rightCols(model_.size() - qr.rank());
-    projected_gradient_ = basis_.transpose() * here.gradient;
+    const Eigen::VectorXi rows = qr.colsPermutation().indices().head(qr.rank());
+    reduced_.constrain(here.jacobian(rows, Eigen::all));
+    ReducedHessian::Balance balance = reduced_.balance(here.gradient);
+    multipliers_.setZero(here.residual.size());
+    multipliers_(rows) = balance.multipliers;
+    projected_gradient_ = std::move(balance.left);
   }
 
   /// Step in the unknowns; nothing where the point is near a minimum already.
-  [[nodiscard]] std::optional<Eigen::VectorXd> best_step(double radius, bool flat) {
-    FreeHessian& hessian = dependent_ ? ranked_ : free_;
+  [[nodiscard]] std::optional<Eigen::VectorXd> best_step(double radius) {
     const std::optional<Eigen::VectorXd> p =
-        region_step(hessian, projected_gradient_, radius, flat, options_.nearest);
+        trust_region_step(reduced_, projected_gradient_,
+                          {.radius = radius,
+                           .gradient_tolerance = options_.gradient_tolerance * (1 + options_.load),
+                           .least_step = options_.nearest});
     if (!p) return std::nullopt;
-    predicted_ = -(projected_gradient_.dot(*p) + p->dot(hessian.matrix() * *p) / 2);
+    predicted_ = -(projected_gradient_.dot(*p) + p->dot(reduced_.matrix() * *p) / 2);
     length_ = p->norm();
-    return dependent_ ? Eigen::VectorXd(basis_ * *p) : free_.in_unknowns(*p);
+    return reduced_.in_unknowns(*p);
   }
 
   /// @return the next radius
@@ -126,10 +123,7 @@ class TrustRegionDescent {
   const TrustRegionOptions& options_;
   PointOnSpan trial_;
   RestoreScratch scratch_;
-  FreeHessian free_;
-  bool dependent_ = false;  // constraints, so that basis_ is of what is free
-  Eigen::MatrixXd basis_;
-  FreeHessian ranked_;  // on that basis
+  ReducedHessian reduced_;
   Eigen::VectorXd multipliers_, gradient_, projected_gradient_;
   Eigen::MatrixXd hessian_;
   double predicted_ = 0;  // fall of E - lambda.c

@@ -80,7 +80,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
   result.grips.resize(problem.grips.size());
   result.obstacles.assign(problem.obstacles.size(), Eigen::Vector3d::Zero());
   result.smallest_curvature = std::numeric_limits<double>::infinity();
-  int free_turns = 0;
+  int rigid_body_modes = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
     const PlacedSpan& place = *placed[i];
     const SpanSolution& solution = *solutions[i];
@@ -88,15 +88,15 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     result.terms = std::max(result.terms, solution.terms);
     result.residual = std::max(result.residual, solution.residual);
     result.neutral_directions += solution.neutral_directions;
-    free_turns += solution.free_turns;
+    rigid_body_modes += solution.rigid_body_modes;
     // NaN, where one is not known, stays.
     if (std::isnan(solution.error) || solution.error > result.error_estimate) {
       result.error_estimate = solution.error;
     }
     // NaN, where one was not looked at, stays.
-    if (std::isnan(solution.smallest_curvature) ||
-        solution.smallest_curvature < result.smallest_curvature) {
-      result.smallest_curvature = solution.smallest_curvature;
+    if (std::isnan(solution.smallest_eigenvalue) ||
+        solution.smallest_eigenvalue < result.smallest_curvature) {
+      result.smallest_curvature = solution.smallest_eigenvalue;
     }
     if (is_worse(solution.status, result.status)) {
       result.status = solution.status;
@@ -151,7 +151,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     }
   }
   if (succeeded(result.status) || result.status == SolveStatus::saddle) {
-    result.message += moves_for_nothing(free_turns);
+    result.message += moves_for_nothing(rigid_body_modes);
   }
   if (result.status == SolveStatus::near_singular && result.neutral_directions > 0) {
     result.message += ": " + std::to_string(result.neutral_directions) + " neutral direction" +

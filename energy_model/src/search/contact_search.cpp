@@ -14,12 +14,12 @@
 #include "contact/mend.hpp"
 #include "contact/resting_polygon.hpp"
 #include "newton/trust_region.hpp"
-#include "search/settle_lift_offs.hpp"
+#include "search/free_boundary_newton.hpp"
+#include "span/negative_curvature.hpp"
 #include "span/refinement.hpp"
 #include "span/same_shape.hpp"
 #include "span/search_log.hpp"
 #include "span/span_starts.hpp"
-#include "span/way_down.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -54,30 +54,28 @@ constexpr const char* polygons_at_rest = "polygons at rest on the obstacles";
 class ContactSearch {
  public:
   ContactSearch(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
-      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {
-    workspace_.newton().limit(options.deadline);
-  }
+      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {}
 
   [[nodiscard]] std::vector<SpanSolution> run() {
     std::vector<SpanSolution> found;
-    if (options_.known.model && options_.start && !options_.all) {
+    if (options_.known.model && options_.start && !options_.wants_all()) {
       SpanSolution followed = follow();
-      if (followed.is_equilibrium() || followed.is_left_open() || options_.only_known) {
+      if (followed.is_equilibrium() || followed.is_singular_point() || options_.only_follows()) {
         found.push_back(std::move(followed));
       }
     }
     if (found.empty()) {
-      if (options_.start && !options_.all) look_from({options_.start}, found);
+      if (options_.start && !options_.wants_all()) look_from({options_.start}, found);
       if (found.empty() || !succeeded(found.front().status)) search(found);
     }
-    const int departures = options_.only_known ? 0 : most_departures;
+    const int departures = options_.only_follows() ? 0 : most_departures;
     for (int i = 0; i < departures && found.front().status == SolveStatus::saddle; ++i) {
       const double energy = found.front().energy;
       leave(found);
       if (!(found.front().energy < energy)) break;
     }
     found.front().evaluations = spent_;
-    if (!options_.all) found.resize(1);
+    if (!options_.wants_all()) found.resize(1);
     return found;
   }
 
@@ -101,7 +99,7 @@ class ContactSearch {
     if (share > 0 && !solution.is_equilibrium()) solution = next_to_known(span, 0);
     // Where a point begins to lie it slides with no least gap, and a part is too short to be told.
     if (!solution.is_equilibrium() && hold_points(span)) {
-      solution = near_field(span, options_.start);
+      solution = newton_from(span, options_.start);
     }
     if (!solution.is_equilibrium()) return solution;
     const Eigen::Matrix3Xd turned =
@@ -110,7 +108,7 @@ class ContactSearch {
     spent_ += std::exchange(solution.evaluations, 0);
     span = solution.model->span();
     solution = with_right_contacts(std::move(span), {}, std::move(solution));
-    solution.followed = succeeded(solution.status) || solution.is_left_open();
+    solution.followed = succeeded(solution.status) || solution.is_singular_point();
     return solution;
   }
 
@@ -168,9 +166,8 @@ class ContactSearch {
       span.contacts[i].begin = begin;
       span.contacts[i].end = at.lies() ? end : begin;
     }
-    SpanSolution solution;
-    solution.terms = share > 0 ? enough_terms_of_known() : known.model->terms();
-    solution.model = workspace_.model(span, solution.terms);
+    SpanSolution solution =
+        workspace_.empty_solution(span, share > 0 ? enough_terms_of_known() : known.model->terms());
     SpanEnergy& model = *solution.model;
     if (model.pieces() != known.model->pieces()) return {};
     const bool fits = span.planar || span.has_material_directors();
@@ -185,7 +182,7 @@ class ContactSearch {
       solution.x = known.x + share * (known.x - before.x);
       solution.multipliers += share * (known.multipliers - before.multipliers);
     }
-    workspace_.newton().polish(solution, load_);
+    newton(solution);
     return solution;
   }
 
@@ -195,7 +192,7 @@ class ContactSearch {
     SpanOptions without_start = options_;
     without_start.start = nullptr;
     SearchLog without_obstacles;
-    if (options_.log != nullptr) without_start.log = &without_obstacles;
+    if (options_.wants_all()) without_start.log = &without_obstacles;
     std::vector<TangentField> starts;
     double lowest_within = std::numeric_limits<double>::infinity();
     for (SpanSolution& solution : solve_span(span_, without_start, workspace_)) {
@@ -211,18 +208,17 @@ class ContactSearch {
         continue;
       }
       const bool is_new = add(std::move(solution), found);
-      if (options_.log == nullptr) continue;
-      options_.log->tried(clear_of_obstacles);
-      if (is_new) options_.log->found(clear_of_obstacles);
+      note_tried(options_.log, clear_of_obstacles);
+      if (is_new) note_found(options_.log, clear_of_obstacles);
     }
-    if (options_.log != nullptr) {
+    if (options_.wants_all()) {
       options_.log->add_starts(without_obstacles, ", as if there were no obstacles");
     }
     // What touches beside a shape that obstacles forbid costs more than that, but may cost less
     // than what stays clear elsewhere.
     const bool is_clear =
         !found.empty() && succeeded(found.front().status) && found.front().energy <= lowest_within;
-    if (!options_.all && is_clear) return;
+    if (!options_.wants_all() && is_clear) return;
     for (TangentField& start : start_fields(span_)) starts.push_back(std::move(start));
     look_from(starts, found);
   }
@@ -233,7 +229,8 @@ class ContactSearch {
   void look_from(const std::vector<TangentField>& starts, std::vector<SpanSolution>& found) {
     const auto whole = [&](Segments segments) {
       const std::size_t most = span_.holds.empty() ? most_starts_of_one_clamp : most_starts;
-      const std::size_t count = options_.all ? starts.size() : std::min(most, starts.size());
+      const std::size_t count =
+          options_.wants_all() ? starts.size() : std::min(most, starts.size());
       return polygons_from(count, [&, segments](std::size_t i) {
         return rest_on_obstacles(span_, starts[i], segments, options_.deadline);
       });
@@ -255,7 +252,7 @@ class ContactSearch {
                                   return rest_refined(span_, (*from)[i], options_.deadline);
                                 }),
                   found);
-        if (!options_.all && !found.empty() && succeeded(found.front().status)) return;
+        if (!options_.wants_all() && !found.empty() && succeeded(found.front().status)) return;
       }
     }
     if (options_.deadline.passed() && !found.empty()) return;
@@ -266,16 +263,14 @@ class ContactSearch {
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       const RestingPolygon& polygon = polygons[i];
       if (options_.deadline.passed() && !found.empty()) {
-        if (options_.log != nullptr) options_.log->leave_out("starts after the time limit");
+        note_left_out(options_.log, "starts after the time limit");
         return;
       }
-      if (add(from_polygon(polygon), found) && options_.log != nullptr) {
-        options_.log->found(polygons_at_rest);
-      }
+      if (add(from_polygon(polygon), found)) note_found(options_.log, polygons_at_rest);
       const bool tie =
           i + 1 < polygons.size() && polygons[i + 1].energy - polygon.energy <=
                                          near_tie_of_polygons * (1 + std::abs(polygon.energy));
-      if (!options_.all && succeeded(found.front().status) && !tie) return;
+      if (!options_.wants_all() && succeeded(found.front().status) && !tie) return;
     }
   }
 
@@ -285,10 +280,10 @@ class ContactSearch {
     std::vector<RestingPolygon> polygons;
     for (std::size_t i = 0; i < count; ++i) {
       if (options_.deadline.passed() && !polygons.empty()) {
-        if (options_.log != nullptr) options_.log->leave_out("starts after the time limit");
+        note_left_out(options_.log, "starts after the time limit");
         break;
       }
-      if (options_.log != nullptr) options_.log->tried(polygons_at_rest);
+      note_tried(options_.log, polygons_at_rest);
       RestingPolygon polygon = rest(i);
       spent_ += polygon.evaluations;
       const bool known = std::any_of(polygons.begin(), polygons.end(), [&](const auto& other) {
@@ -309,11 +304,11 @@ class ContactSearch {
   /// Where a shape that gives way comes to rest, out of its plane too.
   void leave(std::vector<SpanSolution>& found) {
     constexpr double push = 0.5;
-    const std::optional<WayDown> way = way_down(found.front());
+    const std::optional<NegativeCurvature> way = negative_curvature(found.front());
     if (!way || options_.deadline.passed()) return;
     SpanEnergy pushed(way->span, found.front().terms);
     const Eigen::VectorXd x =
-        pushed.adopt(*found.front().model, found.front().x) + push * way->along;
+        pushed.adopt(*found.front().model, found.front().x) + push * way->direction;
     Span span = span_;
     span.planar = way->span.planar;
     SpanOptions options = options_;
@@ -336,12 +331,10 @@ class ContactSearch {
       if (!found.front().is_equilibrium()) found.clear();
     }
     const bool is_equilibrium = solution.is_equilibrium();
+    // Of many equilibria it would take much memory.
+    if (options_.wants_all()) solution.factor.reset();
     found.push_back(std::move(solution));
-    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
-      const bool a_stable = succeeded(a.status);
-      const bool b_stable = succeeded(b.status);
-      return a_stable != b_stable ? a_stable : a.energy < b.energy;
-    });
+    std::stable_sort(found.begin(), found.end(), is_better);
     return is_equilibrium;
   }
 
@@ -359,10 +352,10 @@ class ContactSearch {
                                                  SpanSolution solution) {
     for (int round = 0; round < most_rounds; ++round) {
       const bool found_already = round == 0 && solution.is_equilibrium();
-      if (!found_already) solution = near_field(span, near);
-      if (!solution.is_equilibrium() && hold_points(span)) solution = near_field(span, near);
+      if (!found_already) solution = newton_from(span, near);
+      if (!solution.is_equilibrium() && hold_points(span)) solution = newton_from(span, near);
       if (!solution.is_equilibrium()) break;
-      spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
+      spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
       std::optional<std::vector<Span::Contact>> next = mended(solution, load_, Terms::some);
       if (!next) {
         const TangentField here = field_of(solution.model->shape(solution.x));
@@ -370,7 +363,7 @@ class ContactSearch {
         solution = with_all_terms(std::move(solution));
         // Where two points are about to become a part that lies neither slides with a least gap.
         if (!solution.is_equilibrium() && hold_points(span)) {
-          solution = near_field(span, here);
+          solution = newton_from(span, here);
           if (solution.is_equilibrium()) solution = with_all_terms(std::move(solution));
         }
         if (!solution.is_equilibrium()) break;
@@ -426,31 +419,32 @@ class ContactSearch {
     return true;
   }
 
-  [[nodiscard]] SpanSolution near_field(const Span& span, const TangentField& near) {
-    SpanSolution solution;
-    solution.terms = terms(span);
-    solution.model = workspace_.model(span, solution.terms);
+  [[nodiscard]] SpanSolution newton_from(const Span& span, const TangentField& near) {
+    SpanSolution solution = workspace_.empty_solution(span, terms(span));
     solution.x = solution.model->fit(near(solution.model->nodes()));
     const Eigen::VectorXd start = solution.x;
     // Newton's method would go back to the saddle, or into the plane, that a shape has left.
     const bool has_left = options_.approach == Approach::descend || span.planar != span_.planar;
-    if (!has_left) workspace_.newton().polish(solution, load_);
+    if (!has_left) newton(solution);
     if (!solution.is_equilibrium()) {
       solution.x = start;
       descend_in_trust_region(
           solution,
           {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
-      if (succeeded(solution.status)) workspace_.newton().polish(solution, load_);
+      if (succeeded(solution.status)) newton(solution);
     }
     spent_ += std::exchange(solution.evaluations, 0);
     return solution;
   }
 
+  void newton(SpanSolution& solution) {
+    newton_solve(solution, {.load = load_, .deadline = &options_.deadline}, workspace_.newton());
+  }
+
   [[nodiscard]] int terms(const Span& span) const {
     if (options_.terms > 0) return options_.terms;
     // What is followed takes about as many as it has taken before.
-    const int known = options_.known.model ? options_.least_terms : 0;
-    return std::max(terms_of_load(span), known);
+    return std::max(terms_of_load(span), options_.known.terms());
   }
 
   [[nodiscard]] int terms_of_load(const Span& span) const {
@@ -470,21 +464,17 @@ class ContactSearch {
       const int before = solution.terms;
       solution = finished(std::move(solution));
       if (solution.is_equilibrium() && solution.terms > before) {
-        spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
+        spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
         solution = finished(std::move(solution));
       }
       const int finer = solution.terms + solution.terms / 2;
       const bool more = options_.terms == 0 && finer <= max_terms && hardly_behind(solution);
       if (!more || options_.deadline.passed()) return solution;
-      SpanSolution next;
-      next.terms = finer;
-      next.model = workspace_.model(solution.model->span(), finer);
-      next.x = next.model->adopt(*solution.model, solution.x);
-      next.multipliers = next.model->adopt_multipliers(*solution.model, solution.multipliers);
-      workspace_.newton().polish(next, load_);
+      SpanSolution next = workspace_.with_terms(solution, finer);
+      newton(next);
       if (!next.is_equilibrium()) return solution;
       solution = std::move(next);
-      spent_ += settle_lift_offs(solution, options_.deadline, workspace_);
+      spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
     }
   }
 

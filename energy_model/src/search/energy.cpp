@@ -10,7 +10,7 @@
 #include "base/legendre.hpp"
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
-#include "certify/free_turns.hpp"
+#include "certify/rigid_body_modes.hpp"
 #include "contact/penetration.hpp"
 #include "problem/redundant_obstacles.hpp"
 #include "problem/split.hpp"
@@ -19,6 +19,8 @@
 #include "search/known_shape.hpp"
 #include "search/polygon_fields.hpp"
 #include "search/twist_path.hpp"
+#include "span/refinement.hpp"
+#include "span/same_shape.hpp"
 #include "span/search_log.hpp"
 #include "span/span_solver.hpp"
 #include "span/span_traits.hpp"
@@ -97,11 +99,12 @@ class EnergySolver::State {
  public:
   explicit State(const EnergyOptions& options) : options_(options) { check(options); }
 
+  enum class Wanted { lowest, all };
   /// What is made of the shape of the last call.
   enum class From { nothing, last_shape, last_shape_only };
 
   /// @return none where the last shape only does not lead on
-  std::vector<Equilibrium> solve(const Problem& problem, bool all, From from) {
+  std::vector<Equilibrium> solve(const Problem& problem, Wanted wanted, From from) {
     const auto begin = std::chrono::steady_clock::now();
     const Deadline deadline(options_.time_limit);
     log_ = {};
@@ -128,10 +131,9 @@ class EnergySolver::State {
       options.terms = options_.terms;
       options.tolerance = options_.tolerance;
       options.max_evaluations = options_.max_evaluations;
-      options.all = all;
       options.deadline = deadline;
-      options.only_known = only;
-      if (all) options.log = &log_;
+      if (only) options.approach = Approach::follow_only;
+      if (wanted == Wanted::all) options.log = &log_;
       if (placed[i].frames) {
         RememberedTwist& memory = twists_[i];
         solutions.push_back(twisted(placed[i], problem, options, warm, memory));
@@ -152,7 +154,7 @@ class EnergySolver::State {
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
-    followed_ = followed_ && (all || !only || succeeded(result.front().status));
+    followed_ = followed_ && (!only || succeeded(result.front().status));
     if (only && !followed_) return gone_back();
     return result;
   }
@@ -172,7 +174,8 @@ class EnergySolver::State {
   struct Remembered {
     std::shared_ptr<const SpanEnergy> model;  // none after a failure
     Eigen::VectorXd x, multipliers;
-    KnownShape before;  // the one before it
+    std::shared_ptr<NewtonFactor> factor;
+    KnownShape before;  // the one before it, without a factor
     Eigen::Matrix3d frame;
 
     [[nodiscard]] bool planar() const { return !model || model->span().planar; }
@@ -206,10 +209,10 @@ class EnergySolver::State {
     };
     // A shape that is followed may be one that a bifurcation leaves open.
     const auto is_known = [](const SpanSolution& solution) {
-      return solution.is_equilibrium() || solution.is_left_open();
+      return solution.is_equilibrium() || solution.is_singular_point();
     };
     const bool starts =
-        options_.start != nullptr && !options.all && !(warm && memory.twisted.model);
+        options_.start != nullptr && !options.wants_all() && !(warm && memory.twisted.model);
     const TwistedPart* part =
         starts ? known_twist(*options_.start, placed, problem.length) : nullptr;
     // A shape of other turns than are asked for is none to start from.
@@ -223,35 +226,33 @@ class EnergySolver::State {
     // What is found without twist is no result.
     SearchLog without_twist;
     SpanOptions untwisted_options = options;
-    if (options.log != nullptr) untwisted_options.log = &without_twist;
+    if (options.wants_all()) untwisted_options.log = &without_twist;
     std::vector<PlacedSolution> untwisted =
         solve_placed(placed, problem, untwisted_options, nullptr, last);
-    if (options.log != nullptr) options.log->add_starts(without_twist, ", without twist");
+    if (options.wants_all()) options.log->add_starts(without_twist, ", without twist");
     remember(untwisted.front(), memory.untwisted);
     if (!succeeded(untwisted.front().solution.status)) return untwisted;
     const EndFrame frame = end_frame(held, untwisted_shape(untwisted.front().solution, workspace_));
     const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
-    if (warm && memory.twisted.model && std::abs(turned) < largest_followed_turn && !options.all) {
+    if (warm && memory.twisted.model && std::abs(turned) < largest_followed_turn &&
+        !options.wants_all()) {
       const auto field = [&placed, &memory](const Eigen::VectorXd& s) {
         return follow_field(placed, memory.twisted, s);
       };
       PlacedSolution to = from_shape(field, memory.twist + turned, frame.d1);
       to.solution.evaluations += untwisted.front().solution.evaluations;
       to.solution.followed = is_known(to.solution);
-      if (to.solution.followed || options.only_known) return one(std::move(to));
+      if (to.solution.followed || options.only_follows()) return one(std::move(to));
     }
-    if (options.only_known) {
+    if (options.only_follows()) {
       untwisted.front().solution.followed = false;
       return untwisted;
     }
     std::vector<PlacedSolution> found;
     int spent = 0;
-    if (options.log != nullptr) {
-      options.log->leave_out("unstable twisted shapes, and those that no stable one is turned to");
-      if (!problem.obstacles.empty()) {
-        options.log->leave_out("contact of what clamps twist");
-      }
-    }
+    note_left_out(options.log,
+                  "unstable twisted shapes, and those that no stable one is turned to");
+    if (!problem.obstacles.empty()) note_left_out(options.log, "contact of what clamps twist");
     for (const PlacedSolution& from : untwisted) {
       if (!succeeded(from.solution.status)) continue;
       PlacedSolution to = from;
@@ -262,11 +263,10 @@ class EnergySolver::State {
       const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
         return other.solution.is_equilibrium() && is_same(to, other);
       });
-      if (options.log != nullptr) {
-        options.log->tried(turned_little_by_little);
-        if (!known && to.solution.is_equilibrium()) options.log->found(turned_little_by_little);
-      }
-      if (!known) found.push_back(std::move(to));
+      note_tried(options.log, turned_little_by_little);
+      if (known) continue;
+      if (to.solution.is_equilibrium()) note_found(options.log, turned_little_by_little);
+      found.push_back(std::move(to));
     }
     sort(found);
     found.front().solution.evaluations = spent;
@@ -280,20 +280,19 @@ class EnergySolver::State {
                                                          const Equilibrium* shape,
                                                          const Remembered* last) {
     // Nothing is known after a failure.
-    if (options.only_known && !(last != nullptr && last->model)) return one({placed, {}});
+    if (options.only_follows() && !(last != nullptr && last->model)) return one({placed, {}});
     TangentField start;
     if (shape != nullptr) {
       start = field_of(*shape, placed, problem.length);
     } else if (last != nullptr && last->model) {
-      options.least_terms = last->model->terms();
-      options.known = {last->model, last->x, last->multipliers};
+      options.known = {last->model, last->x, last->multipliers, last->factor};
       options.before = last->before;
       start = [&placed, last = *last](const Eigen::VectorXd& s) {
         return follow_field(placed, last, s);
       };
     }
     int spent = 0;
-    if (start && !options.all) {
+    if (start && !options.wants_all()) {
       PlacedSpan own = placed;
       if (options.known.model) {
         own.span.cuts = options.known.model->span().cuts;
@@ -301,13 +300,12 @@ class EnergySolver::State {
       }
       PlacedSolution followed =
           from_field(own, start, options, shape != nullptr || (last && !last->planar()));
-      if (followed.solution.is_equilibrium() || followed.solution.is_left_open() ||
-          options.only_known) {
+      if (followed.solution.is_equilibrium() || followed.solution.is_singular_point() ||
+          options.only_follows()) {
         return one(std::move(followed));
       }
       // The branch has ended, or the step was too large for it.
       spent = followed.solution.evaluations;
-      options.least_terms = 0;
       options.known = {};
       options.before = {};
     }
@@ -316,11 +314,11 @@ class EnergySolver::State {
     const SolveStatus status = found.front().solution.status;
     const bool at_limit =
         status == SolveStatus::evaluation_limit || status == SolveStatus::time_limit;
-    if (options.all || !(succeeded(status) || at_limit))
+    if (options.wants_all() || !(succeeded(status) || at_limit))
       add_polygon_minima(placed, problem, options, found, spent);
     sort(found);
     found.front().solution.evaluations = spent;
-    if (!options.all) found.resize(1, found.front());
+    if (!options.wants_all()) found.resize(1, found.front());
     return found;
   }
 
@@ -332,14 +330,8 @@ class EnergySolver::State {
 
   static void sort(std::vector<PlacedSolution>& found) {
     if (found.size() < 2) return;
-    const auto rank = [](const SpanSolution& solution) {
-      if (succeeded(solution.status)) return 0;
-      return solution.is_equilibrium() ? 1 : 2;
-    };
-    std::stable_sort(found.begin(), found.end(), [&](const auto& a, const auto& b) {
-      const int of_a = rank(a.solution);
-      const int of_b = rank(b.solution);
-      return of_a != of_b ? of_a < of_b : a.solution.energy < b.solution.energy;
+    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
+      return is_better(a.solution, b.solution);
     });
   }
 
@@ -348,37 +340,31 @@ class EnergySolver::State {
                           const SpanOptions& options, std::vector<PlacedSolution>& found,
                           int& spent) {
     if (!problem.obstacles.empty()) {
-      if (options.log != nullptr) {
-        options.log->leave_out("minima of coarse polygons, which know no obstacles");
-      }
+      note_left_out(options.log, "minima of coarse polygons, which know no obstacles");
       return;
     }
     const PolygonFields fields(problem, placed, options.deadline);
     for (std::size_t i = 0; i < fields.size(); ++i) {
       if (options.deadline.passed()) {
-        if (options.log != nullptr) options.log->leave_out("starts after the time limit");
+        note_left_out(options.log, "starts after the time limit");
         return;
       }
-      if (options.log != nullptr) options.log->tried(from_polygons);
+      note_tried(options.log, from_polygons);
       // A minimum of the polygon is next to one of the rod; fewer terms than resolve it would lead
       // away.
       SpanOptions own = options;
       own.approach = Approach::follow;
-      own.log = nullptr;
       PlacedSolution solution = from_field(placed, fields.field(i), own, true);
       spent += solution.solution.evaluations;
-      const auto counts = [&](const SpanSolution& one) {
-        return one.is_equilibrium() || (options.all && one.is_left_open());
-      };
-      if (!counts(solution.solution)) continue;
+      if (!counts(solution.solution, options)) continue;
       const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
-        return counts(other.solution) && is_same(solution, other);
+        return counts(other.solution, options) && is_same(solution, other);
       });
       if (known) continue;
-      if (!counts(found.front().solution)) found.clear();
+      if (!counts(found.front().solution, options)) found.clear();
       found.push_back(std::move(solution));
-      if (options.log != nullptr) options.log->found(from_polygons);
-      if (!options.all && succeeded(found.back().solution.status)) return;
+      note_found(options.log, from_polygons);
+      if (!options.wants_all() && succeeded(found.back().solution.status)) return;
     }
   }
 
@@ -406,7 +392,7 @@ class EnergySolver::State {
                                           SpanOptions options, bool may_leave_plane) {
     PlacedSpan own = placed;
     options.start = field;
-    options.all = false;
+    options.log = nullptr;
     if (placed.span.planar && may_leave_plane) leave_plane(own, field);
     return std::move(search(own, options).front());
   }
@@ -454,11 +440,12 @@ class EnergySolver::State {
   }
 
   static void remember(const PlacedSolution& found, Remembered& last) {
-    const bool is_known = succeeded(found.solution.status) || found.solution.is_left_open();
+    const bool is_known = succeeded(found.solution.status) || found.solution.is_singular_point();
     last.before = {std::exchange(last.model, is_known ? found.solution.model : nullptr),
                    std::move(last.x), std::move(last.multipliers)};
     last.x = found.solution.x;
     last.multipliers = found.solution.multipliers;
+    last.factor = found.solution.factor;
     last.frame = found.placed.frame;
   }
 
@@ -477,15 +464,16 @@ EnergySolver::EnergySolver(EnergySolver&& other) noexcept = default;
 EnergySolver& EnergySolver::operator=(EnergySolver&& other) noexcept = default;
 
 Equilibrium EnergySolver::solve(const Problem& problem) {
-  return std::move(state_->solve(problem, false, State::From::nothing).front());
+  return std::move(state_->solve(problem, State::Wanted::lowest, State::From::nothing).front());
 }
 
 Equilibrium EnergySolver::follow(const Problem& problem) {
-  return std::move(state_->solve(problem, false, State::From::last_shape).front());
+  return std::move(state_->solve(problem, State::Wanted::lowest, State::From::last_shape).front());
 }
 
 std::optional<Equilibrium> EnergySolver::keep(const Problem& problem) {
-  std::vector<Equilibrium> kept = state_->solve(problem, false, State::From::last_shape_only);
+  std::vector<Equilibrium> kept =
+      state_->solve(problem, State::Wanted::lowest, State::From::last_shape_only);
   if (kept.empty()) return std::nullopt;
   return std::move(kept.front());
 }
@@ -496,14 +484,14 @@ bool EnergySolver::followed() const { return state_->followed(); }
 
 EnergySearch EnergySolver::search(const Problem& problem) {
   EnergySearch result;
-  result.equilibria = state_->solve(problem, true, State::From::nothing);
+  result.equilibria = state_->solve(problem, State::Wanted::all, State::From::nothing);
   result.looked_from = state_->log().looked_from();
   result.not_looked = state_->log().not_looked();
   return result;
 }
 
 std::vector<Equilibrium> EnergySolver::solve_all(const Problem& problem) {
-  return state_->solve(problem, true, State::From::nothing);
+  return state_->solve(problem, State::Wanted::all, State::From::nothing);
 }
 
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options) {

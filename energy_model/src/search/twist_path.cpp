@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <string>
@@ -13,9 +14,10 @@
 #include "certify/enough_terms.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "linear/free_directions.hpp"
-#include "newton/penalty_descent.hpp"
+#include "newton/augmented_lagrangian.hpp"
 #include "newton/trust_region.hpp"
 #include "span/refinement.hpp"
+#include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -41,10 +43,10 @@ constexpr double rounded_curvature = 1e-9;
 /// Distance of unknowns up to which a factor tells the stability of a stiff shape, and curvature
 /// from which it is one.
 constexpr double nearest_factor = 1e-3;
-constexpr double softest_stiff = 1e-2;
+constexpr double least_stiff_eigenvalue = 1e-2;
 
 /// Leaps to other branches, which would go on without an end where each leads to the next.
-constexpr int most_leaps = 60;
+constexpr int most_branch_jumps = 60;
 
 /// Push along the direction in which a shape gives way, and how often it is made larger.
 constexpr double first_push = 0.1;
@@ -82,7 +84,6 @@ class TwistPath {
         tolerance_(tolerance),
         load_(span.total_load()),
         first_d1_(untwisted.end_d1) {
-    workspace_.newton().limit(options.deadline);
     span_.planar = false;
     span_.cuts = untwisted.solution.model->span().cuts;
     span_.twist = Span::Twist{stiffness, first_d1_};
@@ -92,7 +93,7 @@ class TwistPath {
   }
 
   [[nodiscard]] SpanSolution run(double whole) {
-    workspace_.newton().polish_along_branch(here_, load_);
+    newton(here_, NewtonMethod::corrector);
     if (here_.is_equilibrium()) stiff_ = is_stable(here_) && stiff_;
     double turn = std::copysign(first_turn, whole);
     while (here_.is_equilibrium() && angle_ != whole) {
@@ -155,9 +156,7 @@ class TwistPath {
   }
 
   [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) const {
-    SpanSolution other;
-    other.model = workspace_.model(span_, terms);
-    other.terms = terms;
+    SpanSolution other = workspace_.empty_solution(span_, terms);
     other.x = other.model->adopt(*solution.model, solution.x);
     other.multipliers = solution.multipliers;
     turn_clamp(other, angle_);
@@ -177,11 +176,7 @@ class TwistPath {
     }
     const Eigen::VectorXd predicted = next.x;
     // Where nothing is neutral the factor that has told the stability of the last shape serves.
-    if (stiff_) {
-      workspace_.newton().polish_nearby(next, load_);
-    } else {
-      workspace_.newton().polish_along_branch(next, load_);
-    }
+    newton(next, stiff_ ? NewtonMethod::simplified : NewtonMethod::corrector);
     spent_ += next.evaluations;
     if (!next.is_equilibrium()) return std::nullopt;
     // On the same branch the energy has risen by the torque's work. The shape tells less: it may
@@ -189,11 +184,21 @@ class TwistPath {
     const double work = (torque(here_) + torque(next)) / 2 * turn;
     const double unit = span_.twist->stiffness / span_.length * turn * turn;
     const double rounding = 1e-9 * (1 + load_ + std::abs(next.energy));
-    const double leap = std::abs(next.energy - here_.energy - work);
-    if (!(leap <= branch_share * unit + rounding)) return std::nullopt;
-    smooth_ = leap <= smooth_share * unit + rounding;
+    const double jump = std::abs(next.energy - here_.energy - work);
+    if (!(jump <= branch_share * unit + rounding)) return std::nullopt;
+    smooth_ = jump <= smooth_share * unit + rounding;
     aside_ = (next.x - predicted).norm() > (predicted - here_.x).norm();
     return next;
+  }
+
+  /// @param how  simplified: with the solution's own factor
+  void newton(SpanSolution& solution, NewtonMethod how) {
+    newton_solve(solution,
+                 {.load = load_,
+                  .method = how,
+                  .first_factor = how == NewtonMethod::simplified ? solution.factor : nullptr,
+                  .deadline = &options_.deadline},
+                 workspace_.newton());
   }
 
   [[nodiscard]] static double torque(const SpanSolution& solution) {
@@ -219,7 +224,7 @@ class TwistPath {
                           here_.terms >= terms_under_twist(here_);
     if (resolved || !affordable) return false;
     here_ = with_terms(here_, std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
-    workspace_.newton().polish_along_branch(here_, load_);
+    newton(here_, NewtonMethod::corrector);
     spent_ += here_.evaluations;
     here_.evaluations = 0;
     slope_x_.resize(0);
@@ -227,53 +232,44 @@ class TwistPath {
     return true;
   }
 
-  [[nodiscard]] bool is_stable(const SpanSolution& solution) {
-    Newton& newton = workspace_.newton();
+  [[nodiscard]] bool is_stable(SpanSolution& solution) {
     stiff_ = false;
-    if (!(newton.distance_of_factor(solution) <= nearest_factor)) {
-      place(solution);
-      newton.factor_at(solution, jacobian_);
-    }
-    FreeHessian& on_free_directions = newton.system().on_free_directions();
-    if (on_free_directions.has_solutions()) {
-      const std::optional<double> smallest = on_free_directions.smallest_of_definite();
-      stiff_ = smallest && *smallest > softest_stiff;
+    if (!(distance_of_factor(solution) <= nearest_factor)) factor_at(solution);
+    ReducedHessian& near = solution.factor->system.reduced_hessian();
+    if (near.has_solutions()) {
+      const std::optional<double> smallest = near.smallest_eigenvalue_of_definite();
+      stiff_ = smallest && *smallest > least_stiff_eigenvalue;
       if (stiff_) return true;
     }
-    if (newton.distance_of_factor(solution) > 0) {
-      place(solution);
-      newton.factor_at(solution, jacobian_);
-    }
-    Eigen::MatrixXd projected = on_free_directions.matrix();
+    if (distance_of_factor(solution) > 0) factor_at(solution);
+    Eigen::MatrixXd projected = solution.factor->system.reduced_hessian().matrix();
     // Under large forces what is next to neutral is lost in rounding, whichever sign it has.
     projected.diagonal().array() += rounded_curvature * solution.multipliers.norm();
     return is_minimum(projected);
   }
 
-  /// Into gradient_, residual_ and jacobian_.
-  void place(const SpanSolution& solution) {
-    SpanEnergy& model = *solution.model;
-    gradient_.resize(model.size());
-    residual_.resize(model.constraints());
-    jacobian_.resize(model.constraints(), model.size());
-    (void)model.value(solution.x, gradient_);
-    model.constraint(residual_, jacobian_);
+  /// Infinite where there is none.
+  [[nodiscard]] double distance_of_factor(const SpanSolution& solution) const {
+    if (!solution.factor) return std::numeric_limits<double>::infinity();
+    return solution.factor->distance(solution, scale_of_forces(solution, load_));
   }
 
-  /// Into hessian_ and jacobian_.
-  void derive(const SpanSolution& solution) {
-    place(solution);
-    solution.model->hessian(solution.multipliers, hessian_);
+  void factor_at(SpanSolution& solution) {
+    const PointOnSpan point = evaluated(*solution.model, solution.x);
+    workspace_.factors().factor_at(solution, point.jacobian, load_);
   }
 
   /// Downhill to what is stable, from beside here.
   void leave() {
-    if (++leaps_ > most_leaps) return here_.fail("the rod leaps from branch to branch");
-    derive(here_);
-    std::optional<Eigen::VectorXd> way = falling_direction(hessian_, jacobian_);
+    if (++branch_jumps_ > most_branch_jumps)
+      return here_.fail("the rod jumps from branch to branch");
+    const SecondVariation at = second_variation(here_);
+    ReducedHessian reduced;
+    reduced.compute(at.hessian, at.jacobian);
+    std::optional<Eigen::VectorXd> way = negative_curvature_direction(reduced);
     // Next to a fold the branch goes where the rod gives way.
     if (!way && last_step_.norm() > 0) way = last_step_.normalized();
-    if (!way) way = softest_direction(hessian_, jacobian_);
+    if (!way) way = direction_by_size(reduced, 0);
     slope_x_.resize(0);
     double push = first_push;
     for (int i = 0; i < 2 * most_pushes; ++i) {
@@ -281,14 +277,14 @@ class TwistPath {
       next.evaluations = 0;
       if (way) next.x += push * *way;
       if (i % 2 == 0) {
-        descend_by_penalty(next, {.load = load_, .deadline = &options_.deadline});
+        descend_by_augmented_lagrangian(next, {.load = load_, .deadline = &options_.deadline});
       } else {
         descend_in_trust_region(next, {.load = load_,
                                        .gradient_tolerance = handover_gradient,
                                        .deadline = &options_.deadline});
         push *= 3;
       }
-      if (succeeded(next.status)) workspace_.newton().polish(next, load_);
+      if (succeeded(next.status)) newton(next, NewtonMethod::newton);
       spent_ += next.evaluations;
       next.evaluations = 0;
       if (!next.is_equilibrium() || !is_stable(next)) continue;
@@ -308,13 +304,11 @@ class TwistPath {
   SpanSolution here_;
   double angle_ = 0;
   int spent_ = 0;
-  int leaps_ = 0;
+  int branch_jumps_ = 0;
   bool smooth_ = false;  // the last step was shorter than it need be
   bool aside_ = false;   // the last step has gone aside from where it pointed at
   Eigen::VectorXd last_step_;
-  Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a leap
-  Eigen::VectorXd gradient_, residual_;
-  Eigen::MatrixXd jacobian_, hessian_;
+  Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a jump
   bool stiff_ = false;  // nothing is next to neutral at the shape that was last asked about
 };
 
@@ -370,20 +364,17 @@ SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
 SpanSolution twist_from(const TangentField& field, double twist, const Eigen::Vector3d& end_d1,
                         const Span& span, double stiffness, const SpanOptions& options,
                         SpanWorkspace& workspace) {
-  workspace.newton().limit(options.deadline);
   Span twisted = span;
   twisted.planar = false;
   twisted.twist = Span::Twist{stiffness, end_d1};
   SpanSolution solution;
   // The shape does not say how many terms it takes.
-  for (int terms = std::max(unknown_terms, options.least_terms);;
-       terms = std::min(max_terms, 3 * terms / 2)) {
-    solution = SpanSolution();
-    solution.model = workspace.model(twisted, terms);
+  for (int terms = unknown_terms;; terms = std::min(max_terms, 3 * terms / 2)) {
+    solution = workspace.empty_solution(twisted, terms);
     SpanEnergy& model = *solution.model;
-    solution.terms = terms;
     solution.x = model.with_twist(model.fit(field(model.nodes())), twist);
-    workspace.newton().polish(solution, span.total_load());
+    newton_solve(solution, {.load = span.total_load(), .deadline = &options.deadline},
+                 workspace.newton());
     const bool more = terms < max_terms && 3 * model.size() / 2 < most_unknowns;
     if (solution.is_equilibrium()) break;
     if (!more || options.deadline.passed()) return solution;

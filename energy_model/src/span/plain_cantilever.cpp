@@ -47,14 +47,14 @@ void bend_slightly(SpanSolution& solution) {
 
 }  // namespace
 
-SpanSolution plain_cantilever(SpanDescents& on) {
+SpanSolution plain_cantilever(LocalSolver& on) {
   SpanSolution at_once = on.empty_solution(on.terms());
   if (on.traits().load < soft_load) {
     bend_slightly(at_once);
   } else {
     at_once.x = at_once.model->fit(soft_field(on.span())(at_once.model->nodes()));
   }
-  on.newton().polish(at_once, on.traits().load);
+  on.newton(at_once);
   at_once = refined(on, std::move(at_once));
   if (succeeded(at_once.status) && at_once.evaluations <= on.options().max_evaluations &&
       turns_to_load(on.span(), at_once.model->tangents())) {

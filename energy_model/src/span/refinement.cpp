@@ -11,12 +11,13 @@
 #include "certify/piece_cuts.hpp"
 #include "span/settle_contact.hpp"
 #include "span/span_traits.hpp"
+#include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
 namespace {
 
 /// Unknowns that a shape may have whose pieces end where it wants it.
-constexpr int most_graded_unknowns = 2 * most_unknowns;
+constexpr int most_adapted_unknowns = 2 * most_unknowns;
 
 /// Error over the length above which a shape is asked about with more terms than it takes to look
 /// right.
@@ -36,11 +37,11 @@ struct Tail {
 
 class Refinement {
  public:
-  explicit Refinement(SpanDescents& on)
+  explicit Refinement(LocalSolver& on)
       : on_(on), span_(on.span()), options_(on.options()), traits_(on.traits()) {}
 
   [[nodiscard]] SpanSolution run(SpanSolution solution) {
-    const int unknowns = traits_.graded ? most_graded_unknowns : most_unknowns;
+    const int unknowns = traits_.adapted ? most_adapted_unknowns : most_unknowns;
     const bool touches = !span_.contacts.empty();
     // Contacts cut the rod into short pieces; it still may take the terms of its load.
     const int least = touches ? std::max(32, on_.terms()) : 32;
@@ -52,12 +53,12 @@ class Refinement {
     const int most_terms =
         std::min(affordable, span_.contact_ends.empty() ? max_terms : most_between_contact_ends);
     Tail before;
-    bool polished = false;
+    bool solved_again = false;
     while (solution.is_equilibrium()) {
       solution.resolved = options_.terms > 0 || resolved(solution);
-      if (solution.resolved && solution.next_step > coarsest_step && !polished) {
-        newton().polish(solution, traits_.load);
-        polished = true;
+      if (solution.resolved && solution.next_step > coarsest_step && !solved_again) {
+        on_.newton(solution);
+        solved_again = true;
         continue;
       }
       if (solution.resolved) break;
@@ -66,35 +67,33 @@ class Refinement {
         break;
       }
       if (solution.terms >= most_terms) {
-        if (std::optional<SpanSolution> graded = graded_anew(solution)) return std::move(*graded);
+        if (std::optional<SpanSolution> adapted = on_adapted_mesh(solution))
+          return std::move(*adapted);
         solution.fail(solution.too_few_terms());
         break;
       }
       const bool too_few = solution.terms < on_.terms() && !touches;
       int more = too_few ? on_.terms() : terms_by_decay(solution, before);
       // Grips may pull harder than weight and loads do.
-      if (solution.multipliers.size() > 0 && !traits_.taut && !traits_.graded) {
+      if (solution.multipliers.size() > 0 && !traits_.taut && !traits_.adapted) {
         more = std::max(
             more, first_terms(solution.multipliers.cwiseAbs().maxCoeff(), traits_.longest_piece));
       }
       if (before.terms == 0) more = std::max(more, terms_by_own_decay(solution));
       before = {solution.terms, solution.model->tail(solution.x)};
-      const bool hessian_known = newton().has_factor_of(solution.model.get());
-      solution = with_terms(solution, std::min(most_terms, more), hessian_known);
+      solution = with_terms(solution, std::min(most_terms, more));
     }
     return solution;
   }
 
  private:
-  [[nodiscard]] Newton& newton() const { return on_.newton(); }
-
   /// Where the terms that can be afforded do not resolve a shape, its pieces may end in the wrong
   /// places.
-  [[nodiscard]] std::optional<SpanSolution> graded_anew(const SpanSolution& solution) {
-    const std::optional<Span> span = graded_for(on_, solution);
+  [[nodiscard]] std::optional<SpanSolution> on_adapted_mesh(const SpanSolution& solution) {
+    const std::optional<Span> span = adapted_mesh(on_, solution);
     if (!span) return std::nullopt;
-    SpanDescents graded(*span, options_, on_.workspace());
-    SpanSolution finer = graded.empty_solution(graded.terms());
+    LocalSolver adapted(*span, options_, on_.workspace());
+    SpanSolution finer = adapted.empty_solution(adapted.terms());
     const TangentField field = field_of(solution.model->shape(solution.x));
     finer.x = finer.model->fit(field(finer.model->nodes()));
     if (span->twist) {
@@ -102,8 +101,8 @@ class Refinement {
     }
     finer.multipliers = solution.multipliers;
     finer.evaluations = solution.evaluations;
-    newton().polish(finer, traits_.load);
-    finer = refined(graded, std::move(finer));
+    on_.newton(finer);
+    finer = refined(adapted, std::move(finer));
     if (!finer.is_equilibrium()) return std::nullopt;
     return finer;
   }
@@ -143,23 +142,26 @@ class Refinement {
     return K + more;
   }
 
-  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms,
-                                        bool hessian_known) {
-    SpanSolution finer = on_.empty_solution(terms);
-    finer.x = finer.model->adopt(*solution.model, solution.x);
-    finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
-    if (hessian_known) {
-      newton().polish_with_more_terms(finer, solution, traits_.load);
+  /// @param solution  whose factor is used up
+  [[nodiscard]] SpanSolution with_terms(SpanSolution& solution, int terms) {
+    SpanSolution finer = on_.workspace().with_terms(solution, terms);
+    const Eigen::VectorXd x = finer.x;
+    const Eigen::VectorXd multipliers = finer.multipliers;
+    if (solution.factor) {
+      const Eigen::MatrixXd hessian =
+          prolonged(solution.factor->system.hessian(), *solution.model, *finer.model);
+      solution.factor.reset();
+      on_.newton(finer, {.first_hessian = &hessian});
     } else {
-      newton().polish(finer, traits_.load);
+      on_.newton(finer);
     }
     const bool descends = finer.model->size() <= most_descended;
     if (descends && (!finer.is_equilibrium() || finer.model->has_soft_obstacles()))
       on_.descend(finer);
     if (!finer.is_equilibrium() && !finer.model->has_soft_obstacles()) {
-      finer.x = finer.model->adopt(*solution.model, solution.x);
-      finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
-      on_.pull_to_grips(finer);
+      finer.x = x;
+      finer.multipliers = multipliers;
+      on_.by_augmented_lagrangian(finer);
     }
     finer.evaluations += solution.evaluations;
     return finer;
@@ -181,19 +183,14 @@ class Refinement {
   [[nodiscard]] bool holds_with_more_terms(const SpanSolution& solution) {
     const std::shared_ptr<SpanEnergy> model =
         on_.workspace().model(span_, std::min(max_terms, 3 * solution.terms / 2));
-    const Eigen::VectorXd x = model->adopt(*solution.model, solution.x);
-    Eigen::VectorXd gradient(model->size());
-    (void)model->value(x, gradient);
-    Eigen::VectorXd residual(model->constraints());
-    Eigen::MatrixXd jacobian(model->constraints(), model->size());
-    model->constraint(residual, jacobian);
-    gradient -=
-        jacobian.transpose() * model->adopt_multipliers(*solution.model, solution.multipliers);
-    return gradient.norm() < largest_residual * (1 + traits_.load) &&
-           residual.norm() < largest_gap * options_.tolerance;
+    PointOnSpan point = evaluated(*model, model->adopt(*solution.model, solution.x));
+    point.gradient -= point.jacobian.transpose() *
+                      model->adopt_multipliers(*solution.model, solution.multipliers);
+    return point.gradient.norm() < largest_residual * (1 + traits_.load) &&
+           point.residual.norm() < largest_gap * options_.tolerance;
   }
 
-  SpanDescents& on_;
+  LocalSolver& on_;
   const Span& span_;
   const SpanOptions& options_;
   const SpanTraits& traits_;
@@ -201,19 +198,19 @@ class Refinement {
 
 }  // namespace
 
-SpanSolution refined(SpanDescents& on, SpanSolution solution) {
-  const auto refine = [](SpanDescents& settled, SpanSolution equilibrium) {
+SpanSolution refined(LocalSolver& on, SpanSolution solution) {
+  const auto refine = [](LocalSolver& settled, SpanSolution equilibrium) {
     return Refinement(settled).run(std::move(equilibrium));
   };
   if (on.span().soft_obstacles.empty()) return refine(on, std::move(solution));
   return settle_contact(on, std::move(solution), refine);
 }
 
-std::optional<Span> graded_for(const SpanDescents& on, const SpanSolution& shape) {
+std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shape) {
   const Span& span = on.span();
   const bool touches =
       !span.rigid_obstacles.empty() || !span.contacts.empty() || shape.model->has_soft_obstacles();
-  if (on.traits().graded || touches || span.has_material_directors() || on.options().terms > 0) {
+  if (on.traits().adapted || touches || span.has_material_directors() || on.options().terms > 0) {
     return std::nullopt;
   }
   Span result = shape.model->span();
@@ -223,9 +220,8 @@ std::optional<Span> graded_for(const SpanDescents& on, const SpanSolution& shape
 }
 
 int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& workspace) {
-  Newton& newton = workspace.newton();
   const double load = solution.model->span().total_load();
-  certify(solution, load, newton);
+  certify(solution, load, workspace.factors());
   const bool asks = solution.status == SolveStatus::near_singular ||
                     (counts(solution, options) && solution.error > largest_told_error);
   const int more = std::min(max_terms, 3 * solution.terms / 2);
@@ -236,15 +232,13 @@ int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& wor
   }
   // The shape may have left the plane, or have pieces of its own.
   const Span own = solution.model->span();
-  SpanDescents on(own, options, workspace);
-  SpanSolution finer = on.empty_solution(more);
-  finer.x = finer.model->adopt(*solution.model, solution.x);
-  finer.multipliers = finer.model->adopt_multipliers(*solution.model, solution.multipliers);
-  newton.polish(finer, load);
+  LocalSolver on(own, options, workspace);
+  SpanSolution finer = workspace.with_terms(solution, more);
+  on.newton(finer);
   // Of what Newton's method left open before nobody has asked whether its terms resolve it.
   if (!solution.resolved) finer = refined(on, std::move(finer));
   finer.resolved = finer.resolved || solution.resolved;
-  certify(finer, load, newton);
+  certify(finer, load, workspace.factors());
   const int spent = finer.evaluations;
   const int evaluations = solution.evaluations + spent;
   if (finer.error < solution.error) solution = std::move(finer);
@@ -254,7 +248,7 @@ int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& wor
 
 SpanSolution finish(SpanSolution solution, const SpanOptions& options, SpanWorkspace& workspace) {
   const Span own = solution.model->span();
-  SpanDescents on(own, options, workspace);
+  LocalSolver on(own, options, workspace);
   solution = refined(on, std::move(solution));
   (void)judge(solution, options, workspace);
   return solution;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "certify/free_turns.hpp"
+#include "certify/rigid_body_modes.hpp"
 #include "strain/span_energy.hpp"
 
 namespace dlo::energy_model {
@@ -24,6 +24,14 @@ bool is_same_shape(const SpanSolution& a, const SpanSolution& b, double toleranc
   if ((of_a - of_b).norm() < tolerance * span.length) return true;
   const bool planar = span.planar && b.model->span().planar;
   return !planar && is_turned_copy(span, of_a, of_b);
+}
+
+bool is_better(const SpanSolution& a, const SpanSolution& b) {
+  const auto rank = [](const SpanSolution& solution) {
+    if (succeeded(solution.status)) return 0;
+    return solution.is_equilibrium() ? 1 : 2;
+  };
+  return rank(a) != rank(b) ? rank(a) < rank(b) : a.energy < b.energy;
 }
 
 }  // namespace dlo::energy_model

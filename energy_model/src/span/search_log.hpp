@@ -32,4 +32,15 @@ class SearchLog {
   std::vector<std::string> not_looked_;
 };
 
+/// What is noted where there is a log.
+inline void note_tried(SearchLog* log, const std::string& strategy) {
+  if (log != nullptr) log->tried(strategy);
+}
+inline void note_found(SearchLog* log, const std::string& strategy) {
+  if (log != nullptr) log->found(strategy);
+}
+inline void note_left_out(SearchLog* log, const std::string& what) {
+  if (log != nullptr) log->leave_out(what);
+}
+
 }  // namespace dlo::energy_model

@@ -31,7 +31,7 @@ double moved_by(const std::vector<double>& before, const std::vector<double>& no
 
 }  // namespace
 
-SpanSolution on_other_pieces(SpanDescents& on, const SpanSolution& solution, int terms) {
+SpanSolution on_other_pieces(LocalSolver& on, const SpanSolution& solution, int terms) {
   SpanSolution other = on.empty_solution(terms);
   const TangentField field = field_of(solution.model->shape(solution.x));
   other.x = other.model->fit(field(other.model->nodes()));
@@ -44,9 +44,8 @@ SpanSolution on_other_pieces(SpanDescents& on, const SpanSolution& solution, int
   return other;
 }
 
-SpanSolution settle_contact(
-    SpanDescents& on, SpanSolution solution,
-    const std::function<SpanSolution(SpanDescents&, SpanSolution)>& refine) {
+SpanSolution settle_contact(LocalSolver& on, SpanSolution solution,
+                            const std::function<SpanSolution(LocalSolver&, SpanSolution)>& refine) {
   Span span = on.span();
   std::vector<double> ends = contact_ends(solution);
   bool refined = false;
@@ -57,11 +56,11 @@ SpanSolution settle_contact(
     }
     const bool same_pieces = ends == span.contact_ends;
     span.contact_ends = ends;
-    SpanDescents own(span, on.options(), on.workspace());
+    LocalSolver own(span, on.options(), on.workspace());
     if (!same_pieces) {
       const int terms = refined ? solution.terms : std::min(solution.terms, first_round_terms);
       solution = on_other_pieces(own, solution, on.options().terms > 0 ? solution.terms : terms);
-      own.newton().polish(solution, own.traits().load);
+      own.newton(solution);
       if (!solution.is_equilibrium()) own.descend(solution);
     }
     if (refined || same_pieces) solution = refine(own, std::move(solution));

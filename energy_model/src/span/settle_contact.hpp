@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "span/span_descents.hpp"
+#include "span/local_solver.hpp"
 
 namespace dlo::energy_model {
 
@@ -12,11 +12,12 @@ namespace dlo::energy_model {
 /// few rounds find both.
 /// @param refine  raises the number of terms of an equilibrium on pieces that stay
 [[nodiscard]] SpanSolution settle_contact(
-    SpanDescents& on, SpanSolution solution,
-    const std::function<SpanSolution(SpanDescents&, SpanSolution)>& refine);
+    LocalSolver& on, SpanSolution solution,
+    const std::function<SpanSolution(LocalSolver&, SpanSolution)>& refine);
 
-/// The shape of a solution on a span, from its tangents: pieces may end elsewhere. Not polished.
-[[nodiscard]] SpanSolution on_other_pieces(SpanDescents& on, const SpanSolution& solution,
+/// The shape of a solution on a span, from its tangents: pieces may end elsewhere. Not an
+/// equilibrium yet.
+[[nodiscard]] SpanSolution on_other_pieces(LocalSolver& on, const SpanSolution& solution,
                                            int terms);
 
 }  // namespace dlo::energy_model

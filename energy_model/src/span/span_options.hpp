@@ -16,8 +16,9 @@ inline constexpr int most_unknowns = 480;
 
 /// How a given start is left.
 enum class Approach {
-  follow,   ///< by Newton's method, to the equilibrium next to it, stable or not
-  descend,  ///< downhill, to a minimum
+  follow,       ///< by Newton's method, to the equilibrium next to it, stable or not
+  follow_only,  ///< the same from a known shape; where that does not lead on, no other way is tried
+  descend,      ///< downhill, to a minimum
 };
 
 /// Unknowns of a shape that is known, of the same span with its grips elsewhere.
@@ -25,6 +26,10 @@ struct KnownShape {
   std::shared_ptr<const SpanEnergy> model;  ///< none: nothing is known
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;
+  std::shared_ptr<NewtonFactor> factor = nullptr;  ///< there; null: none is known
+
+  /// That resolve it.
+  [[nodiscard]] int terms() const { return model ? model->terms() : 0; }
 };
 
 /// Tangents by which a shape may differ from the known one that it follows [-]: beyond, Newton's
@@ -35,17 +40,17 @@ struct SpanOptions {
   int terms = 0;  ///< 0: as many as `tolerance` needs
   double tolerance = 1e-10;
   int max_evaluations = 2000;
-  bool all = false;                      ///< every equilibrium that the starts lead to
   TangentField start;                    ///< instead of the search
   Approach approach = Approach::follow;  ///< from `start`
   KnownShape before;                     ///< the shape known before that one, on the same way
   KnownShape known;                      ///< what `start` shows, if it is a span's solution that
                                          ///< is followed: where it gives way it is left
-  bool only_known = false;               ///< where Newton's method does not lead on from
-                                         ///< `known`, no other way is tried
-  int least_terms = 0;                   ///< what resolves the start
   Deadline deadline;                     ///< of the whole solve
-  SearchLog* log = nullptr;              ///< of a search for all, if it is asked for
+  /// Of a search for every equilibrium that the starts lead to; null: the lowest one is wanted.
+  SearchLog* log = nullptr;
+
+  [[nodiscard]] bool wants_all() const { return log != nullptr; }
+  [[nodiscard]] bool only_follows() const { return approach == Approach::follow_only; }
 };
 
 }  // namespace dlo::energy_model

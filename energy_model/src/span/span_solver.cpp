@@ -10,18 +10,18 @@
 
 #include "base/legendre.hpp"
 #include "certify/certify.hpp"
-#include "certify/free_turns.hpp"
+#include "certify/rigid_body_modes.hpp"
 #include "linear/free_directions.hpp"
-#include "newton/restore.hpp"
+#include "span/local_solver.hpp"
+#include "span/negative_curvature.hpp"
 #include "span/plain_cantilever.hpp"
 #include "span/refinement.hpp"
 #include "span/same_shape.hpp"
 #include "span/search_log.hpp"
 #include "span/settle_contact.hpp"
-#include "span/span_descents.hpp"
 #include "span/span_starts.hpp"
 #include "span/start_ranking.hpp"
-#include "span/way_down.hpp"
+#include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -39,7 +39,8 @@ constexpr std::size_t followed_starts_beside_obstacles = 6;
 /// another one is followed too.
 constexpr double near_tie = 0.1;
 
-/// Difference of points over the length up to which what is only roughly polished is one shape.
+/// Difference of points over the length up to which what Newton's method has only come near to is
+/// one shape.
 constexpr double same_coarse_points = 10 * rough_step;
 
 /// Unstable equilibria that are left for what lies below them.
@@ -90,42 +91,44 @@ class Search {
   [[nodiscard]] std::vector<SpanSolution> run() {
     if (options_.start) return list_of(from_given_start_to_rest());
     std::vector<SpanSolution> found;
-    if (!options_.all && span_.is_plain_cantilever() && span_.pulled_one_way()) {
+    if (!options_.wants_all() && span_.is_plain_cantilever() && span_.pulled_one_way()) {
       SpanSolution solution = plain_cantilever(on_);
-      certify_sideways(solution, traits_.load, workspace_.newton());
+      certify_out_of_plane(solution, traits_.load, workspace_.factors());
       if (solution.status != SolveStatus::saddle) return list_of(std::move(solution));
       add(std::move(solution), found);
     }
     const std::vector<Start> starts = ranked_starts();
-    std::size_t first = options_.all ? starts.size() : std::min(followed(), starts.size());
+    std::size_t first = options_.wants_all() ? starts.size() : std::min(followed(), starts.size());
     std::vector<SpanSolution> coarse;
-    const std::string kind = options_.log != nullptr ? starts_of(span_) : std::string();
+    const std::string kind = options_.wants_all() ? starts_of(span_) : std::string();
     for (std::size_t i = 0; i < starts.size() && !on_.out_of_time(); ++i) {
       // The other starts only where the first ones and what they lead to do not hold.
       if (i >= first && has_stable_lowest(found)) break;
+      // Refined later, it would keep a factor's memory in use and gain nothing by it.
+      if (!coarse.empty()) coarse.back().factor.reset();
       SpanSolution solution = on_.from_start(starts[i]);
       spent_ += solution.evaluations;
       solution.evaluations = 0;
       const bool known =
-          is_known(solution, coarse, options_.all ? same_points : same_coarse_points);
+          is_known(solution, coarse, options_.wants_all() ? same_points : same_coarse_points);
       if (!known) coarse.push_back(std::move(solution));
-      if (options_.all) {
+      if (options_.wants_all()) {
         note(kind + ", downhill", !known && add(refined(on_, coarse.back()), found));
         // Descending leaves unstable equilibria; Newton's method alone stays near them.
         note(kind + ", by Newton's method",
-             add(refined(on_, on_.near_field(starts[i].field)), found));
+             add(refined(on_, on_.newton_from(starts[i].field)), found));
       }
       if (i + 1 == first && may_lead_lower(starts, first, coarse)) ++first;
       if (i + 1 < first) continue;
-      if (!options_.all) refine_lowest(std::exchange(coarse, {}), found);
+      if (!options_.wants_all()) refine_lowest(std::exchange(coarse, {}), found);
       leave_saddles(found);
     }
-    if (options_.all) {
+    if (options_.wants_all()) {
       look_between(found);
       look_beside(found);
     }
     if (span_.planar && span_.has_material_directors()) look_in_space(found);
-    if (options_.log != nullptr) tell_what_was_left_out(found);
+    if (options_.wants_all()) tell_what_was_left_out(found);
     return sorted(std::move(found));
   }
 
@@ -150,9 +153,8 @@ class Search {
 
   /// Of one start.
   void note(const std::string& strategy, bool is_new) const {
-    if (options_.log == nullptr) return;
-    options_.log->tried(strategy);
-    if (is_new) options_.log->found(strategy);
+    note_tried(options_.log, strategy);
+    if (is_new) note_found(options_.log, strategy);
   }
 
   void tell_what_was_left_out(const std::vector<SpanSolution>& found) const {
@@ -169,7 +171,7 @@ class Search {
   /// those: next to what these have fallen by, that is no difference.
   [[nodiscard]] bool may_lead_lower(const std::vector<Start>& starts, std::size_t next,
                                     const std::vector<SpanSolution>& found) const {
-    if (options_.all || traits_.taut || next >= starts.size() || !starts.front().model)
+    if (options_.wants_all() || traits_.taut || next >= starts.size() || !starts.front().model)
       return false;
     double lowest = infinite;
     for (const SpanSolution& solution : found) {
@@ -191,7 +193,7 @@ class Search {
          span_.has_material_directors() ? natural_fields(span_) : start_fields(span_)) {
       starts.emplace_back().field = std::move(field);
     }
-    if (options_.all) return starts;
+    if (options_.wants_all()) return starts;
     const int coarse = on_.coarse_terms();
     // What is looked at with the terms that it is left with need not be fitted twice.
     const bool keeps = coarse <= few_terms && span_.holds.empty() && span_.contacts.empty();
@@ -215,17 +217,17 @@ class Search {
     const auto is_saddle = [](const auto& solution) {
       return solution.status == SolveStatus::saddle;
     };
-    if (!options_.all && std::none_of(found.begin(), found.end(), is_saddle)) return;
+    if (!options_.wants_all() && std::none_of(found.begin(), found.end(), is_saddle)) return;
     Span space = span_;
     space.planar = false;
     SearchLog own;
     SpanOptions options = options_;
-    if (options_.log != nullptr) options.log = &own;
+    if (options_.wants_all()) options.log = &own;
     int first = 0;
     for (SpanSolution& solution : Search(space, options, workspace_).run()) {
       if (add(std::move(solution), found)) ++first;
     }
-    if (options_.log == nullptr) return;
+    if (!options_.wants_all()) return;
     options_.log->tried(out_of_plane, own.starts());
     options_.log->found(out_of_plane, first);
     for (const std::string& what : own.not_looked()) options_.log->leave_out(what);
@@ -242,29 +244,29 @@ class Search {
     solution.followed =
         came_by_newton_ &&
         !(may_fall && (looked_at(solution) - near).cwiseAbs().maxCoeff() > followed_tangents);
-    if (!options_.known.model || options_.only_known || solution.status != SolveStatus::saddle)
+    if (!options_.known.model || options_.only_follows() || solution.status != SolveStatus::saddle)
       return solution;
     std::optional<SpanSolution> lower = leave_saddle(solution);
     if (!lower) return solution;
-    certify(*lower, traits_.load, workspace_.newton());
+    certify(*lower, traits_.load, workspace_.factors());
     lower->evaluations += solution.evaluations;
     return succeeded(lower->status) ? std::move(*lower) : std::move(solution);
   }
 
   [[nodiscard]] SpanSolution from_given_start() {
-    const bool follow = options_.approach == Approach::follow;
+    const bool follow = options_.approach != Approach::descend;
     SpanSolution solution =
-        follow ? on_.near_field(options_.start) : on_.from_start(Start{options_.start});
+        follow ? on_.newton_from(options_.start) : on_.from_start(Start{options_.start});
     came_by_newton_ = follow && options_.known.model != nullptr && solution.is_equilibrium() &&
                       is_near_start(solution);
     if (succeeded(solution.status) && (came_by_newton_ || !options_.known.model)) return solution;
-    if (options_.only_known) return solution;
+    if (options_.only_follows()) return solution;
     const int spent = solution.evaluations;
-    if (std::optional<SpanSolution> graded = graded_start()) {
-      graded->evaluations += spent;
-      return std::move(*graded);
+    if (std::optional<SpanSolution> adapted = start_on_adapted_mesh()) {
+      adapted->evaluations += spent;
+      return std::move(*adapted);
     }
-    solution = follow ? on_.from_start(Start{options_.start}) : on_.near_field(options_.start);
+    solution = follow ? on_.from_start(Start{options_.start}) : on_.newton_from(options_.start);
     solution.evaluations += spent;
     return solution;
   }
@@ -283,22 +285,21 @@ class Search {
 
   /// From a start next to which Newton's method has found nothing, with pieces for the start's own
   /// shape, downhill if need be.
-  [[nodiscard]] std::optional<SpanSolution> graded_start() {
+  [[nodiscard]] std::optional<SpanSolution> start_on_adapted_mesh() {
     if (options_.known.model || span_.holds.empty()) return std::nullopt;
     SpanSolution looked = on_.empty_solution(max_terms);
-    PointOnSpan point;
-    point.x = looked.x = looked.model->fit(options_.start(looked.model->nodes()));
-    evaluate(looked, point);
+    looked.x = looked.model->fit(options_.start(looked.model->nodes()));
+    const PointOnSpan point = evaluated(*looked.model, looked.x);
     looked.multipliers = point.jacobian.transpose().householderQr().solve(point.gradient);
-    const std::optional<Span> span = graded_for(on_, looked);
+    const std::optional<Span> span = adapted_mesh(on_, looked);
     if (!span) return std::nullopt;
-    SpanDescents own(*span, options_, workspace_);
-    SpanSolution solution = own.near_field(options_.start);
+    LocalSolver own(*span, options_, workspace_);
+    SpanSolution solution = own.newton_from(options_.start);
     const int spent = solution.evaluations;
     if (!solution.is_equilibrium()) {
       solution = own.empty_solution(own.terms());
       solution.x = solution.model->fit(options_.start(solution.model->nodes()));
-      own.pull_to_grips(solution);
+      own.by_augmented_lagrangian(solution);
       solution.evaluations += spent;
     }
     solution = refined(own, std::move(solution));
@@ -317,6 +318,8 @@ class Search {
     }
     if (!found.empty() && !counts(found.front(), options_)) found.clear();
     if (is_known(solution, found)) return false;
+    // Of many equilibria it would take much memory, and nothing goes on from most of them.
+    if (options_.wants_all()) solution.factor.reset();
     found.push_back(std::move(solution));
     return true;
   }
@@ -331,7 +334,7 @@ class Search {
   /// Descends from the unstable equilibria, once more from those that it leads to.
   void leave_saddles(std::vector<SpanSolution>& found) {
     for (; left_ < found.size() && left_ < most_saddles && !on_.out_of_time(); ++left_) {
-      if (!options_.all && has_stable_lowest(found)) return;
+      if (!options_.wants_all() && has_stable_lowest(found)) return;
       if (found[left_].status != SolveStatus::saddle) continue;
       std::optional<SpanSolution> lower = leave_saddle(found[left_]);
       if (lower) note(left_downhill, add(std::move(*lower), found));
@@ -343,7 +346,7 @@ class Search {
     Span span = solution.model->span();
     if (span.contact_ends.empty()) return solution;
     span.contact_ends.clear();
-    SpanDescents own(span, options_, workspace_);
+    LocalSolver own(span, options_, workspace_);
     return on_other_pieces(own, solution, own.coarse_terms());
   }
 
@@ -357,7 +360,7 @@ class Search {
         const SpanSolution b = on_shared_pieces(found[j]);
         const Span& span = a.model->span();
         if (span.planar != b.model->span().planar || span.cuts != b.model->span().cuts) continue;
-        SpanDescents own(span, options_, workspace_);
+        LocalSolver own(span, options_, workspace_);
         for (const double share : shares) {
           SpanSolution between = own.empty_solution(std::max(a.terms, b.terms));
           SpanEnergy& model = *between.model;
@@ -365,76 +368,68 @@ class Search {
           between.x += share * model.adopt(*b.model, b.x);
           between.multipliers = (1 - share) * model.adopt_multipliers(*a.model, a.multipliers) +
                                 share * model.adopt_multipliers(*b.model, b.multipliers);
-          workspace_.newton().polish(between, traits_.load);
+          own.newton(between);
           note(between_found, add(refined(own, std::move(between)), found));
         }
       }
     }
-    if (options_.log != nullptr && found.size() > most_joined) {
+    if (found.size() > most_joined) {
       options_.log->leave_out("what lies between the equilibria found, but for the first " +
                               std::to_string(most_joined));
     }
   }
 
-  /// At a fold two equilibria come from one, and lie on both sides of it along its softest
+  /// At a fold two equilibria come from one, and lie on both sides of it along its mode
   /// direction: by Newton's method from beside those found, also those found that way.
   void look_beside(std::vector<SpanSolution>& found) {
     constexpr std::array<double, 6> steps = {0.5, -0.5, 1, -1, 2, -2};
     std::size_t i = 0;
     for (; i < found.size() && i < most_saddles && !on_.out_of_time(); ++i) {
       if (!counts(found[i], options_)) continue;
-      const std::shared_ptr<SpanEnergy> model = found[i].model;
-      const Eigen::VectorXd x = found[i].x;
-      const Eigen::VectorXd multipliers = found[i].multipliers;
-      const std::optional<Eigen::VectorXd> softest = softest_of(found[i]);
-      if (!softest) continue;
-      SpanDescents own(model->span(), options_, workspace_);
+      const SpanSolution from = found[i];
+      const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(from);
+      if (!mode) continue;
+      LocalSolver own(from.model->span(), options_, workspace_);
       for (const double step : steps) {
-        SpanSolution beside = own.empty_solution(model->terms());
-        beside.x = beside.model->adopt(*model, x) + step * *softest;
-        beside.multipliers = beside.model->adopt_multipliers(*model, multipliers);
-        workspace_.newton().polish(beside, traits_.load);
+        SpanSolution beside = workspace_.with_terms(from, from.terms);
+        beside.x += step * *mode;
+        own.newton(beside);
         note(beside_found, add(refined(own, std::move(beside)), found));
       }
     }
-    if (options_.log == nullptr || i >= found.size()) return;
+    if (i >= found.size()) return;
     options_.log->leave_out("what lies beside the equilibria found, but for the first " +
                             std::to_string(i));
   }
 
   /// Unit vector along the eigenvalue of the projected second variation that is nearest to zero,
-  /// free turns left aside; none if the constraints leave no other.
-  [[nodiscard]] static std::optional<Eigen::VectorXd> softest_of(const SpanSolution& solution) {
+  /// rigid-body modes left aside; none if the constraints leave no other.
+  [[nodiscard]] static std::optional<Eigen::VectorXd> mode_nearest_zero(
+      const SpanSolution& solution) {
     SpanEnergy& model = *solution.model;
-    Eigen::VectorXd gradient(model.size());
-    (void)model.value(solution.x, gradient);
-    Eigen::VectorXd residual(model.constraints());
-    Eigen::MatrixXd jacobian(model.constraints(), model.size());
-    model.constraint(residual, jacobian);
-    Eigen::MatrixXd hessian;
-    model.hessian(solution.multipliers, hessian);
-    FreeHessian on_free_directions;
-    on_free_directions.compute(hessian, jacobian);
-    const Eigen::Index free = free_turns(model.span(), model.tangents()).in_plane;
+    const SecondVariation at = second_variation(solution);
+    ReducedHessian reduced;
+    reduced.compute(at.hessian, at.jacobian);
+    const Eigen::Index free = rigid_body_modes(model.span(), model.tangents()).in_plane;
     if (free >= model.size() - model.constraints()) return std::nullopt;
-    return direction_by_size(on_free_directions, free);
+    return direction_by_size(reduced, free);
   }
 
   /// Where an equilibrium that cannot hold itself comes to rest; out of its plane if that is the
   /// only way in which it gives way.
   [[nodiscard]] std::optional<SpanSolution> leave_saddle(const SpanSolution& solution) {
     constexpr double push = 0.5;
-    const std::optional<WayDown> way = way_down(solution);
-    if (way) return pushed_from(way->span, solution, push * way->along);
+    const std::optional<NegativeCurvature> way = negative_curvature(solution);
+    if (way) return pushed_from(way->span, solution, push * way->direction);
     // Through an obstacle's middle it gives way in a mode that its series does not see as unstable.
-    const std::optional<Eigen::VectorXd> softest = softest_of(solution);
-    if (!softest || solution.model->span().soft_obstacles.empty()) return std::nullopt;
-    return pushed_from(solution.model->span(), solution, push * *softest);
+    const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(solution);
+    if (!mode || solution.model->span().soft_obstacles.empty()) return std::nullopt;
+    return pushed_from(solution.model->span(), solution, push * *mode);
   }
 
   [[nodiscard]] SpanSolution pushed_from(const Span& span, const SpanSolution& solution,
                                          const Eigen::VectorXd& disturbance) {
-    SpanDescents own(span, options_, workspace_);
+    LocalSolver own(span, options_, workspace_);
     const std::shared_ptr<SpanEnergy> model = workspace_.model(span, solution.terms);
     const Eigen::VectorXd pushed = model->adopt(*solution.model, solution.x) + disturbance;
     SpanSolution lower = own.empty_solution(std::min(solution.terms, own.coarse_terms()));
@@ -444,12 +439,7 @@ class Search {
   }
 
   [[nodiscard]] std::vector<SpanSolution> sorted(std::vector<SpanSolution> found) {
-    std::stable_sort(found.begin(), found.end(), [](const SpanSolution& a, const SpanSolution& b) {
-      const bool a_stable = succeeded(a.status);
-      const bool b_stable = succeeded(b.status);
-      if (a_stable != b_stable) return a_stable;
-      return a.energy < b.energy;
-    });
+    std::stable_sort(found.begin(), found.end(), is_better);
     if (found.empty()) {
       found.push_back(on_.empty_solution(on_.terms()));
       found.back().x.setZero(found.back().model->size());
@@ -457,14 +447,14 @@ class Search {
       found.back().finish(SolveStatus::time_limit);
     }
     found.front().evaluations = spent_;
-    if (!options_.all) found.resize(1);
+    if (!options_.wants_all()) found.resize(1);
     return found;
   }
 
   const Span& span_;
   const SpanOptions& options_;
   SpanWorkspace& workspace_;
-  SpanDescents on_;
+  LocalSolver on_;
   const SpanTraits& traits_;
   // Of the last equilibrium that was refined, and by how much its energy fell.
   double lowest_coarse_ = infinite;

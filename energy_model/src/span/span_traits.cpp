@@ -30,7 +30,7 @@ int unknowns_by_term(const Span& span) {
 }  // namespace
 
 SpanTraits::SpanTraits(const Span& span)
-    : load(span.total_load()), fields(fields_of(span)), graded(!span.cuts.empty()) {
+    : load(span.total_load()), fields(fields_of(span)), adapted(!span.cuts.empty()) {
   for (const Segment& segment : segments_of(span)) {
     if (!segment.taut()) continue;
     taut = true;

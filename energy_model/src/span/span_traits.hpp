@@ -17,7 +17,7 @@ struct SpanTraits {
 
   double load;  ///< weight and loads [EI/l^2]
   int fields;
-  bool graded;  ///< pieces end where a shape that is known wants it
+  bool adapted;  ///< pieces end where a shape that is known wants it
   double longest_piece = 0;
   int natural_terms = 0;  ///< that the free rod's own strains take
   bool taut = false;      ///< pieces end where the layers at taut segments' ends have decayed

@@ -27,4 +27,18 @@ std::shared_ptr<SpanEnergy> SpanWorkspace::model(const Span& span, int terms) {
   return models_.back();
 }
 
+SpanSolution SpanWorkspace::empty_solution(const Span& span, int terms) {
+  SpanSolution solution;
+  solution.model = model(span, terms);
+  solution.terms = terms;
+  return solution;
+}
+
+SpanSolution SpanWorkspace::with_terms(const SpanSolution& solution, int terms) {
+  SpanSolution other = empty_solution(solution.model->span(), terms);
+  other.x = other.model->adopt(*solution.model, solution.x);
+  other.multipliers = other.model->adopt_multipliers(*solution.model, solution.multipliers);
+  return other;
+}
+
 }  // namespace dlo::energy_model

@@ -5,6 +5,7 @@
 
 #include "newton/newton.hpp"
 #include "strain/span_energy.hpp"
+#include "strain/span_solution.hpp"
 
 namespace dlo::energy_model {
 
@@ -12,11 +13,16 @@ namespace dlo::energy_model {
 class SpanWorkspace {
  public:
   [[nodiscard]] std::shared_ptr<SpanEnergy> model(const Span& span, int terms);
-  [[nodiscard]] Newton& newton() { return newton_; }
+  /// With a model but no unknowns yet.
+  [[nodiscard]] SpanSolution empty_solution(const Span& span, int terms);
+  /// A solution's unknowns in other terms, not an equilibrium yet.
+  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms);
+  [[nodiscard]] NewtonBuffers& newton() { return newton_; }
+  [[nodiscard]] NewtonFactors& factors() { return newton_.factors; }
 
  private:
   std::vector<std::shared_ptr<SpanEnergy>> models_;
-  Newton newton_;
+  NewtonBuffers newton_;
 };
 
 }  // namespace dlo::energy_model

@@ -10,6 +10,8 @@
 
 namespace dlo::energy_model {
 
+struct NewtonFactor;
+
 struct [[nodiscard]] SpanSolution {
   SolveStatus status = SolveStatus::not_run;
   std::string message = "never ran";
@@ -20,20 +22,23 @@ struct [[nodiscard]] SpanSolution {
   double next_step = std::numeric_limits<double>::infinity();
   /// Eigenvalue of the factor of Newton's last steps that is nearest to zero, or a little more: by
   /// it rounding and what the terms leave out are divided. NaN: not looked at.
-  double softest = std::numeric_limits<double>::quiet_NaN();
+  double eigenvalue_nearest_zero = std::numeric_limits<double>::quiet_NaN();
   /// What the shape may be away from an equilibrium, of the length; NaN: not known.
   double error = std::numeric_limits<double>::quiet_NaN();
   double energy = 0;      ///< in EI/l
   bool resolved = false;  ///< more terms would not change the shape, or the caller chose them
   bool followed = false;  ///< next to the known shape it came from, by Newton's method alone
-  /// Eigenvalue of the projected second variation, sideways included; NaN: not looked at.
-  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
-  /// Of them, those that are zero to the tolerance and no free turn's; near_singular if any.
+  /// Smallest eigenvalue of the reduced Hessian, out of the plane included; NaN: not looked at.
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
+  /// Of them, those that are zero to the tolerance and no rigid-body mode's; near_singular if any.
   int neutral_directions = 0;
-  int free_turns = 0;  ///< of a shape that certify() has seen: those that are a free turn's
+  int rigid_body_modes = 0;  ///< of a shape that certify() has seen: those that are
   std::shared_ptr<SpanEnergy> model;
   Eigen::VectorXd x;
   Eigen::VectorXd multipliers;
+  /// Of `model` at a point on the way to x, which the last steps of Newton's method were made with
+  /// or certify() has asked; null: there is none.
+  std::shared_ptr<NewtonFactor> factor;
 
   void finish(SolveStatus how) {
     status = how;
@@ -44,7 +49,7 @@ struct [[nodiscard]] SpanSolution {
     message = std::move(why);
   }
   /// A shape that a fold or a bifurcation leaves open, as certify() has found.
-  [[nodiscard]] bool is_left_open() const {
+  [[nodiscard]] bool is_singular_point() const {
     return status == SolveStatus::near_singular && neutral_directions > 0;
   }
   /// Why a shape that is not `resolved` is no result.

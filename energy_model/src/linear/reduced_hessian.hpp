@@ -10,7 +10,7 @@ namespace dlo::energy_model {
 ///     Z^T H Z = L L^T.
 /// It tells whether it is positive definite, what its smallest eigenvalue is, and Newton's step.
 /// Buffers survive from one compute() to the next.
-class FreeHessian {
+class ReducedHessian {
  public:
   /// @param hessian   n x n, symmetric
   /// @param jacobian  of the constraints, m x n; m may be 0 or exceed n
@@ -20,7 +20,15 @@ class FreeHessian {
   }
   /// In two steps, where the Hessian takes multipliers that the constraints tell.
   void constrain(const Eigen::MatrixXd& jacobian);
-  void compute(const Eigen::MatrixXd& hessian);
+  void compute(const Eigen::MatrixXd& hessian) {
+    turned_ = hessian;
+    reflect_and_factor();
+  }
+  /// The same without a copy: the matrix becomes another one.
+  void take(Eigen::MatrixXd& hessian) {
+    turned_.swap(hessian);
+    reflect_and_factor();
+  }
 
   /// Whether the constraints are independent.
   [[nodiscard]] bool is_independent() const { return independent_; }
@@ -34,11 +42,12 @@ class FreeHessian {
   [[nodiscard]] bool is_definite() const { return definite_; }
   /// z to (Z^T H Z)^-1 z, if it is positive definite.
   void solve_free(Eigen::VectorXd& z) const;
-  /// z to (Z^T H Z + mu)^-1 z with a mu >= 0 that makes Z^T H Z + mu positive definite and z about
-  /// as long as this, if it has to be shorter than without; where no mu does, along the smallest
-  /// eigenvalue as well.
-  /// @return whether it is; false if rounding is in the way
-  [[nodiscard]] bool solve_within(double length, Eigen::VectorXd& z);
+  /// Factors Z^T H Z + mu. @return whether it is positive definite, which solve_shifted() needs
+  [[nodiscard]] bool factor_shifted(double mu) { return factor(mu, shifted_); }
+  /// z to (Z^T H Z + mu)^-1 z, with the mu of the last factor_shifted()
+  void solve_shifted(Eigen::VectorXd& z) const { solve_by(shifted_, z); }
+  /// Of Z^T H Z.
+  [[nodiscard]] Eigen::VectorXd diagonal() const { return turned_.diagonal().tail(free()); }
 
   /// Whether Z^T H Z is positive definite (of no free direction it is) and the constraints are
   /// independent: what solve() needs.
@@ -52,15 +61,17 @@ class FreeHessian {
 
   /// Of Z^T H Z, if it is positive definite, below which by less than a hundredth of it lies no
   /// other one, which a factor proves; none if it is not or the proof fails.
-  [[nodiscard]] std::optional<double> smallest_of_definite();
+  [[nodiscard]] std::optional<double> smallest_eigenvalue_of_definite();
   /// A unit vector of the free directions along that eigenvalue, to where it changes no more; none
   /// if Z^T H Z is not positive definite.
-  [[nodiscard]] std::optional<Eigen::VectorXd> softest_of_definite();
+  [[nodiscard]] std::optional<Eigen::VectorXd> lowest_mode_of_definite();
 
   /// Smallest element of R's diagonal, by size: by how much a turn of the constraints' derivatives
   /// turns the free directions more than that; infinite without constraints.
   [[nodiscard]] double least_constraint() const;
 
+  /// H, where there are no constraints.
+  [[nodiscard]] const Eigen::MatrixXd& unconstrained() const { return turned_; }
   /// Z^T H Z, free x free.
   [[nodiscard]] Eigen::MatrixXd matrix() const;
   /// A vector of the free directions in the unknowns: Z v.
@@ -75,7 +86,8 @@ class FreeHessian {
   void turn_back(Vector v) const;
   void solve_triangle(Vector mu) const;
   void solve_by(const Eigen::MatrixXd& lower, Vector z) const;
-  [[nodiscard]] bool factor(double shift, Eigen::MatrixXd& lower) const;
+  void reflect_and_factor();
+  [[nodiscard]] bool factor(double mu, Eigen::MatrixXd& lower) const;
   /// Vectors krylov_ of Lanczos' method with the inverse, and the matrix that they make of it.
   struct Lanczos {
     Eigen::VectorXd along, beside;  // diagonal, and what is next to it
@@ -90,8 +102,8 @@ class FreeHessian {
   Eigen::MatrixXd triangle_;  // R above its diagonal
   Eigen::MatrixXd turned_;    // Q^T H Q
   Eigen::MatrixXd factor_;    // L
-  Eigen::MatrixXd proof_;     // of a shifted matrix
-  Eigen::VectorXd scratch_, turned_right_, right_, along_;
+  Eigen::MatrixXd shifted_;   // the same of a shifted matrix
+  Eigen::VectorXd scratch_, turned_right_;
   Eigen::MatrixXd krylov_;
 };
 

@@ -1,4 +1,4 @@
-#include "linear/free_hessian.hpp"
+#include "linear/reduced_hessian.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -60,7 +60,7 @@ Eigen::Index padded(Eigen::Index rows) { return (rows + padding - 1) / padding *
 }  // namespace
 
 /// Householder's reflections of J^T, column by column.
-void FreeHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
+void ReducedHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
   reflections_ = jacobian.topRows(constraints_).transpose();
   tau_.resize(constraints_);
   diagonal_.resize(constraints_);
@@ -83,40 +83,43 @@ void FreeHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
   independent_ = (diagonal_.array().abs() > dependent * largest).all();
 }
 
-/// Factors Z^T H Z less a multiple of one. @return whether it is positive definite
-bool FreeHessian::factor(double shift, Eigen::MatrixXd& lower) const {
+/// Factors Z^T H Z + mu. @return whether it is positive definite
+bool ReducedHessian::factor(double mu, Eigen::MatrixXd& lower) const {
   const Eigen::Index left = free();
   lower.resize(padded(left), left);
-  lower.topRows(left) = turned_.bottomRightCorner(left, left);
-  lower.bottomRows(lower.rows() - left).setZero();
-  lower.diagonal().array() -= shift;
+  for (Eigen::Index j = 0; j < left; ++j) {
+    const double* const from = turned_.col(constraints_ + j).data() + constraints_;
+    double* const column = lower.col(j).data();
+    std::fill_n(std::copy_n(from, left, column), lower.rows() - left, 0.0);
+    column[j] += mu;
+  }
   return dense_kernel().factor({lower.data(), left, left, lower.rows()});
 }
 
-void FreeHessian::constrain(const Eigen::MatrixXd& jacobian) {
+void ReducedHessian::constrain(const Eigen::MatrixXd& jacobian) {
   n_ = jacobian.cols();
   constraints_ = std::min(jacobian.rows(), n_);
   reflect_constraints(jacobian);
   independent_ = independent_ && constraints_ == jacobian.rows();
 }
 
-void FreeHessian::reflect(Eigen::Index i, Vector& v) const {
+void ReducedHessian::reflect(Eigen::Index i, Vector& v) const {
   const auto w = reflections_.col(i);
   v -= (tau_[i] * w.dot(v)) * w;
 }
 
 /// v to Q^T v
-void FreeHessian::turn(Vector v) const {
+void ReducedHessian::turn(Vector v) const {
   for (Eigen::Index i = 0; i < constraints_; ++i) reflect(i, v);
 }
 
 /// v to Q v
-void FreeHessian::turn_back(Vector v) const {
+void ReducedHessian::turn_back(Vector v) const {
   for (Eigen::Index i = constraints_; i-- > 0;) reflect(i, v);
 }
 
 /// mu to R^-1 mu
-void FreeHessian::solve_triangle(Vector mu) const {
+void ReducedHessian::solve_triangle(Vector mu) const {
   for (Eigen::Index i = constraints_; i-- > 0;) {
     mu[i] /= diagonal_[i];
     mu.head(i) -= mu[i] * triangle_.col(i).head(i);
@@ -124,11 +127,11 @@ void FreeHessian::solve_triangle(Vector mu) const {
 }
 
 /// z to (L L^T)^-1 z
-void FreeHessian::solve_by(const Eigen::MatrixXd& lower, Vector z) const {
+void ReducedHessian::solve_by(const Eigen::MatrixXd& lower, Vector z) const {
   dense_kernel().solve({lower.data(), free(), free(), lower.rows()}, z.data());
 }
 
-FreeHessian::Balance FreeHessian::balance(const Eigen::VectorXd& gradient) {
+ReducedHessian::Balance ReducedHessian::balance(const Eigen::VectorXd& gradient) {
   turned_right_ = gradient;
   turn(turned_right_);
   Balance result{turned_right_.head(constraints_), turned_right_.tail(free())};
@@ -136,71 +139,10 @@ FreeHessian::Balance FreeHessian::balance(const Eigen::VectorXd& gradient) {
   return result;
 }
 
-void FreeHessian::solve_free(Eigen::VectorXd& z) const { solve_by(factor_, z); }
+void ReducedHessian::solve_free(Eigen::VectorXd& z) const { solve_by(factor_, z); }
 
-/// By Newton's method on 1 / |z(mu)|, which is all but straight, between bounds of mu: below the
-/// lower one Z^T H Z + mu is not positive definite, or z too long (Moré and Sorensen, 1983).
-bool FreeHessian::solve_within(double length, Eigen::VectorXd& z) {
-  constexpr int most_steps = 40;
-  constexpr double longest = 1.01;   // over `length`
-  constexpr double shortest = 0.75;  // likewise
-  constexpr double closed = 1e-2;    // bounds are one another
-  right_ = z;
-  double low = 0;
-  double high = std::numeric_limits<double>::infinity();
-  double mu = 0;
-  const auto turned = turned_.bottomRightCorner(free(), free());
-  // An eigenvalue that is zero but for rounding.
-  const double least =
-      std::numeric_limits<double>::epsilon() * turned.diagonal().cwiseAbs().maxCoeff();
-  if (!definite_) {
-    low = std::max(0.0, -turned.diagonal().minCoeff());
-    mu = 1.1 * low + right_.norm() / length;
-  }
-  const auto between = [&] {
-    if (std::isinf(high)) return std::max(4 * mu, least);
-    return low > 0.1 * high ? (low + high) / 2 : std::sqrt(std::max(low, 1e-4 * high) * high);
-  };
-  for (int step = 0; step < most_steps; ++step) {
-    if (!factor(-mu, proof_)) {
-      low = mu;
-      mu = between();
-      continue;
-    }
-    z = right_;
-    solve_by(proof_, z);
-    const double size = z.norm();
-    if (!std::isfinite(size)) return false;
-    if (size <= longest * length && (size >= shortest * length || mu == 0)) return true;
-    if (size > length) {
-      low = mu;
-    } else {
-      high = mu;
-    }
-    if ((high - low <= closed * high || high <= least) && size < length) {
-      // Nothing pulls along the smallest eigenvalue.
-      along_.setLinSpaced(z.size(), 1, 2);
-      for (int i = 0; i < 3; ++i) {
-        along_.normalize();
-        solve_by(proof_, along_);
-      }
-      along_.normalize();
-      const double part = z.dot(along_);
-      const double rest = std::sqrt(part * part + length * length - size * size);
-      z += (part < 0 ? -part - rest : rest - part) * along_;
-      return true;
-    }
-    along_ = z;
-    solve_by(proof_, along_);
-    const double next = mu + size * size / z.dot(along_) * (size - length) / length;
-    mu = next > low && next < high ? std::max(next, least) : between();
-  }
-  return false;
-}
-
-void FreeHessian::compute(const Eigen::MatrixXd& hessian) {
-  n_ = hessian.rows();
-  turned_ = hessian;
+void ReducedHessian::reflect_and_factor() {
+  n_ = turned_.rows();
   scratch_.resize(n_);
   for (Eigen::Index i = 0; i < constraints_; ++i) {
     dense_kernel().reflect(result_columns(turned_), reflections_.col(i).data(), tau_[i],
@@ -209,7 +151,7 @@ void FreeHessian::compute(const Eigen::MatrixXd& hessian) {
   definite_ = factor(0, factor_);
 }
 
-void FreeHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
+void ReducedHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
   const Eigen::Index left = free();
   step.resize(right.size());
   turned_right_ = right.head(n_);
@@ -234,7 +176,7 @@ void FreeHessian::solve(const Eigen::VectorXd& right, Eigen::VectorXd& step) {
 
 /// Each vector is made orthogonal to all before. Ends where the largest eigenvalue, looked at from
 /// time to time, has changed by less than `settled` of itself.
-FreeHessian::Lanczos FreeHessian::look_for_smallest(double settled, Eigen::Index most_steps) {
+ReducedHessian::Lanczos ReducedHessian::look_for_smallest(double settled, Eigen::Index most_steps) {
   const auto is_time_to_look = [](Eigen::Index k) { return k == 4 || (k >= 8 && k % 6 == 2); };
   // A vector that has become so much shorter is not orthogonal to the others yet, and what it
   // lacks would grow by as much with each step.
@@ -275,17 +217,17 @@ FreeHessian::Lanczos FreeHessian::look_for_smallest(double settled, Eigen::Index
   return result;
 }
 
-std::optional<double> FreeHessian::smallest_of_definite() {
+std::optional<double> ReducedHessian::smallest_eigenvalue_of_definite() {
   constexpr double slack = 0.01;
   constexpr double settled = 1e-4;  // between two looks, of which the later is right to its square
   constexpr Eigen::Index most_steps = 24;
   if (!definite_ || free() == 0) return std::nullopt;
   const double smallest = 1 / look_for_smallest(settled, most_steps).largest;
-  if (!factor((1 - slack) * smallest, proof_)) return std::nullopt;
+  if (!factor_shifted(-(1 - slack) * smallest)) return std::nullopt;
   return smallest;
 }
 
-std::optional<Eigen::VectorXd> FreeHessian::softest_of_definite() {
+std::optional<Eigen::VectorXd> ReducedHessian::lowest_mode_of_definite() {
   constexpr double settled = 1e-12;
   constexpr Eigen::Index most_steps = 80;
   if (!definite_ || free() == 0) return std::nullopt;
@@ -296,14 +238,14 @@ std::optional<Eigen::VectorXd> FreeHessian::softest_of_definite() {
   return Eigen::VectorXd(krylov_.leftCols(steps) * eigen.eigenvectors().col(steps - 1));
 }
 
-double FreeHessian::least_constraint() const {
+double ReducedHessian::least_constraint() const {
   return constraints_ > 0 ? diagonal_.cwiseAbs().minCoeff()
                           : std::numeric_limits<double>::infinity();
 }
 
-Eigen::MatrixXd FreeHessian::matrix() const { return turned_.bottomRightCorner(free(), free()); }
+Eigen::MatrixXd ReducedHessian::matrix() const { return turned_.bottomRightCorner(free(), free()); }
 
-Eigen::VectorXd FreeHessian::in_unknowns(const Eigen::VectorXd& v) const {
+Eigen::VectorXd ReducedHessian::in_unknowns(const Eigen::VectorXd& v) const {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(n_);
   x.tail(free()) = v;
   turn_back(x);

@@ -23,15 +23,14 @@ inline constexpr int few_terms = 10;
 inline constexpr Eigen::Index most_descended = 160;
 
 /// From starts to equilibria of a span, with few terms or all that its load takes.
-class SpanDescents {
+class LocalSolver {
  public:
   /// All of them have to outlive it.
-  SpanDescents(const Span& span, const SpanOptions& options, SpanWorkspace& workspace);
+  LocalSolver(const Span& span, const SpanOptions& options, SpanWorkspace& workspace);
 
   [[nodiscard]] const Span& span() const { return span_; }
   [[nodiscard]] const SpanOptions& options() const { return options_; }
   [[nodiscard]] SpanWorkspace& workspace() const { return workspace_; }
-  [[nodiscard]] Newton& newton() const { return workspace_.newton(); }
   [[nodiscard]] const SpanTraits& traits() const { return traits_; }
   [[nodiscard]] bool out_of_time() const { return options_.deadline.passed(); }
 
@@ -40,21 +39,24 @@ class SpanDescents {
   /// NLopt comes near with few terms; Newton's method adds the others.
   [[nodiscard]] int coarse_terms() const;
   /// With a model but no unknowns yet.
-  [[nodiscard]] SpanSolution empty_solution(int terms);
+  [[nodiscard]] SpanSolution empty_solution(int terms) const {
+    return workspace_.empty_solution(span_, terms);
+  }
 
+  /// Newton's method with the span's load, to the search's deadline.
+  void newton(SpanSolution& solution, NewtonOptions how = {}) const;
   /// From a field to an equilibrium, with as many terms as it takes to meet the grips.
   [[nodiscard]] SpanSolution from_start(const Start& from);
   /// By Newton's method from next to a field.
-  [[nodiscard]] SpanSolution near_field(const TangentField& field);
+  [[nodiscard]] SpanSolution newton_from(const TangentField& field);
   /// Downhill from solution.x, by NLopt or between grips in a trust region, then Newton's method.
   void descend(SpanSolution& solution);
   /// By springs at the grips that become stiffer, then Newton's method.
-  void pull_to_grips(SpanSolution& solution);
+  void by_augmented_lagrangian(SpanSolution& solution);
 
  private:
-  [[nodiscard]] bool falls_by_newton(SpanSolution& solution);
+  [[nodiscard]] bool reaches_minimum_by_newton(SpanSolution& solution);
   [[nodiscard]] bool adopt_known(const StartShape& wanted, SpanSolution& solution) const;
-  void polish_before_more_terms(SpanSolution& solution) const;
   void minimise(SpanSolution& solution) const;
 
   const Span& span_;

@@ -1,4 +1,4 @@
-#include "span/span_descents.hpp"
+#include "span/local_solver.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include "base/legendre.hpp"
 #include "base/minimise.hpp"
 #include "certify/enough_terms.hpp"
-#include "newton/penalty_descent.hpp"
+#include "newton/augmented_lagrangian.hpp"
 #include "newton/trust_region.hpp"
 #include "span/span_traits.hpp"
 #include "strain/piece.hpp"
@@ -32,20 +32,18 @@ Eigen::VectorXd unknowns_of(const Start& start, SpanEnergy& model) {
 
 }  // namespace
 
-SpanDescents::SpanDescents(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
-    : span_(span), options_(options), workspace_(workspace), traits_(span) {
-  newton().limit(options.deadline);
-}
+LocalSolver::LocalSolver(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
+    : span_(span), options_(options), workspace_(workspace), traits_(span) {}
 
-int SpanDescents::terms() const {
+int LocalSolver::terms() const {
   if (options_.terms > 0) return options_.terms;
-  const int layers = traits_.taut || traits_.graded ? layer_terms : 0;
-  const int first = traits_.graded ? 0 : first_terms(traits_.load, traits_.longest_piece);
-  const int wanted = std::max({first, options_.least_terms, layers, traits_.natural_terms});
+  const int layers = traits_.taut || traits_.adapted ? layer_terms : 0;
+  const int first = traits_.adapted ? 0 : first_terms(traits_.load, traits_.longest_piece);
+  const int wanted = std::max({first, options_.known.terms(), layers, traits_.natural_terms});
   return std::min(wanted, std::max(least_terms, affordable_terms(span_)));
 }
 
-int SpanDescents::coarse_terms() const {
+int LocalSolver::coarse_terms() const {
   if (options_.terms > 0) return options_.terms;
   if (terms() <= few_terms) return terms();
   int coarse = terms() / 2;
@@ -56,14 +54,13 @@ int SpanDescents::coarse_terms() const {
   return std::max(least_terms, coarse);
 }
 
-SpanSolution SpanDescents::empty_solution(int terms) {
-  SpanSolution solution;
-  solution.model = workspace_.model(span_, terms);
-  solution.terms = terms;
-  return solution;
+void LocalSolver::newton(SpanSolution& solution, NewtonOptions how) const {
+  how.load = traits_.load;
+  how.deadline = &options_.deadline;
+  newton_solve(solution, how, workspace_.newton());
 }
 
-SpanSolution SpanDescents::from_start(const Start& from) {
+SpanSolution LocalSolver::from_start(const Start& from) {
   SpanSolution solution;
   int spent = 0;
   for (int count = coarse_terms();; count *= 2) {
@@ -73,8 +70,8 @@ SpanSolution SpanDescents::from_start(const Start& from) {
     const Eigen::VectorXd start = solution.x;
     // Where the rod is taut such a start is near to the shape already.
     const bool is_near = traits_.taut && !solution.model->has_soft_obstacles();
-    if (is_near) newton().polish(solution, traits_.load);
-    if (falls_by_newton(solution)) return solution;
+    if (is_near) newton(solution);
+    if (reaches_minimum_by_newton(solution)) return solution;
     if (!is_near || (!solution.is_equilibrium() && !out_of_time())) {
       solution.x = start;
       solution.multipliers.resize(0);
@@ -84,7 +81,7 @@ SpanSolution SpanDescents::from_start(const Start& from) {
         !solution.model->has_soft_obstacles()) {
       solution.x = start;
       solution.multipliers.resize(0);
-      pull_to_grips(solution);
+      by_augmented_lagrangian(solution);
     }
     spent += solution.evaluations;
     solution.evaluations = spent;
@@ -97,21 +94,17 @@ SpanSolution SpanDescents::from_start(const Start& from) {
 
 /// Newton's method at once, of a rod that one clamp holds. @return whether it has led from
 /// solution.x down to a minimum nearby
-bool SpanDescents::falls_by_newton(SpanSolution& solution) {
+bool LocalSolver::reaches_minimum_by_newton(SpanSolution& solution) {
   constexpr double far = 2;  // of strains, as much as Newton's method goes in one step
   SpanEnergy& model = *solution.model;
-  if (options_.all || !span_.start_direction || span_.has_material_directors() ||
+  if (options_.wants_all() || !span_.start_direction || span_.has_material_directors() ||
       span_.is_plain_cantilever() || model.constraints() > 0 || model.has_soft_obstacles()) {
     return false;
   }
   const Eigen::VectorXd start = solution.x;
   Eigen::VectorXd gradient(model.size());
   const double energy = model.value(start, gradient);
-  if (solution.terms < terms()) {
-    newton().polish_roughly(solution, traits_.load);
-  } else {
-    newton().polish(solution, traits_.load);
-  }
+  newton(solution, {.step_tolerance = solution.terms < terms() ? rough_step : finest_step});
   if (succeeded(solution.status) && solution.energy <= energy &&
       (solution.x - start).norm() < far && solution.evaluations <= options_.max_evaluations) {
     return true;
@@ -120,33 +113,33 @@ bool SpanDescents::falls_by_newton(SpanSolution& solution) {
   return false;
 }
 
-void SpanDescents::pull_to_grips(SpanSolution& solution) {
-  descend_by_penalty(
+void LocalSolver::by_augmented_lagrangian(SpanSolution& solution) {
+  descend_by_augmented_lagrangian(
       solution,
       {.load = traits_.load, .deadline = &options_.deadline, .stiffness = traits_.stiffness});
-  if (succeeded(solution.status)) newton().polish(solution, traits_.load);
+  if (succeeded(solution.status)) newton(solution);
 }
 
-SpanSolution SpanDescents::near_field(const TangentField& field) {
+SpanSolution LocalSolver::newton_from(const TangentField& field) {
   SpanSolution solution = empty_solution(terms());
   const StartShape wanted = field(solution.model->nodes());
+  const KnownShape& known = options_.known;
   if (!adopt_known(wanted, solution)) {
     solution.x = solution.model->fit(wanted);
-    newton().polish(solution, traits_.load);
-  } else if (newton().has_factor_of(options_.known.model.get())) {
-    solution.multipliers =
-        solution.model->adopt_multipliers(*options_.known.model, options_.known.multipliers);
-    newton().polish_from_neighbour(solution, traits_.load);
-  } else {
-    newton().polish(solution, traits_.load);
+    newton(solution);
+    return solution;
   }
+  if (known.factor) {
+    solution.multipliers = solution.model->adopt_multipliers(*known.model, known.multipliers);
+  }
+  newton(solution, {.first_factor = known.factor});
   return solution;
 }
 
 /// In space a rod that is straight by nature has next to the same strains where its grips have
 /// hardly moved, unless the frame of its start has turned about it. @return whether they give the
 /// tangents that are wanted
-bool SpanDescents::adopt_known(const StartShape& wanted, SpanSolution& solution) const {
+bool LocalSolver::adopt_known(const StartShape& wanted, SpanSolution& solution) const {
   constexpr double near = 0.2;  // of tangents
   const KnownShape& known = options_.known;
   SpanEnergy& model = *solution.model;
@@ -159,27 +152,18 @@ bool SpanDescents::adopt_known(const StartShape& wanted, SpanSolution& solution)
   return (model.tangents() - wanted.tangents).cwiseAbs().maxCoeff() < near;
 }
 
-void SpanDescents::descend(SpanSolution& solution) {
+void LocalSolver::descend(SpanSolution& solution) {
   minimise(solution);
   if (!succeeded(solution.status)) return;
-  // A cantilever is polished once it has all its terms.
-  if (span_.is_plain_cantilever() && solution.terms < terms()) return;
-  if (solution.terms < terms()) {
-    polish_before_more_terms(solution);
-  } else {
-    newton().polish(solution, traits_.load);
-  }
+  const bool gets_more = solution.terms < terms();
+  // Newton's method follows once a cantilever has all its terms.
+  if (gets_more && span_.is_plain_cantilever()) return;
+  const bool is_rough = gets_more && !options_.wants_all() && options_.terms == 0 &&
+                        solution.model->constraints() > 0;
+  newton(solution, {.step_tolerance = is_rough ? rough_step : finest_step});
 }
 
-void SpanDescents::polish_before_more_terms(SpanSolution& solution) const {
-  if (options_.all || options_.terms > 0 || solution.model->constraints() == 0) {
-    newton().polish(solution, traits_.load);
-  } else {
-    newton().polish_roughly(solution, traits_.load);
-  }
-}
-
-void SpanDescents::minimise(SpanSolution& solution) const {
+void LocalSolver::minimise(SpanSolution& solution) const {
   SpanEnergy& model = *solution.model;
   if (model.constraints() > 0) {
     descend_in_trust_region(solution, {.load = traits_.load,

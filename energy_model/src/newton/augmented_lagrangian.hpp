@@ -13,6 +13,6 @@ namespace dlo::energy_model {
 /// not.
 ///
 /// Status `converged` says that |c| and the gradient are small enough for Newton's method on both.
-void descend_by_penalty(SpanSolution& solution, const TrustRegionOptions& options);
+void descend_by_augmented_lagrangian(SpanSolution& solution, const TrustRegionOptions& options);
 
 }  // namespace dlo::energy_model

@@ -1,4 +1,4 @@
-#include "certify/free_turns.hpp"
+#include "certify/rigid_body_modes.hpp"
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
@@ -52,7 +52,7 @@ Eigen::Index moving(const Eigen::MatrixXd& axes, const std::vector<Eigen::Vector
 
 }  // namespace
 
-FreeTurns free_turns(const Span& span, const Eigen::Matrix3Xd& tangents) {
+RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangents) {
   // A clamp holds material directors against every turn. A round rod that is twisted spins about
   // its own axis meanwhile, which costs nothing, so that its frames stay where they are held.
   if (span.has_material_directors() && span.start_direction) return {};
@@ -67,7 +67,7 @@ FreeTurns free_turns(const Span& span, const Eigen::Matrix3Xd& tangents) {
   const std::vector<Eigen::Vector3d> kept = kept_vectors(span);
   if (!span.planar) return {.in_plane = moving(axes_that_keep(kept, axes), shape)};
   return {.in_plane = moving(axes_that_keep(kept, axes.col(2)), shape),
-          .sideways = moving(axes_that_keep(kept, axes.leftCols(2)), shape)};
+          .out_of_plane = moving(axes_that_keep(kept, axes.leftCols(2)), shape)};
 }
 
 bool is_turned_copy(const Span& span, const Eigen::Matrix3Xd& a, const Eigen::Matrix3Xd& b) {

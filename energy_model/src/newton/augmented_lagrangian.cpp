@@ -1,10 +1,10 @@
-#include "newton/penalty_descent.hpp"
+#include "newton/augmented_lagrangian.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "linear/free_hessian.hpp"
-#include "newton/region_step.hpp"
+#include "linear/reduced_hessian.hpp"
+#include "linear/trust_region_step.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -15,9 +15,9 @@ constexpr double least_penalty_radius = 1e-9;
 constexpr double close_enough = 1e-7;
 constexpr int most_updates = 40;
 
-class PenaltyDescent {
+class AugmentedLagrangian {
  public:
-  PenaltyDescent(SpanSolution& solution, const TrustRegionOptions& options)
+  AugmentedLagrangian(SpanSolution& solution, const TrustRegionOptions& options)
       : solution_(solution), model_(*solution.model), options_(options) {}
 
   void run() {
@@ -69,11 +69,13 @@ class PenaltyDescent {
       if (out_of_time()) return false;
       const Eigen::VectorXd nu = forces();
       slope_ = gradient_ - jacobian_.transpose() * nu;
-      const bool flat = slope_.norm() <= precision * 1e-3 * (1 + options_.load + nu.norm());
       model_.hessian(nu, hessian_);
       hessian_.noalias() += kappa_ * jacobian_.transpose() * jacobian_;
-      free_.compute(hessian_, Eigen::MatrixXd(0, hessian_.cols()));
-      const std::optional<Eigen::VectorXd> step = region_step(free_, slope_, radius, flat, 0);
+      reduced_.compute(hessian_, Eigen::MatrixXd(0, hessian_.cols()));
+      const std::optional<Eigen::VectorXd> step = trust_region_step(
+          reduced_, slope_,
+          {.radius = radius,
+           .gradient_tolerance = precision * 1e-3 * (1 + options_.load + nu.norm())});
       if (!step) return true;
       const double predicted = -(slope_.dot(*step) + step->dot(hessian_ * *step) / 2);
       const Eigen::VectorXd before_x = solution_.x;
@@ -110,13 +112,13 @@ class PenaltyDescent {
   double radius_ = first_radius;
   Eigen::VectorXd mu_, gradient_, residual_, slope_;
   Eigen::MatrixXd jacobian_, hessian_;
-  FreeHessian free_;
+  ReducedHessian reduced_;
 };
 
 }  // namespace
 
-void descend_by_penalty(SpanSolution& solution, const TrustRegionOptions& options) {
-  PenaltyDescent(solution, options).run();
+void descend_by_augmented_lagrangian(SpanSolution& solution, const TrustRegionOptions& options) {
+  AugmentedLagrangian(solution, options).run();
 }
 
 }  // namespace dlo::energy_model

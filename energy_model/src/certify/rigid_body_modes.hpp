@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "problem/span.hpp"
+
+namespace dlo::energy_model {
+
+/// Rotations of a span's shape as a whole that its grips, weight and loads leave free and that move
+/// it: the shape goes through a circle (or a sphere) of equilibria of equal energy. Each is a zero
+/// of the second variation that is no fold and no bifurcation. A rotation with the axis and rate
+/// omega is free if omega x v = 0 of every position and direction v that is held and of every
+/// force; obstacles are not asked.
+struct RigidBodyModes {
+  Eigen::Index in_plane = 0;      ///< of a planar span about its normal; in space all of them
+  Eigen::Index out_of_plane = 0;  ///< of a planar span about axes in its plane
+
+  [[nodiscard]] Eigen::Index all() const { return in_plane + out_of_plane; }
+};
+
+/// @param tangents  along the shape, 3 x M; a round rod that lies on the axis is not moved by a
+/// rotation
+[[nodiscard]] RigidBodyModes rigid_body_modes(const Span& span, const Eigen::Matrix3Xd& tangents);
+
+/// Whether one shape is another one of such a circle: a proper rotation takes all of its points,
+/// from the anchor, to the other's and keeps what is held and every force.
+/// @param a, b  points of both at the same arc lengths, 3 x M
+[[nodiscard]] bool is_turned_copy(const Span& span, const Eigen::Matrix3Xd& a,
+                                  const Eigen::Matrix3Xd& b);
+
+}  // namespace dlo::energy_model

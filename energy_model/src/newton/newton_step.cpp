@@ -1,0 +1,130 @@
+#include "newton/newton_step.hpp"
+
+#include <cmath>
+
+#include "linear/free_directions.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Near-null modes that are deflated.
+constexpr Eigen::Index most_near_null = 3;
+
+}  // namespace
+
+void NewtonStep::borrow() {
+  if (options_.first_hessian != nullptr) {
+    factor_ = buffers_.factors.factor(*options_.first_hessian, buffers_.jacobian,
+                                      scale_of_forces(solution_, options_.load));
+  } else if (options_.first_factor && options_.first_factor->system.is_of(
+                                          buffers_.gradient.size(), buffers_.residual.size())) {
+    factor_ = options_.first_factor;
+  } else {
+    return;
+  }
+  factor_of_ = FactorOf::neighbour;
+}
+
+void NewtonStep::factor() {
+  factor_.reset();
+  buffers_.factors.factor_at(solution_, buffers_.jacobian, options_.load);
+  factor_ = solution_.factor;
+  factor_of_ = FactorOf::this_point;
+  buffers_.broyden.clear();
+  if (options_.method == NewtonMethod::corrector && !is_minimum()) find_near_null_modes();
+}
+
+/// Orthonormal vectors that the system makes shorter than `neutral`, by inverse iteration; a step
+/// along them would be any. Multipliers count by their own size, or a gap that grips hardly close
+/// would pass for one.
+void NewtonStep::find_near_null_modes() {
+  const Eigen::Index m = buffers_.residual.size();
+  const Eigen::Index size = buffers_.gradient.size() + m;
+  Eigen::MatrixXd& modes = buffers_.near_null_modes;
+  modes.resize(size, 0);
+  const Eigen::VectorXd seed = Eigen::VectorXd::LinSpaced(size, 1, 2).normalized();
+  Eigen::VectorXd right;
+  for (Eigen::Index found = 0; found < most_near_null; ++found) {
+    Eigen::VectorXd v = seed;
+    double shrinks = 1;
+    for (int i = 0; i < 2; ++i) {
+      v.tail(m) /= factor_->scale;
+      right = v;
+      factor_->system.solve(right, v);
+      v.tail(m) /= factor_->scale;
+      v -= modes * (modes.transpose() * v);
+      shrinks = 1 / v.norm();
+      v *= shrinks;
+    }
+    if (!(shrinks < neutral)) return;
+    modes.conservativeResize(Eigen::NoChange, found + 1);
+    modes.col(found) = v;
+  }
+}
+
+void NewtonStep::deflate() {
+  auto multipliers = buffers_.step.tail(buffers_.residual.size());
+  multipliers /= factor_->scale;
+  const Eigen::MatrixXd& modes = buffers_.near_null_modes;
+  buffers_.step -= modes * (modes.transpose() * buffers_.step);
+  multipliers *= factor_->scale;
+}
+
+void NewtonStep::solve() {
+  if (is_minimum()) {
+    buffers_.step = -buffers_.gradient;
+    factor_->system.reduced_hessian().solve_free(buffers_.step);
+    return;
+  }
+  Eigen::VectorXd& right = buffers_.right;
+  right.resize(buffers_.gradient.size() + buffers_.residual.size());
+  right << -buffers_.gradient, -buffers_.residual;
+  factor_->system.solve(right, buffers_.step);
+  if (options_.method == NewtonMethod::corrector) deflate();
+  // A near-null mode leaves the system singular; the minimum-norm step has no part along it.
+  constexpr double longest = 1e3;
+  if (options_.method == NewtonMethod::simplified ||
+      factor_->system.is_met(right, buffers_.step, longest)) {
+    return;
+  }
+  buffers_.step = factor_->system.minimum_norm_step(right);
+}
+
+void NewtonStep::solve_by_least_squares() {
+  buffers_.right << -buffers_.gradient, -buffers_.residual;
+  buffers_.step = factor_->system.minimum_norm_step(buffers_.right);
+}
+
+/// Multipliers count by their own size.
+void NewtonStep::update() {
+  auto first_multipliers = buffers_.first_step.tail(buffers_.residual.size());
+  auto multipliers = buffers_.step.tail(buffers_.residual.size());
+  first_multipliers /= factor_->scale;
+  multipliers /= factor_->scale;
+  buffers_.broyden.update(buffers_.first_step, buffers_.step);
+  multipliers *= factor_->scale;
+}
+
+double NewtonStep::smallest_eigenvalue() {
+  constexpr int iterations = 2;
+  const Eigen::Index n = buffers_.gradient.size();
+  Eigen::VectorXd& mode = buffers_.lowest_mode;
+  mode.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) mode[i] = 1 / static_cast<double>(1 + i);
+  double grows = 1;
+  for (int i = 0; i < iterations; ++i) {
+    mode /= mode.norm();
+    factor_->system.reduced_hessian().solve_free(mode);
+    grows = mode.norm();
+  }
+  return 1 / grows;
+}
+
+double NewtonStep::size_with_forces() const {
+  const Eigen::Index m = buffers_.residual.size();
+  if (m == 0) return size();
+  return std::hypot(size(),
+                    buffers_.step.tail(m).norm() / scale_of_forces(solution_, options_.load));
+}
+
+}  // namespace dlo::energy_model

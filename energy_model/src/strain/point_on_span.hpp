@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "strain/span_energy.hpp"
+#include "strain/span_solution.hpp"
+
+namespace dlo::energy_model {
+
+/// Energy, its derivatives and the constraints at a point.
+struct PointOnSpan {
+  Eigen::VectorXd x, gradient, residual;
+  Eigen::MatrixXd jacobian;
+  double energy = 0;
+};
+
+/// A model at point.x, which it is left at, into the rest.
+void evaluate(SpanEnergy& model, PointOnSpan& point);
+/// The same, which the solution counts.
+void evaluate(SpanSolution& solution, PointOnSpan& point);
+[[nodiscard]] PointOnSpan evaluated(SpanEnergy& model, const Eigen::VectorXd& x);
+
+/// Second derivatives of E - mu . c, and what the constraints hold.
+struct SecondVariation {
+  Eigen::MatrixXd hessian, jacobian;
+};
+
+[[nodiscard]] SecondVariation second_variation(SpanEnergy& model, const Eigen::VectorXd& x,
+                                               const Eigen::VectorXd& multipliers);
+[[nodiscard]] inline SecondVariation second_variation(const SpanSolution& solution) {
+  return second_variation(*solution.model, solution.x, solution.multipliers);
+}
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/QR>
+
+namespace dlo::test {
+
+/// A symmetric matrix with these eigenvalues.
+inline Eigen::MatrixXd with_eigenvalues(const Eigen::VectorXd& eigenvalues) {
+  const Eigen::Index n = eigenvalues.size();
+  const Eigen::HouseholderQR<Eigen::MatrixXd> qr(Eigen::MatrixXd::Random(n, n));
+  const Eigen::MatrixXd Q = qr.householderQ();
+  return Q * eigenvalues.asDiagonal() * Q.transpose();
+}
+
+}  // namespace dlo::test
