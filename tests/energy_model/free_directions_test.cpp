@@ -143,7 +143,7 @@ TEST(FreeDirections, StepWithinALengthIsTheLowestThere) {
   }
 }
 
-TEST(FreeDirections, SoftestDirectionIsTheEigenvectorOnWhatIsFree) {
+TEST(FreeDirections, EigenvectorNearestZeroIsThatOnWhatIsFree) {
   constexpr Eigen::Index n = 40;
   for (const Eigen::Index m : {0, 5}) {
     Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(n, 0.5, 3);

@@ -268,7 +268,7 @@ class TwistPath {
 
   /// Downhill to what is stable, from beside here.
   void leave() {
-    if (++leaps_ > most_leaps) return here_.fail("the rod leaps from branch to branch");
+    if (++leaps_ > most_leaps) return here_.fail("the rod jumps from branch to branch");
     derive(here_);
     std::optional<Eigen::VectorXd> way = falling_direction(hessian_, jacobian_);
     // Next to a fold the branch goes where the rod gives way.
