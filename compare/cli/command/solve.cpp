@@ -141,7 +141,7 @@ void run(const SolveOptions& options) {
                     [&] {
                       return (options.plan.explain() ? plan_text(plan(), scene) : "") +
                              solution_text(solution, scene) +
-                             (options.all ? equilibria_text(all) : "");
+                             (options.all ? equilibria_text(all, scene) : "");
                     },
                 .json =
                     [&] {

@@ -281,16 +281,18 @@ std::string solution_csv(const compare::Solution& solution) {
   return text;
 }
 
-std::string equilibria_text(const compare::AllSolutions& all) {
+std::string equilibria_text(const compare::AllSolutions& all, const compare::Scene& scene) {
   std::string out;
+  const Magnitudes large = magnitudes(scene);
   const std::vector<compare::Solution>& solutions = all.solutions;
   append(out, "\n{} equilibria found\n{:>16} {:>10} {:>20} {:>13} {:>13} {:>13}\n",
          solutions.size(), "energy [J]", "", "smallest eigenvalue", "x(l) [m]", "y(l) [m]",
          "z(l) [m]");
   for (const compare::Solution& solution : solutions) {
-    const Eigen::Vector3d tip = solution.shape.points.rightCols<1>();
-    append(out, "{:16.9g} {:>10} {:20.6g} {:13.6f} {:13.6f} {:13.6f}\n", solution.energy.total(),
-           stability_of(solution), solution.smallest_eigenvalue, tip.x(), tip.y(), tip.z());
+    const Eigen::Vector3d tip = shown(solution.shape.points.rightCols<1>(), large.length);
+    append(out, "{:16.9g} {:>10} {:20.6g} {:13.6f} {:13.6f} {:13.6f}\n",
+           compare::shown(solution.energy.total(), large.energy), stability_of(solution),
+           compare::shown(solution.smallest_eigenvalue, 1), tip.x(), tip.y(), tip.z());
   }
   append(out, "\nlooked from (a search: there may be others)\n{:>8} {:>12}\n", "starts",
          "found first");

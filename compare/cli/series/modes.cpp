@@ -41,7 +41,7 @@ std::string line_of(const SceneMode& mode, std::size_t number) {
     append(out, "; as it steps {:.4g} Hz ({:.4g} times), damping ratio {:.3g}",
            hertz(mode.stepped->omega), mode.stepped->omega / omega, mode.stepped->damping);
   } else {
-    out += "; as it steps overdamped";
+    out += "; overdamped as it steps";
   }
   return out + (mode.stepped->is_stable ? "\n" : ", unstable\n");
 }

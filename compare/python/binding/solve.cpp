@@ -278,7 +278,9 @@ void bind_solve(py::module_& module) {
           "not_looked", [](const SolvedStates& solved) { return solved.all.not_looked; },
           "What a limit has cut short, or the search does not cover.")
       .def("to_json", &states_document, "The document of `dlo solve --all --format json`, as text.")
-      .def("__str__", [](const SolvedStates& solved) { return cli::equilibria_text(solved.all); });
+      .def("__str__", [](const SolvedStates& solved) {
+        return cli::equilibria_text(solved.all, solved.scene->scene);
+      });
   module.def("solve", &solve, py::arg("scene"), py::arg("model"), py::arg("samples"),
              py::arg("limits"));
   module.def("solve_all", &solve_all, py::arg("scene"), py::arg("samples"), py::arg("limits"));

@@ -208,7 +208,7 @@ void Branch::go_to_frame(Passage& passage) {
   for (int made = 0; at < 1; ++made) {
     step = std::min(step, 1 - at);
     if (made < most_steps && step >= smallest_step) {
-      if (keep(scene_at(at + step), at, step, passage)) {
+      if (try_follow(scene_at(at + step), at, step, passage)) {
         at += step;
         if (++kept_in_a_row == 2) step *= 2;
       } else {
@@ -279,7 +279,7 @@ Scene Branch::scene_at(double share) const {
 }
 
 /// One step on the branch.
-bool Branch::keep(Scene scene, double from, double step, Passage& passage) {
+bool Branch::try_follow(Scene scene, double from, double step, Passage& passage) {
   std::optional<Equilibrium> rod = solver_.keep(frame_problem(scene, obstacles_));
   if (!rod) return false;
   Moment after{std::move(scene), std::move(*rod)};

@@ -91,7 +91,7 @@ class Branch {
   [[nodiscard]] Scene scene_at(double share) const;
   void go_to_frame(Passage& passage);
   double leave(double at, double missed, Passage& passage);
-  [[nodiscard]] bool keep(Scene scene, double from, double step, Passage& passage);
+  [[nodiscard]] bool try_follow(Scene scene, double from, double step, Passage& passage);
   void witness(double at);
 
   const Scene& scene_;
