@@ -38,7 +38,7 @@ ExitStatus status_of_exception() {
   if (std::current_exception()) {
     status = status_of_exception();
   } else {
-    dlo::cli::write_standard_error("dlo: internal error, a mistake of dlo\n");
+    dlo::cli::write_standard_error("dlo: internal error\n");
   }
   dlo::compare::remove_temporaries();
   ::_exit(static_cast<int>(status));

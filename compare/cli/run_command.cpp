@@ -51,8 +51,8 @@ void build(CLI::App& app) {
       "  dlo init cable.toml --length \"2 m\" --diameter \"6 mm\" --material silicone\n"
       "  dlo solve cable.toml\n\n"
       "Exit status: 0 good, 1 outside a tolerance, 2 bad usage or input, 3 a solver did\n"
-      "not converge, 4 out of memory or threads, or a mistake of dlo, 5 an output could\n"
-      "not be written. More, with examples: dlo COMMAND --help");
+      "not converge, 4 out of memory or threads, or an internal error, 5 an output\n"
+      "could not be written. More, with examples: dlo COMMAND --help");
   app.parse_complete_callback([&app] {
     for (const CLI::App* command : app.get_subcommands()) check_outputs(*command);
   });
@@ -142,10 +142,10 @@ ExitStatus report_exception() {
     say("out of threads or memory ({})", error.what());
     return ExitStatus::no_resources;
   } catch (const std::exception& error) {
-    say("internal error, a mistake of dlo: {}", error.what());
+    say("internal error: {}", error.what());
     return ExitStatus::no_resources;
   } catch (...) {
-    write_standard_error("dlo: internal error, a mistake of dlo\n");
+    write_standard_error("dlo: internal error\n");
     return ExitStatus::no_resources;
   }
 }

@@ -73,7 +73,7 @@ ImplicitStep::ImplicitStep(const Rod& rod, const Eigen::Matrix3Xd& points,
   const auto framed = std::count_if(rod.grips.begin(), rod.grips.end(),
                                     [](const Grip& grip) { return grip.d1.has_value(); });
   require(framed < 2, "Simulation", "number of grips with d1", static_cast<double>(framed),
-          "0 or 1 with implicit steps, which leave twist out");
+          "0 or 1 with implicit steps, which neglect twist");
   open_segments(rod);
   const double slowest = mode_bounds(rod, points).slowest;
   unit_ = slowest;

@@ -205,9 +205,9 @@ RelaxResult Lockstep::relax_implicitly(const RelaxOptions& options) {
     const double moved = std::max(implicit_->movement(), implicit_->momentum());
     const bool converges = implicit_->pure() && moved < promising;
     if (!converges && !(moved < options.tolerance * length)) continue;
-    const Eigen::Matrix3Xd falling = search.judge(measurable_shape());
-    if (falling.cols() > 0) {
-      nudge(0, falling);
+    const Eigen::Matrix3Xd descent = search.judge(measurable_shape());
+    if (descent.cols() > 0) {
+      nudge(0, descent);
     } else if (search.open() && moved == 0) {
       search.stall();
     }
@@ -244,8 +244,8 @@ std::vector<RelaxResult> Lockstep::relax(const RelaxOptions& options) {
         if (!due[rod]) continue;
         // An equilibrium that does not hold, as an upright rod's: whatever disturbs it lets it
         // fall.
-        const Eigen::Matrix3Xd falling = searches[rod].look(shape(rod));
-        if (falling.cols() > 0) nudge(rod, falling);
+        const Eigen::Matrix3Xd descent = searches[rod].look(shape(rod));
+        if (descent.cols() > 0) nudge(rod, descent);
         controls_[rod].correct_slowest_mode(searches[rod].slowest_mode());
         if (searches[rod].bounces()) controls_[rod].descend();
         c_F_.lane[rod] = controls_[rod].options().c_F;

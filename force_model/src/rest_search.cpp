@@ -73,7 +73,7 @@ void RestSearch::count_newton_steps(const StepResult& step, long solves) {
 Eigen::Matrix3Xd RestSearch::judge(const MovingShape& shape) {
   EquilibriumCheck check = measure(shape);
   if (rests(check)) result_.status = RelaxStatus::at_rest;
-  return rests(check) ? Eigen::Matrix3Xd() : std::move(check.falling_direction);
+  return rests(check) ? Eigen::Matrix3Xd() : std::move(check.negative_curvature_direction);
 }
 
 bool RestSearch::rests(const EquilibriumCheck& check) const {
@@ -125,7 +125,7 @@ Eigen::Matrix3Xd RestSearch::look(const MovingShape& shape) {
   if (bounces_) next_measurement_ = result_.steps + descent_steps;
   if (!seems_at_rest) return {};
   next_check_ = result_.steps + std::max(block_steps, result_.steps / 10);
-  return std::move(check.falling_direction);
+  return std::move(check.negative_curvature_direction);
 }
 
 RelaxResult RestSearch::finish(const MovingShape& shape) {

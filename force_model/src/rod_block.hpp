@@ -82,7 +82,7 @@ class RodBlock {
   std::ptrdiff_t pitch_ = 0;
   InstructionSet set_ = InstructionSet::baseline;
   BendingLaw law_ = BendingLaw::hooke;
-  bool natural_ = false;  // some rod is not straight by nature
+  bool natural_ = false;  // some rod is not intrinsically straight
   std::vector<TwistedSpan> twisted_spans_;
   const StepKernel* kernel_ = nullptr;
   std::vector<Line> memory_;

@@ -17,7 +17,7 @@
 //     T_k = c_c (1/L_k - 1/|s_k|) s_k - (h - (h.u_k) u_k)         (c)
 //     h = m_k s_{k-1} + m_{k+1} s_{k+1}
 // on P_k and its opposite on P_{k+1}; the inner force of a point is T_k - T_{k-1}. Joints that are
-// turned at rest (hooke, in the plane z = 0) have constant couples C_k besides, against which a
+// bent at rest (hooke, in the plane z = 0) have constant couples C_k besides, against which a
 // segment bears, with s turned to the left by a right angle,
 //     T_k += (C_{k+1} - C_k) left(s_k) / |s_k|^2                  (d)
 // and joints that bear a twisting moment M (hooke, in space) forces along their binormals
@@ -122,7 +122,7 @@ void compute_forces(const PointBlock& block, PointArray applied, PerLane& regula
   }
 }
 
-/// (16 M' + 4 M) / lever^2 of joints that turn by alpha, with ab = |s_{k-1}| |s_k|,
+/// (16 M' + 4 M) / lever^2 of joints that rotate by alpha, with ab = |s_{k-1}| |s_k|,
 /// product = s_{k-1}.s_k = ab cos(alpha) and L their mean rest length. A joint next to a segment
 /// without direction counts as straight.
 template <BendingLaw law>

@@ -33,7 +33,7 @@ enum PointArray : int {
   turned_back = 24,      ///< 1 where a step goes against the one before; of this step and the last
   last_positions = 26,   ///< when the modes were last looked at [m], 3 axes
   last_forces = 29,      ///< then [N], 3 axes
-  natural = 32,          ///< couple of a joint that is turned at rest [N m], from x to y
+  natural = 32,          ///< couple of a joint that is bent at rest [N m], from x to y
   twist_share = 33,      ///< twisting moment at a joint over its `bend` [-]; 0 where there is none
   point_array_count = 34
 };

@@ -85,10 +85,10 @@ Eigen::MatrixXd StiffnessFactor::solve(const Eigen::MatrixXd& right) const {
   return factor_.solve(bordered).topRows(right.rows());
 }
 
-Eigen::VectorXd StiffnessFactor::falling(const BorderedMatrix& K) const {
+Eigen::VectorXd StiffnessFactor::negative_curvature(const BorderedMatrix& K) const {
   if (columns_ == 0) {
     // With K = L D L^T and D_j < 0, the d with L^T d = e_j has d^T K d = D_j. The first of equals,
-    // as an upright rod has: it falls in the plane of x.
+    // as an upright rod has: it buckles in the plane of x.
     const Eigen::VectorXd pivots = factor_.vectorD();
     const double lowest = pivots.minCoeff();
     if (!(lowest < 0)) return {};

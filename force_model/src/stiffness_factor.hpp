@@ -36,8 +36,8 @@ class StiffnessFactor {
   [[nodiscard]] bool is_positive() const;
   /// K^-1 of each column.
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
-  /// A movement d with d^T K d < 0; empty if there is none.
-  [[nodiscard]] Eigen::VectorXd falling(const BorderedMatrix& K) const;
+  /// A direction d of negative curvature, d^T K d < 0; empty if there is none.
+  [[nodiscard]] Eigen::VectorXd negative_curvature(const BorderedMatrix& K) const;
 
  private:
   Eigen::Index columns_ = 0;  // of B

@@ -112,8 +112,8 @@ class TangentStiffness {
 };
 
 /// Of all points, the furthest by 1, and on the whole towards +x, else +y, else +z.
-Eigen::Matrix3Xd falling_direction(const Eigen::VectorXd& movement,
-                                   const TangentStiffness& stiffness) {
+Eigen::Matrix3Xd negative_curvature_direction(const Eigen::VectorXd& movement,
+                                              const TangentStiffness& stiffness) {
   Eigen::Matrix3Xd direction = stiffness.scattered(movement);
   direction /= std::sqrt(direction.colwise().squaredNorm().maxCoeff());
   const Eigen::Vector3d whole = direction.rowwise().sum();
@@ -131,7 +131,7 @@ Eigen::Matrix3Xd falling_direction(const Eigen::VectorXd& movement,
 ///     aa: -(kb (t + u)^T + (t + u) kb^T) / (4 a^2),   t = (u + v) / (1 + u.v)
 ///     ab: (2 [u]x / (1 + u.v) - kb t^T) / (2 a b)
 /// and bb as aa (Bergou et al., Discrete viscous threads, SIGGRAPH 2010). The skew parts of aa and
-/// bb that these leave out cancel with the neighbours'.
+/// bb that these drop cancel with the neighbours'.
 void add_twist(const Rod& rod, const Eigen::Ref<const Eigen::Matrix3Xd>& points,
                TangentStiffness& stiffness) {
   const auto of_span = [&](const TwistedSpan& span, const Grip& /*first*/, const Grip& /*last*/) {
@@ -212,13 +212,13 @@ EquilibriumCheck check_equilibrium(const Rod& rod,
   const bool positive = factor.is_positive();
   if (positive) slow = slow_modes(K, factor);
   if (!(slow.eigenvalues[0] > rounding)) {
-    // A rod that turns freely about its grips has modes without stiffness: they are left out.
-    Eigen::Matrix3Xd falling;
-    const Eigen::VectorXd movement = positive ? Eigen::VectorXd() : factor.falling(K);
-    if (movement.size() > 0) falling = falling_direction(movement, stiffness);
+    // A rod that rotates freely about its grips has zero modes: they are taken out.
+    Eigen::Matrix3Xd descent;
+    const Eigen::VectorXd movement = positive ? Eigen::VectorXd() : factor.negative_curvature(K);
+    if (movement.size() > 0) descent = negative_curvature_direction(movement, stiffness);
     factor.compute(K.shifted(rounding));
     if (!factor.is_positive()) {
-      result.falling_direction = std::move(falling);
+      result.negative_curvature_direction = std::move(descent);
       return result;
     }
     slow = slow_modes(K, factor);

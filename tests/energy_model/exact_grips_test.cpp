@@ -248,7 +248,7 @@ TEST(MultipleShooting, FindsTheArchThatLeansOutOfThePlane) {
   EXPECT_GT(found[2].energy.total(), found[0].energy.total() + 1);
 }
 
-TEST(MultipleShooting, LeavesAShapeAloneThatMayTurnForNothing) {
+TEST(MultipleShooting, LeavesAShapeWithAZeroModeAlone) {
   // Two clamps on one line and no weight: the arch may turn about that line.
   const Problem problem = two_clamps(0, 0.8);
   const Equilibrium arch = solve_exact(problem);

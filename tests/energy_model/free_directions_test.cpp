@@ -80,7 +80,7 @@ TEST(FreeDirections, AllEigenvaluesAreToldWhereTheSmallestIsNotAbove) {
   EXPECT_LT((energy_model::smallest_eigenvalues(free, 0.2) - eigenvalues).norm(), 1e-13);
 }
 
-TEST(FreeDirections, SoftestDirectionIsTheEigenvectorOnWhatIsFree) {
+TEST(FreeDirections, EigenvectorNearestZeroIsThatOnWhatIsFree) {
   constexpr Eigen::Index n = 40;
   for (const Eigen::Index m : {0, 5}) {
     Eigen::VectorXd eigenvalues = Eigen::VectorXd::LinSpaced(n, 0.5, 3);

@@ -393,7 +393,7 @@ TEST(HighLoad, LowestStateIsRightAtEveryAngle) {
   }
 }
 
-TEST(Arch, ThatCannotHoldItselfSidewaysFallsOutOfThePlane) {
+TEST(Arch, ThatIsUnstableOutOfPlaneLeavesThePlane) {
   // An upright rod above self-buckling whose tip is pinned right above the clamp, pressed down: it
   // buckles in any plane; a tall arch between clamps that point up and down leans over.
   Problem problem = heavy_cantilever(200, 90);

@@ -184,7 +184,7 @@ TEST(NaturalRod, IsAHelixWithTwistToo) {
 }
 
 // However far the free rod turns: whole turns are counted with it.
-TEST(NaturalRod, IsFreeBetweenClampsWhereTheFreeRodEnds) {
+TEST(NaturalRod, IsFreeBetweenClampsWhereTheStressFreeShapeEnds) {
   for (const double k : {2.0, 6.0, -9.0, 14.0}) {
     SCOPED_TRACE(k);
     Problem problem = clamped_rod();
@@ -358,7 +358,7 @@ TEST(Sections, OfAStiffSleeveStaysStraightAndCarriesTwistOnly) {
   EXPECT_NEAR(shape.curvature.col(1).norm() / shape.curvature.col(0).norm(), 1e-3, 1e-6);
 }
 
-TEST(Clamp, ThatLetsTheRodTurnPassesItsTorqueOn) {
+TEST(Clamp, ThatLetsTheRodRotatePassesItsTorqueOn) {
   Problem problem = clamped_rod();
   problem.weight_per_length = {0, -4, 1};
   problem.grips[0].frame = FrameHold{Vector3d::UnitY(), 0};

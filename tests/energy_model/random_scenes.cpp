@@ -148,7 +148,7 @@ int run(const Options& options, RandomSpace space, std::uint64_t count) {
     if (scene.agreement == Agreement::contradict) {
       complain("shapes " + std::to_string(scene.distance) + " l apart, energies " +
                std::to_string(scene.energy.energy.total()) + " and " +
-               std::to_string(scene.exact.energy.total()) + ", smallest curvature " +
+               std::to_string(scene.exact.energy.total()) + ", smallest eigenvalue " +
                std::to_string(scene.energy.smallest_curvature) + " and " +
                std::to_string(scene.exact.smallest_curvature));
       wrong = true;

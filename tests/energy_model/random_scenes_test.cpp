@@ -59,7 +59,7 @@ TEST_P(RandomScenes, HoldTheEnergyModelAgainstMultipleShooting) {
     }
     EXPECT_NE(scene.agreement, Agreement::contradict)
         << scene.distance << " l apart, energies " << scene.energy.energy.total() << " and "
-        << scene.exact.energy.total() << ", smallest curvature " << scene.energy.smallest_curvature
+        << scene.exact.energy.total() << ", smallest eigenvalue " << scene.energy.smallest_curvature
         << " and " << scene.exact.smallest_curvature;
   }
   if (test::sanitized) return;

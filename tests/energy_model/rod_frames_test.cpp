@@ -85,7 +85,7 @@ TEST(RodFrames, AgreeWithAnotherIntegratorWhereTheRodWindsThirtyTimes) {
   EXPECT_LT((state.q.rowwise().norm().array() - 1).abs().maxCoeff(), 1e-14);
 }
 
-TEST(RodFrames, OfARodThatIsCurvedAndTwistedByNatureAgreeWithItToo) {
+TEST(RodFrames, OfAnIntrinsicallyCurvedAndTwistedRodAgreeWithItToo) {
   constexpr int terms = 24;
   const Eigen::Vector3d natural(2, -3, 4);
   const RodFrames frames({{0, 1}}, terms, Eigen::Matrix3d::Identity(), false,

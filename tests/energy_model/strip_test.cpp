@@ -192,7 +192,7 @@ double lateral_buckling_load(const Solver& solve, double weak, double torsion, d
   return first + h * x;
 }
 
-TEST_P(BothModels, BucklesSidewaysUnderPrandtlsAndMichellsLoad) {
+TEST_P(BothModels, BucklesOutOfPlaneUnderPrandtlsAndMichellsLoad) {
   // P l^2 = 4.0126 (B C)^(1/2), B the weak stiffness, where the other one is infinite; what it is
   // short of that moves the load in its first power, which two ratios extrapolate away.
   constexpr double weak = 1;

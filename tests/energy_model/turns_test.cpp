@@ -71,7 +71,7 @@ TEST(Writhe, IsNoneInAPlane) {
   EXPECT_NEAR(writhe(points, {1, 1, 0}, {1, 0, 0}).value(), 0, 1e-12);
 }
 
-TEST(Writhe, IsNotToldWhereAnEndsLinePassesThroughTheCurve) {
+TEST(Writhe, IsUndefinedWhereAnEndsLinePassesThroughTheCurve) {
   Eigen::Matrix3Xd points(3, 5);
   points << 0, 1, 1, -1, -1,  //
       0, 0, 1, 1, -1,         //

@@ -41,7 +41,7 @@ Eigen::Vector3d direction(const Eigen::Matrix3Xd& points, Eigen::Index segment) 
   return (points.col(segment + 1) - points.col(segment)).normalized();
 }
 
-TEST(Twist, IsWhatTheEndIsTurnedByInTheBranchNearestToTheLast) {
+TEST(Twist, IsTheRotationOfTheEndInTheBranchNearestToTheLast) {
   constexpr Eigen::Index n = 9;
   const Eigen::Matrix3Xd points = random_polygon(3, n, 0.05, 0.1);
   TwistedSpan span = random_span(n);

@@ -92,7 +92,7 @@ Eigen::Matrix3Xd turned_polygon(const Eigen::VectorXd& rest, const Eigen::Vector
   return points;
 }
 
-TEST(NaturalTurns, AreThoseOfTheFreeRodWithoutForceAndEnergy) {
+TEST(NaturalTurns, AreThoseOfTheStressFreeShapeWithoutForceAndEnergy) {
   constexpr Eigen::Index n = 12;
   const Eigen::VectorXd rest = Eigen::VectorXd::LinSpaced(n, 0.03, 0.06);
   const Bending bending{BendingLaw::hooke, 0.2, unlike(0.2, n - 1), turns(1.2, n - 1)};

@@ -147,7 +147,10 @@ def test_every_equilibrium_is_found(root):
         samples=2,
     )
     assert len(states) == 3
-    assert [state.smallest_curvature > 0 for state in states] == [True, False, False]
+    assert [state.smallest_eigenvalue > 0 for state in states] == [True, False, False]
+    for state in states:  # by their names before 0.2 too
+        assert state.smallest_curvature == state.smallest_eigenvalue
+        assert state.left_out == state.neglected
     assert len(states.json["equilibria"]) == 3
 
 

@@ -149,8 +149,7 @@ void run_chains(const CalibrateOptions& options, bool format_is_given) {
   if (chains.empty()) {
     throw compare::InputError(
         "--segments: no scene's rod is like a plain chain of hinges (allowed: one section, "
-        "straight "
-        "by nature, not twisted, touching nothing)");
+        "intrinsically straight, not twisted, touching nothing)");
   }
   write_report({.text = [&] { return chains_text(chains); },
                 .csv = [&] { return refuse("csv"); },
@@ -182,7 +181,7 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
                 .toml = [&] { return force_model_toml(fit); },
                 .json = [&] { return force_model_json(fit); }},
                options.output, format_is_given);
-  // The default is a wish.
+  // Nobody asked for the default.
   if (!fit.reached() && options.target) end_with(ExitStatus::outside_tolerance);
 }
 
@@ -196,7 +195,7 @@ void add_calibrate(CLI::App& app) {
   command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
   const std::string parameters = "Parameters of the force model";
   CLI::Option* holdout =
-      command->add_option("--holdout", options->holdouts, "scenes that judge and are not fitted")
+      command->add_option("--holdout", options->holdouts, "hold-out scenes: judged, not fitted")
           ->type_name("SCENE ...")
           ->group(parameters);
   CLI::Option* target =
@@ -204,7 +203,7 @@ void add_calibrate(CLI::App& app) {
           ->add_option("--target", options->target,
                        "RMS deviation wanted, share of the length such as 0.1%; law hooke takes N "
                        "from it unless --points is given. Exit status 1 if it is missed; without "
-                       "--target 0.1% is wished for, and status is 0")
+                       "--target the default is 0.1%, and status is 0")
           ->transform(share_of_length())
           ->group(parameters);
   const std::string measured = "Young's modulus from measured shapes";

@@ -116,7 +116,7 @@ void add_check(CLI::App& app) {
       ->transform(share_of_length());
   command->add_flag("--no-modulus", options->no_modulus, "leave E*/E out");
   command->add_flag("--no-explanation", options->no_explanation,
-                    "do not look for what would make a shape right that fails");
+                    "do not look for causes where a shape fails");
   options->shapes.add_to(*command, ChordLengths::offered);
   options->overrides.add_solvers_to(*command);
   add_output_options(*command, options->output);

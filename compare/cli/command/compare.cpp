@@ -45,9 +45,9 @@ void run(const CompareOptions& options) {
   std::vector<compare::Scene> scenes;
   std::vector<compare::Comparison> comparisons;
   std::string plans;
-  std::string unresolved;
+  std::string unverified;
   compare::SolveOptions solve = options.overrides.solve();
-  solve.accept_unresolved = true;
+  solve.accept_unverified = true;
   const bool explain = options.plan.explain() && options.output.is(Format::text);
   const bool shows_plan = explain || options.output.is(Format::json);
   const auto plan = shows_plan ? std::optional(options.plan.plan()) : std::nullopt;
@@ -59,9 +59,9 @@ void run(const CompareOptions& options) {
       comparisons.push_back(compare::compare(
           scene, solve, plan,
           options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes));
-      const std::string& why = comparisons.back().unresolved;
+      const std::string& why = comparisons.back().unverified;
       if (!why.empty()) {
-        append(unresolved, "{}{}: the energy model: {}", unresolved.empty() ? "" : "; ", scene.file,
+        append(unverified, "{}{}: the energy model: {}", unverified.empty() ? "" : "; ", scene.file,
                why);
       }
       if (explain) plans += plan_text(*comparisons.back().plan, scene);
@@ -80,7 +80,7 @@ void run(const CompareOptions& options) {
                                 .json = [&] { return json_text(comparisons_json(comparisons)); },
                                 .csv = [&] { return comparisons_csv(comparisons); }});
   options.plot.draw([&] { return comparison_picture(scenes, comparisons); });
-  if (!unresolved.empty()) throw compare::ConvergenceError(unresolved);
+  if (!unverified.empty()) throw compare::ConvergenceError(unverified);
 }
 
 }  // namespace

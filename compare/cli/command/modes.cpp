@@ -66,7 +66,7 @@ void add_modes(CLI::App& app) {
       ->capture_default_str();
   command
       ->add_option("--tension", options->modes.tension,
-                   "of a rod that clamps hold straight [N], which its shape does not tell; "
+                   "of a rod that clamps hold straight [N], not identifiable from its shape; "
                    "default 0")
       ->check(CLI::Number);
   command->add_option("--samples", options->samples, "points of each mode's shape in JSON")

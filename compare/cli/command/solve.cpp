@@ -30,16 +30,16 @@ struct SolveOptions {
   PlotOptions plot;
 };
 
-/// What a format cannot say is not left out in silence.
-void warn_of_left_out(const SolveOptions& options, const compare::Solution& solution,
-                      const compare::Scene& scene) {
+/// What a format cannot say is not dropped in silence.
+void warn_of_neglected(const SolveOptions& options, const compare::Solution& solution,
+                       const compare::Scene& scene) {
   if (options.output.is(Format::text) || options.output.is(Format::json)) return;
-  for (const std::string& what : solution.left_out) {
-    say("{}: model {} leaves out the {} that the scene has", scene.file, options.model, what);
+  for (const std::string& what : solution.neglected) {
+    say("{}: model {} neglects the {} that the scene has", scene.file, options.model, what);
   }
 }
 
-/// The same of what is asked for.
+/// The same of options.
 void require_format_for(const SolveOptions& options) {
   const std::string& format = options.output.format;
   if (format != "csv" && format != "vtk") return;
@@ -59,9 +59,9 @@ void warn_of_force_model_options(const SolveOptions& options) {
   say("{}: no effect on the shape of model {} (only on force and chain)", names, options.model);
 }
 
-/// A shape that is not resolved, left open by a fold or, as the first of all that are found,
+/// A shape that is not verified, at a singular point or, as the first of all that are found,
 /// unstable has been shown, which is no success.
-void require_resolved(const compare::Solution& solution, const compare::Scene& scene) {
+void require_verified(const compare::Solution& solution, const compare::Scene& scene) {
   if (energy_model::succeeded(solution.status)) return;
   throw compare::ConvergenceError(fmt::format(
       "{}: the {} model: {}", scene.file, compare::to_string(solution.model), solution.message));
@@ -113,7 +113,7 @@ void run(const SolveOptions& options) {
     throw compare::InputError("--all: only model energy searches for all equilibria");
   }
   compare::SolveOptions solve = options.overrides.solve();
-  solve.accept_unresolved = true;
+  solve.accept_unverified = true;
   compare::AllSolutions all;
   if (options.all) {
     all = compare::solve_all(scene, solve, arc_lengths);
@@ -121,7 +121,7 @@ void run(const SolveOptions& options) {
     all.solutions.push_back(compare::solve(scene, model, solve, arc_lengths));
   }
   const compare::Solution& solution = all.solutions.front();
-  warn_of_left_out(options, solution, scene);
+  warn_of_neglected(options, solution, scene);
   if (options.output.format == "vtk") {
     write_output(options.output, compare::vtk_polyline(solution.shape,
                                                        {.curvature = solution.curvature,
@@ -129,7 +129,7 @@ void run(const SolveOptions& options) {
                                                         .d1 = solution.d1},
                                                        scene.name));
     plot(options, solve, scene, all.solutions);
-    return require_resolved(solution, scene);
+    return require_verified(solution, scene);
   }
   const auto plan = [&] {
     compare::PlanOptions plan_options = options.plan.plan();
@@ -141,7 +141,7 @@ void run(const SolveOptions& options) {
                     [&] {
                       return (options.plan.explain() ? plan_text(plan(), scene) : "") +
                              solution_text(solution, scene) +
-                             (options.all ? equilibria_text(all) : "");
+                             (options.all ? equilibria_text(all, scene) : "");
                     },
                 .json =
                     [&] {
@@ -150,7 +150,7 @@ void run(const SolveOptions& options) {
                     },
                 .csv = [&] { return solution_csv(solution); }});
   plot(options, solve, scene, all.solutions);
-  require_resolved(solution, scene);
+  require_verified(solution, scene);
 }
 
 }  // namespace

@@ -111,7 +111,8 @@ void warn_of_polygons_in(const compare::Sweep& sweep, const std::string& model) 
   for (const std::int64_t row : {std::int64_t{0}, sweep.grid().size() - 1}) {
     try {
       const compare::Scene scene = sweep.scene(row);
-      const bool lacks = !is_rod && !compare::left_out_of_polygon(scene, scene.force_model).empty();
+      const bool lacks =
+          !is_rod && !compare::neglected_by_polygon(scene, scene.force_model).empty();
       if (lacks) return warn_of_polygons(scene);
       if (compare::friction_in_reach(scene)) return warn_of_friction(scene);
     } catch (const compare::InputError&) {
@@ -120,10 +121,10 @@ void warn_of_polygons_in(const compare::Sweep& sweep, const std::string& model) 
   }
 }
 
-void warn_of_unresolved(const compare::SweepOutcome& outcome, const std::string& file) {
-  if (outcome.unresolved == 0) return;
-  say("{}: {} of {} scenes have no result, the column status says why", file, outcome.unresolved,
-      outcome.rows);
+void warn_of_rows_without_result(const compare::SweepOutcome& outcome, const std::string& file) {
+  if (outcome.without_result == 0) return;
+  say("{}: {} of {} scenes have no result, the column status says why", file,
+      outcome.without_result, outcome.rows);
 }
 
 void print_sweep(const SweepOptions& options, const compare::Sweep& sweep,
@@ -137,12 +138,12 @@ void print_sweep(const SweepOptions& options, const compare::Sweep& sweep,
     write_standard_output(line);
     if (options.plot.draws()) drawn.push_back(line);
     ++outcome.rows;
-    if (!line.ends_with(",ok\n")) ++outcome.unresolved;
+    if (!line.ends_with(",ok\n")) ++outcome.without_result;
   };
   sweep.run(shard ? compare::rows_of(*shard, rows) : compare::RowRange{0, rows}, options.threads,
             print_row);
   plot(options, sweep, drawn);
-  warn_of_unresolved(outcome, "sweep");
+  warn_of_rows_without_result(outcome, "sweep");
 }
 
 void run_merge(const SweepOptions& options) {
@@ -150,7 +151,7 @@ void run_merge(const SweepOptions& options) {
   if (!options.vary.empty() || !options.shard.empty()) {
     throw compare::InputError("--merge: takes the shards' files only (allowed: -o)");
   }
-  warn_of_unresolved(compare::merge_sweep(options.files, options.output), options.output);
+  warn_of_rows_without_result(compare::merge_sweep(options.files, options.output), options.output);
 }
 
 /// One --vary may be followed by several fields; what has a "=" is one of them, not a file.
@@ -226,7 +227,7 @@ void run(SweepOptions options, const std::vector<std::string>& inputs) {
   if (shard && outcome.rows > 0 && outcome.found == outcome.rows && !was_resumed) {
     say("{}: finished already, {} rows", path, outcome.rows);
   }
-  warn_of_unresolved(outcome, path);
+  warn_of_rows_without_result(outcome, path);
   if (options.plot.draws()) plot(options, sweep, rows_of_file(path, sweep.header()));
 }
 

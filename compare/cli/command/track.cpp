@@ -56,7 +56,7 @@ void run(const TrackCommand& command) {
   options.rates.frames = command.frame_rate.value_or(options.rates.frames);
   options.rates.steps = command.step_rate.value_or(options.rates.steps);
   if (command.obstacle_rate) options.rates.obstacles = command.obstacle_rate;
-  if (command.no_force) options.force = compare::ForceBeside::left_out;
+  if (command.no_force) options.force = compare::ForceBeside::absent;
   options.samples = command.samples;
   options.solve = command.overrides.solve();
   if (!command.no_force) warn_of_polygons(scene);

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
+#include "format/magnitudes.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {
@@ -17,16 +18,15 @@ std::string range_text(const compare::Alignment& alignment, double length) {
   return fmt::format("from s = {:.4g} to {:.4g} m", from, to);
 }
 
-std::string pose_text(const compare::RigidMotion& pose) {
+std::string pose_text(const compare::RigidMotion& pose, double length) {
   const Eigen::AngleAxisd turn(pose.rotation);
   std::string out;
-  // Adding zero turns -0 into 0.
-  const Eigen::Vector3d axis = turn.axis().array() + 0.0;
-  const Eigen::Vector3d move = pose.translation.array() + 0.0;
-  append(out,
-         "turned {:.3f} deg about [{:.4f}, {:.4f}, {:.4f}], then moved [{:.6g}, {:.6g}, {:.6g}] m",
-         turn.angle() * 57.29577951308232, axis.x(), axis.y(), axis.z(), move.x(), move.y(),
-         move.z());
+  const Eigen::Vector3d axis = shown(turn.axis(), 1);
+  const Eigen::Vector3d move = shown(pose.translation, length);
+  append(
+      out,
+      "rotated by {:.3f} deg about [{:.4f}, {:.4f}, {:.4f}], then moved [{:.6g}, {:.6g}, {:.6g}] m",
+      turn.angle() * 57.29577951308232, axis.x(), axis.y(), axis.z(), move.x(), move.y(), move.z());
   return out;
 }
 

@@ -20,9 +20,9 @@ using compare::SceneBenchmark;
 constexpr const char* not_run = "not run";
 constexpr const char* none_within = "no run is within the error";
 
-/// Nobody counts the work of somebody else's program.
-std::string work_of(const BenchmarkRun& run) {
-  return run.program.empty() ? fmt::format("{}", run.work) : "";
+/// Nobody counts those of somebody else's program.
+std::string evaluations_of(const BenchmarkRun& run) {
+  return run.program.empty() ? fmt::format("{}", run.evaluations) : "";
 }
 
 void add_runs(std::string& out, const std::vector<BenchmarkRun>& runs) {
@@ -30,12 +30,12 @@ void add_runs(std::string& out, const std::vector<BenchmarkRun>& runs) {
     append(out, "  {}: all were skipped, see below\n", not_run);
     return;
   }
-  append(out, "  {:<52} {:>10} {:>21} {:>9} {:>10}\n", "", "median", "quartiles [ms]", "work",
-         "error/l");
+  append(out, "  {:<52} {:>10} {:>21} {:>11} {:>10}\n", "", "median", "quartiles [ms]",
+         "evaluations", "error/l");
   for (const BenchmarkRun& run : runs) {
-    append(out, "{} {:<52} {:>10.4g} {:>10.4g} {:>10.4g} {:>9} {:>10.2e}\n", run.front ? "*" : " ",
+    append(out, "{} {:<52} {:>10.4g} {:>10.4g} {:>10.4g} {:>11} {:>10.2e}\n", run.front ? "*" : " ",
            name_of(run), run.time.median_s * 1e3, run.time.lower_quartile_s * 1e3,
-           run.time.upper_quartile_s * 1e3, work_of(run), run.rms_over_length);
+           run.time.upper_quartile_s * 1e3, evaluations_of(run), run.rms_over_length);
   }
 }
 
@@ -89,9 +89,10 @@ Json run_json(const BenchmarkRun& run, const char* kind) {
                  {"lower_quartile_s", run.time.lower_quartile_s},
                  {"upper_quartile_s", run.time.upper_quartile_s},
                  {"repeats", run.time.repeats},
-                 {"work", run.program.empty() ? Json(run.work) : Json()},
+                 {"evaluations", run.program.empty() ? Json(run.evaluations) : Json()},
                  {"rms_over_length", run.rms_over_length},
                  {"front", run.front}};
+  result["work"] = Json(result.at("evaluations"));  // its name before 0.2, which takes it away
   if (run.variant) {
     result["law"] = compare::to_string(run.variant->law);
     result["bookkeeping"] = compare::to_string(run.variant->bookkeeping);
@@ -127,10 +128,11 @@ std::string benchmark_text(const compare::BenchmarkReport& report) {
            scene.gamma, compare::to_string(scene.reference));
     append(out, "  static: from straight to the shape (* no run is both faster and nearer)\n");
     add_runs(out, scene.runs);
-    append(out,
-           "\n  tracking: a frame of 1 ms behind a gripper that moves at v = {:g} m/s and turns by "
-           "v/l\n",
-           report.options.gripper_speed);
+    append(
+        out,
+        "\n  tracking: a frame of 1 ms behind a gripper that moves at v = {:g} m/s and rotates by "
+        "v/l\n",
+        report.options.gripper_speed);
     add_runs(out, scene.tracking);
     out += "\n";
   }
@@ -193,20 +195,21 @@ Json benchmark_json(const compare::BenchmarkReport& report) {
 
 std::string benchmark_csv(const compare::BenchmarkReport& report) {
   std::string out =
-      "scene,kind,model,size,setting,time_s,lower_quartile_s,upper_quartile_s,repeats,work,"
-      "rms_over_length,front,problem\n";
+      "scene,kind,model,size,setting,time_s,lower_quartile_s,upper_quartile_s,repeats,evaluations,"
+      "rms_over_length,front,problem,work\n";
   const auto add = [&](const BenchmarkRun& run, const char* kind) {
-    append_csv(out, "{},{},{},{},{},{:.4g},{:.4g},{:.4g},{},{},{:.6g},{},\n", csv_field(run.scene),
-               kind, model_of(run), run.size, csv_field(setting_of(run)), run.time.median_s,
-               run.time.lower_quartile_s, run.time.upper_quartile_s, run.time.repeats, work_of(run),
-               run.rms_over_length, run.front);
+    append_csv(out, "{},{},{},{},{},{:.4g},{:.4g},{:.4g},{},{},{:.6g},{},,{}\n",
+               csv_field(run.scene), kind, model_of(run), run.size, csv_field(setting_of(run)),
+               run.time.median_s, run.time.lower_quartile_s, run.time.upper_quartile_s,
+               run.time.repeats, evaluations_of(run), run.rms_over_length, run.front,
+               evaluations_of(run));
   };
   for (const SceneBenchmark& scene : report.scenes) {
     for (const BenchmarkRun& run : scene.runs) add(run, "static");
     for (const BenchmarkRun& run : scene.tracking) add(run, "tracking");
   }
   for (const compare::BenchmarkFailure& failure : report.failures) {
-    append(out, "{},static,{},{},,,,,,,,,{}\n", csv_field(failure.scene), failure.program,
+    append(out, "{},static,{},{},,,,,,,,,{},\n", csv_field(failure.scene), failure.program,
            failure.points, csv_field(failure.problem));
   }
   return out;

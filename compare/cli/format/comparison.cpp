@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/display.hpp"
+#include "base/number.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "format/plan.hpp"
 #include "format/solution.hpp"
@@ -19,8 +20,8 @@ void add_budget(std::string& out, const compare::Comparison& comparison) {
   append(out, "  error budget    RMS, and share of the total {:.4g} mm with sign\n",
          comparison.budget.total_m * 1e3);
   for (const auto& [name, part] : compare::shown_parts(comparison)) {
-    append(out, "                  {:<17}{:>9.4g} mm {:>9.2f} %\n", name, part->rms_m * 1e3,
-           part->share * 100 + 0.0);
+    append(out, "                  {:<17}{:>9.4g} mm {:>9.2f} %\n", name,
+           compare::shown(part->rms_m, comparison.length) * 1e3, part->share * 100 + 0.0);
   }
 }
 
@@ -80,18 +81,18 @@ std::string comparison_text(const compare::Comparison& c) {
          c.settings.points, p.c_c);
   if (p.c_b > 0) append(out, ", c_b = {:.6g} N", p.c_b);
   append(out, "\n");
-  std::vector<std::string> by_force = c.force.left_out;
+  std::vector<std::string> by_force = c.force.neglected;
   by_force.erase(std::remove(by_force.begin(), by_force.end(), "friction"), by_force.end());
   if (!by_force.empty()) {
-    append(out, "  left out        {} that the scene has, by the force model: in all below\n",
+    append(out, "  neglected       {} that the scene has, by the force model: in all below\n",
            fmt::join(by_force, ", "));
   }
-  if (leaves_out(c, "friction")) {
+  if (neglects(c, "friction")) {
     append(out,
-           "  left out        friction that the scene has, by both models: nothing below has it\n");
+           "  neglected       friction that the scene has, by both models: nothing below has it\n");
   }
-  if (!c.unresolved.empty()) {
-    append(out, "  reference       {}: nothing below is proven\n", c.unresolved);
+  if (!c.unverified.empty()) {
+    append(out, "  reference       {}: nothing below is proven\n", c.unverified);
   }
   const compare::Deviation& d = c.deviation;
   append(out, "  deviation       RMS {:.4g} mm = {:.4g} % of l", d.rms_m * 1e3,
@@ -111,7 +112,7 @@ std::string comparison_text(const compare::Comparison& c) {
   for (const energy_model::ContactPart& contact : c.contacts) {
     append(out, "  contact         {}\n", contact_text(contact));
   }
-  if (c.unresolved.empty()) {
+  if (c.unverified.empty()) {
     const double movement_m = c.deviation.rms_m / c.deviation.rms_over_movement;
     add_modulus(out, c.effective_modulus, movement_m, c.stiffness, NAN);
   }
@@ -150,19 +151,19 @@ Json comparison_json(const compare::Comparison& comparison) {
                         {"contact", budget.contact.share},
                         {"not_at_rest", budget.not_at_rest.share},
                         {"interaction", budget.interaction.share}}}};
-  if (!comparison.force.left_out.empty()) {
-    result["left_out"] = comparison.force.left_out;
+  if (!comparison.force.neglected.empty()) {
+    result["neglected"] = comparison.force.neglected;
     const std::pair<const char*, const compare::BudgetPart*> parts[] = {
         {"twist", &budget.twist}, {"natural curvature", &budget.natural_curvature}};
     for (const auto& [what, part] : parts) {
-      if (!leaves_out(comparison, what)) continue;
+      if (!neglects(comparison, what)) continue;
       const std::string key = part == &budget.twist ? "twist" : "natural_curvature";
       result["budget"][key + "_m"] = part->rms_m;
       result["budget"]["shares_of_total"][key] = part->share;
     }
   }
   if (!comparison.contacts.empty()) result["contacts"] = contacts_json(comparison.contacts);
-  result["reference_resolved"] = comparison.unresolved.empty();
+  result["reference_verified"] = comparison.unverified.empty();
   result["state"] = to_json(comparison.state);
   result["cost"] = {{"force_s", comparison.force.seconds},
                     {"force_steps", comparison.force.steps},

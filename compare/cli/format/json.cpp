@@ -1,9 +1,37 @@
 #include "format/json.hpp"
 
 namespace dlo::cli {
+namespace {
+
+struct OldKey {
+  const char* now;
+  const char* before;
+};
+
+/// What people read before 0.2, which takes the old names away.
+constexpr OldKey old_keys[] = {
+    {"neglected", "left_out"},
+    {"not_identified", "not_told"},
+    {"reference_verified", "reference_resolved"},
+    {"smallest_eigenvalue", "smallest_curvature"},
+    {"smallest_eigenvalue_before", "smallest_curvature_before"},
+};
+
+void add_old_keys(Json& document) {
+  if (!document.is_structured()) return;
+  for (Json& value : document) add_old_keys(value);
+  if (!document.is_object()) return;
+  for (const OldKey& key : old_keys) {
+    if (document.contains(key.now)) document[key.before] = Json(document.at(key.now));
+  }
+}
+
+}  // namespace
 
 std::string json_text(const Json& document) {
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  Json whole = document;
+  add_old_keys(whole);
+  return whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Json modulus_json(const compare::EffectiveModulus& modulus) {

@@ -15,7 +15,7 @@ namespace dlo::cli {
 using Json = nlohmann::ordered_json;
 
 /// A document as every command writes it: NaN and infinity are null, and what is no UTF-8 in the
-/// name of a file becomes U+FFFD.
+/// name of a file becomes U+FFFD. Keys that had another name before 0.2 are there by both.
 [[nodiscard]] std::string json_text(const Json& document);
 
 [[nodiscard]] Json to_json(const Eigen::Vector3d& vector);

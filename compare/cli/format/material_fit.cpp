@@ -26,8 +26,8 @@ std::string value_text(const FittedValue& value, const char* unit) {
   const std::string_view blank = *unit == '\0' ? "" : " ";
   const std::string interval = fmt::format("95 %: {} to {}{}{}", number(value.low, "..."),
                                            number(value.high, "..."), blank, unit);
-  if (!value.low && !value.high) return "not told";
-  if (!value.value) return "not told, " + interval;
+  if (!value.low && !value.high) return "not identified";
+  if (!value.value) return "not identified, " + interval;
   return fmt::format("{:.5g}{}{}, {}", *value.value, blank, unit, interval);
 }
 
@@ -47,7 +47,8 @@ std::string correlation_text(const MaterialReport& report) {
       "{:.2g} "
       "m\n            ({:.2g} % of the rod){} ({:.3g} degrees of freedom)\n",
       errors.share * 100, errors.length_m, errors.length_m / report.scenes.front().length * 100,
-      has_interval ? fmt::format("; the interval is {:.3g} times as wide for it", errors.widening)
+      has_interval ? fmt::format("; the interval is {:.3g} times as wide to account for that",
+                                 errors.widening)
                    : "",
       errors.degrees_of_freedom);
 }
@@ -253,14 +254,14 @@ std::string material_text(const MaterialReport& report) {
     add(torsion_of(report.scenes.front()), *fit.torsional_stiffness);
     add(torsion_ratio_of(report.scenes.front()), *fit.torsion_over_bending);
   }
-  if (!fit.not_told.empty()) append(out, "            {}\n", fit.not_told);
+  if (!fit.not_identified.empty()) append(out, "            {}\n", fit.not_identified);
   if (!fit.warning.empty()) append(out, "            {}\n", fit.warning);
   append(out, "{}", numbers_text(fit, std::nullopt));
   if (fit.scatter) {
     append(out,
            "            the shapes do not agree: they scatter by {:.2g} % in {} (by chance in "
            "{:.2g} % "
-           "of cases);\n            the interval is {:.3g} times as wide for it\n",
+           "of cases);\n            the interval is {:.3g} times as wide to account for that\n",
            fit.scatter->relative_deviation * 100, report.scenes.front().stiffness().name,
            fit.scatter->chance * 100, fit.scatter->widening);
   }
@@ -271,7 +272,8 @@ std::string material_text(const MaterialReport& report) {
     append(out, "{}", correlation_text(report));
     if (fit.others.empty() && fit.alternatives.empty()) {
       out +=
-          "            (clamps that are off, or a wire that is not straight by nature, leave such "
+          "            (misaligned clamps, or a wire that is not intrinsically straight, leave "
+          "such "
           "residuals:\n            --clamp-angles, --natural-curvature)\n";
     }
   }
@@ -284,7 +286,8 @@ std::string material_text(const MaterialReport& report) {
            a.shape.points.cols(), range_text(a, report.scenes[i].length),
            std::sqrt(a.mean_square) * 1e3);
     append(out, "            arc lengths: {}\n", compare::to_string(a.arc_lengths));
-    if (report.frame_was_found) append(out, "            frame {}\n", pose_text(a.pose));
+    if (report.frame_was_found)
+      append(out, "            frame {}\n", pose_text(a.pose, report.scenes[i].length));
     append(out, "{}", numbers_text(fit, i));
   }
   out += chains_text(report.fit.chains);
@@ -304,12 +307,12 @@ std::string material_csv(const MaterialReport& report) {
                                 stiffness.unit, heaviness.text(), heaviness.name);
   out +=
       "noise_m,"
-      "degrees_of_freedom,rms_m,not_told,warning,errors_are_correlated,correlation_length_m,"
+      "degrees_of_freedom,rms_m,not_identified,warning,errors_are_correlated,correlation_length_m,"
       "correlation_share,interval_widened_by,effective_degrees_of_freedom,torsional_stiffness_Nm2,"
-      "torsional_stiffness_low,torsional_stiffness_high\n";
+      "torsional_stiffness_low,torsional_stiffness_high,not_told\n";  // its name before 0.2
   append_csv(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{},{},", field(E.value), field(E.low),
              field(E.high), field(density.value), field(density.low), field(density.high),
-             fit.noise_m, fit.degrees_of_freedom, fit.rms_m, csv_field(fit.not_told),
+             fit.noise_m, fit.degrees_of_freedom, fit.rms_m, csv_field(fit.not_identified),
              csv_field(fit.warning));
   if (fit.correlation) {
     append_csv(out, "true,{:.10g},{:.10g},{:.10g},{:.10g}", fit.correlation->length_m,
@@ -319,7 +322,8 @@ std::string material_csv(const MaterialReport& report) {
     append_csv(out, "{},,,,", fit.correlation_was_tested ? "false" : "");
   }
   const FittedValue torsion = fit.torsional_stiffness.value_or(FittedValue());
-  append_csv(out, ",{},{},{}\n", field(torsion.value), field(torsion.low), field(torsion.high));
+  append_csv(out, ",{},{},{},{}\n", field(torsion.value), field(torsion.low), field(torsion.high),
+             csv_field(fit.not_identified));
   return out;
 }
 
@@ -335,7 +339,7 @@ Json material_json(const MaterialReport& report) {
     add_value(result, torsion_key, torsion_key.name + "_", *fit.torsional_stiffness);
     add_value(result, ratio_key, ratio_key.name + "_", *fit.torsion_over_bending);
   }
-  result["not_told"] = fit.not_told.empty() ? Json(nullptr) : Json(fit.not_told);
+  result["not_identified"] = fit.not_identified.empty() ? Json(nullptr) : Json(fit.not_identified);
   result["warning"] = fit.warning.empty() ? Json(nullptr) : Json(fit.warning);
   result["noise_m"] = fit.noise_m;
   result["noise_is_estimated"] = fit.noise_is_estimated;
@@ -374,7 +378,7 @@ std::string material_toml(const MaterialReport& report) {
   const compare::MaterialFit& fit = report.fit;
   const FittedValue& E = fit.youngs_modulus;
   if (!E.value || (fit.density && !fit.density->value)) {
-    throw compare::InputError("calibrate: no material to write, " + fit.not_told);
+    throw compare::InputError("calibrate: no material to write, " + fit.not_identified);
   }
   const compare::Scene& scene = report.scenes.front();
   const compare::NamedValue stiffness = scene.stiffness();

@@ -178,14 +178,14 @@ Json moving_json(const std::vector<compare::MovingScanEntry>& scan) {
 std::string moving_text(const compare::MovingReport& report) {
   const MovingChoices& choices = report.choices;
   std::string out;
-  append(out,
-         "\nTables 2 to 4, moving grippers: Table 1's rod, 28 s, nominal {} steps, movement from 5 "
-         "to 13 s.\nThe paper leaves out angle, speed, c_h, the growth of c_s and the unit of c_F. "
-         "Chosen: {:g} deg,\n{:g} cm in 8 s, c_h = {:g}, c_s grows by {:g}; c_F and l_s in units "
-         "of {:g} m; {:g} N at 5 % of a segment.\n",
-         compare::nominal_moving_steps, choices.angle * 180 / std::numbers::pi,
-         choices.distance * 100, choices.c_h, choices.c_s_change, choices.length_unit,
-         choices.grip_force);
+  append(
+      out,
+      "\nTables 2 to 4, moving grippers: Table 1's rod, 28 s, nominal {} steps, movement from 5 "
+      "to 13 s.\nThe paper does not give angle, speed, c_h, the growth of c_s and the unit of c_F. "
+      "Chosen: {:g} deg,\n{:g} cm in 8 s, c_h = {:g}, c_s grows by {:g}; c_F and l_s in units "
+      "of {:g} m; {:g} N at 5 % of a segment.\n",
+      compare::nominal_moving_steps, choices.angle * 180 / std::numbers::pi, choices.distance * 100,
+      choices.c_h, choices.c_s_change, choices.length_unit, choices.grip_force);
   add_rows(out, report.rows);
   add_errors(out, report);
   append(out,

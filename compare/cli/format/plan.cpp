@@ -50,7 +50,7 @@ std::string stretch_text(const compare::Plan& plan) {
                             : "no bound; with the law hooke chain and force have it and the twist";
 }
 
-std::string left_out_text(const compare::LeftOut& item, double length) {
+std::string neglected_text(const compare::Neglected& item, double length) {
   std::string out;
   if (item.bound_m == 0) {
     out += "nothing";
@@ -60,7 +60,7 @@ std::string left_out_text(const compare::LeftOut& item, double length) {
   } else {
     out += "no bound";
   }
-  append(out, ": {} (left out by {})", item.why, item.models);
+  append(out, ": {} (neglected by {})", item.why, item.models);
   return out;
 }
 
@@ -103,9 +103,9 @@ std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
     append(out, "unknown for {:g} % of l; the scene has {}\n", plan.target * 100,
            plan.scene_points);
   }
-  append(out, "  left out, and what it could change (RMS of the shape)\n");
-  for (const compare::LeftOut& item : plan.left_out) {
-    append(out, "    {:<24}{}\n", item.what, left_out_text(item, scene.length));
+  append(out, "  neglected, and what it could change (RMS of the shape)\n");
+  for (const compare::Neglected& item : plan.neglected) {
+    append(out, "    {:<24}{}\n", item.what, neglected_text(item, scene.length));
   }
   return out + "\n";
 }
@@ -124,12 +124,12 @@ Json plan_json(const compare::Plan& plan) {
     obstacles.push_back({{"in_reach", obstacle.in_reach}, {"clearance_m", obstacle.clearance}});
   }
   // No bound, which is infinity, is null in JSON.
-  Json left_out = Json::array();
-  for (const compare::LeftOut& item : plan.left_out) {
-    left_out.push_back({{"what", item.what},
-                        {"by_models", item.models},
-                        {"bound_m", item.bound_m},
-                        {"why", item.why}});
+  Json neglected = Json::array();
+  for (const compare::Neglected& item : plan.neglected) {
+    neglected.push_back({{"what", item.what},
+                         {"by_models", item.models},
+                         {"bound_m", item.bound_m},
+                         {"why", item.why}});
   }
   Json result = {{"gamma", plan.gamma},
                  {"target_over_length", plan.target},
@@ -141,7 +141,7 @@ Json plan_json(const compare::Plan& plan) {
                  {"contact", plan.contact},
                  {"points_for_target", plan.points > 0 ? Json(plan.points) : Json()},
                  {"scene_points", plan.scene_points},
-                 {"left_out", std::move(left_out)}};
+                 {"neglected", std::move(neglected)}};
   if (plan.frame_held) {
     Json twist = Json::array();
     for (const compare::PlannedTwist& part : plan.twist) {

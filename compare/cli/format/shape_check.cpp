@@ -9,6 +9,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "format/alignment.hpp"
 #include "format/comparison.hpp"
+#include "format/magnitudes.hpp"
 #include "option/output.hpp"
 #include "option/terminal.hpp"
 
@@ -29,7 +30,7 @@ const char* rule_text(compare::ArcLengths rule) {
 }
 
 void add_friction(std::string& out, const compare::FrictionCheck& friction) {
-  append(out, "  left out        friction that the scene has: all above is without it\n");
+  append(out, "  neglected       friction that the scene has: all above is without it\n");
   const auto needed = [&] {
     std::string text =
         fmt::format("{:.3g} +- {:.2g} times the scene's", friction.factor, friction.factor_error);
@@ -49,10 +50,10 @@ void add_friction(std::string& out, const compare::FrictionCheck& friction) {
     case compare::FrictionVerdict::outside:
       append(out, "  friction        cannot hold this shape: it needs {}\n", needed());
       return;
-    case compare::FrictionVerdict::not_told:
+    case compare::FrictionVerdict::not_identified:
       break;
   }
-  append(out, "  friction        not told: {}\n", friction.reason);
+  append(out, "  friction        not identified: {}\n", friction.reason);
   if (std::isfinite(friction.factor)) {
     append(out, "                  (between {:.3g} and {:.3g} times the scene's, each +- {:.2g})\n",
            friction.least_factor, friction.factor, friction.factor_error);
@@ -80,7 +81,7 @@ void judge(ShapeCheckReport& report, const compare::MeasuredShape& shape,
   report.explanations = compare::explain_shape(report.scene, shape, report.check, options);
   verdict.judgement = compare::with_explanation(verdict.judgement, report.explanations);
   if (compare::better_than_stiffness(report.check, report.explanations)) {
-    report.check.effective_modulus.optimum = compare::Optimum::outdone;
+    report.check.effective_modulus.optimum = compare::Optimum::superseded;
   }
 }
 
@@ -107,10 +108,11 @@ std::string shape_check_text(const ShapeCheckReport& report) {
     append(out, "  frame           the scene's\n");
   } else {
     append(out, "  frame           found ({}): {}\n", compare::to_string(report.pose),
-           pose_text(a.pose));
+           pose_text(a.pose, scene.length));
     if (!c.turn_is_clear) {
       append(out,
-             "                  (the turn about the rod's own line is not told by these points)\n");
+             "                  (the rotation about the rod's own line is not identifiable from "
+             "these points)\n");
     }
   }
   const compare::Deviation& d = c.deviation;
@@ -119,7 +121,7 @@ std::string shape_check_text(const ShapeCheckReport& report) {
   if (std::isfinite(d.rms_over_movement)) {
     append(out, " = {:.4g} % of the movement", d.rms_over_movement * 100);
   }
-  const Eigen::Vector3d at = c.worst_position.array() + 0.0;  // turns -0 into 0
+  const Eigen::Vector3d at = shown(c.worst_position, scene.length);
   append(out,
          "\n                  largest {:.4g} mm at s = {:.4f} m (point {} of the file, at "
          "[{:.4g}, {:.4g}, {:.4g}] m)\n",
@@ -205,7 +207,7 @@ Json shape_check_json(const ShapeCheckReport& report) {
   }
   result["state"] = to_json(c.state);
   if (report.friction) {
-    result["left_out"] = {"friction"};
+    result["neglected"] = {"friction"};
     result["friction"] = friction_json(*report.friction);
   }
   result["arc_length_m"] = s;

@@ -36,11 +36,11 @@ struct ShapeCheckReport {
   std::string file;       ///< of the text; empty: standard output, which may be a terminal
 };
 
-/// Whether it is looked for what would make a shape right that fails.
+/// Whether it is looked for what is wrong with a shape that fails.
 enum class Explaining { yes, no };
 
 /// Judges a report's check by its verdict's tolerance and, where the shape fails, looks for what
-/// would make it right.
+/// could be wrong with it.
 void judge(ShapeCheckReport& report, const compare::MeasuredShape& shape,
            const compare::ShapeCheckOptions& options, Explaining explaining);
 

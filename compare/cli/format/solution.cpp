@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "base/display.hpp"
+#include "base/number.hpp"
+#include "format/magnitudes.hpp"
 #include "format/plan.hpp"
 #include "option/output.hpp"
 #include "polygon/self_crossing.hpp"
@@ -45,21 +47,21 @@ Json turns_json(const std::vector<compare::Linking>& parts) {
   return result;
 }
 
-/// As far as it is known; a fold or bifurcation leaves it open.
+/// As far as it is known: a fold or bifurcation is a singular point.
 bool is_stable(const compare::Solution& solution) {
-  return solution.smallest_curvature >= -1e-7 &&
+  return solution.smallest_eigenvalue >= -1e-7 &&
          solution.status != energy_model::SolveStatus::near_singular &&
          solution.status != energy_model::SolveStatus::saddle;
 }
 
 const char* stability_of(const compare::Solution& solution) {
   if (is_stable(solution)) return "stable";
-  return solution.status == energy_model::SolveStatus::near_singular ? "left open" : "unstable";
+  return solution.status == energy_model::SolveStatus::near_singular ? "singular" : "unstable";
 }
 
 bool lacks(const compare::Solution& solution, const char* what) {
-  const std::vector<std::string>& left_out = solution.left_out;
-  return std::find(left_out.begin(), left_out.end(), what) != left_out.end();
+  const std::vector<std::string>& neglected = solution.neglected;
+  return std::find(neglected.begin(), neglected.end(), what) != neglected.end();
 }
 
 }  // namespace
@@ -74,8 +76,8 @@ const char* status_name(energy_model::SolveStatus status) {
       return "saddle";
     case energy_model::SolveStatus::near_singular:
       return "near_singular";
-    case energy_model::SolveStatus::not_resolved:
-      return "not_resolved";
+    case energy_model::SolveStatus::not_verified:
+      return "not_verified";
     default:
       return "failed";
   }
@@ -83,7 +85,7 @@ const char* status_name(energy_model::SolveStatus status) {
 
 std::string contact_text(const energy_model::ContactPart& contact) {
   std::string out;
-  const Eigen::Vector3d& force = contact.force;
+  const Eigen::Vector3d force = shown(contact.force, 0);
   append(out, "obstacle {}, {}", contact.obstacle + 1, energy_model::to_string(contact.kind));
   if (contact.kind == energy_model::ContactKind::lying) {
     append(out, " from s = {:.6g} to {:.6g} m", contact.begin, contact.end);
@@ -92,9 +94,11 @@ std::string contact_text(const energy_model::ContactPart& contact) {
   }
   append(out, ": force [{:.6g}, {:.6g}, {:.6g}] N", force.x(), force.y(), force.z());
   if (contact.kind == energy_model::ContactKind::lying) {
-    const auto clean = [&](double part) { return std::abs(part) < 1e-7 * force.norm() ? 0 : part; };
+    // Both are differences of what the rod carries beside them.
+    constexpr double cancelled = 100;
+    const double large = cancelled * force.norm();
     append(out, ", of it {:.4g} N and {:.4g} N where it begins and ends",
-           clean(contact.begin_force), clean(contact.end_force));
+           compare::shown(contact.begin_force, large), compare::shown(contact.end_force, large));
   }
   return out;
 }
@@ -129,14 +133,14 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     if (solution.c_F > 0) append(out, "   c_F {:.4g} m/N, c_h {:.6f}", solution.c_F, solution.c_h);
     append(out, "\n");
   } else {
-    append(out, "work       {} evaluations", solution.evaluations);
+    append(out, "solver     {} evaluations", solution.evaluations);
     if (solution.terms > 0) append(out, ", {} terms", solution.terms);
     append(out, "\n");
   }
   append(out, "wall time  {:.3g} ms\n", solution.seconds * 1e3);
-  if (!solution.left_out.empty()) {
-    append(out, "left out   {}: the scene has it, model {} has not\n",
-           fmt::join(solution.left_out, ", "), compare::to_string(solution.model));
+  if (!solution.neglected.empty()) {
+    append(out, "neglected  {}: the scene has it, model {} has not\n",
+           fmt::join(solution.neglected, ", "), compare::to_string(solution.model));
   }
   if (lacks(solution, "friction")) {
     append(out,
@@ -148,16 +152,19 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
            "is {:g} m: contact of the rod with itself is in no model\n",
            crossing->first, crossing->second, crossing->distance, scene.diameter);
   }
+  const Magnitudes large = magnitudes(scene);
   compare::SceneEnergies e = solution.energy;
-  // Adding zero turns -0 into 0.
-  for (double* part : {&e.bending, &e.twisting, &e.gravity, &e.load, &e.stretch}) *part += 0.0;
+  for (double* part : {&e.bending, &e.twisting, &e.gravity, &e.load, &e.stretch}) {
+    *part = compare::shown(*part, large.energy);
+  }
   append(out, "energy     bending {:.9g} J, ", e.bending);
   if (!solution.twists.empty()) append(out, "twisting {:.9g} J, ", e.twisting);
   append(out, "gravity {:.9g} J, load {:.9g} J, stretch {:.3g} J", e.gravity, e.load, e.stretch);
   out += e.contact > 0 ? fmt::format(", contact {:.9g} J\n", e.contact) : "\n";
   for (const energy_model::TwistedPart& part : solution.twists) {
-    append(out, "twist      {:.6g} rad, torque {:.6g} Nm from s = {:.4g} to {:.4g} m\n", part.angle,
-           part.torque, part.begin, part.end);
+    append(out, "twist      {:.6g} rad, torque {:.6g} Nm from s = {:.4g} to {:.4g} m\n",
+           compare::shown(part.angle, 1), compare::shown(part.torque, large.torque), part.begin,
+           part.end);
   }
   for (const compare::Linking& part : solution.linking) {
     const double turns = part.twist + part.writhe;
@@ -170,7 +177,8 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     }
     append(out, "\n");
   }
-  for (const Eigen::Vector3d& force : solution.obstacles) {
+  for (const Eigen::Vector3d& exact : solution.obstacles) {
+    const Eigen::Vector3d force = shown(exact, large.force);
     append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
            force.z());
   }
@@ -178,16 +186,15 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     append(out, "contact    {}\n", contact_text(contact));
   }
   for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
-    compare::GripperLoad load = solution.grippers[i];
+    const Eigen::Vector3d force = shown(solution.grippers[i].force, large.force);
+    const Eigen::Vector3d torque = shown(solution.grippers[i].torque, large.torque);
     const compare::Gripper& gripper = scene.grippers[i];
-    load.force.array() += 0.0;
-    load.torque.array() += 0.0;
     append(out,
            "gripper {} at s = {:.4g} m ({}): force [{:.6g}, {:.6g}, {:.6g}] N, torque [{:.6g}, "
            "{:.6g}, {:.6g}] Nm on the "
            "rod\n",
-           i + 1, gripper.at, gripper.direction ? "clamp" : "pin", load.force.x(), load.force.y(),
-           load.force.z(), load.torque.x(), load.torque.y(), load.torque.z());
+           i + 1, gripper.at, gripper.direction ? "clamp" : "pin", force.x(), force.y(), force.z(),
+           torque.x(), torque.y(), torque.z());
   }
   append(out, "\n{:>12} {:>13} {:>13} {:>13}\n", "s [m]", "x [m]", "y [m]", "z [m]");
   for (std::size_t i = 0; i < solution.shape.arc_length.size(); ++i) {
@@ -246,7 +253,7 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
   }
   if (!solution.twists.empty()) result["twist"] = twist_json(solution.twists);
   if (!solution.linking.empty()) result["turns"] = turns_json(solution.linking);
-  if (!solution.left_out.empty()) result["left_out"] = solution.left_out;
+  if (!solution.neglected.empty()) result["neglected"] = solution.neglected;
   if (!solution.obstacles.empty()) {
     result["obstacles"] = obstacles_json(solution.obstacles);
     if (solution.model == compare::Model::energy || solution.model == compare::Model::exact) {
@@ -274,16 +281,18 @@ std::string solution_csv(const compare::Solution& solution) {
   return text;
 }
 
-std::string equilibria_text(const compare::AllSolutions& all) {
+std::string equilibria_text(const compare::AllSolutions& all, const compare::Scene& scene) {
   std::string out;
+  const Magnitudes large = magnitudes(scene);
   const std::vector<compare::Solution>& solutions = all.solutions;
   append(out, "\n{} equilibria found\n{:>16} {:>10} {:>20} {:>13} {:>13} {:>13}\n",
-         solutions.size(), "energy [J]", "", "smallest curvature", "x(l) [m]", "y(l) [m]",
+         solutions.size(), "energy [J]", "", "smallest eigenvalue", "x(l) [m]", "y(l) [m]",
          "z(l) [m]");
   for (const compare::Solution& solution : solutions) {
-    const Eigen::Vector3d tip = solution.shape.points.rightCols<1>();
-    append(out, "{:16.9g} {:>10} {:20.6g} {:13.6f} {:13.6f} {:13.6f}\n", solution.energy.total(),
-           stability_of(solution), solution.smallest_curvature, tip.x(), tip.y(), tip.z());
+    const Eigen::Vector3d tip = shown(solution.shape.points.rightCols<1>(), large.length);
+    append(out, "{:16.9g} {:>10} {:20.6g} {:13.6f} {:13.6f} {:13.6f}\n",
+           compare::shown(solution.energy.total(), large.energy), stability_of(solution),
+           compare::shown(solution.smallest_eigenvalue, 1), tip.x(), tip.y(), tip.z());
   }
   append(out, "\nlooked from (a search: there may be others)\n{:>8} {:>12}\n", "starts",
          "found first");
@@ -304,7 +313,7 @@ Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& sce
   for (const compare::Solution& solution : solutions) {
     equilibria.push_back({{"stable", is_stable(solution)},
                           {"status", status_name(solution.status)},
-                          {"smallest_curvature", solution.smallest_curvature},
+                          {"smallest_eigenvalue", solution.smallest_eigenvalue},
                           {"energy_J", solution.energy.total()},
                           {"points_m", points_json(solution.shape.points)}});
   }

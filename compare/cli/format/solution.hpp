@@ -32,7 +32,8 @@ namespace dlo::cli {
 [[nodiscard]] std::string solution_csv(const compare::Solution& solution);
 
 /// What tells several equilibria apart, and where they were looked for.
-[[nodiscard]] std::string equilibria_text(const compare::AllSolutions& all);
+[[nodiscard]] std::string equilibria_text(const compare::AllSolutions& all,
+                                          const compare::Scene& scene);
 
 /// The first of several equilibria in full, then what tells them apart.
 [[nodiscard]] Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& scene,

@@ -125,7 +125,7 @@ Bad usage or input.
 .It 3
 A solver did not converge.
 .It 4
-Out of memory or threads, or a mistake of
+Out of memory or threads, or an internal error of
 .Nm
 itself.
 .It 5

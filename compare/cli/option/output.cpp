@@ -73,10 +73,10 @@ bool is_read(const CLI::Option& option) {
 }
 
 /// Files that are read, without those of one option.
-std::vector<std::string> input_files_but(const CLI::App& command, const CLI::Option* left_out) {
+std::vector<std::string> input_files_but(const CLI::App& command, const CLI::Option* omitted) {
   std::vector<std::string> files;
   for (const CLI::Option* option : command.get_options()) {
-    if (option == left_out || !is_read(*option)) continue;
+    if (option == omitted || !is_read(*option)) continue;
     for (const std::string& word : option->results()) {
       files.push_back(word);
       for (std::string& beside : compare::trajectory_files(word)) files.push_back(beside);

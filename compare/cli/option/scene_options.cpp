@@ -48,26 +48,27 @@ double option_quantity(const std::string& option, const std::string& text, Dimen
 
 void warn_of_no_twist(const compare::Scene& scene, const std::string& study) {
   if (!compare::takes_twist(scene, scene.force_model)) return;
-  say("{}: the grippers hold twist, which {} leaves out", scene.file, study);
+  say("{}: the grippers hold twist, which {} neglects", scene.file, study);
 }
 
 void warn_of_friction(const compare::Scene& scene) {
   if (!compare::friction_in_reach(scene)) return;
-  say("{}: an obstacle in reach has friction, which all models leave out", scene.file);
+  say("{}: an obstacle in reach has friction, which all models neglect", scene.file);
 }
 
 void warn_of_polygons(const compare::Scene& scene) {
   warn_of_friction(scene);
-  const std::vector<std::string> left_out = compare::left_out_of_polygon(scene, scene.force_model);
-  const auto leaves_out = [&left_out](const char* what) {
-    return std::find(left_out.begin(), left_out.end(), what) != left_out.end();
+  const std::vector<std::string> neglected =
+      compare::neglected_by_polygon(scene, scene.force_model);
+  const auto neglects = [&neglected](const char* what) {
+    return std::find(neglected.begin(), neglected.end(), what) != neglected.end();
   };
-  if (leaves_out("twist")) {
-    say("{}: the grippers hold twist, which models chain and force leave out {}", scene.file,
-        scene.naturally_bent() ? "of a rod that is curved by nature" : "with the law paper");
+  if (neglects("twist")) {
+    say("{}: the grippers hold twist, which models chain and force neglect {}", scene.file,
+        scene.naturally_bent() ? "of an intrinsically curved rod" : "with the law paper");
   }
-  if (leaves_out("natural curvature")) {
-    say("{}: the rod is curved by nature, which models chain and force leave out {}", scene.file,
+  if (neglects("natural curvature")) {
+    say("{}: the rod is intrinsically curved, which models chain and force neglect {}", scene.file,
         scene.planar() ? "with the law paper" : "in space");
   }
 }
@@ -93,7 +94,7 @@ void PlanOptions::add_to(CLI::App& command) {
   const std::string group = "Plan";
   command
       .add_flag("--explain", explain_,
-                "show what the scene needs, what is left out and what that could change")
+                "show what the scene needs, what is neglected and what that could change")
       ->group(group);
   command
       .add_option("--target-error", plan_.target,

@@ -61,7 +61,7 @@ class PlanOptions {
 /// Says on standard error that no model has the friction of an obstacle in reach.
 void warn_of_friction(const compare::Scene& scene);
 
-/// Says on standard error what models chain and force leave out that a scene has: twist that its
+/// Says on standard error what models chain and force neglect that a scene has: twist that its
 /// grippers hold, natural curvature, friction.
 void warn_of_polygons(const compare::Scene& scene);
 

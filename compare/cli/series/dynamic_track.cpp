@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/display.hpp"
+#include "base/number.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {
@@ -65,8 +66,9 @@ std::string moving_table(const DynamicTrack& dynamic) {
   for (std::size_t row = 0; row < rows; ++row) {
     const DynamicFrame& frame = dynamic.frames[rows == 1 ? 0 : row * (count - 1) / (rows - 1)];
     append(out, "{:10.5g} {:14.8g} {:12.5g} {:12.5g} {:12.3g} {:>12}\n", frame.time,
-           frame.energy.total(), frame.energy.kinetic, frame.grippers.front().force.norm(),
-           frame.quasi_static_error,
+           compare::shown(frame.energy.total(), dynamic.largest_energy),
+           compare::shown(frame.energy.kinetic, dynamic.largest_energy),
+           frame.grippers.front().force.norm(), compare::shown(frame.quasi_static_error, 1),
            frame.force_error ? fmt::format("{:.3g}", *frame.force_error) : "-");
   }
   return out;
@@ -81,7 +83,7 @@ std::string dynamic_text(const DynamicTrack& dynamic) {
          dynamic.seconds);
   append(
       out,
-      "            energy balance missed by {:.2g} of the largest energy, {:.4g} J\n"
+      "            energy balance: residual {:.2g} of the largest energy, {:.4g} J\n"
       "            steps change the shape by {:.2g} l (estimate), {} terms instead by {:.2g} l\n",
       dynamic.energy_error, dynamic.largest_energy, dynamic.step_error, dynamic.fewer_terms,
       dynamic.term_difference);
@@ -94,7 +96,7 @@ std::string dynamic_text(const DynamicTrack& dynamic) {
   if (dynamic.force) {
     append(out, "force model off the moving rod by {}\n", errors_text(*dynamic.force));
     if (std::isfinite(dynamic.force_lag)) {
-      append(out, "            late by {:.4g} ms; shifted by that, {:.4g} % of l (RMS) are left\n",
+      append(out, "            lag {:.4g} ms; shifted by that, {:.4g} % of l (RMS) are left\n",
              dynamic.force_lag * 1e3, dynamic.force_error_without_lag * 100);
     }
   }

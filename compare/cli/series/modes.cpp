@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "base/display.hpp"
+#include "base/number.hpp"
 #include "base/quote.hpp"
+#include "format/magnitudes.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {
@@ -19,7 +21,7 @@ double hertz(double omega) { return omega / (2 * std::numbers::pi); }
 
 std::string frequency_text(const energy_model::VibrationMode& mode) {
   if (mode.omega_squared >= 0) return fmt::format("{:.6g} Hz", hertz(mode.omega()));
-  return fmt::format("falls, e-fold in {:.3g} s", 1 / std::sqrt(-mode.omega_squared));
+  return fmt::format("unstable, e-fold in {:.3g} s", 1 / std::sqrt(-mode.omega_squared));
 }
 
 std::string line_of(const SceneMode& mode, std::size_t number) {
@@ -39,16 +41,16 @@ std::string line_of(const SceneMode& mode, std::size_t number) {
     append(out, "; as it steps {:.4g} Hz ({:.4g} times), damping ratio {:.3g}",
            hertz(mode.stepped->omega), mode.stepped->omega / omega, mode.stepped->damping);
   } else {
-    out += "; as it steps it does not swing";
+    out += "; overdamped as it steps";
   }
   return out + (mode.stepped->is_stable ? "\n" : ", unstable\n");
 }
 
 Json mode_json(const SceneMode& mode, const std::vector<double>& s) {
-  const bool swings = mode.rod.omega_squared >= 0;
+  const bool stable = mode.rod.omega_squared >= 0;
   const double omega = mode.rod.omega();
-  Json result = {{"frequency_Hz", swings ? Json(hertz(omega)) : Json(nullptr)},
-                 {"omega_rad_s", swings ? Json(omega) : Json(nullptr)},
+  Json result = {{"frequency_Hz", stable ? Json(hertz(omega)) : Json(nullptr)},
+                 {"omega_rad_s", stable ? Json(omega) : Json(nullptr)},
                  {"omega_squared_per_s2", mode.rod.omega_squared},
                  {"relative_error", mode.rod.error},
                  {"plane", to_string(mode.rod.plane)},
@@ -74,7 +76,8 @@ std::string modes_text(const compare::SceneModes& modes, const compare::Scene& s
   std::string out = fmt::format("scene       {}\n", compare::display(scene.name));
   for (std::size_t i = 0; i < modes.modes.size(); ++i) out += line_of(modes.modes[i], i);
   if (modes.tension) {
-    append(out, "tension     {:g} N, which the shape does not tell (--tension)\n", *modes.tension);
+    append(out, "tension     {:g} N, which is not identifiable from the shape (--tension)\n",
+           compare::shown(*modes.tension, magnitudes(scene).force));
   }
   if (!modes.no_polygon.empty()) {
     append(out, "polygon     none: {}\n", modes.no_polygon);

@@ -7,8 +7,10 @@
 #include <limits>
 
 #include "base/display.hpp"
+#include "base/number.hpp"
 #include "base/quote.hpp"
 #include "format/json.hpp"
+#include "format/magnitudes.hpp"
 #include "format/solution.hpp"
 #include "option/output.hpp"
 #include "series/dynamic_track.hpp"
@@ -26,9 +28,9 @@ using energy_model::ContactPart;
 /// Rows of the table in text, at most.
 constexpr std::size_t text_rows = 11;
 
-std::string vector_text(const Eigen::Vector3d& v) {
-  // Adding zero turns -0 into 0.
-  return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x() + 0.0, v.y() + 0.0, v.z() + 0.0);
+std::string vector_text(const Eigen::Vector3d& vector, double magnitude) {
+  const Eigen::Vector3d v = shown(vector, magnitude);
+  return fmt::format("[{:.4g}, {:.4g}, {:.4g}]", v.x(), v.y(), v.z());
 }
 
 std::string part_text(const ContactPart& part) {
@@ -50,7 +52,7 @@ std::string state_text(const TrackFrame& frame, const char* separator) {
   return text.empty() ? "-" : text;
 }
 
-std::string event_text(const Track& track, const TrackEvent& event) {
+std::string event_text(const Track& track, const TrackEvent& event, const Magnitudes& large) {
   const TrackFrame& after = track.frames[event.frame];
   const TrackFrame& before = track.frames[event.frame - 1];
   std::string out = fmt::format("{:11.6g} s  {:8}", after.time, to_string(event.kind));
@@ -61,11 +63,11 @@ std::string event_text(const Track& track, const TrackEvent& event) {
     }
     out += "\n";
   } else {
-    const bool told = std::isfinite(event.released);
-    out +=
-        told ? fmt::format("{:.4g} J released (+- {:.2g} J)", event.released, event.released_bound)
-             : "the shape is another one";
-    append(out, "; smallest curvature before {:.3g}\n", event.smallest_curvature);
+    const bool balanced = std::isfinite(event.released);
+    out += balanced ? fmt::format("{:.4g} J released (+- {:.2g} J)", event.released,
+                                  event.released_bound)
+                    : "the shape is another one";
+    append(out, "; smallest eigenvalue before {:.3g}\n", event.smallest_eigenvalue);
     if (event.kind == TrackEvent::Kind::lost) {
       append(out, "{:23}its branch has not been seen to end: the solver may have lost it\n", "");
     }
@@ -73,10 +75,10 @@ std::string event_text(const Track& track, const TrackEvent& event) {
   for (std::size_t i = 0; i < after.grippers.size(); ++i) {
     const compare::GripperLoad& from = before.grippers[i];
     const compare::GripperLoad& to = after.grippers[i];
-    append(out, "{:22} gripper {}: force {} -> {} N\n", "", i + 1, vector_text(from.force),
-           vector_text(to.force));
-    append(out, "{:22}            torque {} -> {} Nm\n", "", vector_text(from.torque),
-           vector_text(to.torque));
+    append(out, "{:22} gripper {}: force {} -> {} N\n", "", i + 1,
+           vector_text(from.force, large.force), vector_text(to.force, large.force));
+    append(out, "{:22}            torque {} -> {} Nm\n", "", vector_text(from.torque, large.torque),
+           vector_text(to.torque, large.torque));
   }
   return out;
 }
@@ -94,7 +96,7 @@ std::string force_text(const Track& track, const compare::Scene& scene,
            "at {:.6g} s\n",
            force.rest_error * 100, force.mean * 100, force.largest * 100, force.largest_time);
     if (std::isfinite(force.lag)) {
-      append(out, "            late by {:.4g} ms; shifted by that, {:.4g} % of l (RMS) are left\n",
+      append(out, "            lag {:.4g} ms; shifted by that, {:.4g} % of l (RMS) are left\n",
              force.lag * 1e3, force.error_without_lag * 100);
     }
     const double spare = 1 / options.rates.frames;
@@ -109,7 +111,7 @@ std::string force_text(const Track& track, const compare::Scene& scene,
   return out;
 }
 
-std::string table_text(const Track& track) {
+std::string table_text(const Track& track, const Magnitudes& large) {
   std::string out;
   append(out, "\n{:>10} {:>14} {:>12} {:>12}   {}\n", "t [s]", "energy [J]", "force 1 [N]",
          "error/l", "touches");
@@ -118,8 +120,9 @@ std::string table_text(const Track& track) {
   for (std::size_t row = 0; row < rows; ++row) {
     const std::size_t i = rows == 1 ? 0 : row * (count - 1) / (rows - 1);
     const TrackFrame& frame = track.frames[i];
-    append(out, "{:10.5g} {:14.8g} {:12.5g} {:>12}   {}\n", frame.time, frame.energy.total(),
-           frame.grippers.front().force.norm(),
+    append(out, "{:10.5g} {:14.8g} {:12.5g} {:>12}   {}\n", frame.time,
+           compare::shown(frame.energy.total(), large.energy),
+           compare::shown(frame.grippers.front().force.norm(), large.force),
            frame.force ? fmt::format("{:.3g}", frame.force->error_over_length) : "-",
            state_text(frame, ", "));
   }
@@ -139,7 +142,7 @@ Json event_json(const Track& track, const TrackEvent& event) {
   } else {
     result["released_J"] = event.released;
     result["released_bound_J"] = event.released_bound;
-    result["smallest_curvature_before"] = event.smallest_curvature;
+    result["smallest_eigenvalue_before"] = event.smallest_eigenvalue;
   }
   Json grippers = Json::array();
   for (std::size_t i = 0; i < after.grippers.size(); ++i) {
@@ -169,7 +172,7 @@ Json frame_json(const TrackFrame& frame, const compare::Scene& scene, bool point
   const compare::SceneEnergies& energy = frame.energy;
   Json result = {{"time_s", frame.time},
                  {"followed", frame.followed},
-                 {"smallest_curvature", frame.smallest_curvature},
+                 {"smallest_eigenvalue", frame.smallest_eigenvalue},
                  {"grippers", std::move(grippers)},
                  {"contacts", contacts_json(frame.contacts)},
                  {"obstacles", obstacles_json(frame.obstacles)},
@@ -230,6 +233,7 @@ std::string track_text(const Track& track, const compare::Scene& scene,
   std::string out;
   const TrackFrame& first = track.frames.front();
   const TrackFrame& last = track.frames.back();
+  const Magnitudes large = magnitudes(scene);
   append(out, "scene       {}\n", compare::display(scene.name));
   append(out, "motion      {:.6g} to {:.6g} s, {} frames at {:g} Hz{}\n", first.time, last.time,
          track.frames.size(), options.rates.frames,
@@ -244,10 +248,13 @@ std::string track_text(const Track& track, const compare::Scene& scene,
     if (!event.contact) released += event.released;
   }
   if (!std::isnan(last.released)) {
-    append(out,
-           "work        {:.6g} J by what moves; the energy grew by {:.6g} J, falls released "
-           "{:.4g} J\n",
-           last.work, last.energy.total() - first.energy.total(), released);
+    append(
+        out,
+        "balance     work of grippers and obstacles {:.6g} J, change of energy {:.6g} J, released "
+        "by snap-through {:.4g} J\n",
+        compare::shown(last.work, large.energy),
+        compare::shown(last.energy.total() - first.energy.total(), large.energy),
+        compare::shown(released, large.energy));
   }
   out += force_text(track, scene, options);
   if (track.stopped) {
@@ -256,8 +263,8 @@ std::string track_text(const Track& track, const compare::Scene& scene,
   }
   append(out, "events      {}\n",
          track.events.empty() ? "none" : std::to_string(track.events.size()));
-  for (const TrackEvent& event : track.events) out += event_text(track, event);
-  return out + table_text(track);
+  for (const TrackEvent& event : track.events) out += event_text(track, event, large);
+  return out + table_text(track, large);
 }
 
 std::string track_json(const Track& track, const compare::Scene& scene, const TrackOptions& options,

@@ -91,7 +91,7 @@ inline void refuse_unless(bool possible, const std::string& why) {
   if (!possible) throw std::runtime_error(why);
 }
 
-/// What such a chain cannot be made of is refused, not left out.
+/// What such a chain cannot be made of is refused, not neglected.
 inline void check(const nlohmann::json& scene) {
   const nlohmann::json& model = scene.at("force_model");
   const nlohmann::json& rod = scene.at("rod");
@@ -100,7 +100,7 @@ inline void check(const nlohmann::json& scene) {
   refuse_unless(model.at("law") == "hooke" && model.at("bookkeeping") == "consistent",
                 "only the law hooke and the bookkeeping consistent");
   refuse_unless(rod.at("natural_curvature_per_m").empty() && scene.at("obstacles").empty(),
-                "only a rod that is straight by nature, without obstacles");
+                "only a rod that is intrinsically straight, without obstacles");
   refuse_unless(grippers.size() <= 2, "only one or two clamps");
   for (const nlohmann::json& grip : grippers) {
     refuse_unless(grip.at("hold") == "clamp", "only clamps");

@@ -36,7 +36,7 @@ ChainRod chain_rod(const SceneData& data, const std::optional<Eigen::Matrix3Xd>&
   const compare::ForceModelSettings& settings = scene.force_model;
   if (compare::turn_into_plane(scene, settings)) {
     throw InputError(fmt::format(
-        "{}: a rod that is curved by nature out of the plane z = 0 is not stepped from Python "
+        "{}: a rod that is intrinsically curved out of the plane z = 0 is not stepped from Python "
         "(allowed: in that plane, or dlo.solve(scene, model=\"force\"))",
         scene.file));
   }

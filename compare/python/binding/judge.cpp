@@ -87,7 +87,7 @@ std::shared_ptr<ShapeCheckReport> check(const SharedScene& scene, const py::obje
       .modulus = modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no,
       .solve = [&limits] {
         compare::SolveOptions solve = solve_options(limits);
-        solve.accept_unresolved = false;
+        solve.accept_unverified = false;
         return solve;
       }()};
   run_long([&](Signals& /*signals*/) {
@@ -111,9 +111,9 @@ py::object compare_scene(const SharedScene& scene, bool modulus, const py::dict&
                             modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no);
   }));
   py::object result = py::cast(comparison);
-  if (!comparison->unresolved.empty()) {
+  if (!comparison->unverified.empty()) {
     raise_convergence(
-        fmt::format("{}: the energy model: {}", scene->scene.file, comparison->unresolved), result);
+        fmt::format("{}: the energy model: {}", scene->scene.file, comparison->unverified), result);
   }
   return result;
 }
@@ -139,7 +139,7 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
   }
   if (report.scenes.size() == 1) report.scenes.resize(measured_shapes.size(), report.scenes[0]);
   compare::SolveOptions solve = solve_options(limits);
-  solve.accept_unresolved = false;
+  solve.accept_unverified = false;
   const compare::MaterialFitOptions options{
       .pose = compare::from_name<compare::PoseFreedom>(what["pose"].cast<std::string>()),
       .arc_lengths =
@@ -169,7 +169,7 @@ FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,
   options.points = points;
   options.target = target.value_or(options.target);
   options.solve = solve_options(limits);
-  options.solve.accept_unresolved = false;
+  options.solve.accept_unverified = false;
   const compare::ForceModelFit fit = run_long([&](Signals& signals) {
     options.progress = [&signals](auto, auto) { signals.throw_if_stopped(); };
     return compare::fit_force_model(scenes_of(scenes), scenes_of(holdouts), options);

@@ -177,7 +177,7 @@ void bind_arrays(Class& solution) {
 }  // namespace
 
 compare::SolveOptions solve_options(const py::dict& given) {
-  compare::SolveOptions options{.accept_unresolved = true};
+  compare::SolveOptions options{.accept_unverified = true};
   for (const auto& [key, value] : given) {
     if (value.is_none()) continue;
     const auto name = key.cast<std::string>();
@@ -219,7 +219,7 @@ void bind_solve(py::module_& module) {
       .def_property_readonly("status",
                              of([](const Solution& s) { return cli::status_name(s.status); }),
                              "\"converged\", \"roundoff_limited\", \"saddle\", \"near_singular\" "
-                             "or\n\"not_resolved\".")
+                             "or\n\"not_verified\".")
       .def_property_readonly(
           "converged", of([](const Solution& s) { return energy_model::succeeded(s.status); }),
           "Whether it is an equilibrium, proven stable.")
@@ -229,9 +229,12 @@ void bind_solve(py::module_& module) {
                              "Energies [J]: bending, twisting, gravity, load, stretch, contact, "
                              "total.")
       .def_property_readonly(
-          "smallest_curvature", of([](const Solution& s) { return s.smallest_curvature; }),
-          "Smallest eigenvalue of the second variation over EI/l, < 0 if unstable; NaN where no\n"
+          "smallest_eigenvalue", of([](const Solution& s) { return s.smallest_eigenvalue; }),
+          "Smallest eigenvalue of the reduced Hessian over EI/l, < 0 if unstable; NaN where no\n"
           "search looked.")
+      .def_property_readonly("smallest_curvature",
+                             of([](const Solution& s) { return s.smallest_eigenvalue; }),
+                             "smallest_eigenvalue by its name before 0.2, which takes it away.")
       .def_property_readonly("error_estimate",
                              of([](const Solution& s) { return s.error_estimate; }),
                              "What the points may be off [m]; NaN: not known.")
@@ -243,8 +246,10 @@ void bind_solve(py::module_& module) {
                              "Curvature coefficients of the energy model.")
       .def_property_readonly("seconds", of([](const Solution& s) { return s.seconds; }),
                              "Wall time of the solver [s].")
-      .def_property_readonly("left_out", of([](const Solution& s) { return s.left_out; }),
-                             "What the scene asks for and the model leaves out.")
+      .def_property_readonly("neglected", of([](const Solution& s) { return s.neglected; }),
+                             "What the scene has and the model neglects.")
+      .def_property_readonly("left_out", of([](const Solution& s) { return s.neglected; }),
+                             "neglected by its name before 0.2, which takes it away.")
       .def("to_json", &solution_document, "The document of `dlo solve --format json`, as text.")
       .def("__str__", [](const SolvedScene& solved) {
         return cli::solution_text(solved.solution, solved.scene->scene);
@@ -271,9 +276,11 @@ void bind_solve(py::module_& module) {
            })
       .def_property_readonly(
           "not_looked", [](const SolvedStates& solved) { return solved.all.not_looked; },
-          "What a limit has cut short, or the search leaves out.")
+          "What a limit has cut short, or the search does not cover.")
       .def("to_json", &states_document, "The document of `dlo solve --all --format json`, as text.")
-      .def("__str__", [](const SolvedStates& solved) { return cli::equilibria_text(solved.all); });
+      .def("__str__", [](const SolvedStates& solved) {
+        return cli::equilibria_text(solved.all, solved.scene->scene);
+      });
   module.def("solve", &solve, py::arg("scene"), py::arg("model"), py::arg("samples"),
              py::arg("limits"));
   module.def("solve_all", &solve_all, py::arg("scene"), py::arg("samples"), py::arg("limits"));

@@ -9,7 +9,7 @@ namespace dlo::python {
 namespace py = pybind11;
 
 /// Limits of the solvers, by the names of SolveOptions; what is None or missing is as usual.
-/// Shapes that are not resolved are taken, to be part of an error.
+/// Shapes that are not verified are taken, to be part of an error.
 /// @throws compare::InputError for a number out of range or another name
 [[nodiscard]] compare::SolveOptions solve_options(const py::dict& given);
 

@@ -56,7 +56,7 @@ py::dict sweep(
         fields,
     const std::string& model, int threads, const py::dict& limits) {
   compare::SolveOptions options = solve_options(limits);
-  options.accept_unresolved = false;
+  options.accept_unverified = false;
   const Table table = run_long([&](Signals& signals) {
     const compare::Sweep sweep(compare::SceneTemplate(text, file), grid_of(fields),
                                compare::from_name<compare::SweepModel>(model), options);

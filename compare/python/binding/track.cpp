@@ -35,10 +35,10 @@ compare::TrackOptions track_options(const compare::Scene& scene, const Part& par
   options.rates.frames = part.frame_rate.value_or(options.rates.frames);
   options.rates.steps = part.step_rate.value_or(options.rates.steps);
   if (part.obstacle_rate) options.rates.obstacles = part.obstacle_rate;
-  if (!force) options.force = compare::ForceBeside::left_out;
+  if (!force) options.force = compare::ForceBeside::absent;
   options.samples = samples;
   options.solve = solve_options(limits);
-  options.solve.accept_unresolved = false;
+  options.solve.accept_unverified = false;
   constexpr double most = 1e9;
   const auto rate = [](double value) { return value > 0 && value <= most; };
   if (!rate(options.rates.frames) || !rate(options.rates.steps) ||

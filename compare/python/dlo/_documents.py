@@ -38,7 +38,7 @@ class Document:
 
 
 class Plan(Document):
-    """What a scene needs, and bounds of what is left out; of plan()."""
+    """What a scene needs, and bounds of what is neglected; of plan()."""
 
 
 class Stability(Document):
@@ -54,7 +54,7 @@ class Modes(Document):
 
     @property
     def frequencies(self) -> NDArray[numpy.float64]:
-        """Of the rod [Hz], shape (n,); NaN where it falls instead of swinging."""
+        """Of the rod [Hz], shape (n,); NaN where the shape is unstable."""
         return numpy.array([mode["frequency_Hz"] for mode in self["modes"]], dtype=float)
 
     @property
@@ -136,7 +136,7 @@ class Calibration(Document):
 
     def to_toml(self) -> str:
         """What `dlo calibrate -o FILE.toml` writes: a file of parameters (of the force model) or of
-        materials (of measured shapes; "" if E is not told)."""
+        materials (of measured shapes; "" if E is not identified)."""
         return self._toml
 
 
@@ -145,7 +145,7 @@ class MaterialFit(Calibration):
 
     @property
     def youngs_modulus(self) -> Optional[float]:
-        """E [Pa], of a rod that is given by its EI that [N m^2]; None if the shapes do not tell it."""
+        """E [Pa], of a rod that is given by its EI that [N m^2]; None if it is not identifiable."""
         value = self.json.get("youngs_modulus_Pa", self.json.get("bending_stiffness_Nm2"))
         return None if value is None else float(value)
 

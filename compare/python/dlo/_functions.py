@@ -95,7 +95,7 @@ def check(
     of less than this share no verdict passes; None: they are all of it. pose: what is unknown of
     the points' frame, "known" (nothing), "translation", "upright" or "rigid". arc_lengths: "auto",
     "file" (those given), "nearest" or "chord". modulus: look for E*/E. explain: of a shape that
-    fails look for what would make it right, which takes longer than all else.
+    fails look for candidate causes, which takes longer than all else.
     """
     asked = (None if tolerance is None else str(tolerance), measure, min_seen, bool(explain))
     return _dlo.check(
@@ -117,7 +117,7 @@ def plan(
     gripper_speed: float = 0.0,
     time_limit: float = 5.0,
 ) -> Plan:
-    """What a scene needs, and bounds of what is left out: `dlo solve --explain`.
+    """What a scene needs, and bounds of what is neglected: `dlo solve --explain`.
 
     target: wanted RMS error over the rod's length. gripper_speed: how fast a gripper moves [m/s].
     time_limit: of all that the plan solves [s].

@@ -131,7 +131,7 @@ class Gripper(Part):
     direction = _field(
         "direction", _direction, "Of a clamp: unit vector along growing arc length, shape (3,)."
     )
-    roll = _field("roll", _of("angle"), "Turn about the direction that the clamp holds [rad].")
+    roll = _field("roll", _of("angle"), "Rotation about the direction that the clamp holds [rad].")
     frame = _field("frame", _of("number"), "Rows d1, d2, d3 that the clamp holds, shape (3, 3).")
     quaternion = _field("quaternion", _of("number"), "The same as [w, x, y, z], shape (4,).")
     turns = _field("turns", _as_it_is, "Whole turns more than the least, beside a frame.")
@@ -224,7 +224,7 @@ def clamp(
     """A gripper that holds position [m] and direction of the rod at an arc length [m].
 
     direction may be left out beside a frame or a quaternion, whose d3 it is. roll (an angle), frame
-    (rows d1, d2, d3) or quaternion [w, x, y, z] also keep the rod from turning about itself; turns
+    (rows d1, d2, d3) or quaternion [w, x, y, z] also keep the rod from rotating about itself; turns
     are whole turns more than the least.
     """
     return Gripper(

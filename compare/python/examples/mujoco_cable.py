@@ -22,7 +22,7 @@ mistyped = cable.replace(
 xpos = dlo.solve(mistyped, model="chain").points  # yours: data.xpos[first:last]
 
 # %% [markdown]
-# `check` lays them on the shape that the material would take, and says what would make it right.
+# `check` lays them on the shape that the material would take, and says what is wrong.
 
 # %%
 check = dlo.check(cable, xpos, tolerance="1%")

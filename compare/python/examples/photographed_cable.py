@@ -27,7 +27,7 @@ print(f"E = {fit.youngs_modulus / 1e6:.3g} MPa, 95 % interval {low / 1e6:.3g} to
 assert low < 20e6 < high
 
 # %% [markdown]
-# A camera that was not held level: its picture is turned by an angle that nobody knows, and only the
+# A camera that was not held level: its picture is rotated by an angle that nobody knows, and only the
 # points' distances count. The interval gets wider, as it should.
 
 # %%

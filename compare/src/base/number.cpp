@@ -32,6 +32,11 @@ std::string shortened(std::string_view number) {
 
 }  // namespace
 
+double shown(double value, double magnitude) {
+  constexpr double error = 1e-9;
+  return std::abs(value) <= error * magnitude ? 0.0 : value;
+}
+
 bool underflows(std::string_view number) { return decimal_exponent(number) < 0; }
 
 std::string beyond_double(std::string_view number) {

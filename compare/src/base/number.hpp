@@ -35,6 +35,11 @@ template <typename Number>
   return number.value;
 }
 
+/// A number as text shows it: 0, never -0, where it is below 1e-9 of what its kind can be in a
+/// scene. That is the energy model's own error, so that nothing but rounding is left of it. JSON
+/// and CSV keep it as it is.
+[[nodiscard]] double shown(double value, double magnitude);
+
 /// Of a number that leading_number() finds out of range: whether it is too small for a double, not
 /// too large. @param number  digits with at most one point, and an exponent
 [[nodiscard]] bool underflows(std::string_view number);

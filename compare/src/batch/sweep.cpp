@@ -184,8 +184,7 @@ std::string Sweep::row(std::int64_t row) const {
   } catch (const std::invalid_argument& error) {
     return start + without_results(error.what());
   } catch (const std::exception& error) {
-    return start +
-           without_results(std::string("internal error, a mistake of dlo: ") + error.what());
+    return start + without_results(std::string("internal error: ") + error.what());
   }
 }
 

@@ -36,7 +36,7 @@ SweepHead head_of(const Sweep& sweep, const std::optional<Shard>& shard) {
 /// What an earlier run has left of a file.
 struct Remains {
   std::int64_t rows = 0;
-  std::int64_t unresolved = 0;
+  std::int64_t without_result = 0;
   std::int64_t bytes = 0;  ///< of whole lines
 };
 
@@ -70,7 +70,7 @@ Remains read_remains(const Sweep& sweep, const SweepHead& head, const std::strin
                       path, reader.line_number(), row));
     }
     ++remains.rows;
-    if (!row_is_ok(line)) ++remains.unresolved;
+    if (!row_is_ok(line)) ++remains.without_result;
     remains.bytes = reader.bytes();
   }
   return remains;
@@ -79,7 +79,7 @@ Remains read_remains(const Sweep& sweep, const SweepHead& head, const std::strin
 void count_row(std::string_view line, const SweepHead& head, const SweepFileOptions& options,
                SweepOutcome& outcome) {
   ++outcome.rows;
-  if (!row_is_ok(line.substr(0, line.size() - 1))) ++outcome.unresolved;
+  if (!row_is_ok(line.substr(0, line.size() - 1))) ++outcome.without_result;
   if (options.progress) options.progress(outcome.rows, head.range.last - head.range.first);
 }
 
@@ -118,7 +118,7 @@ void compute_rows(const Sweep& sweep, const SweepHead& head, const SweepFileOpti
 SweepOutcome finished_shard(const Sweep& sweep, const SweepHead& head, const std::string& path) {
   const Remains remains = read_remains(sweep, head, path);
   const std::int64_t rows = head.range.last - head.range.first;
-  if (remains.bytes > 0 && remains.rows == rows) return {rows, rows, remains.unresolved};
+  if (remains.bytes > 0 && remains.rows == rows) return {rows, rows, remains.without_result};
   throw InputError(fmt::format(
       "{}: has {} of {} rows, but only a finished shard has this name (allowed: another "
       "-o, or --restart)",
@@ -147,7 +147,7 @@ SweepOutcome write_sweep(const Sweep& sweep, const std::optional<Shard>& shard,
   const Remains remains = options.restart ? Remains{} : read_remains(sweep, head, part);
   file.cut(remains.bytes);
   if (remains.bytes == 0) file.append(head.line() + sweep.header());
-  SweepOutcome outcome{remains.rows, remains.rows, remains.unresolved};
+  SweepOutcome outcome{remains.rows, remains.rows, remains.without_result};
   if (remains.rows > 0 && options.resumed) options.resumed(remains.rows);
   compute_rows(sweep, head, options, file, outcome);
   if (shard) {

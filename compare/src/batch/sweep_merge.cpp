@@ -80,7 +80,7 @@ void append_rows(const ShardFile& shard, OutputFile& target, SweepOutcome& outco
       throw InputError(fmt::format("{}:{}: not row {} of its sweep, the file is damaged",
                                    shard.path, reader.line_number(), row));
     }
-    if (!row_is_ok(line)) ++outcome.unresolved;
+    if (!row_is_ok(line)) ++outcome.without_result;
     lines += line + "\n";
     if (lines.size() < block) continue;
     target.append(lines);

@@ -8,9 +8,9 @@ namespace dlo::compare {
 
 /// What happened to the rows of a sweep's file.
 struct SweepOutcome {
-  std::int64_t rows = 0;        ///< in the file
-  std::int64_t found = 0;       ///< of them, those that an earlier run had left
-  std::int64_t unresolved = 0;  ///< of them, those whose status is not ok
+  std::int64_t rows = 0;            ///< in the file
+  std::int64_t found = 0;           ///< of them, those that an earlier run had left
+  std::int64_t without_result = 0;  ///< of them, those whose status is not ok
 };
 
 /// Puts the shards of a sweep together, in any order of files. The result is what one run over the

@@ -181,7 +181,7 @@ class Search {
       }
       add(std::move(explanation), cause.same_as);
     } catch (const InputError&) {
-      // A file that is none, said in this way.
+      // No file, said in this way.
     }
   }
 
@@ -299,7 +299,7 @@ std::vector<Explanation> explain_shape(const Scene& scene, const MeasuredShape& 
 
 std::optional<Explanation> better_than_stiffness(const ShapeCheck& check,
                                                  const std::vector<Explanation>& explanations) {
-  if (!is_told(check.effective_modulus.optimum)) return std::nullopt;
+  if (!is_identified(check.effective_modulus.optimum)) return std::nullopt;
   const auto price = [&check](double rms, int numbers) {
     return price_of(rms, numbers, check.whole_rms_m, check.length_m);
   };

@@ -49,7 +49,7 @@ SceneCause gravity(const Scene& scene, const Eigen::Vector3d& down) {
           [scene](const Eigen::VectorXd& p) {
             const Eigen::Vector3d g = scene.gravity + p;
             const double turned = std::atan2(g.cross(scene.gravity).norm(), g.dot(scene.gravity));
-            return fmt::format("gravity is [{:.3g}, {:.3g}, {:.3g}] m/s^2, turned by {:.3g} deg",
+            return fmt::format("gravity is [{:.3g}, {:.3g}, {:.3g}] m/s^2, rotated by {:.3g} deg",
                                g.x(), g.y(), g.z(), turned / degree);
           }};
 }
@@ -90,7 +90,7 @@ SceneCause direction(const Scene& scene, std::size_t index,
             Gripper turned = clamp;
             turn_clamp(turned, ways * p);
             const Eigen::Vector3d to = *turned.direction;
-            return fmt::format("gripper {} is turned by {:.3g} deg, to [{:.4g}, {:.4g}, {:.4g}]",
+            return fmt::format("gripper {} is rotated by {:.3g} deg, to [{:.4g}, {:.4g}, {:.4g}]",
                                index + 1, p.norm() / degree, to.x(), to.y(), to.z());
           }};
 }
@@ -174,7 +174,7 @@ SceneCause clamps_for_pins(const Scene& scene, const std::vector<std::size_t>& p
   return cause;
 }
 
-/// Clamps that let the rod turn all the same.
+/// Clamps that let the rod rotate all the same.
 SceneCause pins_for_clamps(const Scene& scene, const std::vector<std::size_t>& clamps) {
   Scene free = scene;
   for (const std::size_t i : clamps) {
@@ -184,9 +184,9 @@ SceneCause pins_for_clamps(const Scene& scene, const std::vector<std::size_t>& c
   SceneCause cause{zeros(0), zeros(0), 0, [free](const Eigen::VectorXd& /*none*/) { return free; },
                    [clamps](const Eigen::VectorXd& /*none*/) {
                      return clamps.size() == 1
-                                ? fmt::format("gripper {} lets the rod turn: a pin, not a clamp",
+                                ? fmt::format("gripper {} lets the rod rotate: a pin, not a clamp",
                                               clamps[0] + 1)
-                                : std::string("the clamps let the rod turn: pins");
+                                : std::string("the clamps let the rod rotate: pins");
                    }};
   cause.other_state = true;
   return cause;
@@ -215,7 +215,7 @@ SceneCause natural_curvature(const Scene& scene) {
             return changed;
           },
           [scene](const Eigen::VectorXd& p) {
-            return fmt::format("the rod is curved by nature, {:.3g} 1/m{}",
+            return fmt::format("the rod is intrinsically curved, {:.3g} 1/m{}",
                                scene.natural_strain.y() + p[0],
                                scene.naturally_curved() ? " in the mean" : "");
           }};

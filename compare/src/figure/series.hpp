@@ -33,7 +33,7 @@ struct View {
   int up = 1;
 };
 
-/// Whether points lie in a plane that the scene has: rods leave it where they give way sideways.
+/// Whether points lie in a plane that the scene has: rods leave it where they buckle out of it.
 /// @param points  of the rod [m]
 [[nodiscard]] bool stays_in_plane(const Scene& scene, const Eigen::Matrix3Xd& points);
 

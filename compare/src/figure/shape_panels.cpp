@@ -60,7 +60,7 @@ double level_tic_step(const std::array<double, 2>& range, double pixels_per_metr
   return step;
 }
 
-enum class Titles { shown, left_out };
+enum class Titles { shown, hidden };
 
 bool is_shown(const Series& series, int view) { return series.view < 0 || series.view == view; }
 
@@ -128,7 +128,7 @@ std::vector<Panel> shape_panels(const std::string& csv_file, const std::vector<S
         up[1]);
     panel.script += plot_lines(all, csv_file, fmt::format("${}", view.right + 3),
                                fmt::format("{}", view.up + 3),
-                               last ? Titles::shown : Titles::left_out, static_cast<int>(i));
+                               last ? Titles::shown : Titles::hidden, static_cast<int>(i));
     panels.push_back(std::move(panel));
   }
   return panels;

@@ -135,7 +135,7 @@ class ForceModelFitter {
     const double at_fine = worst_chain(fine);
     result_.order =
         std::log(at_coarse / at_fine) / std::log(segment_length(coarse) / segment_length(fine));
-    // A rod that hardly bends has no order to speak of.
+    // A nearly straight rod has no order to speak of.
     const double order = std::clamp(result_.order, 0.8, 2.2);
     const double finer = std::pow(at_fine / allowed, 1 / order);
     const double estimate = std::clamp((fine - 1) * finer, 1.0, most_points - 1.0);

@@ -44,7 +44,7 @@ std::string segments_miss(const ForceModelFit& fit, double segments) {
 std::string stretch_miss(const ForceModelFit& fit, double stretch) {
   if (fit.c_c_is_physical) {
     return fmt::format(
-        "c_c is A E: the rod stretches as its material does, which the energy model leaves out. "
+        "c_c is A E: the rod stretches as its material does, which the energy model neglects. "
         "That alone makes {:.3g} %, which no N takes away; the smallest target within reach is "
         "about that (less at some N is errors that cancel)",
         stretch * 100);

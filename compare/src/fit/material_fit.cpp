@@ -32,7 +32,7 @@ constexpr int most_other_states = 2;
 constexpr double maybe_common = 0.5;
 constexpr double surely_common = 0.7;
 /// Share of the residual that an alternative may leave to be told, and to put the fit in doubt.
-constexpr double worth_telling = 0.7;
+constexpr double worth_naming = 0.7;
 constexpr double too_much = 0.5;
 constexpr double next_to_nothing = 0.02;
 /// Of a fitted rod that is to be drawn.
@@ -48,7 +48,7 @@ struct Name {
 /// What a profile says of a number.
 struct Finding {
   LogProfile::Interval interval;  // reaches to every one of `optima`
-  std::vector<Minimum> optima;    // that the shapes do not tell apart
+  std::vector<Minimum> optima;    // between which the shapes do not decide
   Minimum best;
 };
 
@@ -61,20 +61,20 @@ Finding finding(LogProfile& profile, double level, double rival_level) {
   return result;
 }
 
-FittedValue fitted(const Finding& found, double unit, double told_within) {
+FittedValue fitted(const Finding& found, double unit, double identified_within) {
   const LogProfile::Interval& interval = found.interval;
   FittedValue result;
   if (interval.low) result.low = unit * std::exp(*interval.low);
   if (interval.high) result.high = unit * std::exp(*interval.high);
   const bool closed = result.low && result.high;
-  if (closed && *result.high <= told_within * *result.low) {
+  if (closed && *result.high <= identified_within * *result.low) {
     result.value = unit * std::exp(found.best.x);
   }
   return result;
 }
 
-std::string what_is_not_told(const FittedValue& value, const Finding& found, const Name& name,
-                             double told_within) {
+std::string what_is_not_identified(const FittedValue& value, const Finding& found, const Name& name,
+                                   double identified_within) {
   if (value.value) return {};
   if (value.low && value.high) {
     std::string where;
@@ -86,20 +86,22 @@ std::string what_is_not_told(const FittedValue& value, const Finding& found, con
       }
     }
     return fmt::format(
-        "these shapes do not tell {0}: {1:.4g} to {2:.4g} {3} fit{4} (told: within a factor of "
-        "{5:g})",
-        name.name, *value.low, *value.high, name.unit, where, told_within);
+        "{0} is not identifiable from these shapes: {1:.4g} to {2:.4g} {3} fit{4} (identified: "
+        "within a factor of {5:g})",
+        name.name, *value.low, *value.high, name.unit, where, identified_within);
   }
   if (value.low) {
-    return fmt::format("these shapes do not tell {0}: {0} > {1:.4g} {2}, any larger one fits",
-                       name.name, *value.low, name.unit);
+    return fmt::format(
+        "{0} is not identifiable from these shapes: {0} > {1:.4g} {2}, any larger one fits",
+        name.name, *value.low, name.unit);
   }
   if (value.high) {
-    return fmt::format("these shapes do not tell {0}: {0} < {1:.4g} {2}, any smaller one fits",
-                       name.name, *value.high, name.unit);
+    return fmt::format(
+        "{0} is not identifiable from these shapes: {0} < {1:.4g} {2}, any smaller one fits",
+        name.name, *value.high, name.unit);
   }
   return fmt::format(
-      "these shapes do not tell {0}: any {0} that was tried fits them within their "
+      "{0} is not identifiable from these shapes: any {0} that was tried fits them within their "
       "noise",
       name.name);
 }
@@ -205,19 +207,20 @@ class MaterialFitter {
     measure_noise(least, best);
     const NamedValue stiffness = scenes_.front().stiffness();
     const Finding found = finding(*over_modulus, level(least, 0), rival_level(least, 0));
-    result_.youngs_modulus = fitted(found, stiffness.value, options_.told_within);
-    result_.not_told =
-        what_is_not_told(result_.youngs_modulus, found,
-                         {stiffness.name, stiffness.unit, stiffness.value}, options_.told_within);
+    result_.youngs_modulus = fitted(found, stiffness.value, options_.identified_within);
+    result_.not_identified = what_is_not_identified(
+        result_.youngs_modulus, found, {stiffness.name, stiffness.unit, stiffness.value},
+        options_.identified_within);
     if (both_) fit_density(least);
-    if (!forced_) result_.not_told = why_unforced(scenes_.front());
-    if (options_.density && !both_ && result_.not_told.empty()) {
-      result_.not_told = fmt::format(
-          "these shapes do not tell the {0}: nothing but gravity bends the rod, so only {0} / {1} "
-          "shows; {1} is for the {0} of the scene (a known load would tell both)",
+    if (!forced_) result_.not_identified = why_unforced(scenes_.front());
+    if (options_.density && !both_ && result_.not_identified.empty()) {
+      result_.not_identified = fmt::format(
+          "the {0} is not identifiable from these shapes: nothing but gravity bends the rod, so "
+          "only "
+          "{0} / {1} shows; {1} is for the {0} of the scene (a known load would identify both)",
           scenes_.front().heaviness().name, stiffness.name);
     }
-    refuse_unresolved(std::max(level(least, 0), both_ ? level(least, 1) : 0));
+    refuse_unverified(std::max(level(least, 0), both_ ? level(least, 1) : 0));
     const auto points = static_cast<double>(misfit_.points());
     result_.rms_m = std::sqrt(least / points);
     result_.equilibria = misfit_.solves();
@@ -235,7 +238,7 @@ class MaterialFitter {
  private:
   [[nodiscard]] MaterialFit whole_wire(const MaterialPoint& best, double least) {
     MaterialFit fit = fit_wire(scenes_, shapes_, options_, best, both_, misfit_.begin());
-    refuse_unresolved(least);
+    refuse_unverified(least);
     fit.equilibria += misfit_.solves();
     fit.evaluations += misfit_.evaluations();
     if (fit.warning.empty()) {
@@ -282,7 +285,7 @@ class MaterialFitter {
         const MaterialFit fit = fit_wire(scenes_, shapes_, options, best, both_, misfit_.begin());
         result_.equilibria += fit.equilibria;
         result_.evaluations += fit.evaluations;
-        if (!(fit.rms_m <= worth_telling * result_.rms_m)) continue;
+        if (!(fit.rms_m <= worth_naming * result_.rms_m)) continue;
         add_alternative({terms, directions, fit.rms_m, fit.youngs_modulus});
       } catch (const InputError&) {
         // No clamp, no plane, or too few points.
@@ -293,7 +296,7 @@ class MaterialFitter {
     std::stable_sort(
         result_.alternatives.begin(), result_.alternatives.end(),
         [](const FitAlternative& a, const FitAlternative& b) { return a.rms_m < b.rms_m; });
-    tell_systematic(common > surely_common);
+    explain_systematic(common > surely_common);
   }
 
   /// Those with fewer numbers come first; one that has theirs and more has to leave less.
@@ -306,7 +309,7 @@ class MaterialFitter {
     result_.alternatives.push_back(found);
   }
 
-  void tell_systematic(bool common) {
+  void explain_systematic(bool common) {
     // Without forces E has no interval that could be wrong.
     if (!forced_) return;
     const NamedValue stiffness = scenes_.front().stiffness();
@@ -314,7 +317,7 @@ class MaterialFitter {
         result_.alternatives.front().rms_m <= too_much * result_.rms_m) {
       result_.warning = fmt::format(
           "the residuals are systematic: what is not fitted would leave {:.3g} mm of {:.3g} mm, so "
-          "the interval of {} holds only if the rod is straight by nature and held as said",
+          "the interval of {} holds only if the rod is intrinsically straight and held as said",
           result_.alternatives.front().rms_m * 1e3, result_.rms_m * 1e3, stiffness.name);
     } else if (result_.warning.empty() && common) {
       result_.warning = fmt::format(
@@ -328,11 +331,12 @@ class MaterialFitter {
     // Where the density was asked for it is said already.
     if (!weight_alone || options_.density) return;
     const char* const heaviness = scenes_.front().heaviness().name;
-    result_.not_told += fmt::format(
-        "{} the {}: nothing but gravity bends the rod, so a wrong {} leaves no residual and makes "
+    const bool first = result_.not_identified.empty();
+    result_.not_identified += fmt::format(
+        "{}the {}{}: nothing but gravity bends the rod, so a wrong {} leaves no residual and makes "
         "{} wrong by the same factor",
-        result_.not_told.empty() ? "these shapes do not tell" : "; nor", heaviness, heaviness,
-        stiffness.name);
+        first ? "" : "; nor is ", heaviness, first ? " is not identifiable from these shapes" : "",
+        heaviness, stiffness.name);
   }
 
   void draw_profile(const Finding& found, const MaterialPoint& best, double least) {
@@ -464,26 +468,25 @@ class MaterialFitter {
         low_ / 2, high_ / 2);
     const NamedValue heaviness = scenes_.front().heaviness();
     const Finding found = finding(profile, level(least, 1), rival_level(least, 1));
-    result_.density = fitted(found, heaviness.value, options_.told_within);
-    if (result_.not_told.empty()) {
+    result_.density = fitted(found, heaviness.value, options_.identified_within);
+    if (result_.not_identified.empty()) {
       const std::string name = fmt::format("the {}", heaviness.name);
-      result_.not_told =
-          what_is_not_told(*result_.density, found, {name.c_str(), heaviness.unit, heaviness.value},
-                           options_.told_within);
+      result_.not_identified = what_is_not_identified(
+          *result_.density, found, {name.c_str(), heaviness.unit, heaviness.value},
+          options_.identified_within);
     }
   }
 
-  void refuse_unresolved(double highest_level) const {
-    const ShapeMisfit::Unresolved* unresolved = misfit_.unresolved_below(highest_level);
-    if (unresolved == nullptr) return;
-    const Scene& scene = scenes_[unresolved->scene];
+  void refuse_unverified(double highest_level) const {
+    const ShapeMisfit::Unverified* unverified = misfit_.unverified_below(highest_level);
+    if (unverified == nullptr) return;
+    const Scene& scene = scenes_[unverified->scene];
     const NamedValue stiffness = scene.stiffness();
     throw ConvergenceError(fmt::format(
-        "{}: at {} = {:.4g} {}, which may fit, the rod is not resolved on its obstacles: it sinks "
-        "in "
-        "by {:.3g} m ({}), so the shapes cannot tell {}",
-        scene.file, stiffness.name, stiffness.value * std::exp(unresolved->material.log_modulus),
-        stiffness.unit, unresolved->penetration, unresolved->message, stiffness.name));
+        "{}: at {} = {:.4g} {}, which may fit, the rod is not verified on its obstacles: it sinks "
+        "in by {:.3g} m ({}), so {} is not identifiable from the shapes",
+        scene.file, stiffness.name, stiffness.value * std::exp(unverified->material.log_modulus),
+        stiffness.unit, unverified->penetration, unverified->message, stiffness.name));
   }
 
   const std::vector<Scene>& scenes_;

@@ -32,7 +32,7 @@ std::vector<Eigen::Matrix3Xd> seen_directions(const Alignment& alignment, const 
       result.emplace_back(out_of_plane.cross(tangent).normalized());
       continue;
     }
-    // Carried along the rod without a turn about it, so that neighbours look the same way.
+    // Carried along the rod without a rotation about it, so that neighbours look the same way.
     normal -= normal.dot(tangent) * tangent;
     if (!(normal.norm() > 1e-3)) normal = tangent.unitOrthogonal();
     normal.normalize();

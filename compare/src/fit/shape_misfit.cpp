@@ -121,7 +121,7 @@ std::shared_ptr<ShapeMisfit::Solved> ShapeMisfit::solve(std::size_t i,
     throw InputError(fmt::format("{}: {}", scene.file, error.what()));
   }
   evaluations_ += result->equilibrium.evaluations;
-  if (result->equilibrium.status == energy_model::SolveStatus::not_resolved) {
+  if (result->equilibrium.status == energy_model::SolveStatus::not_verified) {
     result->penetration = depth_in_obstacles(scene, result->equilibrium);
   }
   return result;
@@ -145,7 +145,7 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
                                                                const MaterialPoint& material) {
   const bool follows = scenes_[i].grippers.size() > 1;
   if (!follows) {
-    // What is asked for of one shape is asked for of the next of the same scene.
+    // The next shape of the same scene needs the same equilibria.
     const auto shared = std::find_if(shared_.begin(), shared_.end(), [&](const auto& entry) {
       return entry->scene == first_like_[i] && entry->material == material;
     });
@@ -159,7 +159,7 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
   }
   const auto has_shape = [](const Solved& shape) {
     return energy_model::succeeded(shape.equilibrium.status) ||
-           (shape.equilibrium.status == energy_model::SolveStatus::not_resolved &&
+           (shape.equilibrium.status == energy_model::SolveStatus::not_verified &&
             shape.penetration > 0);
   };
   std::shared_ptr<Solved> result;
@@ -191,7 +191,7 @@ double ShapeMisfit::squares(std::size_t i, const Alignment& alignment) const {
 double ShapeMisfit::operator()(const MaterialPoint& material) {
   if (const auto known = values_.find(material); known != values_.end()) return known->second;
   double sum = 0;
-  const std::size_t unresolved_before = unresolved_.size();
+  const std::size_t unverified_before = unverified_.size();
   for (std::size_t i = 0; i < scenes_.size() && std::isfinite(sum); ++i) {
     const std::shared_ptr<const Solved> shape = solved(i, material);
     if (!shape) {
@@ -200,11 +200,11 @@ double ShapeMisfit::operator()(const MaterialPoint& material) {
     }
     sum += squares(i, aligned(i, *shape));
     if (shape->penetration > 0) {
-      unresolved_.emplace_back(
-          Unresolved{material, i, shape->penetration, shape->equilibrium.message}, 0);
+      unverified_.emplace_back(
+          Unverified{material, i, shape->penetration, shape->equilibrium.message}, 0);
     }
   }
-  for (std::size_t k = unresolved_before; k < unresolved_.size(); ++k) unresolved_[k].second = sum;
+  for (std::size_t k = unverified_before; k < unverified_.size(); ++k) unverified_[k].second = sum;
   values_[material] = sum;
   return sum;
 }
@@ -230,7 +230,7 @@ bool ShapeMisfit::search_at(const MaterialPoint& material) {
   if (!better) return false;
   kept_.assign(next.begin(), next.end());
   values_.clear();
-  unresolved_.clear();
+  unverified_.clear();
   return true;
 }
 
@@ -293,11 +293,11 @@ std::vector<ResidualSeries> ShapeMisfit::residuals(const MaterialPoint& material
   return result;
 }
 
-const ShapeMisfit::Unresolved* ShapeMisfit::unresolved_below(double level) const {
-  for (const auto& [unresolved, sum] : unresolved_) {
+const ShapeMisfit::Unverified* ShapeMisfit::unverified_below(double level) const {
+  for (const auto& [unverified, sum] : unverified_) {
     // Moving every point of the shape by the depth moves the root of the sum by no more than this.
-    const double off = std::sqrt(static_cast<double>(points())) * unresolved.penetration;
-    if (std::sqrt(sum) - off <= std::sqrt(level)) return &unresolved;
+    const double off = std::sqrt(static_cast<double>(points())) * unverified.penetration;
+    if (std::sqrt(sum) - off <= std::sqrt(level)) return &unverified;
   }
   return nullptr;
 }

@@ -69,14 +69,14 @@ class ShapeMisfit {
   [[nodiscard]] std::vector<ResidualSeries> residuals(const MaterialPoint& material, bool both);
 
   /// A material whose shapes may, for all that is known, come as near as `level` [m^2], though its
-  /// equilibrium on rigid obstacles was not resolved.
-  struct Unresolved {
+  /// equilibrium on rigid obstacles was not verified.
+  struct Unverified {
     MaterialPoint material;
     std::size_t scene = 0;
     double penetration = 0;  // [m]
     std::string message;     // of the solver
   };
-  [[nodiscard]] const Unresolved* unresolved_below(double level) const;
+  [[nodiscard]] const Unverified* unverified_below(double level) const;
 
   /// When it was made: the time limit is from then on.
   [[nodiscard]] std::chrono::steady_clock::time_point begin() const { return begin_; }
@@ -91,7 +91,7 @@ class ShapeMisfit {
     MaterialPoint material;
     std::size_t scene;
     energy_model::Equilibrium equilibrium;
-    double penetration = 0;  // [m], of a shape that is not resolved
+    double penetration = 0;  // [m], of a shape that is not verified
   };
 
   [[nodiscard]] std::shared_ptr<const Solved> solved(std::size_t i, const MaterialPoint& material);
@@ -115,7 +115,7 @@ class ShapeMisfit {
   std::deque<std::shared_ptr<const Solved>> kept_;
   std::vector<std::size_t> first_like_;               // of each scene: the first that equals it
   std::deque<std::shared_ptr<const Solved>> shared_;  // of scenes that are not followed
-  std::vector<std::pair<Unresolved, double>> unresolved_;  // and their sums of squares [m^2]
+  std::vector<std::pair<Unverified, double>> unverified_;  // and their sums of squares [m^2]
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 

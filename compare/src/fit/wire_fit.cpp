@@ -117,10 +117,10 @@ class WireFitter {
     variance_ = std::max(floor, squares / freedom_);
   }
 
-  /// A rod that is bent by nature may hang on the other side of its clamp, and the E that fits best
-  /// without that may be far away. So mean curvatures all over what is likely are gone through from
-  /// both ends, each shape following its own equilibrium, with that E and the scene's; each shape
-  /// goes on from the one of the two that is nearer to its points.
+  /// A rod that is intrinsically curved may hang on the other side of its clamp, and the E that
+  /// fits best without that may be far away. So mean curvatures all over what is likely are gone
+  /// through from both ends, each shape following its own equilibrium, with that E and the scene's;
+  /// each shape goes on from the one of the two that is nearer to its points.
   void look_for_start() {
     if (options_.natural_curvature_terms == 0) return;
     constexpr double turns[] = {8, 5, 3, 1.5, 0, -1.5, -3, -5, -8};
@@ -268,12 +268,12 @@ class WireFitter {
     fit.scatter = scatter_between(estimates, quantile());
   }
 
-  [[nodiscard]] FittedValue told(double log_value, double unit, std::optional<double> below,
-                                 std::optional<double> above) const {
+  [[nodiscard]] FittedValue identified(double log_value, double unit, std::optional<double> below,
+                                       std::optional<double> above) const {
     FittedValue value;
     if (below) value.low = unit * std::exp(log_value - *below);
     if (above) value.high = unit * std::exp(log_value + *above);
-    if (below && above && *below + *above <= std::log(options_.told_within)) {
+    if (below && above && *below + *above <= std::log(options_.identified_within)) {
       value.value = unit * std::exp(log_value);
     }
     return value;
@@ -365,25 +365,28 @@ class WireFitter {
       return distance;
     };
     const NamedValue stiffness = scenes_.front().stiffness();
-    fit.youngs_modulus = told(values_[0], stiffness.value, widened(end(-1)), widened(end(1)));
+    fit.youngs_modulus = identified(values_[0], stiffness.value, widened(end(-1)), widened(end(1)));
     if (std::none_of(scenes_.begin(), scenes_.end(), is_forced)) {
-      fit.not_told = why_unforced(scenes_.front());
+      fit.not_identified = why_unforced(scenes_.front());
     } else if (unseen_[0]) {
-      fit.not_told = fmt::format(
-          "these shapes do not tell {0}: with the rest as it fits they are the same with any {0}",
+      fit.not_identified = fmt::format(
+          "{0} is not identifiable from these shapes: with the rest as it fits they are the same "
+          "with "
+          "any {0}",
           stiffness.name);
     } else if (!fit.youngs_modulus.value) {
       const FittedValue& E = fit.youngs_modulus;
-      fit.not_told = fmt::format(
-          "these shapes do not tell {0} beside what else is fitted: {1} to {2} {3} fit (told: "
+      fit.not_identified = fmt::format(
+          "{0} is not identifiable beside what else is fitted: {1} to {2} {3} fit (identified: "
           "within "
           "a factor of {4:g})",
           stiffness.name, E.low ? fmt::format("{:.4g}", *E.low) : "...",
-          E.high ? fmt::format("{:.4g}", *E.high) : "...", stiffness.unit, options_.told_within);
+          E.high ? fmt::format("{:.4g}", *E.high) : "...", stiffness.unit,
+          options_.identified_within);
     }
     if (density_) {
       const std::optional<double> half = half_width({1}, posterior_(1, 1), widening);
-      fit.density = told(values_[1], scenes_.front().heaviness().value, half, half);
+      fit.density = identified(values_[1], scenes_.front().heaviness().value, half, half);
     }
     if (options_.torsional_stiffness) {
       // Its number is the logarithm of GJ / EI.
@@ -392,9 +395,9 @@ class WireFitter {
       const double EI = scenes_.front().mean_bending_stiffness();
       const double variance = posterior_(0, 0) + 2 * posterior_(0, k) + posterior_(k, k);
       const std::optional<double> half = half_width({0, k}, variance, widening);
-      fit.torsional_stiffness = told(values_[0] + values_[k], GJ, half, half);
+      fit.torsional_stiffness = identified(values_[0] + values_[k], GJ, half, half);
       const std::optional<double> half_ratio = half_width({k}, posterior_(k, k), widening);
-      fit.torsion_over_bending = told(values_[k], GJ / EI, half_ratio, half_ratio);
+      fit.torsion_over_bending = identified(values_[k], GJ / EI, half_ratio, half_ratio);
     }
     for (Eigen::Index number = curvature_; number < values_.size(); ++number) {
       FittedNumber found = numbers_[static_cast<std::size_t>(number)].described;

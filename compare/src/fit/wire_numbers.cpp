@@ -17,7 +17,7 @@ namespace dlo::compare {
 namespace {
 
 /// What is known of natural curvature before, as standard deviation of each term times the length:
-/// hardly anything, the free rod may be bent by some whole turns.
+/// hardly anything, the stress-free shape may have some whole turns.
 constexpr double natural_turns_before = 10;
 
 /// What is known of GJ / EI before, as standard deviation of its logarithm: a factor of ten.
@@ -64,7 +64,7 @@ void add_torsion(std::vector<WireNumber>& numbers, const std::vector<Scene>& sce
   if (std::none_of(scenes.begin(), scenes.end(), twists)) {
     throw InputError(
         fmt::format("{}: torsional stiffness is in no shape of this scene (allowed: two clamps "
-                    "that hold the rod's frame, roll or frame, or a rod curved by nature that "
+                    "that hold the rod's frame, roll or frame, or an intrinsically curved rod that "
                     "leaves its plane)",
                     scenes.front().file));
   }
@@ -132,8 +132,8 @@ bool is_forced(const Scene& scene) {
 
 std::string why_unforced(const Scene& scene) {
   return fmt::format(
-      "these shapes cannot tell {0}: neither weight nor a load or yielding obstacle acts on the "
-      "rod, so its shapes are the same with any {0} (a known load would tell it)",
+      "{0} is not identifiable from these shapes: neither weight nor a load or yielding obstacle "
+      "acts on the rod, so its shapes are the same with any {0} (a known load would identify it)",
       scene.stiffness().name);
 }
 

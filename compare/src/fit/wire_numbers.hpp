@@ -22,7 +22,7 @@ struct WireNumber {
 /// scene has the same equilibria with every E.
 [[nodiscard]] bool is_forced(const Scene& scene);
 
-/// What such shapes do not tell, in words.
+/// What is not identifiable from such shapes, in words.
 [[nodiscard]] std::string why_unforced(const Scene& scene);
 
 /// The same but for its weight, without which it has the same ones with every density / E.

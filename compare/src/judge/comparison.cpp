@@ -16,22 +16,23 @@
 namespace dlo::compare {
 namespace {
 
-/// The stable state nearest to where the Hookean polygon falls from the force model's shape.
+/// The stable state nearest to where the Hookean polygon goes downhill from the force model's
+/// shape.
 std::size_t state_of(const Scene& scene, const Shape& force,
                      const std::vector<energy_model::Equilibrium>& states,
                      const SolveOptions& options) {
   if (states.size() == 1) return 0;
   ForceModelSettings settings = scene.force_model;
   settings.law = BendingLaw::hooke;
-  // A force model that leaves twist out is in a state without it.
+  // A force model that neglects twist is in a state without it.
   const bool twisted = takes_twist(scene, scene.force_model);
-  const Shape fallen =
+  const Shape downhill =
       chain_from(twisted ? scene : scene.without_twist(), settings, force, options);
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < states.size(); ++i) {
     if (states[i].status == energy_model::SolveStatus::saddle) continue;
-    const double apart = distance(fallen, states[i].sample);
+    const double apart = distance(downhill, states[i].sample);
     if (apart >= least) continue;
     least = apart;
     nearest = i;
@@ -64,7 +65,7 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   from_force.reserve(states.size());
   for (const energy_model::Equilibrium& state : states) from_force.push_back(distance(state));
   result.state = describe_state(scene, states, compared, from_force);
-  if (!energy_model::succeeded(energy.status)) result.unresolved = energy.message;
+  if (!energy_model::succeeded(energy.status)) result.unverified = energy.message;
 
   const std::vector<double>& s = force.arc_length;
   result.reference = {s, energy.sample(s).points};
@@ -73,13 +74,13 @@ Comparison compare(const Scene& scene, const SolveOptions& options,
   if (touches_with_friction(scene,
                             forces_of_all(scene, obstacles_in_reach(scene), energy.obstacles)) &&
       !touches_with_friction(scene, result.force.obstacles)) {
-    result.force.left_out.emplace_back("friction");
+    result.force.neglected.emplace_back("friction");
   }
   const std::optional<Eigen::Matrix3Xd> straight = straight_rod(scene, s);
   result.deviation = shape_deviation(scene, force, energy.sample);
   result.undeformed_rms_over_length =
       straight ? rms(s, *straight - result.reference.points) / scene.length : NAN;
-  if (modulus == ModulusSearch::yes && result.unresolved.empty()) {
+  if (modulus == ModulusSearch::yes && result.unverified.empty()) {
     result.effective_modulus = fit_effective_modulus(scene, distance, energy, options);
   }
   result.residual_over_movement =

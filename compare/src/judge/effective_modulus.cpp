@@ -54,7 +54,7 @@ class FollowedState {
   /// where the solver did not look.
   [[nodiscard]] double curvature(double log_ratio) {
     if (!std::isfinite((*this)(log_ratio))) return NAN;
-    return known_.at(log_ratio).state.smallest_curvature;
+    return known_.at(log_ratio).state.smallest_eigenvalue;
   }
 
   [[nodiscard]] int solves() const { return solves_; }

@@ -60,7 +60,7 @@ Scene on_obstacles_for(Scene scene, double c_c, double segment_length) {
   return scene;
 }
 
-/// How far rods without what the force model leaves out are from the rod.
+/// How far rods without what the force model neglects are from the rod.
 struct RodsWithout {
   Eigen::Matrix3Xd twist;  ///< without the twist
   Eigen::Matrix3Xd all;    ///< without the natural curvature too, of which the polygon is one
@@ -121,7 +121,7 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   rested.points += force.to_rest;
   const Eigen::Matrix3Xd total = fields.of(force.shape);
   const Eigen::Matrix3Xd moving = total - fields.of(rested);
-  const RodsWithout left_out = rods_without(scene, taken, force.shape.arc_length, fields, options);
+  const RodsWithout without = rods_without(scene, taken, force.shape.arc_length, fields, options);
 
   Budget budget;
   budget.total_m = fields.part(total, total).rms_m;
@@ -129,9 +129,9 @@ Budget error_budget(const Scene& scene, const Solution& force, const Reference& 
   const Eigen::Matrix3Xd bookkeeping = other_bookkeeping - base;
   const Eigen::Matrix3Xd stretch = on_rigid - stiff;
   const Eigen::Matrix3Xd contact = elastic - on_rigid;
-  budget.twist = fields.part(left_out.twist, total);
-  budget.natural_curvature = fields.part(left_out.all - left_out.twist, total);
-  budget.discretisation = fields.part(base - left_out.all, total);
+  budget.twist = fields.part(without.twist, total);
+  budget.natural_curvature = fields.part(without.all - without.twist, total);
+  budget.discretisation = fields.part(base - without.all, total);
   budget.bookkeeping = fields.part(bookkeeping, total);
   budget.law = fields.part(law, total);
   budget.stretch = fields.part(stretch, total);

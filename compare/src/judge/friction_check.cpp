@@ -42,7 +42,8 @@ constexpr double touching_gap = 1e-4;
 constexpr double same_distance = 1e-6;
 constexpr double largest_distance = 0.01;
 
-/// Over the length: points that are farther from all equilibria do not tell that friction suffices.
+/// Over the length: of points that are farther from all equilibria it is not known that friction
+/// suffices.
 constexpr double largest_scatter = 2e-4;
 
 /// A node on an obstacle.
@@ -175,7 +176,7 @@ class LinearDistance {
 
 /// What one polygon says.
 struct Needed {
-  bool settled = false;
+  bool converged = false;
   bool touches = false;
   double factor = 0, least_factor = 0, mean_square = 0;
 };
@@ -220,12 +221,12 @@ Needed needed(const Scene& scene, const Shape& shape, int segments,
       return scene.obstacles[touch.obstacle].friction > 0;
     });
     if (!result.touches) return result;
-    // The forces of equal shapes are many, and one or another comes out; the shape settles.
+    // The forces of equal shapes are many, and one or another comes out; the shape converges.
     constexpr double small_turn = 0.01;  // [rad]; its square is what a step leaves
-    result.settled = false;
+    result.converged = false;
     // A system that does not know the forces yet would lead away from the shape.
     constexpr int stays = 4;
-    for (int i = 0; i < 30 && !result.settled; ++i) {
+    for (int i = 0; i < 30 && !result.converged; ++i) {
       polygon.linearise(forces);
       distance.take(polygon, touching);
       LinearDistance::Nearest nearest = distance.nearest(most);
@@ -238,10 +239,11 @@ Needed needed(const Scene& scene, const Shape& shape, int segments,
       if (!std::isfinite(turned)) return result;
       const double change =
           std::abs(std::sqrt(nearest.mean_square) - std::sqrt(result.mean_square));
-      result.settled = turned < small_turn && change < 0.02 * std::sqrt(nearest.mean_square) + same;
+      result.converged =
+          turned < small_turn && change < 0.02 * std::sqrt(nearest.mean_square) + same;
       result.mean_square = nearest.mean_square;
     }
-    if (!result.settled) return result;
+    if (!result.converged) return result;
     if (first) gap = std::max(gap / 10, 3 * std::sqrt(result.mean_square));
   }
   polygon.linearise(forces);
@@ -270,7 +272,8 @@ std::string refusal(const Scene& scene, const ShapeCheck& check) {
   const bool yields =
       std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
                   [](const Obstacle& obstacle) { return std::isfinite(obstacle.stiffness); });
-  if (yields) return "an obstacle yields, and where it holds the rod is not told by the shape";
+  if (yields)
+    return "an obstacle yields, and where it holds the rod is not identifiable from the shape";
   constexpr std::size_t least_points = 8;
   if (check.alignment.shape.arc_length.size() < least_points) {
     return fmt::format("fewer than {} points", least_points);
@@ -288,10 +291,10 @@ const char* to_string(FrictionVerdict verdict) {
       return "inside";
     case FrictionVerdict::outside:
       return "outside";
-    case FrictionVerdict::not_told:
+    case FrictionVerdict::not_identified:
       break;
   }
-  return "not_told";
+  return "not_identified";
 }
 
 FrictionCheck check_friction(const Scene& scene, const ShapeCheck& check) {
@@ -313,7 +316,7 @@ FrictionCheck check_friction(const Scene& scene, const ShapeCheck& check) {
     result.reason = "the shape touches no obstacle that has friction";
     return result;
   }
-  if (!coarse.settled || !fine.settled) {
+  if (!coarse.converged || !fine.converged) {
     result.reason = "no equilibrium next to the shape was found";
     return result;
   }

@@ -17,7 +17,7 @@ struct NodeForce {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();  ///< what [N]
 };
 
-/// Inextensible segments of a scene's rod, straight by nature and free to twist, in its grips:
+/// Inextensible segments of a scene's rod, intrinsically straight and free to twist, in its grips:
 ///     E = - sum_j B_j t_j . t_j+1 - sum_k f_k . r_k,
 /// t the segments' unit tangents, 1 / B_j the bending compliance between the middles of two
 /// neighbours (or from a middle to a clamp's direction), r_k the nodes and f_k weight, loads and

@@ -9,7 +9,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Cosine between a column and what is left of b below which it is no way down but rounding.
+/// Cosine between a column and what is left of b below which it is no descent direction but
+/// rounding.
 constexpr double rounding = 1e-12;
 
 Eigen::MatrixXd columns(const Eigen::MatrixXd& A, const std::vector<Eigen::Index>& which) {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/number.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/solution.hpp"
@@ -56,7 +57,9 @@ std::string problem_of(const Shape& shape, double length) {
 }
 
 std::string point_text(const Eigen::Vector3d& point) {
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", point.x() + 0.0, point.y() + 0.0, point.z() + 0.0);
+  const double large = point.norm();
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", shown(point.x(), large), shown(point.y(), large),
+                     shown(point.z(), large));
 }
 
 }  // namespace
@@ -83,7 +86,8 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
                                   std::max(0.0, seen) * 100, tolerance.least_seen_share * 100));
   }
   if (!untold.empty()) {
-    reasons.push_back(fmt::format("the points do not tell the rod at {}", fmt::join(untold, ", ")));
+    reasons.push_back(
+        fmt::format("the points do not determine the rod at {}", fmt::join(untold, ", ")));
   }
   constexpr double rounding = 1e-6;
   const std::string missing = missing_parts(check, rounding * check.length_m);

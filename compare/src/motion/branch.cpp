@@ -17,12 +17,12 @@ namespace {
 
 using energy_model::Equilibrium;
 
-/// Of one frame, kept or not, and falls of which each is looked at on its own.
+/// Of one frame, kept or not, and snaps of which each is looked at on its own.
 constexpr int most_steps = 96;
-constexpr int most_falls = 4;
+constexpr int most_snaps = 4;
 
 /// How many of the smallest steps beyond the last shape what is extrapolated may come to zero: at a
-/// fold the smallest curvature has a vertical tangent, which a straight line through two shapes
+/// fold the smallest eigenvalue has a vertical tangent, which a straight line through two shapes
 /// meets late.
 constexpr double steps_to_end = 4;
 
@@ -148,8 +148,8 @@ bool shows_its_end(const BranchWitness& before, const BranchWitness& last, doubl
   const double way = last.at - before.at;
   if (!(way > 0)) return false;
   const double most = steps_to_end * missed / way;
-  const double a = before.smallest_curvature;
-  const double b = last.smallest_curvature;
+  const double a = before.smallest_eigenvalue;
+  const double b = last.smallest_eigenvalue;
   if (std::min(comes_to_zero(a, b), comes_to_zero(a * a, b * b)) <= most) return true;
   if (before.contacts.size() != last.contacts.size()) return false;
   for (std::size_t i = 0; i < last.contacts.size(); ++i) {
@@ -169,7 +169,7 @@ Branch::Branch(const Scene& scene, const FrameClock& clock,
   for (const std::size_t i : obstacles_) {
     yields = yields || std::isfinite(scene.obstacles[i].stiffness);
   }
-  // What a clamp turns the rod about itself by, and what a yielding obstacle stores, is not told.
+  // What a clamp turns the rod about itself by, and what a yielding obstacle stores, is not known.
   balances_ = !yields && !scene.holds_twist() &&
               !(scene.has_material_directors() && !clock_.scene(scene, 0).planar());
   double loads = scene.weight_between(0, scene.length).norm();
@@ -204,11 +204,11 @@ void Branch::go_to_frame(Passage& passage) {
   double at = 0;
   double step = 1;
   int kept_in_a_row = 0;
-  int falls = 0;
+  int snaps = 0;
   for (int made = 0; at < 1; ++made) {
     step = std::min(step, 1 - at);
     if (made < most_steps && step >= smallest_step) {
-      if (keep(scene_at(at + step), at, step, passage)) {
+      if (try_follow(scene_at(at + step), at, step, passage)) {
         at += step;
         if (++kept_in_a_row == 2) step *= 2;
       } else {
@@ -218,8 +218,8 @@ void Branch::go_to_frame(Passage& passage) {
       }
       continue;
     }
-    // What is just beyond the end of the branch tells best what the rod has fallen to.
-    const bool near = made < most_steps && ++falls <= most_falls;
+    // What is just beyond the end of the branch tells best to what shape the rod has snapped.
+    const bool near = made < most_steps && ++snaps <= most_snaps;
     const double missed = near ? std::min(2 * step, 1 - at) : 1 - at;
     at += leave(at, missed, passage);
     const double bound = passage.released_bound;
@@ -234,7 +234,7 @@ void Branch::go_to_frame(Passage& passage) {
 double Branch::leave(double at, double missed, Passage& passage) {
   if (passage.kept) {
     passage.kept = false;
-    passage.last_curvature = now_.rod.smallest_curvature;
+    passage.last_eigenvalue = now_.rod.smallest_eigenvalue;
     passage.ended = true;
     passage.released = 0;
     passage.released_bound = 0;
@@ -279,7 +279,7 @@ Scene Branch::scene_at(double share) const {
 }
 
 /// One step on the branch.
-bool Branch::keep(Scene scene, double from, double step, Passage& passage) {
+bool Branch::try_follow(Scene scene, double from, double step, Passage& passage) {
   std::optional<Equilibrium> rod = solver_.keep(frame_problem(scene, obstacles_));
   if (!rod) return false;
   Moment after{std::move(scene), std::move(*rod)};
@@ -303,7 +303,7 @@ bool Branch::keep(Scene scene, double from, double step, Passage& passage) {
 }
 
 void Branch::witness(double at) {
-  BranchWitness seen{at, now_.rod.smallest_curvature, now_.rod.contacts};
+  BranchWitness seen{at, now_.rod.smallest_eigenvalue, now_.rod.contacts};
   if (!seen_) {
     seen_ = {seen, seen};
   } else {

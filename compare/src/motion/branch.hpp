@@ -28,12 +28,12 @@ struct Passage {
   bool smaller = false;  ///< in smaller steps than a frame
   bool stands = false;   ///< nothing has moved
   /// A branch that is not kept: whether it has been seen to end, by its stability or by a contact's
-  /// force that comes to nothing.
+  /// force that vanishes.
   bool ended = false;
   /// Of the last shape on a branch that is not kept.
-  double last_curvature = std::numeric_limits<double>::quiet_NaN();
+  double last_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   double work = 0;  ///< of grippers and obstacles on the rod [J]
-  /// That less what the energy has grown by, of a branch that is not kept in its falls alone, and
+  /// That less what the energy has grown by, of a branch that is not kept in its snaps alone, and
   /// what it may be with forces between those before and after each step [J]. NaN where
   /// Branch::balances() is false.
   double released = 0, released_bound = 0;
@@ -43,13 +43,13 @@ struct Passage {
 struct BranchWitness {
   double at = 0;  ///< when, in frames
   /// Of the second variation, over EI/l [-]; NaN: not known.
-  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   std::vector<energy_model::ContactPart> contacts;
 };
 
 /// Whether a branch has been seen to end before a step that missed it: at a fold the square of the
-/// smallest curvature comes to zero in proportion to the way that is left, at a bifurcation it does
-/// so itself, and where an obstacle lets go of the rod its force.
+/// smallest eigenvalue comes to zero in proportion to the way that is left, at a bifurcation it
+/// does so itself, and where an obstacle lets go of the rod its force.
 /// @param before, last  the last two shapes on it; @param missed  the step from the last one
 /// [frames]
 [[nodiscard]] bool shows_its_end(const BranchWitness& before, const BranchWitness& last,
@@ -61,8 +61,8 @@ struct BranchWitness {
 /// A step keeps it if Newton's method leads to a stable shape next to the one before, the energy
 /// grows by the work that is done, to the bound of forces between those of both shapes, and the rod
 /// goes through no obstacle. Where a whole frame's step does not, smaller ones are made, down to
-/// `smallest_step` of a frame, and beyond them the rod falls to what a search finds there; then it
-/// is followed on.
+/// `smallest_step` of a frame, and beyond them the rod is in the shape that a search finds there;
+/// then it is followed on.
 class Branch {
  public:
   /// Share of a frame to which the end of a branch is looked for.
@@ -73,7 +73,7 @@ class Branch {
 
   /// Those that are in reach at any of the frames, by their number in the scene.
   [[nodiscard]] const std::vector<std::size_t>& obstacles() const { return obstacles_; }
-  /// Whether work and energy are told: not where clamps turn the rod about itself or obstacles
+  /// Whether work and energy are known: not where clamps turn the rod about itself or obstacles
   /// yield.
   [[nodiscard]] bool balances() const { return balances_; }
 
@@ -91,7 +91,7 @@ class Branch {
   [[nodiscard]] Scene scene_at(double share) const;
   void go_to_frame(Passage& passage);
   double leave(double at, double missed, Passage& passage);
-  [[nodiscard]] bool keep(Scene scene, double from, double step, Passage& passage);
+  [[nodiscard]] bool try_follow(Scene scene, double from, double step, Passage& passage);
   void witness(double at);
 
   const Scene& scene_;

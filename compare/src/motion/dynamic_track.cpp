@@ -123,8 +123,8 @@ void require_dynamic(const Scene& scene, const TrackOptions& options) {
   }
   if (scene.has_material_directors()) {
     refuse(scene,
-           "a rod that is curved by nature or has two bending stiffnesses, whose twist has no "
-           "inertia in the model (allowed: round rods that are straight by nature)");
+           "a rod that is intrinsically curved or has two bending stiffnesses, whose twist has no "
+           "inertia in the model (allowed: round rods that are intrinsically straight)");
   }
   if (scene.holds_twist()) {
     refuse(scene,

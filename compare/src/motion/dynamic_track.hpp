@@ -44,7 +44,8 @@ struct DynamicTrack {
   int terms = 0;                     ///< of each piece and field
   long steps = 0;                    ///< of the integrator
   double seconds = 0;                ///< what it took, without the run with fewer terms
-  /// Largest miss of the energy balance, over `largest_energy`, as energy_model::Dynamics has it.
+  /// Largest residual of the energy balance, over `largest_energy`, as energy_model::Dynamics has
+  /// it.
   double energy_error = 0;
   double largest_energy = 0;  ///< [J]
   double step_error = 0;      ///< Dynamics::error_estimate, over the length [-]
@@ -60,7 +61,7 @@ struct DynamicTrack {
 };
 
 /// @throws InputError if the scene has what a rod with inertia cannot have here: twist that clamps
-/// hold, curvature by nature, two bending stiffnesses, no
+/// hold, natural curvature, two bending stiffnesses, no
 /// mass; or if `options` begin after the first pose, at which the rod is at rest
 void require_dynamic(const Scene& scene, const TrackOptions& options);
 

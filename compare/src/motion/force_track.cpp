@@ -48,10 +48,11 @@ ForceTrack::ForceTrack(const Scene& now, const energy_model::Equilibrium& rod,
                        const std::vector<std::size_t>& obstacles, const SolveOptions& options)
     : state_(std::make_unique<State>()) {
   if (turn_into_plane(now, now.force_model)) {
-    throw InputError(fmt::format(
-        "{}: a rod that is curved by nature, in a plane that is not z = 0, which a moving polygon "
-        "is not turned into",
-        now.file));
+    throw InputError(
+        fmt::format("{}: a rod that is intrinsically curved, in a plane that is not z = 0, which a "
+                    "moving polygon "
+                    "is not turned into",
+                    now.file));
   }
   state_->obstacles = obstacles;
   state_->settings = now.force_model;
@@ -141,7 +142,7 @@ Lag lag_of(const std::vector<Eigen::Matrix3Xd>& leader,
   for (std::size_t shift = 0; shift < count; ++shift) squares.push_back(squares_at(shift));
   const auto best =
       static_cast<std::size_t>(std::min_element(squares.begin(), squares.end()) - squares.begin());
-  // A leader that stands all the time is nearer than one that moves, however late.
+  // A leader that stands all the time is nearer than one that moves, at any lag.
   if (best + 1 == count) return {};
   double part = 0;
   double least = squares[best];

@@ -14,7 +14,7 @@
 namespace dlo::compare {
 
 /// Whether the force model makes its steps beside the energy model.
-enum class ForceBeside { runs, left_out };
+enum class ForceBeside { runs, absent };
 
 /// The force model at the end of a frame.
 struct ForceFrame {
@@ -33,12 +33,12 @@ struct ForceTrackSummary {
   double largest_time = 0;    ///< [s]
   double mean = 0;            ///< of the errors over the length [-]
   double median_seconds = 0;  ///< of a frame's steps
-  /// By how much its shapes are late: the shift of time that brings them nearest to the energy
+  /// Lag of its shapes: the shift of time that brings them nearest to the energy
   /// model's, and the RMS over all frames that is left then, over the length. NaN where nothing
   /// moves enough to tell.
   double lag = std::numeric_limits<double>::quiet_NaN();  ///< [s], >= 0
   double error_without_lag = std::numeric_limits<double>::quiet_NaN();
-  std::vector<std::string> left_out;  ///< as Solution::left_out
+  std::vector<std::string> neglected;  ///< as Solution::neglected
 };
 
 /// A scene's force model in simulated time, at rest at first.
@@ -72,7 +72,7 @@ class ForceTrack {
   std::unique_ptr<State> state_;
 };
 
-/// The shift of time by which a series of shapes is late against another one.
+/// The shift of time by which a series of shapes lags behind another one.
 struct Lag {
   double time = std::numeric_limits<double>::quiet_NaN();  ///< [s], >= 0
   double rms = std::numeric_limits<double>::quiet_NaN();   ///< that is left [m]

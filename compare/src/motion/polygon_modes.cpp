@@ -52,10 +52,11 @@ MovingPolygon polygon_at_rest(const Scene& scene, const SolveOptions& options) {
   MovingPolygon result{.discretisation = discretise(scene, settings)};
   const Discretisation& polygon = result.discretisation;
   if (polygon.rod.bending.natural_turns.size() > 0) {
-    throw InputError(fmt::format(
-        "{}: joints of a polygon that are bent by nature bend in their plane only, so that it has "
-        "no modes out of it (allowed: a rod that is straight by nature)",
-        scene.file));
+    throw InputError(
+        fmt::format("{}: joints of a polygon that are intrinsically curved bend in their plane "
+                    "only, so that it has "
+                    "no modes out of it (allowed: a rod that is intrinsically straight)",
+                    scene.file));
   }
   // The minimiser knows potentials, which the paper's law between unlike segments has not.
   const Model model = settings.law == BendingLaw::paper ? Model::force : Model::chain;

@@ -118,7 +118,7 @@ SceneModes scene_modes(const Scene& scene, const ModeOptions& options) {
       found = energy_model::taut_vibrations(problem, scene_inertia(scene), *result.tension, own);
     } else if (options.tension) {
       throw InputError(
-          fmt::format("{}: tension = {:g} N: the rod's shape tells its tension "
+          fmt::format("{}: tension = {:g} N: the rod's shape determines its tension "
                       "(allowed: of one that clamps hold straight)",
                       scene.file, *options.tension));
     } else {

@@ -15,7 +15,7 @@ struct ModeOptions {
   int count = 6;          ///< modes, > 0
   double rate = 4000;     ///< steps a second, > 0 (the paper's)
   double damping = 0.01;  ///< ratio of the slowest mode that the material has [-], > 0 to 1
-  /// Of a rod that clamps hold straight, which its shape does not tell [N]; none: 0.
+  /// Of a rod that clamps hold straight, not identifiable from its shape [N]; none: 0.
   std::optional<double> tension = std::nullopt;
   SolveOptions solve;  ///< limits of the solvers
 };
@@ -23,8 +23,8 @@ struct ModeOptions {
 /// What the stepper's c_F and c_h make of a movement of stiffness k, exactly:
 /// z^2 - (1 + c_h - c_F k) z + c_h = 0 from one step to the next (Formula 19).
 struct SteppedMode {
-  double omega = 0;        ///< [rad/s]; 0 where it does not swing
-  double damping = 1;      ///< ratio [-]; 1 where it does not swing
+  double omega = 0;        ///< [rad/s]; 0 where it is overdamped
+  double damping = 1;      ///< ratio [-]; 1 where it is overdamped
   bool is_stable = false;  ///< both |z| are at most 1
 };
 

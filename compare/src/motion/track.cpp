@@ -86,7 +86,7 @@ class Tracker {
     TrackFrame frame;
     frame.time = time;
     frame.followed = passage.kept;
-    frame.smallest_curvature = now.rod.smallest_curvature;
+    frame.smallest_eigenvalue = now.rod.smallest_eigenvalue;
     frame.seconds = seconds;
     if (index > 0 && !passage.stands) seconds_.push_back(seconds);
     frame.points = std::move(points);
@@ -131,7 +131,7 @@ class Tracker {
     event.frame = result_.frames.size();
     event.released = frame.released;
     event.released_bound = frame.released_bound;
-    event.smallest_curvature = passage.last_curvature;
+    event.smallest_eigenvalue = passage.last_eigenvalue;
     result_.events.push_back(std::move(event));
     return true;
   }
@@ -149,7 +149,7 @@ class Tracker {
 
   void add_force(const Moment& now, TrackFrame& frame) {
     ForceTrackSummary& summary = result_.force;
-    if (options_.force == ForceBeside::left_out) summary.none = "not asked for";
+    if (options_.force == ForceBeside::absent) summary.none = "not asked for";
     if (!summary.none.empty()) return;
     const double steps = options_.rates.steps / options_.rates.frames;
     summary.steps_per_frame = std::max(1L, std::lround(steps));

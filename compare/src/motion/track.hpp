@@ -28,7 +28,7 @@ struct TrackFrame {
   double time = 0;        ///< [s]
   bool followed = false;  ///< on the branch of the frame before
   /// As Solution's: it comes to zero where a branch ends at a fold [-].
-  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// Of the shape; gravity and loads are zero at the origin, which does not move [J].
   SceneEnergies energy;
   double work = 0;  ///< of grippers and obstacles on the rod, since the first frame [J]
@@ -43,22 +43,22 @@ struct TrackFrame {
   std::optional<ForceFrame> force;
 };
 
-/// A change of what touches, or a fall to another shape.
+/// A change of what touches, or a snap-through to another shape.
 struct TrackEvent {
   /// What has happened.
   enum class Kind {
     contact,  ///< something begins to touch, or to lie
     release,  ///< something ends to
-    snap,     ///< the branch has ended, and the shape has fallen to another one
+    snap,     ///< the branch has ended, and the shape has snapped to another one
     lost,     ///< so has the shape, but the branch has not been seen to end
   };
   Kind kind = Kind::contact;
   std::size_t frame = 0;                                       ///< the first with it
   std::optional<ContactChange> contact;                        ///< of a contact or a release
-  double released = std::numeric_limits<double>::quiet_NaN();  ///< of a fall [J]
+  double released = std::numeric_limits<double>::quiet_NaN();  ///< by a snap-through [J]
   double released_bound = 0;                                   ///< by which that may be off [J]
-  /// Of the last shape on the branch, before a fall [-].
-  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
+  /// Of the last shape on the branch, before that [-].
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// In words, for files.
@@ -79,13 +79,13 @@ struct Track {
   double median_seconds = 0;  ///< of a frame of the energy model in which something moves
   int lost = 0;      ///< frames whose shape was searched for, on another branch or on the same
   int repeated = 0;  ///< frames to which the branch was kept in smaller steps only
-  std::vector<std::string> left_out;  ///< as Solution::left_out
+  std::vector<std::string> neglected;  ///< as Solution::neglected
   ForceTrackSummary force;
 };
 
 /// Follows the energy model's shape through a scene's motion: the first frame has the lowest shape
 /// that is found, all others its branch (Branch), as long as there is one. Where the shape has
-/// fallen to a lower one, more energy is missing than any forces between those before and after
+/// snapped to a lower one, more energy is missing than any forces between those before and after
 /// could do; that is a snap only if the branch has shown its end, else the solver may have lost it.
 /// The force model makes its steps of each frame beside it, from rest.
 ///

@@ -17,16 +17,16 @@ constexpr int row_pixels = 42;  // a line of text and a bar
 
 }  // namespace
 
-bool leaves_out(const Comparison& comparison, const char* what) {
-  const std::vector<std::string>& left_out = comparison.force.left_out;
-  return std::find(left_out.begin(), left_out.end(), what) != left_out.end();
+bool neglects(const Comparison& comparison, const char* what) {
+  const std::vector<std::string>& neglected = comparison.force.neglected;
+  return std::find(neglected.begin(), neglected.end(), what) != neglected.end();
 }
 
 std::vector<std::pair<const char*, const BudgetPart*>> shown_parts(const Comparison& comparison) {
   const Budget& b = comparison.budget;
   std::vector<std::pair<const char*, const BudgetPart*>> parts;
-  if (leaves_out(comparison, "twist")) parts.emplace_back("twist", &b.twist);
-  if (leaves_out(comparison, "natural curvature")) {
+  if (neglects(comparison, "twist")) parts.emplace_back("twist", &b.twist);
+  if (neglects(comparison, "natural curvature")) {
     parts.emplace_back("natural curvature", &b.natural_curvature);
   }
   parts.emplace_back("law", &b.law);

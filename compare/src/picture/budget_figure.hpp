@@ -9,8 +9,8 @@
 
 namespace dlo::compare {
 
-/// Whether the force model left something out that the scene has (Solution::left_out).
-[[nodiscard]] bool leaves_out(const Comparison& comparison, const char* what);
+/// Whether the force model left something out that the scene has (Solution::neglected).
+[[nodiscard]] bool neglects(const Comparison& comparison, const char* what);
 
 /// The parts of a comparison's error budget that are told, by name: without those that its scene
 /// has not. They point into the comparison.

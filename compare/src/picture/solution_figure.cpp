@@ -44,7 +44,7 @@ std::string style_of(const Solution& solution, std::size_t i, std::size_t count)
 }  // namespace
 
 bool is_unstable(const Solution& solution) {
-  return solution.status == energy_model::SolveStatus::saddle || solution.smallest_curvature < 0;
+  return solution.status == energy_model::SolveStatus::saddle || solution.smallest_eigenvalue < 0;
 }
 
 Picture solution_picture(const Scene& scene, const std::vector<Solution>& solutions) {

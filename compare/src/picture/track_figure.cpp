@@ -235,7 +235,7 @@ void add_rows(const char* rod, double time, std::size_t gripper, const GripperLo
                  csv_number(load.force.norm()), csv_number(load.torque.norm()));
 }
 
-/// One gripper after the other, since what is left out between two points ends a line.
+/// One gripper after the other, since what is missing between two points ends a line.
 std::string force_csv(const Scene& scene, const TrackShapes& shapes) {
   std::string csv = "rod,time_s,gripper,force_N,torque_Nm\n";
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
@@ -250,7 +250,7 @@ std::string force_csv(const Scene& scene, const TrackShapes& shapes) {
   return csv;
 }
 
-enum class KeyEntries { shown, left_out };
+enum class KeyEntries { shown, hidden };
 
 /// Of all grippers against time, a column of the CSV.
 Panel load_panel(const Scene& scene, const TrackShapes& shapes, const std::string& csv_file,
@@ -305,7 +305,7 @@ Figure force_figure(const Scene& scene, const TrackShapes& shapes, std::size_t n
                 .csv_file = fmt::format("forces_{}.csv", number),
                 .csv = force_csv(scene, shapes)};
   constexpr int force_column = 4;
-  Panel force = load_panel(scene, shapes, figure.csv_file, force_column, KeyEntries::left_out);
+  Panel force = load_panel(scene, shapes, figure.csv_file, force_column, KeyEntries::hidden);
   force.y_label = "force [N]";
   Panel torque = load_panel(scene, shapes, figure.csv_file, force_column + 1, KeyEntries::shown);
   torque.y_label = "torque [N m]";

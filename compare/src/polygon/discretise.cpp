@@ -88,7 +88,7 @@ void derive_bending(const Scene& scene, const ForceModelSettings& settings, cons
     if (!(alpha > 0 && alpha < std::numbers::pi)) {
       throw InputError(
           fmt::format("{}: force_model.design_curvature = {:g} 1/m: with {} points a joint would "
-                      "turn by {:g} rad "
+                      "rotate by {:g} rad "
                       "(allowed: > 0 and < pi; give design_curvature, c_b or other points)",
                       scene.file, parameters.design_curvature, settings.points, alpha));
     }
@@ -114,7 +114,7 @@ Cell cell_of(const Scene& scene, const Layout& layout, Eigen::Index point) {
           i + 1 < s.size() ? on_rod((s[i] + s[i + 1]) / 2) : on_rod(s.back())};
 }
 
-/// Joints of a rod with sections, of one that grips twist, and of one that is curved by nature.
+/// Joints of a rod with sections, of one that grips twist, and of one that is intrinsically curved.
 void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings,
                           const Layout& layout, Discretisation& result) {
   const Eigen::Index joints = settings.points - 2;
@@ -155,7 +155,7 @@ void derive_unlike_joints(const Scene& scene, const ForceModelSettings& settings
   if (!(largest < force_model::hooke_fold_angle)) {
     const Cell cell = cell_of(scene, layout, most + 1);
     throw InputError(fmt::format(
-        "{}: force_model.points = {}: at rest a joint would turn by {:.3g} rad, as the rod is "
+        "{}: force_model.points = {}: at rest a joint would rotate by {:.3g} rad, as the rod is "
         "curved by {:.4g} 1/m (allowed: less than {:g} rad, {} points or more)",
         scene.file, settings.points, largest, largest / (cell.end - cell.begin),
         force_model::hooke_fold_angle,

@@ -38,14 +38,14 @@ bool takes_twist(const Scene& scene, const ForceModelSettings& settings) {
   return scene.holds_twist() && settings.law == BendingLaw::hooke && !scene.naturally_bent();
 }
 
-std::vector<std::string> left_out_of_polygon(const Scene& scene,
-                                             const ForceModelSettings& settings) {
-  std::vector<std::string> left_out;
-  if (scene.holds_twist() && !takes_twist(scene, settings)) left_out.emplace_back("twist");
+std::vector<std::string> neglected_by_polygon(const Scene& scene,
+                                              const ForceModelSettings& settings) {
+  std::vector<std::string> neglected;
+  if (scene.holds_twist() && !takes_twist(scene, settings)) neglected.emplace_back("twist");
   if (scene.naturally_curved() && !takes_natural_curvature(scene, settings)) {
-    left_out.emplace_back("natural curvature");
+    neglected.emplace_back("natural curvature");
   }
-  return left_out;
+  return neglected;
 }
 
 Scene as_polygons_take_it(const Scene& scene, const ForceModelSettings& settings) {

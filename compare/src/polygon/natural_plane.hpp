@@ -10,22 +10,22 @@
 
 namespace dlo::compare {
 
-/// Whether a polygon's joints are turned at rest as the scene's rod is curved by nature: with the
+/// Whether a polygon's joints are bent at rest as the scene's rod is intrinsically curved: with the
 /// law hooke and in a plane. In space they would need the rod's frame, which points have not.
 [[nodiscard]] bool takes_natural_curvature(const Scene& scene, const ForceModelSettings& settings);
 
 /// Whether a polygon has the twist that the scene's clamps hold: with the law hooke, of a rod that
-/// is straight by nature.
+/// is intrinsically straight.
 [[nodiscard]] bool takes_twist(const Scene& scene, const ForceModelSettings& settings);
 
-/// What polygons leave out of what the scene has: "twist", "natural curvature", or nothing.
-[[nodiscard]] std::vector<std::string> left_out_of_polygon(const Scene& scene,
-                                                           const ForceModelSettings& settings);
+/// What polygons neglect of what the scene has: "twist", "natural curvature", or nothing.
+[[nodiscard]] std::vector<std::string> neglected_by_polygon(const Scene& scene,
+                                                            const ForceModelSettings& settings);
 
 /// The scene without that.
 [[nodiscard]] Scene as_polygons_take_it(const Scene& scene, const ForceModelSettings& settings);
 
-/// A turn and a shift that lay a plane scene into the plane z = 0, where joints that are turned at
+/// A turn and a shift that lay a plane scene into the plane z = 0, where joints that are bent at
 /// rest belong.
 class PlaneTurn {
  public:

@@ -33,7 +33,7 @@ double call_for_gsl(double x, void* data) {
 }
 
 /// GSL aborts the program on errors unless told otherwise; every call looks at its result instead.
-/// Told once, so that threads do not tell it at the same time.
+/// Set once, so that threads do not set it at the same time.
 void keep_gsl_from_aborting() {
   static const bool silent = gsl_set_error_handler_off() != nullptr;
   (void)silent;

@@ -20,7 +20,7 @@ enum class Side {
 /// shorter than the rod, an arch with no slope at the grips towards the load across their line. Of
 /// a rod without such a load the arch follows the clamps' directions, or else +x (+y if the grips
 /// lie along x). Every arch
-/// leaves its plane by a millionth of its length, so that what cannot hold itself sideways falls.
+/// leaves its plane by a millionth of its length, so that what is unstable out of plane leaves it.
 /// No two neighbouring points coincide.
 /// @param along  the grippers in the order of their arc lengths
 [[nodiscard]] Eigen::Matrix3Xd start_shape(const Scene& scene,

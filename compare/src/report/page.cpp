@@ -172,7 +172,8 @@ void add_verdict(const Report& report, Page& page) {
   if (report.paper) {
     page.paragraph(
         "The scenes are the paper's three (Figs. 12 and 13) and two that tell more, since the "
-        "paper's rod hardly bends (Gamma = 0.18): the same rod 1.9 m long, and one metre of it "
+        "paper's rod is nearly straight (Gamma = 0.18): the same rod 1.9 m long, and one metre of "
+        "it "
         "pulled sideways, which no plane holds.");
   }
   page.table(scene_table(report));
@@ -277,7 +278,7 @@ void add_speed(const Report& report, Page& page) {
   page.paragraph(fmt::format(
       "From straight to the shape, on one thread while nothing else of this report ran, medians of "
       "{} runs. "
-      "Tracking: a frame of 1 ms behind a gripper that moves at {} m/s and turns by v/l.",
+      "Tracking: a frame of 1 ms behind a gripper that moves at {} m/s and rotates by v/l.",
       benchmark.options.repeats, page_number(benchmark.options.gripper_speed)));
   page.figures("speed");
   page.table(answer_table(report));
@@ -312,8 +313,8 @@ void add_stability(const Report& report, Page& page) {
       table_1_step_formula, table_1_limit_share, dynamic_share, options.max_steps,
       options.max_steps_auto, page_percent(options.tolerance), options.steps_at_rest));
   page.table(hard_case_table(report.hard_cases));
-  for (const std::string& name : options.left_out) {
-    page.paragraph("Left out, for the time it takes: " + name + ".");
+  for (const std::string& name : options.excluded) {
+    page.paragraph("Not run, for the time it takes: " + name + ".");
   }
   std::vector<std::string> notes;
   for (const StabilityResult& result : report.hard_cases) {
@@ -325,7 +326,7 @@ void add_stability(const Report& report, Page& page) {
     page.heading("Notes");
     page.list(notes);
   }
-  page.command("Again, with what was left out:",
+  page.command("Again, with what was not run:",
                fmt::format("dlo stability --steps-at-rest {}", options.steps_at_rest));
 }
 

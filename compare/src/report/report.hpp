@@ -48,7 +48,7 @@ struct ReportOptions {
   std::optional<StabilityMapOptions> map = StabilityMapOptions{};
   /// The hard cases, with all steppers.
   std::optional<StabilityOptions> hard_cases =
-      StabilityOptions{.steps_at_rest = 1'000'000, .left_out = {"N = 1000"}};
+      StabilityOptions{.steps_at_rest = 1'000'000, .excluded = {"N = 1000"}};
   /// Frames a second of what moves [Hz], > 0; none: as the scenes say.
   std::optional<double> frame_rate;
   bool motion = true;  ///< what moves is followed

@@ -170,7 +170,7 @@ HtmlTable motion_table(const Report& report) {
                               {"largest torque [N m]"},
                               {"force model: mean error"},
                               {"largest error"},
-                              {"late by [ms]"}}};
+                              {"lag [ms]"}}};
   for (const MotionReport& motion : report.motions) {
     const Track& track = motion.track;
     double force = 0;
@@ -279,7 +279,7 @@ HtmlTable front_table(const SceneBenchmark& scene) {
     table.rows.push_back({name_of(run), page_number(run.time.median_s * 1e3),
                           fmt::format("{} to {}", page_number(run.time.lower_quartile_s * 1e3),
                                       page_number(run.time.upper_quartile_s * 1e3)),
-                          std::to_string(run.work), page_number(run.rms_over_length)});
+                          std::to_string(run.evaluations), page_number(run.rms_over_length)});
   }
   return table;
 }

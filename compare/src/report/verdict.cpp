@@ -86,7 +86,7 @@ void say_shapes(const Report& report, std::vector<std::string>& verdict) {
     std::ptrdiff_t right = 0;
     for (const Comparison* c : group) {
       rms.add(c->deviation.rms_over_length);
-      if (is_told(c->effective_modulus.optimum)) ratio.add(c->effective_modulus.ratio);
+      if (is_identified(c->effective_modulus.optimum)) ratio.add(c->effective_modulus.ratio);
       if (c->deviation.rms_over_length <= report.options.tolerance) ++right;
     }
     const Comparison& worst = **std::max_element(
@@ -107,13 +107,13 @@ void say_shapes(const Report& report, std::vector<std::string>& verdict) {
   }
 }
 
-void say_left_out(const Report& report, std::vector<std::string>& verdict) {
+void say_neglected(const Report& report, std::vector<std::string>& verdict) {
   for (const SceneReport& scene : report.scenes) {
     if (scene.comparisons.empty()) continue;
-    for (const std::string& what : scene.comparisons.front().force.left_out) {
-      verdict.push_back(
-          fmt::format("{}: {} out the {} that the scene has.", scene.file.scene.name,
-                      what == "friction" ? "both models leave" : "the force model leaves", what));
+    for (const std::string& what : scene.comparisons.front().force.neglected) {
+      verdict.push_back(fmt::format(
+          "{}: {} the {} that the scene has.", scene.file.scene.name,
+          what == "friction" ? "both models neglect" : "the force model neglects", what));
     }
   }
 }
@@ -201,7 +201,7 @@ std::vector<std::string> report_verdict(const Report& report) {
     verdict.push_back("Not computed: " + failure);
   }
   say_shapes(report, verdict);
-  say_left_out(report, verdict);
+  say_neglected(report, verdict);
   say_claim_of_a_third(report, verdict);
   say_speed(report, verdict);
   say_stability(report, verdict);

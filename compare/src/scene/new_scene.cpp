@@ -61,7 +61,7 @@ diameter = {diameter}  # round, solid; bending stiffness EI = E pi d^4 / 64
 # EI of a chain of hinges: joint_stiffness = "0.03 N m/rad" and joint_spacing = "4 cm" instead.
 # Of a flat cable bending_stiffness = ["1.2e-3 N m^2", "0.04 N m^2"], about d1 and about d2 of the
 # first clamp's frame: d2 is the normal of the scene's plane unless a frame or roll says otherwise.
-# The free rod need not be straight: natural_curvature = "3 1/m" bends it to the left in its plane;
+# The stress-free shape need not be straight: natural_curvature = "3 1/m" bends it to the left in its plane;
 # [x, y] are about d1 and d2 of the first clamp's frame, natural_twist = "90 deg/m" about the rod.
 # torsional_stiffness (GJ) is then EI / 1.3, if it is not given.
 
@@ -83,7 +83,7 @@ direction = {direction}
       fmt::arg("direction", toml_value(choices.direction)));
 }
 
-enum class Meaning { said, left_out };
+enum class Meaning { said, omitted };
 
 /// Names as TOML has them, with what they mean if `meaning` is asked for.
 template <Chosen Value>
@@ -105,7 +105,7 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
   const double force = weight > 0 ? weight : scene.bending_stiffness() / (l * l);
   return fmt::format(
       R"(
-# A clamp lets the rod turn about its direction unless it holds the rod's frame, by one of
+# A clamp lets the rod rotate about its direction unless it holds the rod's frame, by one of
 #   roll = "90 deg"             turned on from the first such clamp's frame, turns counted
 #   frame = [[1, 0, 0], ..]     rows d1, d2, d3; d3 is the direction
 #   quaternion = [1, 0, 0, 0]   w, x, y, z; it turns the axes x, y, z into d1, d2, d3
@@ -192,8 +192,8 @@ std::string optional_part(const SceneChoices& choices, const Scene& scene) {
       fmt::arg("bookkeeping", to_string(defaults.bookkeeping)),
       fmt::arg("bookkeepings", toml_choices<Bookkeeping>(Meaning::said)),
       fmt::arg("stepper", to_string(defaults.stepper)),
-      fmt::arg("steppers", toml_choices<Stepper>(Meaning::left_out)),
-      fmt::arg("bending_rules", toml_choices<BendingRule>(Meaning::left_out)));
+      fmt::arg("steppers", toml_choices<Stepper>(Meaning::omitted)),
+      fmt::arg("bending_rules", toml_choices<BendingRule>(Meaning::omitted)));
 }
 
 }  // namespace

@@ -176,7 +176,7 @@ void check_twist(const Scene& scene, const StrictTable& rod) {
   }
 }
 
-/// Which way a rod is curved by nature, and where its principal axes are, has to be said by a
+/// Which way a rod is intrinsically curved, and where its principal axes are, has to be said by a
 /// clamp.
 void check_material_directors(const Scene& scene, const StrictTable& rod) {
   const bool clamped =

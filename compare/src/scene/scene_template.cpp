@@ -100,7 +100,7 @@ class Overrider {
     return *index;
   }
 
-  /// The table or array below `parent`; a table that the file leaves out is as good as empty.
+  /// The table or array below `parent`; a table that the file lacks is as good as empty.
   toml::node& enter(toml::node& parent, std::string_view step, const std::string& path) const {
     toml::node* child = nullptr;
     if (toml::table* table = parent.as_table()) {

@@ -88,7 +88,7 @@ RigidMotion Aligner::closest_pose(const Eigen::Matrix3Xd& from, const Eigen::Mat
   const Eigen::Matrix3d moments =
       (from.colwise() - from_centre) * weight.asDiagonal() * (to.colwise() - to_centre).transpose();
   if (options_.pose == PoseFreedom::upright) {
-    // Of all turns by an angle a about up: the one with the largest cos a C + sin a S.
+    // Of all rotations by an angle a about up: the one with the largest cos a C + sin a S.
     const Eigen::Vector3d& up = options_.up;
     const double cosine = moments.trace() - up.dot(moments * up);
     const Eigen::Vector3d twist(moments(1, 2) - moments(2, 1), moments(2, 0) - moments(0, 2),
@@ -153,15 +153,15 @@ std::vector<Aligner::Placed> Aligner::coarse_places(const Way& way, const Curve&
   return result;
 }
 
-Aligner::Placed Aligner::polish(const Way& way, const Curve& curve,
+Aligner::Placed Aligner::refine(const Way& way, const Curve& curve,
                                 const RigidMotion& start) const {
   if (free_coordinates() == 0 || !is_dense()) {
-    return polish_all(way, curve, start);
+    return refine_all(way, curve, start);
   }
-  return polish_all(way, curve, polish_all(thinned(way), curve, start).pose);
+  return refine_all(way, curve, refine_all(thinned(way), curve, start).pose);
 }
 
-Aligner::Placed Aligner::polish_all(const Way& way, const Curve& curve,
+Aligner::Placed Aligner::refine_all(const Way& way, const Curve& curve,
                                     const RigidMotion& start) const {
   Placed placed;
   placed.pose = start;
@@ -233,27 +233,27 @@ void Aligner::gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve,
       damping *= 30;
       continue;
     }
-    const bool settled = next_cost > (1 - least_gain) * placed.mean_square;
+    const bool converged = next_cost > (1 - least_gain) * placed.mean_square;
     placed = {next, std::move(next_s), next_cost};
     moved = next_moved;
     damping = std::max(damping / 10, 1e-12);
-    if (settled) return;
+    if (converged) return;
   }
 }
 
 Aligner::Placed Aligner::best_place(const Way& way, const Curve& curve) const {
   if (!has_free_arc_lengths()) return place_given(way, curve);
-  if (options_.pose == PoseFreedom::known) return polish(way, curve, RigidMotion());
+  if (options_.pose == PoseFreedom::known) return refine(way, curve, RigidMotion());
   const Placed few = best_of_few(way, curve);
-  return is_dense() ? polish_all(way, curve, few.pose) : few;
+  return is_dense() ? refine_all(way, curve, few.pose) : few;
 }
 
 Aligner::Placed Aligner::best_of_few(const Way& way, const Curve& curve) const {
   const Way few = thinned(way);
   const std::vector<Placed> coarse = coarse_places(way, curve);
-  Placed best = polish_all(few, curve, coarse.front().pose);
+  Placed best = refine_all(few, curve, coarse.front().pose);
   if (coarse.size() > 1) {
-    Placed second = polish_all(few, curve, coarse[1].pose);
+    Placed second = refine_all(few, curve, coarse[1].pose);
     if (second.mean_square < best.mean_square) best = std::move(second);
   }
   return best;
@@ -284,7 +284,7 @@ Alignment Aligner::align(const Curve& curve) const {
     for (const std::size_t way : {0, 1}) {
       const Placed& other = few[1 - way];
       if (!(other.mean_square > clearly_worse * few[way].mean_square)) continue;
-      Alignment result = finished(polish_all(ways_[way], curve, few[way].pose), way == 1, curve);
+      Alignment result = finished(refine_all(ways_[way], curve, few[way].pose), way == 1, curve);
       result.other_rms_m = std::sqrt(other.mean_square);
       return result;
     }
@@ -302,7 +302,7 @@ Alignment Aligner::align(const Curve& curve) const {
 Alignment Aligner::align_near(const Curve& curve, const Alignment& previous) const {
   const Way& way = ways_[previous.reversed ? 1 : 0];
   const Placed placed =
-      has_free_arc_lengths() ? polish(way, curve, previous.pose) : place_given(way, curve);
+      has_free_arc_lengths() ? refine(way, curve, previous.pose) : place_given(way, curve);
   Alignment result = finished(placed, previous.reversed, curve);
   result.other_rms_m = previous.other_rms_m;
   return result;

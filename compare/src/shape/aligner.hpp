@@ -46,10 +46,10 @@ class Aligner {
   [[nodiscard]] bool is_dense() const;
   [[nodiscard]] static Way thinned(const Way& way);
   [[nodiscard]] std::vector<Placed> coarse_places(const Way& way, const Curve& curve) const;
-  [[nodiscard]] Placed polish_all(const Way& way, const Curve& curve,
+  [[nodiscard]] Placed refine_all(const Way& way, const Curve& curve,
                                   const RigidMotion& start) const;
   /// The same by way of fewer points, so that many need few steps.
-  [[nodiscard]] Placed polish(const Way& way, const Curve& curve, const RigidMotion& start) const;
+  [[nodiscard]] Placed refine(const Way& way, const Curve& curve, const RigidMotion& start) const;
   void gauss_newton(const Eigen::Matrix3Xd& points, const Curve& curve, Placed& placed) const;
   /// Of the thinned points.
   [[nodiscard]] Placed best_of_few(const Way& way, const Curve& curve) const;

@@ -153,8 +153,8 @@ int points_for_target(const Scene& scene, const energy_model::Equilibrium& rod, 
   return 0;
 }
 
-LeftOut inertia(const Scene& scene, double speed) {
-  LeftOut result{.what = "inertia", .models = "all but a simulation in time"};
+Neglected inertia(const Scene& scene, double speed) {
+  Neglected result{.what = "inertia", .models = "all but a simulation in time"};
   if (speed == 0) {
     result.why = "nothing moves";
     return result;
@@ -169,7 +169,7 @@ LeftOut inertia(const Scene& scene, double speed) {
   return result;
 }
 
-LeftOut twist_left_out(const Scene& scene, const Plan& plan) {
+Neglected neglected_twist(const Scene& scene, const Plan& plan) {
   if (scene.holds_twist()) {
     ForceModelSettings hooke = scene.force_model;
     hooke.law = BendingLaw::hooke;
@@ -179,16 +179,16 @@ LeftOut twist_left_out(const Scene& scene, const Plan& plan) {
   if (!scene.has_material_directors()) {
     return {"twist", "all", 0, "none in a round, naturally straight rod free to twist"};
   }
-  // A strip may leave its plane sideways.
+  // A strip may buckle out of its plane.
   if (plan.planar && !scene.has_two_stiffnesses()) {
     return {"twist", "chain, force", 0, "none in a plane"};
   }
   return {"twist", "chain, force", unbounded,
-          scene.naturally_bent() ? "a rod that is curved by nature twists in space"
+          scene.naturally_bent() ? "a rod that is intrinsically curved twists in space"
                                  : "a rod of two bending stiffnesses twists in space"};
 }
 
-LeftOut natural_left_out(const Scene& scene) {
+Neglected neglected_natural(const Scene& scene) {
   ForceModelSettings hooke = scene.force_model;
   hooke.law = BendingLaw::hooke;
   return {
@@ -197,15 +197,15 @@ LeftOut natural_left_out(const Scene& scene) {
       unbounded, "the rod is curved without loads"};
 }
 
-LeftOut friction_left_out(const Plan& plan) {
+Neglected neglected_friction(const Plan& plan) {
   return {"friction", "all", unbounded,
           plan.contact ? "the shape is one of all that friction could hold"
                        : "none in the shape found, but friction could hold one that touches"};
 }
 
-/// What leaving something out changes: the rod is solved without it too.
+/// What neglecting something changes: the rod is solved without it too.
 void look_at(const Scene& without, const energy_model::Equilibrium& rod, double time_limit,
-             LeftOut& item) {
+             Neglected& item) {
   if (!(time_limit > 0)) return;
   std::string why;
   const std::optional<energy_model::Equilibrium> other = rod_shape(without, time_limit, why);
@@ -224,7 +224,7 @@ void look_at_twist(const energy_model::Equilibrium& rod, Plan& plan) {
 /// Why no polygon answers for the rod; empty if one does.
 std::string no_polygon(const Scene& scene, const Plan& plan) {
   if (!plan.twist.empty()) return "the polygon that answers has no twist";
-  if (scene.naturally_bent()) return "the polygon that answers is straight by nature";
+  if (scene.naturally_bent()) return "the polygon that answers is intrinsically straight";
   if (scene.has_two_stiffnesses()) return "the polygon that answers is round";
   if (!scene.sections.empty()) return "the polygon that answers is of one section";
   return {};
@@ -233,10 +233,10 @@ std::string no_polygon(const Scene& scene, const Plan& plan) {
 }  // namespace
 
 double Plan::bound(const std::string& what) const {
-  for (const LeftOut& item : left_out) {
+  for (const Neglected& item : neglected) {
     if (item.what == what) return item.bound_m;
   }
-  throw std::invalid_argument(fmt::format("Plan::bound: nothing called \"{}\" is left out", what));
+  throw std::invalid_argument(fmt::format("Plan::bound: nothing called \"{}\" is neglected", what));
 }
 
 Plan make_plan(const Scene& scene, const PlanOptions& options) {
@@ -262,13 +262,13 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
         {clearances[i], std::find(in_reach.begin(), in_reach.end(), i) != in_reach.end()});
   }
 
-  LeftOut stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
-  LeftOut shear{.what = "shear", .models = "all"};
-  LeftOut polygon{.what = "polygon", .models = "chain, force"};
-  LeftOut twist = twist_left_out(scene, plan);
-  LeftOut natural = natural_left_out(scene);
+  Neglected stretch{.what = "stretch", .models = "energy, exact, chain of rigid segments"};
+  Neglected shear{.what = "shear", .models = "all"};
+  Neglected polygon{.what = "polygon", .models = "chain, force"};
+  Neglected twist = neglected_twist(scene, plan);
+  Neglected natural = neglected_natural(scene);
   const auto no_bound = [&](const std::string& why) {
-    for (LeftOut* item : {&stretch, &shear, &polygon}) {
+    for (Neglected* item : {&stretch, &shear, &polygon}) {
       item->bound_m = unbounded;
       item->why = why;
     }
@@ -311,12 +311,12 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
     no_bound(fmt::format("not found out: {}", error.what()));
   }
   plan.stretch = stretch.bound_m > options.target * scene.length / 10;
-  plan.left_out = {stretch, shear, polygon, inertia(scene, options.gripper_speed), twist};
-  if (scene.naturally_bent()) plan.left_out.push_back(natural);
-  if (friction_in_reach(scene)) plan.left_out.push_back(friction_left_out(plan));
+  plan.neglected = {stretch, shear, polygon, inertia(scene, options.gripper_speed), twist};
+  if (scene.naturally_bent()) plan.neglected.push_back(natural);
+  if (friction_in_reach(scene)) plan.neglected.push_back(neglected_friction(plan));
   plan.moving = plan.bound("inertia") > options.target * scene.length;
   if (in_reach.size() < scene.obstacles.size()) {
-    plan.left_out.push_back(
+    plan.neglected.push_back(
         {"obstacles out of reach", "all", 0,
          fmt::format("{} of {}: no point of the rod gets there",
                      scene.obstacles.size() - in_reach.size(), scene.obstacles.size())});

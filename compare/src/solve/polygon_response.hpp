@@ -9,14 +9,15 @@
 
 namespace dlo::compare {
 
-/// How an equilibrium of the continuous rod answers, to first order, to what a model leaves out.
+/// How an equilibrium of the continuous rod answers, to first order, to what a model neglects.
 ///
 /// The rod is cut into the segments of a polygon, each with the rod's own tangent t_i in its middle
 /// (a held one with its clamp's) and the force n_i that what lies beyond it exerts on it. Small
 /// turns dt_i across t_i minimise
 ///     sum joints -2 (EI/L) ln((1 + t_i.t_{i+1})/2) - sum L_i n_i.t_i     to second order,
-/// minus f_i.dt_i for what was left out, subject to sum L_i (dt_i + eta_i) = gap between grips, eta
-/// the strain that was left out. With the complementary energy of a rod that stretches and shears,
+/// minus f_i.dt_i for what was neglected, subject to sum L_i (dt_i + eta_i) = gap between grips,
+/// eta the strain that was neglected. With the complementary energy of a rod that stretches and
+/// shears,
 ///     (n.t)^2 / (2 EA) + |n_across|^2 / (2 kGA)  per length,
 /// stretch has eta = (n.t) t / (EA), f = L n_across (n.t) / (EA), and shear has eta = n_across /
 /// (kGA), f = -L n_across (n.t) / (kGA). The polygon's own error is the first Newton step from the

@@ -57,7 +57,7 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
   Solution solution;
   solution.shape = discretisation.shape(points);
   solution.parameters = discretisation.parameters;
-  solution.left_out = left_out_of_polygon(scene, settings);
+  solution.neglected = neglected_by_polygon(scene, settings);
   SceneEnergies& energy = solution.energy;
   energy.bending = inner.bending;
   energy.twisting = inner.twist;
@@ -91,7 +91,7 @@ Solution polygon_solution(const Scene& scene, const ForceModelSettings& settings
       solution.obstacles[discretisation.solids[k]] += forces.col(i);
     }
   }
-  if (touches_with_friction(scene, solution.obstacles)) solution.left_out.emplace_back("friction");
+  if (touches_with_friction(scene, solution.obstacles)) solution.neglected.emplace_back("friction");
   return solution;
 }
 

@@ -42,7 +42,7 @@ std::string looked_from(const std::vector<energy_model::Equilibrium>& searches) 
 /// Whether a shape may be handed on: proven, or unproven and asked for.
 bool acceptable(energy_model::SolveStatus status, const SolveOptions& options) {
   return energy_model::succeeded(status) ||
-         (options.accept_unresolved && (status == energy_model::SolveStatus::not_resolved ||
+         (options.accept_unverified && (status == energy_model::SolveStatus::not_verified ||
                                         status == energy_model::SolveStatus::near_singular));
 }
 
@@ -51,7 +51,7 @@ void refuse_lost_turns(const Scene& scene, energy_model::Equilibrium& equilibriu
   if (!energy_model::succeeded(equilibrium.status)) return;
   std::string lost = lost_turns(linking_of(scene, equilibrium));
   if (lost.empty()) return;
-  equilibrium.status = energy_model::SolveStatus::not_resolved;
+  equilibrium.status = energy_model::SolveStatus::not_verified;
   equilibrium.message = std::move(lost);
 }
 

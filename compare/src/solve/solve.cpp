@@ -70,8 +70,8 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene), equilibrium.obstacles);
   solution.twists = equilibrium.twists;
   solution.linking = linking_of(scene, equilibrium);
-  if (scene.holds_twist() && solution.twists.empty()) solution.left_out = {"twist"};
-  if (touches_with_friction(scene, solution.obstacles)) solution.left_out.emplace_back("friction");
+  if (scene.holds_twist() && solution.twists.empty()) solution.neglected = {"twist"};
+  if (touches_with_friction(scene, solution.obstacles)) solution.neglected.emplace_back("friction");
   solution.contacts = contacts_of(scene, equilibrium);
   const bool sinks_in = touches_yielding_obstacle(scene, solution.obstacles);
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -82,7 +82,7 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
     // Adding zero turns -0 into 0.
     solution.tension.push_back(force.dot(shape.tangents.col(column)) + 0.0);
   }
-  solution.smallest_curvature = equilibrium.smallest_curvature;
+  solution.smallest_eigenvalue = equilibrium.smallest_eigenvalue;
   solution.neutral_directions = equilibrium.neutral_directions;
   solution.evaluations = equilibrium.evaluations;
   solution.terms = equilibrium.terms;

@@ -13,9 +13,9 @@ namespace {
 
 using energy_model::Equilibrium;
 
-/// Stable, as far as is known of a shape that is not resolved or that a fold leaves open.
+/// Stable, as far as is known of a shape that is not verified or at a singular point.
 bool is_stable(const Equilibrium& state) {
-  return succeeded(state.status) || state.status == energy_model::SolveStatus::not_resolved ||
+  return succeeded(state.status) || state.status == energy_model::SolveStatus::not_verified ||
          state.status == energy_model::SolveStatus::near_singular;
 }
 

@@ -18,7 +18,7 @@ struct BenchmarkOptions {
   /// the runs before it, is skipped.
   double budget_s = 40;
   int repeats = 5;             ///< runs that a median is taken of, >= 1
-  double gripper_speed = 0.1;  ///< v of the tracking runs [m/s], > 0; they also turn by v/l
+  double gripper_speed = 0.1;  ///< v of the tracking runs [m/s], > 0; they also rotate by v/l
   int frames = 200;            ///< of 1 ms that the gripper moves in a tracking run, >= 1
   std::vector<ForeignProgram> programs = {};  ///< other people's, in the static runs
   double program_time_limit = 20;             ///< of each run of one [s], > 0
@@ -54,7 +54,7 @@ struct BenchmarkRun {
   std::optional<ForceVariant> variant;  ///< of chain and force
   /// From straight to the shape; of tracking runs, of one frame; of a program, of its process.
   Timing time;
-  long work = 0;  ///< evaluations, or steps; of tracking runs, of one frame (mean); 0 of programs
+  long evaluations = 0;        ///< or steps; of tracking runs, of one frame (mean); 0 of programs
   double rms_over_length = 0;  ///< against the reference; of tracking runs the RMS over all frames
   bool front = false;          ///< no other run of the scene is both faster and nearer
 };

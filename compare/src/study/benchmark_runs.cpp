@@ -171,7 +171,7 @@ void StaticRuns::run_continuous(StaticSeries& series, int terms) {
                          .size = terms,
                          .variant = std::nullopt,
                          .time = *time,
-                         .work = result.evaluations,
+                         .evaluations = result.evaluations,
                          .rms_over_length = model == Model::exact
                                                 ? reference_.agreement
                                                 : error_of(scene_, result, reference_.rod)});
@@ -199,13 +199,14 @@ void StaticRuns::run_polygon(StaticSeries& series, int points) {
   }
   series.last_s = time->median_s;
   series.last_points = points;
-  series.runs.push_back({.scene = scene_.name,
-                         .model = model,
-                         .size = points,
-                         .variant = series.variant,
-                         .time = *time,
-                         .work = model == Model::chain ? solution.evaluations : solution.steps,
-                         .rms_over_length = error_of(scene_, solution.shape, reference_.rod)});
+  series.runs.push_back(
+      {.scene = scene_.name,
+       .model = model,
+       .size = points,
+       .variant = series.variant,
+       .time = *time,
+       .evaluations = model == Model::chain ? solution.evaluations : solution.steps,
+       .rms_over_length = error_of(scene_, solution.shape, reference_.rod)});
 }
 
 /// A failure says nothing of larger N, but one at the time limit does.

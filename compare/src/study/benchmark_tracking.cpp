@@ -27,7 +27,7 @@ constexpr double frame_s = 1e-3;
 /// The frames of one run.
 struct Frames {
   std::vector<double> seconds;
-  long work = 0;
+  long evaluations = 0;
   double squares = 0;  // of the errors over the length
   int errors = 0;
 
@@ -39,7 +39,7 @@ struct Frames {
   void add(BenchmarkRun& run) const {
     const auto count = static_cast<double>(seconds.size());
     run.time = timing_of(seconds);
-    run.work = std::lround(static_cast<double>(work) / count);
+    run.evaluations = std::lround(static_cast<double>(evaluations) / count);
     run.rms_over_length = std::sqrt(squares / errors);
   }
 };
@@ -93,7 +93,7 @@ BenchmarkRun track_energy(const Scene& scene, int terms, const ReferenceTrack& t
     const Eigen::Matrix3Xd points = rod.sample(s).points;
     frames.seconds.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    frames.work += rod.evaluations;
+    frames.evaluations += rod.evaluations;
     if (ReferenceTrack::looks_at(frame)) {
       frames.add_error(track.square_error(scene, {s, points}, frame));
     }
@@ -140,7 +140,7 @@ BenchmarkRun track_force(const Scene& scene, const ForceVariant& variant, int po
     for (long i = 0; i < steps; ++i) (void)simulation.step();
     frames.seconds.push_back(
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-    frames.work += steps;
+    frames.evaluations += steps;
     if (ReferenceTrack::looks_at(frame)) {
       frames.add_error(track.square_error(scene, now.shape(simulation.points()), frame));
     }

@@ -20,7 +20,7 @@
 namespace dlo::compare {
 namespace {
 
-constexpr int looks = 64;              // at a run, and consecutive steps at its end
+constexpr int samples = 64;            // at a run, and consecutive steps at its end
 constexpr double rest_drift = 1e-6;    // what a rod at rest may move, in lengths
 constexpr double rest_energy = 1e-12;  // what its energy may grow, of its size: rounding only
 
@@ -45,14 +45,14 @@ bool move_gripper(const HardCase& hard, force_model::Simulation& simulation) {
 SimulationEnd come_to_rest(force_model::Simulation& simulation, long max_steps) {
   SimulationEnd trajectory{.finite = true};
   const force_model::RelaxOptions part{.tolerance = 1e-6,
-                                       .max_steps = std::max(1L, (max_steps - looks) / looks)};
-  for (int look = 0; look < looks && trajectory.finite && !trajectory.at_rest; ++look) {
+                                       .max_steps = std::max(1L, (max_steps - samples) / samples)};
+  for (int sample = 0; sample < samples && trajectory.finite && !trajectory.at_rest; ++sample) {
     const force_model::RelaxResult result = simulation.relax(part);
     trajectory.finite = result.status != force_model::RelaxStatus::diverged;
     trajectory.at_rest = result.status == force_model::RelaxStatus::at_rest;
-    if (look >= looks / 2 || trajectory.at_rest) trajectory.late.push_back(simulation.points());
+    if (sample >= samples / 2 || trajectory.at_rest) trajectory.late.push_back(simulation.points());
   }
-  for (int step = 0; step < looks && trajectory.finite && !trajectory.at_rest; ++step) {
+  for (int step = 0; step < samples && trajectory.finite && !trajectory.at_rest; ++step) {
     trajectory.finite = simulation.step().status != force_model::StepStatus::diverged;
     trajectory.last.push_back(simulation.points());
   }
@@ -65,7 +65,7 @@ SimulationEnd stay_at_rest(force_model::Simulation& simulation, long steps) {
   SimulationEnd trajectory{.finite = true};
   for (long step = 1; step <= steps && trajectory.finite; ++step) {
     trajectory.finite = simulation.step().status != force_model::StepStatus::diverged;
-    if (step % std::max(1L, steps / looks) == 0) trajectory.late.push_back(simulation.points());
+    if (step % std::max(1L, steps / samples) == 0) trajectory.late.push_back(simulation.points());
   }
   trajectory.late.push_back(simulation.points());
   return trajectory;
@@ -161,8 +161,8 @@ std::vector<StabilityResult> stability(const StabilityOptions& options) {
   for (const HardCase& hard : cases) names += (names.empty() ? "" : ", ") + hard.name;
   std::erase_if(cases, [&](const HardCase& hard) {
     return hard.name.find(options.name_contains) == std::string::npos ||
-           std::find(options.left_out.begin(), options.left_out.end(), hard.name) !=
-               options.left_out.end();
+           std::find(options.excluded.begin(), options.excluded.end(), hard.name) !=
+               options.excluded.end();
   });
   if (cases.empty()) {
     throw InputError(fmt::format("no hard case's name contains '{}' (allowed: part of {})",

@@ -21,7 +21,7 @@ struct StabilityOptions {
   int threads = 1;                  ///< at most; 0: as many as the machine has
   /// What to run: cases whose name contains this, with these steppers.
   std::string name_contains;
-  std::vector<std::string> left_out;  ///< names of cases that are not run
+  std::vector<std::string> excluded;  ///< names of cases that are not run
   /// with which steppers
   std::vector<Stepper> steppers = values<Stepper>();
   Progress progress;  ///< over references and runs; may be empty

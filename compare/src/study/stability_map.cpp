@@ -95,7 +95,7 @@ Eigen::Matrix3Xd disturbed(const RodAtRest& rest) {
   std::mt19937 engine(1);
   Eigen::Matrix3Xd movement(3, rest.points.cols());
   for (double& x : movement.reshaped()) x = static_cast<double>(engine()) / 2147483648.0 - 1;
-  // Joints that are turned at rest have no sign out of their plane.
+  // Joints that are bent at rest have no sign out of their plane.
   if (rest.rod.bending.natural_turns.size() > 0) movement.row(2).setZero();
   const double rms = movement.norm() / std::sqrt(static_cast<double>(movement.cols()));
   return rest.points + disturbance * rest.rod.length() / rms * movement;

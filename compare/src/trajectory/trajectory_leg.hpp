@@ -14,7 +14,7 @@ struct TrajectoryLeg {
   Eigen::Vector3d velocity_from, velocity_to;  ///< at both [m/s]
   double angle = 0;                            ///< between the directions, of what has some [rad]
   Eigen::Vector3d axis = Eigen::Vector3d::Zero();  ///< of that turn, unit; zero without one
-  double rate_from = 0, rate_to = 0;               ///< of turning about it, at both [rad/s]
+  double rate_from = 0, rate_to = 0;               ///< of rotating about it, at both [rad/s]
 
   /// At a time from `from` to `to` [m], or a derivative of it by time: 0 to 2.
   [[nodiscard]] Eigen::Vector3d position(double time, int derivative = 0) const;

@@ -8,7 +8,7 @@ namespace dlo::energy_model {
 /// empty where there is none.
 [[nodiscard]] inline std::string moves_for_nothing(int ways) {
   if (ways == 0) return {};
-  return ", moves for nothing in " + std::to_string(ways) + (ways == 1 ? " way" : " ways");
+  return ", " + std::to_string(ways) + (ways == 1 ? " zero mode" : " zero modes");
 }
 
 }  // namespace dlo::energy_model

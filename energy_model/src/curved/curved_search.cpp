@@ -241,7 +241,7 @@ class CurvedSearch {
       step /= 2;
       if (step >= shortest_roll_step && !deadline_.passed()) continue;
       now.converged = false;
-      now.message = "frames turned by " + std::to_string(reached) + " of " +
+      now.message = "frames rotated by " + std::to_string(reached) + " of " +
                     std::to_string(widest) + " rad: " +
                     (deadline_.passed() ? to_string(SolveStatus::time_limit)
                                         : "no stable shape was found beyond it");

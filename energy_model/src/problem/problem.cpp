@@ -69,7 +69,7 @@ void check_material_directors(const Problem& problem) {
   require_positive("Problem",
                    problem.natural_strains.empty()
                        ? "torsional_stiffness, of a rod with two bending stiffnesses"
-                       : "torsional_stiffness, of a rod that is not straight by nature",
+                       : "torsional_stiffness, of a rod that is not intrinsically straight",
                    problem.torsional_stiffness);
 }
 

@@ -378,7 +378,7 @@ class ContactSearch {
     }
     std::string why = solution.is_equilibrium() ? "" : ": " + solution.message;
     solution.finish(SolveStatus::not_resolved);
-    solution.message += ": what touches what did not settle" + why;
+    solution.message += ": the contacts did not converge" + why;
     return solution;
   }
 

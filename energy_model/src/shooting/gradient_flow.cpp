@@ -41,7 +41,7 @@ SpanEquilibrium follow_gradient(const RodSpan& span, const RodMesh& mesh,
                                 std::vector<RodState> start, Eigen::Matrix3Xd aim,
                                 const ClampFrames& frames, const ShootingOptions& options) {
   SpanEquilibrium failed;
-  failed.message = "the gradient flow did not settle";
+  failed.message = "the gradient flow did not converge";
   double duration = first_duration;
   int departures = 0;
   int wait = 0;  // steps before the next longer one

@@ -59,7 +59,7 @@ std::string starts_of(const Span& span) {
   const std::string plain = span.holds.empty() && span.start_direction
                                 ? "shapes of a soft rod below its clamp"
                                 : "arches, S-shapes and loops between grips";
-  return span.has_material_directors() ? "the free rod's shape, " + plain : plain;
+  return span.has_material_directors() ? "the stress-free shape, " + plain : plain;
 }
 
 /// Whether the lowest of the equilibria found can hold itself.

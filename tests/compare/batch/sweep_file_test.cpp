@@ -87,7 +87,7 @@ TEST_F(SweepFile, IsHeaderAndRowsAndNothingElseIsLeft) {
   const SweepOutcome outcome = write_sweep(whole, std::nullopt, path("a.csv"));
   EXPECT_EQ(outcome.rows, 12);
   EXPECT_EQ(outcome.found, 0);
-  EXPECT_EQ(outcome.unresolved, 2);  // lengths -0.1 and 0
+  EXPECT_EQ(outcome.without_result, 2);  // lengths -0.1 and 0
   std::string expected = whole.header();
   for (std::int64_t row = 0; row < 12; ++row) expected += whole.row(row);
   EXPECT_EQ(read("a.csv"), expected);
@@ -107,7 +107,7 @@ TEST_F(SweepFile, GoesOnFromEveryPlaceAtWhichAKillCanCutIt) {
     const SweepOutcome outcome = write_sweep(whole, std::nullopt, path("b.csv"), serial);
     ASSERT_EQ(read("b.csv"), expected) << "cut at " << size;
     ASSERT_EQ(outcome.rows, 12);
-    ASSERT_EQ(outcome.unresolved, 2);
+    ASSERT_EQ(outcome.without_result, 2);
     const auto lines = std::count(part.begin(), part.begin() + static_cast<long>(size), '\n');
     ASSERT_EQ(outcome.found, std::max<std::int64_t>(lines - 2, 0));
   }
@@ -194,7 +194,7 @@ TEST_F(SweepFile, ShardsMergeToWhatOneRunWrites) {
     std::reverse(paths.begin(), paths.end());
     const SweepOutcome outcome = merge_sweep(paths, path("b.csv"));
     EXPECT_EQ(outcome.rows, 12);
-    EXPECT_EQ(outcome.unresolved, 2);
+    EXPECT_EQ(outcome.without_result, 2);
     EXPECT_EQ(read("b.csv"), read("a.csv")) << n;
     for (const std::string& file : paths) std::filesystem::remove(file);
   }

@@ -168,20 +168,22 @@ TEST_F(CalibrateCommand, WritesAMaterialThatScenesCanUse) {
             0);
 }
 
-TEST_F(CalibrateCommand, SaysWhenTheShapesDoNotTell) {
+TEST_F(CalibrateCommand, SaysWhenTheShapesDoNotIdentifyE) {
   const std::string stiff = scene_of("a.toml", "5000 GPa", 0);
   const std::string shape = path("line.csv");
   std::ofstream(shape) << "0,0.001,0\n0.3,-0.001,0.001\n0.5,0.001,-0.001\n0.7,-0.0005,0\n0.9,0,0\n";
   const Outcome text = run("calibrate " + stiff + " --shape " + shape);
   EXPECT_EQ(text.status, 0);
-  EXPECT_NE(text.out.find("these shapes do not tell E: E > "), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("E is not identifiable from these shapes: E > "), std::string::npos)
+      << text.out;
   const json document =
       json::parse(run("calibrate " + stiff + " --shape " + shape + " --format json").out);
   EXPECT_TRUE(document.at("youngs_modulus_Pa").is_null());
   EXPECT_TRUE(document.at("uncertainty_Pa").is_null());
   EXPECT_TRUE(document.at("interval_95_Pa")[1].is_null());
-  EXPECT_TRUE(document.at("not_told").is_string());
-  expect_error("calibrate " + stiff + " --shape " + shape + " --format toml", 2, {"do not tell E"});
+  EXPECT_TRUE(document.at("not_identified").is_string());
+  expect_error("calibrate " + stiff + " --shape " + shape + " --format toml", 2,
+               {"E is not identifiable"});
 }
 
 // A circle of radius 0.5 m: a weightless wire's natural curvature is 2 1/m.
@@ -203,12 +205,13 @@ TEST_F(CalibrateCommand, AWeightlessArcGetsItsCurvatureAndNoStiffness) {
   const std::string command = "calibrate " + scene + " --shape " + shape + " --natural-curvature 1";
   const Outcome text = run(command);
   EXPECT_EQ(text.status, 0);
-  EXPECT_EQ(text.out.find("EI          not told   (scene"), 0) << text.out;
+  EXPECT_EQ(text.out.find("EI          not identified   (scene"), 0) << text.out;
   EXPECT_NE(text.out.find("natural curvature, P_0: 2 1/m"), std::string::npos) << text.out;
   const json document = json::parse(run(command + " --format json").out);
   EXPECT_TRUE(document.at("interval_95_Nm2")[0].is_null());
-  EXPECT_NE(document.at("not_told").get<std::string>().find("cannot tell EI"), std::string::npos);
-  expect_error(command + " --format toml", 2, {"no material to write", "cannot tell EI"});
+  EXPECT_NE(document.at("not_identified").get<std::string>().find("EI is not identifiable"),
+            std::string::npos);
+  expect_error(command + " --format toml", 2, {"no material to write", "EI is not identifiable"});
 }
 
 TEST_F(CalibrateCommand, SaysThatErrorsAreCorrelatedInEveryFormat) {
@@ -249,7 +252,7 @@ TEST_F(CalibrateCommand, SaysThatErrorsAreCorrelatedInEveryFormat) {
   EXPECT_FALSE(not_said.at("errors_are_correlated").get<bool>());
   EXPECT_TRUE(not_said.at("correlation").is_null());
   EXPECT_NE(text(wave, "csv").find(",true,"), std::string::npos);
-  EXPECT_NE(text(noise, "csv").find(",false,,,,,,,\n"), std::string::npos);
+  EXPECT_NE(text(noise, "csv").find(",false,,,,,,,,\n"), std::string::npos);
 }
 
 TEST_F(CalibrateCommand, AColumnSInMetresBesideMillimetresIsRead) {
@@ -398,7 +401,7 @@ TEST_F(CalibrateCommand, TellsHowStiffAWireIsAgainstTwist) {
   EXPECT_NEAR(document.at("torsional_over_bending_stiffness").get<double>(), 0.00793 / 0.0103084,
               1e-4);
   const std::string text = run(fit).out;
-  for (const char* part : {"GJ          not told, 95 %: ", "GJ / EI     0.76928, 95 %: "}) {
+  for (const char* part : {"GJ          not identified, 95 %: ", "GJ / EI     0.76928, 95 %: "}) {
     EXPECT_NE(text.find(part), std::string::npos) << text;
   }
   const std::string straight = scene_of("a.toml", "5 GPa", 0);

@@ -209,7 +209,7 @@ TEST_F(CheckCommand, ShapesComeInAnyUnitAndFrame) {
   EXPECT_EQ(run(check + " --unit mm").status, 1);
   EXPECT_EQ(run(check + " --unit cm --register").status, 1);
   const Outcome text = run(check + " --unit mm --register");
-  EXPECT_NE(text.out.find("found (rigid): turned"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("found (rigid): rotated by"), std::string::npos) << text.out;
 }
 
 TEST_F(CheckCommand, AWrongUnitIsNoPass) {

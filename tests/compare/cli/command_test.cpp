@@ -178,7 +178,7 @@ normal = [0, 1, 0]
   };
   const json exact = solved("exact");
   const json energy = solved("energy");
-  EXPECT_EQ(run("solve " + floor + " --model exact").out.find("work       0"), std::string::npos);
+  EXPECT_EQ(run("solve " + floor + " --model exact").out.find("solver     0"), std::string::npos);
   for (const char* key : {"from_m", "to_m"}) {
     EXPECT_NEAR(exact.at("contacts")[0].at(key).get<double>(),
                 energy.at("contacts")[0].at(key).get<double>(), 1e-7);
@@ -277,7 +277,7 @@ point = [0, -0.6, 0]
 normal = [0, 1, 0]
 )");
   for (const std::string command : {"solve ", "compare "}) {
-    EXPECT_EQ(run(command + far).out.find("left out"), std::string::npos);
+    EXPECT_EQ(run(command + far).out.find("neglected"), std::string::npos);
     const Outcome text = run(command + far + " --explain --target-error 1e-4");
     ASSERT_EQ(text.status, 0) << text.err;
     for (const char* expected : {"planar", "static", "clamp - free", "out of reach", "stretch",
@@ -290,7 +290,7 @@ normal = [0, 1, 0]
     EXPECT_EQ(plan.at("geometry"), "planar");
     EXPECT_EQ(plan.at("obstacles")[0].at("in_reach"), false);
     EXPECT_NEAR(plan.at("obstacles")[0].at("clearance_m").get<double>(), 0.099, 1e-12);
-    EXPECT_GT(plan.at("left_out")[0].at("bound_m").get<double>(), 0);
+    EXPECT_GT(plan.at("neglected")[0].at("bound_m").get<double>(), 0);
   }
   // Out of reach, so that exact, which knows no obstacles, takes the scene.
   EXPECT_EQ(run("solve " + far + " --model exact").status, 0);
@@ -379,10 +379,11 @@ TEST_F(Command, BenchWritesRowsAndAnswers) {
   // How many fit into half a second is the machine's affair; what does not is named.
   EXPECT_GT(document.at("runs").size() + document.at("skipped").size(), 5U);
   for (const json& row : document.at("runs")) {
-    for (const char* key :
-         {"scene", "model", "law", "size", "time_s", "work", "rms_over_length", "front"}) {
+    for (const char* key : {"scene", "model", "law", "size", "time_s", "evaluations", "work",
+                            "rms_over_length", "front"}) {
       EXPECT_TRUE(row.contains(key)) << key;
     }
+    EXPECT_EQ(row.at("work"), row.at("evaluations"));
   }
   EXPECT_EQ(document.at("answers")[0].at("static").size(), 4U);
   EXPECT_EQ(run(arguments + " --format csv").out.substr(0, 11), "scene,kind,");

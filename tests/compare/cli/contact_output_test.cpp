@@ -68,18 +68,19 @@ TEST_F(ContactCommand, FrictionIsLeftOutAloud) {
     };
     const json with = json::parse(solve("json", rough).out);
     const json without = json::parse(solve("json", smooth).out);
-    EXPECT_EQ(with.at("left_out"), json({"friction"}));
+    EXPECT_EQ(with.at("neglected"), json({"friction"}));
+    EXPECT_EQ(with.at("left_out"), with.at("neglected"));
     EXPECT_EQ(with.at("points_m"), without.at("points_m"));
-    EXPECT_FALSE(without.contains("left_out"));
-    EXPECT_NE(solve("text", rough).out.find("\nleft out   friction: the scene has it, model"),
+    EXPECT_FALSE(without.contains("neglected"));
+    EXPECT_NE(solve("text", rough).out.find("\nneglected  friction: the scene has it, model"),
               std::string::npos);
-    EXPECT_NE(solve("csv", rough).err.find("leaves out the friction"), std::string::npos);
-    EXPECT_FALSE(json::parse(solve("json", rough_below).out).contains("left_out"));
+    EXPECT_NE(solve("csv", rough).err.find("neglects the friction"), std::string::npos);
+    EXPECT_FALSE(json::parse(solve("json", rough_below).out).contains("neglected"));
   }
   const json compared = json::parse(run("compare --no-modulus --format json " + rough).out);
-  EXPECT_EQ(compared.at("cases").at(0).at("left_out"), json({"friction"}));
+  EXPECT_EQ(compared.at("cases").at(0).at("neglected"), json({"friction"}));
   const std::string told = run("compare --no-modulus " + rough).out;
-  EXPECT_NE(told.find("\n  left out        friction that the scene has, by both models"),
+  EXPECT_NE(told.find("\n  neglected       friction that the scene has, by both models"),
             std::string::npos)
       << told;
   EXPECT_EQ(told.find("by the force model: in all below"), std::string::npos) << told;
@@ -99,11 +100,11 @@ TEST_F(ContactCommand, CheckSaysWhatFrictionAShapeNeeds) {
   const std::string rest = " --no-modulus --tolerance 1% --shape " + mine;
   const Outcome with = run("check " + rough + rest);
   EXPECT_EQ(with.status, 0) << with.err;
-  EXPECT_NE(with.out.find("\n  left out        friction that the scene has"), std::string::npos)
+  EXPECT_NE(with.out.find("\n  neglected       friction that the scene has"), std::string::npos)
       << with.out;
   EXPECT_EQ(run("check " + smooth + rest).out.find("friction"), std::string::npos);
   const json document = json::parse(run("check --format json " + rough + rest).out);
-  EXPECT_EQ(document.at("left_out"), json({"friction"}));
+  EXPECT_EQ(document.at("neglected"), json({"friction"}));
   const Outcome row = run("check --format csv " + rough + rest);
   EXPECT_NE(row.err.find("has friction"), std::string::npos);
   // Whether friction could hold the shape is told apart: this one needs none.

@@ -20,11 +20,14 @@
 
 #include "../../sanitized.hpp"
 #include "base/display.hpp"
+#include "base/number.hpp"
 #include "base/output_file.hpp"
 #include "base/quote.hpp"
 #include "base/temporary_path.hpp"
 #include "command_fixture.hpp"
 #include "dlo/compare/error.hpp"
+#include "format/json.hpp"
+#include "format/magnitudes.hpp"
 
 namespace {
 
@@ -443,7 +446,61 @@ TEST_F(Output, NoNumberIsNanOrInfinity) {
   EXPECT_GT(empty, 10);  // or nothing of this was tried
 }
 
-TEST(Csv, NumbersThatAreNoneAreEmpty) {
+TEST(Shown, IsZeroBelowTheErrorOfTheData) {
+  using dlo::compare::shown;
+  for (const double rounding : {-7.965e-33, 4.8e-18, -0.0, 1e-9}) {
+    EXPECT_EQ(shown(rounding, 1), 0);
+    EXPECT_FALSE(std::signbit(shown(rounding, 1)));
+  }
+  for (const double number : {1.1e-9, -2e-9, 3.0}) EXPECT_EQ(shown(number, 1), number);
+  EXPECT_EQ(shown(1e-12, 1e-6), 1e-12);  // of a small scene
+  EXPECT_EQ(shown(1e-12, 0), 1e-12);     // of one without a size
+  EXPECT_TRUE(std::isnan(shown(NAN, 1)));
+  EXPECT_EQ(shown(INFINITY, 1), INFINITY);
+  // A taut rod's forces are large beside its weight.
+  EXPECT_EQ(dlo::cli::shown(Eigen::Vector3d(1e4, -1e-6, 1), 1), Eigen::Vector3d(1e4, 0, 1));
+}
+
+// Forces, torques and energies of these scenes have parts that symmetry or balance makes zero.
+TEST_F(Output, TextHasNoNumberThatIsRounding) {
+  const std::regex rounding("[0-9]e-(?:1[3-9]|[2-9][0-9])");
+  const std::string scenes = std::string(DLO_DATA) + "/scenes/";
+  const std::string commands[] = {"solve " + scenes + "spring_steel_175.toml",
+                                  "solve " + scenes + "spring_steel_175.toml --model exact",
+                                  "solve " + scenes + "side_load.toml",
+                                  "solve " + scenes + "twisted_wire.toml",
+                                  "solve " + scenes + "spliced_cable.toml --model chain",
+                                  "compare " + steel() + " --law hooke --bookkeeping consistent",
+                                  "track " + scenes + "buckling_wire.toml --no-force",
+                                  "track " + scenes + "corner_routing.toml --no-force"};
+  for (const std::string& command : commands) {
+    const Outcome text = run(command);
+    EXPECT_EQ(text.status, 0) << text.err;
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(text.out, found, rounding)) << command << "\n" << text.out;
+  }
+  // Documents keep what they have: nothing is lost there.
+  const std::string json = run(commands[6] + " --format json").out;
+  EXPECT_TRUE(std::regex_search(json, rounding));
+}
+
+TEST(Json, KeysWithANewNameAreThereByTheOldOneToo) {
+  const dlo::cli::Json document = {{"equilibria", {{{"smallest_eigenvalue", -3.5}}}},
+                                   {"neglected", {"twist"}},
+                                   {"events", {{{"smallest_eigenvalue_before", 0.5}}}},
+                                   {"not_identified", nullptr},
+                                   {"reference_verified", true}};
+  const auto read = nlohmann::json::parse(dlo::cli::json_text(document));
+  EXPECT_EQ(read.at("equilibria")[0].at("smallest_curvature"), -3.5);
+  EXPECT_EQ(read.at("equilibria")[0].at("smallest_eigenvalue"), -3.5);
+  EXPECT_EQ(read.at("left_out"), read.at("neglected"));
+  EXPECT_EQ(read.at("events")[0].at("smallest_curvature_before"), 0.5);
+  EXPECT_TRUE(read.at("not_told").is_null());
+  EXPECT_EQ(read.at("reference_resolved"), true);
+  EXPECT_EQ(read.size(), 8U);  // nothing else is new
+}
+
+TEST(Csv, UndefinedNumbersAreEmpty) {
   using dlo::compare::csv_number;
   EXPECT_EQ(csv_number(NAN) + csv_number(INFINITY) + csv_number(-INFINITY), "");
   EXPECT_EQ(csv_number(-0.0), "0");

@@ -47,7 +47,7 @@ TEST_F(RodCommand, SolveSaysThatTheTorsionalStiffnessIsAssumed) {
   EXPECT_FALSE(straight.contains("assumed"));
 }
 
-TEST_F(RodCommand, SolveShowsARodThatIsAboutToBuckleAndInHowManyDirectionsItIsLeftOpen) {
+TEST_F(RodCommand, SolveShowsARodThatIsAboutToBuckleAndItsNeutralDirections) {
   constexpr double self_buckling = 7.837347;
   std::ostringstream upright;
   upright.precision(17);
@@ -110,25 +110,26 @@ TEST_F(RodCommand, CalibrateFindsTheStiffnessThatIsGiven) {
 TEST_F(RodCommand, AModelWithoutNaturalCurvatureSaysSoAndWhatItCosts) {
   const std::string paper = hose() + " --law paper";
   const Outcome chain = run("solve --model chain " + paper);
-  EXPECT_NE(chain.out.find("left out   natural curvature: the scene has it, model chain"),
+  EXPECT_NE(chain.out.find("neglected  natural curvature: the scene has it, model chain"),
             std::string::npos)
       << chain.out;
-  EXPECT_NE(run("compare --no-modulus --format csv " + paper)
-                .err.find("curved by nature, which models chain and force leave out with the law"),
-            std::string::npos);
+  EXPECT_NE(
+      run("compare --no-modulus --format csv " + paper)
+          .err.find("intrinsically curved, which models chain and force neglect with the law"),
+      std::string::npos);
   EXPECT_NE(
       run("sweep --model chain --vary force_model.law=paper --vary rod.natural_curvature=0,1 " +
           hose())
-          .err.find("curved by nature"),
+          .err.find("intrinsically curved"),
       std::string::npos);
   EXPECT_EQ(run("sweep --model chain --vary rod.natural_curvature=0,1 " + hose()).err, "");
   EXPECT_EQ(run("stability --map cF-cc --columns 2 --rows 2 --map-steps 100 " + hose()).status, 0);
   const Outcome text = run("compare --no-modulus " + paper);
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("left out        natural curvature"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("neglected       natural curvature"), std::string::npos) << text.out;
   const json entry =
       json::parse(run("compare --no-modulus --format json " + paper).out).at("cases")[0];
-  EXPECT_EQ(entry.at("left_out"), json({"natural curvature"}));
+  EXPECT_EQ(entry.at("neglected"), json({"natural curvature"}));
   // The free hose is a circle: without its curvature the end is decimetres off.
   const json& budget = entry.at("budget");
   EXPECT_GT(budget.at("natural_curvature_m").get<double>(), 0.1);
@@ -138,7 +139,7 @@ TEST_F(RodCommand, AModelWithoutNaturalCurvatureSaysSoAndWhatItCosts) {
   EXPECT_NEAR(sum, 1, 1e-9);
   const json hooke =
       json::parse(run("compare --no-modulus --format json " + hose()).out).at("cases")[0];
-  EXPECT_FALSE(hooke.contains("left_out"));
+  EXPECT_FALSE(hooke.contains("neglected"));
   EXPECT_FALSE(hooke.at("budget").contains("natural_curvature_m"));
   // With it the force model is the rod but for its segments.
   EXPECT_LT(hooke.at("deviation").at("rms_over_length").get<double>(), 2e-3);

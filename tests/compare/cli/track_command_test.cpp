@@ -257,7 +257,7 @@ TEST_F(TrackCommand, SaysWhatAMovingRodCannotHave) {
       "[[gripper.pose]]\ntime = 0\nposition = [0, 0, 0]\n"
       "[[gripper.pose]]\ntime = 1\nposition = [0.1, 0, 0]\n");
   expect_error(words({"track", curved, "--frame-rate 20 --dynamic"}), 2,
-               {"--dynamic: a rod that is curved by nature", "allowed"});
+               {"--dynamic: a rod that is intrinsically curved", "allowed"});
   expect_error(words({"track", swung, "--dynamic --from 0.1"}), 2, {"from 0.1 s", "allowed"});
   expect_error(words({"track", swung, "--damping 0.1"}), 2, {"--damping", "--dynamic"});
   expect_error(words({"track", swung, "--dynamic --drag -1"}), 2, {"--drag", "-1"});

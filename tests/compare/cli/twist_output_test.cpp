@@ -57,7 +57,7 @@ TEST(TwistOutput, JsonHasAnglesTorquesAndEnergyOfWhatIsTwisted) {
   ASSERT_EQ(parts.size(), 2U);
   EXPECT_EQ(parts[1],
             json({{"from_m", 0.4}, {"to_m", 1.0}, {"angle_rad", -0.5}, {"torque_Nm", -0.25}}));
-  EXPECT_FALSE(document.contains("left_out"));
+  EXPECT_FALSE(document.contains("neglected"));
 }
 
 TEST(TwistOutput, JsonOfARodWithoutFramesHasNoTwist) {
@@ -68,19 +68,19 @@ TEST(TwistOutput, JsonOfARodWithoutFramesHasNoTwist) {
   for (dlo::compare::Gripper& gripper : scene.grippers) gripper.frame.reset();
   const json document = dlo::cli::solution_json(solution, scene, Plan());
   EXPECT_EQ(document.at("energy_J").at("twisting"), 0);
-  for (const char* key : {"twist", "left_out"}) EXPECT_FALSE(document.contains(key)) << key;
+  for (const char* key : {"twist", "neglected"}) EXPECT_FALSE(document.contains(key)) << key;
   EXPECT_FALSE(document.at("grippers")[0].contains("axial_torque_Nm"));
   EXPECT_FALSE(document.at("plan").contains("twist"));
   const std::string text = dlo::cli::solution_text(solution, scene);
   EXPECT_EQ(text.find("twist"), std::string::npos) << text;
 }
 
-TEST(TwistOutput, JsonSaysWhatWasLeftOutInsteadOfATorqueOfNone) {
+TEST(TwistOutput, JsonSaysWhatWasNeglectedInsteadOfATorqueOfNone) {
   Solution solution = twisted_solution();
   solution.twists.clear();
-  solution.left_out = {"twist"};
+  solution.neglected = {"twist"};
   const json document = dlo::cli::solution_json(solution, twisted_scene(), Plan());
-  EXPECT_EQ(document.at("left_out"), json({"twist"}));
+  EXPECT_EQ(document.at("neglected"), json({"twist"}));
   EXPECT_FALSE(document.contains("twist"));
   EXPECT_FALSE(document.at("grippers")[0].contains("axial_torque_Nm"));
 }
@@ -129,13 +129,13 @@ TEST_F(TwistCommand, ModelsThatHaveNoTwistSaySo) {
     const std::string solve = "solve " + wire() + " --law paper --model " + model;
     const Outcome text = run(solve);
     ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_NE(text.out.find("left out   twist: the scene has it, model " + model),
+    EXPECT_NE(text.out.find("neglected  twist: the scene has it, model " + model),
               std::string::npos)
         << text.out;
     EXPECT_EQ(text.err, "");
-    EXPECT_EQ(json::parse(run(solve + " --format json").out).at("left_out"), json({"twist"}));
+    EXPECT_EQ(json::parse(run(solve + " --format json").out).at("neglected"), json({"twist"}));
     const Outcome csv = run(solve + " --format csv");
-    EXPECT_NE(csv.err.find("model " + model + " leaves out the twist"), std::string::npos);
+    EXPECT_NE(csv.err.find("model " + model + " neglects the twist"), std::string::npos);
   }
 }
 
@@ -146,10 +146,10 @@ TEST_F(TwistCommand, ModelsOfThePolygonHaveItWithTheLawHooke) {
     const std::string solve = "solve --points 60 --model " + model + " " + wire();
     const Outcome text = run(solve);
     ASSERT_EQ(text.status, 0) << text.err;
-    EXPECT_EQ(text.out.find("left out"), std::string::npos) << text.out;
+    EXPECT_EQ(text.out.find("neglected"), std::string::npos) << text.out;
     EXPECT_NE(text.out.find("\ntwist      "), std::string::npos) << text.out;
     const json document = json::parse(run(solve + " --format json").out);
-    EXPECT_FALSE(document.contains("left_out"));
+    EXPECT_FALSE(document.contains("neglected"));
     const json& part = document.at("twist").at("parts")[0];
     EXPECT_NEAR(part.at("torque_Nm").get<double>(), torque, 0.01 * torque);
     EXPECT_NEAR(document.at("grippers")[1].at("axial_torque_Nm").get<double>(), torque,
@@ -161,7 +161,7 @@ TEST_F(TwistCommand, ModelsOfThePolygonHaveItWithTheLawHooke) {
 
 TEST_F(TwistCommand, CommandsThatUseThemSaySo) {
   const std::string note =
-      "the grippers hold twist, which models chain and force leave out with the law paper";
+      "the grippers hold twist, which models chain and force neglect with the law paper";
   const std::vector<std::string> commands = {
       "compare --no-modulus --law paper --format csv ",
       "regress --update --law paper --baseline " + path("b.toml") + " "};
@@ -171,26 +171,26 @@ TEST_F(TwistCommand, CommandsThatUseThemSaySo) {
   EXPECT_EQ(run("sweep --vary rod.torsional_stiffness=0.01 " + wire()).err, "");
   // These have none with any law.
   const std::string map = "stability --map cF-cc --columns 2 --rows 4 --map-steps 500 ";
-  EXPECT_NE(run(map + wire()).err.find("the grippers hold twist, which the map leaves out"),
+  EXPECT_NE(run(map + wire()).err.find("the grippers hold twist, which the map neglects"),
             std::string::npos);
   EXPECT_NE(run("bench --seconds 0.1 --repeats 1 " + wire())
-                .err.find("the grippers hold twist, which tracking by the force model leaves out"),
+                .err.find("the grippers hold twist, which tracking by the force model neglects"),
             std::string::npos);
 }
 
 TEST_F(TwistCommand, AComparisonSaysThatTheForceModelHasNone) {
   const Outcome text = run("compare --no-modulus --law paper " + wire());
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_NE(text.out.find("left out        twist that the scene has, by the force model"),
+  EXPECT_NE(text.out.find("neglected       twist that the scene has, by the force model"),
             std::string::npos)
       << text.out;
   EXPECT_NE(text.out.find("\n                  twist            "), std::string::npos) << text.out;
   const json document =
       json::parse(run("compare --no-modulus --law paper --format json " + wire()).out);
-  EXPECT_EQ(document.at("cases")[0].at("left_out"), json({"twist"}));
+  EXPECT_EQ(document.at("cases")[0].at("neglected"), json({"twist"}));
   EXPECT_GT(document.at("cases")[0].at("budget").at("twist_m").get<double>(), 0.01);
   const json hooke = json::parse(run("compare --no-modulus --format json " + wire()).out);
-  EXPECT_FALSE(hooke.at("cases")[0].contains("left_out"));
+  EXPECT_FALSE(hooke.at("cases")[0].contains("neglected"));
   EXPECT_FALSE(hooke.at("cases")[0].at("budget").contains("twist_m"));
 }
 
@@ -208,7 +208,7 @@ TEST_F(TwistCommand, TheEnergyModelGivesTorqueAndEnergyOfTheTwist) {
   const Outcome result = run("solve --format json " + wire());
   ASSERT_EQ(result.status, 0) << result.err;
   const json document = json::parse(result.out);
-  EXPECT_FALSE(document.contains("left_out"));
+  EXPECT_FALSE(document.contains("neglected"));
   const json& part = document.at("twist").at("parts")[0];
   // Bending out of its plane the wire gives way to some of the half turn.
   const double angle = part.at("angle_rad").get<double>();

@@ -142,14 +142,14 @@ TEST(Explanation, NamesWhatIsAnotherScene) {
   expect_named("turned", scene, other([](Scene& s) {
                  s.grippers[0].direction = {std::cos(25 * degree), std::sin(25 * degree), 0};
                }),
-               {"gripper 1 is turned by 5 deg"});
+               {"gripper 1 is rotated by 5 deg"});
   expect_named("curved", scene,
                shape_of(clamped("natural_curvature = 1\ntorsional_stiffness = 1\n")),
-               {"curved by nature, 1 1/m"});
+               {"intrinsically curved, 1 1/m"});
   expect_named("another gravity", scene, other([](Scene& s) {
                  s.gravity = {0, 0, -9.81};
                }),
-               {"gravity is", "-9.81", "turned by 90 deg"});
+               {"gravity is", "-9.81", "rotated by 90 deg"});
   Scene longer = scene;
   longer.length = 1.2;
   expect_named("longer", scene, shape_of(longer), {"1.2 m long"});
@@ -188,9 +188,9 @@ TEST(Explanation, NamesAPinThatIsAClampAndTheReverse) {
   expect_named("both hold", held(pin, pin), shape_of(held(level, up)),
                {"the pins hold their directions, gripper 1 [1, 0, 0], gripper 2 [0.766"}, 1e-5);
   expect_named("a clamp lets go", held(level, pin), shape_of(held(pin, pin)),
-               {"gripper 1 lets the rod turn: a pin, not a clamp"}, 1e-5);
+               {"gripper 1 lets the rod rotate: a pin, not a clamp"}, 1e-5);
   expect_named("both let go", held(level, up), shape_of(held(pin, pin)),
-               {"the clamps let the rod turn: pins"}, 1e-5);
+               {"the clamps let the rod rotate: pins"}, 1e-5);
 }
 
 TEST(Explanation, NoCauseIsListedTwice) {
@@ -276,7 +276,7 @@ TEST(Explanation, AnotherReasonThatLeavesLessOutdoesTheStiffness) {
     change(changed);
     const MeasuredShape shape = shape_of(changed);
     const ShapeCheck check = check_shape(scene, shape);
-    EXPECT_TRUE(is_told(check.effective_modulus.optimum));
+    EXPECT_TRUE(is_identified(check.effective_modulus.optimum));
     return better_than_stiffness(check, explain_shape(scene, shape, check, {}));
   };
   EXPECT_FALSE(better([](Scene& s) { s.scale_modulus(0.5); }));
@@ -285,7 +285,7 @@ TEST(Explanation, AnotherReasonThatLeavesLessOutdoesTheStiffness) {
     s.scale_modulus(1.02);
   });
   ASSERT_TRUE(turned);
-  EXPECT_NE(turned->cause.find("gripper 1 is turned"), std::string::npos) << turned->cause;
+  EXPECT_NE(turned->cause.find("gripper 1 is rotated"), std::string::npos) << turned->cause;
 }
 
 /// Angles of a hinged chain under its weight, by Newton's method on its own equations.

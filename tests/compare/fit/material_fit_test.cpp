@@ -40,7 +40,7 @@ struct Tally {
   double farthest = 0;  // |log(E / truth)| of those that tell it
 
   void add(const MaterialFit& fit, double truth) {
-    EXPECT_EQ(fit.youngs_modulus.value.has_value(), fit.not_told.empty());
+    EXPECT_EQ(fit.youngs_modulus.value.has_value(), fit.not_identified.empty());
     EXPECT_TRUE(fit.correlation_was_tested);
     held += holds(fit.youngs_modulus, truth) ? 1 : 0;
     correlated += fit.correlation ? 1 : 0;
@@ -203,12 +203,12 @@ TEST(MaterialFit, APieceInAnUnknownFrameThatFitsTwoModuliTellsNeither) {
     const MaterialFit fit = fit_material({scene}, {shape}, {.pose = PoseFreedom::rigid});
     EXPECT_FALSE(fit.youngs_modulus.value) << draw;
     EXPECT_TRUE(holds(fit.youngs_modulus, scene.material.youngs_modulus)) << draw;
-    EXPECT_NE(fit.not_told.find(", best near "), std::string::npos) << fit.not_told;
+    EXPECT_NE(fit.not_identified.find(", best near "), std::string::npos) << fit.not_identified;
   }
 }
 
 // Eight points of soft rods in an unknown frame: what is told is never far off, and something is.
-TEST(MaterialFit, WhatIsToldOfSoftRodsIsNear) {
+TEST(MaterialFit, WhatIsIdentifiedOfSoftRodsIsNear) {
   for (const char* name : {"calib_reg_G60.toml", "calib_reg_G10.toml"}) {
     const Scene scene = load_scene(std::string(DLO_DATA) + "/failures/" + name);
     const energy_model::Equilibrium exact = solve_reference(scene, Model::exact);
@@ -243,7 +243,7 @@ TEST(MaterialFit, TwoClampsAreFollowedFromOneModulusToTheNext) {
     Scene scene = truth;
     scene.material.youngs_modulus *= guess;
     const MaterialFit fit = fit_material({scene}, {shape});
-    ASSERT_TRUE(fit.youngs_modulus.value) << fit.not_told;
+    ASSERT_TRUE(fit.youngs_modulus.value) << fit.not_identified;
     EXPECT_NEAR(*fit.youngs_modulus.value / truth.material.youngs_modulus, 1, 1e-4) << guess;
     EXPECT_LT(fit.equilibria, 80) << guess;
     EXPECT_LT(fit.evaluations, 100 * fit.equilibria) << guess;
@@ -268,10 +268,10 @@ TEST(MaterialFit, ReferencesOnWallsAreUsedOnlyWhereTheyAreResolved) {
   const energy_model::Equilibrium state = energy_model::solve_energy(energy_problem(scene));
   const MeasuredShape shape{"seen", state.sample(equal_arc_lengths(1, 15)).points, {}};
   const MaterialFitOptions options{.smallest_ratio = 0.6, .largest_ratio = 1.7};
-  if (state.status == energy_model::SolveStatus::not_resolved) {
+  if (state.status == energy_model::SolveStatus::not_verified) {
     try {
       (void)fit_material({scene}, {shape}, options);
-      ADD_FAILURE() << "fitted a shape that is not resolved";
+      ADD_FAILURE() << "fitted a shape that is not verified";
     } catch (const ConvergenceError& error) {
       EXPECT_NE(std::string(error.what()).find("sinks in"), std::string::npos) << error.what();
     }
@@ -419,7 +419,7 @@ TEST(MaterialFit, ShapesOfOneSceneShareItsEquilibria) {
   EXPECT_GT(apart, 1.5 * static_cast<double>(two));
 }
 
-TEST(MaterialFit, AShapeThatDoesNotTellEGivesABoundInsteadOfANumber) {
+TEST(MaterialFit, WhereEIsNotIdentifiableAShapeGivesABoundInsteadOfANumber) {
   // A rod that hardly bends: anything stiffer fits as well.
   const Scene stiff = heavy_scene(1e-3, 0);
   std::mt19937 random(8);
@@ -430,7 +430,7 @@ TEST(MaterialFit, AShapeThatDoesNotTellEGivesABoundInsteadOfANumber) {
   EXPECT_FALSE(fit.youngs_modulus.high);
   ASSERT_TRUE(fit.youngs_modulus.low);
   EXPECT_LT(*fit.youngs_modulus.low, 210e9);
-  EXPECT_NE(fit.not_told.find("E > "), std::string::npos) << fit.not_told;
+  EXPECT_NE(fit.not_identified.find("E > "), std::string::npos) << fit.not_identified;
 
   // A rod that hangs straight down: any modulus.
   const Scene hanging = heavy_scene(10, -90);
@@ -440,7 +440,7 @@ TEST(MaterialFit, AShapeThatDoesNotTellEGivesABoundInsteadOfANumber) {
   EXPECT_FALSE(none.youngs_modulus.value);
   EXPECT_FALSE(none.youngs_modulus.low);
   EXPECT_FALSE(none.youngs_modulus.high);
-  EXPECT_NE(none.not_told.find("any E"), std::string::npos) << none.not_told;
+  EXPECT_NE(none.not_identified.find("any E"), std::string::npos) << none.not_identified;
 }
 
 TEST(MaterialFit, DensityIsToldByALoadAndNotByGravityAlone) {
@@ -456,7 +456,7 @@ TEST(MaterialFit, DensityIsToldByALoadAndNotByGravityAlone) {
   const MaterialFitOptions options{.density = true, .smallest_ratio = 0.05, .largest_ratio = 20};
   const MaterialFit alone = fit_material({truth}, {measured(truth)}, options);
   EXPECT_FALSE(alone.density);
-  EXPECT_NE(alone.not_told.find("density / E"), std::string::npos) << alone.not_told;
+  EXPECT_NE(alone.not_identified.find("density / E"), std::string::npos) << alone.not_identified;
   EXPECT_TRUE(alone.youngs_modulus.value);
 
   const double weight = truth.weight_per_length().norm();

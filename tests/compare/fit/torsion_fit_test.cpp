@@ -76,7 +76,7 @@ TEST(TorsionFit, TheIntervalHoldsTheTruth) {
 }
 
 // Frames that the clamps hold as the rod has them anyway: no torque, so GJ has no effect.
-TEST(TorsionFit, AWireThatIsNotTwistedDoesNotTellIt) {
+TEST(TorsionFit, OfAWireThatIsNotTwistedIsNotIdentifiable) {
   std::mt19937 random(3);
   const MaterialFit found = fit_of_turns({0}, 1e-3, random);
   EXPECT_FALSE(found.torsional_stiffness->value);

@@ -171,7 +171,7 @@ TEST(WireFit, SystematicResidualsNameWhatWouldRemoveThem) {
     EXPECT_FALSE(test::holds(bent.youngs_modulus, truth));
     EXPECT_GT(bent.common_share.value_or(0), 2.0 / 3);
     EXPECT_NE(bent.warning.find("systematic"), std::string::npos) << bent.warning;
-    EXPECT_NE(bent.not_told.find("wrong density"), std::string::npos) << bent.not_told;
+    EXPECT_NE(bent.not_identified.find("wrong density"), std::string::npos) << bent.not_identified;
     const auto named = std::find_if(
         bent.alternatives.begin(), bent.alternatives.end(), [](const FitAlternative& one) {
           return one.natural_curvature_terms == 1 && one.direction_tolerance == 0;
@@ -202,7 +202,7 @@ TEST(WireFit, SystematicResidualsNameWhatWouldRemoveThem) {
     const MaterialFit as_said = fit(right, {.alternatives = true});
     EXPECT_TRUE(as_said.alternatives.empty());
     EXPECT_TRUE(as_said.warning.empty()) << as_said.warning;
-    EXPECT_TRUE(as_said.not_told.empty()) << as_said.not_told;
+    EXPECT_TRUE(as_said.not_identified.empty()) << as_said.not_identified;
   }
 }
 
@@ -244,7 +244,7 @@ TEST(WireFit, AConstantCurvatureBetweenTwoClampsIsSaidNotToBeSeen) {
 
 // A stiff rod's moments are a parabola along it at any E, and so is a natural curvature of three
 // terms: one picture cannot tell them apart.
-TEST(WireFit, AStiffRodInOnePictureDoesNotTellItsStiffnessFromItsCurvature) {
+TEST(WireFit, OfAStiffRodInOnePictureStiffnessAndCurvatureAreNotIdentifiable) {
   std::mt19937 random(7);
   constexpr int draws = test::sanitized ? 3 : 20;
   for (int draw = 0; draw < draws; ++draw) {
@@ -252,7 +252,7 @@ TEST(WireFit, AStiffRodInOnePictureDoesNotTellItsStiffnessFromItsCurvature) {
     const Picture picture = picture_of(said, said, 1e-3, 0.05, random);
     const MaterialFit found = fit({picture}, {.natural_curvature_terms = 3});
     EXPECT_FALSE(found.youngs_modulus.value);
-    EXPECT_FALSE(found.not_told.empty());
+    EXPECT_FALSE(found.not_identified.empty());
     EXPECT_TRUE(test::holds(found.youngs_modulus, true_modulus(picture)));
   }
 }
@@ -371,8 +371,8 @@ TEST(WireFit, AWeightlessArcTellsItsCurvatureAndNoStiffness) {
       EXPECT_FALSE(found.youngs_modulus.low) << terms;
       EXPECT_FALSE(found.youngs_modulus.high) << terms;
       EXPECT_FALSE(found.density) << terms;
-      EXPECT_NE(found.not_told.find("neither weight nor a load"), std::string::npos)
-          << found.not_told;
+      EXPECT_NE(found.not_identified.find("neither weight nor a load"), std::string::npos)
+          << found.not_identified;
       if (terms == 0) continue;
       EXPECT_NEAR(found.others[0].value, k, 1e-6);
       EXPECT_LT(found.rms_m, 1e-7);
@@ -420,7 +420,7 @@ TEST(WireFit, AnArchBetweenTwoClampsTellsItsStiffnessOnlyUnderALoad) {
       const MaterialFit found = fit({picture}, {.direction_tolerance = tolerance});
       EXPECT_EQ(found.youngs_modulus.value.has_value(), loaded) << tolerance;
       EXPECT_EQ(found.youngs_modulus.low.has_value(), loaded) << tolerance;
-      EXPECT_EQ(found.not_told.empty(), loaded) << found.not_told;
+      EXPECT_EQ(found.not_identified.empty(), loaded) << found.not_identified;
       if (!found.youngs_modulus.value) continue;
       EXPECT_NEAR(*found.youngs_modulus.value / true_modulus(picture), 1, 0.01);
     }
@@ -437,7 +437,8 @@ TEST(WireFit, AHangingStraightRodTellsNoStiffnessBesideItsPlace) {
   EXPECT_FALSE(found.youngs_modulus.value);
   EXPECT_FALSE(found.youngs_modulus.low);
   EXPECT_FALSE(found.youngs_modulus.high);
-  EXPECT_NE(found.not_told.find("the same with any E"), std::string::npos) << found.not_told;
+  EXPECT_NE(found.not_identified.find("the same with any E"), std::string::npos)
+      << found.not_identified;
 }
 
 TEST(WireFit, RefusesNaturalCurvatureThatNoClampHolds) {

@@ -225,7 +225,7 @@ TEST(EffectiveModulus, IsRightToEachPrintedDigit) {
   scene.force_model.law = BendingLaw::paper;
   const Shape shape = solve_chain(scene, scene.force_model).shape;
   const EffectiveModulus fit = fit_effective_modulus(scene, shape);
-  ASSERT_TRUE(is_told(fit.optimum));
+  ASSERT_TRUE(is_identified(fit.optimum));
   const double ratio = golden_section_ratio(scene, shape, fit.ratio / 2, fit.ratio * 2);
   EXPECT_NEAR(fit.ratio, ratio, 1e-5 * ratio);
   EXPECT_LT(fit.ratio, 0.5);

@@ -142,7 +142,7 @@ TEST(FrictionCheck, SaysWhatItCannotTell) {
   ShapeCheck check = laid(scene, rod, 81);
   const auto expect_untold = [&](const Scene& of, const ShapeCheck& shape, const char* why) {
     const FrictionCheck found = check_friction(of, shape);
-    EXPECT_EQ(found.verdict, FrictionVerdict::not_told);
+    EXPECT_EQ(found.verdict, FrictionVerdict::not_identified);
     EXPECT_NE(found.reason.find(why), std::string::npos) << found.reason;
     EXPECT_TRUE(std::isnan(found.factor));
   };
@@ -162,7 +162,7 @@ TEST(FrictionCheck, SaysWhatItCannotTell) {
   }
   hovers.alignment.shape.points.col(80).y() = -0.05;
   const FrictionCheck of_hovering = check_friction(scene, hovers);
-  EXPECT_EQ(of_hovering.verdict, FrictionVerdict::not_told) << of_hovering.factor;
+  EXPECT_EQ(of_hovering.verdict, FrictionVerdict::not_identified) << of_hovering.factor;
   check.alignment.arc_lengths = ArcLengths::nearest;
   expect_untold(scene, check, "nearest");
 }

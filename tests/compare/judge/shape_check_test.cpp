@@ -122,7 +122,7 @@ TEST(ShapeCheck, MovementIsTheRmsWayFromStraight) {
   EXPECT_NEAR(check.movement_m, std::sqrt(mean_square), 1e-4 * gamma);
 }
 
-TEST(ShapeCheck, AStraightShapeDoesNotTellItsTurn) {
+TEST(ShapeCheck, TheRotationOfAStraightShapeIsNotIdentifiable) {
   const Scene scene = heavy_scene(1e-4, 0);
   const ShapeCheck check = check_shape(scene, exact_shape(scene, equal_arc_lengths(1, 11)),
                                        {.pose = PoseFreedom::rigid});

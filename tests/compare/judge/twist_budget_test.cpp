@@ -36,7 +36,7 @@ TEST(Budget, TellsWhatTwistThatIsLeftOutCosts) {
   Scene scene = twisted_scene();
   scene.force_model.law = BendingLaw::paper;
   const Comparison c = compare(scene, {}, {}, ModulusSearch::no);
-  EXPECT_EQ(c.force.left_out, std::vector<std::string>{"twist"});
+  EXPECT_EQ(c.force.neglected, std::vector<std::string>{"twist"});
   const Budget& b = c.budget;
   // The same as the plan tells, but for what 16 points see of it.
   const double apart = make_plan(scene).bound("twist");
@@ -55,7 +55,7 @@ TEST(Budget, HasNoPartForTwistThatTheForceModelHas) {
   for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
     scene.force_model.bookkeeping = bookkeeping;
     const Comparison c = compare(scene, {}, {}, ModulusSearch::no);
-    EXPECT_TRUE(c.force.left_out.empty());
+    EXPECT_TRUE(c.force.neglected.empty());
     EXPECT_EQ(c.budget.twist.rms_m, 0);
     EXPECT_NEAR(sum_of_shares(c.budget), 1, 1e-9);
     const bool consistent = bookkeeping == Bookkeeping::consistent;

@@ -20,10 +20,10 @@ bool shows(const std::function<BranchWitness(double)>& shape_before_end, double 
   return shows_its_end(before, last, missed_step);
 }
 
-BranchWitness of_curvature(double curvature) { return {.smallest_curvature = curvature}; }
+BranchWitness of_curvature(double curvature) { return {.smallest_eigenvalue = curvature}; }
 
 BranchWitness of_force(double force) {
-  BranchWitness witness{.smallest_curvature = 0.7};
+  BranchWitness witness{.smallest_eigenvalue = 0.7};
   witness.contacts.resize(2);
   witness.contacts[0].force = Eigen::Vector3d(0, 3, 0);
   witness.contacts[1].force = Eigen::Vector3d(0, force, 0);

@@ -17,7 +17,7 @@ namespace {
 TrackOptions frames_at(double rate) {
   TrackOptions options;
   options.rates.frames = rate;
-  options.force = ForceBeside::left_out;
+  options.force = ForceBeside::absent;
   options.samples = 21;
   options.solve.terms = 8;
   return options;
@@ -192,7 +192,7 @@ void expect_refused(const std::string& rod, const std::string& rest, const std::
 TEST(DynamicTrack, RefusesWhatARodWithInertiaCannotHave) {
   const std::string mass = "mass_per_length = 0.5\n";
   expect_refused("mass_per_length = 0\n", "", "no mass");
-  expect_refused(mass + "natural_curvature = 1\n", "", "curved by nature");
+  expect_refused(mass + "natural_curvature = 1\n", "", "intrinsically curved");
   const std::string held = "direction = \"0 deg\"\nroll = \"90 deg\"\n[[gripper]]\nat = ";
   expect_refused(mass + "torsional_stiffness = 1\n",
                  "[[gripper]]\nat = 0.5\nposition = [0.4, 0, 0]\n" + held +

@@ -21,7 +21,7 @@ using energy_model::ContactPart;
 TrackOptions at_rate(double rate) {
   TrackOptions options;
   options.rates.frames = rate;
-  options.force = ForceBeside::left_out;
+  options.force = ForceBeside::absent;
   options.samples = 21;
   return options;
 }
@@ -158,8 +158,8 @@ TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
   // From the fold itself, to a 1024th of a frame.
   EXPECT_LT(slow.released_bound, 1e-3 * slow.released);
   for (const TrackEvent& snap : {slow, fast}) {
-    EXPECT_GT(snap.smallest_curvature, 0);
-    EXPECT_LT(snap.smallest_curvature, 0.01);
+    EXPECT_GT(snap.smallest_eigenvalue, 0);
+    EXPECT_LT(snap.smallest_eigenvalue, 0.01);
   }
 }
 

@@ -100,7 +100,7 @@ TEST(SolutionPicture, DashesWhatIsUnstable) {
   std::size_t unstable = 0;
   for (std::size_t i = 0; i < all.solutions.size(); ++i) {
     const std::string line = line_of(shapes, "solution_" + std::to_string(i + 1));
-    const bool dashed = all.solutions[i].smallest_curvature < 0;
+    const bool dashed = all.solutions[i].smallest_eigenvalue < 0;
     EXPECT_EQ(is_unstable(all.solutions[i]), dashed);
     unstable += dashed ? 1 : 0;
     EXPECT_THAT(line, HasSubstr(dashed ? "dashtype 2" : "dashtype 1"));
@@ -115,7 +115,7 @@ TEST(SolutionPicture, DashesWhatIsUnstable) {
 TEST(SolutionPicture, TellsElevenUnstableShapesApart) {
   const Scene scene = test::heavy_scene(2, 0);
   std::vector<Solution> all(12, solve(scene, Model::energy));
-  for (std::size_t i = 1; i < all.size(); ++i) all[i].smallest_curvature = -1;
+  for (std::size_t i = 1; i < all.size(); ++i) all[i].smallest_eigenvalue = -1;
   const Picture picture = solution_picture(scene, all);
   std::set<std::string> looks;
   for (std::size_t i = 0; i < all.size(); ++i) {

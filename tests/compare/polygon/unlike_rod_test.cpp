@@ -146,7 +146,7 @@ TEST(UnlikeRod, TheContinuousModelsAreTheRod) {
   }
 }
 
-TEST(UnlikeRod, WithoutLoadsThePolygonLiesOnTheFreeRodsCircle) {
+TEST(UnlikeRod, WithoutLoadsThePolygonLiesOnTheStressFreeCircle) {
   Scene scene = cantilever(2);
   scene.gravity.setZero();
   const Solution solution = solve(scene, Model::chain, {}, {0, 0.5, 1});
@@ -167,7 +167,7 @@ TEST(UnlikeRod, ForceModelAndChainComeToRestInTheSameShape) {
     }
     const Solution chain = solve(scene, Model::chain);
     const Solution force = solve(scene, Model::force);
-    EXPECT_TRUE(force.left_out.empty());
+    EXPECT_TRUE(force.neglected.empty());
     // The single clamp's chain does not stretch.
     const double stretch =
         two_clamps ? 0 : scene.mass() * scene.gravity.norm() / scene.axial_stiffness();
@@ -228,16 +228,16 @@ TEST(UnlikeRod, SaysWhereNaturalCurvatureIsLeftOut) {
   Scene scene = cantilever(3);
   for (const Model model : {Model::chain, Model::force}) {
     scene = cantilever(3);
-    EXPECT_TRUE(solve(scene, model).left_out.empty());
+    EXPECT_TRUE(solve(scene, model).neglected.empty());
     scene.force_model.law = BendingLaw::paper;
     const Solution paper = solve(scene, model);
-    EXPECT_EQ(paper.left_out, curvature);
+    EXPECT_EQ(paper.neglected, curvature);
     const Scene straight = scene.without_natural_strain();
     EXPECT_EQ(solve(straight, model).shape.points, paper.shape.points);
     // In space points have no frame that it could point along.
     scene.force_model.law = BendingLaw::hooke;
     scene.natural_strain.x() = 1;
-    EXPECT_EQ(solve(scene, model).left_out, curvature);
+    EXPECT_EQ(solve(scene, model).neglected, curvature);
   }
   const Plan plan = make_plan(scene);
   EXPECT_GT(plan.bound("natural curvature"), -1);

@@ -72,7 +72,8 @@ TEST(PageData, GridSaysWhatIsMissing) {
   const json grid = json::parse(page_data(report))["grid"];
   ASSERT_TRUE(report.grid);
   ASSERT_EQ(grid["cells"].size(), 4U);
-  EXPECT_THAT(grid["cells"][2]["failure"].get<std::string>(), testing::HasSubstr("would turn by"));
+  EXPECT_THAT(grid["cells"][2]["failure"].get<std::string>(),
+              testing::HasSubstr("would rotate by"));
   const GridCell& cell = report.grid->cells[1];
   EXPECT_EQ(grid["models"][1]["law"], "hooke");
   EXPECT_NEAR(grid["cells"][1]["rms"], cell.rms_over_length, 1e-4 * cell.rms_over_length);

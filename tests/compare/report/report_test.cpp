@@ -413,7 +413,7 @@ TEST(Report, PutsTheVerdictInNumbers) {
   EXPECT_THROW((void)make_report({heavy_file()}, options), std::invalid_argument);
 }
 
-TEST(Report, GivesNoModulusThatTheShapesDoNotTell) {
+TEST(Report, GivesNoModulusThatIsNotIdentifiable) {
   // Between two clamps the shape hardly depends on the stiffness.
   SceneFile file = heavy_file();
   file.scene = test::heavy_scene(1.5, 0);

@@ -51,7 +51,7 @@ TEST(ShapeGrid, CellsAreTheComparisonsOfTheirPlaces) {
 // With eight points a joint of the paper's law would have to turn by more than half a turn.
 TEST(ShapeGrid, CellsWithoutShapesSaySo) {
   const ShapeGrid grid = make_shape_grid({.gammas = {100}, .angles_deg = {60}, .points = {8, 32}});
-  EXPECT_THAT(grid.cells.at(grid.index(0, 0, 0, 0)).failure, testing::HasSubstr("would turn by"));
+  EXPECT_THAT(grid.cells.at(grid.index(0, 0, 0, 0)).failure, testing::HasSubstr("would rotate by"));
   EXPECT_EQ(grid.cells.at(grid.index(0, 0, 1, 1)).failure, "");
 }
 

@@ -198,7 +198,7 @@ TEST_P(AnyRightShape, ACutFileIsNamed) {
   });
 }
 
-TEST_P(AnyRightShape, PartsThatThePointsDoNotTellAreNamed) {
+TEST_P(AnyRightShape, PartsThatThePointsDoNotDetermineAreNamed) {
   Right right(random_);
   right.scene = heavy_scene(10, 0);
   right.rod = solve_reference(right.scene, Model::energy);
@@ -207,7 +207,7 @@ TEST_P(AnyRightShape, PartsThatThePointsDoNotTellAreNamed) {
   EXPECT_LT(check.whole_max_m, 1e-7);
   const ShapeJudgement judgement = judge(check, {.allowed_m = 0.01});
   EXPECT_FALSE(judgement.pass);
-  EXPECT_NE(judgement.reason.find("do not tell the rod at s = 0.02 to 1 m"), std::string::npos)
+  EXPECT_NE(judgement.reason.find("do not determine the rod at s = 0.02 to 1 m"), std::string::npos)
       << judgement.reason;
   EXPECT_NE(judgement.reason.find("only 2 % of the rod is seen"), std::string::npos);
   EXPECT_FALSE(judge(check, {.allowed_m = 0.01, .least_seen_share = 0.1, .part = true}).pass);

@@ -68,8 +68,8 @@ TEST_P(FormerFailure, EndsWithAnEquilibriumOrACleanError) {
     EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
     // Of a failure there is nothing to see but a shape that says what is wrong with it.
     if (!result.out.empty()) {
-      EXPECT_NE(result.out.find("not resolved"), std::string::npos) << result.out;
-      const bool says = result.out.find("what touches what did not settle") != std::string::npos ||
+      EXPECT_NE(result.out.find("not verified"), std::string::npos) << result.out;
+      const bool says = result.out.find("the contacts did not converge") != std::string::npos ||
                         result.out.find("the curvature is not resolved by") != std::string::npos;
       EXPECT_TRUE(says) << result.out;
     }

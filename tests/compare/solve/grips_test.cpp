@@ -299,7 +299,7 @@ bookkeeping = "consistent"
 }
 
 // Contact is not looked for between clamps that twist the rod.
-TEST(Walls, AShapeThatIsNotResolvedIsShownOnlyToWhoAcceptsIt) {
+TEST(Walls, AShapeThatIsNotVerifiedIsShownOnlyToWhoAcceptsIt) {
   const Scene scene = parse_scene(R"(
 gravity = [0, -9.81, 0]
 [rod]
@@ -335,12 +335,12 @@ bookkeeping = "consistent"
   EXPECT_THROW((void)solve(scene, Model::energy), ConvergenceError);
   EXPECT_THROW((void)compare(scene), ConvergenceError);
   SolveOptions options;
-  options.accept_unresolved = true;
+  options.accept_unverified = true;
   const Solution shown = solve(scene, Model::energy, options);
-  EXPECT_EQ(shown.status, energy_model::SolveStatus::not_resolved);
+  EXPECT_EQ(shown.status, energy_model::SolveStatus::not_verified);
   EXPECT_NEAR(shown.penetration, -(0.02 - 0.25e-3) - shown.shape.points.row(1).minCoeff(), 1e-5);
   const Comparison comparison = compare(scene, options);
-  EXPECT_NE(comparison.unresolved.find("within a rigid obstacle"), std::string::npos);
+  EXPECT_NE(comparison.unverified.find("within a rigid obstacle"), std::string::npos);
   EXPECT_TRUE(std::isnan(comparison.effective_modulus.ratio));
 }
 

@@ -105,7 +105,7 @@ TEST_P(PlanOf, BoundsWhatStretchDoesToThePolygon) {
   }
 }
 
-TEST_P(PlanOf, BoundsWhatThePolygonLeavesOut) {
+TEST_P(PlanOf, BoundsWhatThePolygonNeglects) {
   for (const int points : {16, 40, 100}) {
     for (const Bookkeeping bookkeeping : {Bookkeeping::consistent, Bookkeeping::paper}) {
       Scene scene = GetParam().scene;
@@ -299,8 +299,8 @@ TEST(Plan, SaysWhatGrippersTwistAndThatNoPolygonAnswersForIt) {
   for (const char* what : {"stretch", "shear", "polygon"}) {
     EXPECT_TRUE(std::isinf(plan.bound(what))) << what;
   }
-  EXPECT_EQ(plan.left_out[4].what, "twist");
-  EXPECT_EQ(plan.left_out[4].models, "chain, force with the law paper");
+  EXPECT_EQ(plan.neglected[4].what, "twist");
+  EXPECT_EQ(plan.neglected[4].models, "chain, force with the law paper");
 }
 
 TEST(Plan, NoBoundIsGivenWhereTheRodTouches) {

@@ -53,7 +53,7 @@ TEST(TwistedRod, ForceModelApproachesTheRodInSecondOrder) {
     for (const int points : sizes) {
       scene.force_model.points = points;
       const Solution force = solve_force(scene, scene.force_model, options);
-      EXPECT_TRUE(force.left_out.empty());
+      EXPECT_TRUE(force.neglected.empty());
       ASSERT_EQ(force.twists.size(), 1);
       const Shape& shape = force.shape;
       const double error =
@@ -150,13 +150,13 @@ TEST(TwistedRod, MayHaveThreeFramesSectionsAndAPin) {
   }
 }
 
-TEST(TwistedRod, IsLeftOutByThePaperLawAndOfARodThatIsCurvedByNature) {
+TEST(TwistedRod, IsNeglectedByThePaperLawAndOfARodThatIsIntrinsicallyCurved) {
   const std::vector<std::string> twist = {"twist"};
   Scene scene = spatial_scene(2);
   scene.force_model.law = BendingLaw::paper;
   for (const Model model : {Model::chain, Model::force}) {
     const Solution paper = solve(scene, model);
-    EXPECT_EQ(paper.left_out, twist);
+    EXPECT_EQ(paper.neglected, twist);
     EXPECT_TRUE(paper.twists.empty());
     EXPECT_EQ(paper.shape.points, solve(scene.without_twist(), model).shape.points);
   }
@@ -164,7 +164,7 @@ TEST(TwistedRod, IsLeftOutByThePaperLawAndOfARodThatIsCurvedByNature) {
   scene.grippers[0].frame->d1 = Eigen::Vector3d::UnitZ();
   scene.natural_strain = {0, 0.5, 0};
   const std::vector<std::string> both = {"twist", "natural curvature"};
-  EXPECT_EQ(solve(scene, Model::chain).left_out, both);
+  EXPECT_EQ(solve(scene, Model::chain).neglected, both);
 }
 
 TEST(TwistedRod, FallsFromItsOwnShapeToItself) {

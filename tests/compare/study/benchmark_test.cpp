@@ -53,7 +53,7 @@ TEST(Benchmark, RunsEveryModelOrSaysThatItDidNotAndItsAnswersFitTheRows) {
     std::map<Model, int> count;
     for (const BenchmarkRun& run : scene.runs) {
       ++count[run.model];
-      EXPECT_GT(run.work, 0);
+      EXPECT_GT(run.evaluations, 0);
       EXPECT_GE(run.time.repeats, 1);
       EXPECT_LE(run.time.lower_quartile_s, run.time.median_s);
       EXPECT_LE(run.time.median_s, run.time.upper_quartile_s);

@@ -79,7 +79,7 @@ TEST(HardCases, AreLeftOutByName) {
   const StabilityOptions options = {.max_steps = 1,
                                     .max_steps_auto = 1,
                                     .name_contains = "crumpled",
-                                    .left_out = {"crumpled 2", "N = 1000"},
+                                    .excluded = {"crumpled 2", "N = 1000"},
                                     .steppers = {Stepper::automatic}};
   const std::vector<StabilityResult> results = stability(options);
   ASSERT_EQ(results.size(), 2U);

@@ -13,7 +13,7 @@ namespace dlo::compare {
 [[nodiscard]] Solution solve_chain(const Scene& scene, const ForceModelSettings& settings,
                                    const SolveOptions& options = {});
 
-/// The chain of elastic segments in the equilibrium that a shape falls to; its c_c is the
+/// The chain of elastic segments in the equilibrium downhill of a shape; its c_c is the
 /// settings'. For the paper's law between unequal segments see energy_model::PolygonProblem.
 /// @param start  any polygon of the scene's rod
 /// @throws InputError, ConvergenceError

@@ -27,17 +27,17 @@ struct Comparison {
   Reference reference_rod;      ///< and anywhere from 0 to l
   std::vector<energy_model::ContactPart> contacts;  ///< of the reference, as Solution::contacts
   /// Why nothing may be concluded from the reference; empty if it is proven. Only where
-  /// SolveOptions::accept_unresolved is set.
-  std::string unresolved;
+  /// SolveOptions::accept_unverified is set.
+  std::string unverified;
   /// Which equilibrium `reference` is: of the stable ones the nearest (RMS) to where the Hookean
-  /// polygon falls from the force model's shape. That is the state that the force model is in, and
-  /// not always the one of lowest energy.
+  /// polygon goes downhill from the force model's shape. That is the state that the force model is
+  /// in, and not always the one of lowest energy.
   ComparedState state;
   Deviation deviation;  ///< of `force` from `reference`
   /// The straight rod's own deviation from the reference; NaN without a straight rod.
   double undeformed_rms_over_length = 0;
   /// In the state that was compared, followed to each E*; none if it was not searched or the
-  /// reference is not resolved.
+  /// reference is not verified.
   EffectiveModulus effective_modulus;
   /// What even E* does not explain, against the reference's way from the straight rod; NaN without.
   double residual_over_movement = 0;

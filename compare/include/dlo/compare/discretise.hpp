@@ -12,7 +12,7 @@ namespace dlo::compare {
 /// How clamps hold a chain of hinges.
 enum class ChainClamp {
   hinge,   ///< a hinge where the clamp is
-  welded,  ///< the segment at the clamp does not turn
+  welded,  ///< the segment at the clamp does not rotate
   middle,  ///< the clamp is in the middle of a segment, of which half is the rod's
 };
 
@@ -22,7 +22,7 @@ struct Choices<ChainClamp> {
   /// In the enumeration's order.
   static constexpr Choice<ChainClamp> all[] = {
       {ChainClamp::hinge, "hinge", "a hinge where the clamp is"},
-      {ChainClamp::welded, "welded", "the segment at the clamp does not turn"},
+      {ChainClamp::welded, "welded", "the segment at the clamp does not rotate"},
       {ChainClamp::middle, "middle", "the clamp is in the middle of a segment"}};
 };
 
@@ -79,7 +79,8 @@ struct Discretisation {
 /// is that of the mean 1/EI (of the law `paper` c_b goes with it), and its turn at rest the natural
 /// curvature times its length. The law `paper`, and a rod that does not lie in its plane, leave the
 /// natural curvature out. GJ goes with EI where the clamps twist the rod and the law is hooke;
-/// their frames are no part of this, as whole turns are counted from where the rod rests without twist.
+/// their frames are no part of this, as whole turns are counted from where the rod rests without
+/// twist.
 ///
 /// A half-space is a wall of the force model, which acts on points, each with L times the
 /// obstacle's stiffness, as walls have one stiffness for all points (the last point of a free end
@@ -90,7 +91,7 @@ struct Discretisation {
 /// @throws InputError if there are too few points for the grippers (with the number needed), two
 /// grippers hold the same arc length, grippers, or the segments that they hold, are further apart
 /// than the rod between them, or a single segment between two held points does not fit (with the
-/// number of points that do), or a joint would turn by 3 rad or more at rest
+/// number of points that do), or a joint would rotate by 3 rad or more at rest
 [[nodiscard]] Discretisation discretise(const Scene& scene, const ForceModelSettings& settings);
 
 /// Gives a discretisation the walls and solids of these obstacles of a scene, and no others.

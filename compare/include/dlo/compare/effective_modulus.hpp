@@ -15,16 +15,17 @@ namespace dlo::compare {
 
 /// What the optimum of an effective modulus is worth.
 enum class Optimum {
-  none,       ///< there is no E*, see EffectiveModulus::why_none
-  clear,      ///< E* is told, and it explains the deviation
-  partial,    ///< E* is told, but it explains less than `clear_share` of the mean square deviation,
-              ///< or leaves more than the rod's own way from straight (without_small_movement)
-  flat,       ///< a modulus twice or half as large fits less than 10 % worse, or no worse than the
-              ///< energy model's own error
-  one_sided,  ///< the fit still improves where the search ended: at the end of the range, or where
-              ///< the equilibrium that was followed ends or bifurcates
-  outdone,    ///< E* is told, but something else leaves far less (better_than_stiffness): it is no
-              ///< measure of the material
+  none,        ///< there is no E*, see EffectiveModulus::why_none
+  clear,       ///< E* is identified, and it explains the deviation
+  partial,     ///< E* is identified, but it explains less than `clear_share` of the mean square
+               ///< deviation, or leaves more than the rod's own way from straight
+               ///< (without_small_movement)
+  flat,        ///< a modulus twice or half as large fits less than 10 % worse, or no worse than the
+               ///< energy model's own error
+  one_sided,   ///< the fit still improves where the search ended: at the end of the range, or where
+               ///< the equilibrium that was followed ends or bifurcates
+  superseded,  ///< E* is identified, but another cause leaves far less (better_than_stiffness): it
+               ///< is no measure of the material
 };
 
 /// In words, for messages.
@@ -34,11 +35,11 @@ struct Choices<Optimum> {
   static constexpr Choice<Optimum> all[] = {
       {Optimum::none, "none", ""},           {Optimum::clear, "clear", ""},
       {Optimum::partial, "partial", ""},     {Optimum::flat, "flat", ""},
-      {Optimum::one_sided, "one-sided", ""}, {Optimum::outdone, "outdone", ""}};
+      {Optimum::one_sided, "one-sided", ""}, {Optimum::superseded, "superseded", ""}};
 };
 
-/// E* itself is told, whether or not it explains the deviation.
-[[nodiscard]] constexpr bool is_told(Optimum optimum) {
+/// E* itself is identified, whether or not it explains the deviation.
+[[nodiscard]] constexpr bool is_identified(Optimum optimum) {
   return optimum == Optimum::clear || optimum == Optimum::partial;
 }
 
@@ -73,7 +74,8 @@ inline constexpr double largest_modulus_ratio = 1e4;
 /// less, so that what it explains (sqrt(3)/2 of the RMS, as a field orthogonal to the rest) is at
 /// least 1.7 times what it leaves.
 inline constexpr double clear_share = 0.75;
-/// RMS distance below which nothing is told, share of the length: the energy model's own error.
+/// RMS distance below which nothing is identified, share of the length: the energy model's own
+/// error.
 inline constexpr double modulus_resolution = 1e-8;
 
 /// Minimises the RMS distance at equal arc length over E*, everything else as in the scene.

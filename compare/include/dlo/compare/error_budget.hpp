@@ -17,11 +17,11 @@ struct BudgetPart {
 /// Where a deviation comes from, each part found by switching one thing. With chain(law,
 /// bookkeeping, c_c) the polygon at rest, and "rigid" standing for c_c = 100 AE,
 ///     twist           rod without the twist that the scene holds - rod, where the force model
-///                     leaves it out, and its chains with it
+///                     neglects it, and its chains with it
 ///     natural curvature
-///                     rod without twist that is straight by nature - rod without twist, where the
-///                     force model leaves the natural curvature out, and its chains with it
-///     discretisation  chain(hooke, consistent, rigid) - rod without what is left out
+///                     rod without twist that is intrinsically straight - rod without twist, where
+///                     the force model neglects the natural curvature, and its chains with it
+///     discretisation  chain(hooke, consistent, rigid) - rod without what is neglected
 ///     bookkeeping     chain(hooke, the scene's, rigid) - chain(hooke, consistent, rigid)
 ///     law             chain(the scene's, consistent, rigid) - chain(hooke, consistent, rigid)
 ///     stretch         chain(the scene's, the scene's, c_c), rigid obstacles as under "rigid"

@@ -33,7 +33,7 @@ enum class ExplanationKind {
 
 /// What may be wrong with a shape, or with the scene that it is held against.
 struct Explanation {
-  std::string cause;                              ///< a clause: "gripper 1 is turned by 5 deg"
+  std::string cause;                              ///< a clause: "gripper 1 is rotated by 5 deg"
   double rms_m = 0;                               ///< of the whole rod, were it so
   int numbers = 0;                                ///< that were fitted to the shape
   ExplanationKind kind = ExplanationKind::scene;  ///< what it is about
@@ -53,9 +53,9 @@ struct Explanation {
                                                      const ShapeCheck& check,
                                                      const ShapeCheckOptions& options);
 
-/// What explains a shape better than any stiffness, where E* is told: it leaves less than half of
-/// what E* leaves, with two fitted numbers less than a quarter, and so on. E* is then no measure of
-/// the material (Optimum::outdone).
+/// What explains a shape better than any stiffness, where E* is identified: it leaves less than
+/// half of what E* leaves, with two fitted numbers less than a quarter, and so on. E* is then no
+/// measure of the material (Optimum::superseded).
 /// @param explanations  of explain_shape(), for the same check
 [[nodiscard]] std::optional<Explanation> better_than_stiffness(
     const ShapeCheck& check, const std::vector<Explanation>& explanations);

@@ -59,7 +59,7 @@ struct ForceModelFit {
   bool c_b_was_given = false;  ///< `fitted` is then the given one
   bool c_c_was_given = false;  ///< by the scene or an option
   /// The target asked for a stiffer rod than the material makes, or nothing pulls at it: c_c is AE,
-  /// and the rod's own stretch, which the energy model leaves out, is part of the deviation.
+  /// and the rod's own stretch, which the energy model neglects, is part of the deviation.
   bool c_c_is_physical = false;
   bool points_were_given = false;     ///< N was not chosen
   double target = 0;                  ///< RMS deviation over the length that was asked for [-]

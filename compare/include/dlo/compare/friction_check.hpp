@@ -10,10 +10,10 @@ namespace dlo::compare {
 
 /// Whether friction can hold a shape.
 enum class FrictionVerdict {
-  none_needed,  ///< obstacles that only push hold it
-  inside,       ///< the forces that it needs are inside the cones
-  outside,      ///< they are not
-  not_told,     ///< see the reason
+  none_needed,     ///< obstacles that only push hold it
+  inside,          ///< the forces that it needs are inside the cones
+  outside,         ///< they are not
+  not_identified,  ///< see the reason
 };
 
 /// In words, for files.
@@ -21,10 +21,10 @@ enum class FrictionVerdict {
 
 /// What a shape that touches obstacles needs of their friction.
 struct FrictionCheck {
-  FrictionVerdict verdict = FrictionVerdict::not_told;  ///< the answer
-  std::string reason;  ///< why it is not told, a clause; else empty
+  FrictionVerdict verdict = FrictionVerdict::not_identified;  ///< the answer
+  std::string reason;  ///< why it is not identified, a clause; else empty
   /// Least factor by which the scene's coefficients have to be multiplied so that an equilibrium
-  /// under forces in the cones is as near to the shape as one under any [-]; NaN if not told.
+  /// under forces in the cones is as near to the shape as one under any [-]; NaN if not identified.
   double factor = std::numeric_limits<double>::quiet_NaN();
   /// The same for an equilibrium whose squared distance is twice as large: what is below it a file
   /// with this scatter excludes [-].
@@ -42,10 +42,10 @@ struct FrictionCheck {
 /// obstacles at its nodes that touch them, inside Coulomb's cones, and which of them comes nearest
 /// to the points of a shape that check_shape() has laid on its reference. Forces act on the axis.
 /// Coefficients up to ten times the scene's, and up to 5, are looked at. It says nothing of whether
-/// such an equilibrium is stable. Not told: with arc lengths from nearest points or a frame that
-/// was found, of rods with
-/// natural curvature, two bending stiffnesses or held twist, at obstacles that yield, where the
-/// shape touches nothing or is no equilibrium, and where scatter or segments leave it open.
+/// such an equilibrium is stable. Not identified: with arc lengths from nearest points or a frame
+/// that was found, of rods with natural curvature, two bending stiffnesses or held twist, at
+/// obstacles that yield, where the shape touches nothing or is no equilibrium, and where scatter or
+/// segments leave it open.
 ///
 /// Spatial cones are replaced by pyramids of 12 sides within them: `factor` may be too large by 3.5
 /// %, which factor_error holds. In a plane they are exact.

@@ -38,14 +38,15 @@ struct MaterialFitOptions {
   std::optional<double> noise;   ///< standard deviation of one coordinate [m]; else estimated
   double smallest_ratio = 1e-4;  ///< of the modulus to the scene's, where it is looked for
   double largest_ratio = 1e4;    ///< the upper end of that range
-  /// A number is told only if its interval's ends are within this factor of each other.
-  double told_within = 4;
+  /// A number counts as identified only if its interval's ends are within this factor of each
+  /// other.
+  double identified_within = 4;
   SolveOptions solve;  ///< limits of the solvers
 };
 
 /// A fitted quantity and its 95 % interval; a side without a number is open as far as was searched.
 struct FittedValue {
-  /// Only if the interval is closed and no wider than MaterialFitOptions::told_within.
+  /// Only if the interval is closed and no wider than MaterialFitOptions::identified_within.
   std::optional<double> value;
   std::optional<double> low;   ///< lower end of the interval
   std::optional<double> high;  ///< upper end of the interval
@@ -148,11 +149,11 @@ struct MaterialFit {
   std::optional<FittedValue> density;
   /// GJ of the first scene [N m^2], if it was asked for.
   std::optional<FittedValue> torsional_stiffness;
-  /// GJ / EI of the first scene [-], if GJ was asked for: shapes may tell it where weight is too
-  /// little to tell either; EI the mean of two.
+  /// GJ / EI of the first scene [-], if GJ was asked for: may be identifiable where weight is too
+  /// little to identify either; EI the mean of two.
   std::optional<FittedValue> torsion_over_bending;
-  /// What the shapes do not tell, and why; empty if all is told.
-  std::string not_told;
+  /// What is not identifiable from the shapes, and why; empty if all is identified.
+  std::string not_identified;
   /// Why the fit is not to be believed: residuals far above the given noise (chance 1e-3), or above
   /// a twentieth of the length, or half of which something would remove that is not fitted; else
   /// empty.
@@ -177,8 +178,8 @@ struct MaterialFit {
   std::vector<Eigen::Vector2d> natural_curvature;
   std::optional<ScatterBetweenShapes> scatter;  ///< if there is one
   /// Of chains with as many segments as were asked for, in each different scene; none where E is
-  /// not told, or the scene has what a plain chain has not (twist, sections, natural curvature,
-  /// obstacles, a gripper between its joints).
+  /// not identified, or the scene has what a plain chain has not (twist, sections, natural
+  /// curvature, obstacles, a gripper between its joints).
   std::vector<ChainSprings> chains;
   bool noise_is_estimated = true;   ///< else it was given
   int degrees_of_freedom = 0;       ///< numbers measured less numbers fitted
@@ -206,8 +207,8 @@ struct MaterialFit {
 /// be open on a side. It reaches to every other local minimum in the joint region of all fitted
 /// numbers, frames included, that is left with a chance of 1e-3 (F distribution; a given noise:
 /// chi-squared), since a piece of a soft rod in an unknown frame also looks like
-/// another piece of a stiffer one. Where it is open or wider than `told_within`, the shapes do not
-/// tell E and no value is given.
+/// another piece of a stiffer one. Where it is open or wider than `identified_within`, E is not
+/// identifiable from the shapes and no value is given.
 ///
 /// Where the residuals show that errors along the rod are correlated (likelihood ratio against
 /// white noise plus a first-order autoregression in arc length, restricted maximum likelihood), the
@@ -236,7 +237,7 @@ struct MaterialFit {
 /// E.
 /// @throws InputError if scenes and shapes do not pair, or there are fewer numbers than unknowns;
 /// ConvergenceError if the energy model has a shape at no modulus, if a shape within the interval
-/// is not resolved on its obstacles, or if `solve.time_limit` per scene is over
+/// is not verified on its obstacles, or if `solve.time_limit` per scene is over
 [[nodiscard]] MaterialFit fit_material(const std::vector<Scene>& scenes,
                                        const std::vector<MeasuredShape>& shapes,
                                        const MaterialFitOptions& options = {});

@@ -4,7 +4,7 @@ namespace dlo::compare {
 
 /// The paper's bending law as a rod: which stiffness does a joint of it stand for?
 ///
-/// A joint that turns by alpha has the potential V = c_b L (8/3 - 4 cos(alpha/2) + 4/3
+/// A joint that rotates by alpha has the potential V = c_b L (8/3 - 4 cos(alpha/2) + 4/3
 /// cos^3(alpha/2)), so its moment is
 ///     M(alpha) = dV/dalpha = c_b L (2 sin(alpha/2) - 2 cos^2(alpha/2) sin(alpha/2))
 ///              = 2 c_b L sin^3(alpha/2)                          (about c_b L alpha^3 / 4). (1)

@@ -43,11 +43,11 @@ struct PlannedTwist {
   double twist = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What a model leaves out, with the most that it could change.
-struct LeftOut {
+/// What a model neglects, with the most that it could change.
+struct Neglected {
   std::string what;    ///< short name, as Plan::bound takes it
-  std::string models;  ///< that leave it out
-  /// Of the shape, RMS along the rod [m]; infinite: no bound, or it cannot be left out.
+  std::string models;  ///< that neglect it
+  /// Of the shape, RMS along the rod [m]; infinite: no bound, or it cannot be neglected.
   double bound_m = 0;
   std::string why;  ///< how the bound comes about
 };
@@ -66,18 +66,18 @@ struct Plan {
   /// N at which the hooke polygon with the scene's bookkeeping meets the target; 0: none up to
   /// `most_planned_points`, or unknown.
   int points = 0;
-  int scene_points = 0;           ///< N of the scene
-  bool contact = false;           ///< the rod touches an obstacle, or it was not found out
-  std::vector<LeftOut> left_out;  ///< everything that any of the models leaves out
+  int scene_points = 0;              ///< N of the scene
+  bool contact = false;              ///< the rod touches an obstacle, or it was not found out
+  std::vector<Neglected> neglected;  ///< everything that any of the models neglects
 
-  /// Bound of one thing left out [m]. @throws std::invalid_argument if there is no such thing
+  /// Bound of one thing neglected [m]. @throws std::invalid_argument if there is no such thing
   [[nodiscard]] double bound(const std::string& what) const;
 };
 
 /// Largest N that a plan asks for.
 inline constexpr int most_planned_points = 4000;
 
-/// Decides what a scene needs, and bounds what is left out.
+/// Decides what a scene needs, and bounds what is neglected.
 ///
 /// - Planar if the scene is; the energy model checks that a planar shape is stable out of its
 /// plane.
@@ -92,17 +92,18 @@ inline constexpr int most_planned_points = 4000;
 ///   Shear: k G >= 0.3 E. A round section has k = 6 (1 + nu) / (7 + 6 nu) (Cowper 1966) and
 ///   G = E / (2 (1 + nu)), so kG = 3 E / (7 + 6 nu), least for nu = 1/2.
 /// - Polygon: that answer at the scene's N falls with L^2 (`consistent`) or L (`paper`), from which
-///   N follows; besides, no joint turns by more than 0.5 rad (Formula 10). The law `paper` has an
+///   N follows; besides, no joint rotates by more than 0.5 rad (Formula 10). The law `paper` has an
 ///   error of its own that no N removes, so this is said of the hooke law only.
 /// - Motion: a gripper that starts or stops at speed v gives the rod the energy rho A l v^2 / 2 at
 ///   most; a rod held by a clamp or two grips bends by 3 EI d^2 / (2 l^3) or more for a deflection
 ///   d, so the rod leaves its static shape by d <= v l^2 sqrt(rho A / (3 EI)) (small deflections).
 ///   A single pin lets the rod swing: no bound.
 /// - Twist: a round, naturally straight rod whose grips leave the twist free has none: nothing.
-///   Where two clamps hold frames, chain and force leave it out with the law paper, or of a rod
-///   that is curved by nature, and no polygon says what stretch, shear and itself change (the one
-///   that answers has no twist); nor does one of a rod with sections or that is curved by nature.
-/// - Natural curvature: what chain and force leave out, in space or with the law paper.
+///   Where two clamps hold frames, chain and force neglect it with the law paper, or of a rod
+///   that is intrinsically curved, and no polygon says what stretch, shear and itself change (the
+///   one that answers has no twist); nor does one of a rod with sections or that is intrinsically
+///   curved.
+/// - Natural curvature: what chain and force neglect, in space or with the law paper.
 /// A scene that cannot be planned in time or at all has a plan without bounds, and why.
 /// @throws std::invalid_argument if an option is out of range
 [[nodiscard]] Plan make_plan(const Scene& scene, const PlanOptions& options = {});

@@ -9,8 +9,8 @@
 namespace dlo::compare {
 
 /// The continuous reference of a scene: `energy` or `exact`.
-/// @throws InputError, ConvergenceError; that too where a shape is not resolved or next to
-/// a fold, unless `accept_unresolved` is set
+/// @throws InputError, ConvergenceError; that too where a shape is not verified or next to
+/// a fold, unless `accept_unverified` is set
 [[nodiscard]] energy_model::Equilibrium solve_reference(const Scene& scene, Model model,
                                                         const SolveOptions& options = {});
 

@@ -13,7 +13,7 @@
 
 namespace dlo::compare {
 
-/// Keeps a clamped cross-section from turning about its direction.
+/// Keeps a clamped cross-section from rotating about its direction.
 struct FrameHold {
   /// First director of the rod's frame, unit and across the direction; none: that of the first
   /// clamp that holds the frame, carried here by the shortest rotation of its direction.
@@ -55,8 +55,8 @@ struct Obstacle {
   obstacle::Body body;  ///< [m]
   /// Force per depth and per length of rod [N/m^2]; infinite: rigid.
   double stiffness = std::numeric_limits<double>::infinity();
-  /// Coulomb's coefficient [-], >= 0. No model has friction: what a shape that touches such an
-  /// obstacle leaves out is told (Solution::left_out).
+  /// Coulomb's coefficient [-], >= 0. No model has friction: a shape that touches such an
+  /// obstacle says so (Solution::neglected).
   double friction = 0;
   /// How it moves without turning, its poses being where the file's `point` is. Empty: it stands;
   /// the body is that at the first pose.
@@ -127,8 +127,8 @@ struct Scene {
   /// effect elsewhere.
   std::optional<double> torsional_stiffness;
   std::vector<Section> sections;  ///< where the rod is another one, by arc length, none overlap
-  /// Curvature of the free rod about d1 and d2 of its frame and its twist, in the mean along it
-  /// [1/m]; the first clamp along the rod holds that frame (energy_model::first_frame).
+  /// Curvature of the stress-free shape about d1 and d2 of its frame and its twist, in the mean
+  /// along it [1/m]; the first clamp along the rod holds that frame (energy_model::first_frame).
   Eigen::Vector3d natural_strain = Eigen::Vector3d::Zero();
   /// What the curvature varies by: coefficients of Legendre's P_1, P_2, .. of 2 s/l - 1 [1/m].
   std::vector<Eigen::Vector2d> natural_variation;
@@ -168,7 +168,7 @@ struct Scene {
   [[nodiscard]] double bending_compliance(double begin, double end) const;
   /// w l^3 / (EI) [-], w the mean weight per length and EI the smaller one outside sections.
   [[nodiscard]] double gamma() const;
-  /// Whether the free rod is no straight, untwisted one.
+  /// Whether the stress-free shape is curved or twisted.
   [[nodiscard]] bool naturally_bent() const {
     return naturally_curved() || natural_strain.z() != 0;
   }
@@ -183,19 +183,19 @@ struct Scene {
   /// Frame (columns d1, d2, t) in which the first clamp holds a rod with material directors.
   /// @throws InputError if no clamp, or no plane, says where it is
   [[nodiscard]] Eigen::Matrix3d first_frame() const;
-  /// The same rod, straight by nature.
+  /// The same rod, intrinsically straight.
   [[nodiscard]] Scene without_natural_strain() const;
-  /// Mean curvature of the free rod in the axes that the first clamp holds, as a vector about which
-  /// its tangent turns [1/m]; zero for a rod that is straight by nature. @throws InputError if no
-  /// clamp, or no plane, says where its frame is
+  /// Mean curvature of the stress-free shape in the axes that the first clamp holds, as a vector
+  /// about which its tangent turns [1/m]; zero for a rod that is intrinsically straight. @throws
+  /// InputError if no clamp, or no plane, says where its frame is
   [[nodiscard]] Eigen::Vector3d natural_curvature() const;
   /// The same of the rod between two arc lengths, begin < end.
   [[nodiscard]] Eigen::Vector3d natural_curvature(double begin, double end) const;
   /// Whether two clamps or more hold the rod's frame, which twists it or keeps it from twisting. Of
   /// a rod with material directors the first clamp always does.
   [[nodiscard]] bool holds_twist() const;
-  /// The same with clamps that let the rod turn about their directions, but for the first clamp of
-  /// a rod with material directors.
+  /// The same with clamps that let the rod rotate about their directions, but for the first clamp
+  /// of a rod with material directors.
   [[nodiscard]] Scene without_twist() const;
   /// Unit normal of the plane that grips, forces and obstacles in reach share, if they do, no twist
   /// is held, which bends a rod out of its plane, and the rod is not curved about another axis by

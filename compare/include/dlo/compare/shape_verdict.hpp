@@ -30,7 +30,7 @@ struct ShapeJudgement {
 /// part; a part between neighbouring points is seen if a smooth curve through points there tells it
 /// within the tolerance, and the whole rod has to be. Points that cover next to nothing of the rod
 /// lie near it whatever its shape is, so less than `least_seen_share` is never a pass. The reason
-/// names what was left out.
+/// names what the file lacks.
 [[nodiscard]] ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance);
 
 /// Whether a shape is a scene's, for a test.
@@ -40,7 +40,7 @@ struct ShapeNear {
 };
 
 /// Compares a shape with the energy model's, at equal arc length: near if no point is further away
-/// than `tolerance` times the rod's length. A shape that is none (other numbers of points and arc
+/// than `tolerance` times the rod's length. An undefined shape (other numbers of points and arc
 /// lengths, fewer than two, not finite, arc lengths that do not grow or leave the rod) is not near,
 /// and the explanation says why.
 /// @param tolerance  [-], > 0

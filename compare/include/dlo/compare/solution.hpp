@@ -37,9 +37,9 @@ struct SolveOptions {
   long max_steps = 20'000'000;   ///< of the force model
   double time_limit = 20;        ///< of each solve of a model [s], > 0
   double rest_tolerance = 1e-7;  ///< of the force model, share of the rod's length
-  /// Take a shape whose status is `not_resolved` or `near_singular`, to show it with that status;
+  /// Take a shape whose status is `not_verified` or `near_singular`, to show it with that status;
   /// nothing may be concluded from it.
-  bool accept_unresolved = false;
+  bool accept_unverified = false;
   /// Of the energy model: an equilibrium of a similar scene to follow, instead of the lowest.
   const energy_model::Equilibrium* start = nullptr;
 };
@@ -47,7 +47,7 @@ struct SolveOptions {
 /// Energies [J]; gravity and loads are zero at the first gripper.
 struct SceneEnergies {
   double bending = 0;   ///< of the joints or the curvature
-  double twisting = 0;  ///< where the scene holds twist, but for Solution::left_out
+  double twisting = 0;  ///< where the scene holds twist, but for Solution::neglected
   double gravity = 0;   ///< of the rod's weight
   double load = 0;      ///< of point loads
   double stretch = 0;   ///< of elastic segments
@@ -75,11 +75,11 @@ struct Linking {
   double writhe = 0;  ///< of its axis
 };
 
-/// A shape and what it cost. Only converged shapes are returned, and those that are not resolved or
-/// near singular to whoever accepts them (SolveOptions::accept_unresolved).
+/// A shape and what it cost. Only converged shapes are returned, and those that are not verified or
+/// near singular to whoever accepts them (SolveOptions::accept_unverified).
 struct Solution {
   Model model = Model::energy;  ///< that solved it
-  /// `converged`, `roundoff_limited`, `not_resolved` or `near_singular`; of solve_all() `saddle`
+  /// `converged`, `roundoff_limited`, `not_verified` or `near_singular`; of solve_all() `saddle`
   /// too.
   energy_model::SolveStatus status = energy_model::SolveStatus::converged;
   std::string message;     ///< how the solver ended
@@ -101,12 +101,13 @@ struct Solution {
   std::vector<energy_model::TwistedPart> twists;  ///< as Equilibrium::twists
   /// Of energy and exact, of the same parts; but where an end's line passes through the rod.
   std::vector<Linking> linking;
-  /// Of what the scene asks for, what the model left out: "twist", "natural curvature", "friction"
+  /// What the scene has and the model neglects: "twist", "natural curvature", "friction"
   /// (where it touches an obstacle that has it; of Comparison, where either model does).
-  std::vector<std::string> left_out;
-  /// Smallest eigenvalue of the second variation over EI/l, where a search looked; else NaN.
-  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
-  /// Of a `near_singular` one of energy: directions in which a fold or bifurcation leaves it open.
+  std::vector<std::string> neglected;
+  /// Smallest eigenvalue of the reduced Hessian over EI/l, where a search looked; else NaN.
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
+  /// Of a `near_singular` one of energy: directions in which it is singular, at a fold or
+  /// bifurcation.
   int neutral_directions = 0;
   long evaluations = 0;   ///< of minimisers; shots of exact
   long steps = 0;         ///< of force

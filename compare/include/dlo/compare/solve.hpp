@@ -20,11 +20,11 @@ namespace dlo::compare {
 struct AllSolutions {
   std::vector<Solution> solutions;                        ///< stable ones first, by energy
   std::vector<energy_model::SearchStrategy> looked_from;  ///< each kind of start
-  std::vector<std::string> not_looked;                    ///< what was cut short or left out
+  std::vector<std::string> not_looked;                    ///< what was cut short or not searched
 };
 
 /// Every equilibrium that the energy model finds; an unstable one has a negative
-/// smallest_curvature. @throws InputError, ConvergenceError
+/// smallest_eigenvalue. @throws InputError, ConvergenceError
 [[nodiscard]] AllSolutions solve_all(const Scene& scene, const SolveOptions& options = {},
                                      const std::vector<double>& arc_lengths = {});
 

@@ -8,7 +8,7 @@
 
 namespace dlo::energy_model {
 
-/// The potential of a joint that turns by alpha; L is the mean length of its two segments.
+/// The potential of a joint that bends by alpha; L is the mean length of its two segments.
 enum class JointLaw {
   paper,  ///< c_b L (8/3 - 4 cos(alpha/2) + 4/3 cos^3(alpha/2))
   hooke,  ///< -4 (EI/L) ln cos(alpha/2), up to 3 rad and with constant moment beyond

@@ -33,7 +33,7 @@ struct EnergyOptions {
 /// over its curvature. Clamps that nothing passes through cut the rod into independent spans; each
 /// lies in a plane if its grips and forces do. On each piece between loads, grips and sections, and
 /// in the layers at the ends of soft and of taut spans, the curvature in the plane, or in space its
-/// two components in a frame that does not turn about the tangent, is expanded in orthonormal
+/// two components in a frame that does not rotate about the tangent, is expanded in orthonormal
 /// Legendre polynomials, so that bending is |a|^2 / 2 and the Hessian the identity plus a compact
 /// part. NLopt's LD_LBFGS (where grips are constraints a trust region, where they stretch the rod
 /// springs that become stiffer) comes near the minimum with few terms, Newton steps with all of
@@ -44,8 +44,8 @@ struct EnergyOptions {
 /// by the shorter way, which is the lowest of all under parallel forces where there is no obstacle,
 /// and past the nearest bodies on either side; other spans start from the two of their arches,
 /// S-shapes and loops that have the lowest energy and from those that have about as much (from the
-/// others where these lead to nothing stable), and what cannot hold itself is followed to where it
-/// falls, also out of its plane.
+/// others where these lead to nothing stable), and what is unstable is followed downhill to the
+/// next minimum, also out of its plane.
 ///
 /// Twist (Problem) is put in from the lowest shape without it, in turns of the later clamp, each
 /// held against its work; what loses its stability or comes to the end of its branch is followed
@@ -56,8 +56,8 @@ struct EnergyOptions {
 ///     E = int 1/2 EI_1 (u1 - u01)^2 + 1/2 EI_2 (u2 - u02)^2 + 1/2 GJ (u3 - u03)^2 ds - ...,
 /// and strains of all three kinds as unknowns. It lies in a plane if that is across one of its
 /// principal axes too; the shape there is proven against leaving it by bending and twisting, as a
-/// strip does that is bent about its stiff axis. It is searched from the free rod too, and with its
-/// frame turned on.
+/// strip does that is bent about its stiff axis. It is searched from the stress-free shape too, and
+/// with its frame turned on.
 ///
 /// What touches a rigid obstacle, and where, is first told by a polygon at rest (solve_polygon)
 /// from several starts. Then the rod's own shape is found with these contacts: pieces end where
@@ -67,9 +67,9 @@ struct EnergyOptions {
 /// frictionless obstacle demands there (no bending towards it but its own curvature). Contacts that
 /// would have to pull go, others come where the shape is behind an obstacle, a bounded number of
 /// times. `converged` says of contact that no point of the rod is deeper than `allowed_penetration`
-/// (Equilibrium::penetration) and that no obstacle pulls; what does not settle is `not_resolved`.
+/// (Equilibrium::penetration) and that no obstacle pulls; what does not converge is `not_verified`.
 /// Between clamps that twist the rod contact is not looked for: a shape behind an obstacle is
-/// not_resolved there. A lying rod against its exact solution is right to 1e-12 l. Obstacles that
+/// not_verified there. A lying rod against its exact solution is right to 1e-12 l. Obstacles that
 /// yield are springs along the rod, and their energy is part of E. Where contact with them begins
 /// and ends the force per length has kinks: pieces end there, at ends that are found with the
 /// shape. What passes through the axis of such an obstacle is no stable equilibrium.
@@ -119,7 +119,7 @@ class EnergySolver {
   /// From the shape of the last call instead of a search, if it had one: for a gripper or an
   /// obstacle that has moved a little. By Newton's method with the contacts that it has, which are
   /// mended as they change; where that leads to no equilibrium near the last shape, or to one that
-  /// gives way, the branch has ended, and the shape is what the last one falls to (downhill), or
+  /// gives way, the branch has ended, and the shape is the next minimum downhill of the last, or
   /// failing that what solve() finds. The problem has the same obstacles in the same order.
   Equilibrium follow(const Problem& problem);
   /// follow() as far as Newton's method stays on the branch, without what it does beyond. None
@@ -130,7 +130,7 @@ class EnergySolver {
   /// shape before it. Once for each of them.
   void go_back();
   /// Whether the last follow() has stayed on its branch, as far as Newton's method tells: the shape
-  /// is next to the one before. Work and energy tell too (a fall releases energy).
+  /// is next to the one before. Work and energy tell too (a snap-through releases energy).
   [[nodiscard]] bool followed() const;
   /// search_energy().
   [[nodiscard]] EnergySearch search(const Problem& problem);

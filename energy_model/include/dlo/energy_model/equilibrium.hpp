@@ -54,21 +54,25 @@ struct [[nodiscard]] Equilibrium {
   /// Norm of the gradient over EI/l; for `exact` the largest gap that a shot leaves [-].
   double residual = -1;
   /// Of solve_energy(): what points of the shape may be away from those of an equilibrium, over the
-  /// rod's length: an estimate from what the solver, rounding and the terms leave out, divided by
+  /// rod's length: an estimate from what the solver, rounding and truncation leave, divided by
   /// the eigenvalue nearest to zero. `near_singular` shapes have one too. NaN: not known
   /// (obstacles, `exact`).
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
-  /// Smallest eigenvalue of the second variation over EI/l, with the constraints and, for planar
-  /// shapes, with bending out of the plane; NaN where a solver did not look. Negative: unstable.
-  double smallest_curvature = std::numeric_limits<double>::quiet_NaN();
+  union {
+    /// Smallest eigenvalue of the reduced Hessian (the second variation on what the constraints
+    /// leave free) over EI/l, for planar shapes with bending out of the plane; NaN where a solver
+    /// did not look. Negative: unstable.
+    double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
+    double smallest_curvature;  ///< the same number by its name before 0.2, which takes it away
+  };
   /// Of solve_energy(), where `near_singular`: eigenvalues of the second variation that are zero to
   /// the tolerance, each a direction in which a fold or a bifurcation leaves the shape open. 0
-  /// where only the step is too large. Free turns of the rod as a whole, as of one held by pins on
-  /// a line along its load, are not counted: they leave no doubt of its shape, and it is converged.
+  /// where only the step is too large. Rigid-body modes, as of a rod held by pins on a line along
+  /// its load, are not counted: they leave no doubt of its shape, and it is converged.
   int neutral_directions = 0;
   /// Largest depth of the shape behind a rigid obstacle, between the solver's own nodes too [m]; 0
   /// without such obstacles. A shape that is deeper than `allowed_penetration` lengths is
-  /// not_resolved.
+  /// not_verified.
   double penetration = 0;
   Energies energy;                         ///< of the shape [J]
   std::vector<Eigen::Vector3d> obstacles;  ///< force of each obstacle on the rod [N]

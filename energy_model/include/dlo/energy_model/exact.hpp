@@ -23,7 +23,7 @@ struct ExactOptions {
 };
 
 /// Equilibrium of the inextensible rod as a boundary value problem, by GSL and without any basis.
-/// Of a round one that is straight by nature
+/// Of a round one that is intrinsically straight
 ///     r' = t,  EI t'' = -(n - (n.t) t) - EI |t'|^2 t + M t x t',  n' = -w,  n falls by F at a load
 ///     F,  EI t' stays where sections meet,
 /// n the force of what lies beyond s on what lies before, M the torque of the twist, which is
@@ -32,15 +32,15 @@ struct ExactOptions {
 ///     r' = t,  R' = R hat(u),  m = R diag(EI_1, EI_2, GJ) (u - u0),  m' = n x t,  n' = -w,
 /// R = (d1, d2, t), m the moment of what lies beyond.
 ///
-/// A round planar rod of one section, straight by nature, with one clamp at an end is shot from its
-/// tip and all of the tip's angles are scanned; for sums of weight and loads over EI/l^2 up to 4e5
-/// if they are parallel, up to 60 if not. The scan's cells are halved until a cubic describes the
-/// miss of the clamp's angle in them, and pairs of roots are looked for at its extrema: found are
-/// all equilibria in the plane but those that lie closer together than the scan resolves (at a
-/// fold: within 1e-7 of its Gamma). Those out of the plane are not.
+/// A round planar rod of one section, intrinsically straight, with one clamp at an end is shot from
+/// its tip and all of the tip's angles are scanned; for sums of weight and loads over EI/l^2 up to
+/// 4e5 if they are parallel, up to 60 if not. The scan's cells are halved until a cubic describes
+/// the residual of the clamp's angle in them, and pairs of roots are looked for at its extrema:
+/// found are all equilibria in the plane but those that lie closer together than the scan resolves
+/// (at a fold: within 1e-7 of its Gamma). Those out of the plane are not.
 ///
-/// All others that are round and straight by nature (any clamps and pins, in the plane or in space,
-/// up to 1e6 EI/l^2 of the softest section) are cut at their clamps and solved by multiple
+/// All others that are round and intrinsically straight (any clamps and pins, in the plane or in
+/// space, up to 1e6 EI/l^2 of the softest section) are cut at their clamps and solved by multiple
 /// shooting: Newton's method closes the gaps between integrations over short intervals. It starts
 /// from `start`, or from the six lowest minima (twelve while nothing is stable) that a coarse
 /// polygon finds when it is relaxed from straight, arched, S-shaped and looped shapes, in the plane
@@ -53,9 +53,9 @@ struct ExactOptions {
 /// ends before the whole roll the status is `failed` and the message says how far it came: long
 /// rods whose buckle moves along them for nearly nothing may need a `start`.
 ///
-/// Over rigid half-spaces a loaded round rod of one section, straight by nature, with one clamp at
-/// its begin is followed while weight and loads are raised from nothing: its end is free, touches
-/// or lies. The branch's end may be a `saddle` where there is a minimum.
+/// Over rigid half-spaces a loaded round rod of one section, intrinsically straight, with one clamp
+/// at its begin is followed while weight and loads are raised from nothing: its end is free,
+/// touches or lies. The branch's end may be a `saddle` where there is a minimum.
 ///
 /// Any other contact of a round untwisted rod of one section with rigid bodies needs a `start`
 /// whose contacts say which parts touch what. Multiple shooting confirms or corrects it: where a
@@ -63,10 +63,10 @@ struct ExactOptions {
 /// it there; gap, slope and curvature are the surface's where it lifts off, gap and slope vanish
 /// where it touches at a point, the gap at a tip; those arc lengths and the concentrated forces are
 /// unknowns. Where Newton's method does not close the shots it is `failed`; with depths elsewhere
-/// or forces that pull it is `not_resolved`: no other contact is looked for. Whether the second
+/// or forces that pull it is `not_verified`: no other contact is looked for. Whether the second
 /// variation is positive is asked of its own elements, with its norm times 1e-3 on or off it;
-/// `smallest_curvature` is not known. A rod that lies on both sides of a grip or on two features of
-/// a body side by side is refused.
+/// `smallest_eigenvalue` is not known. A rod that lies on both sides of a grip or on two features
+/// of a body side by side is refused.
 ///
 /// A rod with material directors is not cut, because its torque passes through clamps that do not
 /// hold the frame; the first clamp holds the frame that Problem says. It is solved by multiple
@@ -80,10 +80,10 @@ struct ExactOptions {
 /// clamps that hold frames, of which the first clamp is one.
 ///
 /// The second variation of each equilibrium is looked at on its own shape, by finite elements, in
-/// space and under the grips' constraints: `smallest_curvature` is its smallest eigenvalue over
+/// space and under the grips' constraints: `smallest_eigenvalue` is its smallest eigenvalue over
 /// int |eta'|^2 + |eta|^2 ds, eta the change of the tangent, of a rod with material directors the
 /// spin of its cross-sections, lengths in l. The stable equilibrium of lowest energy is returned;
-/// if none is stable the lowest one, as `saddle`. The message names what moves for nothing (turning
+/// if none is stable the lowest one, as `saddle`. The message counts the zero modes (rotation
 /// about a line), combinations of spans beyond the 64 lowest, and tips that could not be shot from.
 /// @throws std::invalid_argument if the problem or an option is out of range, or has obstacles that
 /// are not as said above

@@ -32,12 +32,12 @@ struct MotionValue {
 /// A grip that stays where it is.
 [[nodiscard]] GripMotion standing(const Eigen::Vector3d& position);
 
-/// A grip that moves along an axis and turns about another one through its own position.
+/// A grip that moves along an axis and rotates about another one through its own position.
 /// @param position  where the distance is zero [m]
 /// @param along     any length > 0
 /// @param about     any length > 0
 /// @param distance  along it [m] by time [s]; null: stays
-/// @param angle     about it [rad] by time [s]; null: does not turn
+/// @param angle     about it [rad] by time [s]; null: does not rotate
 /// @throws std::invalid_argument if an axis has no length
 [[nodiscard]] GripMotion moving(const Eigen::Vector3d& position, const Eigen::Vector3d& along,
                                 std::function<MotionValue(double)> distance,

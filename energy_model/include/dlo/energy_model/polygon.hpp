@@ -58,7 +58,7 @@ struct PolygonTwist {
 /// between segments of equal length only: elsewhere the paper's joint is a little weaker,
 /// belongs to no potential, and rests in a slightly different shape.
 ///
-/// A polygon whose joints are turned at rest lies in the plane z = 0 with all that holds it and
+/// A polygon whose joints are bent at rest lies in the plane z = 0 with all that holds it and
 /// acts on it: turns have a sign there, and its joints' potentials are those of ChainProblem.
 /// Nothing is said of its stability across that plane.
 struct PolygonProblem {
@@ -114,7 +114,7 @@ struct [[nodiscard]] PolygonResult {
 /// all free points, in space (with natural turns: in its plane), is positive definite (to rounding:
 /// a shape that is free to turn is not called unstable), that Newton's step from there is below
 /// 1e-7 polygon lengths, and that no force above 1e-6 of those that act is left on a free point,
-/// but for rounding; else the status is `not_resolved` and the message has the number. At a saddle
+/// but for rounding; else the status is `not_verified` and the message has the number. At a saddle
 /// the solver leaves along the lowest curvature and goes on.
 /// @param start  positions to start from [m], 3 x (n+1), no segment of zero length; held points
 ///               are put where they are held

@@ -11,7 +11,7 @@
 
 namespace dlo::energy_model {
 
-/// Keeps a clamped cross-section from turning about its direction.
+/// Keeps a clamped cross-section from rotating about its direction.
 struct FrameHold {
   /// First director of the rod's frame there, of which the part across the direction counts; none:
   /// that of the first clamp that holds the frame, carried here by the shortest rotation of that
@@ -61,11 +61,11 @@ struct Section {
 /// shortest rotation of its direction, to the later one's, and the later roll less the earlier.
 /// Twist and writhe of a shape of the rod add up to that. It is put in, little by little, from the
 /// lowest minimum of the same problem without frames on, and where a shape cannot hold itself any
-/// more it falls to the next one. Of a rod that is not straight by nature only the frames are
+/// more it snaps to the next one. Of a rod that is not intrinsically straight only the frames are
 /// held, and of the turns that they leave open those nearest to the rod without them.
 ///
-/// A rod that is not straight by nature, or that has a bending_stiffness_2 anywhere, has directors
-/// d1 and d2 that are fixed to its material. The first clamp along it holds them: at its
+/// A rod that is not intrinsically straight, or that has a bending_stiffness_2 anywhere, has
+/// directors d1 and d2 that are fixed to its material. The first clamp along it holds them: at its
 /// FrameHold::d1, or else d2 is the normal of the plane that grips and forces share, on the side of
 /// +z (of +y, or of +x, where the plane holds those), so that a strain u2 > 0 bends the rod to the
 /// left; its roll turns them on. Where no clamp holds the rod they are free. A later clamp holds
@@ -79,17 +79,17 @@ struct Problem {
   std::vector<Load> loads;                                      ///< may be empty
   std::vector<Obstacle> obstacles;                              ///< may be empty
   std::vector<Section> sections;  ///< where it is another one, by arc length, none over another
-  /// Strains u of the free rod about d1, d2 and the tangent t, of which t' = u2 d1 - u1 d2 and u3
-  /// turns d1 towards d2: coefficients of Legendre's polynomials P_j(2 s/l - 1) [1/m]. Empty:
-  /// straight. Not empty: torsional_stiffness > 0.
+  /// Strains u of the stress-free shape about d1, d2 and the tangent t, of which t' = u2 d1 - u1 d2
+  /// and u3 turns d1 towards d2: coefficients of Legendre's polynomials P_j(2 s/l - 1) [1/m].
+  /// Empty: straight. Not empty: torsional_stiffness > 0.
   std::vector<Eigen::Vector3d> natural_strains;
   /// EI about d2 [N m^2], > 0; none: round, EI is that about every axis across. Given:
   /// torsional_stiffness > 0.
   std::optional<double> bending_stiffness_2 = std::nullopt;
 };
 
-/// Whether d1 and d2 are fixed to the rod's material: it is not straight by nature, or it or one of
-/// its sections has two bending stiffnesses, were they equal. A round straight rod has none.
+/// Whether d1 and d2 are fixed to the rod's material: it is not intrinsically straight, or it or
+/// one of its sections has two bending stiffnesses, were they equal. A round straight rod has none.
 [[nodiscard]] bool has_material_directors(const Problem& problem);
 
 /// @throws std::invalid_argument naming the first member that is out of range
@@ -114,7 +114,7 @@ struct Reaction {
 };
 
 /// Twist of a part of the rod whose ends hold frames. The torque is the same all along where the
-/// rod is round and straight by nature.
+/// rod is round and intrinsically straight.
 struct TwistedPart {
   double begin = 0;   ///< arc length [m]
   double end = 0;     ///< arc length [m]

@@ -10,10 +10,11 @@ enum class SolveStatus {
   roundoff_limited,  ///< no further progress in double precision; the shape is usable
   saddle,            ///< an equilibrium, but the second variation has a negative direction
   near_singular,     ///< next to a fold or bifurcation: not determined to the tolerance
-  not_resolved,      ///< a shape, but what is claimed of it is not proven: see the message
+  not_verified,      ///< a shape, but what is claimed of it is not proven: see the message
   evaluation_limit,
   time_limit,
-  failed,  ///< the solver gave up, see the message
+  failed,                       ///< the solver gave up, see the message
+  not_resolved = not_verified,  ///< its name before 0.2, which takes it away
 };
 
 /// The shape can be used.
@@ -34,8 +35,8 @@ enum class SolveStatus {
       return "an unstable equilibrium (saddle)";
     case SolveStatus::near_singular:
       return "next to a fold or bifurcation";
-    case SolveStatus::not_resolved:
-      return "not resolved";
+    case SolveStatus::not_verified:
+      return "not verified";
     case SolveStatus::evaluation_limit:
       return "evaluation limit reached";
     case SolveStatus::time_limit:

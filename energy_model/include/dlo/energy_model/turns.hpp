@@ -29,8 +29,8 @@ namespace dlo::energy_model {
 /// What frames at both ends of a rod ask of its twist.
 struct HeldTurns {
   double roll = 0;  ///< of the end less the start's, whole turns counted [rad]
-  /// held_turns() of a rod that is straight by nature. None: of the turns that the frames leave
-  /// open, those nearest to the rod without them; so what is coiled by nature stays coiled.
+  /// held_turns() of a rod that is intrinsically straight. None: of the turns that the frames leave
+  /// open, those nearest to the rod without them; so what is intrinsically coiled stays coiled.
   std::optional<double> turns;
 };
 

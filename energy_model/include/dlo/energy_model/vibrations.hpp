@@ -49,11 +49,11 @@ enum class ModePlane {
 
 /// A free vibration about an equilibrium.
 struct VibrationMode {
-  /// Square of the angular frequency [1/s^2]; negative: the shape falls, growing as
+  /// Square of the angular frequency [1/s^2]; negative: unstable, growing as
   /// exp((-omega_squared)^(1/2) t).
   double omega_squared = 0;
   /// What the terms left out change of omega, over it: by how much it differed with fewer. Of a
-  /// rod that moves for nothing, whose omega_squared is below 1e-2 EI / (m l^3) with its mass m,
+  /// rod with a zero mode, whose omega_squared is below 1e-2 EI / (m l^3) with its mass m,
   /// over the root of that.
   double error = std::numeric_limits<double>::infinity();
   ModePlane plane = ModePlane::spatial;  ///< of the movement, about the plane of the shape
@@ -63,7 +63,7 @@ struct VibrationMode {
   /// farthest point goes 1 m.
   std::function<Eigen::Matrix3Xd(std::span<const double>)> shape;
 
-  /// [rad/s]; NaN of one that falls.
+  /// [rad/s]; NaN of an unstable one.
   [[nodiscard]] double omega() const;
 };
 
@@ -88,7 +88,7 @@ struct VibrationOptions {
 /// M the mass matrix of the points' movement over the same unknowns. Spans between clamps vibrate
 /// each on its own. Twist follows at once, because cross-sections have no inertia. Grips stand, and
 /// obstacles that yield push as springs do. Terms are added until omega does not change.
-/// @param known  of the same problem; unstable ones have modes that fall
+/// @param known  of the same problem; unstable ones have negative squares
 /// @throws std::invalid_argument if the problem, the inertia or an option is out of range. A shape
 /// that touches a rigid obstacle is `failed`: what vibrates leaves it, and that is not linear
 Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equilibrium& known,
@@ -98,11 +98,11 @@ Vibrations vibrations(const Problem& problem, const Inertia& inertia, const Equi
 /// as the rod between them is long, to rounding. It has no other shape, and solve_energy() none.
 [[nodiscard]] bool is_held_straight(const Problem& problem);
 
-/// vibrations() of a rod that is held straight, at a tension that its shape does not tell. To first
-/// order a deflection takes no length, so that without tension the modes are those of a beam that
-/// is clamped at both ends; with it there is w_ssss EI - tension w_ss = omega^2 m w. The rod that
-/// does not stretch keeps them for deflections whose length, int w_s^2/2 ds, the grips' give or the
-/// rod's own stretch has.
+/// vibrations() of a rod that is held straight, whose shape does not determine its tension. To
+/// first order a deflection takes no length, so that without tension the modes are those of a beam
+/// that is clamped at both ends; with it there is w_ssss EI - tension w_ss = omega^2 m w. The rod
+/// that does not stretch keeps them for deflections whose length, int w_s^2/2 ds, the grips' give
+/// or the rod's own stretch has.
 /// @param tension  of the rod between its clamps [N]; pressed where < 0
 /// @throws std::invalid_argument as vibrations(), and if the rod is not held straight, or its
 /// weight, a load, natural strains, an obstacle or clamps that hold frames could bend or twist it

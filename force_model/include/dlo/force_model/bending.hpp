@@ -8,18 +8,18 @@ namespace dlo::force_model {
 
 /// What resists bending.
 ///
-/// A joint that is turned by alpha_0 at rest has the moment M(alpha) - M(alpha_0), M that of
-/// joint_moment: the free rod's constant couple M(alpha_0) against the same joint, as a rod's
-/// EI (kappa - kappa_0) is. Turns have a sign in a plane only (in space a rod's frame would have to
-/// say where they point, and points have none), so such a rod lies in the plane z = 0, with all
-/// that holds it and acts on it; nothing is said of its stability across that plane.
+/// A joint that is bent by alpha_0 at rest has the moment M(alpha) - M(alpha_0), M that of
+/// joint_moment: the stress-free shape's constant couple M(alpha_0) against the same joint, as a
+/// rod's EI (kappa - kappa_0) is. Turns have a sign in a plane only (in space a rod's frame would
+/// have to say where they point, and points have none), so such a rod lies in the plane z = 0, with
+/// all that holds it and acts on it; nothing is said of its stability across that plane.
 struct Bending {
   BendingLaw law = BendingLaw::hooke;  ///< how the moment grows with the angle
   double stiffness = 0;                ///< c_b [N] for `paper`, EI [N m^2] for `hooke`; >= 0
   /// Of each joint P_1 .. P_{n-1}, as `stiffness`; empty: all have that.
   Eigen::VectorXd stiffnesses = {};
   /// Turn of each joint P_1 .. P_{n-1} at rest, from x to y [rad], |alpha_0| < hooke_fold_angle,
-  /// law hooke only; empty: the rod is straight by nature.
+  /// law hooke only; empty: the rod is intrinsically straight.
   Eigen::VectorXd natural_turns = {};
 };
 

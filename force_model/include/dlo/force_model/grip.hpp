@@ -19,8 +19,8 @@ struct Grip {
   GripHold hold = GripHold::rigid;                      ///< rigid, or springs
   double stiffness = 0;                                 ///< c_e of a `spring` hold [N/m], > 0
   /// First director of the rod's material frame at the segment held, of which the part across the
-  /// segment counts: keeps a round rod from turning about itself there, see TwistedSpan. Two points
-  /// and hold `rigid` only. None: the twist is free.
+  /// segment counts: keeps a round rod from rotating about itself there, see TwistedSpan. Two
+  /// points and hold `rigid` only. None: the twist is free.
   std::optional<Eigen::Vector3d> d1 = {};
 };
 

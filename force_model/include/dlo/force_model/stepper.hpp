@@ -42,7 +42,7 @@ enum class Integration {
   ///       not stretch them; between two grips the gap that this leaves is spread and lengths are
   ///       restored;
   ///     - which points walls press is part of what is solved (an active set);
-  ///     - dP is shortened so that no segment turns by more than 45 degrees, and until the
+  ///     - dP is shortened so that no segment rotates by more than 45 degrees, and until the
   ///     potential
   ///       energy (with dt that of M and C too) falls by a share of what the quadratic model
   ///       promises, or while a gripper moves is not far above it;

@@ -24,8 +24,8 @@ struct [[nodiscard]] EquilibriumCheck {
   /// The stiffness of the free points is positive definite, by more than rounding, but for
   /// `neutral_modes`.
   bool stable = false;
-  /// Movements with neither stiffness nor force, at most two: a rod between two pins turns about
-  /// their line. What follows leaves them out.
+  /// Movements with neither stiffness nor force, at most two: a rod between two pins rotates about
+  /// their line. What follows is without them.
   int neutral_modes = 0;
   /// Newton's step, evaluated, leads to an equilibrium: a second one is at most a quarter of it
   /// (Kantorovich), or rounding. Without it `remaining_error` is no bound.
@@ -37,9 +37,9 @@ struct [[nodiscard]] EquilibriumCheck {
   double rounding_error = 0;
   double slowest_mode = 0;  ///< estimate of the smallest eigenvalue, 0 unless stable [N/m]
   Eigen::Matrix3Xd step;    ///< Newton's step [m], 3 x rod.points()
-  /// A movement of the free points that the stiffness does not resist, the furthest by 1 and on the
+  /// A direction of negative curvature of the free points, the furthest by 1 and on the
   /// whole towards +x, else +y, else +z [-], 3 x rod.points(); empty if there is none.
-  Eigen::Matrix3Xd falling_direction;
+  Eigen::Matrix3Xd negative_curvature_direction;
 };
 
 /// Solves K dx = F twice, K minus the derivative of the total forces by the free points' positions,

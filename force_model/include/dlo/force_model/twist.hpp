@@ -5,7 +5,7 @@
 namespace dlo::force_model {
 
 /// What resists twist. It does between two neighbouring grips that hold the rod's frame (Grip::d1);
-/// elsewhere the rod turns about itself for nothing.
+/// elsewhere the rod rotates about itself freely.
 struct Twist {
   double stiffness = 0;  ///< GJ [N m^2], >= 0; > 0 where two grips hold frames
   /// Of the rod at each joint P_1 .. P_{n-1} [N m^2], each > 0; empty: all have `stiffness`.
@@ -24,7 +24,7 @@ struct Twist {
 ///     E = theta^2 / (2 C),   M = theta / C,   C = int ds / GJ                              (1)
 /// With the curvature binormal kb = 2 u x v / (1 + u.v) of a joint between segments a u and b v,
 ///     d theta = sum over joints  kb . (da / a + db / b) / 2                                (2)
-/// where held frames come along with their segments without turning about them (Bergou et al.,
+/// where held frames come along with their segments without rotating about them (Bergou et al.,
 /// Discrete elastic rods, SIGGRAPH 2008, with the sign of theta instead of the transported
 /// frame's).
 struct TwistedSpan {

@@ -67,7 +67,8 @@ class Body {
   /// Smallest radius of curvature of its surface [m]; infinite of a half-space, 0 of sharp edges.
   [[nodiscard]] double smallest_radius() const;
   /// Whether it is its own mirror image in the plane through `point` with this unit normal, but for
-  /// rounding; of blocks with two equal edges that are turned by half a right angle it is not said.
+  /// rounding; of blocks with two equal edges that are rotated by half a right angle it is not
+  /// said.
   /// @param unit  of length, what rounding is measured by [m]
   [[nodiscard]] bool is_symmetric(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                   double unit) const;
