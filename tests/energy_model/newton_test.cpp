@@ -33,7 +33,7 @@ class NewtonBesideAShape : public testing::Test {
     solution.multipliers = before_.multipliers;
     return solution;
   }
-  [[nodiscard]] NewtonOptions options(NewtonMethod method) const {
+  [[nodiscard]] static NewtonOptions options(NewtonMethod method) {
     return {.load = leaning_arch(0.3).total_load(), .method = method};
   }
 

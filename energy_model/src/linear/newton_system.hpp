@@ -15,15 +15,17 @@ namespace dlo::energy_model {
 /// as a whole where it is not. Buffers survive from one compute() to the next.
 class NewtonSystem {
  public:
-  /// @param hessian   n x n, symmetric
-  /// @param jacobian  m x n
-  void compute(const Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
+  /// @param[in,out] hessian  n x n, symmetric; taken over, so that it becomes another matrix
+  /// @param jacobian         m x n
+  void compute(Eigen::MatrixXd& hessian, const Eigen::MatrixXd& jacobian);
 
   /// Whether it has been computed of so many unknowns and constraints.
   [[nodiscard]] bool is_of(Eigen::Index unknowns, Eigen::Index constraints) const {
-    return hessian_.rows() == unknowns && jacobian_.rows() == constraints;
+    return hessian().rows() == unknowns && jacobian_.rows() == constraints;
   }
-  [[nodiscard]] const Eigen::MatrixXd& hessian() const { return hessian_; }
+  [[nodiscard]] const Eigen::MatrixXd& hessian() const {
+    return jacobian_.rows() > 0 ? hessian_ : reduced_.unconstrained();
+  }
 
   /// @param right      (a, b), n + m
   /// @param[out] step  (x, mu), another vector
@@ -37,14 +39,15 @@ class NewtonSystem {
   [[nodiscard]] Eigen::VectorXd minimum_norm_step(const Eigen::VectorXd& right);
 
   /// H on the free directions, of a system with constraints; of one without H itself.
-  [[nodiscard]] ReducedHessian& reduced_hessian() { return free_; }
-  [[nodiscard]] const ReducedHessian& reduced_hessian() const { return free_; }
+  [[nodiscard]] ReducedHessian& reduced_hessian() { return reduced_; }
+  [[nodiscard]] const ReducedHessian& reduced_hessian() const { return reduced_; }
 
  private:
   [[nodiscard]] Eigen::MatrixXd whole() const;
 
-  Eigen::MatrixXd hessian_, jacobian_;
-  ReducedHessian free_;
+  Eigen::MatrixXd hessian_;  // only where there are constraints
+  Eigen::MatrixXd jacobian_;
+  ReducedHessian reduced_;
   Eigen::PartialPivLU<Eigen::MatrixXd> lu_;
   /// Of the whole system, once it was asked for.
   std::optional<Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>> orthogonal_;

@@ -87,9 +87,12 @@ void ReducedHessian::reflect_constraints(const Eigen::MatrixXd& jacobian) {
 bool ReducedHessian::factor(double mu, Eigen::MatrixXd& lower) const {
   const Eigen::Index left = free();
   lower.resize(padded(left), left);
-  lower.topRows(left) = turned_.bottomRightCorner(left, left);
-  lower.bottomRows(lower.rows() - left).setZero();
-  lower.diagonal().array() += mu;
+  for (Eigen::Index j = 0; j < left; ++j) {
+    const double* const from = turned_.col(constraints_ + j).data() + constraints_;
+    double* const column = lower.col(j).data();
+    std::fill_n(std::copy_n(from, left, column), lower.rows() - left, 0.0);
+    column[j] += mu;
+  }
   return dense_kernel().factor({lower.data(), left, left, lower.rows()});
 }
 
@@ -138,9 +141,8 @@ ReducedHessian::Balance ReducedHessian::balance(const Eigen::VectorXd& gradient)
 
 void ReducedHessian::solve_free(Eigen::VectorXd& z) const { solve_by(factor_, z); }
 
-void ReducedHessian::compute(const Eigen::MatrixXd& hessian) {
-  n_ = hessian.rows();
-  turned_ = hessian;
+void ReducedHessian::reflect_and_factor() {
+  n_ = turned_.rows();
   scratch_.resize(n_);
   for (Eigen::Index i = 0; i < constraints_; ++i) {
     dense_kernel().reflect(result_columns(turned_), reflections_.col(i).data(), tau_[i],

@@ -20,7 +20,15 @@ class ReducedHessian {
   }
   /// In two steps, where the Hessian takes multipliers that the constraints tell.
   void constrain(const Eigen::MatrixXd& jacobian);
-  void compute(const Eigen::MatrixXd& hessian);
+  void compute(const Eigen::MatrixXd& hessian) {
+    turned_ = hessian;
+    reflect_and_factor();
+  }
+  /// The same without a copy: the matrix becomes another one.
+  void take(Eigen::MatrixXd& hessian) {
+    turned_.swap(hessian);
+    reflect_and_factor();
+  }
 
   /// Whether the constraints are independent.
   [[nodiscard]] bool is_independent() const { return independent_; }
@@ -62,6 +70,8 @@ class ReducedHessian {
   /// turns the free directions more than that; infinite without constraints.
   [[nodiscard]] double least_constraint() const;
 
+  /// H, where there are no constraints.
+  [[nodiscard]] const Eigen::MatrixXd& unconstrained() const { return turned_; }
   /// Z^T H Z, free x free.
   [[nodiscard]] Eigen::MatrixXd matrix() const;
   /// A vector of the free directions in the unknowns: Z v.
@@ -76,6 +86,7 @@ class ReducedHessian {
   void turn_back(Vector v) const;
   void solve_triangle(Vector mu) const;
   void solve_by(const Eigen::MatrixXd& lower, Vector z) const;
+  void reflect_and_factor();
   [[nodiscard]] bool factor(double mu, Eigen::MatrixXd& lower) const;
   /// Vectors krylov_ of Lanczos' method with the inverse, and the matrix that they make of it.
   struct Lanczos {

@@ -13,28 +13,32 @@ constexpr std::size_t most_kept_factors = 8;
 
 void NewtonFactors::factor_at(SpanSolution& solution, const Eigen::MatrixXd& jacobian,
                               double load) {
-  solution.model->hessian(solution.multipliers, hessian_);
   solution.factor.reset();
-  solution.factor = factor(hessian_, jacobian, scale_of_forces(solution, load));
+  solution.model->hessian(solution.multipliers, hessian_);
+  solution.factor = make(jacobian, scale_of_forces(solution, load));
   solution.factor->x = solution.x;
   solution.factor->multipliers = solution.multipliers;
 }
 
 std::shared_ptr<NewtonFactor> NewtonFactors::factor(const Eigen::MatrixXd& hessian,
                                                     const Eigen::MatrixXd& jacobian, double scale) {
-  std::shared_ptr<NewtonFactor> result = take();
-  result->system.compute(hessian, jacobian);
-  result->scale = scale;
-  return result;
+  hessian_ = hessian;
+  return make(jacobian, scale);
 }
 
-std::shared_ptr<NewtonFactor> NewtonFactors::take() {
-  const auto unused = std::find_if(factors_.begin(), factors_.end(),
-                                   [](const auto& factor) { return factor.use_count() == 1; });
-  if (unused != factors_.end()) return *unused;
-  std::shared_ptr<NewtonFactor> another = std::make_shared<NewtonFactor>();
-  if (factors_.size() < most_kept_factors) factors_.push_back(another);
-  return another;
+/// Of hessian_, in buffers that fit if there are some.
+std::shared_ptr<NewtonFactor> NewtonFactors::make(const Eigen::MatrixXd& jacobian, double scale) {
+  const auto is_unused = [](const auto& factor) { return factor.use_count() == 1; };
+  auto unused = std::find_if(factors_.begin(), factors_.end(), [&](const auto& factor) {
+    return is_unused(factor) && factor->system.is_of(hessian_.rows(), jacobian.rows());
+  });
+  if (unused == factors_.end()) unused = std::find_if(factors_.begin(), factors_.end(), is_unused);
+  const bool any = unused != factors_.end();
+  std::shared_ptr<NewtonFactor> result = any ? *unused : std::make_shared<NewtonFactor>();
+  if (!any && factors_.size() < most_kept_factors) factors_.push_back(result);
+  result->system.compute(hessian_, jacobian);
+  result->scale = scale;
+  return result;
 }
 
 Eigen::MatrixXd prolonged(const Eigen::MatrixXd& hessian, const SpanEnergy& fewer,

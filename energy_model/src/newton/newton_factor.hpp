@@ -42,10 +42,10 @@ class NewtonFactors {
                                                      const Eigen::MatrixXd& jacobian, double scale);
 
  private:
-  [[nodiscard]] std::shared_ptr<NewtonFactor> take();
+  [[nodiscard]] std::shared_ptr<NewtonFactor> make(const Eigen::MatrixXd& jacobian, double scale);
 
   std::vector<std::shared_ptr<NewtonFactor>> factors_;
-  Eigen::MatrixXd hessian_;
+  Eigen::MatrixXd hessian_;  // of the next one
 };
 
 /// The Hessian of a model with more terms, as that of fewer makes it: in the new terms bending

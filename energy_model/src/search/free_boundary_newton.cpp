@@ -13,57 +13,57 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr int most_settling_steps = 25;
+constexpr int most_boundary_steps = 25;
 /// Broyden's updates until the derivatives are made anew.
 constexpr int updates_a_derivative = 8;
 /// Times that a step is cut to a quarter which leads to no equilibrium.
 constexpr int most_cuts = 3;
 /// Step at which an end is found, in lengths.
-constexpr double settled = 1e-10;
-/// What is missed where there is nothing to mend: lift_off.hpp's measures, which are steps or more.
+constexpr double converged_step = 1e-10;
+/// Residual at which there is nothing to mend: lift_off.hpp's measures, which are steps or more.
 /// A curvature that is left at a lift-off is a moment there. What the contact carries has to make
 /// up for it next to that end, and its series of K terms ends with a force K^2 times as large.
-constexpr double nothing_missed = 1e-12;
-/// Below, steps that no longer halve what is missed are rounding.
-constexpr double nearly_nothing_missed = 1e-10;
+constexpr double zero_residual = 1e-12;
+/// Below, steps that no longer halve the residual are rounding.
+constexpr double small_residual = 1e-10;
 /// Longest step, in lengths: the polygon has told where the ends are; and over the room beside one.
 constexpr double longest_step = 0.02;
 constexpr double largest_room_share = 0.45;
 /// Of a difference, over the room.
 constexpr double difference = 1e-6;
 
-class Settling {
+class FreeBoundaryNewton {
  public:
-  Settling(SpanSolution& solution, const Deadline& deadline, SpanWorkspace& workspace)
+  FreeBoundaryNewton(SpanSolution& solution, const Deadline& deadline, SpanWorkspace& workspace)
       : solution_(solution),
         deadline_(deadline),
         workspace_(workspace),
         factor_(solution.factor),
         ends_(lift_offs(solution.model->span())),
-        miss_(missed_by(solution)),
-        jacobian_(miss_.size(), miss_.size()),
-        x_by_ends_(solution.x.size(), miss_.size()),
-        multipliers_by_ends_(solution.multipliers.size(), miss_.size()),
+        residual_(residual_of(solution)),
+        jacobian_(residual_.size(), residual_.size()),
+        x_by_ends_(solution.x.size(), residual_.size()),
+        multipliers_by_ends_(solution.multipliers.size(), residual_.size()),
         gaps_(gaps_of(solution)) {}
 
   int run() {
     if (ends_.empty()) return spent_;
     double before = INFINITY;
-    for (int step = 0; step < most_settling_steps && !deadline_.passed(); ++step) {
-      const double missed = miss_.cwiseAbs().maxCoeff();
-      if (missed < nothing_missed) break;
-      if (missed < nearly_nothing_missed && missed > before / 2) break;
-      before = missed;
+    for (int step = 0; step < most_boundary_steps && !deadline_.passed(); ++step) {
+      const double size = residual_.cwiseAbs().maxCoeff();
+      if (size < zero_residual) break;
+      if (size < small_residual && size > before / 2) break;
+      before = size;
       if (step % updates_a_derivative == 0 && !differentiate()) break;
-      Eigen::VectorXd way = bounded(-jacobian_.partialPivLu().solve(miss_));
+      Eigen::VectorXd way = bounded(-jacobian_.partialPivLu().solve(residual_));
       if (!way.allFinite() || !move(way) || meet()) break;
-      if (way.cwiseAbs().maxCoeff() < settled * solution_.model->span().length) break;
+      if (way.cwiseAbs().maxCoeff() < converged_step * solution_.model->span().length) break;
     }
     return spent_;
   }
 
  private:
-  [[nodiscard]] Eigen::VectorXd missed_by(const SpanSolution& solution) const {
+  [[nodiscard]] Eigen::VectorXd residual_of(const SpanSolution& solution) const {
     return missed(solution, ends_);
   }
 
@@ -146,18 +146,18 @@ class Settling {
       if (trial.is_equilibrium()) break;
     }
     if (!trial.is_equilibrium()) return false;
-    const Eigen::VectorXd miss = missed_by(trial);
+    const Eigen::VectorXd residual = residual_of(trial);
     const Eigen::RowVectorXd along = way.transpose() / way.squaredNorm();
-    jacobian_ += (miss - miss_ - jacobian_ * way) * along;
+    jacobian_ += (residual - residual_ - jacobian_ * way) * along;
     if (is_alike(trial)) {
       x_by_ends_ += (trial.x - solution_.x - x_by_ends_ * way) * along;
       multipliers_by_ends_ +=
           (trial.multipliers - solution_.multipliers - multipliers_by_ends_ * way) * along;
     } else {
-      x_by_ends_.setZero(trial.x.size(), miss_.size());
-      multipliers_by_ends_.setZero(trial.multipliers.size(), miss_.size());
+      x_by_ends_.setZero(trial.x.size(), residual_.size());
+      multipliers_by_ends_.setZero(trial.multipliers.size(), residual_.size());
     }
-    miss_ = miss;
+    residual_ = residual;
     solution_ = std::move(trial);
     return true;
   }
@@ -169,15 +169,15 @@ class Settling {
   }
 
   [[nodiscard]] bool differentiate() {
-    x_by_ends_.setZero(solution_.x.size(), miss_.size());
-    multipliers_by_ends_.setZero(solution_.multipliers.size(), miss_.size());
-    Eigen::VectorXd way = Eigen::VectorXd::Zero(miss_.size());
-    for (Eigen::Index i = 0; i < miss_.size(); ++i) {
+    x_by_ends_.setZero(solution_.x.size(), residual_.size());
+    multipliers_by_ends_.setZero(solution_.multipliers.size(), residual_.size());
+    Eigen::VectorXd way = Eigen::VectorXd::Zero(residual_.size());
+    for (Eigen::Index i = 0; i < residual_.size(); ++i) {
       const LiftOff& end = ends_[static_cast<std::size_t>(i)];
       const Span::Contact& contact = solution_.model->span().contacts[end.contact];
       if (!contact.lies() && contact.slides) {
         // Where a rod touches does not depend on where it is looked for.
-        jacobian_.col(i) = Eigen::VectorXd::Unit(miss_.size(), i);
+        jacobian_.col(i) = Eigen::VectorXd::Unit(residual_.size(), i);
         continue;
       }
       const Room room = room_of(solution_.model->span(), end);
@@ -185,7 +185,7 @@ class Settling {
       SpanSolution beside = with_moved(way, NewtonMethod::simplified);
       if (!beside.is_equilibrium()) beside = with_moved(way, NewtonMethod::newton);
       if (!beside.is_equilibrium()) return false;
-      jacobian_.col(i) = (missed_by(beside) - miss_) / way[i];
+      jacobian_.col(i) = (residual_of(beside) - residual_) / way[i];
       if (is_alike(beside)) {
         x_by_ends_.col(i) = (beside.x - solution_.x) / way[i];
         multipliers_by_ends_.col(i) = (beside.multipliers - solution_.multipliers) / way[i];
@@ -200,8 +200,8 @@ class Settling {
   SpanWorkspace& workspace_;
   std::shared_ptr<NewtonFactor> factor_;  // the last one, of ends that were hardly elsewhere
   std::vector<LiftOff> ends_;
-  Eigen::VectorXd miss_;
-  // Derivatives by the ends: of what is missed, and of an equilibrium's unknowns and multipliers.
+  Eigen::VectorXd residual_;
+  // Derivatives by the ends: of the residual, and of an equilibrium's unknowns and multipliers.
   Eigen::MatrixXd jacobian_, x_by_ends_, multipliers_by_ends_;
   std::vector<double> gaps_;  // at first
   int spent_ = 0;
@@ -211,7 +211,7 @@ class Settling {
 
 int free_boundary_newton(SpanSolution& solution, const Deadline& deadline,
                          SpanWorkspace& workspace) {
-  return Settling(solution, deadline, workspace).run();
+  return FreeBoundaryNewton(solution, deadline, workspace).run();
 }
 
 }  // namespace dlo::energy_model

@@ -142,13 +142,15 @@ class Refinement {
     return K + more;
   }
 
-  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) {
+  /// @param solution  whose factor is used up
+  [[nodiscard]] SpanSolution with_terms(SpanSolution& solution, int terms) {
     SpanSolution finer = on_.workspace().with_terms(solution, terms);
     const Eigen::VectorXd x = finer.x;
     const Eigen::VectorXd multipliers = finer.multipliers;
     if (solution.factor) {
       const Eigen::MatrixXd hessian =
           prolonged(solution.factor->system.hessian(), *solution.model, *finer.model);
+      solution.factor.reset();
       on_.newton(finer, {.first_hessian = &hessian});
     } else {
       on_.newton(finer);

@@ -104,6 +104,8 @@ class Search {
     for (std::size_t i = 0; i < starts.size() && !on_.out_of_time(); ++i) {
       // The other starts only where the first ones and what they lead to do not hold.
       if (i >= first && has_stable_lowest(found)) break;
+      // Refined later, it would keep a factor's memory in use and gain nothing by it.
+      if (!coarse.empty()) coarse.back().factor.reset();
       SpanSolution solution = on_.from_start(starts[i]);
       spent_ += solution.evaluations;
       solution.evaluations = 0;
