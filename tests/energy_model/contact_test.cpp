@@ -453,7 +453,7 @@ TEST(Penetration, IsAllowedAsAShareOfTheLength) {
       const double depth = share * allowed_penetration;
       const Equilibrium shape = judged_below_a_floor(length, depth);
       EXPECT_NEAR(shape.penetration, depth * length, 1e-6 * depth * length);
-      EXPECT_EQ(shape.status, share < 1 ? SolveStatus::converged : SolveStatus::not_resolved)
+      EXPECT_EQ(shape.status, share < 1 ? SolveStatus::converged : SolveStatus::not_verified)
           << length << ": " << shape.message;
     }
   }

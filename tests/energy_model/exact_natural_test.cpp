@@ -81,7 +81,7 @@ TEST(ExactNatural, ACurvatureWithoutLoadIsACircle) {
   problem.natural_strains = {{0, curvature, 0}};
   const Equilibrium result = solve_exact(problem);
   ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-  EXPECT_GT(result.smallest_curvature, 0);
+  EXPECT_GT(result.smallest_eigenvalue, 0);
   EXPECT_NEAR(result.energy.total(), 0, 1e-20);
   EXPECT_LT(result.grips[0].torque.norm() + result.grips[0].force.norm(), 1e-11);
   const Samples samples = result.sample(equal_arc_lengths(1, 11));
@@ -241,7 +241,7 @@ Equilibrium planar_shape(double curvature, double gamma, const Equilibrium& near
 double critical_gamma(double curvature, double a, double b, Equilibrium shape) {
   const auto at = [&](double gamma) {
     shape = planar_shape(curvature, gamma, shape);
-    return shape.smallest_curvature;
+    return shape.smallest_eigenvalue;
   };
   double f = at(a);
   double g = at(b);
@@ -613,7 +613,7 @@ TEST(ExactNatural, UnitsAndPlaceDoNotMatter) {
   EXPECT_LT((b.points - points).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_LT((b.curvature - turn * a.curvature / l).cwiseAbs().maxCoeff(), 1e-8);
   EXPECT_NEAR(result.energy.total(), expected.energy.total() * stiffness / l, 1e-12);
-  EXPECT_NEAR(result.smallest_curvature, expected.smallest_curvature, 1e-6);
+  EXPECT_NEAR(result.smallest_eigenvalue, expected.smallest_eigenvalue, 1e-6);
   for (std::size_t g = 0; g < own.grips.size(); ++g) {
     const Eigen::Vector3d force = stiffness / (l * l) * (turn * expected.grips[g].force);
     const Eigen::Vector3d torque = stiffness / l * (turn * expected.grips[g].torque);

@@ -109,8 +109,8 @@ TEST(ExactSections, AColumnOfTwoStiffnessesBucklesUnderItsLoad) {
   ASSERT_LT(straight.energy.bending, 1e-12);
   ExactOptions options;
   options.start = &straight;
-  const double below = straight.smallest_curvature;
-  const double above = solve_exact(column(low * (1 + 1e-5)), options).smallest_curvature;
+  const double below = straight.smallest_eigenvalue;
+  const double above = solve_exact(column(low * (1 + 1e-5)), options).smallest_eigenvalue;
   EXPECT_GT(below, 0);
   EXPECT_LT(above, 0);
   EXPECT_NEAR(below / above, -1, 1e-3);  // the zero is in the middle

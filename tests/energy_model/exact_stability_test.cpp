@@ -25,12 +25,12 @@ bool says(const Equilibrium& equilibrium, const std::string& words) {
 TEST(SecondVariation, OfAnUnloadedRodIsThatOfTheLinearTheory) {
   // Modes sin((k + 1/2) pi s): Q / int (|eta'|^2 + |eta|^2) = q / (q + 1) with q = (pi / 2)^2.
   const double q = pi * pi / 4;
-  EXPECT_NEAR(solve_exact(heavy_cantilever(0, 0)).smallest_curvature, q / (q + 1), 1e-7);
+  EXPECT_NEAR(solve_exact(heavy_cantilever(0, 0)).smallest_eigenvalue, q / (q + 1), 1e-7);
   // Clamped on both sides of the same rod the shorter span is the stiffer one.
   Problem middle = heavy_cantilever(0, 0);
   middle.grips[0].at = 0.25;
   const double longer = pi * pi / 4 / (0.75 * 0.75);
-  EXPECT_NEAR(solve_exact(middle).smallest_curvature, longer / (longer + 1), 1e-7);
+  EXPECT_NEAR(solve_exact(middle).smallest_eigenvalue, longer / (longer + 1), 1e-7);
 }
 
 TEST(SecondVariation, ChangesItsSignWhereAnUprightRodBuckles) {
@@ -45,9 +45,9 @@ TEST(SecondVariation, ChangesItsSignWhereAnUprightRodBuckles) {
         });
     ASSERT_NE(straight, found.end());
     EXPECT_EQ(straight->status, off < 0 ? SolveStatus::converged : SolveStatus::saddle);
-    EXPECT_EQ(straight->smallest_curvature > 0, off < 0);
+    EXPECT_EQ(straight->smallest_eigenvalue > 0, off < 0);
     // Linear in the load: d mu / d Gamma is of the order of -1 / Gamma.
-    EXPECT_NEAR(straight->smallest_curvature, 0, std::abs(off));
+    EXPECT_NEAR(straight->smallest_eigenvalue, 0, std::abs(off));
   }
 }
 
@@ -64,7 +64,7 @@ TEST(SecondVariation, SeesWhatBucklesOutOfPlane) {
     if (std::abs(equilibrium.energy.total() - 3.802) > 5e-4) continue;
     saddle = true;
     EXPECT_EQ(equilibrium.status, SolveStatus::saddle);
-    EXPECT_LT(equilibrium.smallest_curvature, 0);
+    EXPECT_LT(equilibrium.smallest_eigenvalue, 0);
   }
   EXPECT_TRUE(saddle);
 }
@@ -76,7 +76,7 @@ TEST(SecondVariation, CountsTheZeroModeOfARod) {
   const Equilibrium result = solve_exact(arch);
   EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
   EXPECT_TRUE(says(result, "1 zero mode")) << result.message;
-  EXPECT_NEAR(result.smallest_curvature, 0, 1e-7);
+  EXPECT_NEAR(result.smallest_eigenvalue, 0, 1e-7);
   EXPECT_FALSE(says(solve_exact(heavy_cantilever(1, 0)), "for nothing"));
 }
 
@@ -88,7 +88,7 @@ TEST(Exact, PutsStableEquilibriaFirst) {
   EXPECT_EQ(above[1].status, SolveStatus::converged);
   EXPECT_EQ(above[2].status, SolveStatus::saddle);
   EXPECT_TRUE(says(above[0], "1 zero mode")) << above[0].message;
-  EXPECT_LT(above[2].smallest_curvature, 0);
+  EXPECT_LT(above[2].smallest_eigenvalue, 0);
 }
 
 TEST(Exact, FindsPairsOfRootsWithinACellOfItsScan) {
@@ -107,7 +107,7 @@ TEST(Exact, ReturnsTheStableShapeOfTwoPinsNearEachOther) {
                    {0.567, {-0.0539556788779, -0.0106264590638, 0}, std::nullopt}};
   const Equilibrium result = solve_exact(problem);
   ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-  EXPECT_GT(result.smallest_curvature, -1e-7);
+  EXPECT_GT(result.smallest_eigenvalue, -1e-7);
   EXPECT_LT(result.energy.bending, 17);
   EXPECT_LT(test::balance_of(problem, result, 0.01).worst(), 1e-9);
 }
@@ -156,7 +156,7 @@ TEST(Exact, ListsWhatItHasFoundWhenItsTimeIsOver) {
       ++cut_short;
       EXPECT_TRUE(says(found, "others may be lower")) << found.message;
       EXPECT_TRUE(says(found, "converged") || says(found, "saddle")) << found.message;
-      EXPECT_EQ(says(found, "saddle"), found.smallest_curvature < 0) << found.message;
+      EXPECT_EQ(says(found, "saddle"), found.smallest_eigenvalue < 0) << found.message;
       EXPECT_LT(test::balance_of(arch, found, 0.02).worst(), 1e-9);
     }
   }

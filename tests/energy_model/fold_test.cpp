@@ -147,18 +147,18 @@ TEST(Fold, WhatIsCalledConvergedIsAsNearAsItsErrorSays) {
     EXPECT_LE(error, found.error_estimate);
     // Its square is as what the weight is above the fold's.
     if (exponent >= 5 && exponent <= 9) {
-      EXPECT_NEAR(found.smallest_curvature / softest, std::sqrt(0.1), 0.002);
+      EXPECT_NEAR(found.smallest_eigenvalue / softest, std::sqrt(0.1), 0.002);
     }
     if (exponent <= 9) {
       EXPECT_EQ(found.status, SolveStatus::converged) << found.message;
       EXPECT_LT(found.error_estimate, 1e-5);
-      softest = found.smallest_curvature;
+      softest = found.smallest_eigenvalue;
     }
     if (exponent <= 13) continue;
     // That there is a shape at all is a matter of the terms left out, half as many more too.
     EXPECT_EQ(found.status, SolveStatus::near_singular) << found.message;
     EXPECT_EQ(found.neutral_directions, 1);
-    if (found.smallest_curvature > 1e-7) ++open;
+    if (found.smallest_eigenvalue > 1e-7) ++open;
   }
   EXPECT_GE(open, 1) << "all are singular by their eigenvalue alone";
   EXPECT_LT(softest, 1e-4);

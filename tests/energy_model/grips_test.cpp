@@ -204,7 +204,7 @@ TEST(TwoClamps, TautAndSlackConvergeInBoundedWork) {
       EXPECT_LT(result.evaluations, 2000);
       ASSERT_EQ(result.status, SolveStatus::converged)
           << "span " << span << ", Gamma " << gamma << ": " << result.message;
-      EXPECT_GT(result.smallest_curvature, -1e-7 * (1 + gamma)) << span << ", Gamma " << gamma;
+      EXPECT_GT(result.smallest_eigenvalue, -1e-7 * (1 + gamma)) << span << ", Gamma " << gamma;
       const Samples ends = result.sample(std::vector<double>{0, 1});
       EXPECT_NEAR((ends.points.col(1) - ends.points.col(0)).norm(), span, 1e-9);
       EXPECT_LT((ends.tangents.colwise() - Eigen::Vector3d::UnitX()).norm(), 1e-9);
@@ -270,7 +270,7 @@ TEST(AllEquilibria, OfAHorizontalClampAreThoseOfTheExactScan) {
     const std::vector<Equilibrium> exact = all_exact(problem);
     ASSERT_EQ(exact.size(), gamma > 41.4 ? 3U : 1U);
     ASSERT_EQ(found.size(), exact.size());
-    EXPECT_GT(found[0].smallest_curvature, 0);
+    EXPECT_GT(found[0].smallest_eigenvalue, 0);
     for (std::size_t i = 0; i < exact.size(); ++i) {
       EXPECT_NEAR(found[i].energy.total(), exact[i].energy.total(), 1e-8 * gamma);
     }
@@ -284,8 +284,8 @@ TEST(AllEquilibria, AreCalledConvergedOnlyIfNothingMakesThemFall) {
       const std::vector<Equilibrium> found = all_energy(problem);
       EXPECT_EQ(found.front().status, SolveStatus::converged);
       for (const Equilibrium& equilibrium : found) {
-        EXPECT_EQ(succeeded(equilibrium.status), equilibrium.smallest_curvature >= -1e-6)
-            << equilibrium.message << ", " << equilibrium.smallest_curvature;
+        EXPECT_EQ(succeeded(equilibrium.status), equilibrium.smallest_eigenvalue >= -1e-6)
+            << equilibrium.message << ", " << equilibrium.smallest_eigenvalue;
       }
     }
   }
@@ -339,7 +339,7 @@ TEST(SelfBuckling, IsWhereTheUprightRodLosesItsStability) {
     const std::vector<double> tip = {1.0};
     for (const Equilibrium& equilibrium : all) {
       if (std::abs(equilibrium.sample(tip).points(1, 0) - 1) < 1e-9) {
-        straight = equilibrium.smallest_curvature;
+        straight = equilibrium.smallest_eigenvalue;
       }
     }
     return straight;
@@ -400,7 +400,7 @@ TEST(Arch, ThatIsUnstableOutOfPlaneLeavesThePlane) {
   problem.grips.push_back({1, {0.1, 0, 0}, Eigen::Vector3d(0, -1, 0)});
   const Equilibrium result = solve_energy(problem);
   ASSERT_EQ(result.status, SolveStatus::converged) << result.message;
-  EXPECT_GE(result.smallest_curvature, -1e-6);
+  EXPECT_GE(result.smallest_eigenvalue, -1e-6);
   const std::vector<double> s = equal_arc_lengths(1, 21);
   EXPECT_GT(result.sample(s).points.row(2).cwiseAbs().maxCoeff(), 0.05);
 }

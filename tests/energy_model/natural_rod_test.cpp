@@ -237,7 +237,7 @@ double hanging_curvature(double natural, double gamma) {
   problem.natural_strains = {{0, natural, 0}};
   const Equilibrium result = solved_rod(problem);
   EXPECT_LT(std::abs(point_at(result, 1).z()), 1e-9) << natural << " " << gamma;
-  return result.smallest_curvature;
+  return result.smallest_eigenvalue;
 }
 
 /// Where a parabola through the eigenvalue at three weights on the stable side of `gamma` vanishes.

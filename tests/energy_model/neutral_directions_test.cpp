@@ -32,7 +32,7 @@ Problem strip(Problem problem, double about_d1, double about_d2, double torsion)
 
 void expect_open(const Equilibrium& found, int directions) {
   EXPECT_EQ(found.status, SolveStatus::near_singular) << found.message;
-  EXPECT_EQ(found.neutral_directions, directions) << found.smallest_curvature;
+  EXPECT_EQ(found.neutral_directions, directions) << found.smallest_eigenvalue;
   EXPECT_NE(found.message.find(std::to_string(directions) + " neutral direction"),
             std::string::npos)
       << found.message;
@@ -105,7 +105,7 @@ TEST(NeutralDirections, AnArchThatSnapsHasOneAtItsFold) {
     if (holds) on_branch = std::move(next);
   }
   expect_open(on_branch, 1);
-  EXPECT_NEAR(on_branch.smallest_curvature, 0, 1e-6);
+  EXPECT_NEAR(on_branch.smallest_eigenvalue, 0, 1e-6);
 }
 
 TEST(NeutralDirections, RigidBodyModesAreNotCounted) {
@@ -126,14 +126,14 @@ TEST(NeutralDirections, RigidBodyModesAreNotCounted) {
       }
       const Equilibrium found = solve_energy(problem);
       expect_determined(found);
-      EXPECT_NEAR(found.smallest_curvature, 0, 1e-9);
+      EXPECT_NEAR(found.smallest_eigenvalue, 0, 1e-9);
       EXPECT_LT(found.error_estimate, 1e-6);
     }
   }
   // A rod of two pins that cannot turn for its weight has no zero.
   Problem across = heavy_cantilever(10, 0);
   across.grips = {{0, {0, 0, 0}}, {1, {0.7, 0, 0}}};
-  EXPECT_GT(solve_energy(across).smallest_curvature, 1e-3);
+  EXPECT_GT(solve_energy(across).smallest_eigenvalue, 1e-3);
   // Nor is one held by a straight line of its own a turn of anything.
   expect_determined(solve_energy(heavy_cantilever(3, -90)));
 }

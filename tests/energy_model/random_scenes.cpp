@@ -149,8 +149,8 @@ int run(const Options& options, RandomSpace space, std::uint64_t count) {
       complain("shapes " + std::to_string(scene.distance) + " l apart, energies " +
                std::to_string(scene.energy.energy.total()) + " and " +
                std::to_string(scene.exact.energy.total()) + ", smallest eigenvalue " +
-               std::to_string(scene.energy.smallest_curvature) + " and " +
-               std::to_string(scene.exact.smallest_curvature));
+               std::to_string(scene.energy.smallest_eigenvalue) + " and " +
+               std::to_string(scene.exact.smallest_eigenvalue));
       wrong = true;
     }
     if (scene.agreement == Agreement::both_stable &&

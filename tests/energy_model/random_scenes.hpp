@@ -77,7 +77,7 @@ inline Agreement agreement_of(const energy_model::Problem& problem,
     return Agreement::image;
   }
   // NaN, nobody has looked, proves nothing.
-  const bool proven = a.smallest_curvature >= stable && b.smallest_curvature >= stable;
+  const bool proven = a.smallest_eigenvalue >= stable && b.smallest_eigenvalue >= stable;
   return proven ? Agreement::both_stable : Agreement::contradict;
 }
 

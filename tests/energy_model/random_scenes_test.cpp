@@ -59,8 +59,8 @@ TEST_P(RandomScenes, HoldTheEnergyModelAgainstMultipleShooting) {
     }
     EXPECT_NE(scene.agreement, Agreement::contradict)
         << scene.distance << " l apart, energies " << scene.energy.energy.total() << " and "
-        << scene.exact.energy.total() << ", smallest eigenvalue " << scene.energy.smallest_curvature
-        << " and " << scene.exact.smallest_curvature;
+        << scene.exact.energy.total() << ", smallest eigenvalue "
+        << scene.energy.smallest_eigenvalue << " and " << scene.exact.smallest_eigenvalue;
   }
   if (test::sanitized) return;
   EXPECT_LE(refused_by_energy, most_refused_by_energy);

@@ -176,7 +176,7 @@ double lateral_buckling_load(const Solver& solve, double weak, double torsion, d
     const Equilibrium result = solve(problem);
     EXPECT_EQ(result.status, SolveStatus::converged) << result.message;
     EXPECT_LT(std::abs(result.sample(std::vector<double>{1}).points(2, 0)), 1e-9);
-    return result.smallest_curvature;
+    return result.smallest_eigenvalue;
   };
   const double h = -1e-3 * guess;
   const double first = guess - 0.01 * guess;

@@ -90,7 +90,7 @@ TEST(Taut, IsSolvedUpToTensionsOfTenMillion) {
       const Equilibrium solved = solve_energy(problem);
       ASSERT_EQ(solved.status, SolveStatus::converged)
           << slack << ", " << angle << ": " << solved.message;
-      EXPECT_GT(solved.smallest_curvature, 0);
+      EXPECT_GT(solved.smallest_eigenvalue, 0);
       const Samples ends = solved.sample(std::vector<double>{0, 1});
       EXPECT_LT((ends.points.col(1) - problem.grips[1].position).norm(), 1e-10);
     }

@@ -76,7 +76,7 @@ MinimiseResult translate_nlopt(int code) {
     case NLOPT_FAILURE:
       // Also said by its line search when rounding leaves it no descent: that the point is good
       // then, a residual has to prove.
-      return {SolveStatus::not_resolved, "NLopt's line search failed"};
+      return {SolveStatus::not_verified, "NLopt's line search failed"};
     case NLOPT_INVALID_ARGS:
       return {SolveStatus::failed, "NLopt refused its arguments"};
     case NLOPT_OUT_OF_MEMORY:

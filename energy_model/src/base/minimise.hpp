@@ -29,12 +29,12 @@ struct [[nodiscard]] MinimiseResult {
   /// A point that Newton's method may start from, or that a residual may prove to be good enough:
   /// a failed line search may mean that rounding left no descent, or anything else.
   [[nodiscard]] bool is_a_start() const {
-    return succeeded(status) || status == SolveStatus::not_resolved;
+    return succeeded(status) || status == SolveStatus::not_verified;
   }
 };
 
 /// Every result code of NLopt by name; one that is unknown is a failure. NLOPT_FORCED_STOP is a
-/// failure too unless the caller has stopped it: who has, knows. NLOPT_FAILURE is `not_resolved`.
+/// failure too unless the caller has stopped it: who has, knows. NLOPT_FAILURE is `not_verified`.
 [[nodiscard]] MinimiseResult translate_nlopt(int code);
 
 /// NLopt's LD_LBFGS from and into `x`. NLopt itself cannot stop on the gradient, so the objective's

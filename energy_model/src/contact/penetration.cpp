@@ -105,7 +105,7 @@ void judge_penetration(const Problem& problem, Equilibrium& equilibrium) {
   why.precision(2);
   why << "the shape is " << equilibrium.penetration << " m = " << equilibrium.penetration / l
       << " l within a rigid obstacle (allowed: " << allowed_penetration << " l)";
-  equilibrium.status = SolveStatus::not_resolved;
+  equilibrium.status = SolveStatus::not_verified;
   equilibrium.message = std::string(to_string(equilibrium.status)) + ": " + why.str();
 }
 

@@ -7,7 +7,7 @@ namespace dlo::energy_model {
 
 /// Judges an equilibrium by what is returned, whatever search has found it: measures how far it is
 /// behind rigid obstacles on a grid much finer than the solver's nodes, and takes a success back
-/// (`not_resolved`) if that is more than `allowed_penetration` lengths. Soft obstacles are entered
+/// (`not_verified`) if that is more than `allowed_penetration` lengths. Soft obstacles are entered
 /// by as much as they push: nothing to prove.
 /// @param[in,out] equilibrium  status, message and penetration
 void judge_penetration(const Problem& problem, Equilibrium& equilibrium);

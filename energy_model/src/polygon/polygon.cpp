@@ -183,7 +183,7 @@ class PolygonDescent {
   }
 
   void refuse(const std::string& why) {
-    result_.status = SolveStatus::not_resolved;
+    result_.status = SolveStatus::not_verified;
     result_.message = std::string(to_string(result_.status)) + ": " + why;
   }
 

@@ -79,7 +79,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
   result.error_estimate = 0;
   result.grips.resize(problem.grips.size());
   result.obstacles.assign(problem.obstacles.size(), Eigen::Vector3d::Zero());
-  result.smallest_curvature = std::numeric_limits<double>::infinity();
+  result.smallest_eigenvalue = std::numeric_limits<double>::infinity();
   int rigid_body_modes = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
     const PlacedSpan& place = *placed[i];
@@ -95,8 +95,8 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
     }
     // NaN, where one was not looked at, stays.
     if (std::isnan(solution.smallest_eigenvalue) ||
-        solution.smallest_eigenvalue < result.smallest_curvature) {
-      result.smallest_curvature = solution.smallest_eigenvalue;
+        solution.smallest_eigenvalue < result.smallest_eigenvalue) {
+      result.smallest_eigenvalue = solution.smallest_eigenvalue;
     }
     if (is_worse(solution.status, result.status)) {
       result.status = solution.status;

@@ -377,7 +377,7 @@ class ContactSearch {
       for (Span::Contact& contact : span.contacts) contact.slides = true;
     }
     std::string why = solution.is_equilibrium() ? "" : ": " + solution.message;
-    solution.finish(SolveStatus::not_resolved);
+    solution.finish(SolveStatus::not_verified);
     solution.message += ": the contacts did not converge" + why;
     return solution;
   }

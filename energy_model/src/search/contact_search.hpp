@@ -8,7 +8,7 @@ namespace dlo::energy_model {
 /// polygon at rest (RestingPolygon); then the rod's own shape is found with these contacts, whose
 /// ends are unknowns (LiftOff), and the contacts are mended until nothing is behind an obstacle and
 /// no obstacle pulls. `converged` says that certify() and mended() have found that so and that the
-/// contacts end where the rod lifts off by itself; else the best shape is not_resolved. Never
+/// contacts end where the rod lifts off by itself; else the best shape is not_verified. Never
 /// empty.
 [[nodiscard]] std::vector<SpanSolution> solve_touching_span(const Span& span,
                                                             const SpanOptions& options,

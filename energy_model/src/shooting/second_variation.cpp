@@ -206,7 +206,7 @@ class VariationProblem {
 void judge(const SecondVariation& stability, Equilibrium& shape) {
   shape.status = stability.stable() ? SolveStatus::converged : SolveStatus::saddle;
   shape.message = to_string(shape.status);
-  shape.smallest_curvature = stability.smallest;
+  shape.smallest_eigenvalue = stability.smallest;
   shape.message += moves_for_nothing(stability.neutral);
 }
 

@@ -73,7 +73,7 @@ class Confirmation {
     }
     react(result);
     touch(result);
-    result.status = SolveStatus::not_resolved;
+    result.status = SolveStatus::not_verified;
     result.message = "not judged";
     result.sample = [problem = problem_, chain = chain_](std::span<const double> arc_lengths) {
       Samples samples = sized_samples(arc_lengths, problem.length);

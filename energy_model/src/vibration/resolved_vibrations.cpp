@@ -269,7 +269,7 @@ Vibrations resolved_vibrations(const Problem& problem, const Inertia& inertia,
     if (next > max_terms || rod.unknowns() * next > Eigen::Index{most_unknowns} * terms) break;
     terms = next;
   }
-  result.status = SolveStatus::not_resolved;
+  result.status = SolveStatus::not_verified;
   result.message = rod.is_known() ? "the slowest modes still change with the number of terms"
                                   : "the shape is not found again with the terms of its modes";
   return result;

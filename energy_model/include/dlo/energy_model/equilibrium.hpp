@@ -58,13 +58,10 @@ struct [[nodiscard]] Equilibrium {
   /// the eigenvalue nearest to zero. `near_singular` shapes have one too. NaN: not known
   /// (obstacles, `exact`).
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
-  union {
-    /// Smallest eigenvalue of the reduced Hessian (the second variation on what the constraints
-    /// leave free) over EI/l, for planar shapes with bending out of the plane; NaN where a solver
-    /// did not look. Negative: unstable.
-    double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
-    double smallest_curvature;  ///< the same number by its name before 0.2, which takes it away
-  };
+  /// Smallest eigenvalue of the reduced Hessian (the second variation on what the constraints leave
+  /// free) over EI/l, for planar shapes with bending out of the plane; NaN where a solver did not
+  /// look. Negative: unstable.
+  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// Of solve_energy(), where `near_singular`: eigenvalues of the second variation that are zero to
   /// the tolerance, each a direction in which a fold or a bifurcation leaves the shape open. 0
   /// where only the step is too large. Rigid-body modes, as of a rod held by pins on a line along

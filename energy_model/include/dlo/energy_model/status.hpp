@@ -13,8 +13,7 @@ enum class SolveStatus {
   not_verified,      ///< a shape, but what is claimed of it is not proven: see the message
   evaluation_limit,
   time_limit,
-  failed,                       ///< the solver gave up, see the message
-  not_resolved = not_verified,  ///< its name before 0.2, which takes it away
+  failed,  ///< the solver gave up, see the message
 };
 
 /// The shape can be used.
