@@ -132,8 +132,9 @@ struct EigenvalueDerivatives {
 EigenvalueDerivatives eigenvalue_derivatives(SpanSolution& solution, const SoftMode& mode) {
   constexpr double step = 1e-3;  // error step^2, rounding eps / step and eps / step^2
   const auto eigenvalue = [&](double t) {
-    const SecondVariation at = second_variation(*solution.model, solution.x + t * mode.direction,
-                                                solution.multipliers + t * mode.multipliers);
+    const SecondDerivatives at =
+        second_derivatives(*solution.model, solution.x + t * mode.direction,
+                           solution.multipliers + t * mode.multipliers);
     ++solution.evaluations;
     return mode.direction.dot(at.hessian * mode.direction) -
            2 * mode.multipliers.dot(at.jacobian * mode.direction);
@@ -260,7 +261,7 @@ class Certification {
   }
 
   void look_out_of_plane() {
-    SecondVariation across;
+    SecondDerivatives across;
     model_.sideways(solution_.multipliers, across.hessian, across.jacobian);
     ReducedHessian beside;
     beside.compute(across.hessian, across.jacobian);

@@ -263,7 +263,7 @@ class TwistPath {
   void leave() {
     if (++branch_jumps_ > most_branch_jumps)
       return here_.fail("the rod jumps from branch to branch");
-    const SecondVariation at = second_variation(here_);
+    const SecondDerivatives at = second_derivatives(here_);
     ReducedHessian reduced;
     reduced.compute(at.hessian, at.jacobian);
     std::optional<Eigen::VectorXd> way = negative_curvature_direction(reduced);

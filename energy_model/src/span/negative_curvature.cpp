@@ -7,7 +7,7 @@ namespace dlo::energy_model {
 
 std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution) {
   SpanEnergy& model = *solution.model;
-  SecondVariation at = second_variation(solution);
+  SecondDerivatives at = second_derivatives(solution);
   ReducedHessian reduced;
   reduced.compute(at.hessian, at.jacobian);
   if (std::optional<Eigen::VectorXd> within = negative_curvature_direction(reduced)) {

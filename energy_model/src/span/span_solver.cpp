@@ -407,7 +407,7 @@ class Search {
   [[nodiscard]] static std::optional<Eigen::VectorXd> mode_nearest_zero(
       const SpanSolution& solution) {
     SpanEnergy& model = *solution.model;
-    const SecondVariation at = second_variation(solution);
+    const SecondDerivatives at = second_derivatives(solution);
     ReducedHessian reduced;
     reduced.compute(at.hessian, at.jacobian);
     const Eigen::Index free = rigid_body_modes(model.span(), model.tangents()).in_plane;

@@ -24,9 +24,9 @@ PointOnSpan evaluated(SpanEnergy& model, const Eigen::VectorXd& x) {
   return point;
 }
 
-SecondVariation second_variation(SpanEnergy& model, const Eigen::VectorXd& x,
-                                 const Eigen::VectorXd& multipliers) {
-  SecondVariation result;
+SecondDerivatives second_derivatives(SpanEnergy& model, const Eigen::VectorXd& x,
+                                     const Eigen::VectorXd& multipliers) {
+  SecondDerivatives result;
   result.jacobian = std::move(evaluated(model, x).jacobian);
   model.hessian(multipliers, result.hessian);
   return result;

@@ -21,14 +21,14 @@ void evaluate(SpanSolution& solution, PointOnSpan& point);
 [[nodiscard]] PointOnSpan evaluated(SpanEnergy& model, const Eigen::VectorXd& x);
 
 /// Second derivatives of E - mu . c, and what the constraints hold.
-struct SecondVariation {
+struct SecondDerivatives {
   Eigen::MatrixXd hessian, jacobian;
 };
 
-[[nodiscard]] SecondVariation second_variation(SpanEnergy& model, const Eigen::VectorXd& x,
-                                               const Eigen::VectorXd& multipliers);
-[[nodiscard]] inline SecondVariation second_variation(const SpanSolution& solution) {
-  return second_variation(*solution.model, solution.x, solution.multipliers);
+[[nodiscard]] SecondDerivatives second_derivatives(SpanEnergy& model, const Eigen::VectorXd& x,
+                                                   const Eigen::VectorXd& multipliers);
+[[nodiscard]] inline SecondDerivatives second_derivatives(const SpanSolution& solution) {
+  return second_derivatives(*solution.model, solution.x, solution.multipliers);
 }
 
 }  // namespace dlo::energy_model
