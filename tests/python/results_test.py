@@ -208,7 +208,7 @@ def test_sweep_takes_arrays_and_says_what_is_no_scene(cable):
 def test_stability_and_bench(steel):
     table = dlo.stability(case="folded", steppers=["auto"], threads=1)
     assert table["cases"][0]["outcome"] == "pass"
-    runs = dlo.bench(steel, seconds=0.3, repeats=1)["runs"]
+    runs = dlo.bench(steel, seconds=1, repeats=1)["runs"]
     assert {run["model"] for run in runs} >= {"energy", "chain"}
 
 

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <utility>
 
-#include "format/magnitudes.hpp"
+#include "format/solution.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {

@@ -9,7 +9,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "format/alignment.hpp"
 #include "format/comparison.hpp"
-#include "format/magnitudes.hpp"
+#include "format/solution.hpp"
 #include "option/output.hpp"
 #include "option/terminal.hpp"
 

@@ -8,7 +8,6 @@
 
 #include "base/display.hpp"
 #include "base/number.hpp"
-#include "format/magnitudes.hpp"
 #include "format/plan.hpp"
 #include "option/output.hpp"
 #include "polygon/self_crossing.hpp"
@@ -65,6 +64,19 @@ bool lacks(const compare::Solution& solution, const char* what) {
 }
 
 }  // namespace
+
+Magnitudes magnitudes(const compare::Scene& scene) {
+  const double l = scene.length;
+  double force = scene.softer_bending_stiffness() / (l * l) + scene.weight_between(0, l).norm();
+  for (const compare::PointLoad& load : scene.loads) force += load.force.norm();
+  return {.length = l, .force = force, .torque = force * l, .energy = force * l};
+}
+
+Eigen::Vector3d shown(const Eigen::Vector3d& vector, double magnitude) {
+  const double scale = std::max(magnitude, vector.norm());
+  return {compare::shown(vector.x(), scale), compare::shown(vector.y(), scale),
+          compare::shown(vector.z(), scale)};
+}
 
 const char* status_name(energy_model::SolveStatus status) {
   switch (status) {

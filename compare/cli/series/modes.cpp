@@ -9,7 +9,7 @@
 #include "base/display.hpp"
 #include "base/number.hpp"
 #include "base/quote.hpp"
-#include "format/magnitudes.hpp"
+#include "format/solution.hpp"
 #include "option/output.hpp"
 
 namespace dlo::cli {

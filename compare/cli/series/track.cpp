@@ -10,7 +10,6 @@
 #include "base/number.hpp"
 #include "base/quote.hpp"
 #include "format/json.hpp"
-#include "format/magnitudes.hpp"
 #include "format/solution.hpp"
 #include "option/output.hpp"
 #include "series/dynamic_track.hpp"

@@ -27,7 +27,7 @@
 #include "command_fixture.hpp"
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
-#include "format/magnitudes.hpp"
+#include "format/solution.hpp"
 
 namespace {
 
