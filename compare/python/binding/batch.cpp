@@ -111,6 +111,7 @@ void bind_batch(py::module_& module) {
   refuse_pickle(bound, "pickled or copied", "a new one of its scenes");
   bound
       .def(py::init([](const std::vector<SharedScene>& scenes, int threads) {
+             // NOLINTNEXTLINE(modernize-make-unique): its own operator new is for Python's alone
              return std::unique_ptr<Batch>(::new Batch(scenes, threads));
            }),
            py::arg("scenes"), py::arg("threads"))

@@ -168,6 +168,7 @@ void bind_force_model(py::module_& module) {
   bound
       .def(py::init([](SharedScene scene, const py::object& points,
                        std::optional<double> grip_stiffness) {
+             // NOLINTNEXTLINE(modernize-make-unique): its own operator new is for Python's alone
              return std::unique_ptr<ForceModel>(
                  ::new ForceModel(std::move(scene), points, grip_stiffness));
            }),
