@@ -9,8 +9,9 @@
 
 namespace dlo::compare {
 
-/// The rod of a discretisation, held by the frames of the scene's clamps; the twist (Twist::angles) is what the frames put into that polygon, whole turns counted, as
-/// energy_model::Problem counts it.
+/// The rod of a discretisation, held by the frames of the scene's clamps; the twist (Twist::angles)
+/// is what the frames put into that polygon, whole turns counted, as energy_model::Problem counts
+/// it.
 /// @param untwisted  where the polygon rests without frames [m]
 [[nodiscard]] force_model::Rod with_frames(const Scene& scene, const Discretisation& discretisation,
                                            const Eigen::Matrix3Xd& untwisted);

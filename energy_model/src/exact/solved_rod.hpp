@@ -19,6 +19,6 @@ struct SolvedRod {
 
 /// The rod's equilibrium with its verdict, in the problem's units; `failed` where a span has none.
 /// @param tolerance  of the integrator, wherever the shape is sampled
-[[nodiscard]] Equilibrium assemble(const Problem& problem, SolvedRod rod, double tolerance);
+[[nodiscard]] Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance);
 
 }  // namespace dlo::energy_model

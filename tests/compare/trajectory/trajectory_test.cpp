@@ -115,7 +115,8 @@ TEST(Trajectory, RefusesWhatIsNoWay) {
 
 TEST(TrajectoryFile, HasItsColumnsInAnyOrder) {
   const Trajectory way = parse_trajectory(
-      "\xEF\xBB\xBF# made by hand\nz,time,x,y,dz,dx,dy\n\n3,0,1,2,0,2,0\n3, 0.5 ,1.5,2,0,0,4\r\n", "my.csv");
+      "\xEF\xBB\xBF# made by hand\nz,time,x,y,dz,dx,dy\n\n3,0,1,2,0,2,0\n3, 0.5 ,1.5,2,0,0,4\r\n",
+      "my.csv");
   ASSERT_EQ(way.poses().size(), 2U);
   EXPECT_EQ(way.poses()[0].position, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(*way.poses()[1].direction, Eigen::Vector3d::UnitY());
