@@ -65,7 +65,7 @@ Eigen::Vector3d held_d1(const Problem& problem, const Grip& grip) {
           grip.at, "that of a clamp with a frame");
   if (grip.frame->d1) return part_across(*grip.frame->d1, grip.direction->normalized());
   const Grip& first = reference_clamp(problem);
-  const Eigen::Vector3d d1 = reference_d1(problem, first);
+  Eigen::Vector3d d1 = reference_d1(problem, first);
   if (first.at == grip.at) return d1;
   const auto rotation = shortest_rotation(first, grip, problem.length);
   require(rotation.has_value(), "Problem",
