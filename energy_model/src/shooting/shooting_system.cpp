@@ -179,7 +179,10 @@ Eigen::Matrix3Xd ShootingSystem::frame_equations(const RodState& node, Eigen::In
     rows.add(rotation, {{column, rotation_rate(rotation)}});
     return turns_;
   }
-  if (clamps_[index] == nullptr) return Eigen::Matrix3Xd(3, 0);
+  if (clamps_[index] == nullptr) {
+    Eigen::Matrix3Xd none(3, 0);
+    return none;
+  }
   const Eigen::Vector3d& direction = clamps_[index]->direction;
   Eigen::Matrix3Xd across = axes_across(direction);
   if (turns_.cols() == 1) across = Eigen::Vector3d(turns_.col(0)).cross(direction);
