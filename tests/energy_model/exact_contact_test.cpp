@@ -230,6 +230,51 @@ TEST(ExactContact, ConfirmsACableBetweenTwoClampsOverAFloor) {
   EXPECT_EQ(seen.confirmed, seen.touching);
 }
 
+// Strips that stand, lie or are held askew, and rods whose middle is stiffer, on a floor and over a
+// peg: both models have the same forces, and the same directors.
+TEST(ExactContact, ConfirmsStripsAndSections) {
+  Confirmed seen;
+  for (const double roll : {0.0, 0.4, 1.2}) {
+    for (const bool peg : {false, true}) {
+      SCOPED_TRACE("roll " + std::to_string(roll) + (peg ? ", peg" : ", floor"));
+      Problem strip = over_level_floor(peg ? 3 : 20, 0.12);
+      strip.bending_stiffness_2 = 0.3;
+      strip.torsional_stiffness = 0.5;
+      strip.grips[0].frame = FrameHold{.d1 = Eigen::Vector3d::UnitZ(), .roll = roll};
+      if (peg) {
+        strip.obstacles = {{obstacle::Body::cylinder({0.5, -0.12, 0}, {0.1, 0, 1}, 0.1)}};
+      }
+      seen.confirm(strip);
+    }
+  }
+  for (const double stiffer : {0.3, 3.0}) {
+    SCOPED_TRACE("stiffer " + std::to_string(stiffer));
+    Problem rod = over_level_floor(30, 0.1);
+    rod.sections = {{.begin = 0.1, .end = 0.3, .bending_stiffness = stiffer}};
+    rod.sections[0].weight_per_length = {0, -60, 0};
+    seen.confirm(rod);
+  }
+  EXPECT_GE(seen.touching, 7);
+  EXPECT_EQ(seen.confirmed, seen.touching);
+}
+
+// The rod's end comes down on the floor without a start, of strips too.
+TEST(ExactContact, FollowsAStripDownToTheFloor) {
+  Problem strip = over_level_floor(20, 0.12);
+  strip.bending_stiffness_2 = 0.3;
+  strip.torsional_stiffness = 0.5;
+  strip.grips[0].frame = FrameHold{.d1 = Eigen::Vector3d::UnitZ(), .roll = 0.4};
+  const Equilibrium exact = solve_exact(strip);
+  const Equilibrium energy = solve_energy(strip);
+  ASSERT_TRUE(succeeded(exact.status)) << exact.message;
+  ASSERT_TRUE(succeeded(energy.status)) << energy.message;
+  const std::vector<double> at = equal_arc_lengths(strip.length, 101);
+  const Samples one = exact.sample(at);
+  const Samples other = energy.sample(at);
+  EXPECT_LT((one.points - other.points).colwise().norm().maxCoeff(), 1e-8);
+  EXPECT_LT((one.d1 - other.d1).colwise().norm().maxCoeff(), 1e-7);
+}
+
 // A weightless rod that is lifted by more than the ball's radius comes down along the ball, about
 // the clamp's axis; lifted by less it stays. On a peg along z there is no way down.
 TEST(ExactContact, ARodOverABallFallsOffWhereItsCentreIsAboveTheClampsAxis) {

@@ -501,7 +501,7 @@ TEST(ExactNatural, AStraightClampedRodBucklesUnderItsTwist) {
   const CurvedRod rod = make_curved_rod(KirchhoffHelix().problem());
   const ClampFrames frames = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
   const auto smallest = [&](double torque) {
-    return second_variation(rod.span, frames, torque * torque,
+    return second_variation(rod.span, {}, frames, torque * torque,
                             [&](const std::vector<double>& arc) {
                               std::vector<RodState> states(arc.size());
                               for (std::size_t i = 0; i < arc.size(); ++i) {

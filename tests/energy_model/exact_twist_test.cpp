@@ -66,7 +66,7 @@ TEST(TwistedSecondVariation, VanishesWhereAStraightRodBuckles) {
   // Without tension between clamps: tan(M / 2) = M / 2.
   const RodSpan span = span_of(rolled_clamps({0.5, 0, 0}, {1, 0, 0}, 0.01, 0));
   const auto smallest = [&](double torque) {
-    return second_variation(span, any_frames(), torque * torque, states_of([&](double) {
+    return second_variation(span, {}, any_frames(), torque * torque, states_of([&](double) {
                               RodState state;
                               state.R =
                                   frame_of(Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitX());
@@ -100,7 +100,7 @@ TEST(TwistedSecondVariation, VanishesWhereMichellsRingBuckles) {
   for (const double c : {0.6, 1.0, 1.5}) {
     const RodSpan span = span_of(rolled_clamps({0, 0, 0}, {1, 0, 0}, c, 0));
     const auto stability = [&](double angle) {
-      return second_variation(span, any_frames(), std::pow(2 * pi + c * angle, 2),
+      return second_variation(span, {}, any_frames(), std::pow(2 * pi + c * angle, 2),
                               states_of([&](double s) { return ring_state(c, angle, s); }));
     };
     const double critical = 2 * pi * std::sqrt(3.0) / c;
@@ -177,7 +177,7 @@ TEST(TwistedSecondVariation, IsTheSecondDifferenceOfTheEnergy) {
                             {1, 1, 0.8},
                             {2, -3, 5}};
     const SecondVariation found =
-        second_variation(span_of(problem), any_frames(), 200, states_of([&](double s) {
+        second_variation(span_of(problem), {}, any_frames(), 200, states_of([&](double s) {
                            RodState state;
                            state.R = frame(s);
                            state.m = curve.moment(s);

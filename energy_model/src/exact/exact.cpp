@@ -18,7 +18,7 @@
 #include "base/require.hpp"
 #include "base/silence_gsl.hpp"
 #include "curved/curved_search.hpp"
-#include "exact/solved_rod.hpp"
+#include "shooting/solved_rod.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/reduction.hpp"
@@ -136,15 +136,16 @@ Found search(const Problem& problem, const ExactOptions& options, const Deadline
 
 Found search_touching(const Problem& problem, const ExactOptions& options,
                       const Deadline& deadline) {
-  std::optional<Equilibrium> found = options.start == nullptr
-                                         ? raise_weight(problem, deadline)
-                                         : confirm_contacts(problem, *options.start, deadline);
+  std::optional<Equilibrium> found =
+      options.start == nullptr
+          ? raise_weight(problem, options.tolerance, deadline)
+          : confirm_contacts(problem, *options.start, options.tolerance, deadline);
   require(found.has_value(), "solve_exact", "number of obstacles",
           static_cast<double>(problem.obstacles.size()),
           options.start == nullptr
               ? "0, or rigid half-spaces across the plane of a heavy round rod with one clamp at "
                 "its begin, or a start has to say what touches"
-              : "0, or rigid ones that a round rod without twist touches between its grips");
+              : "0, or rigid ones that a rod without natural strains touches between its grips");
   return {{*std::move(found)}, false, ""};
 }
 

@@ -11,34 +11,65 @@ namespace dlo::energy_model {
 namespace {
 
 /// Layout of the integrated vector: r, R, m, the four integrals, then r, spin and m of each
-/// parameter.
+/// parameter; of a piece that lies the impulse int p N ds and its derivatives too.
 constexpr Eigen::Index first_integral = 15;
 constexpr Eigen::Index state_size = 19;
 constexpr Eigen::Index variation_size = 9;
 
 struct FlowPiece {
-  const RodSection* section;
-  const NaturalStrain* natural;  // null: a straight rod
-  double begin;
-  Eigen::Vector3d n;  // at its beginning
+  const RodPiece* rod;
+  Eigen::Vector3d n;  // at its beginning, less what presses on it
   const RodVariation* variation;
+
+  [[nodiscard]] Eigen::Index impulse() const {
+    return state_size + variation->n.cols() * variation_size;
+  }
+  [[nodiscard]] Eigen::Index size() const {
+    return impulse() + (rod->surface != nullptr ? 3 * (1 + variation->n.cols()) : 0);
+  }
 };
+
+/// What a surface exerts.
+void press(const FlowPiece& piece, const RodState& state, const double* y, double* rate) {
+  using Vector = Eigen::Map<const Eigen::Vector3d>;
+  using Rate = Eigen::Map<Eigen::Vector3d>;
+  const RodSection& section = piece.rod->section;
+  const obstacle::Gap gap = piece.rod->surface->gap(state.r);
+  const Eigen::Index impulse = piece.impulse();
+  if (piece.variation->n.cols() == 0) {
+    Rate(rate + impulse) = pressure(*piece.rod->surface, section, state) * gap.gradient;
+    return;
+  }
+  const Pressure p = pressure_with_derivatives(*piece.rod->surface, section, state);
+  Rate(rate + impulse) = p.value * gap.gradient;
+  for (Eigen::Index k = 0; k < piece.variation->n.cols(); ++k) {
+    const double* change = y + state_size + k * variation_size;
+    const Vector lost(y + impulse + 3 * (k + 1));
+    Eigen::Matrix<double, 12, 1> by;
+    by << Eigen::Map<const Eigen::Matrix<double, 9, 1>>(change), piece.variation->n.col(k) - lost;
+    Rate(rate + impulse + 3 * (k + 1)) =
+        p.by_state.dot(by) * gap.gradient + p.value * (gap.hessian * Vector(change));
+  }
+}
 
 int rod_rates(double at, const double* y, double* rate, void* data) {
   using Vector = Eigen::Map<const Eigen::Vector3d>;
   using Rate = Eigen::Map<Eigen::Vector3d>;
   const auto& piece = *static_cast<const FlowPiece*>(data);
-  const RodSection& section = *piece.section;
+  const RodSection& section = piece.rod->section;
+  const bool lies = piece.rod->surface != nullptr;
+  const Eigen::Index impulse = piece.impulse();
   const Vector r(y);
   const Eigen::Map<const Eigen::Matrix3d> R(y + 3);
   const Vector m(y + 12);
-  const Eigen::Vector3d n = piece.n - at * section.weight;
+  Eigen::Vector3d n = piece.n - at * section.weight;
+  if (lies) n -= Vector(y + impulse);
   const Eigen::Vector3d t = R.col(2);
   const Eigen::Vector3d compliance = section.compliance();
   const Eigen::Vector3d own = R.transpose() * m;
   const Eigen::Vector3d stretch = compliance.cwiseProduct(own);
   Eigen::Vector3d u = stretch;
-  if (piece.natural != nullptr) u += (*piece.natural)(piece.begin + at);
+  if (piece.rod->natural) u += piece.rod->natural(piece.rod->begin + at);
   const Eigen::Vector3d omega = R * u;
   Rate(rate + 0) = t;
   for (Eigen::Index k = 0; k < 3; ++k) Rate(rate + 3 + 3 * k) = omega.cross(R.col(k));
@@ -47,6 +78,7 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
   rate[first_integral + 1] = own[2] * stretch[2] / 2;
   rate[first_integral + 2] = -section.weight.dot(r);
   rate[first_integral + 3] = u[2];
+  if (lies) press(piece, {r, R, m, n}, y, rate);
   if (piece.variation->n.cols() == 0) return GSL_SUCCESS;
   const Eigen::Matrix3d yields = R * compliance.asDiagonal() * R.transpose();
   for (Eigen::Index k = 0; k < piece.variation->n.cols(); ++k) {
@@ -55,9 +87,11 @@ int rod_rates(double at, const double* y, double* rate, void* data) {
     const Vector spin(change + 3);
     const Vector dm(change + 6);
     const Eigen::Vector3d dt = spin.cross(t);
+    Eigen::Vector3d dn = piece.variation->n.col(k);
+    if (lies) dn -= Vector(y + impulse + 3 * (k + 1));
     Rate(change_rate + 0) = dt;
     Rate(change_rate + 3) = yields * (dm + m.cross(spin));
-    Rate(change_rate + 6) = piece.variation->n.col(k).cross(t) + n.cross(dt);
+    Rate(change_rate + 6) = dn.cross(t) + n.cross(dt);
   }
   return GSL_SUCCESS;
 }
@@ -117,23 +151,31 @@ RodVariation::RodVariation(Eigen::Index parameters)
       m(Eigen::Matrix3Xd::Zero(3, parameters)),
       n(Eigen::Matrix3Xd::Zero(3, parameters)) {}
 
-bool follow_rod(const RodSection& section, const NaturalStrain& natural, double begin,
-                double length, double tolerance, RodState& state, RodVariation& variation,
+RodRate rate_of(const RodPiece& piece, const RodState& state) {
+  RodRate rate{state.t(), state.R * strain_of(piece.section, piece.natural, piece.begin, state),
+               state.n.cross(state.t()), -piece.section.weight};
+  if (piece.surface != nullptr) {
+    rate.n -= pressure(*piece.surface, piece.section, state) * piece.surface->gap(state.r).gradient;
+  }
+  return rate;
+}
+
+bool follow_rod(const RodPiece& piece, double tolerance, RodState& state, RodVariation& variation,
                 RodIntegrals& integrals) {
   const Eigen::Index parameters = variation.n.cols();
-  FlowPiece piece{&section, natural ? &natural : nullptr, begin, state.n, &variation};
-  std::vector<double> y(static_cast<std::size_t>(state_size + parameters * variation_size), 0.0);
-  Eigen::Map<Eigen::VectorXd> all(y.data(), static_cast<Eigen::Index>(y.size()));
+  FlowPiece flow{&piece, state.n, &variation};
+  std::vector<double> y(static_cast<std::size_t>(flow.size()), 0.0);
+  Eigen::Map<Eigen::VectorXd> all(y.data(), flow.size());
   all.head<15>() << state.r, state.R.reshaped(), state.m;
   for (Eigen::Index k = 0; k < parameters; ++k) {
     all.segment<variation_size>(state_size + k * variation_size) << variation.r.col(k),
         variation.spin.col(k), variation.m.col(k);
   }
-  if (length > 0 && !integrate(rod_rates, &piece, length, tolerance, y)) return false;
+  if (piece.length > 0 && !integrate(rod_rates, &flow, piece.length, tolerance, y)) return false;
   state.r = all.segment<3>(0);
   state.R = Eigen::Map<const Eigen::Matrix3d>(y.data() + 3);
   state.m = all.segment<3>(12);
-  state.n -= length * section.weight;
+  state.n -= piece.length * piece.section.weight;
   integrals = {all[first_integral], all[first_integral + 1], all[first_integral + 2],
                all[first_integral + 3]};
   for (Eigen::Index k = 0; k < parameters; ++k) {
@@ -142,13 +184,17 @@ bool follow_rod(const RodSection& section, const NaturalStrain& natural, double 
     variation.spin.col(k) = all.segment<3>(at + 3);
     variation.m.col(k) = all.segment<3>(at + 6);
   }
+  if (piece.surface == nullptr) return true;
+  state.n -= all.segment<3>(flow.impulse());
+  for (Eigen::Index k = 0; k < parameters; ++k) {
+    variation.n.col(k) -= all.segment<3>(flow.impulse() + 3 * (k + 1));
+  }
   return true;
 }
 
-bool follow_rod(const RodSection& section, const NaturalStrain& natural, double begin,
-                double length, double tolerance, RodState& state, RodIntegrals& integrals) {
+bool follow_rod(const RodPiece& piece, double tolerance, RodState& state, RodIntegrals& integrals) {
   RodVariation none;
-  return follow_rod(section, natural, begin, length, tolerance, state, none, integrals);
+  return follow_rod(piece, tolerance, state, none, integrals);
 }
 
 }  // namespace dlo::energy_model

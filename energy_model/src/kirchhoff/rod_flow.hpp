@@ -2,38 +2,12 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <optional>
 #include <vector>
 
+#include "kirchhoff/rod_state.hpp"
+#include "kirchhoff/surface.hpp"
+
 namespace dlo::energy_model {
-
-/// A section of the rod, in units of the rod.
-struct RodSection {
-  double bending = 1;  ///< b, its EI over bending_unit(); about d1 where bending_2 is given
-  double torsion = 0;  ///< c, its GJ over the same unit; 0: the twist is free and costs nothing
-  Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< w
-  std::optional<double> bending_2 = std::nullopt;    ///< about d2; none: as about d1
-
-  /// About d1, d2 and the tangent.
-  [[nodiscard]] Eigen::Vector3d stiffness() const {
-    return {bending, bending_2.value_or(bending), torsion};
-  }
-  /// K^-1; of a twist that is free zero: no torque twists it.
-  [[nodiscard]] Eigen::Vector3d compliance() const {
-    return {1 / bending, 1 / bending_2.value_or(bending), torsion > 0 ? 1 / torsion : 0.0};
-  }
-};
-
-/// Cross-section of an inextensible Kirchhoff rod with material directors, in units of its length
-/// and stiffness (l, EI/l, EI/l^2).
-struct RodState {
-  Eigen::Vector3d r = Eigen::Vector3d::Zero();      ///< position
-  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< columns d1, d2 and the tangent t
-  Eigen::Vector3d m = Eigen::Vector3d::Zero();  ///< moment of what lies beyond on what lies before
-  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< force of what lies beyond on what lies before
-
-  [[nodiscard]] Eigen::Vector3d t() const { return R.col(2); }
-};
 
 /// Natural strains at s, times l; none: a straight rod.
 using NaturalStrain = std::function<Eigen::Vector3d(double s)>;
@@ -84,8 +58,26 @@ struct RodIntegrals {
   double turn = 0;      ///< of u_3: the frame's turn ahead of transport
 };
 
-/// Follows the rod's equations from `begin` over `length`,
-///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w,
+/// What the rod's equations need of a piece of it.
+struct RodPiece {
+  const RodSection& section;
+  const NaturalStrain& natural;
+  double begin = 0;                  ///< s
+  double length = 0;                 ///< to follow
+  const Surface* surface = nullptr;  ///< on which it lies, straight by nature; null: it is free
+};
+
+/// Derivatives of a cross-section by the arc length at the begin of a piece.
+struct RodRate {
+  Eigen::Vector3d r;
+  Eigen::Vector3d spin;  ///< of R
+  Eigen::Vector3d m;
+  Eigen::Vector3d n;
+};
+[[nodiscard]] RodRate rate_of(const RodPiece& piece, const RodState& state);
+
+/// Follows the rod's equations over a piece,
+///     r' = t,   R' = R hat(u),   m' = n x t,   n' = -w, and -w - p N where it lies,
 /// and their linearisation,
 ///     dr' = spin x t,   spin' = R K^-1 R^T (dm + m x spin),   dm' = dn x t + n x (spin x t),
 /// with GSL's rk8pd. Nine components of a rotation and no angles, so no chart that could end.
@@ -93,13 +85,11 @@ struct RodIntegrals {
 /// @param[in,out] state, variation  from the beginning of the piece to its end
 /// @param[out] integrals  of the piece
 /// @return false if the integrator gave up
-[[nodiscard]] bool follow_rod(const RodSection& section, const NaturalStrain& natural, double begin,
-                              double length, double tolerance, RodState& state,
+[[nodiscard]] bool follow_rod(const RodPiece& piece, double tolerance, RodState& state,
                               RodVariation& variation, RodIntegrals& integrals);
 
 /// The same without linearisation.
-[[nodiscard]] bool follow_rod(const RodSection& section, const NaturalStrain& natural, double begin,
-                              double length, double tolerance, RodState& state,
+[[nodiscard]] bool follow_rod(const RodPiece& piece, double tolerance, RodState& state,
                               RodIntegrals& integrals);
 
 }  // namespace dlo::energy_model

@@ -134,6 +134,11 @@ ClampFrames released_frames(const RodSpan& span) {
   return frames;
 }
 
+RodSpan whole(const Problem& problem) {
+  check(problem);
+  return make_span(problem, ordered_grips(problem), 0, 1);
+}
+
 RodSpan uncut(const Problem& problem) {
   const double l = problem.length;
   const double force_unit = bending_unit(problem) / (l * l);
@@ -171,8 +176,9 @@ std::vector<RodSpan> cut_at_clamps(const Problem& problem) {
   return spans;
 }
 
-RodMesh make_mesh(const RodSpan& span, double longest) {
-  std::vector<double> fixed = {0, span.length};
+RodMesh make_mesh(const RodSpan& span, double longest, const std::vector<double>& further) {
+  std::vector<double> fixed = further;
+  fixed.insert(fixed.end(), {0, span.length});
   for (const RodSpan::Hold& hold : span.holds) fixed.push_back(hold.at);
   for (const RodSpan::Load& load : span.loads) fixed.push_back(load.at);
   for (const RodSpan::Part& part : span.parts) fixed.push_back(part.begin);
@@ -215,6 +221,11 @@ RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
     mesh.section.push_back(&section_at(span, (nodes[i] + nodes[i + 1]) / 2));
   }
   return mesh;
+}
+
+RodPiece piece_of(const RodSpan& span, const RodMesh& mesh, Eigen::Index interval) {
+  return {mesh.section_of(interval), span.natural, mesh.s[interval], mesh.width(interval),
+          mesh.contacts.surface_of(interval)};
 }
 
 ForceField carried_force(const RodSpan& span, const RodMesh& mesh) {

@@ -72,9 +72,39 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 /// further apart than the rod between them
 [[nodiscard]] std::vector<RodSpan> cut_at_clamps(const Problem& problem);
 
+/// All of the rod as one span with its clamps, of any obstacles; loads on them are the gripper's.
+[[nodiscard]] RodSpan whole(const Problem& problem);
+
 /// All of the rod as one span without clamps; loads on them are the gripper's and the span's.
 /// @throws std::invalid_argument as cut_at_clamps()
 [[nodiscard]] RodSpan uncut(const Problem& problem);
+
+/// A node of a mesh at which contact with a rigid body begins, ends or is a point.
+struct RodContact {
+  Eigen::Index node = 0;
+  bool moves = false;                     ///< its arc length is unknown
+  bool pushes = true;                     ///< a force there is unknown, which a grip's is not
+  double force = 0;                       ///< of the body on the rod there, along its normal
+  std::optional<obstacle::Body> touched;  ///< at this node alone
+  std::optional<Surface> surface;         ///< or else that on which the rod lies beside it
+
+  /// Of a point next to it.
+  [[nodiscard]] obstacle::Gap gap(const Eigen::Vector3d& r) const {
+    return touched ? touched->gap(r) : surface->gap(r);
+  }
+};
+
+/// What a rod touches.
+struct RodContacts {
+  std::vector<RodContact> nodes;                ///< by growing arc length
+  std::vector<std::optional<Surface>> surface;  ///< of each interval, on which it lies; none: empty
+
+  /// Null: it is free.
+  [[nodiscard]] const Surface* surface_of(Eigen::Index interval) const {
+    const auto i = static_cast<std::size_t>(interval);
+    return i < surface.size() && surface[i] ? &*surface[i] : nullptr;
+  }
+};
 
 /// The nodes of a span: its ends and those of its parts, grips and loads, and as many between them
 /// as are asked for.
@@ -84,6 +114,7 @@ struct RodMesh {
   Eigen::Matrix3Xd pull;  ///< q on each node's tangent, of energy -q.t; zero at first
   std::vector<const RodSpan::Hold*> hold;  ///< at each node, null for none; of the span
   std::vector<const RodSection*> section;  ///< of each interval; of the span
+  RodContacts contacts;
 
   [[nodiscard]] Eigen::Index intervals() const { return s.size() - 1; }
   [[nodiscard]] double width(Eigen::Index interval) const { return s[interval + 1] - s[interval]; }
@@ -93,10 +124,15 @@ struct RodMesh {
 };
 
 /// @param longest  no interval is longer; between two grips there are eight at least
-[[nodiscard]] RodMesh make_mesh(const RodSpan& span, double longest);
+/// @param further  arc lengths that have to be nodes
+[[nodiscard]] RodMesh make_mesh(const RodSpan& span, double longest,
+                                const std::vector<double>& further = {});
 
 /// The mesh with given nodes, the span's ends, parts, grips and loads among them.
 [[nodiscard]] RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes);
+
+/// An interval of a mesh, which has to outlive it.
+[[nodiscard]] RodPiece piece_of(const RodSpan& span, const RodMesh& mesh, Eigen::Index interval);
 
 /// The inner force n, of what lies beyond on what lies before, if the first grip alone carried
 /// weight and loads.

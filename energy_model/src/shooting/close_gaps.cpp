@@ -12,7 +12,6 @@
 namespace dlo::energy_model {
 namespace {
 
-constexpr double largest_turn = 0.5;        // of a tangent in one Newton step [rad]
 constexpr double least_newton_part = 1e-3;  // of a Newton step
 constexpr double last_newton_step = 1e-9;   // Newton's next one is of the size of rounding
 constexpr double nearly_closed = 0.1;   // gaps of a twisted rod, from which on it must not drift
@@ -31,64 +30,65 @@ Eigen::SparseMatrix<double> matrix_of(const Triplets& triplets, Eigen::Index row
 /// Newton's step, as much of it as makes the next simplified one shorter.
 /// @return its largest component; nothing if there is no such part or it does not close the gaps
 std::optional<double> newton_step(const ShootingSystem& system, const Triplets& derivatives,
-                                  const Eigen::VectorXd& equations, std::vector<RodState>& nodes,
+                                  const Eigen::VectorXd& equations, ShootingPoint& point,
                                   int& shots) {
-  Solver solver(matrix_of(derivatives, system.size(), system.size()));
+  Solver solver(matrix_of(derivatives, system.equations(), system.unknowns()));
   if (solver.info() != Eigen::Success) return std::nullopt;
   const Eigen::VectorXd step = -solver.solve(equations);
   const double largest = step.lpNorm<Eigen::Infinity>();
   Eigen::VectorXd trial_equations;
   if (largest < last_newton_step) {
-    nodes = system.moved(nodes, step);
+    point = system.moved(point, step);
     ++shots;
-    const bool closed = system.evaluate(nodes, trial_equations, nullptr) &&
+    const bool closed = system.evaluate(point, trial_equations, nullptr) &&
                         trial_equations.norm() < system.closed();
     return closed ? std::optional(largest) : std::nullopt;
   }
-  double part = std::min(1.0, largest_turn / std::max(system.turn(nodes, step), 1e-300));
-  for (; part > least_newton_part && !system.out_of_time(); part /= 2) {
-    const std::vector<RodState> trial = system.moved(nodes, part * step);
+  for (double part = system.allowed_part(point, step);
+       part > least_newton_part && !system.out_of_time(); part /= 2) {
+    const ShootingPoint trial = system.moved(point, part * step);
     ++shots;
     if (!system.evaluate(trial, trial_equations, nullptr)) continue;
     const Eigen::VectorXd next = solver.solve(trial_equations);
     if (next.norm() > (1 - part / 4) * step.norm()) continue;
-    nodes = trial;
+    point = trial;
     return part * largest;
   }
   return std::nullopt;
 }
 
 /// The step for which |derivatives step + equations|^2 + weight |step|^2 is least.
-std::optional<Eigen::VectorXd> regular_step(Triplets derivatives, const Eigen::VectorXd& equations,
-                                            double weight) {
-  const Eigen::Index size = equations.size();
-  for (Eigen::Index i = 0; i < size; ++i) {
-    derivatives.emplace_back(static_cast<int>(size + i), static_cast<int>(i), std::sqrt(weight));
+std::optional<Eigen::VectorXd> regular_step(Triplets derivatives, Eigen::Index unknowns,
+                                            const Eigen::VectorXd& equations, double weight) {
+  const Eigen::Index rows = equations.size();
+  for (Eigen::Index i = 0; i < unknowns; ++i) {
+    derivatives.emplace_back(static_cast<int>(rows + i), static_cast<int>(i), std::sqrt(weight));
   }
-  const Solver solver(matrix_of(derivatives, 2 * size, size));
+  const Solver solver(matrix_of(derivatives, rows + unknowns, unknowns));
   if (solver.info() != Eigen::Success) return std::nullopt;
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(2 * size);
-  right.head(size) = -equations;
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(rows + unknowns);
+  right.head(rows) = -equations;
   return Eigen::VectorXd(solver.solve(right));
 }
 
 /// Levenberg's step with a weight of the order of the gaps: it makes them smaller and moves nothing
 /// that can move for nothing, where Newton's step is not defined.
 std::optional<double> levenberg_step(const ShootingSystem& system, const Triplets& derivatives,
-                                     const Eigen::VectorXd& equations, std::vector<RodState>& nodes,
+                                     const Eigen::VectorXd& equations, ShootingPoint& point,
                                      int& shots) {
   Eigen::VectorXd trial_equations;
   for (double weight = equations.norm(); weight < 1e6 && !system.out_of_time(); weight *= 8) {
-    const std::optional<Eigen::VectorXd> step = regular_step(derivatives, equations, weight);
+    const std::optional<Eigen::VectorXd> step =
+        regular_step(derivatives, system.unknowns(), equations, weight);
     if (!step) return std::nullopt;
     ++shots;
-    const std::vector<RodState> trial = system.moved(nodes, *step);
-    if (system.turn(nodes, *step) > largest_turn ||
+    const ShootingPoint trial = system.moved(point, *step);
+    if (system.allowed_part(point, *step) < 1 ||
         !system.evaluate(trial, trial_equations, nullptr) ||
         trial_equations.norm() > equations.norm()) {
       continue;
     }
-    nodes = trial;
+    point = trial;
     return step->lpNorm<Eigen::Infinity>();
   }
   return std::nullopt;
@@ -98,21 +98,22 @@ std::optional<double> levenberg_step(const ShootingSystem& system, const Triplet
 /// along the rod, and turns about its line, for nearly nothing, so that Newton's steps stay long.
 /// As fast as Newton's method in all other directions (Yamashita and Fukushima 2001).
 std::optional<double> last_newton_steps(const ShootingSystem& system, const Triplets& derivatives,
-                                        const Eigen::VectorXd& equations,
-                                        std::vector<RodState>& nodes, int& shots) {
+                                        const Eigen::VectorXd& equations, ShootingPoint& point,
+                                        int& shots) {
   const double gaps = equations.norm();
   Eigen::VectorXd trial_equations;
   for (double weight = std::max(gaps * gaps, least_weight); weight <= std::max(gaps, least_weight);
        weight *= 30) {
-    const std::optional<Eigen::VectorXd> step = regular_step(derivatives, equations, weight);
+    const std::optional<Eigen::VectorXd> step =
+        regular_step(derivatives, system.unknowns(), equations, weight);
     if (!step) return std::nullopt;
-    const std::vector<RodState> trial = system.moved(nodes, *step);
+    const ShootingPoint trial = system.moved(point, *step);
     const double largest = step->lpNorm<Eigen::Infinity>();
     ++shots;
     if (!system.evaluate(trial, trial_equations, nullptr)) return std::nullopt;
     if (trial_equations.norm() > (largest < last_newton_step ? system.closed() : gaps / 2))
       continue;
-    nodes = trial;
+    point = trial;
     return largest;
   }
   return std::nullopt;
@@ -120,8 +121,8 @@ std::optional<double> last_newton_steps(const ShootingSystem& system, const Trip
 
 }  // namespace
 
-ClosedGaps close_gaps(const ShootingSystem& system, std::vector<RodState>& nodes,
-                      int max_iterations, bool drifting) {
+ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int max_iterations,
+                      bool drifting) {
   ClosedGaps result;
   Eigen::VectorXd equations;
   for (int iteration = 0; iteration < max_iterations && !result.converged; ++iteration) {
@@ -131,16 +132,16 @@ ClosedGaps close_gaps(const ShootingSystem& system, std::vector<RodState>& nodes
     }
     Triplets derivatives;
     ++result.shots;
-    if (!system.evaluate(nodes, equations, &derivatives)) {
+    if (!system.evaluate(point, equations, &derivatives)) {
       result.message = "the integrator gave up";
       break;
     }
     std::optional<double> step;
     if (drifting && equations.norm() < nearly_closed) {
-      step = last_newton_steps(system, derivatives, equations, nodes, result.shots);
+      step = last_newton_steps(system, derivatives, equations, point, result.shots);
     }
-    if (!step) step = newton_step(system, derivatives, equations, nodes, result.shots);
-    if (!step) step = levenberg_step(system, derivatives, equations, nodes, result.shots);
+    if (!step) step = newton_step(system, derivatives, equations, point, result.shots);
+    if (!step) step = levenberg_step(system, derivatives, equations, point, result.shots);
     if (!step) {
       result.message = "Newton's method found no shorter step";
       break;

@@ -19,7 +19,7 @@ struct [[nodiscard]] ClosedGaps {
 /// simplified step is shorter (Deuflhard's natural monotonicity); where there is no such step,
 /// because the rod can move for nothing or nearly so, a Levenberg step makes the gaps smaller.
 /// @param drifting  the rod may have ways to move for nearly nothing: do not follow them
-ClosedGaps close_gaps(const ShootingSystem& system, std::vector<RodState>& nodes,
-                      int max_iterations, bool drifting);
+ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int max_iterations,
+                      bool drifting);
 
 }  // namespace dlo::energy_model

@@ -15,7 +15,7 @@ bool factorise(const ConstrainedPencil& pencil, double mu, Factors& factors) {
   return factors.info() == Eigen::Success && factors.vectorD().allFinite();
 }
 
-/// Number of eigenvalues below mu.
+/// Number of eigenvalues below mu; -1: the pivots do not tell.
 int count_below(const ConstrainedPencil& pencil, double mu) {
   Factors factors;
   // A pivot is zero on a set of mu that a small change leaves.
@@ -26,7 +26,7 @@ int count_below(const ConstrainedPencil& pencil, double mu) {
     }
     mu -= 1e-3 * neutral_eigenvalue * (1 + attempt);
   }
-  return 0;
+  return -1;
 }
 
 /// Bounds of the smallest eigenvalue, to 1 % or a tenth of what counts as zero.
@@ -68,7 +68,9 @@ SmallestMode smallest_mode(const ConstrainedPencil& pencil,
                            const std::function<double(const Eigen::VectorXd&)>& quotient) {
   SmallestMode result;
   result.negative = count_below(pencil, -neutral_eigenvalue);
-  result.neutral = count_below(pencil, neutral_eigenvalue) - result.negative;
+  const int not_positive = count_below(pencil, neutral_eigenvalue);
+  if (result.negative < 0 || not_positive < 0) return {.negative = -1};
+  result.neutral = not_positive - result.negative;
   const Bracket bracket = bracket_smallest(pencil);
   // Inverse iteration from below the smallest eigenvalue.
   const double shift = bracket.low - (bracket.high - bracket.low) / 2;

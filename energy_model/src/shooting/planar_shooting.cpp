@@ -399,7 +399,7 @@ SecondVariation stability_of(const Problem& problem, const RodSpan& span,
     return states;
   };
   const Eigen::VectorXd probes = Eigen::VectorXd::LinSpaced(64, 0, 1);
-  return second_variation(span, released_frames(span),
+  return second_variation(span, {}, released_frames(span),
                           bending_force(span, states_of({probes.begin(), probes.end()})),
                           states_of);
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/moves_for_nothing.hpp"
+#include "base/spin.hpp"
 #include "shooting/lobatto_element.hpp"
 
 namespace dlo::energy_model {
@@ -13,43 +14,39 @@ namespace {
 constexpr double longest_element = 1.0 / 16;  // [l]
 constexpr double most_elements = 5000;
 
-Eigen::Matrix3d hat(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  for (Eigen::Index k = 0; k < 3; ++k) matrix.col(k) = v.cross(Eigen::Vector3d::Unit(k));
-  return matrix;
-}
-
 /// Short where the rod changes its shape over a short length.
-Eigen::VectorXd elements_of(const RodSpan& span, double force) {
+Eigen::VectorXd elements_of(const RodSpan& span, const RodMesh& mesh, double force) {
   const double longest = std::min({span.length / 8, longest_element, 1 / std::sqrt(force)});
-  return make_mesh(span, std::max(longest, span.length / most_elements)).s;
+  std::vector<double> touched;
+  for (const RodContact& contact : mesh.contacts.nodes) touched.push_back(mesh.s[contact.node]);
+  return make_mesh(span, std::max(longest, span.length / most_elements), touched).s;
 }
 
 /// The matrices of second_variation().
 class VariationProblem {
  public:
-  VariationProblem(const RodSpan& span, const ClampFrames& frames, double force,
-                   const SpanStates& states)
+  VariationProblem(const RodSpan& span, const RodMesh& mesh, const ClampFrames& frames,
+                   double force, const SpanStates& states)
       : span_(span),
+        mesh_(mesh),
         free_twist_(span.round() && !span.twisted()),
-        elements_(elements_of(span, force)) {
-    number_unknowns(frames);
-    if (free_twist_) leave_out_twist(states);
+        elements_(elements_of(span, mesh, force)) {
     const Eigen::Index count = elements_.size() - 1;
+    std::vector<RodState> at_ends;
+    if (touches()) at_ends = states({elements_.begin(), elements_.end()});
+    number_unknowns(frames, at_ends);
+    if (free_twist_) leave_out_twist(states);
     const std::vector<RodState> inside = states(gauss_points(elements_));
     for (Eigen::Index e = 0; e < count; ++e) add_element(e, inside);
-    for (const Eigen::Index multiplier : first_multiplier_) {
-      for (Eigen::Index i = 0; i < 3; ++i) {
-        fixed_.emplace_back(multiplier + i, multiplier + i, -constraint_compliance);
-      }
-    }
+    for (std::size_t k = 0; k + 1 < places_.size(); ++k) join(places_[k], places_[k + 1]);
+    for (const RodContact& contact : mesh.contacts.nodes) add_contact(contact, at_ends);
   }
 
   [[nodiscard]] bool finite() const { return finite_; }
 
   [[nodiscard]] ConstrainedPencil pencil() const {
     ConstrainedPencil result{Sparse(size_, size_), Sparse(size_, size_), Sparse(size_, size_),
-                             static_cast<int>(3 * first_multiplier_.size())};
+                             static_cast<int>(3 * (places_.size() - 1))};
     result.second.setFromTriplets(second_.begin(), second_.end());
     result.norm.setFromTriplets(norm_.begin(), norm_.end());
     result.fixed.setFromTriplets(fixed_.begin(), fixed_.end());
@@ -80,8 +77,46 @@ class VariationProblem {
     Eigen::Index first;      // unknown
   };
 
-  /// Three unknowns a node, fewer at clamps; three multipliers after the nodes between two grips.
-  void number_unknowns(const ClampFrames& frames) {
+  /// Where dr is zero at a grip, or along what is touched.
+  struct Place {
+    Eigen::Index end;         // of an element
+    Eigen::Matrix3Xd basis;   // of dr, one a column
+    Eigen::Index first;       // unknown
+    Eigen::Index multiplier;  // of dr - (dr at the place before) = int eta x t ds
+  };
+
+  [[nodiscard]] bool touches() const {
+    return !mesh_.contacts.nodes.empty() || !mesh_.contacts.surface.empty();
+  }
+
+  /// The contact at an end of elements; null: none.
+  [[nodiscard]] const RodContact* contact_at(Eigen::Index end) const {
+    const auto found = std::ranges::find_if(mesh_.contacts.nodes, [&](const RodContact& contact) {
+      return mesh_.s[contact.node] == elements_[end];
+    });
+    return found == mesh_.contacts.nodes.end() ? nullptr : &*found;
+  }
+
+  /// On which the rod lies between two ends of elements; null: none.
+  [[nodiscard]] const Surface* surface_of(Eigen::Index element) const {
+    if (!touches()) return nullptr;
+    const double middle = (elements_[element] + elements_[element + 1]) / 2;
+    const auto after = std::upper_bound(mesh_.s.begin(), mesh_.s.end(), middle) - mesh_.s.begin();
+    return mesh_.contacts.surface_of(after - 1);
+  }
+
+  /// Outward normal of what is touched at an end of elements; none: nothing.
+  [[nodiscard]] std::optional<Eigen::Vector3d> normal_at(Eigen::Index end,
+                                                         const RodState& state) const {
+    if (const RodContact* contact = contact_at(end)) return contact->gap(state.r).gradient;
+    const Surface* surface = end + 1 < elements_.size() ? surface_of(end) : nullptr;
+    if (surface == nullptr && end > 0) surface = surface_of(end - 1);
+    if (surface == nullptr) return std::nullopt;
+    return surface->gap(state.r).gradient;
+  }
+
+  /// Three unknowns a node, fewer at clamps; at a place those of dr and three multipliers.
+  void number_unknowns(const ClampFrames& frames, const std::vector<RodState>& at_ends) {
     const auto add_node = [&](double s) {
       Eigen::Matrix3Xd basis = Eigen::Matrix3d::Identity();
       if (const RodSpan::Clamp* clamp = span_.clamp_at(s)) {
@@ -93,19 +128,28 @@ class VariationProblem {
       nodes_.push_back({s, basis, size_});
       size_ += basis.cols();
     };
-    std::size_t next_hold = 1;
+    std::size_t next_hold = 0;
     for (Eigen::Index e = 0; e < elements_.size(); ++e) {
       add_node(elements_[e]);
       if (next_hold < span_.holds.size() && span_.holds[next_hold].at <= elements_[e]) {
-        first_multiplier_.push_back(size_);
-        size_ += 3;
+        add_place(e, Eigen::Matrix3Xd(3, 0));
         ++next_hold;
+      } else if (touches()) {
+        const auto normal = normal_at(e, at_ends[static_cast<std::size_t>(e)]);
+        if (normal) add_place(e, frame_of(normal->unitOrthogonal(), *normal).leftCols<2>());
       }
       if (e + 1 == elements_.size()) break;
       for (std::size_t a = 1; a < element_order; ++a) {
         add_node(elements_[e] + (elements_[e + 1] - elements_[e]) * (1 + element_lobatto[a]) / 2);
       }
     }
+  }
+
+  /// Multipliers first: dr has no pivot but what they give it.
+  void add_place(Eigen::Index end, const Eigen::Matrix3Xd& basis) {
+    const Eigen::Index multipliers = places_.empty() ? 0 : 3;
+    places_.push_back({end, basis, size_ + multipliers, size_});
+    size_ += multipliers + basis.cols();
   }
 
   /// Spins across the tangents alone.
@@ -131,7 +175,7 @@ class VariationProblem {
       const RodState& state = inside[static_cast<std::size_t>(e) * element_quadrature + q];
       const double weight = h / 2 * element_weight[q];
       const Eigen::Matrix3d stiffness = stiffness_of(section, state.R);
-      const Eigen::Matrix3d moment = hat(state.m);
+      const Eigen::Matrix3d moment = cross_matrix(state.m);
       const Eigen::Matrix3d outer = state.n * state.t().transpose();
       const Eigen::Matrix3d force =
           outer.trace() * Eigen::Matrix3d::Identity() - (outer + outer.transpose()) / 2;
@@ -139,7 +183,7 @@ class VariationProblem {
       for (Eigen::Index a = 0; a <= static_cast<Eigen::Index>(element_order); ++a) {
         const double value = basis.value(row, a);
         const double rate = 2 / h * basis.rate(row, a);
-        integral.middleCols<3>(3 * a) -= weight * value * hat(state.t());
+        integral.middleCols<3>(3 * a) -= weight * value * cross_matrix(state.t());
         for (Eigen::Index b = 0; b <= static_cast<Eigen::Index>(element_order); ++b) {
           const double other = basis.value(row, b);
           const double other_rate = 2 / h * basis.rate(row, b);
@@ -152,7 +196,8 @@ class VariationProblem {
       }
     }
     finite_ = finite_ && second.allFinite();
-    const Eigen::Index multiplier = multiplier_at(elements_[e] + h / 2);
+    press(e, inside);
+    const Eigen::Index multiplier = multiplier_of(e);
     const std::size_t first = static_cast<std::size_t>(e) * element_order;
     for (std::size_t a = 0; a <= element_order; ++a) {
       const SpinNode& node = nodes_[first + a];
@@ -172,6 +217,65 @@ class VariationProblem {
     }
   }
 
+  /// What lies within an element bends with its surface, half of it at either end.
+  void press(Eigen::Index e, const std::vector<RodState>& inside) {
+    const Surface* surface = surface_of(e);
+    if (surface == nullptr) return;
+    const double h = elements_[e + 1] - elements_[e];
+    const RodSection& section = section_at(span_, elements_[e] + h / 2);
+    double force = 0;
+    for (std::size_t q = 0; q < element_quadrature; ++q) {
+      const RodState& state = inside[static_cast<std::size_t>(e) * element_quadrature + q];
+      force += h / 2 * element_weight[q] * pressure(*surface, section, state);
+    }
+    const RodState& middle =
+        inside[static_cast<std::size_t>(e) * element_quadrature + element_quadrature / 2];
+    for (const Eigen::Index end : {e, e + 1}) {
+      if (const Place* place = place_at(end))
+        bend(*place, surface->gap(middle.r).hessian, force / 2);
+    }
+  }
+
+  /// Minus f dr.(H dr).
+  void bend(const Place& place, const Eigen::Matrix3d& hessian, double force) {
+    add(second_, place.first, place.first,
+        -force * place.basis.transpose() * hessian * place.basis);
+  }
+
+  void add_contact(const RodContact& contact, const std::vector<RodState>& at_ends) {
+    const auto end = std::lower_bound(elements_.begin(), elements_.end(), mesh_.s[contact.node]) -
+                     elements_.begin();
+    const Place& place = *place_at(end);
+    const RodState& state = at_ends[static_cast<std::size_t>(end)];
+    const obstacle::Gap gap = contact.gap(state.r);
+    bend(place, gap.hessian, contact.force);
+    if (!contact.touched || !contact.moves) return;
+    const Eigen::Vector3d t = state.t();
+    const Eigen::Vector3d along = gap.hessian * t;
+    const Eigen::Vector3d bent = curvature_of(section_at(span_, mesh_.s[contact.node]),
+                                              span_.natural, elements_[end], state);
+    const double opening = gap.gradient.dot(bent) + t.dot(along);
+    const SpinNode& node = nodes_[static_cast<std::size_t>(end) * element_order];
+    const Eigen::MatrixXd by_spin = t.cross(gap.gradient).transpose() * node.basis;
+    const Eigen::MatrixXd by_place = along.transpose() * place.basis;
+    const double share = contact.force / opening;
+    add(second_, node.first, node.first, share * by_spin.transpose() * by_spin);
+    add(second_, node.first, place.first, share * by_spin.transpose() * by_place);
+    add(second_, place.first, node.first, share * by_place.transpose() * by_spin);
+    add(second_, place.first, place.first, share * by_place.transpose() * by_place);
+  }
+
+  /// What dr of two neighbouring places is besides the integral.
+  void join(const Place& before, const Place& after) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      fixed_.emplace_back(after.multiplier + i, after.multiplier + i, -constraint_compliance);
+    }
+    for (const auto& [place, sign] : {std::pair{&before, 1.0}, std::pair{&after, -1.0}}) {
+      add(fixed_, after.multiplier, place->first, sign * place->basis);
+      add(fixed_, place->first, after.multiplier, sign * place->basis.transpose());
+    }
+  }
+
   static void add(VariationTriplets& triplets, Eigen::Index row, Eigen::Index column,
                   const Eigen::MatrixXd& block) {
     for (Eigen::Index i = 0; i < block.rows(); ++i) {
@@ -181,21 +285,26 @@ class VariationProblem {
     }
   }
 
-  /// Of the constraint that an arc length between two grips belongs to; -1 beyond them.
-  [[nodiscard]] Eigen::Index multiplier_at(double s) const {
-    const std::vector<RodSpan::Hold>& holds = span_.holds;
+  /// Null: none.
+  [[nodiscard]] const Place* place_at(Eigen::Index end) const {
+    const auto found =
+        std::ranges::find_if(places_, [&](const Place& place) { return place.end == end; });
+    return found == places_.end() ? nullptr : &*found;
+  }
+
+  /// Of the constraint that an element between two places belongs to; -1 beyond them.
+  [[nodiscard]] Eigen::Index multiplier_of(Eigen::Index e) const {
     const auto next =
-        std::upper_bound(holds.begin(), holds.end(), s,
-                         [](double at, const RodSpan::Hold& hold) { return at < hold.at; });
-    if (next == holds.begin() || next == holds.end()) return -1;
-    return first_multiplier_[static_cast<std::size_t>(next - holds.begin()) - 1];
+        std::ranges::find_if(places_, [&](const Place& place) { return place.end > e; });
+    return next == places_.begin() || next == places_.end() ? -1 : next->multiplier;
   }
 
   const RodSpan& span_;
+  const RodMesh& mesh_;
   bool free_twist_;           // nothing holds it: spins about the tangent are no unknowns
   Eigen::VectorXd elements_;  // their ends
   std::vector<SpinNode> nodes_;
-  std::vector<Eigen::Index> first_multiplier_;
+  std::vector<Place> places_;
   Eigen::Index size_ = 0;
   bool finite_ = true;
   VariationTriplets second_, norm_, fixed_;
@@ -221,9 +330,10 @@ Eigen::Matrix3Xd SecondVariation::spin_at(const Eigen::VectorXd& at) const {
   return result;
 }
 
-SecondVariation second_variation(const RodSpan& span, const ClampFrames& frames, double force,
+SecondVariation second_variation(const RodSpan& span, const RodMesh& mesh,
+                                 const ClampFrames& frames, double force,
                                  const SpanStates& states) {
-  const VariationProblem variations(span, frames, force, states);
+  const VariationProblem variations(span, mesh, frames, force, states);
   SecondVariation result;
   if (!variations.finite()) return result;
   const ConstrainedPencil pencil = variations.pencil();

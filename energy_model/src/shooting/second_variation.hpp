@@ -35,16 +35,25 @@ using SpanStates = std::function<std::vector<RodState>(const std::vector<double>
 ///     Q(eta) = int eta' . (R K R^T eta') - m . (eta x eta')
 ///                  + (n.t) |eta|^2 - (n.eta) (t.eta) ds,
 /// n and m with what the grips add. eta is zero where a clamp holds the frame and along t where it
-/// holds the direction alone; int eta x t ds between neighbouring grips is zero. It leaves the
+/// holds the direction alone; int eta x t ds between neighbouring grips is zero. Where the rod
+/// touches a body that pushes with f, or p ds, dr = int eta x t ds stays on it, N.dr = 0, and its
+/// curvature costs
+///     - f dr.(H dr),   of a point that may slide also   + f (N.(eta x t) + dr.(H t))^2 / g'',
+/// H the normal's derivative, g'' that of the gap along the rod. It leaves the
 /// plane even of a planar shape, so that buckling sideways and turning about a line are among its
 /// modes. Of a round rod that nothing twists eta along t costs nothing and is left out, with c.
+///
+/// What lies is kept on its surface at the ends of elements alone, so that no shape is called more
+/// stable than it is.
 ///
 /// Eigenvalues over int |eta'|^2 + |eta|^2 ds, by finite elements of fourth order and the signs of
 /// pivots (ConstrainedPencil).
 /// @param force  what bends the span over lengths of one over its root: of the elements
 /// @return counts of -1 if the states are not finite
-[[nodiscard]] SecondVariation second_variation(const RodSpan& span, const ClampFrames& frames,
-                                               double force, const SpanStates& states);
+/// @param mesh  with what the rod touches; empty: nothing
+[[nodiscard]] SecondVariation second_variation(const RodSpan& span, const RodMesh& mesh,
+                                               const ClampFrames& frames, double force,
+                                               const SpanStates& states);
 
 /// Writes the verdict into a shape that is an equilibrium: `converged`, or `saddle` if it is
 /// unstable; neutral modes are named in the message.

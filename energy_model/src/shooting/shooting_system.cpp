@@ -6,14 +6,13 @@
 #include <optional>
 #include <vector>
 
+#include "base/spin.hpp"
+
 namespace dlo::energy_model {
 namespace {
 
-Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
-  Eigen::Matrix3d matrix;
-  matrix << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
-  return matrix;
-}
+constexpr double largest_turn = 0.5;   // of a tangent in one Newton step [rad]
+constexpr double longest_share = 0.3;  // of the way to what is next, by which a contact moves
 
 /// The rotation b a^T by its axis, as long as its angle.
 Eigen::Vector3d rotation_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
@@ -52,10 +51,6 @@ double unit_of_force(const RodSpan& span, const std::vector<RodState>& start) {
 
 /// Equations as they come.
 struct ShootingSystem::Rows {
-  struct Block {
-    Eigen::Index column;
-    Eigen::MatrixXd values;
-  };
   Eigen::VectorXd values;
   Triplets* derivatives;
   Eigen::Index row;
@@ -66,6 +61,7 @@ struct ShootingSystem::Rows {
       for (const Block& block : blocks) {
         for (Eigen::Index i = 0; i < block.values.rows(); ++i) {
           for (Eigen::Index j = 0; j < block.values.cols(); ++j) {
+            if (block.values(i, j) == 0) continue;
             derivatives->emplace_back(static_cast<int>(row + i), static_cast<int>(block.column + j),
                                       block.values(i, j));
           }
@@ -100,6 +96,56 @@ ShootingSystem::ShootingSystem(const RodSpan& span, const RodMesh& mesh, const C
   for (const RodState& state : start) {
     start_.push_back(options.planar ? in_plane(state) : state);
   }
+  unknowns_ = equations_ = per_node() * mesh.s.size();
+  number_contacts();
+  share_arc_lengths();
+}
+
+void ShootingSystem::number_contacts() {
+  contacts_.assign(static_cast<std::size_t>(mesh_.s.size()), -1);
+  arc_length_ = contacts_;
+  for (const RodContact& contact : mesh_.contacts.nodes) {
+    const auto node = static_cast<std::size_t>(contact.node);
+    contacts_[node] = &contact - mesh_.contacts.nodes.data();
+    if (contact.moves) arc_length_[node] = unknowns_++;
+    force_.push_back(contact.pushes ? unknowns_++ : -1);
+    if (contact.touched) equations_ += contact.moves ? 2 : 1;
+  }
+  for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
+    const bool lies = mesh_.contacts.surface_of(i) != nullptr;
+    if (lies && (i == 0 || mesh_.contacts.surface_of(i - 1) == nullptr)) equations_ += 4;
+  }
+}
+
+bool ShootingSystem::is_station(Eigen::Index i) const {
+  const auto node = static_cast<std::size_t>(i);
+  return i == 0 || i == mesh_.intervals() || mesh_.hold[node] != nullptr || contacts_[node] >= 0 ||
+         !mesh_.load.col(i).isZero(0) || mesh_.section[node - 1] != mesh_.section[node];
+}
+
+void ShootingSystem::share_arc_lengths() {
+  if (std::ranges::all_of(arc_length_, [](Eigen::Index unknown) { return unknown < 0; })) return;
+  for (Eigen::Index before = 0; before < mesh_.intervals();) {
+    Eigen::Index after = before + 1;
+    while (!is_station(after)) ++after;
+    const double way = mesh_.s[after] - mesh_.s[before];
+    for (Eigen::Index i = before; i < after; ++i) {
+      shares_.push_back(
+          {before, after, (mesh_.s[i] - mesh_.s[before]) / way, mesh_.width(i) / way});
+    }
+    before = after;
+  }
+}
+
+std::vector<double> ShootingSystem::start_forces() const {
+  std::vector<double> forces;
+  for (const RodContact& contact : mesh_.contacts.nodes) forces.push_back(contact.force);
+  return forces;
+}
+
+const RodContact* ShootingSystem::contact_at(Eigen::Index node) const {
+  const Eigen::Index contact = contacts_[static_cast<std::size_t>(node)];
+  return contact < 0 ? nullptr : &mesh_.contacts.nodes[static_cast<std::size_t>(contact)];
 }
 
 RodState ShootingSystem::in_plane(const RodState& state) const {
@@ -115,39 +161,60 @@ RodState ShootingSystem::in_plane(const RodState& state) const {
   return result;
 }
 
-std::vector<RodState> ShootingSystem::moved(const std::vector<RodState>& nodes,
-                                            const Eigen::VectorXd& step) const {
+ShootingPoint ShootingSystem::moved(const ShootingPoint& point, const Eigen::VectorXd& step) const {
   const Eigen::Index positions = positions_.cols();
   const Eigen::Index turns = turns_.cols();
-  std::vector<RodState> result = nodes;
+  ShootingPoint result = point;
   Eigen::Index at = 0;
-  for (RodState& state : result) {
+  for (RodState& state : result.nodes) {
     state.r += positions_ * step.segment(at, positions);
     state.R = rotation_by(turns_ * step.segment(at + spin_at(), turns)) * state.R;
     state.m += rate_ * (turns_ * step.segment(at + m_at(), turns));
     state.n += rate_ * rate_ * (positions_ * step.segment(at + n_at(), positions));
     at += per_node();
   }
+  for (std::size_t k = 0; k < force_.size(); ++k) {
+    if (force_[k] >= 0) result.forces[k] += rate_ * rate_ * step[force_[k]];
+  }
+  for (std::size_t i = 0; i < arc_length_.size(); ++i) {
+    if (arc_length_[i] >= 0) result.s[static_cast<Eigen::Index>(i)] += step[arc_length_[i]];
+  }
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    const auto& [before, after, begin, width] = shares_[i];
+    const auto node = static_cast<Eigen::Index>(i);
+    if (node == before) continue;
+    result.s[node] = result.s[before] + begin * (result.s[after] - result.s[before]);
+  }
   return result;
 }
 
-double ShootingSystem::turn(const std::vector<RodState>& nodes, const Eigen::VectorXd& step) const {
-  double largest = 0;
+double ShootingSystem::allowed_part(const ShootingPoint& point, const Eigen::VectorXd& step) const {
+  double turn = 0;
   Eigen::Index at = spin_at();
-  for (const RodState& node : nodes) {
+  for (const RodState& node : point.nodes) {
     const Eigen::Vector3d spin = turns_ * step.segment(at, turns_.cols());
-    largest = std::max(largest, spin.cross(node.t()).norm());
+    turn = std::max(turn, spin.cross(node.t()).norm());
     at += per_node();
   }
-  return largest;
+  double part = turn > largest_turn ? largest_turn / turn : 1;
+  for (const Share& share : shares_) {
+    for (const Eigen::Index node : {share.before, share.after}) {
+      const Eigen::Index unknown = arc_length_[static_cast<std::size_t>(node)];
+      if (unknown < 0) continue;
+      const double way = longest_share * (point.s[share.after] - point.s[share.before]);
+      if (std::abs(part * step[unknown]) > way) part = way / std::abs(step[unknown]);
+    }
+  }
+  return part;
 }
 
-bool ShootingSystem::evaluate(const std::vector<RodState>& nodes, Eigen::VectorXd& equations,
+bool ShootingSystem::evaluate(const ShootingPoint& point, Eigen::VectorXd& equations,
                               Triplets* derivatives) const {
-  Rows rows{Eigen::VectorXd(size()), derivatives, 0};
-  start_equations(nodes.front(), rows);
+  const std::vector<RodState>& nodes = point.nodes;
+  Rows rows{Eigen::VectorXd(equations_), derivatives, 0};
+  start_equations(point, rows);
   for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
-    if (out_of_time() || !interval_equations(nodes, i, rows)) return false;
+    if (out_of_time() || !interval_equations(point, i, rows)) return false;
   }
   // Where a clamp holds the end, its conditions came in place of what is continuous elsewhere.
   const Eigen::Index last = mesh_.intervals() * per_node();
@@ -159,9 +226,10 @@ bool ShootingSystem::evaluate(const std::vector<RodState>& nodes, Eigen::VectorX
   return equations.allFinite();
 }
 
-double ShootingSystem::gap(const std::vector<RodState>& nodes) const {
+double ShootingSystem::gap(const ShootingPoint& point) const {
+  const std::vector<RodState>& nodes = point.nodes;
   Eigen::VectorXd equations;
-  if (!evaluate(nodes, equations, nullptr)) return std::numeric_limits<double>::infinity();
+  if (!evaluate(point, equations, nullptr)) return std::numeric_limits<double>::infinity();
   double largest = equations.cwiseAbs().maxCoeff();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     if (clamps_[i] == nullptr) continue;
@@ -195,13 +263,66 @@ Eigen::Matrix3Xd ShootingSystem::frame_equations(const RodState& node, Eigen::In
   return turns_.cols() == 1 ? turns_ : across;
 }
 
-void ShootingSystem::start_equations(const RodState& node, Rows& rows) const {
+/// What a contact takes from n, and its derivatives.
+struct ShootingSystem::Push {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  std::vector<Block> by;  // of the force in its unit
+
+  /// Blocks of the balance of forces, of which it is subtracted.
+  [[nodiscard]] std::vector<Block> with(std::vector<Block> blocks) const {
+    blocks.insert(blocks.end(), by.begin(), by.end());
+    return blocks;
+  }
+};
+
+ShootingSystem::Push ShootingSystem::push_at(const ShootingPoint& point, Eigen::Index i) const {
+  Push push;
+  const RodContact* contact = contact_at(i);
+  if (contact == nullptr || !contact->pushes) return push;
+  const auto index = static_cast<std::size_t>(contacts_[static_cast<std::size_t>(i)]);
+  const obstacle::Gap gap = contact->gap(point.nodes[static_cast<std::size_t>(i)].r);
+  push.force = point.forces[index] * gap.gradient;
+  push.by = {{force_[index], -positions_.transpose() * gap.gradient},
+             {i * per_node(), -point.forces[index] / (rate_ * rate_) *
+                                  (positions_.transpose() * gap.hessian * positions_)}};
+  return push;
+}
+
+void ShootingSystem::contact_equations(const RodState& node, Eigen::Index i, Rows& rows) const {
+  const Eigen::Index column = i * per_node();
+  const RodContact* contact = contact_at(i);
+  if (contact != nullptr && contact->touched) {
+    const obstacle::Gap gap = contact->gap(node.r);
+    rows.add(Eigen::VectorXd::Constant(1, gap.value),
+             {{column, gap.gradient.transpose() * positions_}});
+    if (contact->moves) {
+      rows.add(Eigen::VectorXd::Constant(1, gap.gradient.dot(node.t())),
+               {{column, (gap.hessian * node.t()).transpose() * positions_},
+                {column + spin_at(), node.t().cross(gap.gradient).transpose() * turns_}});
+    }
+  }
+  const Surface* surface = i < mesh_.intervals() ? mesh_.contacts.surface_of(i) : nullptr;
+  if (surface == nullptr || (i > 0 && mesh_.contacts.surface_of(i - 1) != nullptr)) return;
+  const LyingConditions lying = lying_conditions(*surface, mesh_.section_of(i), node);
+  const Eigen::Vector4d unit(1, 1, 1 / rate_, 1 / (rate_ * rate_));
+  const ByState by = unit.asDiagonal() * lying.by_state;
+  rows.add(unit.cwiseProduct(lying.values),
+           {{column, by.leftCols<3>() * positions_},
+            {column + spin_at(), by.middleCols<3>(3) * turns_},
+            {column + m_at(), rate_ * by.middleCols<3>(6) * turns_},
+            {column + n_at(), rate_ * rate_ * by.rightCols<3>() * positions_}});
+}
+
+void ShootingSystem::start_equations(const ShootingPoint& point, Rows& rows) const {
+  const RodState& node = point.nodes.front();
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(positions_.cols(), positions_.cols());
+  contact_equations(node, 0, rows);
   if (mesh_.hold.front() != nullptr) {
     rows.add(positions_.transpose() * (node.r - mesh_.hold.front()->position), {{0, one}});
   } else {
-    const Eigen::Vector3d n = node.n + mesh_.load.col(0);
-    rows.add(positions_.transpose() * n / (rate_ * rate_), {{n_at(), one}});
+    const Push push = push_at(point, 0);
+    const Eigen::Vector3d n = node.n + mesh_.load.col(0) + push.force;
+    rows.add(-positions_.transpose() * n / (rate_ * rate_), push.with({{n_at(), -one}}));
   }
   const Eigen::Index free = frame_equations(node, 0, rows).cols();
   if (free == turns_.cols()) return;
@@ -220,40 +341,67 @@ void ShootingSystem::start_equations(const RodState& node, Rows& rows) const {
   }
 }
 
-bool ShootingSystem::interval_equations(const std::vector<RodState>& nodes, Eigen::Index i,
+std::vector<ShootingSystem::Block> ShootingSystem::with_width(
+    Eigen::Index i, const Eigen::VectorXd& by_width) const {
+  std::vector<Block> blocks;
+  if (shares_.empty()) return blocks;
+  const Share& share = shares_[static_cast<std::size_t>(i)];
+  const Eigen::Index before = arc_length_[static_cast<std::size_t>(share.before)];
+  const Eigen::Index after = arc_length_[static_cast<std::size_t>(share.after)];
+  if (before >= 0) blocks.push_back({before, -share.width * by_width});
+  if (after >= 0) blocks.push_back({after, share.width * by_width});
+  return blocks;
+}
+
+bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index i,
                                         Rows& rows) const {
   const Eigen::Index positions = positions_.cols();
   const Eigen::Index turns = turns_.cols();
-  const RodState& node = nodes[static_cast<std::size_t>(i)];
-  const RodState& next = nodes[static_cast<std::size_t>(i + 1)];
+  const RodState& node = point.nodes[static_cast<std::size_t>(i)];
+  const RodState& next = point.nodes[static_cast<std::size_t>(i + 1)];
   const double force = rate_ * rate_;
+  RodPiece piece = piece_of(span_, mesh_, i);
+  piece.begin = point.s[i];
+  piece.length = point.s[i + 1] - point.s[i];
+  // A free rod ends elsewhere as it begins elsewhere; on a surface the pressure changes with r.
+  const Eigen::Index placed = piece.surface != nullptr ? positions : 0;
   RodState end = node;
-  RodVariation change(rows.derivatives != nullptr ? 2 * turns + positions : 0);
+  RodVariation change(rows.derivatives != nullptr ? placed + 2 * turns + positions : 0);
   if (rows.derivatives != nullptr) {
-    change.spin.leftCols(turns) = turns_;
-    change.m.middleCols(turns, turns) = rate_ * turns_;
+    change.r.leftCols(placed) = positions_.leftCols(placed);
+    change.spin.middleCols(placed, turns) = turns_;
+    change.m.middleCols(placed + turns, turns) = rate_ * turns_;
     change.n.rightCols(positions) = force * positions_;
   }
   RodIntegrals integrals;
-  if (!follow_rod(mesh_.section_of(i), span_.natural, mesh_.s[i], mesh_.width(i), tolerance_, end,
-                  change, integrals)) {
-    return false;
-  }
+  if (!follow_rod(piece, tolerance_, end, change, integrals)) return false;
+  const RodRate by_width =
+      rate_of({piece.section, piece.natural, point.s[i + 1], 0, piece.surface}, end);
   const Eigen::Index own = i * per_node();
   const Eigen::Index other = own + per_node();
+  const Eigen::Index from = own + (placed > 0 ? 0 : spin_at());
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(positions, positions);
-  rows.add(positions_.transpose() * (end.r - next.r),
-           {{own, one}, {own + spin_at(), positions_.transpose() * change.r}, {other, -one}});
+  std::vector<Block> moved = with_width(i, positions_.transpose() * by_width.r);
+  moved.push_back({from, positions_.transpose() * change.r});
+  moved.push_back({other, -one});
+  if (placed == 0) moved.push_back({own, one});
+  rows.add(positions_.transpose() * (end.r - next.r), moved);
   const Eigen::Vector3d rotation = rotation_between(next.R, end.R);
   const Eigen::Matrix3d rate = rotation_rate(rotation);
-  rows.add(turns_.transpose() * rotation,
-           {{own + spin_at(), turns_.transpose() * rate * change.spin},
-            {other + spin_at(), -turns_.transpose() * rate.transpose() * turns_}});
+  std::vector<Block> turned = with_width(i, turns_.transpose() * rate * by_width.spin);
+  turned.push_back({from, turns_.transpose() * rate * change.spin});
+  turned.push_back({other + spin_at(), -turns_.transpose() * rate.transpose() * turns_});
+  rows.add(turns_.transpose() * rotation, turned);
+  contact_equations(next, i + 1, rows);
   if (const RodSpan::Hold* hold = mesh_.hold[static_cast<std::size_t>(i + 1)]) {
     rows.add(positions_.transpose() * (next.r - hold->position), {{other, one}});
   } else {
-    rows.add(positions_.transpose() * (end.n - mesh_.load.col(i + 1) - next.n) / force,
-             {{own + n_at(), one}, {other + n_at(), -one}});
+    const Push push = push_at(point, i + 1);
+    std::vector<Block> pulled = with_width(i, positions_.transpose() * by_width.n / force);
+    pulled.push_back({from, positions_.transpose() * change.n / force});
+    pulled.push_back({other + n_at(), -one});
+    rows.add(positions_.transpose() * (end.n - mesh_.load.col(i + 1) - push.force - next.n) / force,
+             push.with(std::move(pulled)));
   }
   const Eigen::Matrix3Xd free = frame_equations(next, i + 1, rows);
   if (free.cols() == turns) return true;
@@ -265,10 +413,11 @@ bool ShootingSystem::interval_equations(const std::vector<RodState>& nodes, Eige
   const Eigen::Vector3d q = mesh_.pull.col(i + 1);
   const Eigen::Matrix3d by_spin =
       next.t() * q.transpose() - next.t().dot(q) * Eigen::Matrix3d::Identity();
-  rows.add(kept * (end.m - next.t().cross(q) - next.m) / rate_,
-           {{own + spin_at(), kept * change.m / rate_},
-            {other + spin_at(), -kept * by_spin * turns_ / rate_},
-            {other + m_at(), -kept * turns_}});
+  std::vector<Block> bent = with_width(i, kept * by_width.m / rate_);
+  bent.push_back({from, kept * change.m / rate_});
+  bent.push_back({other + spin_at(), -kept * by_spin * turns_ / rate_});
+  bent.push_back({other + m_at(), -kept * turns_});
+  rows.add(kept * (end.m - next.t().cross(q) - next.m) / rate_, bent);
   return true;
 }
 

@@ -19,15 +19,14 @@ double longest_of(const RodMesh& mesh) {
   return (mesh.s.tail(mesh.intervals()) - mesh.s.head(mesh.intervals())).maxCoeff();
 }
 
-void add_energies(const RodSpan& span, const RodMesh& mesh, double tolerance,
-                  SpanEquilibrium& equilibrium) {
+void add_energies(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
+  const RodMesh mesh = closed_mesh(span, equilibrium);
   for (Eigen::Index i = 0; i < mesh.s.size(); ++i) {
     RodState state = equilibrium.nodes[static_cast<std::size_t>(i)];
     equilibrium.energy.load -= mesh.load.col(i).dot(state.r);
     if (i == mesh.intervals()) break;
     RodIntegrals integrals;
-    if (!follow_rod(mesh.section_of(i), span.natural, mesh.s[i], mesh.width(i), tolerance, state,
-                    integrals)) {
+    if (!follow_rod(piece_of(span, mesh, i), tolerance, state, integrals)) {
       equilibrium.converged = false;
       equilibrium.message = "the integrator gave up on the energies";
       equilibrium.energy = {NAN, NAN, NAN, NAN};
@@ -62,14 +61,19 @@ SpanEquilibrium close_span(const RodSpan& span, const RodMesh& mesh,
   const ShootingSystem system(span, mesh, frames, options, start);
   SpanEquilibrium equilibrium;
   equilibrium.frames = frames;
-  equilibrium.s = mesh.s;
-  equilibrium.nodes = system.start();
+  equilibrium.contacts = mesh.contacts;
+  ShootingPoint point = system.start();
   const bool drifting = span.round() && span.twisted();
-  ClosedGaps closed = close_gaps(system, equilibrium.nodes, options.max_iterations, drifting);
+  ClosedGaps closed = close_gaps(system, point, options.max_iterations, drifting);
   equilibrium.converged = closed.converged;
   equilibrium.message = std::move(closed.message);
   equilibrium.shots = closed.shots;
-  equilibrium.residual = system.gap(equilibrium.nodes);
+  equilibrium.residual = system.gap(point);
+  equilibrium.s = std::move(point.s);
+  equilibrium.nodes = std::move(point.nodes);
+  for (std::size_t k = 0; k < point.forces.size(); ++k) {
+    equilibrium.contacts.nodes[k].force = point.forces[k];
+  }
   if (!equilibrium.converged) return equilibrium;
   equilibrium.converged = equilibrium.residual <= system.closed();
   equilibrium.message = equilibrium.converged ? "converged" : "the rod does not close at a node";
@@ -91,15 +95,25 @@ SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh, std::vector<RodSta
     start.back().n.setZero();
     start.back().m.setZero();
   }
-  add_energies(span, mesh, options.tolerance, equilibrium);
-  if (equilibrium.converged) judge_stability(span, options.tolerance, equilibrium);
+  complete(span, options.tolerance, equilibrium);
   return equilibrium;
+}
+
+RodMesh closed_mesh(const RodSpan& span, const SpanEquilibrium& equilibrium) {
+  RodMesh mesh = mesh_at(span, equilibrium.s);
+  mesh.contacts = equilibrium.contacts;
+  return mesh;
+}
+
+void complete(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
+  add_energies(span, tolerance, equilibrium);
+  if (equilibrium.converged) judge_stability(span, tolerance, equilibrium);
 }
 
 void judge_stability(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium) {
   equilibrium.stability = second_variation(
-      span, equilibrium.frames, bending_force(span, equilibrium.nodes),
-      [&](const std::vector<double>& s) {
+      span, closed_mesh(span, equilibrium), equilibrium.frames,
+      bending_force(span, equilibrium.nodes), [&](const std::vector<double>& s) {
         return states_at(equilibrium, span, s, std::max(tolerance, variation_tolerance));
       });
   if (equilibrium.stability.negative < 0) {
@@ -118,7 +132,9 @@ std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpa
   const auto follow = [&](Eigen::Index i, double from, double to, RodState& state) {
     const RodSection& section = section_at(span, (equilibrium.s[i] + equilibrium.s[i + 1]) / 2);
     RodIntegrals integrals;
-    if (follow_rod(section, span.natural, from, to - from, tolerance, state, integrals)) return;
+    const RodPiece piece{section, span.natural, from, to - from,
+                         equilibrium.contacts.surface_of(i)};
+    if (follow_rod(piece, tolerance, state, integrals)) return;
     state.r.setConstant(std::numeric_limits<double>::quiet_NaN());
     state.R.setConstant(std::numeric_limits<double>::quiet_NaN());
   };
@@ -140,8 +156,7 @@ void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,
     RodState state = states[i];
     const auto interval = static_cast<Eigen::Index>(i);
     RodIntegrals integrals;
-    const bool followed = follow_rod(mesh.section_of(interval), span.natural, mesh.s[interval],
-                                     mesh.width(interval), tolerance, state, integrals);
+    const bool followed = follow_rod(piece_of(span, mesh, interval), tolerance, state, integrals);
     return transported(followed ? state.R : states[i].R, states[i + 1].t());
   };
   for (std::size_t i = first; i + 1 < states.size(); ++i) states[i + 1].R = carried(i);

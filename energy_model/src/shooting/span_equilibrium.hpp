@@ -24,6 +24,7 @@ struct SpanEquilibrium {
   Energies energy;              ///< zero where points sit at the problem's first grip
   std::vector<double> turns;    ///< int u_3 ds of each interval
   ClampFrames frames;           ///< that it is an equilibrium with
+  RodContacts contacts;         ///< and what it touches
   SecondVariation stability;    ///< of an equilibrium that has converged
 
   [[nodiscard]] bool stable() const { return converged && stability.stable(); }
@@ -42,6 +43,12 @@ struct SpanEquilibrium {
 [[nodiscard]] SpanEquilibrium shoot_span(const RodSpan& span, RodMesh mesh,
                                          std::vector<RodState> start, const ClampFrames& frames,
                                          const ShootingOptions& options);
+
+/// The mesh on which it has been closed.
+[[nodiscard]] RodMesh closed_mesh(const RodSpan& span, const SpanEquilibrium& equilibrium);
+
+/// Energies and stability of an equilibrium that close_span() has found.
+void complete(const RodSpan& span, double tolerance, SpanEquilibrium& equilibrium);
 
 /// Looks at the second variation of an equilibrium.
 /// @param tolerance  of the integrator

@@ -8,24 +8,25 @@
 
 namespace dlo::energy_model {
 
-/// Whether the contacts of a problem's rod can be confirmed: it is round, of one section, straight
-/// by nature and not twisted, and its obstacles are rigid.
+/// Whether the contacts of a problem's rod can be confirmed: it is straight by nature and its
+/// obstacles are rigid.
 [[nodiscard]] bool can_confirm(const Problem& problem);
 
-/// The equilibrium next to a shape that says which parts of the rod touch which obstacles: of a
-/// round rod of one section, straight by nature and not twisted, held by any grips, on rigid bodies
-/// of any form. Whether it is one is judged here: gaps, forces and pressures of the right sign, a
-/// positive second variation.
-/// @param shape  of this problem or of a similar one, with its grips' reactions and contacts
+/// The equilibrium next to a shape that says which parts of the rod touch which obstacles: of a rod
+/// that is straight by nature, held by any grips, on rigid bodies of any form. Whether it is one is
+/// judged here: gaps, forces and pressures of the right sign, a positive second variation.
+/// @param shape      of this problem or of a similar one, with its grips' reactions and contacts
+/// @param tolerance  of the integrator
 /// @return nothing where the problem is another one or the rod touches as it is not known here: it
 ///         lies on both sides of a grip, or next to where it lies elsewhere
 [[nodiscard]] std::optional<Equilibrium> confirm_contacts(const Problem& problem,
                                                           const Equilibrium& shape,
+                                                          double tolerance,
                                                           const Deadline& deadline);
 
 /// The same on a way to another shape: not judged, without energies.
 [[nodiscard]] std::optional<Equilibrium> close_contacts(const Problem& problem,
-                                                        const Equilibrium& shape,
+                                                        const Equilibrium& shape, double tolerance,
                                                         const Deadline& deadline);
 
 }  // namespace dlo::energy_model

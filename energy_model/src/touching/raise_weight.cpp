@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "base/sized_samples.hpp"
+#include "dlo/energy_model/natural_frame.hpp"
+#include "problem/rod_law.hpp"
 #include "touching/confirm_contacts.hpp"
 
 namespace dlo::energy_model {
@@ -14,6 +16,7 @@ namespace {
 
 constexpr double first_gamma = 1e-3;     // straight but for 1e-4 l
 constexpr double smallest_ratio = 1e-4;  // of a step of ln(weight)
+constexpr double way_tolerance = 1e-10;  // of the integrator, but for the last shape
 constexpr double allowed_depth = 1e-9;   // of the tip, in l; a tenth of a converged shape's
 constexpr Eigen::Index sampled = 129;    // points of a shape, to see where it is deepest
 constexpr Eigen::Index compared = 17;    // points of two shapes
@@ -24,7 +27,7 @@ double gamma_of(const Problem& problem) {
   const double l = problem.length;
   double force = l * problem.weight_per_length.norm();
   for (const Load& load : problem.loads) force += load.force.norm();
-  return force * l * l / problem.bending_stiffness;
+  return force * l * l / bending_unit(problem);
 }
 
 Problem with_share(Problem problem, double share) {
@@ -36,9 +39,13 @@ Problem with_share(Problem problem, double share) {
 Equilibrium straight(const Problem& problem) {
   Equilibrium shape;
   shape.grips.resize(1);
-  shape.sample = [clamp = problem.grips.front(),
-                  length = problem.length](std::span<const double> arc_lengths) {
+  const bool directors = has_material_directors(problem);
+  const Eigen::Vector3d d1 =
+      directors ? Eigen::Vector3d(first_frame(problem).col(0)) : Eigen::Vector3d::Zero();
+  shape.sample = [clamp = problem.grips.front(), length = problem.length, directors,
+                  d1](std::span<const double> arc_lengths) {
     Samples samples = sized_samples(arc_lengths, length);
+    if (directors) samples.d1 = d1.replicate(1, samples.points.cols());
     const Eigen::Vector3d t = clamp.direction->normalized();
     for (std::size_t i = 0; i < arc_lengths.size(); ++i) {
       const auto column = static_cast<Eigen::Index>(i);
@@ -99,7 +106,7 @@ std::optional<std::vector<ContactPart>> other_contacts(const Problem& problem,
 std::optional<Equilibrium> settle(const Problem& problem, Equilibrium start,
                                   const Deadline& deadline) {
   for (int changes = 0; changes < most_changes; ++changes) {
-    std::optional<Equilibrium> found = close_contacts(problem, start, deadline);
+    std::optional<Equilibrium> found = close_contacts(problem, start, way_tolerance, deadline);
     if (!found) return std::nullopt;
     if (!found->sample) {
       // What lay may have come to an end: then only the tip touches.
@@ -127,7 +134,7 @@ bool is_next(const Equilibrium& before, const Equilibrium& after, double length)
 
 bool is_one_clamp_over_planes(const Problem& problem) {
   const Grip& grip = problem.grips.front();
-  const bool clamped = problem.grips.size() == 1 && grip.at == 0 && grip.direction && !grip.frame;
+  const bool clamped = problem.grips.size() == 1 && grip.at == 0 && grip.direction;
   return clamped && can_confirm(problem) && gamma_of(problem) > first_gamma &&
          std::ranges::all_of(problem.obstacles, [](const Obstacle& obstacle) {
            return obstacle.body.is_half_space();
@@ -136,7 +143,8 @@ bool is_one_clamp_over_planes(const Problem& problem) {
 
 }  // namespace
 
-std::optional<Equilibrium> raise_weight(const Problem& problem, const Deadline& deadline) {
+std::optional<Equilibrium> raise_weight(const Problem& problem, double tolerance,
+                                        const Deadline& deadline) {
   check(problem);
   if (!is_one_clamp_over_planes(problem)) return std::nullopt;
   double share = first_gamma / gamma_of(problem);
@@ -157,7 +165,7 @@ std::optional<Equilibrium> raise_weight(const Problem& problem, const Deadline& 
     ratio = std::min(0.5, 1.5 * ratio);
   }
   if (share == 1) {
-    std::optional<Equilibrium> result = confirm_contacts(problem, *shape, deadline);
+    std::optional<Equilibrium> result = confirm_contacts(problem, *shape, tolerance, deadline);
     if (result) result->evaluations += shape->evaluations;
     return result;
   }

@@ -1,4 +1,4 @@
-#include "exact/solved_rod.hpp"
+#include "shooting/solved_rod.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,13 +21,12 @@ namespace {
 /// Cross-sections just before what the nodes of a span add to force and moment.
 std::vector<RodState> before_nodes(const RodSpan& span, const SpanEquilibrium& equilibrium,
                                    double tolerance) {
-  const RodMesh mesh = mesh_at(span, equilibrium.s);
+  const RodMesh mesh = closed_mesh(span, equilibrium);
   std::vector<RodState> before(1);
   for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
     RodState end = equilibrium.nodes[static_cast<std::size_t>(i)];
     RodIntegrals integrals;
-    if (!follow_rod(mesh.section_of(i), span.natural, mesh.s[i], mesh.width(i), tolerance, end,
-                    integrals)) {
+    if (!follow_rod(piece_of(span, mesh, i), tolerance, end, integrals)) {
       end.m.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
     before.push_back(end);

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+namespace dlo::energy_model {
+
+/// A section of the rod, in units of the rod.
+struct RodSection {
+  double bending = 1;  ///< b, its EI over bending_unit(); about d1 where bending_2 is given
+  double torsion = 0;  ///< c, its GJ over the same unit; 0: the twist is free and costs nothing
+  Eigen::Vector3d weight = Eigen::Vector3d::Zero();  ///< w
+  std::optional<double> bending_2 = std::nullopt;    ///< about d2; none: as about d1
+
+  /// About d1, d2 and the tangent.
+  [[nodiscard]] Eigen::Vector3d stiffness() const {
+    return {bending, bending_2.value_or(bending), torsion};
+  }
+  /// K^-1; of a twist that is free zero: no torque twists it.
+  [[nodiscard]] Eigen::Vector3d compliance() const {
+    return {1 / bending, 1 / bending_2.value_or(bending), torsion > 0 ? 1 / torsion : 0.0};
+  }
+};
+
+/// Cross-section of an inextensible Kirchhoff rod with material directors, in units of its length
+/// and stiffness (l, EI/l, EI/l^2).
+struct RodState {
+  Eigen::Vector3d r = Eigen::Vector3d::Zero();      ///< position
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  ///< columns d1, d2 and the tangent t
+  Eigen::Vector3d m = Eigen::Vector3d::Zero();  ///< moment of what lies beyond on what lies before
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();  ///< force of what lies beyond on what lies before
+
+  [[nodiscard]] Eigen::Vector3d t() const { return R.col(2); }
+};
+
+}  // namespace dlo::energy_model

@@ -1,0 +1,253 @@
+#include "touching/contact_start.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dlo/energy_model/natural_frame.hpp"
+#include "problem/reduction.hpp"
+#include "problem/rod_law.hpp"
+#include "shooting/span_equilibrium.hpp"
+#include "shooting/span_shooting.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr double same_place = 1e-9;       // of arc lengths, in l
+constexpr double growth_of_interval = 3;  // its length times the root of the force that bends
+constexpr double twist_step = 1e-4;       // over which d1's turn is measured, in l
+
+class Layout {
+ public:
+  Layout(const Problem& problem, const Equilibrium& shape)
+      : problem_(problem),
+        shape_(shape),
+        l_(problem.length),
+        force_unit_(bending_unit(problem) / (l_ * l_)) {
+    start_.span = whole(problem);
+    const Eigen::Vector3d& origin = problem.grips.front().position;
+    for (const Obstacle& obstacle : problem.obstacles) {
+      start_.bodies.push_back(obstacle.body.seen_from(origin, Eigen::Matrix3d::Identity(), l_));
+    }
+    hold_frames();
+  }
+
+  [[nodiscard]] std::optional<ContactStart> run(double tolerance) {
+    make_nodes();
+    if (!place_contacts() || !lies_alone()) return std::nullopt;
+    sample();
+    if (!has_material_directors(problem_)) {
+      carry_frames(start_.span, start_.mesh, tolerance, start_.states);
+    }
+    if (!press(tolerance)) return std::nullopt;
+    return std::move(start_);
+  }
+
+ private:
+  void hold_frames() {
+    RodSpan& span = start_.span;
+    double first_roll = 0;
+    if (has_material_directors(problem_) && !span.clamps.empty()) {
+      span.first_frame = first_frame(problem_);
+      for (const RodSpan::Hold& hold : span.holds) {
+        const std::optional<FrameHold>& frame = problem_.grips[hold.grip].frame;
+        if (hold.at == span.clamps.front().at && frame) first_roll = frame->roll;
+      }
+    }
+    start_.frames = released_frames(span);
+    for (std::size_t k = 0; k < span.clamps.size(); ++k) {
+      const RodSpan::Clamp& clamp = span.clamps[k];
+      if (!clamp.frame) continue;
+      start_.frames[k] =
+          rolled(frame_of(clamp.frame->d1, clamp.direction), clamp.frame->turns.roll + first_roll);
+    }
+  }
+
+  /// Next to an end, a grip, a load or a part of the rod it is there.
+  [[nodiscard]] double snapped(double s) const {
+    std::vector<double> fixed = {0, start_.span.length};
+    for (const RodSpan::Hold& hold : start_.span.holds) fixed.push_back(hold.at);
+    for (const RodSpan::Load& load : start_.span.loads) fixed.push_back(load.at);
+    for (const RodSpan::Part& part : start_.span.parts) fixed.push_back(part.begin);
+    for (const double at : fixed) {
+      if (std::abs(at - s) < same_place) return at;
+    }
+    return s;
+  }
+
+  void make_nodes() {
+    double force = total_load(start_.span);
+    for (const Reaction& grip : shape_.grips) {
+      force = std::max(force, grip.force.norm() / force_unit_);
+    }
+    std::vector<double> touched;
+    for (const ContactPart& contact : shape_.contacts) {
+      for (const double at : {contact.begin, contact.end}) touched.push_back(snapped(at / l_));
+    }
+    std::sort(touched.begin(), touched.end());
+    const auto same = [](double a, double b) { return b - a < same_place; };
+    touched.erase(std::unique(touched.begin(), touched.end(), same), touched.end());
+    force = std::max(1.0, force / softest(start_.span));
+    const double longest = std::min(start_.span.length / 8, growth_of_interval / std::sqrt(force));
+    start_.mesh = make_mesh(start_.span, longest, touched);
+    start_.mesh.contacts.surface.resize(static_cast<std::size_t>(start_.mesh.intervals()));
+  }
+
+  [[nodiscard]] Eigen::Index node_at(double arc_length) const {
+    const Eigen::VectorXd& s = start_.mesh.s;
+    return std::lower_bound(s.begin(), s.end(), snapped(arc_length / l_) - same_place) - s.begin();
+  }
+
+  [[nodiscard]] bool place_contacts() {
+    for (const ContactPart& part : shape_.contacts) {
+      PlacedContact placed{part, node_at(part.begin), node_at(part.end), {}, {}};
+      if (part.kind == ContactKind::lying) {
+        placed.begin_force = add_end(placed.begin, part.begin_force);
+        placed.end_force = add_end(placed.end, part.end_force);
+        const double middle = (start_.mesh.s[placed.begin] + start_.mesh.s[placed.end]) / 2;
+        const Surface surface = surface_of(start_.bodies[part.obstacle], point_at(middle));
+        for (Eigen::Index i = placed.begin; i < placed.end; ++i) {
+          start_.mesh.contacts.surface[static_cast<std::size_t>(i)] = surface;
+        }
+        for (const auto& end : {placed.begin_force, placed.end_force}) {
+          if (end) start_.mesh.contacts.nodes[*end].surface = surface;
+        }
+      } else {
+        const bool is_fixed = acts_at(placed.begin);
+        placed.begin_force = add_end(placed.begin, part.force.norm());
+        if (!placed.begin_force) return false;
+        start_.mesh.contacts.nodes.back().touched = start_.bodies[part.obstacle];
+        if (is_fixed && part.kind != ContactKind::tip) return false;
+      }
+      start_.contacts.push_back(placed);
+    }
+    return std::ranges::is_sorted(start_.mesh.contacts.nodes, std::ranges::less_equal{},
+                                  &RodContact::node);
+  }
+
+  /// A node where contact ends and a force may be. @return nothing at a grip
+  std::optional<std::size_t> add_end(Eigen::Index node, double force) {
+    if (start_.mesh.hold[static_cast<std::size_t>(node)] != nullptr) return std::nullopt;
+    RodContact contact;
+    contact.node = node;
+    contact.moves = !acts_at(node);
+    contact.force = force / force_unit_;
+    start_.mesh.contacts.nodes.push_back(contact);
+    return start_.mesh.contacts.nodes.size() - 1;
+  }
+
+  /// Whether a node has to stay where it is: an end, a grip, a load or where another part begins.
+  [[nodiscard]] bool acts_at(Eigen::Index node) const {
+    const auto i = static_cast<std::size_t>(node);
+    return node == 0 || node == start_.mesh.intervals() || start_.mesh.hold[i] != nullptr ||
+           !start_.mesh.load.col(node).isZero(0) ||
+           start_.mesh.section[i - 1] != start_.mesh.section[i];
+  }
+
+  /// Nothing else happens within what lies, nor is it next to where the rod lies elsewhere.
+  [[nodiscard]] bool lies_alone() const {
+    for (const PlacedContact& contact : start_.contacts) {
+      for (Eigen::Index i = contact.begin + 1; i < contact.end; ++i) {
+        if (acts_at(i)) return false;
+      }
+      const bool lies = contact.part.kind == ContactKind::lying;
+      if (lies && start_.mesh.contacts.surface_of(contact.end) != nullptr) return false;
+    }
+    return true;
+  }
+
+  [[nodiscard]] Eigen::Vector3d point_at(double s) const {
+    const Samples sample = shape_.sample(std::array{std::min(s, 1.0) * l_});
+    return (sample.points.col(0) - problem_.grips.front().position) / l_;
+  }
+
+  /// Strains about d1, d2 and the tangent at s, of a shape that has a d1.
+  [[nodiscard]] double twist_at(double s) const {
+    const double from = std::max(0.0, s - twist_step);
+    const double to = std::min(1.0, s + twist_step);
+    const Samples sample = shape_.sample(std::array{from * l_, s * l_, to * l_});
+    const Eigen::Vector3d t = sample.tangents.col(1);
+    const Eigen::Vector3d d1 = sample.d1.col(1);
+    return (sample.d1.col(2) - sample.d1.col(0)).dot(t.cross(d1)) / (to - from);
+  }
+
+  [[nodiscard]] double torque_at(double s) const {
+    for (const TwistedPart& part : shape_.twists) {
+      if (part.begin <= s * l_ && s * l_ <= part.end) return part.torque / (force_unit_ * l_);
+    }
+    return 0;
+  }
+
+  void sample() {
+    const bool directors = has_material_directors(problem_);
+    for (Eigen::Index i = 0; i < start_.mesh.s.size(); ++i) {
+      const double s = start_.mesh.s[i];
+      const bool last = i == start_.mesh.intervals();
+      // Just after a node, where curvature may jump.
+      const Samples at = shape_.sample(std::array{std::min(s + same_place, 1.0) * l_});
+      const Eigen::Vector3d t = at.tangents.col(0).normalized();
+      RodState state;
+      state.r = (at.points.col(0) - problem_.grips.front().position) / l_;
+      state.R = frame_of(directors ? Eigen::Vector3d(at.d1.col(0)) : t.unitOrthogonal(), t);
+      if (!last) {
+        const RodSection& section = start_.mesh.section_of(i);
+        const Eigen::Vector3d bent = l_ * at.curvature.col(0);
+        const Eigen::Vector3d u(-bent.dot(state.R.col(1)), bent.dot(state.R.col(0)), 0);
+        state.m = state.R * section.stiffness().cwiseProduct(u) +
+                  (directors ? section.torsion * twist_at(s) : torque_at(s)) * t;
+        state.n = force_after(i);
+      }
+      start_.states.push_back(state);
+    }
+  }
+
+  /// n just after a node, of what the shape's grips, contacts and loads exert before.
+  [[nodiscard]] Eigen::Vector3d force_after(Eigen::Index node) const {
+    Eigen::Vector3d force = implied_force(problem_, shape_, start_.mesh.s[node]);
+    for (const PlacedContact& contact : start_.contacts) {
+      if (contact.end <= node) force -= contact.part.force / force_unit_;
+    }
+    return force;
+  }
+
+  /// Of what lies the force is the surface's: across it at its begin as it has to be, pressed from
+  /// there on.
+  [[nodiscard]] bool press(double tolerance) {
+    for (const PlacedContact& contact : start_.contacts) {
+      for (Eigen::Index i = contact.begin; i < contact.end; ++i) {
+        RodState& state = start_.states[static_cast<std::size_t>(i)];
+        if (i == contact.begin) {
+          const Surface& surface = *start_.mesh.contacts.surface_of(i);
+          const Eigen::Vector3d normal = surface.gap(state.r).gradient;
+          const LyingConditions lying = lying_conditions(surface, start_.mesh.section_of(i), state);
+          const double by = lying.by_state.row(3).tail<3>().dot(normal);
+          state.n -= lying.values[3] / by * normal;
+        }
+        if (i + 1 == contact.end) break;
+        RodState end = state;
+        RodIntegrals integrals;
+        if (!follow_rod(piece_of(start_.span, start_.mesh, i), tolerance, end, integrals)) {
+          return false;
+        }
+        start_.states[static_cast<std::size_t>(i + 1)].n = end.n;
+      }
+    }
+    return true;
+  }
+
+  const Problem& problem_;
+  const Equilibrium& shape_;
+  double l_;
+  double force_unit_;
+  ContactStart start_;
+};
+
+}  // namespace
+
+std::optional<ContactStart> start_with_contacts(const Problem& problem, const Equilibrium& shape,
+                                                double tolerance) {
+  return Layout(problem, shape).run(tolerance);
+}
+
+}  // namespace dlo::energy_model
