@@ -329,6 +329,17 @@ TEST(ExactContact, NoObstacleIsConfirmedToPull) {
   }
 }
 
+TEST(ExactContact, ToleranceIsThatOfTheIntegratorWhereTheRodTouchesToo) {
+  const Problem problem = over_level_floor(30, 0.1);
+  const std::vector<double> at = equal_arc_lengths(problem.length, 33);
+  const Eigen::Matrix3Xd fine = solve_exact(problem).sample(at).points;
+  const Equilibrium coarse = solve_exact(problem, {.tolerance = 1e-3});
+  ASSERT_TRUE(succeeded(coarse.status)) << coarse.message;
+  const double off = (coarse.sample(at).points - fine).colwise().norm().maxCoeff();
+  EXPECT_GT(off, 1e-12);  // it is not taken as 1e-13
+  EXPECT_LT(off, 1e-3);
+}
+
 TEST(ExactContact, EndsWithItsTimeLimitOnTheWay) {
   for (const double limit : {1e-9, 1e-3}) {
     const Equilibrium exact = solve_exact(over_level_floor(1e5, 0.03), {.time_limit = limit});
