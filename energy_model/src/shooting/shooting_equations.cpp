@@ -1,0 +1,263 @@
+#include <Eigen/Geometry>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "base/spin.hpp"
+#include "shooting/shooting_system.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// The rotation b a^T by its axis, as long as its angle.
+Eigen::Vector3d rotation_between(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b) {
+  const Eigen::AngleAxisd rotation(Eigen::Matrix3d(b * a.transpose()));
+  return rotation.angle() * rotation.axis();
+}
+
+/// Its derivative by a spin of b; that by a spin of a is less its transpose.
+Eigen::Matrix3d rotation_rate(const Eigen::Vector3d& rotation) {
+  const double angle = rotation.norm();
+  const double half = angle / 2;
+  // (1 - x cot x) / (2 x)^2 and its limit, whose next term is of the size of rounding.
+  const double share =
+      half < 1e-4 ? 1.0 / 12 : (1 - half * std::cos(half) / std::sin(half)) / (angle * angle);
+  const Eigen::Matrix3d cross = cross_matrix(rotation);
+  return Eigen::Matrix3d::Identity() - cross / 2 + share * cross * cross;
+}
+
+/// Two axes across a direction.
+Eigen::Matrix<double, 3, 2> axes_across(const Eigen::Vector3d& direction) {
+  Eigen::Matrix<double, 3, 2> axes;
+  const Eigen::Vector3d first = direction.unitOrthogonal();
+  axes << first, direction.cross(first);
+  return axes;
+}
+
+}  // namespace
+
+/// Equations as they come.
+struct ShootingSystem::Rows {
+  Eigen::VectorXd values;
+  Triplets* derivatives;
+  Eigen::Index row;
+
+  void add(const Eigen::VectorXd& value, const std::vector<Block>& blocks) {
+    values.segment(row, value.size()) = value;
+    if (derivatives != nullptr) {
+      for (const Block& block : blocks) {
+        for (Eigen::Index i = 0; i < block.values.rows(); ++i) {
+          for (Eigen::Index j = 0; j < block.values.cols(); ++j) {
+            if (block.values(i, j) == 0) continue;
+            derivatives->emplace_back(static_cast<int>(row + i), static_cast<int>(block.column + j),
+                                      block.values(i, j));
+          }
+        }
+      }
+    }
+    row += value.size();
+  }
+};
+
+bool ShootingSystem::evaluate(const ShootingPoint& point, Eigen::VectorXd& equations,
+                              Triplets* derivatives) const {
+  const std::vector<RodState>& nodes = point.nodes;
+  Rows rows{Eigen::VectorXd(equations_), derivatives, 0};
+  start_equations(point, rows);
+  for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
+    if (out_of_time() || !interval_equations(point, i, rows)) return false;
+  }
+  // Where a clamp holds the end, its conditions came in place of what is continuous elsewhere.
+  const Eigen::Index last = mesh_.intervals() * per_node();
+  const auto one = [](Eigen::Index size) { return Eigen::MatrixXd::Identity(size, size); };
+  rows.add(positions_.transpose() * nodes.back().n / (rate_ * rate_),
+           {{last + n_at(), one(positions_.cols())}});
+  rows.add(turns_.transpose() * nodes.back().m / rate_, {{last + m_at(), one(turns_.cols())}});
+  equations = std::move(rows.values);
+  return equations.allFinite();
+}
+
+Eigen::Matrix3Xd ShootingSystem::frame_equations(const RodState& node, Eigen::Index i,
+                                                 Rows& rows) const {
+  const auto index = static_cast<std::size_t>(i);
+  const Eigen::Index column = i * per_node() + spin_at();
+  if (frames_[index] && turns_.cols() == 3) {
+    const Eigen::Vector3d rotation = rotation_between(*frames_[index], node.R);
+    rows.add(rotation, {{column, rotation_rate(rotation)}});
+    return turns_;
+  }
+  if (clamps_[index] == nullptr) {
+    Eigen::Matrix3Xd none(3, 0);
+    return none;
+  }
+  const Eigen::Vector3d& direction = clamps_[index]->direction;
+  Eigen::Matrix3Xd across = axes_across(direction);
+  if (turns_.cols() == 1) across = Eigen::Vector3d(turns_.col(0)).cross(direction);
+  // d(b . t) = b . (spin x t) = (t x b) . spin
+  Eigen::Matrix3Xd rate(3, across.cols());
+  for (Eigen::Index k = 0; k < across.cols(); ++k) {
+    rate.col(k) = node.t().cross(Eigen::Vector3d(across.col(k)));
+  }
+  rows.add(across.transpose() * node.t(), {{column, rate.transpose() * turns_}});
+  return turns_.cols() == 1 ? turns_ : across;
+}
+
+/// What a contact takes from n, and its derivatives.
+struct ShootingSystem::Push {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  std::vector<Block> by;  // of the force in its unit
+
+  /// Blocks of the balance of forces, of which it is subtracted.
+  [[nodiscard]] std::vector<Block> with(std::vector<Block> blocks) const {
+    blocks.insert(blocks.end(), by.begin(), by.end());
+    return blocks;
+  }
+};
+
+ShootingSystem::Push ShootingSystem::push_at(const ShootingPoint& point, Eigen::Index i) const {
+  Push push;
+  const RodContact* contact = contact_at(i);
+  if (contact == nullptr || !contact->pushes) return push;
+  const auto index = static_cast<std::size_t>(contacts_[static_cast<std::size_t>(i)]);
+  const obstacle::Gap gap = contact->gap(point.nodes[static_cast<std::size_t>(i)].r);
+  push.force = point.forces[index] * gap.gradient;
+  push.by = {{force_[index], -positions_.transpose() * gap.gradient},
+             {i * per_node(), -point.forces[index] / (rate_ * rate_) *
+                                  (positions_.transpose() * gap.hessian * positions_)}};
+  return push;
+}
+
+void ShootingSystem::contact_equations(const RodState& node, Eigen::Index i, Rows& rows) const {
+  const Eigen::Index column = i * per_node();
+  const RodContact* contact = contact_at(i);
+  if (contact != nullptr && contact->touched) {
+    const obstacle::Gap gap = contact->gap(node.r);
+    rows.add(Eigen::VectorXd::Constant(1, gap.value),
+             {{column, gap.gradient.transpose() * positions_}});
+    if (contact->moves) {
+      rows.add(Eigen::VectorXd::Constant(1, gap.gradient.dot(node.t())),
+               {{column, (gap.hessian * node.t()).transpose() * positions_},
+                {column + spin_at(), node.t().cross(gap.gradient).transpose() * turns_}});
+    }
+  }
+  const Surface* surface = i < mesh_.intervals() ? mesh_.contacts.surface_of(i) : nullptr;
+  if (surface == nullptr || (i > 0 && mesh_.contacts.surface_of(i - 1) != nullptr)) return;
+  const LyingConditions lying = lying_conditions(*surface, mesh_.section_of(i), node);
+  const Eigen::Vector4d unit(1, 1, 1 / rate_, 1 / (rate_ * rate_));
+  const ByState by = unit.asDiagonal() * lying.by_state;
+  rows.add(unit.cwiseProduct(lying.values),
+           {{column, by.leftCols<3>() * positions_},
+            {column + spin_at(), by.middleCols<3>(3) * turns_},
+            {column + m_at(), rate_ * by.middleCols<3>(6) * turns_},
+            {column + n_at(), rate_ * rate_ * by.rightCols<3>() * positions_}});
+}
+
+void ShootingSystem::start_equations(const ShootingPoint& point, Rows& rows) const {
+  const RodState& node = point.nodes.front();
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(positions_.cols(), positions_.cols());
+  contact_equations(node, 0, rows);
+  if (mesh_.hold.front() != nullptr) {
+    rows.add(positions_.transpose() * (node.r - mesh_.hold.front()->position), {{0, one}});
+  } else {
+    const Push push = push_at(point, 0);
+    const Eigen::Vector3d n = node.n + mesh_.load.col(0) + push.force;
+    rows.add(-positions_.transpose() * n / (rate_ * rate_), push.with({{n_at(), -one}}));
+  }
+  const Eigen::Index free = frame_equations(node, 0, rows).cols();
+  if (free == turns_.cols()) return;
+  if (free > 0) {
+    const Eigen::RowVector3d direction = clamps_.front()->direction.transpose();
+    rows.add(direction * node.m / rate_, {{m_at(), direction}});
+  } else if (span_.clamps.empty() && span_.round() && turns_.cols() == 3) {
+    const Eigen::Matrix<double, 3, 2> across = axes_across(start_.front().t());
+    rows.add(across.transpose() * node.m / rate_, {{m_at(), across.transpose()}});
+    const Eigen::Vector3d rotation = rotation_between(start_.front().R, node.R);
+    const Eigen::RowVector3d tangent = start_.front().t().transpose();
+    rows.add(tangent * rotation, {{spin_at(), tangent * rotation_rate(rotation)}});
+  } else {
+    rows.add(turns_.transpose() * node.m / rate_,
+             {{m_at(), Eigen::MatrixXd::Identity(turns_.cols(), turns_.cols())}});
+  }
+}
+
+std::vector<ShootingSystem::Block> ShootingSystem::with_width(
+    Eigen::Index i, const Eigen::VectorXd& by_width) const {
+  std::vector<Block> blocks;
+  if (shares_.empty()) return blocks;
+  const Share& share = shares_[static_cast<std::size_t>(i)];
+  const Eigen::Index before = arc_length_[static_cast<std::size_t>(share.before)];
+  const Eigen::Index after = arc_length_[static_cast<std::size_t>(share.after)];
+  if (before >= 0) blocks.push_back({before, -share.width * by_width});
+  if (after >= 0) blocks.push_back({after, share.width * by_width});
+  return blocks;
+}
+
+bool ShootingSystem::interval_equations(const ShootingPoint& point, Eigen::Index i,
+                                        Rows& rows) const {
+  const Eigen::Index positions = positions_.cols();
+  const Eigen::Index turns = turns_.cols();
+  const RodState& node = point.nodes[static_cast<std::size_t>(i)];
+  const RodState& next = point.nodes[static_cast<std::size_t>(i + 1)];
+  const double force = rate_ * rate_;
+  RodPiece piece = piece_of(span_, mesh_, i);
+  piece.begin = point.s[i];
+  piece.length = point.s[i + 1] - point.s[i];
+  // A free rod ends elsewhere as it begins elsewhere; on a surface the pressure changes with r.
+  const Eigen::Index placed = piece.surface != nullptr ? positions : 0;
+  RodState end = node;
+  RodVariation change(rows.derivatives != nullptr ? placed + 2 * turns + positions : 0);
+  if (rows.derivatives != nullptr) {
+    change.r.leftCols(placed) = positions_.leftCols(placed);
+    change.spin.middleCols(placed, turns) = turns_;
+    change.m.middleCols(placed + turns, turns) = rate_ * turns_;
+    change.n.rightCols(positions) = force * positions_;
+  }
+  RodIntegrals integrals;
+  if (!follow_rod(piece, tolerance_, end, change, integrals)) return false;
+  const RodRate by_width =
+      rate_of({piece.section, piece.natural, point.s[i + 1], 0, piece.surface}, end);
+  const Eigen::Index own = i * per_node();
+  const Eigen::Index other = own + per_node();
+  const Eigen::Index from = own + (placed > 0 ? 0 : spin_at());
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(positions, positions);
+  std::vector<Block> moved = with_width(i, positions_.transpose() * by_width.r);
+  moved.push_back({from, positions_.transpose() * change.r});
+  moved.push_back({other, -one});
+  if (placed == 0) moved.push_back({own, one});
+  rows.add(positions_.transpose() * (end.r - next.r), moved);
+  const Eigen::Vector3d rotation = rotation_between(next.R, end.R);
+  const Eigen::Matrix3d rate = rotation_rate(rotation);
+  std::vector<Block> turned = with_width(i, turns_.transpose() * rate * by_width.spin);
+  turned.push_back({from, turns_.transpose() * rate * change.spin});
+  turned.push_back({other + spin_at(), -turns_.transpose() * rate.transpose() * turns_});
+  rows.add(turns_.transpose() * rotation, turned);
+  contact_equations(next, i + 1, rows);
+  if (const RodSpan::Hold* hold = mesh_.hold[static_cast<std::size_t>(i + 1)]) {
+    rows.add(positions_.transpose() * (next.r - hold->position), {{other, one}});
+  } else {
+    const Push push = push_at(point, i + 1);
+    std::vector<Block> pulled = with_width(i, positions_.transpose() * by_width.n / force);
+    pulled.push_back({from, positions_.transpose() * change.n / force});
+    pulled.push_back({other + n_at(), -one});
+    rows.add(positions_.transpose() * (end.n - mesh_.load.col(i + 1) - push.force - next.n) / force,
+             push.with(std::move(pulled)));
+  }
+  const Eigen::Matrix3Xd free = frame_equations(next, i + 1, rows);
+  if (free.cols() == turns) return true;
+  // What of the moment is continuous, but for what pulls the tangent: m = ... - t x q.
+  const Eigen::MatrixXd kept =
+      free.cols() == 0
+          ? Eigen::MatrixXd(turns_.transpose())
+          : Eigen::MatrixXd(clamps_[static_cast<std::size_t>(i + 1)]->direction.transpose());
+  const Eigen::Vector3d q = mesh_.pull.col(i + 1);
+  const Eigen::Matrix3d by_spin =
+      next.t() * q.transpose() - next.t().dot(q) * Eigen::Matrix3d::Identity();
+  std::vector<Block> bent = with_width(i, kept * by_width.m / rate_);
+  bent.push_back({from, kept * change.m / rate_});
+  bent.push_back({other + spin_at(), -kept * by_spin * turns_ / rate_});
+  bent.push_back({other + m_at(), -kept * turns_});
+  rows.add(kept * (end.m - next.t().cross(q) - next.m) / rate_, bent);
+  return true;
+}
+
+}  // namespace dlo::energy_model
