@@ -44,8 +44,9 @@ struct ContactPart {
   double largest_pressure = 0;  ///< per length of what lies, between its ends [N/m]
 };
 
-/// Outcome of a solver for a continuous rod: solve_energy() or solve_exact(). What is not known is
-/// NaN, an empty list or its default, which claims nothing.
+/// Outcome of a solver for a continuous rod: solve_energy() or solve_exact(). Only an equilibrium
+/// (`converged`, `roundoff_limited`, `saddle`, `near_singular`) has numbers that mean something;
+/// after other ends they are how far the solver came, or defaults, and claim nothing.
 struct [[nodiscard]] Equilibrium {
   SolveStatus status = SolveStatus::not_run;  ///< how it ended, what is claimed of the shape
   std::string message = "never ran";          ///< the same in words, zero modes counted
@@ -57,11 +58,12 @@ struct [[nodiscard]] Equilibrium {
   int evaluations = 0;
   int terms = 0;       ///< `energy`: coefficients of each piece and field; 0 for `exact`
   double seconds = 0;  ///< wall time of the call [s]
-  /// What is left of the equations [-], the largest of the spans; -1: not known. `energy`: Norm of
-  /// (g - J^T mu, f c), g by the coefficients in EI/l, c what the grips miss in l and rad, f the
+  /// What is left of the equations [-], the largest of the spans. `energy`: norm of
+  /// (g - J^T mu, f c), g by the coefficients in EI/l, c of grips and contact in l and rad, f the
   /// forces' scale 1 + load + |mu| in EI/l^2. `exact`: the largest gap between shots, positions in
-  /// l, rotations in rad, moments in f^(1/2) EI/l, forces in f EI/l^2; of a rod shot from its tip
-  /// the clamp's angle that is missed [rad]; with contact the norm of all over the largest force.
+  /// l, rotations in rad, moments in f^(1/2) EI/l, forces in f EI/l^2, f of the start; of a rod
+  /// shot from its tip the clamp's angle that is missed [rad]; with contact the norm of all over
+  /// the largest force.
   double residual = -1;
   /// `energy`: what points may be away from those of an equilibrium, over the rod's length, by what
   /// the solver, rounding and the terms leave, divided by the eigenvalue nearest to zero (README,
@@ -70,7 +72,8 @@ struct [[nodiscard]] Equilibrium {
   /// Smallest eigenvalue of the second variation on what the grips leave free, out of a planar
   /// shape's plane too; negative: unstable. `energy`: of the reduced Hessian over EI/l, whose norm
   /// is the bending energy's. `exact`: over int |eta'|^2 + |eta|^2 ds, eta the tangent's change, of
-  /// material directors the spin, lengths in l. NaN: not looked at, always of `exact` with contact.
+  /// material directors the spin, lengths in l. NaN: not known, as of `exact` with contact, and of
+  /// one clamp in a plane, which `energy` proves to be stable without it.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
   /// `energy`, where `near_singular`: eigenvalues that are zero to the tolerance, each a direction
   /// in which a fold or a bifurcation leaves the shape open; 0 where only Newton's step is too
@@ -87,8 +90,8 @@ struct [[nodiscard]] Equilibrium {
   std::vector<Reaction> grips;
   std::vector<TwistedPart> twists;  ///< of what clamps that hold frames twist; by arc length
 
-  /// The shape at M arc lengths within [0, length], in any order [m]. Null where there is none,
-  /// as after a failure of `exact`. Throws std::invalid_argument for one that is not on the rod.
+  /// The shape at M arc lengths within [0, length], in any order [m]; null where `exact` has none.
+  /// Throws std::invalid_argument for an arc length that is not on the rod.
   std::function<Samples(std::span<const double>)> sample;
 };
 
