@@ -34,23 +34,26 @@ struct ChainProblem {
 struct ChainOptions {
   /// Angles of the segments to start from [rad], n; empty: from the moments of the straight chain.
   Eigen::VectorXd start_angles;
-  double tolerance = 1e-12;  ///< of the gradient, over the moment of all forces about the grip; > 0
-  int max_evaluations = 20000;  ///< of the energy
+  /// Of the gradient's norm, over the sum of all forces' sizes times the length and the largest
+  /// moment of a joint's natural turn; > 0. Rounding may end it above that.
+  double tolerance = 1e-12;
+  int max_evaluations = 20000;  ///< of the energy, >= 1; beyond, `evaluation_limit`
   /// Of the whole call [s], > 0; the status is then `time_limit`.
   double time_limit = std::numeric_limits<double>::infinity();
 };
 
 /// A shape of a chain, and how it was found.
 struct [[nodiscard]] ChainResult {
-  SolveStatus status = SolveStatus::not_run;  ///< how it ended
+  SolveStatus status = SolveStatus::not_run;  ///< how it ended; stability is that in the plane
   std::string message = "never ran";          ///< the same in words
-  int evaluations = 0;                        ///< of the energy
-  double seconds = 0;                         ///< wall time
-  double residual = -1;                       ///< norm of the gradient by the segment angles [N m]
-  Eigen::VectorXd angles;                     ///< of the segments, from +x [rad], n
-  Eigen::Matrix2Xd points;                    ///< [m], 2 x (n+1)
-  double bending_energy = 0;                  ///< [J]; zero where every joint is at rest
-  double load_energy = 0;  ///< of all forces, zero with every point at `start` [J]
+  int evaluations = 0;                        ///< of energy and gradient, by both methods
+  double seconds = 0;                         ///< wall time [s]
+  /// Norm of the gradient by the segment angles [N m]; -1: Newton's method did not begin.
+  double residual = -1;
+  Eigen::VectorXd angles;     ///< of the segments, from +x [rad], n
+  Eigen::Matrix2Xd points;    ///< [m], 2 x (n+1)
+  double bending_energy = 0;  ///< [J]; zero where every joint is at rest
+  double load_energy = 0;     ///< of all forces, zero with every point at `start` [J]
 };
 
 /// Minimises the joint potentials minus the work of the forces with NLopt's LD_LBFGS over the joint

@@ -101,25 +101,14 @@ struct DynamicsOptions {
 };
 
 /// Motion of an inextensible round straight rod from a shape at rest, whose strains do not change
-/// at first: its grips carry it along.
-///
-/// Unknowns: strains in orthonormal Legendre polynomials on each piece between grips, loads, point
-/// masses and sections, as in solve_energy(), in axes that turn with the clamp that a span begins
-/// at, with which the material turns. By time: collocation at the four points of Gauss' rule (order
-/// eight, symmetric, A-stable), or with damping of the material Radau's IIA (order seven,
-/// L-stable), its equations solved by Newton's method. Other grips of a span are
-/// constraints, which hold for accelerations at the points of the rule, and by projection for
-/// positions and velocities after each step. Cross-sections have no inertia, so that twist does
-/// nothing.
-///
-/// Rigid obstacles are stiff ones: per length of rod they push with p = k d^2 max(0, 1 + d' / u) at
-/// a depth d (Hunt and Crossley), never pull, and have no friction. k is what DynamicsOptions'
-/// contact_depth asks for: a run that goes deeper is repeated with a larger one. With
-/// u = (EI / (m l))^(1/2) / 10, m the rod's mass, at most which what has struck leaves with, nearly
-/// all of its energy across the surface is lost (EnergyBalance::lost). As contact_depth goes to
-/// zero this is a rigid obstacle without restitution. With rigid obstacles the rule is Radau's.
-/// @param times  to give frames at [s], growing, the first one >= 0; motion begins at 0 or, if the
-/// first one is below zero, there
+/// at first: its grips carry it along. Strains in Legendre polynomials, as in solve_energy(); by
+/// time collocation at Gauss' four points (order 8), with damping of the material or rigid
+/// obstacles Radau's IIA (order 7). Cross-sections have no inertia, so that twist does nothing.
+/// Rigid obstacles are stiff ones, p = k d^2 max(0, 1 + d' / u) per length at a depth d (Hunt and
+/// Crossley 1975), without friction. Method, evidence and limits: energy_model/doc/dynamics.md.
+/// @param start  held by the grips, nearly: it is moved to where they do
+/// @param times  to give frames at [s], growing; motion begins at 0, or at the first of them if
+/// that is below zero
 /// @throws std::invalid_argument if something is out of range; if the problem has frames that
 /// clamps hold, natural strains or two bending stiffnesses, whose twist has no inertia here
 Dynamics simulate(const MovingRod& rod, const StartingShape& start, std::span<const double> times,

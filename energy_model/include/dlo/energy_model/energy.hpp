@@ -11,69 +11,40 @@
 
 namespace dlo::energy_model {
 
-/// Depth behind a rigid obstacle up to which a shape is called converged, in lengths of the rod.
+/// Depth of the axis behind a rigid obstacle up to which a shape is called converged, over the
+/// rod's length [-].
 inline constexpr double allowed_penetration = 1e-8;
 
 /// How well to solve, and from where.
 struct EnergyOptions {
-  /// Curvature coefficients K of each smooth piece of the rod; 0 chooses them so that the last ones
-  /// have fallen below `tolerance`.
+  /// Coefficients K of each smooth piece and field, 1 to max_terms = 128; 0: as many as `tolerance`
+  /// needs.
   int terms = 0;
-  double tolerance = 1e-10;     ///< of the shape, in units of l; > 0
-  int max_evaluations = 20000;  ///< per descent
+  /// Of truncation: what the last coefficients add to points of the shape, in l; > 0. Newton's
+  /// method goes to rounding whatever this is.
+  double tolerance = 1e-10;
+  /// Of one descent by NLopt, >= 1; beyond, `evaluation_limit`. Descents between grips and Newton's
+  /// method have limits of their own.
+  int max_evaluations = 20000;
   /// Of the whole call [s], > 0; the status is then `time_limit`.
   double time_limit = std::numeric_limits<double>::infinity();
-  /// A known equilibrium of a similar problem to start from instead of searching: it is followed,
-  /// so that snapping shows where the branch ends. Same length and same clamps.
+  /// A known equilibrium of a similar problem, of the same length and clamps, to start from
+  /// instead of a search: it is followed, so that snapping shows where the branch ends. Has to
+  /// outlive the call. Of clamps that twist the rod its `twists` say how much it is twisted.
   const Equilibrium* start = nullptr;
 };
 
-/// Minimises bending plus gravity plus load energy of an inextensible Hookean rod,
-///     E = int 1/2 EI |t'|^2 ds - int w . r ds - sum_j F_j . r(s_j),
-/// over its curvature. Clamps that nothing passes through cut the rod into independent spans; each
-/// lies in a plane if its grips and forces do. On each piece between loads, grips and sections, and
-/// in the layers at the ends of soft and of taut spans, the curvature in the plane, or in space its
-/// two components in a frame that does not rotate about the tangent, is expanded in orthonormal
-/// Legendre polynomials, so that bending is |a|^2 / 2 and the Hessian the identity plus a compact
-/// part. NLopt's LD_LBFGS (where grips are constraints a trust region, where they stretch the rod
-/// springs that become stiffer) comes near the minimum with few terms, Newton steps with all of
-/// them finish, and their projected Hessian proves that it is one. Of one clamp Newton's method
-/// begins at once, and NLopt is asked where that does not lead down to a minimum.
-///
-/// Of several minima the lowest that the search finds is returned: one clamp turns towards the load
-/// by the shorter way, which is the lowest of all under parallel forces where there is no obstacle,
-/// and past the nearest bodies on either side; other spans start from the two of their arches,
-/// S-shapes and loops that have the lowest energy and from those that have about as much (from the
-/// others where these lead to nothing stable), and what is unstable is followed downhill to the
-/// next minimum, also out of its plane.
-///
-/// Twist (Problem) is put in from the lowest shape without it, in turns of the later clamp, each
-/// held against its work; what loses its stability or comes to the end of its branch is followed
-/// downhill. Nothing keeps the rod from passing through itself. `start` with its `twists` is gone
-/// from directly.
-///
-/// A rod with material directors (Problem) has the energy of its strains less the natural ones,
-///     E = int 1/2 EI_1 (u1 - u01)^2 + 1/2 EI_2 (u2 - u02)^2 + 1/2 GJ (u3 - u03)^2 ds - ...,
-/// and strains of all three kinds as unknowns. It lies in a plane if that is across one of its
-/// principal axes too; the shape there is proven against leaving it by bending and twisting, as a
-/// strip does that is bent about its stiff axis. It is searched from the stress-free shape too, and
-/// with its frame turned on.
-///
-/// What touches a rigid obstacle, and where, is first told by a polygon at rest (solve_polygon)
-/// from several starts. Then the rod's own shape is found with these contacts: pieces end where
-/// contact does. A contact at one point slides, as the least clearance near it; a part that lies
-/// has its slope's moments as constraints, whose multipliers are the force that the obstacle
-/// carries, and ends at arc lengths that are unknowns, found by Newton's method from what a
-/// frictionless obstacle demands there (no bending towards it but its own curvature). Contacts that
-/// would have to pull go, others come where the shape is behind an obstacle, a bounded number of
-/// times. `converged` says of contact that no point of the rod is deeper than `allowed_penetration`
-/// (Equilibrium::penetration) and that no obstacle pulls; what does not converge is `not_verified`.
-/// Between clamps that twist the rod contact is not looked for: a shape behind an obstacle is
-/// not_verified there. A lying rod against its exact solution is right to 1e-12 l. Obstacles that
-/// yield are springs along the rod, and their energy is part of E. Where contact with them begins
-/// and ends the force per length has kinks: pieces end there, at ends that are found with the
-/// shape. What passes through the axis of such an obstacle is no stable equilibrium.
-/// @throws std::invalid_argument if the problem or an option is out of range, with the numbers
+/// Lowest equilibrium that a search finds (energy_model/doc/search.md), of an inextensible rod with
+///     E = int 1/2 (u - u0) . K (u - u0) ds - int w . r ds - sum_j F_j . r(s_j) + int 1/2 k d^2 ds
+/// [J]: strains u, natural strains u0, K = diag(EI_1, EI_2, GJ), w weight per length, d the depth
+/// in obstacles that yield; |r'| = 1, grips and rigid obstacles are constraints. Unknowns are the
+/// strains' coefficients in orthonormal Legendre polynomials (README.md).
+/// @return the lowest shape that was found and is stable, else the lowest other equilibrium, else
+/// why there is none. Stability is proven by the second variation; that nothing is lower is proven
+/// only of one clamp under parallel forces without an obstacle
+/// @throws std::invalid_argument if the problem or an option is out of range, with the numbers; if
+/// grips are as far apart as the rod between them is long; if loads, grips and sections cut the rod
+/// into more pieces than can be afforded
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 
 /// A kind of start that a search for all equilibria has looked from.
@@ -95,10 +66,13 @@ struct EnergySearch {
   std::vector<std::string> not_looked;  ///< what was cut short or left out, and why; in words
 };
 
-/// Every equilibrium that the search's starts lead to, and what these were.
+/// Every equilibrium that the search's starts lead to, and what these were
+/// (energy_model/doc/search.md).
+/// @throws std::invalid_argument as solve_energy()
 [[nodiscard]] EnergySearch search_energy(const Problem& problem, const EnergyOptions& options = {});
 
-/// Its equilibria alone.
+/// Its equilibria alone: stable ones first, by energy.
+/// @throws std::invalid_argument as solve_energy()
 [[nodiscard]] std::vector<Equilibrium> all_energy(const Problem& problem,
                                                   const EnergyOptions& options = {});
 
@@ -114,13 +88,13 @@ class EnergySolver {
   EnergySolver(const EnergySolver& other) = delete;
   EnergySolver& operator=(const EnergySolver& other) = delete;
 
-  /// solve_energy().
+  /// solve_energy(). What follows throws std::invalid_argument as it does.
   Equilibrium solve(const Problem& problem);
   /// From the shape of the last call instead of a search, if it had one: for a gripper or an
-  /// obstacle that has moved a little. By Newton's method with the contacts that it has, which are
-  /// mended as they change; where that leads to no equilibrium near the last shape, or to one that
-  /// gives way, the branch has ended, and the shape is the next minimum downhill of the last, or
-  /// failing that what solve() finds. The problem has the same obstacles in the same order.
+  /// obstacle that has moved a little. By Newton's method with its contacts, which are mended as
+  /// they change. Where that leads to no equilibrium near the last shape, or to an unstable one,
+  /// the branch has ended: the shape is the next minimum downhill of the last, or failing that what
+  /// solve() finds. The problem has the same obstacles in the same order.
   Equilibrium follow(const Problem& problem);
   /// follow() as far as Newton's method stays on the branch, without what it does beyond. None
   /// where that leads to no stable equilibrium near the last shape, or there is none: the next call

@@ -41,43 +41,57 @@ struct ContactPart {
       Eigen::Vector3d::Zero();  ///< of the obstacle on the rod, of all of it [N]
   double begin_force = 0;       ///< what of it is concentrated at the begin of what lies [N]
   double end_force = 0;         ///< and at its end [N]
-  double largest_pressure = 0;  ///< per length of what lies, between them [N/m]
+  double largest_pressure = 0;  ///< per length of what lies, between its ends [N/m]
 };
 
-/// Outcome of a solver for a continuous rod.
+/// Outcome of a solver for a continuous rod: solve_energy() or solve_exact(). Only an equilibrium
+/// (`converged`, `roundoff_limited`, `saddle`, `near_singular`) has numbers that mean something;
+/// after other ends they are how far the solver came, or defaults, and claim nothing.
 struct [[nodiscard]] Equilibrium {
-  SolveStatus status = SolveStatus::not_run;  ///< how it ended
-  std::string message = "never ran";          ///< the same in words
-  int evaluations = 0;  ///< of the objective, with or without derivatives; shots for `exact`
-  int terms = 0;        ///< curvature coefficients; 0 for `exact`
-  double seconds = 0;   ///< wall time of the solver
-  /// Norm of the gradient over EI/l; for `exact` the largest gap that a shot leaves [-].
+  SolveStatus status = SolveStatus::not_run;  ///< how it ended, what is claimed of the shape
+  std::string message = "never ran";          ///< the same in words, zero modes counted
+  /// Cost of the call; of a list of equilibria only the first one's counts everything.
+  /// `energy`: evaluations of energy and gradient by descents and Newton's method, from all starts,
+  /// and of the polygons that detect contact; not Hessians, nor what only checks a shape.
+  /// `exact`: integrations of a whole span, or with contact of the whole rod, with or without
+  /// derivatives; not its polygons.
+  int evaluations = 0;
+  int terms = 0;       ///< `energy`: coefficients of each piece and field; 0 for `exact`
+  double seconds = 0;  ///< wall time of the call [s]
+  /// What is left of the equations [-], the largest of the spans. `energy`: norm of
+  /// (g - J^T mu, f c), g by the coefficients in EI/l, c of grips and contact in l and rad, f the
+  /// forces' scale 1 + load + |mu| in EI/l^2. `exact`: the largest gap between shots, positions in
+  /// l, rotations in rad, moments in f^(1/2) EI/l, forces in f EI/l^2, f of the start; of a rod
+  /// shot from its tip the clamp's angle that is missed [rad]; with contact the norm of all over
+  /// the largest force.
   double residual = -1;
-  /// Of solve_energy(): what points of the shape may be away from those of an equilibrium, over the
-  /// rod's length: an estimate from what the solver, rounding and truncation leave, divided by
-  /// the eigenvalue nearest to zero. `near_singular` shapes have one too. NaN: not known
-  /// (obstacles, `exact`).
+  /// `energy`: what points may be away from those of an equilibrium, over the rod's length, by what
+  /// the solver, rounding and the terms leave, divided by the eigenvalue nearest to zero (README,
+  /// certificate). Up to 2, which is no bound. NaN: not known, always of `exact`.
   double error_estimate = std::numeric_limits<double>::quiet_NaN();
-  /// Smallest eigenvalue of the reduced Hessian (the second variation on what the constraints leave
-  /// free) over EI/l, for planar shapes with bending out of the plane; NaN where a solver did not
-  /// look. Negative: unstable.
+  /// Smallest eigenvalue of the second variation on what the grips leave free, out of a planar
+  /// shape's plane too; negative: unstable. `energy`: of the reduced Hessian over EI/l, whose norm
+  /// is the bending energy's. `exact`: over int |eta'|^2 + |eta|^2 ds, eta the tangent's change, of
+  /// material directors the spin, lengths in l. NaN: not known, as of `exact` with contact, and of
+  /// one clamp in a plane, which `energy` proves to be stable without it.
   double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
-  /// Of solve_energy(), where `near_singular`: eigenvalues of the second variation that are zero to
-  /// the tolerance, each a direction in which a fold or a bifurcation leaves the shape open. 0
-  /// where only the step is too large. Rigid-body modes, as of a rod held by pins on a line along
-  /// its load, are not counted: they leave no doubt of its shape, and it is converged.
+  /// `energy`, where `near_singular`: eigenvalues that are zero to the tolerance, each a direction
+  /// in which a fold or a bifurcation leaves the shape open; 0 where only Newton's step is too
+  /// large. Rigid-body modes are not counted: they leave no doubt of the shape. 0 of `exact`.
   int neutral_directions = 0;
-  /// Largest depth of the shape behind a rigid obstacle, between the solver's own nodes too [m]; 0
-  /// without such obstacles. A shape that is deeper than `allowed_penetration` lengths is
-  /// not_verified.
+  /// Largest depth of the axis behind a rigid obstacle, between the solver's own nodes too [m]; 0
+  /// without such obstacles. Deeper than `allowed_penetration` lengths, of `exact` a tenth of them,
+  /// it is not_verified.
   double penetration = 0;
-  Energies energy;                         ///< of the shape [J]
+  Energies energy;                         ///< of the shape, where there is one [J]
   std::vector<Eigen::Vector3d> obstacles;  ///< force of each obstacle on the rod [N]
   std::vector<ContactPart> contacts;       ///< with rigid obstacles, by arc length
-  std::vector<Reaction> grips;             ///< in the order of Problem::grips
-  std::vector<TwistedPart> twists;         ///< of what clamps that hold frames twist; by arc length
+  /// In the order of Problem::grips; empty where `exact` has no shape.
+  std::vector<Reaction> grips;
+  std::vector<TwistedPart> twists;  ///< of what clamps that hold frames twist; by arc length
 
-  /// The shape at arc lengths within [0, length], in any order [m].
+  /// The shape at M arc lengths within [0, length], in any order [m]; null where `exact` has none.
+  /// Throws std::invalid_argument for an arc length that is not on the rod.
   std::function<Samples(std::span<const double>)> sample;
 };
 

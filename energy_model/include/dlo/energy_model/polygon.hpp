@@ -45,22 +45,15 @@ struct PolygonTwist {
                                          const Eigen::Ref<const Eigen::Matrix3Xd>& points);
 
 /// A polygon of elastic segments in space, held at any of its points: the force model's rod with
-/// the force model's own stretch stiffness, so that its minimum is where the force model comes to
-/// rest. (ChainProblem is its limit of rigid segments for one clamp in a plane. Between several
-/// grips rigid segments would be constraints, which a taut rod cannot meet to the last digit and
-/// which hide the tension; a physical stretch stiffness is stiff enough to change nothing else.)
+/// its own stretch stiffness c_c, so that its minimum is where the force model comes to rest
+/// (energy_model/doc/polygon.md). Its energy [J], joints' potentials those of JointLaw with the
+/// mean L of two rest lengths:
 ///
 ///     E = sum c_c (|d_i| - L_i)^2 / (2 L_i) + sum joints - sum F_i . P_i + sum c_e depth_i^2 / 2
 ///         + sum theta_k^2 / (2 C_k)
 ///
-/// The joints' potentials are those of JointLaw, L the mean of the two rest lengths. For the hooke
-/// law the force model's forces are this energy's derivative. For the paper's law they are that
-/// between segments of equal length only: elsewhere the paper's joint is a little weaker,
-/// belongs to no potential, and rests in a slightly different shape.
-///
-/// A polygon whose joints are bent at rest lies in the plane z = 0 with all that holds it and
-/// acts on it: turns have a sign there, and its joints' potentials are those of ChainProblem.
-/// Nothing is said of its stability across that plane.
+/// One whose joints are bent at rest lies in the plane z = 0 with all that holds it and acts on it;
+/// nothing is said of its stability across that plane.
 struct PolygonProblem {
   Eigen::VectorXd rest_lengths;          ///< L_i [m], n >= 2, each > 0
   double stretch_stiffness = 0;          ///< c_c [N], > 0
@@ -93,8 +86,8 @@ struct PolygonOptions {
 struct [[nodiscard]] PolygonResult {
   SolveStatus status = SolveStatus::not_run;  ///< how it ended
   std::string message = "never ran";          ///< the same in words
-  int evaluations = 0;                        ///< of the energy
-  double seconds = 0;                         ///< wall time
+  int evaluations = 0;                        ///< of energy and gradient
+  double seconds = 0;                         ///< wall time [s]
   double residual = -1;                       ///< largest force on a free point [N]
   Eigen::Matrix3Xd points;                    ///< [m], 3 x (n+1)
   /// What holds each of PolygonProblem::held exerts, but against what obstacles do to the point
@@ -105,17 +98,12 @@ struct [[nodiscard]] PolygonResult {
 };
 
 /// Minimises E by damped Newton steps over the free points (a banded matrix, GSL's LDL^T), each of
-/// which must lower E. NLopt's L-BFGS, which the rigid chain starts with, would need about N^2
-/// iterations here: over positions the Hessian's condition grows like N^4. The stretch stiffness
-/// starts so low that forces stretch the rod by about a hundredth, and grows tenfold a stage: a
-/// stiff rod's steps would be confined to a narrow curved valley.
-///
-/// `converged` and `roundoff_limited` mean, at the points that are returned, that the Hessian over
-/// all free points, in space (with natural turns: in its plane), is positive definite (to rounding:
-/// a shape that is free to turn is not called unstable), that Newton's step from there is below
-/// 1e-7 polygon lengths, and that no force above 1e-6 of those that act is left on a free point,
-/// but for rounding; else the status is `not_verified` and the message has the number. At a saddle
-/// the solver leaves along the lowest curvature and goes on.
+/// which must lower E, with c_c raised in stages (energy_model/doc/polygon.md); at a saddle it
+/// leaves along the lowest mode. `converged` and `roundoff_limited` mean, at the points that are
+/// returned: the Hessian over all free points, in space (with natural turns: in its plane), is
+/// positive definite, to rounding; Newton's step is below 1e-7 polygon lengths; no force above 1e-6
+/// of those that act is left on a free point, but for rounding. Else `not_verified`, and the
+/// message has the number.
 /// @param start  positions to start from [m], 3 x (n+1), no segment of zero length; held points
 ///               are put where they are held
 /// @throws std::invalid_argument if the problem, an option or the start is out of range

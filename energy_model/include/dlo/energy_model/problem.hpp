@@ -54,22 +54,15 @@ struct Section {
 };
 
 /// An inextensible rod, round or of two bending stiffnesses about the principal axes d1 and d2 of
-/// its section, as a ribbon or a flat cable has them.
+/// its section, as a ribbon or a flat cable has them; SI units, any right-handed axes.
 ///
-/// Two neighbouring clamps that hold frames say by themselves what turns are in the rod between
-/// them, whatever its shape: the angle in (-pi, pi] from the earlier one's d1, carried by the
-/// shortest rotation of its direction, to the later one's, and the later roll less the earlier.
-/// Twist and writhe of a shape of the rod add up to that. It is put in, little by little, from the
-/// lowest minimum of the same problem without frames on, and where a shape cannot hold itself any
-/// more it snaps to the next one. Of a rod that is not intrinsically straight only the frames are
-/// held, and of the turns that they leave open those nearest to the rod without them.
-///
-/// A rod that is not intrinsically straight, or that has a bending_stiffness_2 anywhere, has
-/// directors d1 and d2 that are fixed to its material. The first clamp along it holds them: at its
-/// FrameHold::d1, or else d2 is the normal of the plane that grips and forces share, on the side of
-/// +z (of +y, or of +x, where the plane holds those), so that a strain u2 > 0 bends the rod to the
-/// left; its roll turns them on. Where no clamp holds the rod they are free. A later clamp holds
-/// them only if it has a frame.
+/// Two neighbouring clamps with frames fix the twist and writhe between them (held_turns() in
+/// turns.hpp); energy_model/doc/search.md says how a solver comes there. A rod that
+/// has_material_directors() has d1 and d2 fixed to its material. The first clamp along it holds
+/// them: at its FrameHold::d1, or else d2 is the normal of the plane that grips and forces share,
+/// on the side of +z (+y, +x where the plane holds those), so that a strain u2 > 0 bends the rod to
+/// the left; its roll turns them on. Where no clamp holds the rod they are free. A later clamp
+/// holds them only if it has a frame.
 struct Problem {
   double length = 0;               ///< l [m], > 0
   double bending_stiffness = 0;    ///< EI [N m^2], > 0; about d1 where bending_stiffness_2 is given
@@ -92,7 +85,9 @@ struct Problem {
 /// one of its sections has two bending stiffnesses, were they equal. A round straight rod has none.
 [[nodiscard]] bool has_material_directors(const Problem& problem);
 
-/// @throws std::invalid_argument naming the first member that is out of range
+/// Whether each member is in its range. That the rod reaches from grip to grip is for the solvers
+/// to ask.
+/// @throws std::invalid_argument naming the first member that is not, its value and its range
 void check(const Problem& problem);
 
 /// Energies [J]; gravity and loads are zero where their points sit at the first grip.

@@ -5,15 +5,15 @@ namespace dlo::energy_model {
 /// How a solver ended. All but `converged` and `roundoff_limited` are failures; the default of
 /// every result is one.
 enum class SolveStatus {
-  not_run,
-  converged,         ///< gradient below its tolerance at a minimum (positive second variation)
-  roundoff_limited,  ///< no further progress in double precision; the shape is usable
+  not_run,           ///< the solver was not called
+  converged,         ///< an equilibrium with a positive second variation, on what is returned
+  roundoff_limited,  ///< the same, as far as double precision goes; the shape is usable
   saddle,            ///< an equilibrium, but the second variation has a negative direction
   near_singular,     ///< next to a fold or bifurcation: not determined to the tolerance
   not_verified,      ///< a shape, but what is claimed of it is not proven: see the message
-  evaluation_limit,
-  time_limit,
-  failed,  ///< the solver gave up, see the message
+  evaluation_limit,  ///< `max_evaluations` of the options; no claim
+  time_limit,        ///< `time_limit` of the options, or interrupted (interrupt.hpp)
+  failed,            ///< the solver gave up, see the message; no claim
 };
 
 /// The shape can be used.

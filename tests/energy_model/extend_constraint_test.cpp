@@ -1,0 +1,115 @@
+// The example of a constraint in energy_model/doc/extend.md: the rod's end slides along a line.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "dlo/energy_model/energy.hpp"
+#include "linear/newton_system.hpp"
+#include "problem/split.hpp"
+#include "problems.hpp"
+#include "strain/node_reach.hpp"
+#include "strain/span_energy.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+// [page]
+/// c = N . (r(L) - p), in the span's units and axes: the end stays on the line across N through p.
+struct Slider {
+  Eigen::Vector3d N, p;
+  Eigen::VectorXd weights;  ///< of the tangents at the nodes: r(L) = tangents weights
+};
+
+double residual(const Slider& slider, const SpanEnergy& model) {
+  return slider.N.dot(model.tangents() * slider.weights - slider.p);
+}
+
+Eigen::RowVectorXd jacobian(const Slider& slider, SpanEnergy& model) {
+  const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian();
+  return slider.weights.transpose() *
+         (slider.N[0] * J[0] + slider.N[1] * J[1] + slider.N[2] * J[2]);
+}
+
+/// c's second derivative, of a span in a plane: that of a tangent is -t a a^T, a its angle's.
+Eigen::MatrixXd hessian(const Slider& slider, SpanEnergy& model) {
+  const std::array<Eigen::MatrixXd, 3> J = model.tangent_jacobian();
+  const Eigen::Matrix3Xd t = model.tangents();
+  const Eigen::MatrixXd a = t.row(0).asDiagonal() * J[1] - t.row(1).asDiagonal() * J[0];
+  const Eigen::VectorXd along = t.transpose() * slider.N;
+  return -a.transpose() * slider.weights.cwiseProduct(along).asDiagonal() * a;
+}
+
+/// One step of Newton's method for L = E - mu c, which `system` factors.
+void newton_step(const Slider& slider, SpanEnergy& model, NewtonSystem& system, Eigen::VectorXd& x,
+                 double& mu) {
+  Eigen::VectorXd right(x.size() + 1);
+  Eigen::VectorXd slope(x.size());
+  (void)model.value(x, slope);
+  const Eigen::RowVectorXd J = jacobian(slider, model);
+  right << mu * J.transpose() - slope, -residual(slider, model);
+  Eigen::MatrixXd H;
+  model.hessian(Eigen::VectorXd(), H);
+  H -= mu * hessian(slider, model);
+  system.compute(H, J);
+  Eigen::VectorXd step;
+  system.solve(right, step);
+  x += step.head(x.size());
+  mu += step[x.size()];
+}
+// [end of page]
+
+Slider slider_of(const SpanEnergy& model, const PlacedSpan& placed) {
+  std::vector<Piece> pieces;
+  for (Eigen::Index i = 0; i < model.pieces(); ++i) pieces.push_back(model.piece(i));
+  const NodeReach reach(placed.span, pieces, model.table());
+  return {placed.frame * Eigen::Vector3d(0.6, 0.8, 0), Eigen::Vector3d(0.2, 0.1, 0),
+          reach.begin(model.pieces())};
+}
+
+TEST(ExtendConstraint, DerivativesAreThoseOfTheResidual) {
+  const PlacedSpan placed = split(test::heavy_cantilever(5, 20)).front();
+  SpanEnergy model(placed.span, 24);
+  const Slider slider = slider_of(model, placed);
+  Eigen::VectorXd slope(model.size());
+  const Eigen::VectorXd x = 0.3 * Eigen::VectorXd::Random(model.size());
+  (void)model.value(x, slope);
+  const Eigen::RowVectorXd first = jacobian(slider, model);
+  const Eigen::MatrixXd second = hessian(slider, model);
+  constexpr double h = 1e-4;  // error h^2, rounding 1e-16 / h
+  for (Eigen::Index i = 0; i < x.size(); ++i) {
+    const Eigen::VectorXd by = h * Eigen::VectorXd::Unit(x.size(), i);
+    (void)model.value(x + by, slope);
+    const double ahead = residual(slider, model);
+    const Eigen::RowVectorXd first_ahead = jacobian(slider, model);
+    (void)model.value(x - by, slope);
+    EXPECT_NEAR((ahead - residual(slider, model)) / (2 * h), first[i], 1e-7);
+    EXPECT_LT(((first_ahead - jacobian(slider, model)) / (2 * h) - second.row(i)).norm(), 1e-7);
+  }
+}
+
+// The multiplier is the force that the line exerts: a load of that size leads to the same shape.
+TEST(ExtendConstraint, MultiplierIsTheForceOfTheLine) {
+  Problem problem = test::heavy_cantilever(5, 20);
+  const PlacedSpan placed = split(problem).front();
+  SpanEnergy model(placed.span, 24);
+  const Slider slider = slider_of(model, placed);
+  NewtonSystem system;
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(model.size());
+  double mu = 0;
+  for (int i = 0; i < 20; ++i) newton_step(slider, model, system, x, mu);
+  EXPECT_LT(std::abs(residual(slider, model)), 1e-12);
+  const std::optional<double> smallest = system.reduced_hessian().smallest_eigenvalue_of_definite();
+  ASSERT_TRUE(smallest.has_value());
+  EXPECT_GT(*smallest, 0);
+  problem.loads = {{1, mu * (placed.frame.transpose() * slider.N)}};
+  const Equilibrium loaded = solve_energy(problem);
+  ASSERT_EQ(loaded.status, SolveStatus::converged) << loaded.message;
+  const Eigen::Vector3d end = placed.frame.transpose() * (model.tangents() * slider.weights);
+  EXPECT_LT((loaded.sample(std::vector<double>{1}).points.col(0) - end).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace dlo::energy_model
