@@ -10,7 +10,7 @@ namespace dlo::energy_model {
 /// How well to integrate, and from where.
 struct ExactOptions {
   /// Local error of the integrator per step [-], > 0, of angles, positions and moments in units of
-  /// l and EI. Without effect on rods in contact, whose step follows forces and curvature.
+  /// l and EI.
   double tolerance = 1e-13;
   /// Of the whole call [s], > 0; the status is then `time_limit`, with the lowest shape so far if
   /// there is one: it is an equilibrium, but others were not looked for.
@@ -32,8 +32,8 @@ struct ExactOptions {
 /// @return the lowest `converged` shape, else the lowest other one, else why there is none; its
 /// stability is that of the second variation by finite elements on its own shape
 /// @throws std::invalid_argument if the problem or an option is out of range; of obstacles those
-/// that yield, any where a rod is twisted, has sections or material directors, and contact that is
-/// neither detected nor told by a start; of a round straight rod a clamp without a frame between
+/// that yield, any where a rod has natural strains, and contact that is neither detected nor told by
+/// a start; of a round straight rod a clamp without a frame between
 /// two that hold theirs
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
 
