@@ -121,7 +121,7 @@ std::optional<double> last_newton_steps(const ShootingSystem& system, const Trip
 }  // namespace
 
 ClosedGaps close_gaps(const ShootingSystem& system, std::vector<RodState>& nodes,
-                      int max_iterations, bool drifting) {
+                      int max_iterations, Modes modes) {
   ClosedGaps result;
   Eigen::VectorXd equations;
   for (int iteration = 0; iteration < max_iterations && !result.converged; ++iteration) {
@@ -136,7 +136,7 @@ ClosedGaps close_gaps(const ShootingSystem& system, std::vector<RodState>& nodes
       break;
     }
     std::optional<double> step;
-    if (drifting && equations.norm() < nearly_closed) {
+    if (modes == Modes::nearly_zero && equations.norm() < nearly_closed) {
       step = last_newton_steps(system, derivatives, equations, nodes, result.shots);
     }
     if (!step) step = newton_step(system, derivatives, equations, nodes, result.shots);

@@ -16,9 +16,9 @@ struct ExactOptions {
   /// A shape to confirm or correct, of this problem or a similar one, with its grips' reactions:
   /// Newton's method starts from it, without a search. Has to outlive the call. Where clamps twist
   /// the rod it starts with the torque of the shape's `twists` and counts whole turns as they do. A
-  /// shape without `twists` is taken for the rod without twist. Of a rod with
-  /// material directors the frames are those of the shape's d1 or, if it has none, follow from the
-  /// first clamp's, of which there has to be one, and from what the grips exert.
+  /// shape without `twists` is taken for the rod without twist. Of a rod with material directors
+  /// the frames are those of the shape's d1 or, if it has none, follow from the first clamp's, of
+  /// which there has to be one, and from what the grips exert.
   const Equilibrium* start = nullptr;
 };
 
@@ -42,10 +42,10 @@ struct ExactOptions {
 /// All others that are round and intrinsically straight (any clamps and pins, in the plane or in
 /// space, up to 1e6 EI/l^2 of the softest section) are cut at their clamps and solved by multiple
 /// shooting: Newton's method closes the gaps between integrations over short intervals. It starts
-/// from `start`, or from the six lowest minima (twelve while nothing is stable) that a coarse
-/// polygon finds when it is relaxed from straight, arched, S-shaped and looped shapes, in the plane
-/// and out of it, and from beside the unstable equilibria that lie below all stable ones. That is a
-/// search: it may miss equilibria.
+/// from `start`, or from the six lowest minima (sixteen while nothing is stable) that a coarse
+/// polygon of frames finds when L-BFGS relaxes it from the natural shape, straight, hanging,
+/// arched, S-shaped and looped ones, in the plane and out of it, and from beside the unstable
+/// equilibria that lie below all stable ones. That is a search: it may miss equilibria.
 ///
 /// Twist (Problem) is put in from the lowest equilibrium without it, by continuation in the roll;
 /// where a shape becomes unstable the gradient flow of the energy leads to the next stable one, the
@@ -69,22 +69,18 @@ struct ExactOptions {
 /// of a body side by side is refused.
 ///
 /// A rod with material directors is not cut, because its torque passes through clamps that do not
-/// hold the frame; the first clamp holds the frame that Problem says. It is solved by multiple
-/// shooting too, from `start`, or from the eight lowest minima (sixteen while nothing is stable) of
-/// a polygon of frames that L-BFGS relaxes from the natural shape, the hanging and the straight
-/// one, arches, S and loops, in the plane and out of it, and from beside the unstable equilibria
-/// below all stable ones. The frames of clamps after the first are let go for that. Then they are
-/// turned, all together, from where the lowest shape has them, by their roll less the first clamp's
-/// and to their d1 by the angle in (-pi, pi] that is left if both rolls are zero. Where a shape
-/// becomes unstable the polygon is relaxed from it. `twists` has a part for each two neighbouring
-/// clamps that hold frames, of which the first clamp is one.
+/// hold the frame; the first clamp holds the frame that Problem says. Else it is solved alike. The
+/// frames of clamps after the first are let go for the search. Then they are turned, all together,
+/// from where the lowest shape has them, by their roll less the first clamp's and to their d1 by
+/// the angle in (-pi, pi] that is left if both rolls are zero. `twists` has a part for each two
+/// neighbouring clamps that hold frames, of which the first clamp is one.
 ///
 /// The second variation of each equilibrium is looked at on its own shape, by finite elements, in
 /// space and under the grips' constraints: `smallest_eigenvalue` is its smallest eigenvalue over
 /// int |eta'|^2 + |eta|^2 ds, eta the change of the tangent, of a rod with material directors the
 /// spin of its cross-sections, lengths in l. The stable equilibrium of lowest energy is returned;
-/// if none is stable the lowest one, as `saddle`. The message counts the zero modes (rotation
-/// about a line), combinations of spans beyond the 64 lowest, and tips that could not be shot from.
+/// if none is stable the lowest one, as `saddle`. The message counts the zero modes (rotation about
+/// a line), combinations of spans beyond the 64 lowest, and tips that could not be shot from.
 /// @throws std::invalid_argument if the problem or an option is out of range, or has obstacles that
 /// are not as said above
 Equilibrium solve_exact(const Problem& problem, const ExactOptions& options = {});
