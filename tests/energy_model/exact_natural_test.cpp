@@ -11,9 +11,9 @@
 #include <stdexcept>
 
 #include "base/sized_samples.hpp"
-#include "curved/curved_rod.hpp"
 #include "dlo/energy_model/exact.hpp"
 #include "equilibrium_balance.hpp"
+#include "kirchhoff/rod_span.hpp"
 #include "problem/rod_law.hpp"
 #include "problems.hpp"
 #include "random_problems.hpp"
@@ -498,10 +498,10 @@ TEST(ExactNatural, WhatIsUnstableOfTheStraightRodIsUnstable) {
 TEST(ExactNatural, AStraightClampedRodBucklesUnderItsTwist) {
   // tan(M l / 2 EI) = M l / 2 EI without tension (Greenhill).
   constexpr double known = 8.986818916;
-  const CurvedRod rod = make_curved_rod(KirchhoffHelix().problem());
+  const RodSpan span = uncut(KirchhoffHelix().problem());
   const ClampFrames frames = {Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Identity()};
   const auto smallest = [&](double torque) {
-    return second_variation(rod.span, {}, frames, torque * torque,
+    return second_variation(span, {}, frames, torque * torque,
                             [&](const std::vector<double>& arc) {
                               std::vector<RodState> states(arc.size());
                               for (std::size_t i = 0; i < arc.size(); ++i) {

@@ -17,12 +17,12 @@
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
 #include "base/silence_gsl.hpp"
-#include "curved/curved_search.hpp"
-#include "shooting/solved_rod.hpp"
 #include "kirchhoff/rod_span.hpp"
 #include "problem/ordered_grips.hpp"
 #include "problem/reduction.hpp"
 #include "shooting/planar_shooting.hpp"
+#include "shooting/refine_span.hpp"
+#include "shooting/solved_rod.hpp"
 #include "shooting/span_shooting.hpp"
 #include "touching/confirm_contacts.hpp"
 #include "touching/raise_weight.hpp"
@@ -39,18 +39,17 @@ struct Found {
   std::string left_out;  // empty: nothing
 };
 
-/// The lowest combinations of what is found for the spans.
+/// The lowest combinations of what is found for the spans. A rod with material directors is one.
 Found solve_spans(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
   SolvedRod rod;
-  rod.spans = cut_at_clamps(problem);
+  rod.spans = has_material_directors(problem) ? std::vector<RodSpan>{uncut(problem)}
+                                              : cut_at_clamps(problem);
   Found result;
   std::vector<std::vector<SpanEquilibrium>> found;
   std::vector<std::vector<SpanCandidate>> candidates;
   for (const RodSpan& span : rod.spans) {
     if (options.start == nullptr) {
-      SpanSearchResult search = span.twisted()
-                                    ? search_twisted_span(span, options.tolerance, deadline)
-                                    : search_span(span, options.tolerance, deadline);
+      SpanSearchResult search = search_span(span, options.tolerance, deadline);
       result.out_of_time = result.out_of_time || !search.complete;
       found.push_back(std::move(search.found));
     } else {
@@ -71,26 +70,6 @@ Found solve_spans(const Problem& problem, const ExactOptions& options, const Dea
   if (combinations.truncated) {
     result.left_out =
         "only the lowest " + std::to_string(most_results) + " combinations of spans are listed";
-  }
-  return result;
-}
-
-/// A rod with material directors is not cut.
-Found solve_uncut(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
-  const CurvedRod rod = make_curved_rod(problem);
-  Found result;
-  std::vector<SpanEquilibrium> found;
-  if (options.start == nullptr) {
-    SpanSearchResult search = search_curved(rod, options.tolerance, deadline);
-    found = std::move(search.found);
-    result.out_of_time = !search.complete;
-  } else {
-    found = {refine_curved(rod, problem, *options.start, options.tolerance, deadline)};
-    result.out_of_time = deadline.passed();
-  }
-  for (SpanEquilibrium& shape : found) {
-    result.equilibria.push_back(
-        assemble(problem, {{rod.span}, {std::move(shape)}, rod.axes}, options.tolerance));
   }
   return result;
 }
@@ -123,7 +102,7 @@ void refuse_passed_torque(const Problem& problem) {
 }
 
 Found search(const Problem& problem, const ExactOptions& options, const Deadline& deadline) {
-  if (has_material_directors(problem)) return solve_uncut(problem, options, deadline);
+  if (has_material_directors(problem)) return solve_spans(problem, options, deadline);
   refuse_passed_torque(problem);
   // The scan knows of one section.
   const std::optional<ReducedCantilever> cantilever =
@@ -143,7 +122,8 @@ Found search_touching(const Problem& problem, const ExactOptions& options,
   require(found.has_value(), "solve_exact", "number of obstacles",
           static_cast<double>(problem.obstacles.size()),
           options.start == nullptr
-              ? "0, or rigid half-spaces across the plane of a heavy round rod with one clamp at "
+              ? "0, or rigid half-spaces across the plane of a heavy round rod "
+                "with one clamp at "
                 "its begin, or a start has to say what touches"
               : "0, or rigid ones that a rod without natural strains touches between its grips");
   return {{*std::move(found)}, false, ""};

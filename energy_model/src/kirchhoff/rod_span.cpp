@@ -20,7 +20,8 @@ double own_arc_length(double at, double length) {
   return s > 1 - same_place ? 1 : s;
 }
 
-std::optional<Plane> plane_of(const RodSpan& span) {
+/// Of clamps, from grip to grip and of forces: unit, but for those of forces.
+std::vector<Eigen::Vector3d> directions_of(const RodSpan& span) {
   std::vector<Eigen::Vector3d> directions;
   for (const RodSpan::Clamp& clamp : span.clamps) directions.push_back(clamp.direction);
   for (const RodSpan::Hold& hold : span.holds) {
@@ -34,6 +35,11 @@ std::optional<Plane> plane_of(const RodSpan& span) {
     }
     for (const RodSpan::Load& load : span.loads) directions.emplace_back(load.force / largest);
   }
+  return directions;
+}
+
+std::optional<Plane> plane_of(const RodSpan& span) {
+  std::vector<Eigen::Vector3d> directions = directions_of(span);
   if (directions.empty()) directions.emplace_back(Eigen::Vector3d::UnitX());
   // A pinned rod without a direction of its own starts with its weight, which may be zero.
   const auto first = std::max_element(
@@ -43,8 +49,28 @@ std::optional<Plane> plane_of(const RodSpan& span) {
   return find_plane(span.holds.front().position, *first, directions);
 }
 
+/// The plane across the second axis of the first frame, if the span keeps to it.
+std::optional<Plane> plane_across_d2(const RodSpan& span) {
+  constexpr double rounding = 1e-12;
+  const Eigen::Vector3d normal = span.first_frame.col(1);
+  for (const Eigen::Vector3d& direction : directions_of(span)) {
+    if (std::abs(normal.dot(direction)) > rounding) return std::nullopt;
+  }
+  // A polynomial of the second strain alone has only zeros of the others.
+  constexpr int probes = 24;
+  for (int i = 0; i <= probes; ++i) {
+    const Eigen::Vector3d u = span.natural(static_cast<double>(i) / probes);
+    if (u[0] != 0 || u[2] != 0) return std::nullopt;
+  }
+  return Plane{span.holds.front().position, span.first_frame.col(2), span.first_frame.col(0)};
+}
+
+/// Which law a span obeys.
+enum class Directors { any, of_material };
+
 /// Of the rod from `begin` to `end`, both in units of l.
-std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, double end) {
+std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, double end,
+                                         Directors directors) {
   const double l = problem.length;
   const double unit = bending_unit(problem);
   std::vector<RodSpan::Part> parts;
@@ -55,7 +81,9 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
     if (to - from < same_place) continue;
     RodSection own{section.bending_stiffness / unit, section.torsional_stiffness / unit,
                    section.weight_per_length * l * l * l / unit};
-    if (section.bending_stiffness_2) own.bending_2 = *section.bending_stiffness_2 / unit;
+    if (directors == Directors::of_material && section.bending_stiffness_2) {
+      own.bending_2 = *section.bending_stiffness_2 / unit;
+    }
     parts.push_back({from - begin, to - begin, own});
   }
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) parts[i].end = parts[i + 1].begin;
@@ -64,49 +92,72 @@ std::vector<RodSpan::Part> parts_between(const Problem& problem, double begin, d
   return parts;
 }
 
-RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
-                  double end) {
+/// Grips and clamps, and the frames that these hold.
+void add_grips(const Problem& problem, const std::vector<OrderedGrip>& grips, Directors directors,
+               RodSpan& span) {
   const double l = problem.length;
-  const double force_unit = bending_unit(problem) / (l * l);
   const Eigen::Vector3d origin = problem.grips.front().position;
-  RodSpan span;
-  span.begin = begin;
-  span.length = end - begin;
-  span.parts = parts_between(problem, begin, end);
-  const Grip* first = nullptr;  // clamp
+  std::optional<Grip> first;  // clamp
   for (const OrderedGrip& grip : grips) {
-    const double at = own_arc_length(grip.grip->at, l);
-    if (at < begin || at > end) continue;
-    span.holds.push_back({at - begin, (grip.grip->position - origin) / l, grip.index});
+    const double at = own_arc_length(grip.grip->at, l) - span.begin;
+    if (at < 0 || at > span.length) continue;
+    span.holds.push_back({at, (grip.grip->position - origin) / l, grip.index});
     if (!grip.grip->direction) continue;
-    RodSpan::Clamp clamp{at - begin, grip.grip->direction->normalized(), {}};
-    if (first == nullptr) {
-      first = grip.grip;
-      const Eigen::Vector3d d1 =
-          first->frame ? held_d1(problem, *first) : clamp.direction.unitOrthogonal();
-      span.first_frame = frame_of(d1, clamp.direction);
+    RodSpan::Clamp clamp{at, grip.grip->direction->normalized(), {}};
+    if (!first) {
+      first = *grip.grip;
+      if (directors == Directors::of_material) {
+        if (!first->frame) first->frame = FrameHold{};
+        span.first_roll = first->frame->roll;
+      } else {
+        const Eigen::Vector3d d1 =
+            first->frame ? held_d1(problem, *first) : clamp.direction.unitOrthogonal();
+        span.first_frame = frame_of(d1, clamp.direction);
+      }
     } else if (first->frame && grip.grip->frame) {
       clamp.frame =
           RodSpan::Frame{held_d1(problem, *grip.grip), turns_between(problem, *first, *grip.grip)};
     }
     span.clamps.push_back(clamp);
   }
+}
+
+void add_loads(const Problem& problem, RodSpan& span) {
+  const double l = problem.length;
+  const double force_unit = bending_unit(problem) / (l * l);
   for (const Load& load : problem.loads) {
-    const double at = own_arc_length(load.at, l);
-    if (at < begin || at > end || clamp_under(problem, load)) continue;
-    span.loads.push_back({at - begin, load.force / force_unit});
+    double at = own_arc_length(load.at, l) - span.begin;
+    if (at < 0 || at > span.length || clamp_under(problem, load)) continue;
+    for (const RodSpan::Hold& hold : span.holds) {
+      if (std::abs(at - hold.at) < same_place) at = hold.at;
+    }
+    span.loads.push_back({at, load.force / force_unit});
   }
   std::stable_sort(span.loads.begin(), span.loads.end(),
                    [](const auto& a, const auto& b) { return a.at < b.at; });
-  span.plane = plane_of(span);
+}
+
+RodSpan make_span(const Problem& problem, const std::vector<OrderedGrip>& grips, double begin,
+                  double end, Directors directors) {
+  RodSpan span;
+  span.begin = begin;
+  span.length = end - begin;
+  span.parts = parts_between(problem, begin, end, directors);
+  add_grips(problem, grips, directors, span);
+  add_loads(problem, span);
   return span;
 }
 
-std::vector<OrderedGrip> checked_grips(const Problem& problem) {
-  check(problem);
+/// Where nothing holds the frame of a rod on pins, its plane has the second axis for a normal.
+Eigen::Matrix3d material_frame(const Problem& problem) {
+  if (first_clamp(problem)) return first_frame(problem);
+  const Eigen::Vector3d d2 = natural_normal(problem).value_or(Eigen::Vector3d::UnitZ());
+  return frame_of(d2.unitOrthogonal(), d2.unitOrthogonal().cross(d2));
+}
+
+void require_no_obstacles(const Problem& problem) {
   require(problem.obstacles.empty(), "solve_exact", "number of obstacles",
           static_cast<double>(problem.obstacles.size()), "0");
-  return ordered_grips(problem);
 }
 
 }  // namespace
@@ -134,35 +185,45 @@ ClampFrames released_frames(const RodSpan& span) {
   return frames;
 }
 
+ClampFrames held_frames(const RodSpan& span) {
+  ClampFrames frames = released_frames(span);
+  for (std::size_t k = 0; k < frames.size(); ++k) {
+    const RodSpan::Clamp& clamp = span.clamps[k];
+    if (!clamp.frame) continue;
+    frames[k] = rolled(frame_of(clamp.frame->d1, clamp.direction),
+                       clamp.frame->turns.roll + span.first_roll);
+  }
+  return frames;
+}
+
+RodSpan without_frames(RodSpan span) {
+  for (RodSpan::Clamp& clamp : span.clamps) clamp.frame.reset();
+  return span;
+}
+
 RodSpan whole(const Problem& problem) {
   check(problem);
-  return make_span(problem, ordered_grips(problem), 0, 1);
+  const Directors directors =
+      has_material_directors(problem) ? Directors::of_material : Directors::any;
+  RodSpan span = make_span(problem, ordered_grips(problem), 0, 1, directors);
+  if (directors == Directors::of_material) span.first_frame = material_frame(problem);
+  return span;
 }
 
 RodSpan uncut(const Problem& problem) {
-  const double l = problem.length;
-  const double force_unit = bending_unit(problem) / (l * l);
-  const Eigen::Vector3d& origin = problem.grips.front().position;
-  RodSpan span;
-  for (const OrderedGrip& grip : checked_grips(problem)) {
-    span.holds.push_back(
-        {own_arc_length(grip.grip->at, l), (grip.grip->position - origin) / l, grip.index});
-  }
-  for (const Load& load : problem.loads) {
-    double at = own_arc_length(load.at, l);
-    for (const RodSpan::Hold& hold : span.holds) {
-      if (std::abs(at - hold.at) < same_place) at = hold.at;
-    }
-    span.loads.push_back({at, load.force / force_unit});
-  }
-  std::stable_sort(span.loads.begin(), span.loads.end(),
-                   [](const auto& a, const auto& b) { return a.at < b.at; });
-  span.parts = parts_between(problem, 0, 1);
+  require_no_obstacles(problem);
+  RodSpan span = whole(problem);
+  span.natural = [problem](double s) {
+    return Eigen::Vector3d(problem.length * natural_strain(problem, s * problem.length));
+  };
+  span.plane = plane_across_d2(span);
   return span;
 }
 
 std::vector<RodSpan> cut_at_clamps(const Problem& problem) {
-  const std::vector<OrderedGrip> grips = checked_grips(problem);
+  check(problem);
+  require_no_obstacles(problem);
+  const std::vector<OrderedGrip> grips = ordered_grips(problem);
   std::vector<double> cuts = {0, 1};
   for (const OrderedGrip& grip : grips) {
     if (grip.grip->direction) cuts.push_back(own_arc_length(grip.grip->at, problem.length));
@@ -171,9 +232,14 @@ std::vector<RodSpan> cut_at_clamps(const Problem& problem) {
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
   std::vector<RodSpan> spans;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    spans.push_back(make_span(problem, grips, cuts[i], cuts[i + 1]));
+    spans.push_back(make_span(problem, grips, cuts[i], cuts[i + 1], Directors::any));
+    spans.back().plane = plane_of(spans.back());
   }
   return spans;
+}
+
+Eigen::Index node_at(const Eigen::VectorXd& nodes, double s) {
+  return std::lower_bound(nodes.begin(), nodes.end(), s) - nodes.begin();
 }
 
 RodMesh make_mesh(const RodSpan& span, double longest, const std::vector<double>& further) {
@@ -210,12 +276,9 @@ RodMesh mesh_at(const RodSpan& span, const Eigen::VectorXd& nodes) {
   mesh.load = Eigen::Matrix3Xd::Zero(3, nodes.size());
   mesh.pull = mesh.load;
   mesh.hold.assign(static_cast<std::size_t>(nodes.size()), nullptr);
-  const auto node_at = [&](double s) {
-    return std::lower_bound(nodes.begin(), nodes.end(), s) - nodes.begin();
-  };
-  for (const RodSpan::Load& load : span.loads) mesh.load.col(node_at(load.at)) += load.force;
+  for (const RodSpan::Load& load : span.loads) mesh.load.col(node_at(nodes, load.at)) += load.force;
   for (const RodSpan::Hold& hold : span.holds) {
-    mesh.hold[static_cast<std::size_t>(node_at(hold.at))] = &hold;
+    mesh.hold[static_cast<std::size_t>(node_at(nodes, hold.at))] = &hold;
   }
   for (Eigen::Index i = 0; i < mesh.intervals(); ++i) {
     mesh.section.push_back(&section_at(span, (nodes[i] + nodes[i + 1]) / 2));

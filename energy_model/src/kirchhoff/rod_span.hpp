@@ -12,9 +12,12 @@
 
 namespace dlo::energy_model {
 
-/// A piece of rod between two clamps, or between a clamp and a free end, or the whole of a rod
-/// without clamps. Lengths in l, forces in EI/l^2; s runs along the arc length from the piece's
-/// beginning, positions are relative to the problem's first grip.
+/// Whether a rod keeps to its plane.
+enum class Motion { in_plane, in_space };
+
+/// A piece of rod between two clamps, or between a clamp and a free end, or all of it. Lengths in
+/// l, forces in EI/l^2; s runs along the arc length from the piece's beginning, positions are
+/// relative to the problem's first grip.
 struct RodSpan {
   struct Hold {
     double at = 0;  ///< s
@@ -43,14 +46,17 @@ struct RodSpan {
   };
   double begin = 0;  ///< arc length of s = 0
   double length = 1;
-  std::vector<Part> parts;     ///< by growing s, from 0 to its length
-  std::vector<Hold> holds;     ///< by growing s, those of the clamps included
-  std::vector<Clamp> clamps;   ///< by growing s; of a rod that is cut, at its ends
-  std::vector<Load> loads;     ///< by growing s; of a rod that is cut, none on clamps
-  NaturalStrain natural;       ///< none: straight
-  std::optional<Plane> plane;  ///< of a rod that is cut, if grips and forces lie in one
+  std::vector<Part> parts;    ///< by growing s, from 0 to its length
+  std::vector<Hold> holds;    ///< by growing s, those of the clamps included
+  std::vector<Clamp> clamps;  ///< by growing s; of a rod that is cut, at its ends
+  std::vector<Load> loads;    ///< by growing s; none on clamps
+  NaturalStrain natural;      ///< none: straight
+  /// If grips and forces lie in one, and the rod bends in it: its normal is the second axis of a
+  /// rod that is not round().
+  std::optional<Plane> plane;
   /// That the first clamp holds; of a rod that is round() and not twisted() any one will do.
   Eigen::Matrix3d first_frame = Eigen::Matrix3d::Identity();
+  double first_roll = 0;  ///< of that frame, which contains it; zero of a rod that is cut [rad]
 
   /// Null: no clamp there.
   [[nodiscard]] const Clamp* clamp_at(double s) const;
@@ -67,16 +73,26 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 /// The frames that are held if those after the first clamp are let go.
 [[nodiscard]] ClampFrames released_frames(const RodSpan& span);
 
-/// Cuts a problem at its clamps. Grips within 1e-9 l of an end of the rod are at that end.
+/// The frames that the directors of its clamps say, with all of their roll.
+[[nodiscard]] ClampFrames held_frames(const RodSpan& span);
+
+/// The span whose clamps after the first one hold no frame.
+[[nodiscard]] RodSpan without_frames(RodSpan span);
+
+/// Cuts a problem at its clamps, as one of a round rod that is straight by nature. Grips within
+/// 1e-9 l of an end of the rod are at that end.
 /// @throws std::invalid_argument if the problem is out of range, has obstacles, or grips are
 /// further apart than the rod between them
 [[nodiscard]] std::vector<RodSpan> cut_at_clamps(const Problem& problem);
 
 /// All of the rod as one span with its clamps, of any obstacles; loads on them are the gripper's.
+/// @throws std::invalid_argument if the problem is out of range, or the frame of the first clamp of
+/// a rod with material directors is not known
 [[nodiscard]] RodSpan whole(const Problem& problem);
 
-/// All of the rod as one span without clamps; loads on them are the gripper's and the span's.
-/// @throws std::invalid_argument as cut_at_clamps()
+/// The same of a rod with material directors, whose torque passes through clamps that do not hold
+/// the frame, with its natural strains and its plane.
+/// @throws std::invalid_argument as whole(), or if there are obstacles
 [[nodiscard]] RodSpan uncut(const Problem& problem);
 
 /// A node of a mesh at which contact with a rigid body begins, ends or is a point.
@@ -122,6 +138,9 @@ struct RodMesh {
     return *section[static_cast<std::size_t>(interval)];
   }
 };
+
+/// Where s is, or would be inserted, among nodes.
+[[nodiscard]] Eigen::Index node_at(const Eigen::VectorXd& nodes, double s);
 
 /// @param longest  no interval is longer; between two grips there are eight at least
 /// @param further  arc lengths that have to be nodes

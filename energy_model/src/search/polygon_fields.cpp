@@ -37,34 +37,22 @@ PolygonFields::PolygonFields(const Problem& problem, const PlacedSpan& placed,
   const double load = std::min(total_load(*span_), 1e4);
   longest_ = std::min(span_->length / 16, 1 / std::sqrt(std::max(load, 1.0)));
   const RodMesh mesh = make_mesh(*span_, longest_);
-  middles_ = middles_of(mesh);
-  for (const bool planar : {true, false}) {
-    if ((planar && !span_->plane) || deadline.passed()) continue;
-    PolygonMinima minima = polygon_minima(*span_, mesh, planar, deadline);
-    for (RelaxedPolygon& polygon : minima.found) minima_.push_back({std::move(polygon), planar});
-  }
-  std::stable_sort(minima_.begin(), minima_.end(), [](const Minimum& a, const Minimum& b) {
-    return a.polygon.energy < b.polygon.energy;
-  });
-  if (minima_.size() > most_fields) minima_.erase(minima_.begin() + most_fields, minima_.end());
+  minima_ = polygon_minima(*span_, mesh, deadline).found;
+  if (minima_.size() > most_fields) minima_.resize(most_fields);
 }
 
 TangentField PolygonFields::field(std::size_t index) const {
-  const Minimum& minimum = minima_[index];
-  Eigen::VectorXd middles = middles_;
-  Eigen::Matrix3Xd tangents = minimum.polygon.tangents;
-  const double force = minimum.polygon.force.colwise().norm().maxCoeff() / softest(*span_);
+  const RelaxedPolygon& minimum = minima_[index];
+  const RodMesh mesh = make_mesh(*span_, longest_);
+  Eigen::VectorXd middles = middles_of(mesh);
+  Eigen::Matrix3Xd tangents = minimum.tangents();
+  const double force = minimum.force.colwise().norm().maxCoeff() / softest(*span_);
   const double resolving =
       std::max(1 / std::sqrt(std::max(force, 1.0)), span_->length / most_field_intervals);
   if (longest_ > 1.1 * resolving) {
     const RodMesh finer = make_mesh(*span_, resolving);
     middles = middles_of(finer);
-    tangents.resize(3, middles.size());
-    for (Eigen::Index i = 0; i < middles.size(); ++i) {
-      tangents.col(i) = tangent_between(middles_, minimum.polygon.tangents, middles[i]);
-    }
-    tangents =
-        relax_polygon(*span_, finer, std::move(tangents), minimum.planar, deadline_).tangents;
+    tangents = relax_on(*span_, finer, mesh, minimum, deadline_).tangents();
   }
   return [middles = std::move(middles), tangents = std::move(tangents), length = span_->length,
           reversed = reversed_, frame = frame_](const Eigen::VectorXd& s) {

@@ -25,18 +25,12 @@ class PolygonFields {
   [[nodiscard]] TangentField field(std::size_t index) const;
 
  private:
-  struct Minimum {
-    RelaxedPolygon polygon;
-    bool planar;
-  };
-
   Deadline deadline_;
   bool reversed_;
   Eigen::Matrix3d frame_;
   std::optional<RodSpan> span_;
   double longest_ = 0;  // interval
-  Eigen::VectorXd middles_;
-  std::vector<Minimum> minima_;
+  std::vector<RelaxedPolygon> minima_;
 };
 
 }  // namespace dlo::energy_model

@@ -122,7 +122,7 @@ std::optional<double> last_newton_steps(const ShootingSystem& system, const Trip
 }  // namespace
 
 ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int max_iterations,
-                      bool drifting) {
+                      Modes modes) {
   ClosedGaps result;
   Eigen::VectorXd equations;
   for (int iteration = 0; iteration < max_iterations && !result.converged; ++iteration) {
@@ -137,7 +137,7 @@ ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int ma
       break;
     }
     std::optional<double> step;
-    if (drifting && equations.norm() < nearly_closed) {
+    if (modes == Modes::nearly_zero && equations.norm() < nearly_closed) {
       step = last_newton_steps(system, derivatives, equations, point, result.shots);
     }
     if (!step) step = newton_step(system, derivatives, equations, point, result.shots);

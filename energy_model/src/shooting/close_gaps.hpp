@@ -15,11 +15,15 @@ struct [[nodiscard]] ClosedGaps {
   int shots = 0;
 };
 
+/// Whether the rod can move for nearly nothing, as a buckle along a twisted rod: then it must not
+/// drift that way.
+enum class Modes { stiff, nearly_zero };
+
 /// Newton's method on the equations of multiple shooting. Steps are damped until the next
 /// simplified step is shorter (Deuflhard's natural monotonicity); where there is no such step,
 /// because the rod can move for nothing or nearly so, a Levenberg step makes the gaps smaller.
 /// @param drifting  the rod may have ways to move for nearly nothing: do not follow them
 ClosedGaps close_gaps(const ShootingSystem& system, ShootingPoint& point, int max_iterations,
-                      bool drifting);
+                      Modes modes);
 
 }  // namespace dlo::energy_model

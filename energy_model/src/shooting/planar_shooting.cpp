@@ -13,9 +13,9 @@
 #include <numbers>
 
 #include "base/silence_gsl.hpp"
+#include "shooting/refine_span.hpp"
 #include "shooting/second_variation.hpp"
 #include "shooting/span_equilibrium.hpp"
-#include "shooting/span_shooting.hpp"
 
 namespace dlo::energy_model {
 namespace {

@@ -33,7 +33,8 @@ ShootingSystem::ShootingSystem(const RodSpan& span, const RodMesh& mesh, const C
       rate_(std::sqrt(unit_of_force(span, start))),
       positions_(Eigen::Matrix3d::Identity()),
       turns_(Eigen::Matrix3d::Identity()) {
-  if (options.planar) {
+  const bool planar = options.motion == Motion::in_plane;
+  if (planar) {
     positions_.resize(3, 2);
     positions_ << span.plane->x, span.plane->y;
     turns_ = span.plane->x.cross(span.plane->y);
@@ -46,7 +47,7 @@ ShootingSystem::ShootingSystem(const RodSpan& span, const RodMesh& mesh, const C
                           : frames[static_cast<std::size_t>(clamp - span.clamps.data())]);
   }
   for (const RodState& state : start) {
-    start_.push_back(options.planar ? in_plane(state) : state);
+    start_.push_back(planar ? in_plane(state) : state);
   }
   unknowns_ = equations_ = per_node() * mesh.s.size();
   number_contacts();

@@ -14,10 +14,10 @@ namespace dlo::energy_model {
 using Triplets = std::vector<Eigen::Triplet<double>>;
 
 struct ShootingOptions {
-  double tolerance = 1e-13;  ///< of the integrator, see follow_rod
-  bool planar = false;       ///< stay in the span's plane
-  int max_iterations = 60;   ///< Newton steps
-  Deadline deadline{};       ///< the result is a failure once it has passed
+  double tolerance = 1e-13;          ///< of the integrator, see follow_rod
+  Motion motion = Motion::in_space;  ///< in the plane: stay in the span's
+  int max_iterations = 60;           ///< Newton steps
+  Deadline deadline{};               ///< the result is a failure once it has passed
 };
 
 /// What Newton's method moves.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <string>
@@ -34,27 +35,21 @@ std::vector<RodState> before_nodes(const RodSpan& span, const SpanEquilibrium& e
   return before;
 }
 
-std::size_t node_at(const SpanEquilibrium& equilibrium, double s) {
-  return static_cast<std::size_t>(std::lower_bound(equilibrium.s.begin(), equilibrium.s.end(), s) -
-                                  equilibrium.s.begin());
-}
-
 /// What the grips of a span exert makes up for the jumps of n and m.
 void add_reactions(const Problem& problem, const RodSpan& span, const SpanEquilibrium& equilibrium,
-                   const std::vector<RodState>& before, const Eigen::Matrix3d& axes,
-                   std::vector<Reaction>& reactions) {
+                   const std::vector<RodState>& before, std::vector<Reaction>& reactions) {
   const double torque_unit = bending_unit(problem) / problem.length;
   const double force_unit = torque_unit / problem.length;
   for (const RodSpan::Hold& hold : span.holds) {
-    const std::size_t i = node_at(equilibrium, hold.at);
+    const auto i = static_cast<std::size_t>(node_at(equilibrium.s, hold.at));
     Eigen::Vector3d force = before[i].n - equilibrium.nodes[i].n;
     for (const RodSpan::Load& load : span.loads) {
       if (load.at == hold.at) force -= load.force;
     }
     Reaction& reaction = reactions[hold.grip];
-    reaction.force += force_unit * (axes * force);
+    reaction.force += force_unit * force;
     if (span.clamp_at(hold.at) == nullptr) continue;
-    reaction.torque += torque_unit * (axes * (before[i].m - equilibrium.nodes[i].m));
+    reaction.torque += torque_unit * (before[i].m - equilibrium.nodes[i].m);
   }
 }
 
@@ -62,10 +57,10 @@ void add_reactions(const Problem& problem, const RodSpan& span, const SpanEquili
 void add_twists(const Problem& problem, const RodSpan& span, const SpanEquilibrium& equilibrium,
                 const std::vector<RodState>& before, std::vector<TwistedPart>& twists) {
   if (span.clamps.empty()) return;
-  std::size_t begin = node_at(equilibrium, span.clamps.front().at);
+  auto begin = static_cast<std::size_t>(node_at(equilibrium.s, span.clamps.front().at));
   for (const RodSpan::Clamp& clamp : span.clamps) {
     if (!clamp.frame) continue;
-    const std::size_t end = node_at(equilibrium, clamp.at);
+    const auto end = static_cast<std::size_t>(node_at(equilibrium.s, clamp.at));
     TwistedPart part;
     part.begin = (span.begin + equilibrium.s[static_cast<Eigen::Index>(begin)]) * problem.length;
     part.end = (span.begin + clamp.at) * problem.length;
@@ -76,7 +71,7 @@ void add_twists(const Problem& problem, const RodSpan& span, const SpanEquilibri
   }
 }
 
-/// Loads on clamps belong to no span of a rod that is cut there.
+/// Loads on clamps belong to no span.
 void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
   for (const Load& load : problem.loads) {
     const std::optional<std::size_t> clamp = clamp_under(problem, load);
@@ -90,22 +85,30 @@ void add_loads_on_clamps(const Problem& problem, Equilibrium& result) {
 Samples sample(const Problem& problem, const SolvedRod& rod, double tolerance,
                std::span<const double> arc_lengths) {
   const double l = problem.length;
-  const auto count = static_cast<Eigen::Index>(arc_lengths.size());
-  const bool directors = has_material_directors(problem);
   Samples samples = sized_samples(arc_lengths, l);
-  if (directors) samples.d1.resize(3, count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const double at = arc_lengths[static_cast<std::size_t>(i)] / l;
-    std::size_t p = 0;
-    while (p + 1 < rod.spans.size() && at > rod.spans[p + 1].begin) ++p;
+  if (rod.has_directors()) samples.d1.resize(3, samples.points.cols());
+  std::vector<std::size_t> order(arc_lengths.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(),
+            [&](std::size_t a, std::size_t b) { return arc_lengths[a] < arc_lengths[b]; });
+  std::size_t first = 0;  // of a span, in order
+  for (std::size_t p = 0; p < rod.spans.size(); ++p) {
     const RodSpan& span = rod.spans[p];
-    const double s = at - span.begin;
-    const RodState state = state_at(rod.equilibria[p], span, s, tolerance);
-    const RodSection& section = section_at(span, std::min(s, span.length * (1 - 1e-12)));
-    samples.points.col(i) = problem.grips.front().position + l * (rod.axes * state.r);
-    samples.tangents.col(i) = rod.axes * state.t();
-    samples.curvature.col(i) = rod.axes * curvature_of(section, span.natural, s, state) / l;
-    if (directors) samples.d1.col(i) = rod.axes * state.R.col(0);
+    const double end = p + 1 < rod.spans.size() ? rod.spans[p + 1].begin : INFINITY;
+    std::vector<double> s;
+    for (std::size_t k = first; k < order.size() && arc_lengths[order[k]] / l <= end; ++k) {
+      s.push_back(arc_lengths[order[k]] / l - span.begin);
+    }
+    const std::vector<RodState> states = states_at(rod.equilibria[p], span, s, tolerance);
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      const RodSection& section = section_at(span, std::min(s[k], span.length * (1 - 1e-12)));
+      const auto i = static_cast<Eigen::Index>(order[first + k]);
+      samples.points.col(i) = problem.grips.front().position + l * states[k].r;
+      samples.tangents.col(i) = states[k].t();
+      samples.curvature.col(i) = curvature_of(section, span.natural, s[k], states[k]) / l;
+      if (rod.has_directors()) samples.d1.col(i) = states[k].R.col(0);
+    }
+    first += s.size();
   }
   return samples;
 }
@@ -130,7 +133,7 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     if (!equilibrium.converged) {
       result.status = SolveStatus::failed;
       result.message = equilibrium.message;
-      if (!has_material_directors(problem)) {
+      if (!rod->has_directors()) {
         result.message = "the rod from " + std::to_string(span.begin * problem.length) +
                          " m on: " + result.message;
       }
@@ -141,7 +144,7 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     energy.gravity += equilibrium.energy.gravity;
     energy.load += equilibrium.energy.load;
     const std::vector<RodState> before = before_nodes(span, equilibrium, tolerance);
-    add_reactions(problem, span, equilibrium, before, rod->axes, result.grips);
+    add_reactions(problem, span, equilibrium, before, result.grips);
     add_twists(problem, span, equilibrium, before, result.twists);
     stability.negative += equilibrium.stability.negative;
     stability.neutral += equilibrium.stability.neutral;
@@ -154,7 +157,7 @@ Equilibrium assemble(const Problem& problem, SolvedRod solved, double tolerance)
     return result;
   }
   result.energy = restore(problem, energy);
-  if (!has_material_directors(problem)) add_loads_on_clamps(problem, result);
+  add_loads_on_clamps(problem, result);
   judge(stability, result);
   result.sample = [problem, rod, tolerance](std::span<const double> arc_lengths) {
     return sample(problem, *rod, tolerance, arc_lengths);

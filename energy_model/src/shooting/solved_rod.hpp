@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "dlo/energy_model/equilibrium.hpp"
@@ -14,7 +13,9 @@ namespace dlo::energy_model {
 struct SolvedRod {
   std::vector<RodSpan> spans;  ///< by growing arc length
   std::vector<SpanEquilibrium> equilibria;
-  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< of the spans, in space
+
+  /// Whether it is one whose material directors are followed from end to end.
+  [[nodiscard]] bool has_directors() const { return !spans.front().round(); }
 };
 
 /// The rod's equilibrium with its verdict, in the problem's units; `failed` where a span has none.

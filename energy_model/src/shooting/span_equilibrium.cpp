@@ -63,8 +63,8 @@ SpanEquilibrium close_span(const RodSpan& span, const RodMesh& mesh,
   equilibrium.frames = frames;
   equilibrium.contacts = mesh.contacts;
   ShootingPoint point = system.start();
-  const bool drifting = span.round() && span.twisted();
-  ClosedGaps closed = close_gaps(system, point, options.max_iterations, drifting);
+  const Modes modes = span.round() && span.twisted() ? Modes::nearly_zero : Modes::stiff;
+  ClosedGaps closed = close_gaps(system, point, options.max_iterations, modes);
   equilibrium.converged = closed.converged;
   equilibrium.message = std::move(closed.message);
   equilibrium.shots = closed.shots;

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -25,7 +26,7 @@ double largest_change(const std::vector<RodState>& a, const std::vector<RodState
   return (tangents_of(a) - tangents_of(b)).colwise().norm().maxCoeff();
 }
 
-/// A span on its way from no roll to all of it.
+/// A span on its way from no roll of its frames to all of it.
 class Continuation {
  public:
   Continuation(const RodSpan& span, double tolerance, const Deadline& deadline)
@@ -34,9 +35,7 @@ class Continuation {
   SpanEquilibrium run(const SpanEquilibrium& without) {
     now_ = without;
     shots_ = without.shots;
-    const RodSpan::Clamp& end = span_.clamps.back();
-    untwisted_end_ = frame_of(now_.nodes.back().R.col(0), end.direction);
-    find_target();
+    find_targets();
     // The frames are held: what turns them costs twist.
     now_.frames = frames(0);
     judge_stability(span_, tolerance_, now_);
@@ -45,8 +44,7 @@ class Continuation {
     double step = first_step;
     while (reached_ != target_) {
       if (deadline_.passed()) return failure(to_string(SolveStatus::time_limit));
-      const double way = target_ - reached_;
-      const double next = std::abs(way) <= step ? target_ : reached_ + std::copysign(step, way);
+      const double next = std::min(target_, reached_ + step);
       const double factor = advance(next);
       if (factor > 0) {
         step = std::min(longest_twist_step, step * factor);
@@ -68,28 +66,44 @@ class Continuation {
   }
 
  private:
-  void find_target() {
-    const auto& [d1, turns] = *span_.clamps.back().frame;
-    const double ahead = std::atan2(untwisted_end_.col(1).dot(d1), untwisted_end_.col(0).dot(d1));
+  /// Rolls of the frames from where the shape without them has them.
+  void find_targets() {
     const auto sample = [this](std::span<const double> at) {
       Samples samples = sized_samples(at, span_.length);
-      for (Eigen::Index i = 0; i < samples.points.cols(); ++i) {
-        const RodState state = state_at(now_, span_, at[static_cast<std::size_t>(i)], tolerance_);
-        samples.points.col(i) = state.r;
-        samples.tangents.col(i) = state.t();
+      const auto states = states_at(now_, span_, {at.begin(), at.end()}, tolerance_);
+      for (std::size_t i = 0; i < states.size(); ++i) {
+        samples.points.col(static_cast<Eigen::Index>(i)) = states[i].r;
+        samples.tangents.col(static_cast<Eigen::Index>(i)) = states[i].t();
       }
       return samples;
     };
-    target_ = turned_angle(turns, ahead, writhe(sample, 0, span_.length));
+    for (const RodSpan::Clamp& clamp : span_.clamps) {
+      const Eigen::Matrix3d own = now_.nodes[static_cast<std::size_t>(node_at(now_.s, clamp.at))].R;
+      released_.push_back(frame_of(own.col(0), clamp.direction));
+      targets_.push_back(0);
+      if (!clamp.frame) continue;
+      const auto& [d1, turns] = *clamp.frame;
+      // From the frame that the rod without rolls would have there.
+      const Eigen::Matrix3d ahead_of = rolled(released_.back(), -span_.first_roll);
+      const double ahead = std::atan2(ahead_of.col(1).dot(d1), ahead_of.col(0).dot(d1));
+      std::optional<double> before;
+      if (turns.turns) before = writhe(sample, span_.clamps.front().at, clamp.at);
+      targets_.back() = turned_angle(turns, ahead, before);
+      target_ = std::max(target_, std::abs(targets_.back()));
+    }
   }
 
   [[nodiscard]] ShootingOptions options() const {
     return {.tolerance = tolerance_, .max_iterations = step_iterations, .deadline = deadline_};
   }
 
+  /// Those whose widest roll is this.
   [[nodiscard]] ClampFrames frames(double roll) const {
     ClampFrames held = released_frames(span_);
-    held.back() = rolled(untwisted_end_, roll);
+    for (std::size_t k = 0; k < held.size(); ++k) {
+      const double own = target_ > 0 ? roll / target_ * targets_[k] : 0;
+      if (span_.clamps[k].frame) held[k] = rolled(released_[k], own);
+    }
     return held;
   }
 
@@ -171,8 +185,9 @@ class Continuation {
   const RodSpan& span_;
   double tolerance_;
   Deadline deadline_;
-  Eigen::Matrix3d untwisted_end_ = Eigen::Matrix3d::Identity();  // frame
-  double target_ = 0;                                            // roll [rad]
+  std::vector<Eigen::Matrix3d> released_;  // frames at the clamps that are not turned
+  std::vector<double> targets_;            // rolls [rad]
+  double target_ = 0;                      // the widest of them [rad]
   double reached_ = 0;
   double reached_before_ = 0;
   SpanEquilibrium now_;
@@ -187,16 +202,6 @@ SpanEquilibrium twist_span(const RodSpan& span, const SpanEquilibrium& without, 
                            const Deadline& deadline) {
   if (!without.converged) return without;
   return Continuation(span, tolerance, deadline).run(without);
-}
-
-SpanEquilibrium refine_twisted(const RodSpan& span, const RodMesh& mesh,
-                               std::vector<RodState> start, double tolerance,
-                               const Deadline& deadline) {
-  const RodSpan::Clamp& end = span.clamps.back();
-  ClampFrames frames = released_frames(span);
-  frames.back() = rolled(frame_of(end.frame->d1, end.direction), end.frame->turns.roll);
-  return shoot_span(span, mesh, std::move(start), frames,
-                    {.tolerance = tolerance, .deadline = deadline});
 }
 
 }  // namespace dlo::energy_model

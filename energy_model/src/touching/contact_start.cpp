@@ -5,11 +5,10 @@
 #include <array>
 #include <cmath>
 
-#include "dlo/energy_model/natural_frame.hpp"
 #include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
+#include "shooting/refine_span.hpp"
 #include "shooting/span_equilibrium.hpp"
-#include "shooting/span_shooting.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -30,7 +29,7 @@ class Layout {
     for (const Obstacle& obstacle : problem.obstacles) {
       start_.bodies.push_back(obstacle.body.seen_from(origin, Eigen::Matrix3d::Identity(), l_));
     }
-    hold_frames();
+    start_.frames = held_frames(start_.span);
   }
 
   [[nodiscard]] std::optional<ContactStart> run(double tolerance) {
@@ -45,25 +44,6 @@ class Layout {
   }
 
  private:
-  void hold_frames() {
-    RodSpan& span = start_.span;
-    double first_roll = 0;
-    if (has_material_directors(problem_) && !span.clamps.empty()) {
-      span.first_frame = first_frame(problem_);
-      for (const RodSpan::Hold& hold : span.holds) {
-        const std::optional<FrameHold>& frame = problem_.grips[hold.grip].frame;
-        if (hold.at == span.clamps.front().at && frame) first_roll = frame->roll;
-      }
-    }
-    start_.frames = released_frames(span);
-    for (std::size_t k = 0; k < span.clamps.size(); ++k) {
-      const RodSpan::Clamp& clamp = span.clamps[k];
-      if (!clamp.frame) continue;
-      start_.frames[k] =
-          rolled(frame_of(clamp.frame->d1, clamp.direction), clamp.frame->turns.roll + first_roll);
-    }
-  }
-
   /// Next to an end, a grip, a load or a part of the rod it is there.
   [[nodiscard]] double snapped(double s) const {
     std::vector<double> fixed = {0, start_.span.length};

@@ -1,0 +1,154 @@
+#include "shooting/refine_span.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/require.hpp"
+#include "problem/rod_law.hpp"
+#include "shooting/span_shooting.hpp"
+#include "shooting/span_twist.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr double largest_force = 1e6;    // over b, that the first mesh resolves
+constexpr double plane_of_start = 1e-6;  // of tangents
+
+/// What a shape says of the twist of a span that holds some; null for nothing.
+const TwistedPart* twist_of(const RodSpan& span, const Problem& problem, const Equilibrium& shape) {
+  if (!span.twisted()) return nullptr;
+  const double middle = (span.begin + span.length / 2) * problem.length;
+  const auto found = std::find_if(shape.twists.begin(), shape.twists.end(), [&](const auto& part) {
+    return part.begin < middle && middle < part.end;
+  });
+  return found == shape.twists.end() ? nullptr : &*found;
+}
+
+Samples sample_at(const RodSpan& span, const Problem& problem, const Equilibrium& shape,
+                  const Eigen::VectorXd& s) {
+  std::vector<double> arc_lengths;
+  for (const double at : s) {
+    arc_lengths.push_back(std::min((span.begin + at) * problem.length, problem.length));
+  }
+  // At a clamp the curvature jumps: that of this side is wanted.
+  constexpr double inside = 1e-12;
+  if (span.begin > 0) arc_lengths.front() += inside * problem.length;
+  return shape.sample(arc_lengths);
+}
+
+/// The moment of a round rod is that of its curvature, and a torque.
+std::vector<RodState> states_by_curvature(const RodSpan& span, const Problem& problem,
+                                          const Equilibrium& shape, const RodMesh& mesh,
+                                          double torque) {
+  const Samples samples = sample_at(span, problem, shape, mesh.s);
+  std::vector<RodState> states;
+  for (Eigen::Index i = 0; i < mesh.s.size(); ++i) {
+    RodState state;
+    const Eigen::Vector3d t = samples.tangents.col(i);
+    state.r = (samples.points.col(i) - problem.grips.front().position) / problem.length;
+    state.R = frame_of(t.unitOrthogonal(), t);
+    if (i < mesh.intervals()) {
+      const Eigen::Vector3d curvature = samples.curvature.col(i) * problem.length;
+      state.m = mesh.section_of(i).bending * t.cross(curvature) + torque * t;
+      state.n = implied_force(problem, shape, span.begin + mesh.s[i]);
+    }
+    states.push_back(state);
+  }
+  return states;
+}
+
+/// The moment of the whole of a rod is the sum of what its grips exert.
+std::vector<RodState> states_by_balance(const RodSpan& span, const Problem& problem,
+                                        const Equilibrium& shape, const RodMesh& mesh) {
+  constexpr Eigen::Index parts = 8;  // of an interval
+  const Eigen::Index count = parts * mesh.intervals();
+  Eigen::VectorXd s(count + 1);
+  for (Eigen::Index k = 0; k <= count; ++k) {
+    const Eigen::Index i = std::min(k / parts, mesh.intervals() - 1);
+    s[k] = mesh.s[i] + mesh.width(i) * static_cast<double>(k - parts * i) / parts;
+  }
+  const Samples samples = sample_at(span, problem, shape, s);
+  const double torque_unit = bending_unit(problem) / problem.length;
+  const Eigen::Matrix3Xd r =
+      (samples.points.colwise() - problem.grips.front().position) / problem.length;
+  std::vector<RodState> states(static_cast<std::size_t>(mesh.s.size()));
+  Eigen::Vector3d m = Eigen::Vector3d::Zero();
+  for (Eigen::Index k = count; k >= 0; --k) {
+    if (k % parts == 0) {
+      RodState& state = states[static_cast<std::size_t>(k / parts)];
+      const Eigen::Vector3d t = samples.tangents.col(k).normalized();
+      state.r = r.col(k);
+      state.R = frame_of(samples.d1.cols() > 0 ? samples.d1.col(k).eval() : t.unitOrthogonal(), t);
+      state.m = m;
+      if (k < count) state.n = implied_force(problem, shape, s[k]);
+      for (const RodSpan::Hold& hold : span.holds) {
+        if (hold.at == s[k]) m += shape.grips[hold.grip].torque / torque_unit;
+      }
+    }
+    if (k == 0) break;
+    m -= implied_force(problem, shape, (s[k - 1] + s[k]) / 2)
+             .cross(Eigen::Vector3d(r.col(k) - r.col(k - 1)));
+  }
+  return states;
+}
+
+bool stays_in_plane(const RodSpan& span, const std::vector<RodState>& states) {
+  if (!span.plane || !span.round()) return false;
+  const Eigen::Vector3d normal = span.plane->x.cross(span.plane->y);
+  return (normal.transpose() * tangents_of(states)).cwiseAbs().maxCoeff() < plane_of_start;
+}
+
+}  // namespace
+
+Eigen::Vector3d implied_force(const Problem& problem, const Equilibrium& shape, double s) {
+  const double at = s * problem.length * (1 + 1e-12);
+  Eigen::Vector3d n = Eigen::Vector3d::Zero();
+  for (const Section& part : rod_parts(problem)) {
+    const double until = std::min(part.end, s * problem.length);
+    n -= std::max(0.0, until - part.begin) * part.weight_per_length;
+  }
+  for (std::size_t i = 0; i < problem.grips.size(); ++i) {
+    if (problem.grips[i].at <= at) n -= shape.grips[i].force;
+  }
+  for (const Load& load : problem.loads) {
+    if (load.at <= at) n -= load.force;
+  }
+  return n * problem.length * problem.length / bending_unit(problem);
+}
+
+SpanEquilibrium refine_span(const RodSpan& span, const Problem& problem, const Equilibrium& shape,
+                            double tolerance, const Deadline& deadline) {
+  check_load(span);
+  require(span.round() || !span.clamps.empty(), "solve_exact",
+          "number of clamps of a curved rod with a start", 0,
+          ">= 1: the frames of the start are not known");
+  const double torque_unit = bending_unit(problem) / problem.length;
+  const double b = softest(span);
+  double force = total_load(span) / b;
+  for (const Reaction& grip : shape.grips) {
+    force = std::max(force, grip.force.norm() * problem.length / torque_unit / b);
+  }
+  const TwistedPart* twisted = twist_of(span, problem, shape);
+  const double torque = twisted == nullptr ? 0 : twisted->torque / torque_unit;
+  if (span.round()) force = std::max(force, torque * torque / (b * b));
+  const RodMesh mesh = make_mesh(span, resolving_interval(span, std::min(force, largest_force)));
+  std::vector<RodState> start = span.round()
+                                    ? states_by_curvature(span, problem, shape, mesh, torque)
+                                    : states_by_balance(span, problem, shape, mesh);
+  ShootingOptions options{.tolerance = tolerance, .deadline = deadline};
+  const std::vector<double> begin = {0};
+  if (span.round() || shape.sample(begin).d1.cols() == 0) {
+    carry_frames(span, mesh, tolerance, start);
+  }
+  if (!span.round() || twisted != nullptr) {
+    return shoot_span(span, mesh, std::move(start), held_frames(span), options);
+  }
+  const RodSpan released = without_frames(span);
+  if (stays_in_plane(span, start)) options.motion = Motion::in_plane;
+  SpanEquilibrium equilibrium = shoot_span(released, mesh_at(released, mesh.s), std::move(start),
+                                           released_frames(released), options);
+  return span.twisted() ? twist_span(span, equilibrium, tolerance, deadline) : equilibrium;
+}
+
+}  // namespace dlo::energy_model
