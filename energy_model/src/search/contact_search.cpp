@@ -8,13 +8,10 @@
 #include <string>
 #include <utility>
 
-#include "certify/enough_terms.hpp"
 #include "contact/clearance.hpp"
-#include "contact/lift_off.hpp"
 #include "contact/mend.hpp"
 #include "contact/resting_polygon.hpp"
-#include "newton/trust_region.hpp"
-#include "search/free_boundary_newton.hpp"
+#include "search/active_set.hpp"
 #include "span/negative_curvature.hpp"
 #include "span/refinement.hpp"
 #include "span/same_shape.hpp"
@@ -28,15 +25,8 @@ namespace {
 /// either side.
 constexpr std::size_t most_starts = 3;
 constexpr std::size_t most_starts_of_one_clamp = 6;
-/// Times that the contacts are mended.
-constexpr int most_rounds = 16;
 /// Times that a shape is left which cannot hold itself.
 constexpr int most_departures = 4;
-/// Unknowns from which on half of the terms that a load takes are tried first.
-constexpr int many_unknowns = 300;
-/// A part that lies and is shorter, in lengths, may be a point instead: it is asked again whether
-/// that is behind the obstacle.
-constexpr double shortest_told = 1e-3;
 /// Out of its plane a polygon has tangents with more than this across it.
 constexpr double flat = 1e-6;
 /// Of polygons with few segments those next to the lowest, over 1 + energy: their energies are off
@@ -54,7 +44,11 @@ constexpr const char* polygons_at_rest = "polygons at rest on the obstacles";
 class ContactSearch {
  public:
   ContactSearch(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)
-      : span_(span), options_(options), workspace_(workspace), load_(span.total_load()) {}
+      : span_(span),
+        options_(options),
+        workspace_(workspace),
+        active_set_(span, options, workspace),
+        load_(span.total_load()) {}
 
   [[nodiscard]] std::vector<SpanSolution> run() {
     std::vector<SpanSolution> found;
@@ -85,29 +79,23 @@ class ContactSearch {
     const KnownShape& known = options_.known;
     Span span = span_;
     span.planar = span_.planar && known.model->span().planar;
-    span.contacts = known.model->span().contacts;
-    for (Span::Contact& contact : span.contacts) {
-      const auto moved = std::find_if(
-          span.rigid_obstacles.begin(), span.rigid_obstacles.end(),
-          [&](const Span::Obstacle& other) { return other.index == contact.obstacle.index; });
-      if (moved == span.rigid_obstacles.end()) return {};
-      contact.obstacle = *moved;
-      contact.slides = true;
-    }
+    std::optional<std::vector<Span::Contact>> contacts =
+        moved_contacts(span, known.model->span().contacts);
+    if (!contacts) return {};
+    span.contacts = std::move(*contacts);
     const double share = goes_on_like_before() ? 1 : 0;
     SpanSolution solution = next_to_known(span, share);
     if (share > 0 && !solution.is_equilibrium()) solution = next_to_known(span, 0);
     // Where a point begins to lie it slides with no least gap, and a part is too short to be told.
     if (!solution.is_equilibrium() && hold_points(span)) {
-      solution = newton_from(span, options_.start);
+      solution = active_set_.newton_from(span, options_.start);
     }
     if (!solution.is_equilibrium()) return solution;
     const Eigen::Matrix3Xd turned =
         solution.model->tangents() - options_.start(solution.model->nodes()).tangents;
     if (!(turned.cwiseAbs().maxCoeff() < followed_tangents)) return {};
+    solution = active_set_.solve(std::move(solution));
     spent_ += std::exchange(solution.evaluations, 0);
-    span = solution.model->span();
-    solution = with_right_contacts(std::move(span), {}, std::move(solution));
     solution.followed = succeeded(solution.status) || solution.is_singular_point();
     return solution;
   }
@@ -134,7 +122,8 @@ class ContactSearch {
   [[nodiscard]] int enough_terms_of_known() const {
     const SpanEnergy& model = *options_.known.model;
     const int many = model.terms();
-    const int fewer = std::max(terms_of_load(model.span()), many - std::max(2, many / 5));
+    const int fewer =
+        std::max(active_set_.terms_of_load(model.span()), many - std::max(2, many / 5));
     if (!model.span().planar || options_.terms > 0 || fewer >= many) return many;
     // As refined() has it, with a margin.
     constexpr double margin = 0.1;
@@ -182,7 +171,7 @@ class ContactSearch {
       solution.x = known.x + share * (known.x - before.x);
       solution.multipliers += share * (known.multipliers - before.multipliers);
     }
-    newton(solution);
+    newton_solve(solution, {.load = load_, .deadline = &options_.deadline}, workspace_.newton());
     return solution;
   }
 
@@ -201,9 +190,9 @@ class ContactSearch {
         if (found.empty()) found.push_back(std::move(solution));
         continue;
       }
-      SpanShape shape = solution.model->shape(solution.x);
+      const SpanShape shape = solution.model->shape(solution.x);
       if (!lowest_points(span_, shape, -deepest * span_.length).empty()) {
-        starts.push_back(field_of(std::move(shape)));
+        starts.push_back(solution.model->field(solution.x));
         lowest_within = std::min(lowest_within, solution.energy);
         continue;
       }
@@ -314,7 +303,7 @@ class ContactSearch {
     SpanOptions options = options_;
     options.approach = Approach::descend;
     ContactSearch search(span, options, workspace_);
-    search.look_from({field_of(pushed.shape(x))}, found);
+    search.look_from({pushed.field(x)}, found);
     spent_ += search.spent_;
   }
 
@@ -343,162 +332,13 @@ class ContactSearch {
     Span span = span_;
     span.contacts = polygon.contacts;
     if (polygon.tangents.row(2).cwiseAbs().maxCoeff() > flat) span.planar = false;
-    return with_right_contacts(std::move(span), polygon.field(), {});
-  }
-
-  /// Contacts mended until they are right. @param solution  with the span's, if there is one; else
-  /// from `near`
-  [[nodiscard]] SpanSolution with_right_contacts(Span span, TangentField near,
-                                                 SpanSolution solution) {
-    for (int round = 0; round < most_rounds; ++round) {
-      const bool found_already = round == 0 && solution.is_equilibrium();
-      if (!found_already) solution = newton_from(span, near);
-      if (!solution.is_equilibrium() && hold_points(span)) solution = newton_from(span, near);
-      if (!solution.is_equilibrium()) break;
-      spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
-      std::optional<std::vector<Span::Contact>> next = mended(solution, load_, Terms::some);
-      if (!next) {
-        const TangentField here = field_of(solution.model->shape(solution.x));
-        span = solution.model->span();
-        solution = with_all_terms(std::move(solution));
-        // Where two points are about to become a part that lies neither slides with a least gap.
-        if (!solution.is_equilibrium() && hold_points(span)) {
-          solution = newton_from(span, here);
-          if (solution.is_equilibrium()) solution = with_all_terms(std::move(solution));
-        }
-        if (!solution.is_equilibrium()) break;
-        next = mended(solution, load_, Terms::all);
-        if (!next && !lifts_off(solution)) break;
-        if (!next) return solution;
-      }
-      near = field_of(solution.model->shape(solution.x));
-      span = solution.model->span();
-      span.contacts = std::move(*next);
-      for (Span::Contact& contact : span.contacts) contact.slides = true;
-    }
-    std::string why = solution.is_equilibrium() ? "" : ": " + solution.message;
-    solution.finish(SolveStatus::not_verified);
-    solution.message += ": the contacts did not converge" + why;
-    return solution;
-  }
-
-  /// Where an obstacle would have to pull there may be no shape that slides, but one that is held;
-  /// and a part so short that a point is hardly behind the obstacle beside it is one.
-  /// @return whether any contact has changed
-  [[nodiscard]] static bool hold_points(Span& span) {
-    bool any = false;
-    for (Span::Contact& contact : span.contacts) {
-      const bool inside = contact.begin > 0 && contact.end < span.length;
-      const double middle = (contact.begin + contact.end) / 2;
-      if (contact.lies() && inside && contact.end - contact.begin < shortest_told * span.length) {
-        contact.begin = contact.end = middle;
-      }
-      any = any || (contact.slides && !contact.lies());
-      contact.slides = false;
-    }
-    return any;
-  }
-
-  /// Whether the contacts end where an obstacle without friction lets them, which is what makes the
-  /// shape an equilibrium: a slope or a moment that is left there would take more than pressure.
-  [[nodiscard]] static bool lifts_off(const SpanSolution& solution) {
-    constexpr double settled = 1e-6;
-    const Span& span = solution.model->span();
-    const std::vector<LiftOff> ends = lift_offs(span);
-    if (ends.empty()) return true;
-    const Eigen::VectorXd miss = missed(solution, ends);
-    if (!(miss.cwiseAbs().maxCoeff() <= settled)) return false;
-    // Two points share a force by where they are.
-    constexpr double share = 1e-7;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      if (span.contacts[ends[i].contact].lies()) continue;
-      const Room room = room_of(span, ends[i]);
-      const double off = std::abs(miss[static_cast<Eigen::Index>(i)]);
-      if (!(off <= share * std::min(room.down, room.up))) return false;
-    }
-    return true;
-  }
-
-  [[nodiscard]] SpanSolution newton_from(const Span& span, const TangentField& near) {
-    SpanSolution solution = workspace_.empty_solution(span, terms(span));
-    solution.x = solution.model->fit(near(solution.model->nodes()));
-    const Eigen::VectorXd start = solution.x;
-    // Newton's method would go back to the saddle, or into the plane, that a shape has left.
-    const bool has_left = options_.approach == Approach::descend || span.planar != span_.planar;
-    if (!has_left) newton(solution);
-    if (!solution.is_equilibrium()) {
-      solution.x = start;
-      descend_in_trust_region(
-          solution,
-          {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
-      if (succeeded(solution.status)) newton(solution);
-    }
-    spent_ += std::exchange(solution.evaluations, 0);
-    return solution;
-  }
-
-  void newton(SpanSolution& solution) {
-    newton_solve(solution, {.load = load_, .deadline = &options_.deadline}, workspace_.newton());
-  }
-
-  [[nodiscard]] int terms(const Span& span) const {
-    if (options_.terms > 0) return options_.terms;
-    // What is followed takes about as many as it has taken before.
-    return std::max(terms_of_load(span), options_.known.terms());
-  }
-
-  [[nodiscard]] int terms_of_load(const Span& span) const {
-    constexpr int fewest = 12;  // beside a kink
-    double longest = 0;
-    const std::vector<Piece> pieces = pieces_of(span);
-    for (const Piece& piece : pieces) longest = std::max(longest, piece.length);
-    const int count = std::max(fewest, first_terms(load_, longest));
-    // Many pieces are short, and what they do not take need not be borne while contacts change.
-    const int unknowns = count * static_cast<int>(pieces.size()) * (span.planar ? 1 : 2);
-    return unknowns > many_unknowns ? std::max(fewest, count / 2) : count;
-  }
-
-  /// As many terms as the shape takes, and as what lies takes to be on its obstacle; certified.
-  [[nodiscard]] SpanSolution with_all_terms(SpanSolution solution) {
-    for (;;) {
-      const int before = solution.terms;
-      solution = finished(std::move(solution));
-      if (solution.is_equilibrium() && solution.terms > before) {
-        spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
-        solution = finished(std::move(solution));
-      }
-      const int finer = solution.terms + solution.terms / 2;
-      const bool more = options_.terms == 0 && finer <= max_terms && hardly_behind(solution);
-      if (!more || options_.deadline.passed()) return solution;
-      SpanSolution next = workspace_.with_terms(solution, finer);
-      newton(next);
-      if (!next.is_equilibrium()) return solution;
-      solution = std::move(next);
-      spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
-    }
-  }
-
-  /// Behind an obstacle by no more than missing terms may make it.
-  [[nodiscard]] bool hardly_behind(const SpanSolution& solution) const {
-    if (!solution.is_equilibrium()) return false;
-    const std::vector<Lowest> behind =
-        lowest_points(span_, solution.model->shape(solution.x), -deepest * span_.length);
-    return !behind.empty() && std::all_of(behind.begin(), behind.end(), [&](const auto& lowest) {
-      return lowest.clearance > -deepest_coarse * span_.length;
-    });
-  }
-
-  [[nodiscard]] SpanSolution finished(SpanSolution solution) {
-    SpanOptions options = options_;
-    options.start = nullptr;
-    solution = finish(std::move(solution), options, workspace_);
-    spent_ += std::exchange(solution.evaluations, 0);
-    return solution;
+    return active_set_.solve(std::move(span), polygon.field());
   }
 
   const Span& span_;
   const SpanOptions& options_;
   SpanWorkspace& workspace_;
+  ActiveSet active_set_;
   double load_;
   int spent_ = 0;
 };

@@ -14,6 +14,7 @@
 #include "contact/penetration.hpp"
 #include "problem/redundant_obstacles.hpp"
 #include "problem/split.hpp"
+#include "search/active_set.hpp"
 #include "search/assemble.hpp"
 #include "search/contact_search.hpp"
 #include "search/known_shape.hpp"
@@ -110,8 +111,6 @@ class EnergySolver::State {
     log_ = {};
     std::vector<PlacedSpan> placed = split(problem);
     for (PlacedSpan& span : placed) {
-      // Contact is not looked for where clamps twist the rod; judge_penetration() tells of it.
-      if (span.frames) span.span.rigid_obstacles.clear();
       remove_redundant_obstacles(span.span);
       require_affordable(span.span, options_.terms, "solve_energy");
     }
@@ -201,9 +200,13 @@ class EnergySolver::State {
                                                     RememberedTwist& memory) {
     const HeldFrames& held = *placed.frames;
     const auto from_shape = [&](const TangentField& field, double twist,
-                                const Eigen::Vector3d& end_d1) {
-      PlacedSolution to{placed, twist_from(field, twist, end_d1, placed.span, held.stiffness,
-                                           options, workspace_)};
+                                const Eigen::Vector3d& end_d1,
+                                std::vector<Span::Contact> contacts) {
+      Span span = placed.span;
+      span.contacts =
+          moved_contacts(span, std::move(contacts)).value_or(std::vector<Span::Contact>());
+      PlacedSolution to{
+          placed, twist_from(field, twist, end_d1, span, held.stiffness, options, workspace_)};
       to.placed.span.planar = false;
       return to;
     };
@@ -219,7 +222,8 @@ class EnergySolver::State {
     if (part && holds_turns(held.turns, part->angle,
                             writhe(options_.start->sample, part->begin, part->end))) {
       PlacedSolution to = from_shape(field_of(*options_.start, placed, problem.length), part->angle,
-                                     held_end_d1(held, placed.span));
+                                     held_end_d1(held, placed.span),
+                                     known_contacts(*options_.start, placed, problem.length));
       if (is_known(to.solution)) return one(std::move(to));
     }
     const Remembered* last = warm && memory.untwisted.model ? &memory.untwisted : nullptr;
@@ -239,7 +243,8 @@ class EnergySolver::State {
       const auto field = [&placed, &memory](const Eigen::VectorXd& s) {
         return follow_field(placed, memory.twisted, s);
       };
-      PlacedSolution to = from_shape(field, memory.twist + turned, frame.d1);
+      PlacedSolution to =
+          from_shape(field, memory.twist + turned, frame.d1, memory.twisted.model->span().contacts);
       to.solution.evaluations += untwisted.front().solution.evaluations;
       to.solution.followed = is_known(to.solution);
       if (to.solution.followed || options.only_follows()) return one(std::move(to));
@@ -252,7 +257,6 @@ class EnergySolver::State {
     int spent = 0;
     note_left_out(options.log,
                   "unstable twisted shapes, and those that no stable one is turned to");
-    if (!problem.obstacles.empty()) note_left_out(options.log, "contact of what clamps twist");
     for (const PlacedSolution& from : untwisted) {
       if (!succeeded(from.solution.status)) continue;
       PlacedSolution to = from;

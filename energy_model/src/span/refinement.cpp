@@ -94,11 +94,8 @@ class Refinement {
     if (!span) return std::nullopt;
     LocalSolver adapted(*span, options_, on_.workspace());
     SpanSolution finer = adapted.empty_solution(adapted.terms());
-    const TangentField field = field_of(solution.model->shape(solution.x));
+    const TangentField field = solution.model->field(solution.x);
     finer.x = finer.model->fit(field(finer.model->nodes()));
-    if (span->twist) {
-      finer.x = finer.model->with_twist(finer.x, solution.model->twist(solution.x));
-    }
     finer.multipliers = solution.multipliers;
     finer.evaluations = solution.evaluations;
     on_.newton(finer);
