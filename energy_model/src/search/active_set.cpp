@@ -17,7 +17,7 @@ namespace dlo::energy_model {
 namespace {
 
 /// Times that the contacts are mended.
-constexpr int most_rounds = 16;
+constexpr int most_contact_updates = 16;
 /// Unknowns from which on half of the terms that a load takes are tried first.
 constexpr int many_unknowns = 300;
 /// A part that lies and is shorter, in lengths, may be a point instead: it is asked again whether
@@ -69,7 +69,7 @@ SpanSolution ActiveSet::update(Span span, TangentField near, int terms) {
 /// @param solution  with the span's contacts, if it is an equilibrium; else from `near`
 SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution, Terms terms) {
   spent_ += std::exchange(solution.evaluations, 0);
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < most_contact_updates; ++round) {
     const bool found_already = round == 0 && solution.is_equilibrium();
     if (!found_already) solution = newton_from(span, near);
     if (!solution.is_equilibrium() && hold_points(span)) solution = newton_from(span, near);
@@ -110,7 +110,8 @@ SpanSolution ActiveSet::newton_from(const Span& span, const TangentField& near) 
   const Eigen::VectorXd start = solution.x;
   const NewtonOptions newton = {.load = load_, .deadline = &options_.deadline};
   // Newton's method would go back to the saddle, or into the plane, that a shape has left.
-  const bool has_left = options_.approach == Approach::descend || span.planar != searched_.planar;
+  const bool has_left =
+      options_.start.approach == Approach::descend || span.planar != searched_.planar;
   if (!has_left) newton_solve(solution, newton, workspace_.newton());
   if (!solution.is_equilibrium()) {
     solution.x = start;
@@ -166,7 +167,7 @@ bool ActiveSet::hardly_behind(const SpanSolution& solution) const {
 
 SpanSolution ActiveSet::finished(SpanSolution solution) {
   SpanOptions options = options_;
-  options.start = nullptr;
+  options.start = {};
   solution = finish(std::move(solution), options, workspace_);
   spent_ += std::exchange(solution.evaluations, 0);
   return solution;

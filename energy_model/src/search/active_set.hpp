@@ -20,7 +20,7 @@ class ActiveSet {
         options_(options),
         workspace_(workspace),
         load_(searched.total_load()),
-        least_terms_(options.known.terms()) {}
+        least_terms_(options.start.known.terms()) {}
 
   /// From a guess of contacts and shape. Certified; not_verified where contacts do not converge.
   [[nodiscard]] SpanSolution solve(Span span, TangentField near);

@@ -72,7 +72,7 @@ std::vector<PlacedSolution> spans_in_space(const Problem& problem, const Equilib
       result.push_back({std::move(placed), std::move(solution)});
       continue;
     }
-    options.start = field;
+    options.start.field = field;
     SpanSolution solution = std::move(solve_span(placed.span, options, workspace).front());
     result.push_back({std::move(placed), std::move(solution)});
   }

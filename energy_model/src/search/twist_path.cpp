@@ -92,7 +92,7 @@ class TwistPath {
         first_d1_(untwisted.end_d1) {
     Span own = in_space(untwisted.solution.model->span());
     own.twist = Span::Twist{stiffness, first_d1_};
-    here_ = workspace.empty_solution(own, terms_needed(untwisted.solution));
+    here_ = workspace.empty_solution(own, terms_of(untwisted.solution));
     here_.x = here_.model->adopt(*untwisted.solution.model, untwisted.solution.x);
   }
 
@@ -140,15 +140,10 @@ class TwistPath {
     return span;
   }
 
-  /// Of the coefficients of a shape, those that are not left out.
-  [[nodiscard]] int terms_needed(const SpanSolution& solution) const {
-    const SpanEnergy& model = *solution.model;
-    int terms = solution.terms;
-    if (options_.terms > 0) return terms;
-    while (terms > least_path_terms && model.tail(solution.x, terms - 1) < tail_left(terms - 1)) {
-      --terms;
-    }
-    return terms;
+  /// Of the coefficients of a shape those that are not left out.
+  [[nodiscard]] int terms_of(const SpanSolution& solution) const {
+    if (options_.terms > 0) return solution.terms;
+    return terms_needed(*solution.model, solution.x, tolerance_, least_path_terms);
   }
 
   /// The angle that the last of K coefficients adds is a_K / (2K); positions

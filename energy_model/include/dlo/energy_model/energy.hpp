@@ -68,10 +68,11 @@ struct EnergyOptions {
 /// would have to pull go, others come where the shape is behind an obstacle, a bounded number of
 /// times. `converged` says of contact that no point of the rod is deeper than `allowed_penetration`
 /// (Equilibrium::penetration) and that no obstacle pulls; what does not converge is `not_verified`.
-/// Between clamps that twist the rod contacts are updated at each step of the rotation. A lying rod against its exact solution is right to 1e-12 l. Obstacles that
-/// yield are springs along the rod, and their energy is part of E. Where contact with them begins
-/// and ends the force per length has kinks: pieces end there, at ends that are found with the
-/// shape. What passes through the axis of such an obstacle is no stable equilibrium.
+/// Between clamps that twist the rod contacts are updated at each step of the rotation. A lying rod
+/// against its exact solution is right to 1e-12 l. Obstacles that yield are springs along the rod,
+/// and their energy is part of E. Where contact with them begins and ends the force per length has
+/// kinks: pieces end there, at ends that are found with the shape. What passes through the axis of
+/// such an obstacle is no stable equilibrium.
 /// @throws std::invalid_argument if the problem or an option is out of range, with the numbers
 Equilibrium solve_energy(const Problem& problem, const EnergyOptions& options = {});
 
