@@ -98,8 +98,8 @@ TEST(Certify, AFollowedShapeIsTheOneThatIsSearchedFor) {
   const Span span = spatial_arch(0.28);
   SpanOptions options;
   const auto tangents = [&](const Eigen::VectorXd&) { return before.model->tangents(); };
-  options.start = tangents;
-  options.known = {before.model, before.x, before.multipliers, before.factor};
+  options.start.field = tangents;
+  options.start.known = {before.model, before.x, before.multipliers, before.factor};
   const SpanSolution followed = std::move(solve_span(span, options, workspace).front());
   const SpanSolution searched = std::move(solve_span(span, SpanOptions(), workspace).front());
   ASSERT_EQ(followed.status, SolveStatus::converged) << followed.message;

@@ -39,8 +39,8 @@ TangentField helix_field(const Span& span, double turns) {
 SpanSolution from_helix(const Span& span, double turns) {
   SpanWorkspace workspace;
   SpanOptions options;
-  options.start = helix_field(span, turns);
-  options.approach = Approach::descend;
+  options.start.field = helix_field(span, turns);
+  options.start.approach = Approach::descend;
   return solve_span(span, options, workspace).front();
 }
 // [end of page]

@@ -119,4 +119,55 @@ inline std::optional<energy_model::Problem> random_problem_with_body(unsigned se
   return problem;
 }
 
+/// A half-space that the shape without it would enter, clear of the grips. @return whether there is
+/// one
+inline bool put_below(std::mt19937& random, bool space, energy_model::Problem& problem) {
+  const auto uniform = [&random](double low, double high) {
+    return low + (high - low) * std::generate_canonical<double, 53>(random);
+  };
+  const energy_model::Equilibrium free = energy_model::solve_energy(problem);
+  if (!energy_model::succeeded(free.status)) return false;
+  const double tilt = uniform(-0.5, 0.5);
+  const double aside = space ? uniform(-0.3, 0.3) : 0;
+  const Eigen::Vector3d normal = Eigen::Vector3d(tilt, 1, aside).normalized();
+  const auto s = energy_model::equal_arc_lengths(problem.length, 201);
+  const double lowest = (normal.transpose() * free.sample(s).points).minCoeff();
+  double grips = INFINITY;
+  for (const energy_model::Grip& grip : problem.grips) {
+    // What the clamp holds next to it is clear too.
+    for (const double way : {-0.03, 0.0, 0.03}) {
+      grips = std::min(grips, normal.dot(grip.position + way * *grip.direction));
+    }
+  }
+  if (!(grips - lowest > 0.02)) return false;
+  const double height = lowest + uniform(0.1, 0.9) * (grips - lowest);
+  problem.obstacles = {{obstacle::Body::half_space(height * normal, normal)}};
+  return true;
+}
+
+/// A rod between clamps that hold its frame, twisted by up to a turn and a half, over a half-space
+/// or with a body in its way, as drawn by a seed. @return nothing where none is in its way
+inline std::optional<energy_model::Problem> random_framed_problem(unsigned seed, bool space) {
+  std::mt19937 random(seed + 1009 * static_cast<unsigned>(space));
+  const auto uniform = [&random](double low, double high) {
+    return low + (high - low) * std::generate_canonical<double, 53>(random);
+  };
+  const auto direction = [&](double least_x) -> Eigen::Vector3d {
+    const double x = uniform(least_x, 1);
+    const double y = uniform(-1, 1);
+    return Eigen::Vector3d(x, y, space ? uniform(-1, 1) : 0).normalized();
+  };
+  energy_model::Problem problem = heavy_cantilever(std::pow(10, uniform(0, 3)), 0);
+  problem.torsional_stiffness = uniform(0.5, 1);
+  problem.grips[0].direction = direction(-0.2);
+  problem.grips[0].frame = energy_model::FrameHold{};
+  const double reach = uniform(0.4, 0.95);
+  problem.grips.push_back({1, reach * direction(0.5), direction(-0.2), energy_model::FrameHold{}});
+  problem.grips[1].frame->roll = uniform(-1, 1) * 2 * M_PI;
+  const bool placed = random() % 2 == 0 ? put_below(random, space, problem)
+                                        : put_in_the_way(random, space, problem);
+  if (!placed) return std::nullopt;
+  return problem;
+}
+
 }  // namespace dlo::test

@@ -9,6 +9,12 @@ namespace dlo::energy_model {
 /// at its clamps in pieces of their own.
 [[nodiscard]] int first_terms(double load, double longest_piece);
 
+/// Of the coefficients of a shape, those that add more to its angle than this: the angle that the
+/// last of K adds is a_K / (2K), and positions feel it as little again.
+/// @param least  that are kept in any case, if there are as many
+[[nodiscard]] int terms_needed(const SpanEnergy& model, const Eigen::VectorXd& x, double tolerance,
+                               int least);
+
 /// Coefficients that resolve the ways in which a twisted span gives way, helices of a rate of half
 /// its torque, however simple its own shape is.
 [[nodiscard]] int terms_under_twist(const SpanSolution& solution);

@@ -110,6 +110,13 @@ class Resting {
       add_obstacle(obstacle, obstacle.stiffness * segment());
     }
     for (const Span::Obstacle& obstacle : span.rigid_obstacles) add_obstacle(obstacle, stiff);
+    if (span.twist && !span.has_material_directors()) {
+      PolygonTwist& twist = problem_.twists.emplace_back();
+      twist.last_segment = problem_.rest_lengths.size() - 1;
+      twist.first_d1 = span.first_d1(*span.start_direction);
+      twist.last_d1 = span.twist->end_d1;
+      twist.compliance = span.length / span.twist->stiffness;
+    }
   }
 
   /// Whether a shape has points within the core of a rigid obstacle that is no half-space.
@@ -123,10 +130,12 @@ class Resting {
   }
 
   [[nodiscard]] RestingPolygon from(const TangentField& start, const Deadline& deadline) {
+    if (!problem_.twists.empty()) problem_.twists[0].angle = start(Eigen::VectorXd::Zero(1)).twist;
     return from(points_of(start), Stages::yes, deadline);
   }
 
   [[nodiscard]] RestingPolygon from(const RestingPolygon& coarse, const Deadline& deadline) {
+    if (!problem_.twists.empty()) problem_.twists[0].angle = coarse.twist;
     return from(points_between(coarse), Stages::no, deadline);
   }
 
@@ -149,6 +158,7 @@ class Resting {
     result.at_rest = succeeded(found.status);
     result.s = mesh_.s;
     result.points = found.points;
+    if (!found.twists.empty()) result.twist = found.twists[0];
     const Eigen::Index n = problem_.rest_lengths.size();
     result.middles.resize(n);
     for (Eigen::Index i = 0; i < n; ++i) result.middles[i] = (s(i) + s(i + 1)) / 2;
@@ -341,11 +351,12 @@ class Resting {
 }  // namespace
 
 TangentField RestingPolygon::field() const {
-  return [middles = middles, tangents = tangents](const Eigen::VectorXd& at) {
-    Eigen::Matrix3Xd result(3, at.size());
+  return [middles = middles, tangents = tangents, twist = twist](const Eigen::VectorXd& at) {
+    StartShape result(Eigen::Matrix3Xd(3, at.size()));
     for (Eigen::Index q = 0; q < at.size(); ++q) {
-      result.col(q) = tangent_between(middles, tangents, at[q]);
+      result.tangents.col(q) = tangent_between(middles, tangents, at[q]);
     }
+    result.twist = twist;
     return result;
   };
 }

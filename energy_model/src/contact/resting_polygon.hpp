@@ -19,6 +19,7 @@ struct RestingPolygon {
   Eigen::VectorXd middles;    ///< s of the segments' middles
   Eigen::Matrix3Xd tangents;  ///< of the segments, unit, 3 x middles
   std::vector<Span::Contact> contacts;
+  double twist = 0;  ///< of a round rod whose ends' frames are held [rad]
 
   /// Its tangents, to start from.
   [[nodiscard]] TangentField field() const;

@@ -66,7 +66,7 @@ bool is_worse(SolveStatus status, SolveStatus than) {
 
 }  // namespace
 
-Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*>& placed,
+Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& placed,
                      const std::vector<const SpanSolution*>& solutions) {
   const double l = problem.length;
   const double energy_unit = bending_unit(problem) / l;
@@ -82,7 +82,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
   result.smallest_eigenvalue = std::numeric_limits<double>::infinity();
   int rigid_body_modes = 0;
   for (std::size_t i = 0; i < placed.size(); ++i) {
-    const PlacedSpan& place = *placed[i];
+    const PlacedSpan& place = placed[i];
     const SpanSolution& solution = *solutions[i];
     result.evaluations += solution.evaluations;
     result.terms = std::max(result.terms, solution.terms);
@@ -168,7 +168,7 @@ Equilibrium assemble(const Problem& problem, const std::vector<const PlacedSpan*
   std::vector<PlacedShape> shapes;
   for (std::size_t i = 0; i < placed.size(); ++i) {
     if (solutions[i]->x.size() == 0) continue;
-    const PlacedSpan& place = *placed[i];
+    const PlacedSpan& place = placed[i];
     shapes.push_back(placed_shape(place, *solutions[i], l));
     if (place.span.has_material_directors()) {
       shapes.back().ahead = [ahead = place.ahead](double) { return ahead; };

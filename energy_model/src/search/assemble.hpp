@@ -9,8 +9,7 @@
 namespace dlo::energy_model {
 
 /// One solution of each span, put together in space and SI units.
-[[nodiscard]] Equilibrium assemble(const Problem& problem,
-                                   const std::vector<const PlacedSpan*>& placed,
+[[nodiscard]] Equilibrium assemble(const Problem& problem, const std::vector<PlacedSpan>& placed,
                                    const std::vector<const SpanSolution*>& solutions);
 
 }  // namespace dlo::energy_model

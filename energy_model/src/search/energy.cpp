@@ -2,27 +2,19 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
-#include <numbers>
 #include <string>
 #include <utility>
 
 #include "base/legendre.hpp"
 #include "base/lowest_combinations.hpp"
 #include "base/require.hpp"
-#include "certify/rigid_body_modes.hpp"
 #include "contact/penetration.hpp"
 #include "problem/redundant_obstacles.hpp"
 #include "problem/split.hpp"
 #include "search/assemble.hpp"
-#include "search/contact_search.hpp"
-#include "search/known_shape.hpp"
-#include "search/polygon_fields.hpp"
-#include "search/twist_path.hpp"
-#include "span/refinement.hpp"
-#include "span/same_shape.hpp"
-#include "span/search_log.hpp"
-#include "span/span_solver.hpp"
+#include "search/twisted_span.hpp"
+#include "search/untwisted_span.hpp"
+#include "span/found.hpp"
 #include "span/span_traits.hpp"
 
 namespace dlo::energy_model {
@@ -30,13 +22,6 @@ namespace {
 
 /// Most combinations of the spans' equilibria that are put together.
 constexpr std::size_t most_combinations = 64;
-
-/// Turn of a clamp at once that may be followed on the same branch [rad].
-constexpr double largest_followed_turn = 1;
-
-constexpr const char* from_polygons = "lowest minima of coarse polygons, by Newton's method";
-constexpr const char* turned_little_by_little =
-    "stable shapes without twist, turned little by little";
 
 void check(const EnergyOptions& options) {
   require(options.terms >= 0 && options.terms <= max_terms, "solve_energy", "terms", options.terms,
@@ -47,34 +32,23 @@ void check(const EnergyOptions& options) {
           ">= 1");
 }
 
-std::vector<Equilibrium> combine(const Problem& problem,
-                                 const std::vector<std::vector<PlacedSolution>>& solutions,
+/// The spans' equilibria put together, stable ones first, by energy.
+std::vector<Equilibrium> combine(const Problem& problem, const std::vector<PlacedSpan>& placed,
+                                 const std::vector<std::vector<SpanSolution>>& solutions,
                                  SearchLog& log) {
-  if (solutions.size() == 1 && solutions.front().size() == 1) {
-    const PlacedSolution& only = solutions.front().front();
-    std::vector<Equilibrium> result;
-    result.push_back(assemble(problem, {&only.placed}, {&only.solution}));
-    judge_penetration(problem, result.back());
-    return result;
-  }
   std::vector<std::vector<SpanCandidate>> candidates;
-  for (const std::vector<PlacedSolution>& of_span : solutions) {
-    std::vector<SpanCandidate> own;
+  for (const std::vector<SpanSolution>& of_span : solutions) {
+    std::vector<SpanCandidate>& own = candidates.emplace_back();
     own.reserve(of_span.size());
-    for (const PlacedSolution& found : of_span) {
-      own.push_back({succeeded(found.solution.status), found.solution.energy});
+    for (const SpanSolution& found : of_span) {
+      own.push_back({succeeded(found.status), found.energy});
     }
-    candidates.push_back(std::move(own));
   }
   const Combinations lowest = lowest_combinations(candidates, most_combinations);
   std::vector<Equilibrium> result;
   for (const std::vector<std::size_t>& choice : lowest.choices) {
-    std::vector<const PlacedSpan*> placed;
     std::vector<const SpanSolution*> chosen;
-    for (std::size_t i = 0; i < solutions.size(); ++i) {
-      placed.push_back(&solutions[i][choice[i]].placed);
-      chosen.push_back(&solutions[i][choice[i]].solution);
-    }
+    for (std::size_t i = 0; i < solutions.size(); ++i) chosen.push_back(&solutions[i][choice[i]]);
     result.push_back(assemble(problem, placed, chosen));
     judge_penetration(problem, result.back());
   }
@@ -110,8 +84,6 @@ class EnergySolver::State {
     log_ = {};
     std::vector<PlacedSpan> placed = split(problem);
     for (PlacedSpan& span : placed) {
-      // Contact is not looked for where clamps twist the rod; judge_penetration() tells of it.
-      if (span.frames) span.span.rigid_obstacles.clear();
       remove_redundant_obstacles(span.span);
       require_affordable(span.span, options_.terms, "solve_energy");
     }
@@ -123,34 +95,21 @@ class EnergySolver::State {
     former_twists_ = twists_;
     remembered_.resize(placed.size());
     twists_.resize(placed.size());
-    std::vector<std::vector<PlacedSolution>> solutions;
+    std::vector<std::vector<SpanSolution>> solutions;
     solutions.reserve(placed.size());
     for (std::size_t i = 0; i < placed.size(); ++i) {
-      const Remembered* last = warm ? &remembered_[i] : nullptr;
       SpanOptions options;
       options.terms = options_.terms;
       options.tolerance = options_.tolerance;
       options.max_evaluations = options_.max_evaluations;
       options.deadline = deadline;
-      if (only) options.approach = Approach::follow_only;
+      if (only) options.start.approach = Approach::follow_only;
       if (wanted == Wanted::all) options.log = &log_;
-      if (placed[i].frames) {
-        RememberedTwist& memory = twists_[i];
-        solutions.push_back(twisted(placed[i], problem, options, warm, memory));
-        const PlacedSolution& found = solutions.back().front();
-        followed_ = followed_ && found.solution.followed;
-        if (only && !followed_) return gone_back();
-        remember(found, memory.twisted);
-        memory.twist = found.solution.model->twist(found.solution.x);
-        continue;
-      }
-      const Equilibrium* start = last != nullptr && last->model ? nullptr : options_.start;
-      solutions.push_back(solve_placed(placed[i], problem, options, start, last));
-      followed_ = followed_ && solutions.back().front().solution.followed;
+      solutions.push_back(solve_span_at(i, placed[i], problem, options, warm));
+      followed_ = followed_ && solutions.back().front().followed;
       if (only && !followed_) return gone_back();
-      remember(solutions.back().front(), remembered_[i]);
     }
-    std::vector<Equilibrium> result = combine(problem, solutions, log_);
+    std::vector<Equilibrium> result = combine(problem, placed, solutions, log_);
     const double seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     for (Equilibrium& equilibrium : result) equilibrium.seconds = seconds;
@@ -170,290 +129,38 @@ class EnergySolver::State {
   [[nodiscard]] bool followed() const { return followed_; }
 
  private:
-  /// A span's last solution, to go on from.
-  struct Remembered {
-    std::shared_ptr<const SpanEnergy> model;  // none after a failure
-    Eigen::VectorXd x, multipliers;
-    std::shared_ptr<NewtonFactor> factor;
-    KnownShape before;  // the one before it, without a factor
-    Eigen::Matrix3d frame;
-
-    [[nodiscard]] bool planar() const { return !model || model->span().planar; }
-  };
-
-  /// The same of a span that is twisted, which is followed without twist too.
-  struct RememberedTwist {
-    Remembered untwisted, twisted;
-    double twist = 0;   // of `twisted`
-    double turned = 0;  // of the end's frame from where the untwisted rod has it
-  };
-
   [[nodiscard]] std::vector<Equilibrium> gone_back() {
     go_back();
     return {};
   }
 
-  /// From a shape whose twist is known, if there is one. Else searches without twist: where the
-  /// clamp has the frame starts there; then turns what is stable there.
-  [[nodiscard]] std::vector<PlacedSolution> twisted(const PlacedSpan& placed,
-                                                    const Problem& problem,
-                                                    const SpanOptions& options, bool warm,
-                                                    RememberedTwist& memory) {
-    const HeldFrames& held = *placed.frames;
-    const auto from_shape = [&](const TangentField& field, double twist,
-                                const Eigen::Vector3d& end_d1) {
-      PlacedSolution to{placed, twist_from(field, twist, end_d1, placed.span, held.stiffness,
-                                           options, workspace_)};
-      to.placed.span.planar = false;
-      return to;
-    };
-    // A shape that is followed may be one that a bifurcation leaves open.
-    const auto is_known = [](const SpanSolution& solution) {
-      return solution.is_equilibrium() || solution.is_singular_point();
-    };
-    const bool starts =
-        options_.start != nullptr && !options.wants_all() && !(warm && memory.twisted.model);
-    const TwistedPart* part =
-        starts ? known_twist(*options_.start, placed, problem.length) : nullptr;
-    // A shape of other turns than are asked for is none to start from.
-    if (part && holds_turns(held.turns, part->angle,
-                            writhe(options_.start->sample, part->begin, part->end))) {
-      PlacedSolution to = from_shape(field_of(*options_.start, placed, problem.length), part->angle,
-                                     held_end_d1(held, placed.span));
-      if (is_known(to.solution)) return one(std::move(to));
+  /// A span's equilibria, best first, the best of which is remembered.
+  [[nodiscard]] std::vector<SpanSolution> solve_span_at(std::size_t index, const PlacedSpan& placed,
+                                                        const Problem& problem,
+                                                        const SpanOptions& options, bool warm) {
+    if (placed.frames) {
+      RememberedTwist& memory = twists_[index];
+      std::vector<SpanSolution> found =
+          solve_twisted(placed, problem, options, options_.start, warm, memory, workspace_);
+      memory.twisted.remember(found.front(), placed);
+      if (memory.twisted.is_known()) memory.twist = found.front().model->twist(found.front().x);
+      return found;
     }
-    const Remembered* last = warm && memory.untwisted.model ? &memory.untwisted : nullptr;
-    // What is found without twist is no result.
-    SearchLog without_twist;
-    SpanOptions untwisted_options = options;
-    if (options.wants_all()) untwisted_options.log = &without_twist;
-    std::vector<PlacedSolution> untwisted =
-        solve_placed(placed, problem, untwisted_options, nullptr, last);
-    if (options.wants_all()) options.log->add_starts(without_twist, ", without twist");
-    remember(untwisted.front(), memory.untwisted);
-    if (!succeeded(untwisted.front().solution.status)) return untwisted;
-    const EndFrame frame = end_frame(held, untwisted_shape(untwisted.front().solution, workspace_));
-    const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
-    if (warm && memory.twisted.model && std::abs(turned) < largest_followed_turn &&
-        !options.wants_all()) {
-      const auto field = [&placed, &memory](const Eigen::VectorXd& s) {
-        return follow_field(placed, memory.twisted, s);
-      };
-      PlacedSolution to = from_shape(field, memory.twist + turned, frame.d1);
-      to.solution.evaluations += untwisted.front().solution.evaluations;
-      to.solution.followed = is_known(to.solution);
-      if (to.solution.followed || options.only_follows()) return one(std::move(to));
-    }
-    if (options.only_follows()) {
-      untwisted.front().solution.followed = false;
-      return untwisted;
-    }
-    std::vector<PlacedSolution> found;
-    int spent = 0;
-    note_left_out(options.log,
-                  "unstable twisted shapes, and those that no stable one is turned to");
-    if (!problem.obstacles.empty()) note_left_out(options.log, "contact of what clamps twist");
-    for (const PlacedSolution& from : untwisted) {
-      if (!succeeded(from.solution.status)) continue;
-      PlacedSolution to = from;
-      to.solution = twist_to(frame, placed.span, held.stiffness,
-                             untwisted_shape(from.solution, workspace_), options, workspace_);
-      to.placed.span.planar = false;
-      spent += from.solution.evaluations + to.solution.evaluations;
-      const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
-        return other.solution.is_equilibrium() && is_same(to, other);
-      });
-      note_tried(options.log, turned_little_by_little);
-      if (known) continue;
-      if (to.solution.is_equilibrium()) note_found(options.log, turned_little_by_little);
-      found.push_back(std::move(to));
-    }
-    sort(found);
-    found.front().solution.evaluations = spent;
+    Remembered& memory = remembered_[index];
+    const Remembered* last = warm && memory.is_known() ? &memory : nullptr;
+    const Equilibrium* start = last != nullptr ? nullptr : options_.start;
+    std::vector<SpanSolution> found =
+        solve_untwisted(placed, problem, options, start, last, workspace_);
+    memory.remember(found.front(), placed);
     return found;
-  }
-
-  /// @param shape, last  to start from, the first of them that is there, or neither
-  [[nodiscard]] std::vector<PlacedSolution> solve_placed(const PlacedSpan& placed,
-                                                         const Problem& problem,
-                                                         SpanOptions options,
-                                                         const Equilibrium* shape,
-                                                         const Remembered* last) {
-    // Nothing is known after a failure.
-    if (options.only_follows() && !(last != nullptr && last->model)) return one({placed, {}});
-    TangentField start;
-    if (shape != nullptr) {
-      start = field_of(*shape, placed, problem.length);
-    } else if (last != nullptr && last->model) {
-      options.known = {last->model, last->x, last->multipliers, last->factor};
-      options.before = last->before;
-      start = [&placed, last = *last](const Eigen::VectorXd& s) {
-        return follow_field(placed, last, s);
-      };
-    }
-    int spent = 0;
-    if (start && !options.wants_all()) {
-      PlacedSpan own = placed;
-      if (options.known.model) {
-        own.span.cuts = options.known.model->span().cuts;
-        own.span.contact_ends = options.known.model->span().contact_ends;
-      }
-      PlacedSolution followed =
-          from_field(own, start, options, shape != nullptr || (last && !last->planar()));
-      if (followed.solution.is_equilibrium() || followed.solution.is_singular_point() ||
-          options.only_follows()) {
-        return one(std::move(followed));
-      }
-      // The branch has ended, or the step was too large for it.
-      spent = followed.solution.evaluations;
-      options.known = {};
-      options.before = {};
-    }
-    std::vector<PlacedSolution> found = search(placed, options);
-    spent += found.front().solution.evaluations;
-    const SolveStatus status = found.front().solution.status;
-    const bool at_limit =
-        status == SolveStatus::evaluation_limit || status == SolveStatus::time_limit;
-    if (options.wants_all() || !(succeeded(status) || at_limit))
-      add_polygon_minima(placed, problem, options, found, spent);
-    sort(found);
-    found.front().solution.evaluations = spent;
-    if (!options.wants_all()) found.resize(1, found.front());
-    return found;
-  }
-
-  [[nodiscard]] static std::vector<PlacedSolution> one(PlacedSolution solution) {
-    std::vector<PlacedSolution> result;
-    result.push_back(std::move(solution));
-    return result;
-  }
-
-  static void sort(std::vector<PlacedSolution>& found) {
-    if (found.size() < 2) return;
-    std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) {
-      return is_better(a.solution, b.solution);
-    });
-  }
-
-  /// What the minima of a coarse polygon lead to, in the plane and out of it.
-  void add_polygon_minima(const PlacedSpan& placed, const Problem& problem,
-                          const SpanOptions& options, std::vector<PlacedSolution>& found,
-                          int& spent) {
-    if (!problem.obstacles.empty()) {
-      note_left_out(options.log, "minima of coarse polygons, which know no obstacles");
-      return;
-    }
-    const PolygonFields fields(problem, placed, options.deadline);
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (options.deadline.passed()) {
-        note_left_out(options.log, "starts after the time limit");
-        return;
-      }
-      note_tried(options.log, from_polygons);
-      // A minimum of the polygon is next to one of the rod; fewer terms than resolve it would lead
-      // away.
-      SpanOptions own = options;
-      own.approach = Approach::follow;
-      PlacedSolution solution = from_field(placed, fields.field(i), own, true);
-      spent += solution.solution.evaluations;
-      if (!counts(solution.solution, options)) continue;
-      const bool known = std::any_of(found.begin(), found.end(), [&](const auto& other) {
-        return counts(other.solution, options) && is_same(solution, other);
-      });
-      if (known) continue;
-      if (!counts(found.front().solution, options)) found.clear();
-      found.push_back(std::move(solution));
-      note_found(options.log, from_polygons);
-      if (!options.wants_all() && succeeded(found.back().solution.status)) return;
-    }
-  }
-
-  [[nodiscard]] static bool is_same(const PlacedSolution& a, const PlacedSolution& b) {
-    const double scale = 1 + std::abs(a.solution.energy);
-    if (std::abs(a.solution.energy - b.solution.energy) > 1e-8 * scale) return false;
-    const double length = a.placed.span.length;
-    const std::vector<double> s = {0.3 * length, 0.6 * length, length};
-    const auto points = [&](const PlacedSolution& p) {
-      const SpanSamples samples = p.solution.model->shape(p.solution.x).sample(s);
-      return Eigen::Matrix3Xd(p.placed.frame.transpose() * samples.points);
-    };
-    const Eigen::Matrix3Xd of_a = points(a);
-    const Eigen::Matrix3Xd of_b = points(b);
-    const Eigen::Matrix3d& frame = a.placed.frame;
-    if ((of_a - of_b).norm() < 1e-6 * length) return true;
-    // In its plane a shape and the one turned over are both told, as one that is bent to the left
-    // and one to the right.
-    const bool planar = a.solution.model->span().planar && b.solution.model->span().planar;
-    return !planar && is_turned_copy(a.placed.span, frame * of_a, frame * of_b);
-  }
-
-  /// From tangents in the span's frame; out of its plane if they are and may be.
-  [[nodiscard]] PlacedSolution from_field(const PlacedSpan& placed, const TangentField& field,
-                                          SpanOptions options, bool may_leave_plane) {
-    PlacedSpan own = placed;
-    options.start = field;
-    options.log = nullptr;
-    if (placed.span.planar && may_leave_plane) leave_plane(own, field);
-    return std::move(search(own, options).front());
-  }
-
-  [[nodiscard]] std::vector<PlacedSolution> search(const PlacedSpan& placed,
-                                                   const SpanOptions& options) {
-    std::vector<PlacedSolution> found;
-    const auto solver = placed.span.rigid_obstacles.empty() ? solve_span : solve_touching_span;
-    for (SpanSolution& solution : solver(placed.span, options, workspace_)) {
-      found.push_back({placed, std::move(solution)});
-      PlacedSolution& last = found.back();
-      // The search may have left the plane.
-      if (last.solution.model) last.placed.span.planar = last.solution.model->span().planar;
-    }
-    return found;
-  }
-
-  /// A span that could lie in its plane is spatial if its start has left it.
-  static void leave_plane(PlacedSpan& placed, const TangentField& start) {
-    const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(17, 0, placed.span.length);
-    const Eigen::Matrix3Xd tangents = start(s).tangents;
-    constexpr double flat = 1e-6;
-    if (tangents.row(2).cwiseAbs().maxCoeff() < flat) return;
-    placed.span.planar = false;
-  }
-
-  /// The nodes are where they were, unless grips or loads have moved along the rod.
-  static StartShape follow_field(const PlacedSpan& placed, const Remembered& last,
-                                 const Eigen::VectorXd& s) {
-    StartShape shape(placed.frame * last.frame.transpose() * last.model->tangents());
-    if (placed.span.has_material_directors() && !last.planar()) {
-      shape.roll = roll_of(last.model->tangents(), last.model->d1());
-    }
-    const Eigen::VectorXd& nodes = last.model->nodes();
-    if (s.size() == nodes.size() && s == nodes) return shape;
-    StartShape nearest(Eigen::Matrix3Xd(3, s.size()),
-                       Eigen::VectorXd(shape.roll.size() > 0 ? s.size() : 0));
-    for (Eigen::Index q = 0; q < s.size(); ++q) {
-      Eigen::Index at = 0;
-      (nodes.array() - s[q]).abs().minCoeff(&at);
-      nearest.tangents.col(q) = shape.tangents.col(at);
-      if (shape.roll.size() > 0) nearest.roll[q] = shape.roll[at];
-    }
-    return nearest;
-  }
-
-  static void remember(const PlacedSolution& found, Remembered& last) {
-    const bool is_known = succeeded(found.solution.status) || found.solution.is_singular_point();
-    last.before = {std::exchange(last.model, is_known ? found.solution.model : nullptr),
-                   std::move(last.x), std::move(last.multipliers)};
-    last.x = found.solution.x;
-    last.multipliers = found.solution.multipliers;
-    last.factor = found.solution.factor;
-    last.frame = found.placed.frame;
   }
 
   EnergyOptions options_;
   SearchLog log_;
   bool followed_ = false;
   SpanWorkspace workspace_;
-  std::vector<Remembered> remembered_, former_;          // after the last call, and before it
+  std::vector<Remembered> remembered_,
+      former_;                                           // after the last call, and before it
   std::vector<RememberedTwist> twists_, former_twists_;  // the same
 };
 

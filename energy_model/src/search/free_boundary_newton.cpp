@@ -122,7 +122,7 @@ class FreeBoundaryNewton {
       options.method = method;
       if (method == NewtonMethod::simplified) options.first_factor = factor_;
     } else {
-      const TangentField near = field_of(solution_.model->shape(solution_.x));
+      const TangentField near = solution_.model->field(solution_.x);
       result.x = result.model->fit(near(result.model->nodes()));
     }
     newton_solve(result, options, workspace_.newton());

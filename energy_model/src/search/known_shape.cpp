@@ -34,6 +34,24 @@ const TwistedPart* known_twist(const Equilibrium& known, const PlacedSpan& place
   return nullptr;
 }
 
+std::vector<Span::Contact> known_contacts(const Equilibrium& known, const PlacedSpan& placed,
+                                          double length) {
+  std::vector<Span::Contact> contacts;
+  for (const ContactPart& part : known.contacts) {
+    const auto [begin, end] =
+        std::minmax({placed.s_of(part.begin, length), placed.s_of(part.end, length)});
+    if (begin < 0 || end > placed.span.length) continue;
+    Span::Contact contact;
+    contact.obstacle.index = part.obstacle;
+    contact.begin = begin;
+    contact.end = end;
+    contacts.push_back(contact);
+  }
+  std::sort(contacts.begin(), contacts.end(),
+            [](const auto& a, const auto& b) { return a.begin < b.begin; });
+  return contacts;
+}
+
 std::vector<PlacedSolution> spans_in_space(const Problem& problem, const Equilibrium& known,
                                            int terms, const Deadline& deadline,
                                            SpanWorkspace& workspace) {
@@ -54,7 +72,7 @@ std::vector<PlacedSolution> spans_in_space(const Problem& problem, const Equilib
       result.push_back({std::move(placed), std::move(solution)});
       continue;
     }
-    options.start = field;
+    options.start.field = field;
     SpanSolution solution = std::move(solve_span(placed.span, options, workspace).front());
     result.push_back({std::move(placed), std::move(solution)});
   }

@@ -22,6 +22,10 @@ struct PlacedSolution {
 [[nodiscard]] const TwistedPart* known_twist(const Equilibrium& known, const PlacedSpan& placed,
                                              double length);
 
+/// What touches a span in an equilibrium, by growing s; obstacles have their index alone.
+[[nodiscard]] std::vector<Span::Contact> known_contacts(const Equilibrium& known,
+                                                        const PlacedSpan& placed, double length);
+
 /// The spans of a problem at a known equilibrium, all as ones in space that bend out of their plane
 /// too, each by Newton's method from its shape.
 /// @param terms  of each piece

@@ -12,10 +12,12 @@
 #include "base/legendre.hpp"
 #include "base/sized_samples.hpp"
 #include "certify/enough_terms.hpp"
+#include "contact/resting_polygon.hpp"
 #include "dlo/energy_model/turns.hpp"
 #include "linear/free_directions.hpp"
 #include "newton/augmented_lagrangian.hpp"
 #include "newton/trust_region.hpp"
+#include "search/active_set.hpp"
 #include "span/refinement.hpp"
 #include "strain/point_on_span.hpp"
 
@@ -48,6 +50,9 @@ constexpr double least_stiff_eigenvalue = 1e-2;
 /// Leaps to other branches, which would go on without an end where each leads to the next.
 constexpr int most_branch_jumps = 60;
 
+/// Of them those that a polygon has to be asked for; each may take a second.
+constexpr int most_polygons = 6;
+
 /// Push along the direction in which a shape gives way, and how often it is made larger.
 constexpr double first_push = 0.1;
 constexpr int most_pushes = 4;
@@ -78,18 +83,17 @@ class TwistPath {
   /// left out
   TwistPath(const Span& span, double stiffness, const UntwistedShape& untwisted,
             const SpanOptions& options, double tolerance, SpanWorkspace& workspace)
-      : span_(span),
+      : span_(in_space(span)),
         options_(options),
         workspace_(workspace),
+        active_set_(span_, options, workspace),
         tolerance_(tolerance),
         load_(span.total_load()),
         first_d1_(untwisted.end_d1) {
-    span_.planar = false;
-    span_.cuts = untwisted.solution.model->span().cuts;
-    span_.twist = Span::Twist{stiffness, first_d1_};
-    here_ = with_terms(untwisted.solution, terms_needed(untwisted.solution));
-    here_.multipliers.resize(0);
-    turn_clamp(here_, 0);
+    Span own = in_space(untwisted.solution.model->span());
+    own.twist = Span::Twist{stiffness, first_d1_};
+    here_ = workspace.empty_solution(own, terms_of(untwisted.solution));
+    here_.x = here_.model->adopt(*untwisted.solution.model, untwisted.solution.x);
   }
 
   [[nodiscard]] SpanSolution run(double whole) {
@@ -131,15 +135,15 @@ class TwistPath {
   }
 
  private:
-  /// Of the coefficients of a shape, those that are not left out.
-  [[nodiscard]] int terms_needed(const SpanSolution& solution) const {
-    const SpanEnergy& model = *solution.model;
-    int terms = solution.terms;
-    if (options_.terms > 0) return terms;
-    while (terms > least_path_terms && model.tail(solution.x, terms - 1) < tail_left(terms - 1)) {
-      --terms;
-    }
-    return terms;
+  [[nodiscard]] static Span in_space(Span span) {
+    span.planar = false;
+    return span;
+  }
+
+  /// Of the coefficients of a shape those that are not left out.
+  [[nodiscard]] int terms_of(const SpanSolution& solution) const {
+    if (options_.terms > 0) return solution.terms;
+    return terms_needed(*solution.model, solution.x, tolerance_, least_path_terms);
   }
 
   /// The angle that the last of K coefficients adds is a_K / (2K); positions
@@ -153,14 +157,6 @@ class TwistPath {
   void turn_clamp(SpanSolution& solution, double angle) const {
     const Eigen::AngleAxisd about(angle, *span_.end_direction);
     solution.model->turn_end_clamp(about * first_d1_);
-  }
-
-  [[nodiscard]] SpanSolution with_terms(const SpanSolution& solution, int terms) const {
-    SpanSolution other = workspace_.empty_solution(span_, terms);
-    other.x = other.model->adopt(*solution.model, solution.x);
-    other.multipliers = solution.multipliers;
-    turn_clamp(other, angle_);
-    return other;
   }
 
   /// The equilibrium next to where the last two point at.
@@ -177,18 +173,27 @@ class TwistPath {
     const Eigen::VectorXd predicted = next.x;
     // Where nothing is neutral the factor that has told the stability of the last shape serves.
     newton(next, stiff_ ? NewtonMethod::simplified : NewtonMethod::corrector);
+    next = on_obstacles(std::move(next));
     spent_ += next.evaluations;
+    next.evaluations = 0;
     if (!next.is_equilibrium()) return std::nullopt;
     // On the same branch the energy has risen by the torque's work. The shape tells less: it may
     // turn about a line for nothing.
     const double work = (torque(here_) + torque(next)) / 2 * turn;
-    const double unit = span_.twist->stiffness / span_.length * turn * turn;
+    const double unit = here_.model->span().twist->stiffness / span_.length * turn * turn;
     const double rounding = 1e-9 * (1 + load_ + std::abs(next.energy));
     const double jump = std::abs(next.energy - here_.energy - work);
     if (!(jump <= branch_share * unit + rounding)) return std::nullopt;
     smooth_ = jump <= smooth_share * unit + rounding;
-    aside_ = (next.x - predicted).norm() > (predicted - here_.x).norm();
+    aside_ = next.x.size() != predicted.size() ||
+             (next.x - predicted).norm() > (predicted - here_.x).norm();
     return next;
+  }
+
+  /// With its contacts, of an equilibrium that may be behind rigid obstacles or be pulled by them.
+  [[nodiscard]] SpanSolution on_obstacles(SpanSolution solution) {
+    if (span_.rigid_obstacles.empty() || !solution.is_equilibrium()) return solution;
+    return active_set_.update(std::move(solution));
   }
 
   /// @param how  simplified: with the solution's own factor
@@ -208,7 +213,8 @@ class TwistPath {
   void accept(SpanSolution next, double angle) {
     const double turn = angle - angle_;
     slope_x_.resize(0);
-    last_step_ = next.x - here_.x;
+    last_step_.resize(0);
+    if (next.x.size() == here_.x.size()) last_step_ = next.x - here_.x;
     if (!aside_) {
       slope_x_ = last_step_ / turn;
       slope_multipliers_ = (next.multipliers - here_.multipliers) / turn;
@@ -223,7 +229,8 @@ class TwistPath {
     const bool resolved = here_.model->tail(here_.x) < tail_left(here_.terms) &&
                           here_.terms >= terms_under_twist(here_);
     if (resolved || !affordable) return false;
-    here_ = with_terms(here_, std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
+    here_ = workspace_.with_terms(here_,
+                                  std::min(max_terms, here_.terms + std::max(2, here_.terms / 4)));
     newton(here_, NewtonMethod::corrector);
     spent_ += here_.evaluations;
     here_.evaluations = 0;
@@ -285,6 +292,7 @@ class TwistPath {
         push *= 3;
       }
       if (succeeded(next.status)) newton(next, NewtonMethod::newton);
+      next = on_obstacles(std::move(next));
       spent_ += next.evaluations;
       next.evaluations = 0;
       if (!next.is_equilibrium() || !is_stable(next)) continue;
@@ -292,12 +300,35 @@ class TwistPath {
       last_step_.resize(0);
       return;
     }
+    if (std::optional<SpanSolution> next = from_polygon(way)) {
+      here_ = std::move(*next);
+      last_step_.resize(0);
+      return;
+    }
     here_.fail("nothing stable was found below a twist of " + std::to_string(angle_) + " rad");
   }
 
-  Span span_;
+  /// What touches elsewhere a polygon tells that descends from the same place.
+  [[nodiscard]] std::optional<SpanSolution> from_polygon(
+      const std::optional<Eigen::VectorXd>& way) {
+    Span span = here_.model->span();
+    if (span.rigid_obstacles.empty() || span.has_material_directors()) return std::nullopt;
+    if (++polygons_ > most_polygons) return std::nullopt;
+    const Eigen::VectorXd x = way ? here_.x + first_push * *way : here_.x;
+    const RestingPolygon polygon =
+        rest_on_obstacles(span, here_.model->field(x), Segments::all, options_.deadline);
+    spent_ += polygon.evaluations;
+    span.contacts = polygon.contacts;
+    SpanSolution next = active_set_.update(std::move(span), polygon.field(), here_.terms);
+    spent_ += std::exchange(next.evaluations, 0);
+    if (!next.is_equilibrium() || !is_stable(next)) return std::nullopt;
+    return next;
+  }
+
+  Span span_;  // without contacts and twist
   const SpanOptions& options_;
   SpanWorkspace& workspace_;
+  ActiveSet active_set_;
   double tolerance_;
   double load_;
   Eigen::Vector3d first_d1_;  // of the end, untwisted
@@ -305,12 +336,21 @@ class TwistPath {
   double angle_ = 0;
   int spent_ = 0;
   int branch_jumps_ = 0;
+  int polygons_ = 0;
   bool smooth_ = false;  // the last step was shorter than it need be
   bool aside_ = false;   // the last step has gone aside from where it pointed at
   Eigen::VectorXd last_step_;
   Eigen::VectorXd slope_x_, slope_multipliers_;  // by angle; none after a jump
   bool stiff_ = false;  // nothing is next to neutral at the shape that was last asked about
 };
+
+/// With all terms, and with contacts that are right where there are rigid obstacles.
+SpanSolution certified(SpanSolution solution, const SpanOptions& options,
+                       SpanWorkspace& workspace) {
+  Span span = solution.model->span();
+  if (span.rigid_obstacles.empty()) return finish(std::move(solution), options, workspace);
+  return ActiveSet(span, options, workspace).solve(std::move(solution));
+}
 
 }  // namespace
 
@@ -354,7 +394,7 @@ SpanSolution twist_to(const EndFrame& frame, const Span& span, double stiffness,
   int spent = 0;
   for (const double tolerance : {coarse_tolerance, fine_tolerance}) {
     solution = TwistPath(span, stiffness, untwisted, options, tolerance, workspace).run(angle);
-    if (solution.is_equilibrium()) solution = finish(std::move(solution), options, workspace);
+    if (solution.is_equilibrium()) solution = certified(std::move(solution), options, workspace);
     solution.evaluations += std::exchange(spent, spent + solution.evaluations);
     if (succeeded(solution.status) || options.deadline.passed()) break;
   }
@@ -379,7 +419,7 @@ SpanSolution twist_from(const TangentField& field, double twist, const Eigen::Ve
     if (solution.is_equilibrium()) break;
     if (!more || options.deadline.passed()) return solution;
   }
-  return finish(std::move(solution), options, workspace);
+  return certified(std::move(solution), options, workspace);
 }
 
 }  // namespace dlo::energy_model

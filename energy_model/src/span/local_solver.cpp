@@ -39,7 +39,7 @@ int LocalSolver::terms() const {
   if (options_.terms > 0) return options_.terms;
   const int layers = traits_.taut || traits_.adapted ? layer_terms : 0;
   const int first = traits_.adapted ? 0 : first_terms(traits_.load, traits_.longest_piece);
-  const int wanted = std::max({first, options_.known.terms(), layers, traits_.natural_terms});
+  const int wanted = std::max({first, options_.start.known.terms(), layers, traits_.natural_terms});
   return std::min(wanted, std::max(least_terms, affordable_terms(span_)));
 }
 
@@ -123,7 +123,7 @@ void LocalSolver::by_augmented_lagrangian(SpanSolution& solution) {
 SpanSolution LocalSolver::newton_from(const TangentField& field) {
   SpanSolution solution = empty_solution(terms());
   const StartShape wanted = field(solution.model->nodes());
-  const KnownShape& known = options_.known;
+  const KnownShape& known = options_.start.known;
   if (!adopt_known(wanted, solution)) {
     solution.x = solution.model->fit(wanted);
     newton(solution);
@@ -141,7 +141,7 @@ SpanSolution LocalSolver::newton_from(const TangentField& field) {
 /// tangents that are wanted
 bool LocalSolver::adopt_known(const StartShape& wanted, SpanSolution& solution) const {
   constexpr double near = 0.2;  // of tangents
-  const KnownShape& known = options_.known;
+  const KnownShape& known = options_.start.known;
   SpanEnergy& model = *solution.model;
   if (!known.model || span_.planar || span_.has_material_directors()) return false;
   if (known.model->span().planar || known.model->pieces() != model.pieces()) return false;

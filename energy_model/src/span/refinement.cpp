@@ -93,14 +93,7 @@ class Refinement {
     const std::optional<Span> span = adapted_mesh(on_, solution);
     if (!span) return std::nullopt;
     LocalSolver adapted(*span, options_, on_.workspace());
-    SpanSolution finer = adapted.empty_solution(adapted.terms());
-    const TangentField field = field_of(solution.model->shape(solution.x));
-    finer.x = finer.model->fit(field(finer.model->nodes()));
-    if (span->twist) {
-      finer.x = finer.model->with_twist(finer.x, solution.model->twist(solution.x));
-    }
-    finer.multipliers = solution.multipliers;
-    finer.evaluations = solution.evaluations;
+    SpanSolution finer = on_other_pieces(adapted, solution, adapted.terms());
     on_.newton(finer);
     finer = refined(adapted, std::move(finer));
     if (!finer.is_equilibrium()) return std::nullopt;
@@ -219,16 +212,18 @@ std::optional<Span> adapted_mesh(const LocalSolver& on, const SpanSolution& shap
   return result;
 }
 
-int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& workspace) {
+SpanSolution judged(SpanSolution solution, const SpanOptions& options, SpanWorkspace& workspace) {
   const double load = solution.model->span().total_load();
+  const int spent = solution.evaluations;
   certify(solution, load, workspace.factors());
+  solution.evaluations = spent;
   const bool asks = solution.status == SolveStatus::near_singular ||
                     (counts(solution, options) && solution.error > largest_told_error);
   const int more = std::min(max_terms, 3 * solution.terms / 2);
   if (!asks || options.terms > 0 || options.deadline.passed() ||
       more * SpanTraits::fields_of(solution.model->span()) * solution.model->pieces() >
           most_unknowns) {
-    return 0;
+    return solution;
   }
   // The shape may have left the plane, or have pieces of its own.
   const Span own = solution.model->span();
@@ -239,19 +234,16 @@ int judge(SpanSolution& solution, const SpanOptions& options, SpanWorkspace& wor
   if (!solution.resolved) finer = refined(on, std::move(finer));
   finer.resolved = finer.resolved || solution.resolved;
   certify(finer, load, workspace.factors());
-  const int spent = finer.evaluations;
-  const int evaluations = solution.evaluations + spent;
+  const int evaluations = solution.evaluations + finer.evaluations;
   if (finer.error < solution.error) solution = std::move(finer);
   solution.evaluations = evaluations;
-  return spent;
+  return solution;
 }
 
 SpanSolution finish(SpanSolution solution, const SpanOptions& options, SpanWorkspace& workspace) {
   const Span own = solution.model->span();
   LocalSolver on(own, options, workspace);
-  solution = refined(on, std::move(solution));
-  (void)judge(solution, options, workspace);
-  return solution;
+  return judged(refined(on, std::move(solution)), options, workspace);
 }
 
 }  // namespace dlo::energy_model

@@ -33,10 +33,8 @@ double moved_by(const std::vector<double>& before, const std::vector<double>& no
 
 SpanSolution on_other_pieces(LocalSolver& on, const SpanSolution& solution, int terms) {
   SpanSolution other = on.empty_solution(terms);
-  const TangentField field = field_of(solution.model->shape(solution.x));
+  const TangentField field = solution.model->field(solution.x);
   other.x = other.model->fit(field(other.model->nodes()));
-  if (on.span().twist)
-    other.x = other.model->with_twist(other.x, solution.model->twist(solution.x));
   if (other.model->constraints() == solution.multipliers.size()) {
     other.multipliers = solution.multipliers;
   }

@@ -17,7 +17,8 @@ inline constexpr int most_unknowns = 480;
 /// How a given start is left.
 enum class Approach {
   follow,       ///< by Newton's method, to the equilibrium next to it, stable or not
-  follow_only,  ///< the same from a known shape; where that does not lead on, no other way is tried
+  follow_only,  ///< the same from a known shape; where that does not lead on, no
+                ///< other way is tried
   descend,      ///< downhill, to a minimum
 };
 
@@ -36,21 +37,26 @@ struct KnownShape {
 /// method has gone somewhere else.
 inline constexpr double followed_tangents = 0.3;
 
+/// A shape to begin with instead of a search.
+struct SpanStart {
+  TangentField field;  ///< none: there is no such shape
+  Approach approach = Approach::follow;
+  KnownShape known;   ///< what `field` shows, if it is a span's solution that is
+                      ///< followed
+  KnownShape before;  ///< the shape known before that one, on the same way
+};
+
 struct SpanOptions {
   int terms = 0;  ///< 0: as many as `tolerance` needs
   double tolerance = 1e-10;
   int max_evaluations = 2000;
-  TangentField start;                    ///< instead of the search
-  Approach approach = Approach::follow;  ///< from `start`
-  KnownShape before;                     ///< the shape known before that one, on the same way
-  KnownShape known;                      ///< what `start` shows, if it is a span's solution that
-                                         ///< is followed: where it gives way it is left
-  Deadline deadline;                     ///< of the whole solve
+  Deadline deadline;  ///< of the whole solve
+  SpanStart start;
   /// Of a search for every equilibrium that the starts lead to; null: the lowest one is wanted.
   SearchLog* log = nullptr;
 
   [[nodiscard]] bool wants_all() const { return log != nullptr; }
-  [[nodiscard]] bool only_follows() const { return approach == Approach::follow_only; }
+  [[nodiscard]] bool only_follows() const { return start.approach == Approach::follow_only; }
 };
 
 }  // namespace dlo::energy_model

@@ -547,7 +547,7 @@ Eigen::VectorXd SpanEnergy::fit(const StartShape& shape, int most_steps) {
     evaluated_ = false;
     x.head(strains()) = frames_.fit(tangents, most_steps, state_);
     if (fields() == 3 && shape.roll.size() > 0) x = frames_.rolled(x, shape.roll);
-    return x;
+    return has_psi() ? with_twist(std::move(x), shape.twist) : x;
   }
   const Eigen::Index nodes = s_.size();
   Eigen::VectorXd angles(nodes);
@@ -651,6 +651,18 @@ SpanShape SpanEnergy::shape(const Eigen::VectorXd& x) const {
   }
   shape.natural = span_.natural;
   return shape;
+}
+
+TangentField SpanEnergy::field(const Eigen::VectorXd& x) const {
+  const bool has_roll = !span_.planar && span_.has_material_directors();
+  const double psi = has_psi() ? twist(x) : 0;
+  return [shape = shape(x), has_roll, psi](const Eigen::VectorXd& s) {
+    const SpanSamples samples = shape.sample({s.data(), static_cast<std::size_t>(s.size())});
+    StartShape start(samples.tangents);
+    if (has_roll) start.roll = roll_of(samples.tangents, samples.d1);
+    start.twist = psi;
+    return start;
+  };
 }
 
 Energies SpanEnergy::energies(const Eigen::VectorXd& x) {

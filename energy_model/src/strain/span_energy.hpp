@@ -108,6 +108,8 @@ class SpanEnergy {
   void turn_end_clamp(const Eigen::Vector3d& end_d1);
 
   [[nodiscard]] SpanShape shape(const Eigen::VectorXd& x) const;
+  /// The shape of these unknowns, to start from.
+  [[nodiscard]] TangentField field(const Eigen::VectorXd& x) const;
   [[nodiscard]] Energies energies(const Eigen::VectorXd& x);
 
   [[nodiscard]] const Piece& piece(Eigen::Index index) const {

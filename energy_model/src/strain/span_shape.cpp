@@ -261,10 +261,4 @@ SpanSamples SpanShape::sample(std::span<const double> s) const {
   return samples;
 }
 
-TangentField field_of(SpanShape shape) {
-  return [shape = std::move(shape)](const Eigen::VectorXd& s) {
-    return StartShape(shape.sample({s.data(), static_cast<std::size_t>(s.size())}).tangents);
-  };
-}
-
 }  // namespace dlo::energy_model

@@ -33,6 +33,8 @@ struct StartShape {
   /// By which the rod's own frame is turned ahead of Bishop's, where it has one of its own [rad];
   /// empty: nowhere.
   Eigen::VectorXd roll;
+  /// End ahead of start, of a rod without such a frame whose ends' frames are held [rad].
+  double twist = 0;
 
   StartShape() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): tangents are most of what a start is
@@ -63,8 +65,5 @@ struct SpanShape {
 
   [[nodiscard]] SpanSamples sample(std::span<const double> s) const;
 };
-
-/// A shape's tangents, to start from.
-[[nodiscard]] TangentField field_of(SpanShape shape);
 
 }  // namespace dlo::energy_model

@@ -298,7 +298,7 @@ bookkeeping = "consistent"
   EXPECT_NEAR(fine.effective_modulus.ratio, 1, 4e-2);
 }
 
-// Contact is not looked for between clamps that twist the rod.
+// A clamp on the floor points into it: nothing above the floor leaves it that way.
 TEST(Walls, AShapeThatIsNotVerifiedIsShownOnlyToWhoAcceptsIt) {
   const Scene scene = parse_scene(R"(
 gravity = [0, -9.81, 0]
@@ -310,7 +310,7 @@ torsional_stiffness = "2.76e-4 N m^2"
 [[gripper]]
 at = 0
 position = [0, 0, 0]
-direction = "0 deg"
+direction = "-20 deg"
 roll = "0 deg"
 [[gripper]]
 at = "30 cm"
@@ -318,7 +318,7 @@ position = ["20 cm", 0, 0]
 direction = "0 deg"
 roll = "90 deg"
 [[obstacle]]
-point = [0, "-2 cm", 0]
+point = [0, "-0.25 mm", 0]
 normal = [0, 1, 0]
 [force_model]
 law = "hooke"
@@ -329,7 +329,7 @@ bookkeeping = "consistent"
     (void)solve_reference(scene, Model::energy);
     FAIL() << "no error";
   } catch (const ConvergenceError& error) {
-    EXPECT_NE(std::string(error.what()).find("within a rigid obstacle"), std::string::npos)
+    EXPECT_NE(std::string(error.what()).find("contacts did not converge"), std::string::npos)
         << error.what();
   }
   EXPECT_THROW((void)solve(scene, Model::energy), ConvergenceError);
@@ -338,9 +338,9 @@ bookkeeping = "consistent"
   options.accept_unverified = true;
   const Solution shown = solve(scene, Model::energy, options);
   EXPECT_EQ(shown.status, energy_model::SolveStatus::not_verified);
-  EXPECT_NEAR(shown.penetration, -(0.02 - 0.25e-3) - shown.shape.points.row(1).minCoeff(), 1e-5);
+  EXPECT_NEAR(shown.penetration, -shown.shape.points.row(1).minCoeff(), 1e-5);
   const Comparison comparison = compare(scene, options);
-  EXPECT_NE(comparison.unverified.find("within a rigid obstacle"), std::string::npos);
+  EXPECT_NE(comparison.unverified.find("contacts did not converge"), std::string::npos);
   EXPECT_TRUE(std::isnan(comparison.effective_modulus.ratio));
 }
 

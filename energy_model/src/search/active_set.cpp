@@ -1,0 +1,208 @@
+#include "search/active_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "certify/enough_terms.hpp"
+#include "contact/clearance.hpp"
+#include "contact/lift_off.hpp"
+#include "newton/trust_region.hpp"
+#include "search/free_boundary_newton.hpp"
+#include "span/local_solver.hpp"
+#include "span/refinement.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Times that the contacts are mended.
+constexpr int most_contact_updates = 16;
+/// Unknowns from which on half of the terms that a load takes are tried first.
+constexpr int many_unknowns = 300;
+/// A part that lies and is shorter, in lengths, may be a point instead: it is asked again whether
+/// that is behind the obstacle.
+constexpr double shortest_told = 1e-3;
+
+/// Whether the contacts end where an obstacle without friction lets them, which is what makes the
+/// shape an equilibrium: a slope or a moment that is left there would take more than pressure.
+bool lifts_off(const SpanSolution& solution) {
+  constexpr double settled = 1e-6;
+  const Span& span = solution.model->span();
+  const std::vector<LiftOff> ends = lift_offs(span);
+  if (ends.empty()) return true;
+  const Eigen::VectorXd miss = missed(solution, ends);
+  if (!(miss.cwiseAbs().maxCoeff() <= settled)) return false;
+  // Two points share a force by where they are.
+  constexpr double share = 1e-7;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    if (span.contacts[ends[i].contact].lies()) continue;
+    const Room room = room_of(span, ends[i]);
+    const double off = std::abs(miss[static_cast<Eigen::Index>(i)]);
+    if (!(off <= share * std::min(room.down, room.up))) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+SpanSolution ActiveSet::solve(Span span, TangentField near) {
+  return counted(run(std::move(span), std::move(near), {}, Terms::all));
+}
+
+SpanSolution ActiveSet::solve(SpanSolution equilibrium) {
+  Span span = equilibrium.model->span();
+  return counted(run(std::move(span), {}, std::move(equilibrium), Terms::all));
+}
+
+SpanSolution ActiveSet::update(SpanSolution equilibrium) {
+  Span span = equilibrium.model->span();
+  least_terms_ = equilibrium.terms;
+  return counted(run(std::move(span), {}, std::move(equilibrium), Terms::some));
+}
+
+SpanSolution ActiveSet::update(Span span, TangentField near, int terms) {
+  least_terms_ = terms;
+  return counted(run(std::move(span), std::move(near), {}, Terms::some));
+}
+
+/// @param solution  with the span's contacts, if it is an equilibrium; else from `near`
+SpanSolution ActiveSet::run(Span span, TangentField near, SpanSolution solution, Terms terms) {
+  spent_ += std::exchange(solution.evaluations, 0);
+  for (int round = 0; round < most_contact_updates; ++round) {
+    const bool found_already = round == 0 && solution.is_equilibrium();
+    if (!found_already) solution = newton_from(span, near);
+    if (!solution.is_equilibrium() && hold_points(span)) solution = newton_from(span, near);
+    if (!solution.is_equilibrium()) break;
+    spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
+    std::optional<std::vector<Span::Contact>> next = mended(solution, load_, Terms::some);
+    if (!next && terms == Terms::some) return solution;
+    if (!next) {
+      const TangentField here = solution.model->field(solution.x);
+      span = solution.model->span();
+      solution = with_all_terms(std::move(solution));
+      // Where two points are about to become a part that lies neither slides with a least gap.
+      if (!solution.is_equilibrium() && hold_points(span)) {
+        solution = newton_from(span, here);
+        if (solution.is_equilibrium()) solution = with_all_terms(std::move(solution));
+      }
+      if (!solution.is_equilibrium()) break;
+      next = mended(solution, load_, Terms::all);
+      if (!next && !lifts_off(solution)) break;
+      if (!next) return solution;
+    }
+    near = solution.model->field(solution.x);
+    span = solution.model->span();
+    span.contacts = std::move(*next);
+    for (Span::Contact& contact : span.contacts) contact.slides = true;
+  }
+  const std::string why = solution.is_equilibrium() ? "" : ": " + solution.message;
+  solution.finish(SolveStatus::not_verified);
+  solution.message += ": the contacts did not converge" + why;
+  return solution;
+}
+
+SpanSolution ActiveSet::newton_from(const Span& span, const TangentField& near) {
+  const int terms =
+      options_.terms > 0 ? options_.terms : std::max(terms_of_load(span), least_terms_);
+  SpanSolution solution = workspace_.empty_solution(span, terms);
+  solution.x = solution.model->fit(near(solution.model->nodes()));
+  const Eigen::VectorXd start = solution.x;
+  const NewtonOptions newton = {.load = load_, .deadline = &options_.deadline};
+  // Newton's method would go back to the saddle, or into the plane, that a shape has left.
+  const bool has_left =
+      options_.start.approach == Approach::descend || span.planar != searched_.planar;
+  if (!has_left) newton_solve(solution, newton, workspace_.newton());
+  if (!solution.is_equilibrium()) {
+    solution.x = start;
+    descend_in_trust_region(
+        solution,
+        {.load = load_, .gradient_tolerance = handover_gradient, .deadline = &options_.deadline});
+    if (succeeded(solution.status)) newton_solve(solution, newton, workspace_.newton());
+  }
+  spent_ += std::exchange(solution.evaluations, 0);
+  return solution;
+}
+
+int ActiveSet::terms_of_load(const Span& span) const {
+  constexpr int fewest = 12;  // beside a kink
+  double longest = 0;
+  const std::vector<Piece> pieces = pieces_of(span);
+  for (const Piece& piece : pieces) longest = std::max(longest, piece.length);
+  const int count = std::max(fewest, first_terms(load_, longest));
+  // Many pieces are short, and what they do not take need not be borne while contacts change.
+  const int unknowns = count * static_cast<int>(pieces.size()) * (span.planar ? 1 : 2);
+  return unknowns > many_unknowns ? std::max(fewest, count / 2) : count;
+}
+
+/// As many terms as the shape takes, and as what lies takes to be on its obstacle; certified.
+SpanSolution ActiveSet::with_all_terms(SpanSolution solution) {
+  for (;;) {
+    const int before = solution.terms;
+    solution = finished(std::move(solution));
+    if (solution.is_equilibrium() && solution.terms > before) {
+      spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
+      solution = finished(std::move(solution));
+    }
+    const int finer = solution.terms + solution.terms / 2;
+    const bool more = options_.terms == 0 && finer <= max_terms && hardly_behind(solution);
+    if (!more || options_.deadline.passed()) return solution;
+    SpanSolution next = workspace_.with_terms(solution, finer);
+    newton_solve(next, {.load = load_, .deadline = &options_.deadline}, workspace_.newton());
+    if (!next.is_equilibrium()) return solution;
+    solution = std::move(next);
+    spent_ += free_boundary_newton(solution, options_.deadline, workspace_);
+  }
+}
+
+/// Behind an obstacle by no more than missing terms may make it.
+bool ActiveSet::hardly_behind(const SpanSolution& solution) const {
+  if (!solution.is_equilibrium()) return false;
+  const std::vector<Lowest> behind =
+      lowest_points(searched_, solution.model->shape(solution.x), -deepest * searched_.length);
+  return !behind.empty() && std::all_of(behind.begin(), behind.end(), [&](const auto& lowest) {
+    return lowest.clearance > -deepest_coarse * searched_.length;
+  });
+}
+
+SpanSolution ActiveSet::finished(SpanSolution solution) {
+  SpanOptions options = options_;
+  options.start = {};
+  solution = finish(std::move(solution), options, workspace_);
+  spent_ += std::exchange(solution.evaluations, 0);
+  return solution;
+}
+
+SpanSolution ActiveSet::counted(SpanSolution solution) {
+  solution.evaluations = std::exchange(spent_, 0);
+  return solution;
+}
+
+bool hold_points(Span& span) {
+  bool any = false;
+  for (Span::Contact& contact : span.contacts) {
+    const bool inside = contact.begin > 0 && contact.end < span.length;
+    const double middle = (contact.begin + contact.end) / 2;
+    if (contact.lies() && inside && contact.end - contact.begin < shortest_told * span.length) {
+      contact.begin = contact.end = middle;
+    }
+    any = any || (contact.slides && !contact.lies());
+    contact.slides = false;
+  }
+  return any;
+}
+
+std::optional<std::vector<Span::Contact>> moved_contacts(const Span& span,
+                                                         std::vector<Span::Contact> known) {
+  for (Span::Contact& contact : known) {
+    const auto moved = std::find_if(
+        span.rigid_obstacles.begin(), span.rigid_obstacles.end(),
+        [&](const Span::Obstacle& other) { return other.index == contact.obstacle.index; });
+    if (moved == span.rigid_obstacles.end()) return std::nullopt;
+    contact.obstacle = *moved;
+    contact.slides = true;
+  }
+  return known;
+}
+
+}  // namespace dlo::energy_model

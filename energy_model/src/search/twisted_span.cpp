@@ -1,0 +1,146 @@
+#include "search/twisted_span.hpp"
+
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "dlo/energy_model/turns.hpp"
+#include "search/active_set.hpp"
+#include "search/known_shape.hpp"
+#include "search/twist_path.hpp"
+#include "search/untwisted_span.hpp"
+#include "span/found.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Turn of a clamp at once that may be followed on the same branch [rad].
+constexpr double largest_followed_turn = 1;
+
+constexpr const char* turned_little_by_little =
+    "stable shapes without twist, turned little by little";
+
+/// A shape that is followed may be one that a bifurcation leaves open.
+bool is_known(const SpanSolution& solution) {
+  return solution.is_equilibrium() || solution.is_singular_point();
+}
+
+std::vector<SpanSolution> list_of_one(SpanSolution solution) {
+  std::vector<SpanSolution> result;
+  result.push_back(std::move(solution));
+  return result;
+}
+
+class TwistedSpan {
+ public:
+  TwistedSpan(const PlacedSpan& placed, const Problem& problem, const SpanOptions& options,
+              SpanWorkspace& workspace)
+      : placed_(placed),
+        problem_(problem),
+        options_(options),
+        workspace_(workspace),
+        held_(*placed.frames) {}
+
+  /// Nothing where a known shape has other turns than are asked for, or leads to none.
+  [[nodiscard]] std::optional<SpanSolution> from_known(const Equilibrium& start) const {
+    const double l = problem_.length;
+    const TwistedPart* part = known_twist(start, placed_, l);
+    if (part == nullptr ||
+        !holds_turns(held_.turns, part->angle, writhe(start.sample, part->begin, part->end))) {
+      return std::nullopt;
+    }
+    SpanSolution solution =
+        next_to(field_of(start, placed_, l), part->angle, held_end_d1(held_, placed_.span),
+                known_contacts(start, placed_, l));
+    if (!is_known(solution)) return std::nullopt;
+    return solution;
+  }
+
+  [[nodiscard]] std::vector<SpanSolution> without_twist(const Remembered* last) const {
+    SpanOptions options = options_;
+    // What is found without twist is no result.
+    SearchLog log;
+    if (options_.wants_all()) options.log = &log;
+    std::vector<SpanSolution> found =
+        solve_untwisted(placed_, problem_, options, nullptr, last, workspace_);
+    if (options_.wants_all()) options_.log->add_starts(log, ", without twist");
+    return found;
+  }
+
+  [[nodiscard]] EndFrame frame_for(const SpanSolution& untwisted) const {
+    return end_frame(held_, untwisted_shape(untwisted, workspace_));
+  }
+
+  /// The last twisted shape, turned on.
+  [[nodiscard]] SpanSolution followed(const RememberedTwist& memory, double turned,
+                                      const EndFrame& frame) const {
+    SpanSolution solution = next_to(memory.twisted.field(placed_), memory.twist + turned, frame.d1,
+                                    memory.twisted.last.model->span().contacts);
+    solution.followed = is_known(solution);
+    return solution;
+  }
+
+  /// Each stable shape without twist, turned until it meets the frame.
+  [[nodiscard]] std::vector<SpanSolution> turned(const std::vector<SpanSolution>& untwisted,
+                                                 const EndFrame& frame) const {
+    note_left_out(options_.log,
+                  "unstable twisted shapes, and those that no stable one is turned to");
+    Found found(options_);
+    for (const SpanSolution& from : untwisted) {
+      if (!succeeded(from.status)) continue;
+      found.spend(from.evaluations);
+      (void)found.add(twist_to(frame, placed_.span, held_.stiffness,
+                               untwisted_shape(from, workspace_), options_, workspace_),
+                      turned_little_by_little);
+    }
+    return std::move(found).take();
+  }
+
+ private:
+  /// The equilibrium next to a twisted shape that is known.
+  [[nodiscard]] SpanSolution next_to(const TangentField& field, double twist,
+                                     const Eigen::Vector3d& end_d1,
+                                     std::vector<Span::Contact> contacts) const {
+    Span span = placed_.span;
+    if (auto moved = moved_contacts(span, std::move(contacts))) span.contacts = std::move(*moved);
+    return twist_from(field, twist, end_d1, span, held_.stiffness, options_, workspace_);
+  }
+
+  const PlacedSpan& placed_;
+  const Problem& problem_;
+  const SpanOptions& options_;
+  SpanWorkspace& workspace_;
+  const HeldFrames& held_;
+};
+
+}  // namespace
+
+std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem& problem,
+                                        const SpanOptions& options, const Equilibrium* start,
+                                        bool warm, RememberedTwist& memory,
+                                        SpanWorkspace& workspace) {
+  const TwistedSpan span(placed, problem, options, workspace);
+  const bool follows = warm && memory.twisted.is_known() && !options.wants_all();
+  if (start != nullptr && !options.wants_all() && !follows) {
+    if (std::optional<SpanSolution> known = span.from_known(*start)) {
+      return list_of_one(std::move(*known));
+    }
+  }
+  std::vector<SpanSolution> untwisted =
+      span.without_twist(warm && memory.untwisted.is_known() ? &memory.untwisted : nullptr);
+  SpanSolution& best = untwisted.front();
+  memory.untwisted.remember(best, placed);
+  if (!succeeded(best.status)) return untwisted;
+  const EndFrame frame = span.frame_for(best);
+  const double turned = frame.twist - std::exchange(memory.turned, frame.twist);
+  if (follows && std::abs(turned) < largest_followed_turn) {
+    SpanSolution followed = span.followed(memory, turned, frame);
+    followed.evaluations += best.evaluations;
+    if (followed.followed || options.only_follows()) return list_of_one(std::move(followed));
+  }
+  if (!options.only_follows()) return span.turned(untwisted, frame);
+  best.followed = false;
+  return untwisted;
+}
+
+}  // namespace dlo::energy_model

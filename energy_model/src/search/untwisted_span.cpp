@@ -1,0 +1,103 @@
+#include "search/untwisted_span.hpp"
+
+#include <utility>
+
+#include "search/contact_search.hpp"
+#include "search/known_shape.hpp"
+#include "search/polygon_fields.hpp"
+#include "span/found.hpp"
+#include "span/span_solver.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+constexpr const char* from_polygons = "lowest minima of coarse polygons, by Newton's method";
+
+std::vector<SpanSolution> search_untwisted(const Span& span, const SpanOptions& options,
+                                           SpanWorkspace& workspace) {
+  const auto solver = span.rigid_obstacles.empty() ? solve_span : solve_touching_span;
+  return solver(span, options, workspace);
+}
+
+/// Whether a shape leaves a plane that its span could lie in.
+bool is_out_of_plane(const Span& span, const TangentField& shape) {
+  constexpr double flat = 1e-6;
+  const Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(17, 0, span.length);
+  return !(shape(s).tangents.row(2).cwiseAbs().maxCoeff() < flat);
+}
+
+/// The one equilibrium next to SpanOptions::start.
+SpanSolution from_start(Span span, SpanOptions options, SpanWorkspace& workspace) {
+  options.log = nullptr;
+  return std::move(search_untwisted(span, options, workspace).front());
+}
+
+/// What the minima of a coarse polygon lead to, in the plane and out of it.
+void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOptions options,
+                        SpanWorkspace& workspace, Found& found) {
+  if (!problem.obstacles.empty()) {
+    note_left_out(options.log, "minima of coarse polygons, which know no obstacles");
+    return;
+  }
+  const PolygonFields fields(problem, placed, options.deadline);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (options.deadline.passed()) {
+      note_left_out(options.log, "starts after the time limit");
+      return;
+    }
+    // A minimum of the polygon is next to one of the rod; fewer terms than resolve it would lead
+    // away.
+    options.start = {fields.field(i)};
+    Span span = placed.span;
+    span.planar = span.planar && !is_out_of_plane(span, options.start.field);
+    (void)found.add(from_start(std::move(span), options, workspace), from_polygons);
+    if (found.suffices()) return;
+  }
+}
+
+}  // namespace
+
+std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Problem& problem,
+                                          SpanOptions options, const Equilibrium* shape,
+                                          const Remembered* last, SpanWorkspace& workspace) {
+  const bool is_known = shape == nullptr && last != nullptr && last->is_known();
+  Found found(options);
+  // Nothing is known after a failure.
+  if (options.only_follows() && !is_known) {
+    (void)found.add({});
+    return std::move(found).take();
+  }
+  if (!options.wants_all() && (shape != nullptr || is_known)) {
+    Span span = placed.span;
+    if (is_known) {
+      options.start = {last->field(placed), options.start.approach, last->last, last->before};
+      span.cuts = last->last.model->span().cuts;
+      span.contact_ends = last->last.model->span().contact_ends;
+    } else {
+      options.start.field = field_of(*shape, placed, problem.length);
+    }
+    const bool may_leave = shape != nullptr || !last->planar();
+    span.planar = span.planar && !(may_leave && is_out_of_plane(span, options.start.field));
+    SpanSolution followed = from_start(std::move(span), options, workspace);
+    const bool ends = !followed.is_equilibrium() && !followed.is_singular_point();
+    // Else the branch has ended, or the step was too large for it.
+    found.spend(ends ? std::exchange(followed.evaluations, 0) : 0);
+    if (!ends || options.only_follows()) {
+      (void)found.add(std::move(followed));
+      return std::move(found).take();
+    }
+  }
+  options.start = {};
+  for (SpanSolution& solution : search_untwisted(placed.span, options, workspace)) {
+    (void)found.add(std::move(solution));
+  }
+  const SolveStatus status = found.best().status;
+  const bool at_limit =
+      status == SolveStatus::evaluation_limit || status == SolveStatus::time_limit;
+  if (options.wants_all() || !(succeeded(status) || at_limit)) {
+    add_polygon_minima(placed, problem, options, workspace, found);
+  }
+  return std::move(found).take();
+}
+
+}  // namespace dlo::energy_model

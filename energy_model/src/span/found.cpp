@@ -1,0 +1,113 @@
+#include "span/found.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "certify/rigid_body_modes.hpp"
+#include "strain/span_energy.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+bool is_better(const SpanSolution& a, const SpanSolution& b) {
+  const auto rank = [](const SpanSolution& solution) {
+    if (succeeded(solution.status)) return 0;
+    return solution.is_equilibrium() ? 1 : 2;
+  };
+  return rank(a) != rank(b) ? rank(a) < rank(b) : a.energy < b.energy;
+}
+
+}  // namespace
+
+SearchStrategy& SearchLog::of(const std::string& strategy) {
+  const auto known =
+      std::find_if(looked_from_.begin(), looked_from_.end(),
+                   [&](const SearchStrategy& other) { return other.name == strategy; });
+  if (known != looked_from_.end()) return *known;
+  looked_from_.push_back({strategy, 0, 0});
+  return looked_from_.back();
+}
+
+void SearchLog::leave_out(const std::string& what) {
+  if (std::find(not_looked_.begin(), not_looked_.end(), what) != not_looked_.end()) return;
+  not_looked_.push_back(what);
+}
+
+void SearchLog::add_starts(const SearchLog& other, const std::string& suffix) {
+  for (const SearchStrategy& strategy : other.looked_from_) {
+    tried(strategy.name + suffix, strategy.tried);
+  }
+  for (const std::string& what : other.not_looked_) leave_out(what);
+}
+
+int SearchLog::starts() const {
+  int sum = 0;
+  for (const SearchStrategy& strategy : looked_from_) sum += strategy.tried;
+  return sum;
+}
+
+bool is_same_shape(const SpanSolution& a, const SpanSolution& b, double tolerance) {
+  const Span& span = a.model->span();
+  if (std::abs(a.energy - b.energy) > 1e-2 * tolerance * (1 + span.total_load())) return false;
+  // Without softer parts points differ by less than strains do.
+  if (a.model->size() == b.model->size() && a.terms == b.terms && span.parts.empty() &&
+      span.planar == b.model->span().planar && span.cuts == b.model->span().cuts &&
+      (a.x - b.x).norm() < tolerance * span.length) {
+    return true;
+  }
+  const std::vector<double> s = {0.3 * span.length, 0.6 * span.length, span.length};
+  const Eigen::Matrix3Xd of_a = a.model->shape(a.x).sample(s).points;
+  const Eigen::Matrix3Xd of_b = b.model->shape(b.x).sample(s).points;
+  if ((of_a - of_b).norm() < tolerance * span.length) return true;
+  const bool planar = span.planar && b.model->span().planar;
+  return !planar && is_turned_copy(span, of_a, of_b);
+}
+
+bool Found::add(SpanSolution solution) {
+  evaluations_ += std::exchange(solution.evaluations, 0);
+  if (!counts(solution, options_)) {
+    if (found_.empty()) found_.push_back(std::move(solution));
+    return false;
+  }
+  if (!found_.empty() && !counts(found_.front(), options_)) found_.clear();
+  const bool known = std::any_of(found_.begin(), found_.end(), [&](const SpanSolution& other) {
+    return is_same_shape(solution, other);
+  });
+  if (known) return false;
+  // Of many equilibria it would take much memory, and nothing goes on from most of them.
+  if (options_.wants_all()) solution.factor.reset();
+  found_.push_back(std::move(solution));
+  return true;
+}
+
+bool Found::add(SpanSolution solution, const std::string& strategy) {
+  const bool is_new = add(std::move(solution));
+  note_tried(options_.log, strategy);
+  if (is_new) note_found(options_.log, strategy);
+  return is_new;
+}
+
+const SpanSolution& Found::best() const {
+  return *std::min_element(found_.begin(), found_.end(), is_better);
+}
+
+bool Found::has_stable_lowest() const {
+  const SpanSolution* lowest = nullptr;
+  for (const SpanSolution& solution : found_) {
+    if (!solution.is_equilibrium()) continue;
+    if (lowest == nullptr || solution.energy < lowest->energy) lowest = &solution;
+  }
+  return lowest != nullptr && succeeded(lowest->status);
+}
+
+std::vector<SpanSolution> Found::take() && {
+  std::stable_sort(found_.begin(), found_.end(), is_better);
+  if (!options_.wants_all() && found_.size() > 1) {
+    found_.erase(found_.begin() + 1, found_.end());
+  }
+  if (!found_.empty()) found_.front().evaluations = evaluations_;
+  return std::move(found_);
+}
+
+}  // namespace dlo::energy_model

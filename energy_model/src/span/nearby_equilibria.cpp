@@ -1,0 +1,141 @@
+#include "span/nearby_equilibria.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "certify/rigid_body_modes.hpp"
+#include "linear/free_directions.hpp"
+#include "span/local_solver.hpp"
+#include "span/refinement.hpp"
+#include "span/settle_contact.hpp"
+#include "strain/point_on_span.hpp"
+
+namespace dlo::energy_model {
+namespace {
+
+/// Equilibria between each two of which others are looked for.
+constexpr std::size_t most_joined = 6;
+/// The same beside which.
+constexpr std::size_t most_left_aside = 8;
+
+constexpr const char* between_found = "between two of those found, by Newton's method";
+constexpr const char* beside_found = "beside what was found, by Newton's method";
+
+/// Each shape has its own ends of contact with obstacles that yield.
+SpanSolution on_shared_pieces(const SpanSolution& solution, const SpanOptions& options,
+                              SpanWorkspace& workspace) {
+  Span span = solution.model->span();
+  if (span.contact_ends.empty()) return solution;
+  span.contact_ends.clear();
+  LocalSolver own(span, options, workspace);
+  return on_other_pieces(own, solution, own.coarse_terms());
+}
+
+}  // namespace
+
+std::optional<NegativeCurvature> negative_curvature(const SpanSolution& solution) {
+  SpanEnergy& model = *solution.model;
+  SecondDerivatives at = second_derivatives(solution);
+  ReducedHessian reduced;
+  reduced.compute(at.hessian, at.jacobian);
+  if (std::optional<Eigen::VectorXd> within = negative_curvature_direction(reduced)) {
+    return NegativeCurvature{model.span(), std::move(*within)};
+  }
+  if (!model.span().planar) return std::nullopt;
+  model.sideways(solution.multipliers, at.hessian, at.jacobian);
+  reduced.compute(at.hessian, at.jacobian);
+  const std::optional<Eigen::VectorXd> out_of_plane = negative_curvature_direction(reduced);
+  if (!out_of_plane) return std::nullopt;
+  NegativeCurvature out{model.span(), Eigen::VectorXd::Zero(model.size() + out_of_plane->size())};
+  out.span.planar = false;
+  // Out of the plane a planar rod bends by u2, the rate of its tangent's tilt, and twists.
+  out.direction.tail(out_of_plane->size()) = *out_of_plane;
+  return out;
+}
+
+std::optional<Eigen::VectorXd> mode_nearest_zero(const SpanSolution& solution) {
+  SpanEnergy& model = *solution.model;
+  const SecondDerivatives at = second_derivatives(solution);
+  ReducedHessian reduced;
+  reduced.compute(at.hessian, at.jacobian);
+  const Eigen::Index free = rigid_body_modes(model.span(), model.tangents()).in_plane;
+  if (free >= model.size() - model.constraints()) return std::nullopt;
+  return direction_by_size(reduced, free);
+}
+
+std::optional<SpanSolution> leave_saddle(const SpanSolution& solution, const SpanOptions& options,
+                                         SpanWorkspace& workspace) {
+  constexpr double push = 0.5;
+  const auto descended = [&](const Span& span, const Eigen::VectorXd& disturbance) {
+    LocalSolver own(span, options, workspace);
+    const std::shared_ptr<SpanEnergy> model = workspace.model(span, solution.terms);
+    const Eigen::VectorXd pushed = model->adopt(*solution.model, solution.x) + disturbance;
+    SpanSolution lower = own.empty_solution(std::min(solution.terms, own.coarse_terms()));
+    lower.x = lower.model->adopt(*model, pushed);
+    own.descend(lower);
+    return refined(own, std::move(lower));
+  };
+  const std::optional<NegativeCurvature> way = negative_curvature(solution);
+  if (way) return descended(way->span, push * way->direction);
+  // Through an obstacle's middle it gives way in a mode that its series does not see as unstable.
+  const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(solution);
+  if (!mode || solution.model->span().soft_obstacles.empty()) return std::nullopt;
+  return descended(solution.model->span(), push * *mode);
+}
+
+void look_between(const SpanOptions& options, SpanWorkspace& workspace, Found& found) {
+  constexpr std::array<double, 5> shares = {0.2, 0.3, 0.5, 0.7, 0.8};
+  for (std::size_t j = 1; j < found.size() && j < most_joined; ++j) {
+    for (std::size_t i = 0; i < j && !options.deadline.passed(); ++i) {
+      const SpanSolution a = on_shared_pieces(found[i], options, workspace);
+      const SpanSolution b = on_shared_pieces(found[j], options, workspace);
+      const Span& span = a.model->span();
+      if (span.planar != b.model->span().planar || span.cuts != b.model->span().cuts) continue;
+      LocalSolver own(span, options, workspace);
+      for (const double share : shares) {
+        SpanSolution between = own.empty_solution(std::max(a.terms, b.terms));
+        SpanEnergy& model = *between.model;
+        between.x = (1 - share) * model.adopt(*a.model, a.x);
+        between.x += share * model.adopt(*b.model, b.x);
+        between.multipliers = (1 - share) * model.adopt_multipliers(*a.model, a.multipliers) +
+                              share * model.adopt_multipliers(*b.model, b.multipliers);
+        own.newton(between);
+        (void)found.add(judged(refined(own, std::move(between)), options, workspace),
+                        between_found);
+      }
+    }
+  }
+  if (found.size() > most_joined) {
+    options.log->leave_out("what lies between the equilibria found, but for the first " +
+                           std::to_string(most_joined));
+  }
+}
+
+void look_beside(const SpanOptions& options, SpanWorkspace& workspace, Found& found) {
+  constexpr std::array<double, 6> steps = {0.5, -0.5, 1, -1, 2, -2};
+  std::size_t i = 0;
+  for (; i < found.size() && i < most_left_aside && !options.deadline.passed(); ++i) {
+    if (!counts(found[i], options)) continue;
+    const SpanSolution from = found[i];
+    const std::optional<Eigen::VectorXd> mode = mode_nearest_zero(from);
+    if (!mode) continue;
+    LocalSolver own(from.model->span(), options, workspace);
+    for (const double step : steps) {
+      SpanSolution beside = workspace.with_terms(from, from.terms);
+      beside.x += step * *mode;
+      own.newton(beside);
+      (void)found.add(judged(refined(own, std::move(beside)), options, workspace), beside_found);
+    }
+  }
+  if (i >= found.size()) return;
+  options.log->leave_out("what lies beside the equilibria found, but for the first " +
+                         std::to_string(i));
+}
+
+}  // namespace dlo::energy_model
