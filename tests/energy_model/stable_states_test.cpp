@@ -27,7 +27,7 @@ TEST(StableStates, AllOfPlanarRodsAreListed) {
       EXPECT_LE(lowest.energy.total(), state.energy.total() + 1e-8);
     }
   }
-  EXPECT_GE(states, test::draws(15));
+  EXPECT_GE(states, test::draws(10));  // of some scenes all stable shapes leave the plane
   RecordProperty("states", states);
 }
 

@@ -55,6 +55,26 @@ def test_check_is_the_commands(root, command):
     assert check.passed == (expected["verdict"] == "pass")
 
 
+def test_fifty_shapes_have_the_commands_verdict(root, command, tmp_path):
+    random = numpy.random.default_rng(50)
+    for name in ("cable", "spring_steel_175", "long_rod", "side_load", "buckling_wire"):
+        scene = root / f"data/scenes/{name}.toml"
+        right = dlo.solve(scene, samples=21).points
+        length = dlo.Scene.from_file(scene).length
+        for kind in range(5):
+            noise = random.normal(size=right.shape) * length * (0, 1e-3, 3e-3, 1e-2, 3e-2)[kind]
+            points = right + noise
+            shape = tmp_path / "shape.csv"
+            numpy.savetxt(shape, points, delimiter=",", header="x,y,z", comments="")
+            points = numpy.loadtxt(shape, delimiter=",", skiprows=1)
+            for measure in ("rms", "max"):
+                check = dlo.check(scene, points, tolerance="1%", measure=measure, modulus=False)
+                words = ["check", scene, "--shape", shape, "--tolerance", "1%", "--measure", measure]
+                expected = command_json(command, *words, "--no-modulus")
+                assert check.passed == (expected["verdict"] == "pass")
+                assert check.reason == expected["reason"]
+
+
 def test_deviations_are_those_of_the_document(steel):
     steel.force_model = {"points": 12}
     comparison = dlo.compare(steel, modulus=False)

@@ -1,14 +1,11 @@
+#include "dlo/compare/check.hpp"
+
 #include <fmt/format.h>
 
 #include <memory>
 #include <optional>
 
 #include "command/commands.hpp"
-#include "dlo/compare/alignment.hpp"
-#include "dlo/compare/error.hpp"
-#include "dlo/compare/friction_check.hpp"
-#include "dlo/compare/shape_check.hpp"
-#include "dlo/compare/shape_verdict.hpp"
 #include "format/json.hpp"
 #include "format/shape_check.hpp"
 #include "option/exit_status.hpp"
@@ -18,7 +15,6 @@
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
 #include "picture/check_figure.hpp"
-#include "scene/reach.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -37,11 +33,11 @@ struct CheckOptions {
   PlotOptions plot;
 };
 
-void plot(const CheckOptions& options, const ShapeCheckReport& report) {
+void plot(const CheckOptions& options, const compare::CheckResult& report) {
   const compare::Scene& scene = report.scene;
   options.plot.draw([&] {
     const auto allowed =
-        report.verdict ? std::optional(report.verdict->tolerance.allowed_m) : std::nullopt;
+        report.tolerance ? std::optional(report.tolerance->allowed_m) : std::nullopt;
     return compare::check_picture(scene, report.check, allowed);
   });
   options.plot.sketch(scene, [&] {
@@ -55,39 +51,31 @@ void plot(const CheckOptions& options, const ShapeCheckReport& report) {
 
 void run(const CheckOptions& options) {
   options.plot.require_drawable(options.output);
-  ShapeCheckReport report;
-  report.scene = options.overrides.load(options.scene);
+  const compare::Scene scene = options.overrides.load(options.scene);
   const compare::MeasuredShape shape = options.shapes.load(options.shape);
-  std::optional<Verdict>& verdict = report.verdict;
+  compare::CheckRequest request{
+      .explaining = options.no_explanation ? compare::Explaining::no : compare::Explaining::yes,
+      .shape = {
+          .pose = options.shapes.pose(),
+          .arc_lengths = options.shapes.arc_lengths(),
+          .modulus = options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes,
+          .solve = options.overrides.solve()}};
   if (!options.tolerance.empty()) {
-    verdict.emplace();
-    verdict->tolerance = {
-        .allowed_m = tolerance_m("--tolerance", options.tolerance, report.scene.length),
-        .largest = options.measure == "max",
-        .part = options.min_seen.has_value()};
-    if (options.min_seen) verdict->tolerance.least_seen_share = *options.min_seen;
+    request.tolerance = {.allowed_m = tolerance_m("--tolerance", options.tolerance, scene.length),
+                         .largest = options.measure == "max",
+                         .part = options.min_seen.has_value()};
+    if (options.min_seen) request.tolerance->least_seen_share = *options.min_seen;
   }
-  report.pose = options.shapes.pose();
-  const compare::ShapeCheckOptions check_options = {
-      .pose = report.pose,
-      .arc_lengths = options.shapes.arc_lengths(),
-      .modulus = options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes,
-      .solve = options.overrides.solve()};
-  report.check = compare::check_shape(report.scene, shape, check_options);
-  if (compare::friction_in_reach(report.scene)) {
-    report.friction = compare::check_friction(report.scene, report.check);
-  }
-  if (verdict) {
-    judge(report, shape, check_options, options.no_explanation ? Explaining::no : Explaining::yes);
-  }
-  report.unit_hint = options.shapes.unit_hint(report.check.polyline_length_m, report.scene.length);
-  report.file = options.output.file;
-  if (options.output.is(Format::csv)) warn_of_friction(report.scene);
-  write_output(options.output, {.text = [&] { return shape_check_text(report); },
-                                .json = [&] { return json_text(shape_check_json(report)); },
-                                .csv = [&] { return shape_check_csv(report); }});
-  plot(options, report);
-  if (verdict && !verdict->judgement.pass) end_with(ExitStatus::outside_tolerance);
+  const compare::CheckResult result = compare::check(scene, shape, request);
+  const CheckPage page{result,
+                       options.shapes.unit_hint(result.check.polyline_length_m, scene.length),
+                       options.output.file};
+  if (options.output.is(Format::csv)) warn_of_friction(scene);
+  write_output(options.output, {.text = [&] { return shape_check_text(page); },
+                                .json = [&] { return json_text(shape_check_json(result)); },
+                                .csv = [&] { return shape_check_csv(result); }});
+  plot(options, result);
+  if (result.judgement && !result.judgement->pass) end_with(ExitStatus::outside_tolerance);
 }
 
 }  // namespace

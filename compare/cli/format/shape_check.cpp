@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "base/display.hpp"
@@ -70,25 +71,16 @@ Json friction_json(const compare::FrictionCheck& friction) {
           {"rms_m", friction.rms_m}};
 }
 
-}  // namespace
-
-void judge(ShapeCheckReport& report, const compare::MeasuredShape& shape,
-           const compare::ShapeCheckOptions& options, Explaining explaining) {
-  Verdict& verdict = report.verdict.value();
-  verdict.judgement = compare::judge_with_chains(report.scene, report.check, verdict.tolerance);
-  const bool is_near = compare::judge(report.check, verdict.tolerance).pass;
-  if (is_near || explaining == Explaining::no) return;
-  report.explanations = compare::explain_shape(report.scene, shape, report.check, options);
-  verdict.judgement = compare::with_explanation(verdict.judgement, report.explanations);
-  if (compare::better_than_stiffness(report.check, report.explanations)) {
-    report.check.effective_modulus.optimum = compare::Optimum::superseded;
-  }
+const char* verdict_of(const compare::ShapeJudgement& judgement) {
+  return judgement.pass ? "pass" : "fail";
 }
 
-std::string shape_check_text(const ShapeCheckReport& report) {
+}  // namespace
+
+std::string shape_check_text(const CheckPage& page) {
+  const compare::CheckResult& report = page.result;
   const compare::ShapeCheck& c = report.check;
   const compare::Scene& scene = report.scene;
-  const std::optional<Verdict>& verdict = report.verdict;
   std::string out;
   const compare::Alignment& a = c.alignment;
   const std::vector<double>& s = c.reference.arc_length;
@@ -102,7 +94,7 @@ std::string shape_check_text(const ShapeCheckReport& report) {
          "{:.4g} m at s = {:.4g} m\n",
          s.front(), s.back(), c.seen_share * 100, c.polyline_length_m, c.largest_gap_m,
          c.largest_gap_at_m);
-  const std::string hint = c.hint.empty() ? report.unit_hint : c.hint;
+  const std::string hint = c.hint.empty() ? page.unit_hint : c.hint;
   if (!hint.empty()) append(out, "                  ({})\n", hint);
   if (report.pose == compare::PoseFreedom::known) {
     append(out, "  frame           the scene's\n");
@@ -152,17 +144,20 @@ std::string shape_check_text(const ShapeCheckReport& report) {
            explanation.kind == compare::ExplanationKind::discretisation ? "it is " : "",
            explanation.cause);
   }
-  if (verdict) {
+  if (report.supersedes_modulus) {
+    append(out,
+           "                  (better than any stiffness: E* is no measure of the material)\n");
+  }
+  if (report.judgement) {
     append(out, "  verdict         {}: {}\n",
-           verdict_word(verdict->text(), verdict->judgement.pass, report.file),
-           verdict->judgement.reason);
+           verdict_word(verdict_of(*report.judgement), report.judgement->pass, page.file),
+           report.judgement->reason);
   }
   return out;
 }
 
-Json shape_check_json(const ShapeCheckReport& report) {
+Json shape_check_json(const compare::CheckResult& report) {
   const compare::ShapeCheck& c = report.check;
-  const std::optional<Verdict>& verdict = report.verdict;
   const std::vector<double>& s = c.reference.arc_length;
   Json result = {{"schema", "dlo/check/1"},
                  {"scene", c.scene},
@@ -189,14 +184,16 @@ Json shape_check_json(const ShapeCheckReport& report) {
   result.update(modulus_json(c.effective_modulus));
   const bool given_by_EI = report.scene.given_bending_stiffness.has_value();
   result[given_by_EI ? "effective_bending_stiffness_Nm2" : "effective_modulus_Pa"] = c.modulus;
-  if (verdict) {
-    result["tolerance"] = {{"measure", verdict->tolerance.largest ? "max" : "rms"},
-                           {"allowed_m", verdict->tolerance.allowed_m},
-                           {"least_seen_share", verdict->tolerance.least_seen_share},
-                           {"part", verdict->tolerance.part}};
-    result["judged_m"] = verdict->judgement.judged_m;
-    result["verdict"] = verdict->text();
-    result["reason"] = verdict->judgement.reason;
+  result["superseded_by"] =
+      report.supersedes_modulus ? Json(report.supersedes_modulus->cause) : Json();
+  if (report.judgement) {
+    result["tolerance"] = {{"measure", report.tolerance->largest ? "max" : "rms"},
+                           {"allowed_m", report.tolerance->allowed_m},
+                           {"least_seen_share", report.tolerance->least_seen_share},
+                           {"part", report.tolerance->part}};
+    result["judged_m"] = report.judgement->judged_m;
+    result["verdict"] = verdict_of(*report.judgement);
+    result["reason"] = report.judgement->reason;
   }
   result["explanations"] = Json::array();
   for (const compare::Explanation& explanation : report.explanations) {
@@ -216,9 +213,9 @@ Json shape_check_json(const ShapeCheckReport& report) {
   return result;
 }
 
-std::string shape_check_csv(const ShapeCheckReport& report) {
+std::string shape_check_csv(const compare::CheckResult& report) {
   const compare::ShapeCheck& c = report.check;
-  const std::optional<Verdict>& verdict = report.verdict;
+  const std::optional<compare::ShapeJudgement>& judgement = report.judgement;
   const compare::Deviation& d = c.deviation;
   std::string out =
       "scene,shape,gamma,points,reversed,arc_lengths,from_m,to_m,rms_m,rms_over_length,"
@@ -246,10 +243,10 @@ std::string shape_check_csv(const ShapeCheckReport& report) {
                                 csv_number(c.effective_modulus.ratio),
                                 csv_number(c.effective_modulus.rms_m),
                                 has_modulus ? compare::to_string(c.effective_modulus.optimum) : "",
-                                verdict ? csv_number(verdict->tolerance.allowed_m) : "",
-                                verdict ? verdict->text() : "",
+                                judgement ? csv_number(report.tolerance->allowed_m) : "",
+                                judgement ? verdict_of(*judgement) : "",
                                 csv_number(c.seen_share),
-                                verdict ? csv_field(verdict->judgement.reason) : "",
+                                judgement ? csv_field(judgement->reason) : "",
                                 csv_number(c.whole_rms_m),
                                 csv_number(c.whole_max_m),
                                 report.friction ? compare::to_string(report.friction->verdict) : "",

@@ -6,11 +6,10 @@
 #include <utility>
 
 #include "array.hpp"
+#include "dlo/compare/check.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/force_model_fit.hpp"
-#include "dlo/compare/friction_check.hpp"
 #include "dlo/compare/material_fit.hpp"
-#include "dlo/compare/shape_check.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "errors.hpp"
 #include "format/comparison.hpp"
@@ -23,13 +22,12 @@
 #include "option/share.hpp"
 #include "result.hpp"
 #include "scene.hpp"
-#include "scene/reach.hpp"
 #include "solve_options.hpp"
 
 namespace dlo::python {
 namespace {
 
-using cli::ShapeCheckReport;
+using compare::CheckResult;
 using compare::Comparison;
 
 py::dict deviation_of(const compare::Deviation& deviation) {
@@ -56,52 +54,37 @@ struct Tolerance {
   bool explain;
 };
 
-std::optional<cli::Verdict> open_verdict(const Tolerance& tolerance, double length) {
-  if (!tolerance.allowed) return std::nullopt;
-  if (tolerance.measure != "rms" && tolerance.measure != "max") {
-    compare::refuse_choice(tolerance.measure, {"rms", "max"});
+std::optional<compare::ShapeTolerance> tolerance_of(const Tolerance& asked, double length) {
+  if (!asked.allowed) return std::nullopt;
+  if (asked.measure != "rms" && asked.measure != "max") {
+    compare::refuse_choice(asked.measure, {"rms", "max"});
   }
-  cli::Verdict verdict;
-  verdict.tolerance = {.allowed_m = cli::tolerance_m("tolerance", *tolerance.allowed, length),
-                       .largest = tolerance.measure == "max",
-                       .part = tolerance.min_seen.has_value()};
-  if (tolerance.min_seen) verdict.tolerance.least_seen_share = *tolerance.min_seen;
-  return verdict;
+  compare::ShapeTolerance tolerance{
+      .allowed_m = cli::tolerance_m("tolerance", *asked.allowed, length),
+      .largest = asked.measure == "max",
+      .part = asked.min_seen.has_value()};
+  if (asked.min_seen) tolerance.least_seen_share = *asked.min_seen;
+  return tolerance;
 }
 
-std::shared_ptr<ShapeCheckReport> check(const SharedScene& scene, const py::object& points,
-                                        const py::object& arc_length, const py::tuple& tolerance,
-                                        const std::string& pose, const std::string& arc_lengths,
-                                        bool modulus, const py::dict& limits) {
+std::shared_ptr<CheckResult> check(const SharedScene& scene, const py::object& points,
+                                   const py::object& arc_length, const py::tuple& tolerance,
+                                   const std::string& pose, const std::string& arc_lengths,
+                                   bool modulus, const py::dict& limits) {
   const compare::MeasuredShape shape = measured(points, arc_length, "points");
-  auto report = std::make_shared<ShapeCheckReport>();
-  report->scene = scene->scene;
-  report->pose = compare::from_name<compare::PoseFreedom>(pose);
   const Tolerance asked{tolerance[0].cast<std::optional<std::string>>(),
                         tolerance[1].cast<std::string>(),
                         tolerance[2].cast<std::optional<double>>(), tolerance[3].cast<bool>()};
-  report->verdict = open_verdict(asked, scene->scene.length);
-  const compare::ShapeCheckOptions options{
-      .pose = report->pose,
-      .arc_lengths = compare::from_name<compare::ArcLengths>(arc_lengths),
-      .modulus = modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no,
-      .solve = [&limits] {
-        compare::SolveOptions solve = solve_options(limits);
-        solve.accept_unverified = false;
-        return solve;
-      }()};
-  run_long([&](Signals& /*signals*/) {
-    report->check = compare::check_shape(scene->scene, shape, options);
-    if (compare::friction_in_reach(scene->scene)) {
-      report->friction = compare::check_friction(scene->scene, report->check);
-    }
-    if (report->verdict) {
-      cli::judge(*report, shape, options,
-                 asked.explain ? cli::Explaining::yes : cli::Explaining::no);
-    }
-    return true;
-  });
-  return report;
+  compare::CheckRequest request{
+      .tolerance = tolerance_of(asked, scene->scene.length),
+      .explaining = asked.explain ? compare::Explaining::yes : compare::Explaining::no,
+      .shape = {.pose = compare::from_name<compare::PoseFreedom>(pose),
+                .arc_lengths = compare::from_name<compare::ArcLengths>(arc_lengths),
+                .modulus = modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no,
+                .solve = solve_options(limits)}};
+  request.shape.solve.accept_unverified = false;
+  return std::make_shared<CheckResult>(
+      run_long([&](Signals& /*signals*/) { return compare::check(scene->scene, shape, request); }));
 }
 
 py::object compare_scene(const SharedScene& scene, bool modulus, const py::dict& limits) {
@@ -179,8 +162,8 @@ FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,
 }
 
 void bind_check(py::module_& module) {
-  const auto of = [](auto get) { return [get](const ShapeCheckReport& r) { return get(r); }; };
-  using Report = ShapeCheckReport;
+  const auto of = [](auto get) { return [get](const CheckResult& r) { return get(r); }; };
+  using Report = CheckResult;
   py::class_<Report, std::shared_ptr<Report>> bound(
       module, "Check", "A shape against its scene's energy model; of check(). Arrays are views.");
   bind_result(bound);
@@ -188,12 +171,12 @@ void bind_check(py::module_& module) {
       .def_property_readonly(
           "passed",
           [](const Report& report) -> py::object {
-            if (!report.verdict) return py::none();
-            return py::bool_(report.verdict->judgement.pass);
+            if (!report.judgement) return py::none();
+            return py::bool_(report.judgement->pass);
           },
           "Whether the shape is within the tolerance; None without one.")
       .def_property_readonly("reason", of([](const Report& r) {
-                               return r.verdict ? r.verdict->judgement.reason : std::string();
+                               return r.judgement ? r.judgement->reason : std::string();
                              }),
                              "Why, in words; \"\" without a tolerance.")
       .def_property_readonly("rms", of([](const Report& r) { return r.check.deviation.rms_m; }),
@@ -236,7 +219,9 @@ void bind_check(py::module_& module) {
           "The energy model there [m], shape (M, 3), read only.")
       .def("to_json", of([](const Report& r) { return cli::json_text(cli::shape_check_json(r)); }),
            "The document of `dlo check --format json`, as text.")
-      .def("__str__", of([](const Report& r) { return cli::shape_check_text(r); }));
+      .def("__str__", of([](const Report& r) {
+             return cli::shape_check_text({r, "", ""});
+           }));
 }
 
 void bind_comparison(py::module_& module) {

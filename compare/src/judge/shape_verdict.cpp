@@ -4,14 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "base/number.hpp"
 #include "dlo/compare/deviation.hpp"
-#include "dlo/compare/reference.hpp"
-#include "dlo/compare/solution.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -27,39 +23,6 @@ std::string missing_parts(const ShapeCheck& check, double least) {
   if (s.front() > least) parts.push_back(arc_range(0, s.front()));
   if (s.back() < check.length_m - least) parts.push_back(arc_range(s.back(), check.length_m));
   return fmt::format("{}", fmt::join(parts, " and "));
-}
-
-/// What a sum of arc lengths may leave the rod by, as a share of its length: single precision
-/// rounds each of some segments by 6e-8.
-constexpr double arc_rounding = 1e-6;
-
-/// Points are counted from 1, as `dlo check` does.
-std::string problem_of(const Shape& shape, double length) {
-  const std::vector<double>& s = shape.arc_length;
-  if (static_cast<Eigen::Index>(s.size()) != shape.points.cols() || s.size() < 2) {
-    return fmt::format("has {} points and {} arc lengths (allowed: as many, 2 or more)",
-                       shape.points.cols(), s.size());
-  }
-  for (std::size_t i = 0; i < s.size(); ++i) {
-    if (!shape.points.col(static_cast<Eigen::Index>(i)).allFinite()) {
-      return fmt::format("is not finite at point {}, s = {:g} m", i + 1, s[i]);
-    }
-    const double rounding = arc_rounding * length;
-    if (!(s[i] >= -rounding && s[i] <= length + rounding)) {
-      return fmt::format("leaves the rod at point {}, s = {:.9g} m (allowed: 0 to {:.9g} m)", i + 1,
-                         s[i], length);
-    }
-    if (i > 0 && !(s[i] > s[i - 1])) {
-      return fmt::format("has arc lengths that do not grow at point {}, s = {:g} m", i + 1, s[i]);
-    }
-  }
-  return {};
-}
-
-std::string point_text(const Eigen::Vector3d& point) {
-  const double large = point.norm();
-  return fmt::format("({:.6g}, {:.6g}, {:.6g})", shown(point.x(), large), shown(point.y(), large),
-                     shown(point.z(), large));
 }
 
 }  // namespace
@@ -101,31 +64,6 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
   reasons.push_back(std::move(deviation));
   result.reason = fmt::format("{}", fmt::join(reasons, "; "));
   return result;
-}
-
-ShapeNear shape_near(const Shape& shape, const Scene& scene, double tolerance) {
-  if (!(tolerance > 0)) {
-    throw std::invalid_argument(
-        fmt::format("shape_near: tolerance = {}, must be > 0, a share of the length", tolerance));
-  }
-  const double length = scene.length;
-  if (const std::string problem = problem_of(shape, length); !problem.empty()) {
-    return {false, "the shape " + problem};
-  }
-  const energy_model::Equilibrium energy = solve_reference(scene, Model::energy);
-  std::vector<double> s = shape.arc_length;
-  for (double& at : s) at = std::clamp(at, 0.0, length);
-  const Eigen::Matrix3Xd expected = energy.sample(s).points;
-  const Eigen::Matrix3Xd difference = shape.points - expected;
-  Eigen::Index worst = 0;
-  const double largest = std::sqrt(difference.colwise().squaredNorm().maxCoeff(&worst));
-  return {largest <= tolerance * length,
-          fmt::format("largest distance {:.4g} m = {:.4g} % of l at s = {:.4g} m (point {}): {} m "
-                      "instead of {} m; RMS {:.4g} % of l; allowed {:.4g} % of l",
-                      largest, largest / length * 100,
-                      shape.arc_length[static_cast<std::size_t>(worst)], worst + 1,
-                      point_text(shape.points.col(worst)), point_text(expected.col(worst)),
-                      rms(shape.arc_length, difference) / length * 100, tolerance * 100)};
 }
 
 }  // namespace dlo::compare

@@ -5,7 +5,6 @@
 #include <limits>
 #include <utility>
 
-#include "shooting/between_nodes.hpp"
 #include "shooting/close_gaps.hpp"
 
 namespace dlo::energy_model {
@@ -129,16 +128,34 @@ RodState state_at(const SpanEquilibrium& equilibrium, const RodSpan& span, doubl
 
 std::vector<RodState> states_at(const SpanEquilibrium& equilibrium, const RodSpan& span,
                                 const std::vector<double>& s, double tolerance) {
-  const auto follow = [&](Eigen::Index i, double from, double to, RodState& state) {
-    const RodSection& section = section_at(span, (equilibrium.s[i] + equilibrium.s[i + 1]) / 2);
-    RodIntegrals integrals;
-    const RodPiece piece{section, span.natural, from, to - from,
-                         equilibrium.contacts.surface_of(i)};
-    if (follow_rod(piece, tolerance, state, integrals)) return;
-    state.r.setConstant(std::numeric_limits<double>::quiet_NaN());
-    state.R.setConstant(std::numeric_limits<double>::quiet_NaN());
-  };
-  return states_between(equilibrium.s, equilibrium.nodes, s, follow);
+  const Eigen::VectorXd& nodes = equilibrium.s;
+  std::vector<RodState> result;
+  result.reserve(s.size());
+  RodState state;
+  Eigen::Index interval = -1;
+  double reached = 0;
+  for (const double at : s) {
+    // That at the end is followed too: a last node may lie beyond what a grip there exerts.
+    const Eigen::Index after = std::upper_bound(nodes.begin(), nodes.end(), at) - nodes.begin();
+    const Eigen::Index i = std::clamp<Eigen::Index>(after - 1, 0, nodes.size() - 2);
+    if (i != interval) {
+      state = equilibrium.nodes[static_cast<std::size_t>(i)];
+      interval = i;
+      reached = nodes[i];
+    }
+    if (at > reached) {
+      const RodPiece piece{section_at(span, (nodes[i] + nodes[i + 1]) / 2), span.natural, reached,
+                           at - reached, equilibrium.contacts.surface_of(i)};
+      RodIntegrals integrals;
+      if (!follow_rod(piece, tolerance, state, integrals)) {
+        state.r.setConstant(std::numeric_limits<double>::quiet_NaN());
+        state.R.setConstant(std::numeric_limits<double>::quiet_NaN());
+      }
+    }
+    reached = at;
+    result.push_back(state);
+  }
+  return result;
 }
 
 void carry_frames(const RodSpan& span, const RodMesh& mesh, double tolerance,

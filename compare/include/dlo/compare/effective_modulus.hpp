@@ -15,27 +15,26 @@ namespace dlo::compare {
 
 /// What the optimum of an effective modulus is worth.
 enum class Optimum {
-  none,        ///< there is no E*, see EffectiveModulus::why_none
-  clear,       ///< E* is identified, and it explains the deviation
-  partial,     ///< E* is identified, but it explains less than `clear_share` of the mean square
-               ///< deviation, or leaves more than the rod's own way from straight
-               ///< (without_small_movement)
-  flat,        ///< a modulus twice or half as large fits less than 10 % worse, or no worse than the
-               ///< energy model's own error
-  one_sided,   ///< the fit still improves where the search ended: at the end of the range, or where
-               ///< the equilibrium that was followed ends or bifurcates
-  superseded,  ///< E* is identified, but another cause leaves far less (better_than_stiffness): it
-               ///< is no measure of the material
+  none,       ///< there is no E*, see EffectiveModulus::why_none
+  clear,      ///< E* is identified, and it explains the deviation
+  partial,    ///< E* is identified, but it explains less than `clear_share` of the mean square
+              ///< deviation, or leaves more than the rod's own way from straight
+              ///< (without_small_movement)
+  flat,       ///< a modulus twice or half as large fits less than 10 % worse, or no worse than the
+              ///< energy model's own error
+  one_sided,  ///< the fit still improves where the search ended: at the end of the range, or where
+              ///< the equilibrium that was followed ends or bifurcates
 };
 
 /// In words, for messages.
 template <>
 struct Choices<Optimum> {
   /// In the enumeration's order.
-  static constexpr Choice<Optimum> all[] = {
-      {Optimum::none, "none", ""},           {Optimum::clear, "clear", ""},
-      {Optimum::partial, "partial", ""},     {Optimum::flat, "flat", ""},
-      {Optimum::one_sided, "one-sided", ""}, {Optimum::superseded, "superseded", ""}};
+  static constexpr Choice<Optimum> all[] = {{Optimum::none, "none", ""},
+                                            {Optimum::clear, "clear", ""},
+                                            {Optimum::partial, "partial", ""},
+                                            {Optimum::flat, "flat", ""},
+                                            {Optimum::one_sided, "one-sided", ""}};
 };
 
 /// E* itself is identified, whether or not it explains the deviation.

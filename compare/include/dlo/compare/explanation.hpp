@@ -55,7 +55,7 @@ struct Explanation {
 
 /// What explains a shape better than any stiffness, where E* is identified: it leaves less than
 /// half of what E* leaves, with two fitted numbers less than a quarter, and so on. E* is then no
-/// measure of the material (Optimum::superseded).
+/// measure of the material.
 /// @param explanations  of explain_shape(), for the same check
 [[nodiscard]] std::optional<Explanation> better_than_stiffness(
     const ShapeCheck& check, const std::vector<Explanation>& explanations);

@@ -5,8 +5,8 @@
 #include <ostream>
 #include <utility>
 
+#include "dlo/compare/check.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "dlo/compare/shape_verdict.hpp"
 
 /// GoogleTest for shapes; headers only, the library itself does not need GoogleTest.
 ///
@@ -14,38 +14,63 @@
 ///     EXPECT_THAT(shape, dlo::compare::IsShapeOf(scene, 1e-3));         // with gmock
 ///
 /// `shape` is a dlo::compare::Shape (points at arc lengths, in m, in the scene's frame),
-/// `tolerance` the largest distance at equal arc length that is allowed, as a share of the rod's
-/// length. A failure says where the shape is furthest away and how far.
+/// `tolerance` the RMS deviation that is allowed, as a share of the rod's length: what `dlo check`
+/// calls pass is near, and a failure gives its reason. EXPECT_SHAPE_WITHIN and IsShapeWithin hold
+/// the largest distance of a point against the tolerance, as `dlo check --measure max` does.
 #define EXPECT_SHAPE_NEAR(shape, scene, tolerance) \
   EXPECT_PRED_FORMAT3(::dlo::compare::assert_shape_near, shape, scene, tolerance)
 #define ASSERT_SHAPE_NEAR(shape, scene, tolerance) \
   ASSERT_PRED_FORMAT3(::dlo::compare::assert_shape_near, shape, scene, tolerance)
+#define EXPECT_SHAPE_WITHIN(shape, scene, tolerance) \
+  EXPECT_PRED_FORMAT3(::dlo::compare::assert_shape_within, shape, scene, tolerance)
+#define ASSERT_SHAPE_WITHIN(shape, scene, tolerance) \
+  ASSERT_PRED_FORMAT3(::dlo::compare::assert_shape_within, shape, scene, tolerance)
 
 namespace dlo::compare {
 
-/// What EXPECT_SHAPE_NEAR calls: the texts are the arguments as written.
-inline testing::AssertionResult assert_shape_near(const char* shape_text, const char* scene_text,
-                                                  const char* tolerance_text, const Shape& shape,
-                                                  const Scene& scene, double tolerance) {
-  const ShapeNear result = shape_near(shape, scene, tolerance);
+/// What a matcher asks of a shape: shape_near or shape_within.
+using ShapeTest = ShapeNear (*)(const Shape& shape, const Scene& scene, double tolerance);
+
+/// The outcome of a test, with the arguments as written.
+inline testing::AssertionResult assert_shape(ShapeTest test, const char* shape_text,
+                                             const char* scene_text, const char* tolerance_text,
+                                             const Shape& shape, const Scene& scene,
+                                             double tolerance) {
+  const ShapeNear result = test(shape, scene, tolerance);
   if (result.near) return testing::AssertionSuccess();
   return testing::AssertionFailure()
          << shape_text << " is not the shape of " << scene_text << " (" << scene.name << ") within "
          << tolerance_text << ":\n  " << result.explanation;
 }
 
-/// What IsShapeOf gives.
+/// What EXPECT_SHAPE_NEAR calls.
+inline testing::AssertionResult assert_shape_near(const char* shape_text, const char* scene_text,
+                                                  const char* tolerance_text, const Shape& shape,
+                                                  const Scene& scene, double tolerance) {
+  return assert_shape(shape_near, shape_text, scene_text, tolerance_text, shape, scene, tolerance);
+}
+
+/// What EXPECT_SHAPE_WITHIN calls.
+inline testing::AssertionResult assert_shape_within(const char* shape_text, const char* scene_text,
+                                                    const char* tolerance_text, const Shape& shape,
+                                                    const Scene& scene, double tolerance) {
+  return assert_shape(shape_within, shape_text, scene_text, tolerance_text, shape, scene,
+                      tolerance);
+}
+
+/// What IsShapeOf and IsShapeWithin give.
 class ShapeMatcher {
  public:
   /// for GoogleTest
   using is_gtest_matcher = void;
 
-  /// @param tolerance  largest distance of a point, share of the length [-], > 0
-  ShapeMatcher(Scene scene, double tolerance) : scene_(std::move(scene)), tolerance_(tolerance) {}
+  /// @param tolerance  share of the length [-], > 0
+  ShapeMatcher(ShapeTest test, Scene scene, double tolerance)
+      : test_(test), scene_(std::move(scene)), tolerance_(tolerance) {}
 
-  /// Whether the shape is the scene's; streams where it is worst.
+  /// Whether the shape is the scene's; streams why, or why not.
   bool MatchAndExplain(const Shape& shape, std::ostream* explanation) const {
-    const ShapeNear result = shape_near(shape, scene_, tolerance_);
+    const ShapeNear result = test_(shape, scene_, tolerance_);
     if (explanation != nullptr) *explanation << result.explanation;
     return result.near;
   }
@@ -59,6 +84,7 @@ class ShapeMatcher {
   }
 
  private:
+  ShapeTest test_;
   Scene scene_;
   double tolerance_;
 };
@@ -67,7 +93,12 @@ class ShapeMatcher {
 /// EXPECT_THAT(shape, IsShapeOf(scene, 1e-3)): see shape_near.
 // NOLINTNEXTLINE(readability-identifier-naming)
 inline ShapeMatcher IsShapeOf(Scene scene, double tolerance) {
-  return {std::move(scene), tolerance};
+  return {shape_near, std::move(scene), tolerance};
+}
+/// EXPECT_THAT(shape, IsShapeWithin(scene, 1e-3)): see shape_within.
+// NOLINTNEXTLINE(readability-identifier-naming)
+inline ShapeMatcher IsShapeWithin(Scene scene, double tolerance) {
+  return {shape_within, std::move(scene), tolerance};
 }
 
 /// How GoogleTest prints a shape: its size, not its bytes.

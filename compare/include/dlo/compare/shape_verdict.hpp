@@ -33,18 +33,4 @@ struct ShapeJudgement {
 /// names what the file lacks.
 [[nodiscard]] ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance);
 
-/// Whether a shape is a scene's, for a test.
-struct ShapeNear {
-  bool near = false;        ///< within the tolerance everywhere
-  std::string explanation;  ///< one line: where it is worst, how far, and how far on the whole
-};
-
-/// Compares a shape with the energy model's, at equal arc length: near if no point is further away
-/// than `tolerance` times the rod's length. An undefined shape (other numbers of points and arc
-/// lengths, fewer than two, not finite, arc lengths that do not grow or leave the rod) is not near,
-/// and the explanation says why.
-/// @param tolerance  [-], > 0
-/// @throws std::invalid_argument for such a tolerance, InputError, ConvergenceError
-[[nodiscard]] ShapeNear shape_near(const Shape& shape, const Scene& scene, double tolerance);
-
 }  // namespace dlo::compare

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dlo/compare/explanation.hpp"
+#include "dlo/compare/friction_check.hpp"
+#include "dlo/compare/scene.hpp"
+#include "dlo/compare/shape.hpp"
+#include "dlo/compare/shape_check.hpp"
+#include "dlo/compare/shape_file.hpp"
+#include "dlo/compare/shape_verdict.hpp"
+
+namespace dlo::compare {
+
+/// Whether it is looked for what is wrong with a shape that fails.
+enum class Explaining { yes, no };
+
+/// What is asked of a shape.
+struct CheckRequest {
+  std::optional<ShapeTolerance> tolerance;  ///< none: there is no verdict
+  Explaining explaining = Explaining::yes;  ///< pass and fail do not depend on it
+  ShapeCheckOptions shape;                  ///< how it is compared
+};
+
+/// A shape against its scene's energy model, judged: what `dlo check` says, and Python and
+/// GoogleTest with it.
+struct CheckResult {
+  Scene scene;                              ///< that it was held against
+  ShapeCheck check;                         ///< how far it is away
+  std::optional<ShapeTolerance> tolerance;  ///< as asked for
+  std::optional<ShapeJudgement> judgement;  ///< pass or fail with its reason; where a tolerance is
+  std::vector<Explanation> explanations;    ///< of a shape that is not near, the best first
+  std::optional<Explanation> supersedes_modulus;  ///< what explains it better than any stiffness
+  std::optional<FrictionCheck> friction;          ///< where an obstacle in reach has friction
+  PoseFreedom pose = PoseFreedom::known;          ///< what was unknown of the shape's frame
+
+  [[nodiscard]] bool passes() const { return judgement && judgement->pass; }
+};
+
+/// Compares, judges and, where the shape is not within the tolerance, explains.
+/// @throws InputError, ConvergenceError
+[[nodiscard]] CheckResult check(const Scene& scene, const MeasuredShape& shape,
+                                const CheckRequest& request = {});
+
+/// Whether a shape is a scene's, for a test.
+struct ShapeNear {
+  bool near = false;        ///< check() passes
+  std::string explanation;  ///< its reason; then, on a line of its own, where it is worst
+};
+
+/// check() by its RMS, at the shape's arc lengths. One that is undefined (other numbers of points
+/// and arc lengths, fewer than two, not finite, arc lengths that do not grow or leave the rod by
+/// more than 1e-6 l) is not near, and the explanation says why.
+/// @param tolerance  share of the rod's length [-], > 0
+/// @throws std::invalid_argument for such a tolerance, InputError, ConvergenceError
+[[nodiscard]] ShapeNear shape_near(const Shape& shape, const Scene& scene, double tolerance);
+
+/// The same by the largest distance of a point.
+[[nodiscard]] ShapeNear shape_within(const Shape& shape, const Scene& scene, double tolerance);
+
+}  // namespace dlo::compare

@@ -1,0 +1,96 @@
+#include "dlo/compare/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "base/number.hpp"
+#include "scene/reach.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// What a sum of arc lengths may leave the rod by, as a share of its length: single precision
+/// rounds each of some segments by 6e-8.
+constexpr double arc_rounding = 1e-6;
+
+/// Points are counted from 1.
+std::string problem_of(const Shape& shape, double length) {
+  const std::vector<double>& s = shape.arc_length;
+  if (static_cast<Eigen::Index>(s.size()) != shape.points.cols() || s.size() < 2) {
+    return fmt::format("has {} points and {} arc lengths (allowed: as many, 2 or more)",
+                       shape.points.cols(), s.size());
+  }
+  for (std::size_t i = 0; i < s.size(); ++i) {
+    if (!shape.points.col(static_cast<Eigen::Index>(i)).allFinite()) {
+      return fmt::format("is not finite at point {}, s = {:g} m", i + 1, s[i]);
+    }
+    const double rounding = arc_rounding * length;
+    if (!(s[i] >= -rounding && s[i] <= length + rounding)) {
+      return fmt::format("leaves the rod at point {}, s = {:.9g} m (allowed: 0 to {:.9g} m)", i + 1,
+                         s[i], length);
+    }
+    if (i > 0 && !(s[i] > s[i - 1])) {
+      return fmt::format("has arc lengths that do not grow at point {}, s = {:g} m", i + 1, s[i]);
+    }
+  }
+  return {};
+}
+
+std::string point_text(const Eigen::Vector3d& point) {
+  const double large = point.norm();
+  return fmt::format("({:.6g}, {:.6g}, {:.6g})", shown(point.x(), large), shown(point.y(), large),
+                     shown(point.z(), large));
+}
+
+ShapeNear near_by(const Shape& shape, const Scene& scene, double tolerance, bool largest) {
+  if (!(tolerance > 0)) {
+    throw std::invalid_argument(
+        fmt::format("tolerance of a shape = {}, must be > 0, a share of the length", tolerance));
+  }
+  if (const std::string problem = problem_of(shape, scene.length); !problem.empty()) {
+    return {false, "the shape " + problem};
+  }
+  std::vector<double> s = shape.arc_length;
+  for (double& at : s) at = std::clamp(at, 0.0, scene.length);
+  const CheckResult result =
+      check(scene, shape_of(shape.points, s, "shape"),
+            {.tolerance = ShapeTolerance{.allowed_m = tolerance * scene.length, .largest = largest},
+             .shape = {.modulus = ModulusSearch::no}});
+  const ShapeCheck& c = result.check;
+  return {result.passes(),
+          fmt::format("{}\n  largest {:.4g} mm at s = {:.4g} m (point {}), {} m instead of {} m",
+                      result.judgement->reason, c.deviation.max_m * 1e3, c.deviation.max_at_m,
+                      c.worst_point, point_text(c.worst_position),
+                      point_text(c.rod.sample(std::vector{c.deviation.max_at_m}).points.col(0)))};
+}
+
+}  // namespace
+
+CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckRequest& request) {
+  CheckResult result{.scene = scene,
+                     .check = check_shape(scene, shape, request.shape),
+                     .tolerance = request.tolerance,
+                     .pose = request.shape.pose};
+  if (friction_in_reach(scene)) result.friction = check_friction(scene, result.check);
+  if (!request.tolerance) return result;
+  result.judgement = judge_with_chains(scene, result.check, *request.tolerance);
+  const bool is_near = judge(result.check, *request.tolerance).pass;
+  if (is_near || request.explaining == Explaining::no) return result;
+  result.explanations = explain_shape(scene, shape, result.check, request.shape);
+  result.judgement = with_explanation(*result.judgement, result.explanations);
+  result.supersedes_modulus = better_than_stiffness(result.check, result.explanations);
+  return result;
+}
+
+ShapeNear shape_near(const Shape& shape, const Scene& scene, double tolerance) {
+  return near_by(shape, scene, tolerance, false);
+}
+
+ShapeNear shape_within(const Shape& shape, const Scene& scene, double tolerance) {
+  return near_by(shape, scene, tolerance, true);
+}
+
+}  // namespace dlo::compare
