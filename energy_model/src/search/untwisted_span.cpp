@@ -27,7 +27,7 @@ bool is_out_of_plane(const Span& span, const TangentField& shape) {
 }
 
 /// The one equilibrium next to SpanOptions::start.
-SpanSolution from_start(Span span, SpanOptions options, SpanWorkspace& workspace) {
+SpanSolution from_start(const Span& span, SpanOptions options, SpanWorkspace& workspace) {
   options.log = nullptr;
   return std::move(search_untwisted(span, options, workspace).front());
 }
@@ -50,7 +50,7 @@ void add_polygon_minima(const PlacedSpan& placed, const Problem& problem, SpanOp
     options.start = {fields.field(i)};
     Span span = placed.span;
     span.planar = span.planar && !is_out_of_plane(span, options.start.field);
-    (void)found.add(from_start(std::move(span), options, workspace), from_polygons);
+    (void)found.add(from_start(span, options, workspace), from_polygons);
     if (found.suffices()) return;
   }
 }
@@ -78,7 +78,7 @@ std::vector<SpanSolution> solve_untwisted(const PlacedSpan& placed, const Proble
     }
     const bool may_leave = shape != nullptr || !last->planar();
     span.planar = span.planar && !(may_leave && is_out_of_plane(span, options.start.field));
-    SpanSolution followed = from_start(std::move(span), options, workspace);
+    SpanSolution followed = from_start(span, options, workspace);
     const bool ends = !followed.is_equilibrium() && !followed.is_singular_point();
     // Else the branch has ended, or the step was too large for it.
     found.spend(ends ? std::exchange(followed.evaluations, 0) : 0);
