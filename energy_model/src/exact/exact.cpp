@@ -119,13 +119,13 @@ Found search_touching(const Problem& problem, const ExactOptions& options,
       options.start == nullptr
           ? raise_weight(problem, options.tolerance, deadline)
           : confirm_contacts(problem, *options.start, options.tolerance, deadline);
-  require(found.has_value(), "solve_exact", "number of obstacles",
-          static_cast<double>(problem.obstacles.size()),
-          options.start == nullptr
-              ? "0, or rigid half-spaces across the plane of a heavy round rod "
-                "with one clamp at "
-                "its begin, or a start has to say what touches"
-              : "0, or rigid ones that a rod without natural strains touches between its grips");
+  require(
+      found.has_value(), "solve_exact", "number of obstacles",
+      static_cast<double>(problem.obstacles.size()),
+      options.start == nullptr
+          ? "0, or rigid half-spaces under a loaded rod with one clamp at its begin, or a start "
+            "has to say what touches"
+          : "0, or rigid ones that a rod without natural strains touches between its grips");
   return {{*std::move(found)}, false, ""};
 }
 

@@ -98,9 +98,8 @@ using ClampFrames = std::vector<std::optional<Eigen::Matrix3d>>;
 /// A node of a mesh at which contact with a rigid body begins, ends or is a point.
 struct RodContact {
   Eigen::Index node = 0;
-  bool moves = false;                     ///< its arc length is unknown
-  bool pushes = true;                     ///< a force there is unknown, which a grip's is not
-  double force = 0;                       ///< of the body on the rod there, along its normal
+  bool moves = false;  ///< its arc length is unknown
+  double force = 0;    ///< of the body on the rod there, unknown, along its normal
   std::optional<obstacle::Body> touched;  ///< at this node alone
   std::optional<Surface> surface;         ///< or else that on which the rod lies beside it
 
@@ -132,6 +131,12 @@ struct RodMesh {
   std::vector<const RodSection*> section;  ///< of each interval; of the span
   RodContacts contacts;
 
+  /// Whether a node is an end, a grip, a load or where another part begins, which stays there.
+  [[nodiscard]] bool is_fixed(Eigen::Index node) const {
+    const auto i = static_cast<std::size_t>(node);
+    return node == 0 || node == intervals() || hold[i] != nullptr || !load.col(node).isZero(0) ||
+           section[i - 1] != section[i];
+  }
   [[nodiscard]] Eigen::Index intervals() const { return s.size() - 1; }
   [[nodiscard]] double width(Eigen::Index interval) const { return s[interval + 1] - s[interval]; }
   [[nodiscard]] const RodSection& section_of(Eigen::Index interval) const {

@@ -25,12 +25,6 @@ bool is_known(const SpanSolution& solution) {
   return solution.is_equilibrium() || solution.is_singular_point();
 }
 
-std::vector<SpanSolution> list_of_one(SpanSolution solution) {
-  std::vector<SpanSolution> result;
-  result.push_back(std::move(solution));
-  return result;
-}
-
 class TwistedSpan {
  public:
   TwistedSpan(const PlacedSpan& placed, const Problem& problem, const SpanOptions& options,
@@ -123,7 +117,7 @@ std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem&
   const bool follows = warm && memory.twisted.is_known() && !options.wants_all();
   if (start != nullptr && !options.wants_all() && !follows) {
     if (std::optional<SpanSolution> known = span.from_known(*start)) {
-      return list_of_one(std::move(*known));
+      return list_of(std::move(*known));
     }
   }
   std::vector<SpanSolution> untwisted =
@@ -136,7 +130,7 @@ std::vector<SpanSolution> solve_twisted(const PlacedSpan& placed, const Problem&
   if (follows && std::abs(turned) < largest_followed_turn) {
     SpanSolution followed = span.followed(memory, turned, frame);
     followed.evaluations += best.evaluations;
-    if (followed.followed || options.only_follows()) return list_of_one(std::move(followed));
+    if (followed.followed || options.only_follows()) return list_of(std::move(followed));
   }
   if (!options.only_follows()) return span.turned(untwisted, frame);
   best.followed = false;

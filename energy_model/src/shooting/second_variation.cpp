@@ -81,6 +81,7 @@ class VariationProblem {
   struct Place {
     Eigen::Index end;         // of an element
     Eigen::Matrix3Xd basis;   // of dr, one a column
+    Eigen::Matrix3d hessian;  // of the gap to what is touched
     Eigen::Index first;       // unknown
     Eigen::Index multiplier;  // of dr - (dr at the place before) = int eta x t ds
   };
@@ -105,14 +106,13 @@ class VariationProblem {
     return mesh_.contacts.surface_of(after - 1);
   }
 
-  /// Outward normal of what is touched at an end of elements; none: nothing.
-  [[nodiscard]] std::optional<Eigen::Vector3d> normal_at(Eigen::Index end,
-                                                         const RodState& state) const {
-    if (const RodContact* contact = contact_at(end)) return contact->gap(state.r).gradient;
+  /// The gap to what is touched at an end of elements; none: nothing.
+  [[nodiscard]] std::optional<obstacle::Gap> gap_at(Eigen::Index end, const RodState& state) const {
+    if (const RodContact* contact = contact_at(end)) return contact->gap(state.r);
     const Surface* surface = end + 1 < elements_.size() ? surface_of(end) : nullptr;
     if (surface == nullptr && end > 0) surface = surface_of(end - 1);
     if (surface == nullptr) return std::nullopt;
-    return surface->gap(state.r).gradient;
+    return surface->gap(state.r);
   }
 
   /// Three unknowns a node, fewer at clamps; at a place those of dr and three multipliers.
@@ -132,11 +132,14 @@ class VariationProblem {
     for (Eigen::Index e = 0; e < elements_.size(); ++e) {
       add_node(elements_[e]);
       if (next_hold < span_.holds.size() && span_.holds[next_hold].at <= elements_[e]) {
-        add_place(e, Eigen::Matrix3Xd(3, 0));
+        add_place(e, Eigen::Matrix3Xd(3, 0), Eigen::Matrix3d::Zero());
         ++next_hold;
       } else if (touches()) {
-        const auto normal = normal_at(e, at_ends[static_cast<std::size_t>(e)]);
-        if (normal) add_place(e, frame_of(normal->unitOrthogonal(), *normal).leftCols<2>());
+        const auto gap = gap_at(e, at_ends[static_cast<std::size_t>(e)]);
+        if (gap) {
+          const Eigen::Vector3d& normal = gap->gradient;
+          add_place(e, frame_of(normal.unitOrthogonal(), normal).leftCols<2>(), gap->hessian);
+        }
       }
       if (e + 1 == elements_.size()) break;
       for (std::size_t a = 1; a < element_order; ++a) {
@@ -146,9 +149,9 @@ class VariationProblem {
   }
 
   /// Multipliers first: dr has no pivot but what they give it.
-  void add_place(Eigen::Index end, const Eigen::Matrix3Xd& basis) {
+  void add_place(Eigen::Index end, const Eigen::Matrix3Xd& basis, const Eigen::Matrix3d& hessian) {
     const Eigen::Index multipliers = places_.empty() ? 0 : 3;
-    places_.push_back({end, basis, size_ + multipliers, size_});
+    places_.push_back({end, basis, hessian, size_ + multipliers, size_});
     size_ += multipliers + basis.cols();
   }
 
@@ -228,18 +231,15 @@ class VariationProblem {
       const RodState& state = inside[static_cast<std::size_t>(e) * element_quadrature + q];
       force += h / 2 * element_weight[q] * pressure(*surface, section, state);
     }
-    const RodState& middle =
-        inside[static_cast<std::size_t>(e) * element_quadrature + element_quadrature / 2];
     for (const Eigen::Index end : {e, e + 1}) {
-      if (const Place* place = place_at(end))
-        bend(*place, surface->gap(middle.r).hessian, force / 2);
+      if (const Place* place = place_at(end)) bend(*place, force / 2);
     }
   }
 
   /// Minus f dr.(H dr).
-  void bend(const Place& place, const Eigen::Matrix3d& hessian, double force) {
+  void bend(const Place& place, double force) {
     add(second_, place.first, place.first,
-        -force * place.basis.transpose() * hessian * place.basis);
+        -force * place.basis.transpose() * place.hessian * place.basis);
   }
 
   void add_contact(const RodContact& contact, const std::vector<RodState>& at_ends) {
@@ -248,7 +248,7 @@ class VariationProblem {
     const Place& place = *place_at(end);
     const RodState& state = at_ends[static_cast<std::size_t>(end)];
     const obstacle::Gap gap = contact.gap(state.r);
-    bend(place, gap.hessian, contact.force);
+    bend(place, contact.force);
     if (!contact.touched || !contact.moves) return;
     const Eigen::Vector3d t = state.t();
     const Eigen::Vector3d along = gap.hessian * t;

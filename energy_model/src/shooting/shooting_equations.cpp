@@ -117,7 +117,7 @@ struct ShootingSystem::Push {
 ShootingSystem::Push ShootingSystem::push_at(const ShootingPoint& point, Eigen::Index i) const {
   Push push;
   const RodContact* contact = contact_at(i);
-  if (contact == nullptr || !contact->pushes) return push;
+  if (contact == nullptr) return push;
   const auto index = static_cast<std::size_t>(contacts_[static_cast<std::size_t>(i)]);
   const obstacle::Gap gap = contact->gap(point.nodes[static_cast<std::size_t>(i)].r);
   push.force = point.forces[index] * gap.gradient;

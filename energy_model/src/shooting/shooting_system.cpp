@@ -61,7 +61,7 @@ void ShootingSystem::number_contacts() {
     const auto node = static_cast<std::size_t>(contact.node);
     contacts_[node] = &contact - mesh_.contacts.nodes.data();
     if (contact.moves) arc_length_[node] = unknowns_++;
-    force_.push_back(contact.pushes ? unknowns_++ : -1);
+    force_.push_back(unknowns_++);
     if (contact.touched) equations_ += contact.moves ? 2 : 1;
   }
   for (Eigen::Index i = 0; i < mesh_.intervals(); ++i) {
@@ -70,17 +70,11 @@ void ShootingSystem::number_contacts() {
   }
 }
 
-bool ShootingSystem::is_station(Eigen::Index i) const {
-  const auto node = static_cast<std::size_t>(i);
-  return i == 0 || i == mesh_.intervals() || mesh_.hold[node] != nullptr || contacts_[node] >= 0 ||
-         !mesh_.load.col(i).isZero(0) || mesh_.section[node - 1] != mesh_.section[node];
-}
-
 void ShootingSystem::share_arc_lengths() {
   if (std::ranges::all_of(arc_length_, [](Eigen::Index unknown) { return unknown < 0; })) return;
   for (Eigen::Index before = 0; before < mesh_.intervals();) {
     Eigen::Index after = before + 1;
-    while (!is_station(after)) ++after;
+    while (!mesh_.is_fixed(after) && contact_at(after) == nullptr) ++after;
     const double way = mesh_.s[after] - mesh_.s[before];
     for (Eigen::Index i = before; i < after; ++i) {
       shares_.push_back(
@@ -127,7 +121,7 @@ ShootingPoint ShootingSystem::moved(const ShootingPoint& point, const Eigen::Vec
     at += per_node();
   }
   for (std::size_t k = 0; k < force_.size(); ++k) {
-    if (force_[k] >= 0) result.forces[k] += rate_ * rate_ * step[force_[k]];
+    result.forces[k] += rate_ * rate_ * step[force_[k]];
   }
   for (std::size_t i = 0; i < arc_length_.size(); ++i) {
     if (arc_length_[i] >= 0) result.s[static_cast<Eigen::Index>(i)] += step[arc_length_[i]];

@@ -101,7 +101,6 @@ class ShootingSystem {
   [[nodiscard]] std::vector<double> start_forces() const;
   void number_contacts();
   void share_arc_lengths();
-  [[nodiscard]] bool is_station(Eigen::Index i) const;
 
   /// The contact at a node; null: none.
   [[nodiscard]] const RodContact* contact_at(Eigen::Index node) const;
@@ -141,7 +140,7 @@ class ShootingSystem {
   Eigen::Index equations_ = 0;
   std::vector<Eigen::Index> contacts_;    // at each node, -1: none
   std::vector<Eigen::Index> arc_length_;  // unknown of each node, -1: it is none of its own
-  std::vector<Eigen::Index> force_;       // unknown of each contact, -1: none
+  std::vector<Eigen::Index> force_;       // unknown of each contact
   std::vector<Share> shares_;             // of each interval; empty: none moves
 };
 

@@ -47,6 +47,12 @@ int SearchLog::starts() const {
   return sum;
 }
 
+std::vector<SpanSolution> list_of(SpanSolution solution) {
+  std::vector<SpanSolution> result;
+  result.push_back(std::move(solution));
+  return result;
+}
+
 bool is_same_shape(const SpanSolution& a, const SpanSolution& b, double tolerance) {
   const Span& span = a.model->span();
   if (std::abs(a.energy - b.energy) > 1e-2 * tolerance * (1 + span.total_load())) return false;

@@ -56,6 +56,9 @@ inline constexpr double same_points = 1e-6;
   return solution.is_equilibrium() || (options.wants_all() && solution.is_singular_point());
 }
 
+/// A braced list would copy it.
+[[nodiscard]] std::vector<SpanSolution> list_of(SpanSolution solution);
+
 /// Two equilibria of one span that are the same but for rounding and, in space, for rigid-body
 /// modes.
 [[nodiscard]] bool is_same_shape(const SpanSolution& a, const SpanSolution& b,

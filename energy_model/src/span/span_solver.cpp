@@ -53,13 +53,6 @@ std::string starts_of(const Span& span) {
   return span.has_material_directors() ? "the stress-free shape, " + plain : plain;
 }
 
-/// A braced list would copy it.
-std::vector<SpanSolution> list_of(SpanSolution solution) {
-  std::vector<SpanSolution> result;
-  result.push_back(std::move(solution));
-  return result;
-}
-
 class Search {
  public:
   Search(const Span& span, const SpanOptions& options, SpanWorkspace& workspace)

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "problem/reduction.hpp"
 #include "problem/rod_law.hpp"
@@ -94,7 +95,7 @@ class Layout {
           if (end) start_.mesh.contacts.nodes[*end].surface = surface;
         }
       } else {
-        const bool is_fixed = acts_at(placed.begin);
+        const bool is_fixed = start_.mesh.is_fixed(placed.begin);
         placed.begin_force = add_end(placed.begin, part.force.norm());
         if (!placed.begin_force) return false;
         start_.mesh.contacts.nodes.back().touched = start_.bodies[part.obstacle];
@@ -111,25 +112,17 @@ class Layout {
     if (start_.mesh.hold[static_cast<std::size_t>(node)] != nullptr) return std::nullopt;
     RodContact contact;
     contact.node = node;
-    contact.moves = !acts_at(node);
+    contact.moves = !start_.mesh.is_fixed(node);
     contact.force = force / force_unit_;
     start_.mesh.contacts.nodes.push_back(contact);
     return start_.mesh.contacts.nodes.size() - 1;
-  }
-
-  /// Whether a node has to stay where it is: an end, a grip, a load or where another part begins.
-  [[nodiscard]] bool acts_at(Eigen::Index node) const {
-    const auto i = static_cast<std::size_t>(node);
-    return node == 0 || node == start_.mesh.intervals() || start_.mesh.hold[i] != nullptr ||
-           !start_.mesh.load.col(node).isZero(0) ||
-           start_.mesh.section[i - 1] != start_.mesh.section[i];
   }
 
   /// Nothing else happens within what lies, nor is it next to where the rod lies elsewhere.
   [[nodiscard]] bool lies_alone() const {
     for (const PlacedContact& contact : start_.contacts) {
       for (Eigen::Index i = contact.begin + 1; i < contact.end; ++i) {
-        if (acts_at(i)) return false;
+        if (start_.mesh.is_fixed(i)) return false;
       }
       const bool lies = contact.part.kind == ContactKind::lying;
       if (lies && start_.mesh.contacts.surface_of(contact.end) != nullptr) return false;
@@ -142,7 +135,7 @@ class Layout {
     return (sample.points.col(0) - problem_.grips.front().position) / l_;
   }
 
-  /// Strains about d1, d2 and the tangent at s, of a shape that has a d1.
+  /// Strain about the tangent at s, of a shape that has a d1.
   [[nodiscard]] double twist_at(double s) const {
     const double from = std::max(0.0, s - twist_step);
     const double to = std::min(1.0, s + twist_step);
@@ -161,18 +154,20 @@ class Layout {
 
   void sample() {
     const bool directors = has_material_directors(problem_);
+    // Just after the nodes, where curvature may jump.
+    std::vector<double> after;
+    for (const double s : start_.mesh.s) after.push_back(std::min(s + same_place, 1.0) * l_);
+    const Samples at = shape_.sample(after);
     for (Eigen::Index i = 0; i < start_.mesh.s.size(); ++i) {
       const double s = start_.mesh.s[i];
       const bool last = i == start_.mesh.intervals();
-      // Just after a node, where curvature may jump.
-      const Samples at = shape_.sample(std::array{std::min(s + same_place, 1.0) * l_});
-      const Eigen::Vector3d t = at.tangents.col(0).normalized();
+      const Eigen::Vector3d t = at.tangents.col(i).normalized();
       RodState state;
-      state.r = (at.points.col(0) - problem_.grips.front().position) / l_;
-      state.R = frame_of(directors ? Eigen::Vector3d(at.d1.col(0)) : t.unitOrthogonal(), t);
+      state.r = (at.points.col(i) - problem_.grips.front().position) / l_;
+      state.R = frame_of(directors ? Eigen::Vector3d(at.d1.col(i)) : t.unitOrthogonal(), t);
       if (!last) {
         const RodSection& section = start_.mesh.section_of(i);
-        const Eigen::Vector3d bent = l_ * at.curvature.col(0);
+        const Eigen::Vector3d bent = l_ * at.curvature.col(i);
         const Eigen::Vector3d u(-bent.dot(state.R.col(1)), bent.dot(state.R.col(0)), 0);
         state.m = state.R * section.stiffness().cwiseProduct(u) +
                   (directors ? section.torsion * twist_at(s) : torque_at(s)) * t;
