@@ -16,8 +16,8 @@ struct CheckPage {
 
 [[nodiscard]] std::string shape_check_text(const CheckPage& page);
 
-[[nodiscard]] Json shape_check_json(const compare::CheckResult& result);
+[[nodiscard]] Json shape_check_json(const compare::CheckResult& report);
 
-[[nodiscard]] std::string shape_check_csv(const compare::CheckResult& result);
+[[nodiscard]] std::string shape_check_csv(const compare::CheckResult& report);
 
 }  // namespace dlo::cli
