@@ -38,11 +38,12 @@ std::vector<Equilibrium> combine(const Problem& problem, const std::vector<Place
                                  SearchLog& log) {
   std::vector<std::vector<SpanCandidate>> candidates;
   for (const std::vector<SpanSolution>& of_span : solutions) {
-    std::vector<SpanCandidate>& own = candidates.emplace_back();
+    std::vector<SpanCandidate> own;
     own.reserve(of_span.size());
     for (const SpanSolution& found : of_span) {
       own.push_back({succeeded(found.status), found.energy});
     }
+    candidates.push_back(std::move(own));
   }
   const Combinations lowest = lowest_combinations(candidates, most_combinations);
   std::vector<Equilibrium> result;
