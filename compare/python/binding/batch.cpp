@@ -31,8 +31,8 @@ class Batch : public MadeByItsClass {
   [[nodiscard]] std::size_t size() const { return batch_.size(); }
 
   void step(long count) {
-    // Of every rod: some ten milliseconds.
-    constexpr long between_looks = 10'000;
+    const long between_looks =
+        steps_between_looks(static_cast<long>(size()) * batch_.rod(0).points());
     run_long([&](Signals& signals) {
       const std::lock_guard lock(mutex_);
       while (count > 0 && !signals.stop()) {

@@ -33,8 +33,7 @@ class ForceModel : public MadeByItsClass {
   [[nodiscard]] Eigen::Index size() const { return positions_.cols(); }
 
   void step(long count) {
-    // Some milliseconds.
-    constexpr long between_looks = 4096;
+    const long between_looks = steps_between_looks(size());
     bool diverged = false;
     {
       Signals signals;

@@ -1,5 +1,6 @@
 #include "long_call.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace dlo::python {
@@ -112,6 +113,11 @@ void Signals::throw_if_stopped() {
 
 void Signals::rethrow() const {
   if (error_) throw py::error_already_set(*error_);
+}
+
+long steps_between_looks(long points) {
+  constexpr long steps_of_a_point = 400'000;  // at some 10 ns each
+  return std::max(1L, steps_of_a_point / std::max(1L, points));
 }
 
 bool Signals::asked() { return current != nullptr && current->stop(); }

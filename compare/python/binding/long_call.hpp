@@ -84,6 +84,10 @@ class Signals {
   Signals* before_;
 };
 
+/// Steps of a force model of so many points, of all its rods together, between two looks whether a
+/// signal has come: some milliseconds, whatever the size of the model.
+[[nodiscard]] long steps_between_looks(long points);
+
 /// Runs what may take long, with the GIL released: other threads of Python go on, and Ctrl-C ends
 /// it. @param function  of the call's Signals; must not touch Python
 template <typename Function>

@@ -36,6 +36,7 @@ struct CheckResult {
   std::optional<FrictionCheck> friction;          ///< where an obstacle in reach has friction
   PoseFreedom pose = PoseFreedom::known;          ///< what was unknown of the shape's frame
 
+  /// Within the tolerance; false if none was asked for.
   [[nodiscard]] bool passes() const { return judgement && judgement->pass; }
 };
 
