@@ -4,6 +4,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -172,7 +173,8 @@ class MaterialFitter {
       : scenes_(scenes),
         shapes_(shapes),
         options_(options),
-        misfit_(scenes, shapes, options),
+        measured_(scenes, shapes, options, std::chrono::steady_clock::now()),
+        misfit_(scenes, measured_),
         forced_(std::any_of(scenes.begin(), scenes.end(), is_forced)),
         both_(options.density &&
               std::any_of(scenes.begin(), scenes.end(), has_forces_beside_weight)),
@@ -180,19 +182,27 @@ class MaterialFitter {
         low_(forced_ ? std::log(options.smallest_ratio) : 0),
         high_(forced_ ? std::log(options.largest_ratio) : 0) {
     const int unknowns = both_ ? 2 : 1;
-    result_.degrees_of_freedom = misfit_.numbers() - unknowns;
+    result_.degrees_of_freedom = measured_.numbers() - unknowns;
     result_.noise_is_estimated = !options.noise;
     const int fewest = options.noise ? 0 : 1;
     if (result_.degrees_of_freedom < fewest) {
       throw InputError(fmt::format(
           "calibrate: {} numbers measured beside the frames, {} to be found (allowed: {} or more, "
           "so more points{})",
-          misfit_.numbers(), unknowns, unknowns + fewest,
+          measured_.numbers(), unknowns, unknowns + fewest,
           options.noise ? "" : ", or a given noise"));
     }
   }
 
   [[nodiscard]] MaterialFit run() {
+    MaterialFit fit = all_numbers();
+    fit.equilibria = measured_.solves();
+    fit.evaluations = measured_.evaluations();
+    return fit;
+  }
+
+ private:
+  [[nodiscard]] MaterialFit all_numbers() {
     std::unique_ptr<LogProfile> over_modulus = modulus_profile();
     for (int i = 0; i < most_other_states && misfit_.search_at(best_with(*over_modulus)); ++i) {
       over_modulus = modulus_profile();
@@ -221,10 +231,8 @@ class MaterialFitter {
           scenes_.front().heaviness().name, stiffness.name);
     }
     refuse_unverified(std::max(level(least, 0), both_ ? level(least, 1) : 0));
-    const auto points = static_cast<double>(misfit_.points());
+    const auto points = static_cast<double>(measured_.points());
     result_.rms_m = std::sqrt(least / points);
-    result_.equilibria = misfit_.solves();
-    result_.evaluations = misfit_.evaluations();
     result_.warning = warning_of(least, points, freedom(), scenes_.front().length, options_.noise);
     const std::vector<Alignment> alignments = misfit_.alignments(best);
     for (std::size_t i = 0; i < alignments.size(); ++i) {
@@ -235,14 +243,11 @@ class MaterialFitter {
     return std::move(result_);
   }
 
- private:
   [[nodiscard]] MaterialFit whole_wire(const MaterialPoint& best, double least) {
-    MaterialFit fit = fit_wire(scenes_, shapes_, options_, best, both_, misfit_.begin());
+    MaterialFit fit = fit_wire(scenes_, shapes_, measured_, options_, best, both_);
     refuse_unverified(least);
-    fit.equilibria += misfit_.solves();
-    fit.evaluations += misfit_.evaluations();
     if (fit.warning.empty()) {
-      const auto points = static_cast<double>(misfit_.points());
+      const auto points = static_cast<double>(measured_.points());
       fit.warning = warning_of(fit.rms_m * fit.rms_m * points, points, freedom(),
                                scenes_.front().length, std::nullopt);
     }
@@ -282,9 +287,7 @@ class MaterialFitter {
       options.direction_tolerance = directions;
       options.profile_points = 0;
       try {
-        const MaterialFit fit = fit_wire(scenes_, shapes_, options, best, both_, misfit_.begin());
-        result_.equilibria += fit.equilibria;
-        result_.evaluations += fit.evaluations;
+        const MaterialFit fit = fit_wire(scenes_, shapes_, measured_, options, best, both_);
         if (!(fit.rms_m <= worth_naming * result_.rms_m)) continue;
         add_alternative({terms, directions, fit.rms_m, fit.youngs_modulus});
       } catch (const InputError&) {
@@ -453,7 +456,7 @@ class MaterialFitter {
   /// larger with a chance of 1e-3 (F distribution; a given noise: chi-squared).
   [[nodiscard]] double rival_level(double least, std::size_t number) const {
     const double nu = std::max(1.0, effects_[number].degrees_of_freedom);
-    const double fitted = misfit_.frame_numbers() + static_cast<double>(effects_.size());
+    const double fitted = measured_.frame_numbers() + static_cast<double>(effects_.size());
     const double excess_of_all = options_.noise ? gsl_cdf_chisq_Qinv(1e-3, fitted)
                                                 : fitted * gsl_cdf_fdist_Qinv(1e-3, fitted, nu);
     return std::max(level(least, number), least + variance(least) * excess(number) * excess_of_all);
@@ -492,6 +495,7 @@ class MaterialFitter {
   const std::vector<Scene>& scenes_;
   const std::vector<MeasuredShape>& shapes_;
   const MaterialFitOptions& options_;
+  MeasuredShapes measured_;
   ShapeMisfit misfit_;
   bool forced_;
   bool both_;

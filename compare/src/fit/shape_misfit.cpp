@@ -1,17 +1,10 @@
 #include "fit/shape_misfit.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "dlo/compare/alignment.hpp"
-#include "dlo/compare/error.hpp"
-#include "dlo/compare/plan.hpp"
 #include "dlo/compare/shape_check.hpp"
-#include "fit/residual_series.hpp"
-#include "polygon/energy_problems.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -22,19 +15,6 @@ constexpr int most_searches = 4;
 constexpr std::size_t most_kept = 64;
 /// Step in the logarithm of a material for derivatives; shapes are right to 1e-10 l.
 constexpr double derivative_step = 1e-3;
-
-/// Numbers that are measured of a shape.
-int measured_numbers(const Aligner& aligner, bool flat) {
-  const int per_point = (aligner.arc_lengths() == ArcLengths::nearest ? 2 : 3) - (flat ? 1 : 0);
-  return per_point * static_cast<int>(aligner.points());
-}
-
-/// Numbers of a shape's frame.
-int numbers_of_frame(bool flat, PoseFreedom pose) {
-  constexpr int frame[] = {0, 3, 4, 6};
-  constexpr int flat_frame[] = {0, 2, 2, 3};
-  return (flat ? flat_frame : frame)[static_cast<std::size_t>(pose)];
-}
 
 /// How deep a shape sinks into the scene's rigid obstacles [m].
 double depth_in_obstacles(const Scene& scene, const energy_model::Equilibrium& equilibrium) {
@@ -62,65 +42,27 @@ Scene only_the_rod(Scene scene) {
 
 }  // namespace
 
-ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                         const MaterialFitOptions& options)
-    : options_(options), searches_(scenes.size(), 0) {
-  for (std::size_t i = 0; i < scenes.size(); ++i) {
-    AlignOptions align{.pose = options.pose,
-                       .arc_lengths = options.arc_lengths,
-                       .weights = PointWeights::equal,
-                       .up = up_of(scenes[i], options.pose)};
-    scenes_.push_back(scenes[i]);
-    const auto like_this = [rod = only_the_rod(scenes[i])](const Scene& other) {
+ShapeMisfit::ShapeMisfit(const std::vector<Scene>& scenes, MeasuredShapes& measured)
+    : scenes_(scenes), measured_(measured), searches_(scenes.size(), 0) {
+  for (const Scene& scene : scenes) {
+    const auto like_this = [rod = only_the_rod(scene)](const Scene& other) {
       return only_the_rod(other) == rod;
     };
-    const auto first = std::find_if(scenes_.begin(), scenes_.end(), like_this);
-    first_like_.push_back(static_cast<std::size_t>(first - scenes_.begin()));
-    aligners_.emplace_back(shapes[i], scenes[i].length, align);
-    flat_.push_back(lies_in_a_plane(shapes[i].points));
-    const int of_frame = numbers_of_frame(flat_.back(), options.pose);
-    frame_numbers_ += of_frame;
-    numbers_ += measured_numbers(aligners_.back(), flat_.back()) - of_frame;
+    const auto first = std::find_if(scenes.begin(), scenes.end(), like_this);
+    first_like_.push_back(static_cast<std::size_t>(first - scenes.begin()));
   }
-}
-
-Eigen::Index ShapeMisfit::points() const {
-  Eigen::Index sum = 0;
-  for (const Aligner& aligner : aligners_) sum += aligner.points();
-  return sum;
-}
-
-double ShapeMisfit::seconds_left() const {
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
-  return options_.solve.time_limit * static_cast<double>(scenes_.size()) - spent.count();
 }
 
 std::shared_ptr<ShapeMisfit::Solved> ShapeMisfit::solve(std::size_t i,
                                                         const MaterialPoint& material,
                                                         const energy_model::Equilibrium* start) {
-  const double left = seconds_left();
-  if (!(left > 0)) {
-    throw ConvergenceError(
-        fmt::format("calibrate: not done within {:g} s{}, after {} equilibria (--time-limit)",
-                    options_.solve.time_limit, scenes_.size() > 1 ? " per scene" : "", solves_));
-  }
   Scene scene = scenes_[i];
   scene.scale_modulus(std::exp(material.log_modulus));
   scene.scale_density(std::exp(material.log_density));
-  ++solves_;
   auto result = std::make_shared<Solved>();
   result->material = material;
   result->scene = i;
-  try {
-    result->equilibrium = energy_model::solve_energy(
-        energy_problem(scene), {.terms = options_.solve.terms,
-                                .max_evaluations = options_.solve.max_evaluations,
-                                .time_limit = std::min(options_.solve.time_limit, left),
-                                .start = start});
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", scene.file, error.what()));
-  }
-  evaluations_ += result->equilibrium.evaluations;
+  result->equilibrium = measured_.solve(scene, start);
   if (result->equilibrium.status == energy_model::SolveStatus::not_verified) {
     result->penetration = depth_in_obstacles(scene, result->equilibrium);
   }
@@ -180,14 +122,6 @@ std::shared_ptr<const ShapeMisfit::Solved> ShapeMisfit::solved(std::size_t i,
   return result;
 }
 
-Alignment ShapeMisfit::aligned(std::size_t i, const Solved& shape) const {
-  return aligners_[i].align(Curve(shape.equilibrium.sample, scenes_[i].length));
-}
-
-double ShapeMisfit::squares(std::size_t i, const Alignment& alignment) const {
-  return alignment.mean_square * static_cast<double>(aligners_[i].points());
-}
-
 double ShapeMisfit::operator()(const MaterialPoint& material) {
   if (const auto known = values_.find(material); known != values_.end()) return known->second;
   double sum = 0;
@@ -198,7 +132,7 @@ double ShapeMisfit::operator()(const MaterialPoint& material) {
       sum = std::numeric_limits<double>::infinity();
       break;
     }
-    sum += squares(i, aligned(i, *shape));
+    sum += measured_.squares(i, shape->equilibrium);
     if (shape->penetration > 0) {
       unverified_.emplace_back(
           Unverified{material, i, shape->penetration, shape->equilibrium.message}, 0);
@@ -220,9 +154,9 @@ bool ShapeMisfit::search_at(const MaterialPoint& material) {
     const std::shared_ptr<Solved> other = solve(i, material, nullptr);
     if (!energy_model::succeeded(other->equilibrium.status)) continue;
     const double before =
-        now ? squares(i, aligned(i, *now)) : std::numeric_limits<double>::infinity();
+        now ? measured_.squares(i, now->equilibrium) : std::numeric_limits<double>::infinity();
     const double least = std::pow(1e-6 * scenes_[i].length, 2);
-    if (!(squares(i, aligned(i, *other)) < 0.99 * before - least)) continue;
+    if (!(measured_.squares(i, other->equilibrium) < 0.99 * before - least)) continue;
     if (now) next.pop_back();
     next.push_back(other);
     better = true;
@@ -239,7 +173,7 @@ std::vector<Alignment> ShapeMisfit::alignments(const MaterialPoint& material) {
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     const std::shared_ptr<const Solved> shape = solved(i, material);
     if (!shape) break;
-    result.push_back(aligned(i, *shape));
+    result.push_back(measured_.alignment(i, shape->equilibrium));
   }
   return result;
 }
@@ -259,36 +193,27 @@ std::vector<ResidualSeries> ShapeMisfit::residuals(const MaterialPoint& material
   std::vector<MaterialPoint> beside = {
       {material.log_modulus + derivative_step, material.log_density}};
   if (both) beside.push_back({material.log_modulus, material.log_density + derivative_step});
-  Eigen::Index frames = 0;
-  for (const Aligner& aligner : aligners_) frames += aligner.free_coordinates();
-  const Eigen::Index columns = frames + static_cast<Eigen::Index>(beside.size());
-  Eigen::Index frame = 0;
+  const Eigen::Index frames = measured_.frame_columns();
   std::vector<ResidualSeries> result;
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     const std::shared_ptr<const Solved> shape = solved(i, material);
     if (!shape) return {};
-    const Curve curve(shape->equilibrium.sample, scenes_[i].length);
-    const Alignment alignment = aligners_[i].align(curve);
-    const Eigen::Matrix3Xd here = curve.points(alignment.shape.arc_length);
+    const Curve curve = measured_.curve(i, shape->equilibrium);
+    const Alignment alignment = measured_.alignment(i, shape->equilibrium);
+    const std::vector<double>& s = alignment.shape.arc_length;
+    const Eigen::Matrix3Xd here = curve.points(s);
     std::vector<Movement> movements;
     for (const MaterialPoint& other : beside) {
       const std::shared_ptr<const Solved> there = solved(i, other);
       if (!there) return {};
-      const Curve moved(there->equilibrium.sample, scenes_[i].length);
-      movements.emplace_back(frames + static_cast<Eigen::Index>(movements.size()),
-                             (moved.points(alignment.shape.arc_length) - here) / derivative_step);
+      movements.emplace_back(
+          frames + static_cast<Eigen::Index>(movements.size()),
+          (measured_.curve(i, there->equilibrium).points(s) - here) / derivative_step);
     }
-    const LaidShape laid{.index = i,
-                         .alignment = alignment,
-                         .curve = curve,
-                         .flat = flat_[i],
-                         .pose = options_.pose,
-                         .up = up_of(scenes_[i], options_.pose),
-                         .first_of_frame = frame};
-    for (ResidualSeries& series : residual_series(laid, movements, columns)) {
+    const auto numbers = static_cast<Eigen::Index>(beside.size());
+    for (ResidualSeries& series : measured_.residuals(i, curve, alignment, movements, numbers)) {
       result.push_back(std::move(series));
     }
-    frame += aligners_[i].free_coordinates();
   }
   return result;
 }
@@ -296,7 +221,7 @@ std::vector<ResidualSeries> ShapeMisfit::residuals(const MaterialPoint& material
 const ShapeMisfit::Unverified* ShapeMisfit::unverified_below(double level) const {
   for (const auto& [unverified, sum] : unverified_) {
     // Moving every point of the shape by the depth moves the root of the sum by no more than this.
-    const double off = std::sqrt(static_cast<double>(points())) * unverified.penetration;
+    const double off = std::sqrt(static_cast<double>(measured_.points())) * unverified.penetration;
     if (std::sqrt(sum) - off <= std::sqrt(level)) return &unverified;
   }
   return nullptr;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <cstddef>
 #include <deque>
 #include <map>
@@ -10,10 +9,7 @@
 
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/material_fit.hpp"
-#include "dlo/energy_model/energy.hpp"
-#include "fit/error_correlation.hpp"
-#include "shape/aligner.hpp"
-#include "shape/curve.hpp"
+#include "fit/measured_shapes.hpp"
 
 namespace dlo::compare {
 
@@ -37,15 +33,7 @@ struct MaterialPoint {
 /// and where search_at() asks for it, at most `most_searches` times per scene.
 class ShapeMisfit {
  public:
-  /// @throws InputError as align()
-  ShapeMisfit(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-              const MaterialFitOptions& options);
-
-  /// Numbers measured, less those that place the shapes.
-  [[nodiscard]] int numbers() const { return numbers_; }
-  /// Numbers that place the shapes.
-  [[nodiscard]] int frame_numbers() const { return frame_numbers_; }
-  [[nodiscard]] Eigen::Index points() const;
+  ShapeMisfit(const std::vector<Scene>& scenes, MeasuredShapes& measured);
 
   /// Sum of squared distances [m^2], computed once for each material; infinite where the energy
   /// model finds no shape.
@@ -78,14 +66,6 @@ class ShapeMisfit {
   };
   [[nodiscard]] const Unverified* unverified_below(double level) const;
 
-  /// When it was made: the time limit is from then on.
-  [[nodiscard]] std::chrono::steady_clock::time_point begin() const { return begin_; }
-
-  /// Equilibria solved so far.
-  [[nodiscard]] long solves() const { return solves_; }
-  /// Of the energy model's objective, for these.
-  [[nodiscard]] long evaluations() const { return evaluations_; }
-
  private:
   struct Solved {
     MaterialPoint material;
@@ -98,25 +78,15 @@ class ShapeMisfit {
   [[nodiscard]] std::shared_ptr<Solved> solve(std::size_t i, const MaterialPoint& material,
                                               const energy_model::Equilibrium* start);
   [[nodiscard]] const Solved* nearest(std::size_t i, const MaterialPoint& material) const;
-  [[nodiscard]] Alignment aligned(std::size_t i, const Solved& shape) const;
-  [[nodiscard]] double squares(std::size_t i, const Alignment& alignment) const;
-  [[nodiscard]] double seconds_left() const;
 
-  std::vector<Scene> scenes_;
-  MaterialFitOptions options_;
-  std::vector<Aligner> aligners_;
-  std::vector<bool> flat_;
-  int numbers_ = 0;
-  int frame_numbers_ = 0;
-  long solves_ = 0;
-  long evaluations_ = 0;
+  const std::vector<Scene>& scenes_;
+  MeasuredShapes& measured_;
   std::vector<int> searches_;
   std::map<MaterialPoint, double> values_;
   std::deque<std::shared_ptr<const Solved>> kept_;
   std::vector<std::size_t> first_like_;               // of each scene: the first that equals it
   std::deque<std::shared_ptr<const Solved>> shared_;  // of scenes that are not followed
   std::vector<std::pair<Unverified, double>> unverified_;  // and their sums of squares [m^2]
-  std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace dlo::compare

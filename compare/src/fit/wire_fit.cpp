@@ -36,14 +36,14 @@ constexpr int most_ends = 6;
 class WireFitter {
  public:
   WireFitter(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-             const MaterialFitOptions& options, bool density,
-             std::chrono::steady_clock::time_point begin)
+             MeasuredShapes& measured, const MaterialFitOptions& options, bool density)
       : scenes_(scenes),
         options_(options),
         density_(density),
         curvature_(1 + (density ? 1 : 0) + (options.torsional_stiffness ? 1 : 0)),
         numbers_(wire_numbers(scenes, shapes, options, density)),
-        shapes_(scenes, shapes, options, numbers_, begin),
+        measured_(measured),
+        shapes_(scenes, measured, options, numbers_),
         before_(static_cast<Eigen::Index>(numbers_.size())) {
     for (Eigen::Index k = 0; k < before_.size(); ++k) {
       before_[k] = 1 / numbers_[static_cast<std::size_t>(k)].described.known_before;
@@ -90,7 +90,7 @@ class WireFitter {
     const std::optional<std::vector<ResidualSeries>> series =
         shapes_.residuals(values, WireShapes::Columns::frames);
     if (!series) return INFINITY;
-    const LinearFit there = linear_fit(*series, covariance_, shapes_.frame_columns());
+    const LinearFit there = linear_fit(*series, covariance_, measured_.frame_columns());
     return there.residual.squaredNorm() / variance_ + penalty(values);
   }
 
@@ -161,7 +161,7 @@ class WireFitter {
   void descend() {
     for (int i = 0; i < most_descents; ++i) {
       series_ = derived(values_);
-      linear_ = linear_fit(series_, covariance_, shapes_.frame_columns());
+      linear_ = linear_fit(series_, covariance_, measured_.frame_columns());
       measure_variance(linear_);
       posterior_ = posterior(linear_, variance_, before_);
       Eigen::VectorXd step = next_step();
@@ -213,7 +213,7 @@ class WireFitter {
       const std::optional<std::vector<ResidualSeries>> series =
           shapes_.residuals(values, WireShapes::Columns::frames);
       if (!series) break;
-      chord.residual = linear_fit(*series, covariance_, shapes_.frame_columns()).residual;
+      chord.residual = linear_fit(*series, covariance_, measured_.frame_columns()).residual;
       const Eigen::VectorXd down = slope(chord, variance_, before_, values);
       Eigen::VectorXd next = values;
       next.tail(others) += step_of_others(chord, variance_, before_, down, 0);
@@ -253,7 +253,7 @@ class WireFitter {
   /// @param variance  of the errors
   void measure_scatter(MaterialFit& fit, double variance) const {
     std::vector<ShapeEstimate> estimates;
-    const Eigen::Index frames = shapes_.frame_columns();
+    const Eigen::Index frames = measured_.frame_columns();
     for (std::size_t shape = 0; shape < scenes_.size(); ++shape) {
       std::vector<Nuisance> nuisances;
       for (Eigen::Index k = 0; k < frames; ++k) nuisances.push_back({k, 0, INFINITY});
@@ -303,14 +303,14 @@ class WireFitter {
     double square = 0;
     const std::vector<ResidualSeries> few = thinned(series_);
     for (const LikelyCovariance& likely : likely_covariances(few)) {
-      const LinearFit linear = linear_fit(few, likely.covariance, shapes_.frame_columns());
+      const LinearFit linear = linear_fit(few, likely.covariance, measured_.frame_columns());
       const Eigen::MatrixXd inverse = posterior(linear, of_errors(linear), before_);
       const double shift = inverse.row(0).dot(slope(linear, of_errors(linear), before_, values_));
       variance += likely.weight * inverse(0, 0);
       mean += likely.weight * shift;
       square += likely.weight * shift * shift;
     }
-    const LinearFit likeliest = linear_fit(few, covariance_, shapes_.frame_columns());
+    const LinearFit likeliest = linear_fit(few, covariance_, measured_.frame_columns());
     const double alone = posterior(likeliest, of_errors(likeliest), before_)(0, 0);
     return std::max(1.0, std::sqrt((variance + square - mean * mean) / alone));
   }
@@ -424,17 +424,12 @@ class WireFitter {
     shapes_.go_on_from(optimum_);
     const std::vector<Alignment> alignments = shapes_.alignments(values_);
     double squares = 0;
-    Eigen::Index points = 0;
     for (std::size_t i = 0; i < alignments.size(); ++i) {
-      const Eigen::Index count = alignments[i].shape.points.cols();
-      squares += alignments[i].mean_square * static_cast<double>(count);
-      points += count;
+      squares += alignments[i].mean_square * static_cast<double>(alignments[i].shape.points.cols());
       fit.shapes.push_back({scenes_[i].name, alignments[i], {}});
     }
     if (options_.profile_points > 0) draw_profile(fit, widening);
-    fit.rms_m = std::sqrt(squares / static_cast<double>(std::max<Eigen::Index>(1, points)));
-    fit.equilibria = shapes_.solves();
-    fit.evaluations = shapes_.evaluations();
+    fit.rms_m = std::sqrt(squares / static_cast<double>(measured_.points()));
     return fit;
   }
 
@@ -443,6 +438,7 @@ class WireFitter {
   bool density_;
   Eigen::Index curvature_;  // the first number that has its own value: of natural curvature, if any
   std::vector<WireNumber> numbers_;
+  MeasuredShapes& measured_;
   WireShapes shapes_;
   Eigen::VectorXd before_;  // 1 over what was known of each number
   Eigen::VectorXd values_;
@@ -466,9 +462,9 @@ bool fits_a_wire(const MaterialFitOptions& options) {
 }
 
 MaterialFit fit_wire(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                     const MaterialFitOptions& options, const MaterialPoint& start, bool density,
-                     std::chrono::steady_clock::time_point begin) {
-  return WireFitter(scenes, shapes, options, density, begin).run(start);
+                     MeasuredShapes& measured, const MaterialFitOptions& options,
+                     const MaterialPoint& start, bool density) {
+  return WireFitter(scenes, shapes, measured, options, density).run(start);
 }
 
 }  // namespace dlo::compare

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <chrono>
 #include <vector>
 
 #include "dlo/compare/material_fit.hpp"
+#include "fit/measured_shapes.hpp"
 #include "fit/shape_misfit.hpp"
 
 namespace dlo::compare {
@@ -13,11 +13,11 @@ namespace dlo::compare {
 
 /// Finds E, with `density` the density, and all other numbers that are asked for together, from the
 /// material that fits best without them. Fills the result but for the degrees of freedom before.
-/// @param begin  from when on the time limit is
+/// @param measured  the shapes, whose time limit counts
 /// @throws ConvergenceError if the steps lead nowhere, or the time limit is over
 [[nodiscard]] MaterialFit fit_wire(const std::vector<Scene>& scenes,
                                    const std::vector<MeasuredShape>& shapes,
-                                   const MaterialFitOptions& options, const MaterialPoint& start,
-                                   bool density, std::chrono::steady_clock::time_point begin);
+                                   MeasuredShapes& measured, const MaterialFitOptions& options,
+                                   const MaterialPoint& start, bool density);
 
 }  // namespace dlo::compare

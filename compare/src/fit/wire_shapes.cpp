@@ -1,13 +1,9 @@
 #include "fit/wire_shapes.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "dlo/compare/error.hpp"
-#include "polygon/energy_problems.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -33,22 +29,12 @@ Scene with_said_frame(Scene scene) {
 
 }  // namespace
 
-WireShapes::WireShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                       const MaterialFitOptions& options, const std::vector<WireNumber>& numbers,
-                       std::chrono::steady_clock::time_point begin)
-    : scenes_(scenes), options_(options), numbers_(numbers), last_(scenes.size()), begin_(begin) {
+WireShapes::WireShapes(const std::vector<Scene>& scenes, MeasuredShapes& measured,
+                       const MaterialFitOptions& options, const std::vector<WireNumber>& numbers)
+    : scenes_(scenes), measured_(measured), numbers_(numbers), last_(scenes.size()) {
+  if (options.natural_curvature_terms == 0 || !(options.direction_tolerance > 0)) return;
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    aligners_.emplace_back(shapes[i], scenes[i].length,
-                           AlignOptions{.pose = options.pose,
-                                        .arc_lengths = options.arc_lengths,
-                                        .weights = PointWeights::equal,
-                                        .up = up_of(scenes[i], options.pose)});
-    flat_.push_back(lies_in_a_plane(shapes[i].points));
-    frame_columns_ += aligners_.back().free_coordinates();
-    const bool turned_out = options.direction_tolerance > 0 && !flat_.back();
-    if (options.natural_curvature_terms > 0 && turned_out) {
-      scenes_[i] = with_said_frame(std::move(scenes_[i]));
-    }
+    if (!measured.is_flat(i)) scenes_[i] = with_said_frame(std::move(scenes_[i]));
   }
 }
 
@@ -64,34 +50,13 @@ Scene WireShapes::scene(std::size_t shape, const Eigen::VectorXd& values) const 
 
 std::optional<energy_model::Equilibrium> WireShapes::solve(std::size_t shape,
                                                            const Eigen::VectorXd& values) {
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - begin_;
-  const double limit = options_.solve.time_limit;
-  const double left = limit * static_cast<double>(scenes_.size()) - spent.count();
-  if (!(left > 0)) {
-    throw ConvergenceError(
-        fmt::format("calibrate: not done within {:g} s per scene, after {} equilibria "
-                    "(--time-limit)",
-                    limit, solves_));
-  }
-  const Scene changed = scene(shape, values);
-  const bool follows = last_[shape].has_value();
-  const auto solve_from = [&](const energy_model::Equilibrium* start) {
-    ++solves_;
-    energy_model::Equilibrium rod = energy_model::solve_energy(
-        energy_problem(changed), {.terms = options_.solve.terms,
-                                  .max_evaluations = options_.solve.max_evaluations,
-                                  .time_limit = std::min(limit, left),
-                                  .start = start});
-    evaluations_ += rod.evaluations;
-    return rod;
-  };
   try {
-    energy_model::Equilibrium rod = solve_from(follows ? &*last_[shape] : nullptr);
-    if (follows && !energy_model::succeeded(rod.status)) rod = solve_from(nullptr);
+    const Scene changed = scene(shape, values);
+    const bool follows = last_[shape].has_value();
+    energy_model::Equilibrium rod = measured_.solve(changed, follows ? &*last_[shape] : nullptr);
+    if (follows && !energy_model::succeeded(rod.status)) rod = measured_.solve(changed, nullptr);
     if (!energy_model::succeeded(rod.status)) return std::nullopt;
     return rod;
-  } catch (const std::invalid_argument& error) {
-    throw InputError(fmt::format("{}: {}", changed.file, error.what()));
   } catch (const InputError&) {
     // Grippers that a step moved farther apart than the rod between them.
     return std::nullopt;
@@ -108,7 +73,8 @@ std::optional<std::vector<Movement>> WireShapes::movements(std::size_t shape,
     if (whose && *whose != shape) continue;
     const auto number = static_cast<Eigen::Index>(k);
     if (numbers_[k].stride == 0) {
-      result.emplace_back(frame_columns_ + number, Eigen::Matrix3Xd::Zero(3, here.cols()));
+      result.emplace_back(measured_.frame_columns() + number,
+                          Eigen::Matrix3Xd::Zero(3, here.cols()));
       continue;
     }
     // The side on which there is a shape: a straight rod's grippers come nearer, not farther.
@@ -120,10 +86,9 @@ std::optional<std::vector<Movement>> WireShapes::movements(std::size_t shape,
         if (stride < 0) return std::nullopt;
         continue;
       }
-      const Curve curve(rod->sample, scenes_[shape].length);
-      Eigen::Matrix3Xd way = curve.points(s) - here;
+      Eigen::Matrix3Xd way = measured_.curve(shape, *rod).points(s) - here;
       if (way.colwise().norm().maxCoeff() < least_movement * scenes_[shape].length) way.setZero();
-      result.emplace_back(frame_columns_ + number, way / stride);
+      result.emplace_back(measured_.frame_columns() + number, way / stride);
       break;
     }
   }
@@ -133,13 +98,12 @@ std::optional<std::vector<Movement>> WireShapes::movements(std::size_t shape,
 std::optional<std::vector<ResidualSeries>> WireShapes::residuals(const Eigen::VectorXd& values,
                                                                  Columns columns) {
   std::vector<ResidualSeries> result;
-  Eigen::Index frame = 0;
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     std::optional<energy_model::Equilibrium> rod = solve(i, values);
     if (!rod) return std::nullopt;
-    const Curve curve(rod->sample, scenes_[i].length);
     last_[i] = std::move(rod);
-    const Alignment alignment = aligners_[i].align(curve);
+    const Curve curve = measured_.curve(i, *last_[i]);
+    const Alignment alignment = measured_.alignment(i, *last_[i]);
     std::vector<Movement> moved;
     if (columns == Columns::all) {
       const std::vector<double>& s = alignment.shape.arc_length;
@@ -147,18 +111,10 @@ std::optional<std::vector<ResidualSeries>> WireShapes::residuals(const Eigen::Ve
       if (!found) return std::nullopt;
       moved = std::move(*found);
     }
-    const LaidShape laid{.index = i,
-                         .alignment = alignment,
-                         .curve = curve,
-                         .flat = flat_[i],
-                         .pose = options_.pose,
-                         .up = up_of(scenes_[i], options_.pose),
-                         .first_of_frame = frame};
     const auto count = static_cast<Eigen::Index>(numbers_.size());
-    for (ResidualSeries& series : residual_series(laid, moved, frame_columns_ + count)) {
+    for (ResidualSeries& series : measured_.residuals(i, curve, alignment, moved, count)) {
       result.push_back(std::move(series));
     }
-    frame += aligners_[i].free_coordinates();
   }
   return result;
 }
@@ -172,9 +128,7 @@ WireShapes::State WireShapes::state(const Eigen::VectorXd& values) {
     result.squares.push_back(INFINITY);
     if (!result.rods[i]) continue;
     last_[i] = result.rods[i];
-    const Curve curve(result.rods[i]->sample, scenes_[i].length);
-    result.squares[i] =
-        aligners_[i].align(curve).mean_square * static_cast<double>(aligners_[i].points());
+    result.squares[i] = measured_.squares(i, *result.rods[i]);
   }
   return result;
 }
@@ -184,7 +138,7 @@ std::vector<Alignment> WireShapes::alignments(const Eigen::VectorXd& values) {
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     const std::optional<energy_model::Equilibrium> rod = solve(i, values);
     if (!rod) break;
-    result.push_back(aligners_[i].align(Curve(rod->sample, scenes_[i].length)));
+    result.push_back(measured_.alignment(i, *rod));
   }
   return result;
 }

@@ -1,16 +1,11 @@
 #pragma once
 
-#include <chrono>
 #include <optional>
 #include <vector>
 
-#include "dlo/compare/alignment.hpp"
 #include "dlo/compare/material_fit.hpp"
-#include "dlo/energy_model/energy.hpp"
-#include "fit/residual_series.hpp"
+#include "fit/measured_shapes.hpp"
 #include "fit/wire_numbers.hpp"
-#include "shape/aligner.hpp"
-#include "shape/curve.hpp"
 
 namespace dlo::compare {
 
@@ -18,14 +13,8 @@ namespace dlo::compare {
 /// is followed from the last one.
 class WireShapes {
  public:
-  /// @param begin  from when on the time limit is
-  /// @throws InputError as align()
-  WireShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-             const MaterialFitOptions& options, const std::vector<WireNumber>& numbers,
-             std::chrono::steady_clock::time_point begin);
-
-  /// Columns of the design before those of the numbers: each shape's frame.
-  [[nodiscard]] Eigen::Index frame_columns() const { return frame_columns_; }
+  WireShapes(const std::vector<Scene>& scenes, MeasuredShapes& measured,
+             const MaterialFitOptions& options, const std::vector<WireNumber>& numbers);
 
   /// Whether the derivatives by the numbers are wanted, or only those by the frames.
   enum class Columns { frames, all };
@@ -55,11 +44,6 @@ class WireShapes {
   /// How the shapes lie at values where all have an equilibrium.
   [[nodiscard]] std::vector<Alignment> alignments(const Eigen::VectorXd& values);
 
-  /// Equilibria solved so far.
-  [[nodiscard]] long solves() const { return solves_; }
-  /// Of the energy model's objective, for these.
-  [[nodiscard]] long evaluations() const { return evaluations_; }
-
  private:
   [[nodiscard]] std::optional<energy_model::Equilibrium> solve(std::size_t shape,
                                                                const Eigen::VectorXd& values);
@@ -69,15 +53,9 @@ class WireShapes {
                                                                const std::vector<double>& s);
 
   std::vector<Scene> scenes_;
-  const MaterialFitOptions& options_;
+  MeasuredShapes& measured_;
   const std::vector<WireNumber>& numbers_;
-  std::vector<Aligner> aligners_;
-  std::vector<bool> flat_;
-  Eigen::Index frame_columns_ = 0;
   Rods last_;
-  long solves_ = 0;
-  long evaluations_ = 0;
-  std::chrono::steady_clock::time_point begin_;
 };
 
 }  // namespace dlo::compare

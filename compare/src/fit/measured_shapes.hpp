@@ -1,0 +1,86 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <vector>
+
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/material_fit.hpp"
+#include "dlo/energy_model/energy.hpp"
+#include "fit/residual_series.hpp"
+#include "shape/aligner.hpp"
+#include "shape/curve.hpp"
+
+namespace dlo::compare {
+
+/// Measured shapes against rods, each shape against those of its own scene: the residuals of every
+/// fit, and the energy model's solutions that it needs, within one time limit.
+class MeasuredShapes {
+ public:
+  /// @param begin  from when on the time limit is
+  /// @throws InputError as align()
+  MeasuredShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
+                 const MaterialFitOptions& options, std::chrono::steady_clock::time_point begin);
+
+  [[nodiscard]] std::size_t size() const { return shapes_.size(); }
+  /// A shape that lies_in_a_plane().
+  [[nodiscard]] bool is_flat(std::size_t shape) const { return shapes_[shape].flat; }
+  /// Points of all shapes.
+  [[nodiscard]] Eigen::Index points() const;
+  /// Numbers measured of all shapes, less those that place them.
+  [[nodiscard]] int numbers() const;
+  /// Numbers that place the shapes.
+  [[nodiscard]] int frame_numbers() const;
+  /// Columns of a design before those of the fitted numbers: each shape's frame.
+  [[nodiscard]] Eigen::Index frame_columns() const { return frame_columns_; }
+
+  /// The energy model's solution of a shape's scene as it was changed.
+  /// @param start  an equilibrium to follow; null: search
+  /// @throws ConvergenceError if the time limit is over
+  /// @throws InputError if the scene is none that the model has
+  [[nodiscard]] energy_model::Equilibrium solve(const Scene& scene,
+                                                const energy_model::Equilibrium* start);
+
+  /// A rod as a curve that shapes are laid on.
+  [[nodiscard]] Curve curve(std::size_t shape, const energy_model::Equilibrium& rod) const {
+    return {rod.sample, shapes_[shape].length};
+  }
+  /// How a shape lies on a rod.
+  [[nodiscard]] Alignment alignment(std::size_t shape, const energy_model::Equilibrium& rod) const {
+    return shapes_[shape].aligner.align(curve(shape, rod));
+  }
+  /// Sum of a shape's squared distances from a rod [m^2].
+  [[nodiscard]] double squares(std::size_t shape, const energy_model::Equilibrium& rod) const;
+
+  /// Residuals of a shape where it lies on a rod, see residual_series().
+  /// @param movements  by the fitted numbers, in columns after the frames';  @param numbers  fitted
+  [[nodiscard]] std::vector<ResidualSeries> residuals(std::size_t shape, const Curve& curve,
+                                                      const Alignment& alignment,
+                                                      const std::vector<Movement>& movements,
+                                                      Eigen::Index numbers) const;
+
+  /// When the time limit began.
+  [[nodiscard]] std::chrono::steady_clock::time_point begin() const { return begin_; }
+  /// Equilibria solved so far.
+  [[nodiscard]] long solves() const { return solves_; }
+  /// Of the energy model's objective, for these.
+  [[nodiscard]] long evaluations() const { return evaluations_; }
+
+ private:
+  struct OneShape {
+    Aligner aligner;
+    double length;         // of its rod [m]
+    bool flat;             // see lies_in_a_plane
+    Eigen::Vector3d up;    // as in AlignOptions
+    Eigen::Index columns;  // before its frame's first
+  };
+
+  const MaterialFitOptions& options_;
+  std::vector<OneShape> shapes_;
+  Eigen::Index frame_columns_ = 0;
+  long solves_ = 0;
+  long evaluations_ = 0;
+  std::chrono::steady_clock::time_point begin_;
+};
+
+}  // namespace dlo::compare
