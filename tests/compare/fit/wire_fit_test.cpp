@@ -326,12 +326,14 @@ TEST(WireFit, ItsTimeBeganBeforeIt) {
   const Scene scene = test::heavy_scene(20, 0);
   const Picture picture = picture_of(scene, scene, 1e-3, 0.02, random);
   const MaterialFitOptions options{.natural_curvature_terms = 1, .solve = {.time_limit = 100}};
-  using std::chrono::steady_clock;
-  EXPECT_NO_THROW((void)fit_wire({picture.said}, {picture.seen}, options, {}, false,
-                                 steady_clock::now() - std::chrono::seconds(10)));
-  EXPECT_THROW((void)fit_wire({picture.said}, {picture.seen}, options, {}, false,
-                              steady_clock::now() - std::chrono::seconds(101)),
-               ConvergenceError);
+  const std::vector<Scene> scenes = {picture.said};
+  const std::vector<MeasuredShape> shapes = {picture.seen};
+  const auto fit_after = [&](std::chrono::seconds spent) {
+    MeasuredShapes measured(scenes, shapes, options, std::chrono::steady_clock::now() - spent);
+    return fit_wire(scenes, shapes, measured, options, {}, false);
+  };
+  EXPECT_NO_THROW((void)fit_after(std::chrono::seconds(10)));
+  EXPECT_THROW((void)fit_after(std::chrono::seconds(101)), ConvergenceError);
 }
 
 // Of more rows than are needed every so many-th stays, with what belongs to it.
