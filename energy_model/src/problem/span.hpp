@@ -97,13 +97,15 @@ struct Span {
 
   /// Of the rod between two arc lengths; negative where `to` comes first.
   [[nodiscard]] Eigen::Vector3d weight_between(double from, double to) const;
-  /// Sum of weight and loads, for scales.
+  /// Sum of the sizes of weight and loads, for scales.
   [[nodiscard]] double total_load() const;
   /// Of weight and loads on what lies before s.
   [[nodiscard]] Eigen::Vector3d force_before(double s) const;
   /// Weight and loads all point the same way.
   [[nodiscard]] bool pulled_one_way() const;
-  /// A uniform straight rod with one clamp and nothing but weight and loads, in a plane.
+  /// A uniform straight rod with one clamp and nothing but weight and loads, in a plane. What else
+  /// there may be has to be asked for here: such spans are solved and certified in ways of their
+  /// own.
   [[nodiscard]] bool is_plain_cantilever() const {
     return planar && start_direction && holds.empty() && soft_obstacles.empty() &&
            contacts.empty() && parts.empty() && !has_material_directors();

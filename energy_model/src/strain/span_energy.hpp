@@ -202,21 +202,22 @@ class SpanEnergy {
   RodFrames frames_;
   RodFrames::State state_;
 
-  Eigen::MatrixX3d force_;  // weight of the node times the sum of weight and loads beyond it
-  Eigen::MatrixXd reach_;   // per hold, weight of the node times -1, 0, 1
+  Eigen::MatrixX3d force_;  // quadrature weight of the node times weight and loads beyond it
+  Eigen::MatrixXd reach_;   // per hold, quadrature weight of the node times -1, 0, 1
   std::vector<std::vector<double>> reach_signs_;  // the same by hold and piece, without weights
   ContactRows contacts_;
   SoftContact soft_contact_;
 
   // At the point of the last value(), nodes x 3
   Eigen::VectorXd theta_, kappa_;
-  Eigen::MatrixX3d t_, t_theta_, total_;
+  Eigen::MatrixX3d t_, t_theta_;
+  Eigen::MatrixX3d total_;  // -dE/dt, of all but bending: force_ and the obstacles' beyond the node
   Eigen::VectorXd x_, gradient_;
   double energy_ = 0;
   bool evaluated_ = false;  // x_ is a point that value() has seen since reset()
 
   // Scratch
-  Eigen::MatrixX3d carried_;
+  Eigen::MatrixX3d carried_;                 // total_ and what grips and contacts add to it
   std::vector<Eigen::Vector3d> couples_;     // by piece
   std::vector<Eigen::Matrix3d> curvatures_;  // by piece
   Eigen::VectorXd along_, turning_, pulled_, beside_;
