@@ -5,25 +5,19 @@
 #include <vector>
 
 #include "base/display.hpp"
-#include "base/quote.hpp"
 #include "dlo/compare/solution.hpp"
 #include "option/output.hpp"
+#include "record/csv_table.hpp"
 
 namespace dlo::cli {
 namespace {
 
 using compare::BenchmarkAnswer;
 using compare::BenchmarkRun;
-using compare::csv_field;
 using compare::SceneBenchmark;
 
 constexpr const char* not_run = "not run";
 constexpr const char* none_within = "no run is within the error";
-
-/// Nobody counts those of somebody else's program.
-std::string evaluations_of(const BenchmarkRun& run) {
-  return run.program.empty() ? fmt::format("{}", run.evaluations) : "";
-}
 
 void add_runs(std::string& out, const std::vector<BenchmarkRun>& runs) {
   if (runs.empty()) {
@@ -35,7 +29,8 @@ void add_runs(std::string& out, const std::vector<BenchmarkRun>& runs) {
   for (const BenchmarkRun& run : runs) {
     append(out, "{} {:<52} {:>10.4g} {:>10.4g} {:>10.4g} {:>11} {:>10.2e}\n", run.front ? "*" : " ",
            name_of(run), run.time.median_s * 1e3, run.time.lower_quartile_s * 1e3,
-           run.time.upper_quartile_s * 1e3, evaluations_of(run), run.rms_over_length);
+           run.time.upper_quartile_s * 1e3,  // Nobody counts those of somebody else's program.
+           run.program.empty() ? fmt::format("{}", run.evaluations) : "", run.rms_over_length);
   }
 }
 
@@ -180,13 +175,12 @@ Json benchmark_json(const compare::BenchmarkReport& report) {
     add_time("force_at_1e-3", scene.force_at_1e3, compare::Model::force);
     answers.push_back(std::move(entry));
   }
-  Json failures = Json::array();
-  for (const compare::BenchmarkFailure& failure : report.failures) {
-    failures.push_back({{"scene", failure.scene},
-                        {"program", failure.program},
-                        {"points", failure.points},
-                        {"problem", failure.problem}});
-  }
+  Json failures = json_list(report.failures, [&](const compare::BenchmarkFailure& failure) -> Json {
+    return {{"scene", failure.scene},
+            {"program", failure.program},
+            {"points", failure.points},
+            {"problem", failure.problem}};
+  });
   return {{"schema", "dlo/bench/2"},       {"runs", std::move(runs)},
           {"answers", std::move(answers)}, {"gripper_speed_m_per_s", report.options.gripper_speed},
           {"skipped", report.skipped},     {"failures", std::move(failures)},
@@ -194,23 +188,15 @@ Json benchmark_json(const compare::BenchmarkReport& report) {
 }
 
 std::string benchmark_csv(const compare::BenchmarkReport& report) {
-  std::string out =
-      "scene,kind,model,size,setting,time_s,lower_quartile_s,upper_quartile_s,repeats,evaluations,"
-      "rms_over_length,front,problem,work\n";
-  const auto add = [&](const BenchmarkRun& run, const char* kind) {
-    append_csv(out, "{},{},{},{},{},{:.4g},{:.4g},{:.4g},{},{},{:.6g},{},,{}\n",
-               csv_field(run.scene), kind, model_of(run), run.size, csv_field(setting_of(run)),
-               run.time.median_s, run.time.lower_quartile_s, run.time.upper_quartile_s,
-               run.time.repeats, evaluations_of(run), run.rms_over_length, run.front,
-               evaluations_of(run));
-  };
-  for (const SceneBenchmark& scene : report.scenes) {
-    for (const BenchmarkRun& run : scene.runs) add(run, "static");
-    for (const BenchmarkRun& run : scene.tracking) add(run, "tracking");
-  }
-  for (const compare::BenchmarkFailure& failure : report.failures) {
-    append(out, "{},static,{},{},,,,,,,,,{},\n", csv_field(failure.scene), failure.program,
-           failure.points, csv_field(failure.problem));
+  const compare::CsvTable table(
+      "scene,kind,model,size,setting,time_s:4,lower_quartile_s:4,upper_quartile_s:4,repeats,"
+      "evaluations,rms_over_length:6,front,problem,work");
+  const Json document = benchmark_json(report);
+  std::string out = table.text(document.at("runs"));
+  for (Json failure : document.at("failures")) {
+    failure.update(
+        {{"kind", "static"}, {"model", failure["program"]}, {"size", failure["points"]}});
+    out += table.row(failure);
   }
   return out;
 }

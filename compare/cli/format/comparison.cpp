@@ -10,6 +10,8 @@
 #include "format/solution.hpp"
 #include "option/output.hpp"
 #include "picture/budget_figure.hpp"
+#include "record/csv_table.hpp"
+#include "record/solution_fields.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -26,6 +28,20 @@ void add_budget(std::string& out, const compare::Comparison& comparison) {
 }
 
 }  // namespace
+
+void add_largest_and_rms(std::string& out, const compare::Deviation& d) {
+  append(out, "  deviation       RMS {:.4g} mm = {:.4g} % of l", d.rms_m * 1e3,
+         d.rms_over_length * 100);
+  if (std::isfinite(d.rms_over_movement)) {
+    append(out, " = {:.4g} % of the movement", d.rms_over_movement * 100);
+  }
+  append(out, "\n                  largest {:.4g} mm at s = {:.4f} m", d.max_m * 1e3, d.max_at_m);
+}
+
+void add_angle_and_curvature(std::string& out, const compare::Deviation& d) {
+  append(out, "                  tangent RMS {:.4g} deg, curvature RMS {:.4g} 1/m\n",
+         d.angle_rms_rad * 57.29577951308232, d.curvature_rms_per_m);
+}
 
 void add_state(std::string& out, const compare::ComparedState& state, double length,
                const char* shape) {
@@ -95,16 +111,10 @@ std::string comparison_text(const compare::Comparison& c) {
     append(out, "  reference       {}: nothing below is proven\n", c.unverified);
   }
   const compare::Deviation& d = c.deviation;
-  append(out, "  deviation       RMS {:.4g} mm = {:.4g} % of l", d.rms_m * 1e3,
-         d.rms_over_length * 100);
-  if (std::isfinite(d.rms_over_movement)) {
-    append(out, " = {:.4g} % of the movement", d.rms_over_movement * 100);
-  }
-  append(out, "\n                  largest {:.4g} mm at s = {:.4f} m", d.max_m * 1e3, d.max_at_m);
+  add_largest_and_rms(out, d);
   if (std::isfinite(d.tip_m)) append(out, ", tip {:.4g} mm", d.tip_m * 1e3);
-  append(out, "\n");
-  append(out, "                  tangent RMS {:.4g} deg, curvature RMS {:.4g} 1/m\n",
-         d.angle_rms_rad * 57.29577951308232, d.curvature_rms_per_m);
+  out += "\n";
+  add_angle_and_curvature(out, d);
   if (std::isfinite(c.undeformed_rms_over_length)) {
     append(out, "                  (the unbent rod would be {:.4g} % of l off)\n",
            c.undeformed_rms_over_length * 100);
@@ -130,38 +140,24 @@ Json comparison_json(const compare::Comparison& comparison) {
                  {"law", compare::to_string(comparison.settings.law)},
                  {"bookkeeping", compare::to_string(comparison.settings.bookkeeping)},
                  {"points", comparison.settings.points},
-                 {"deviation", deviation_json(comparison.deviation)},
+                 {"deviation", compare::json_of(compare::numbers_of(compare::deviation_fields(),
+                                                                    comparison.deviation))},
                  {"undeformed_rms_over_length", comparison.undeformed_rms_over_length}};
   result.update(modulus_json(comparison.effective_modulus));
   result["parameters"] = parameters_json(comparison.force, comparison.settings);
   result["residual_over_movement"] = comparison.residual_over_movement;
-  result["budget"] = {{"law_m", budget.law.rms_m},
-                      {"bookkeeping_m", budget.bookkeeping.rms_m},
-                      {"discretisation_m", budget.discretisation.rms_m},
-                      {"stretch_m", budget.stretch.rms_m},
-                      {"contact_m", budget.contact.rms_m},
-                      {"not_at_rest_m", budget.not_at_rest.rms_m},
-                      {"interaction_m", budget.interaction.rms_m},
-                      {"total_m", budget.total_m},
-                      {"shares_of_total",
-                       {{"law", budget.law.share},
-                        {"bookkeeping", budget.bookkeeping.share},
-                        {"discretisation", budget.discretisation.share},
-                        {"stretch", budget.stretch.share},
-                        {"contact", budget.contact.share},
-                        {"not_at_rest", budget.not_at_rest.share},
-                        {"interaction", budget.interaction.share}}}};
-  if (!comparison.force.neglected.empty()) {
-    result["neglected"] = comparison.force.neglected;
-    const std::pair<const char*, const compare::BudgetPart*> parts[] = {
-        {"twist", &budget.twist}, {"natural curvature", &budget.natural_curvature}};
-    for (const auto& [what, part] : parts) {
-      if (!neglects(comparison, what)) continue;
-      const std::string key = part == &budget.twist ? "twist" : "natural_curvature";
-      result["budget"][key + "_m"] = part->rms_m;
-      result["budget"]["shares_of_total"][key] = part->share;
-    }
+  Json& parts = result["budget"] = Json::object();
+  Json shares = Json::object();
+  for (const compare::NamedPart& part : compare::budget_parts()) {
+    if (part.is_neglected && !neglects(comparison, part.name)) continue;
+    std::string key = part.name;
+    std::ranges::replace(key, ' ', '_');
+    parts[key + "_m"] = (budget.*part.of).rms_m;
+    shares[key] = (budget.*part.of).share;
   }
+  parts["total_m"] = budget.total_m;
+  parts["shares_of_total"] = std::move(shares);
+  if (!comparison.force.neglected.empty()) result["neglected"] = comparison.force.neglected;
   if (!comparison.contacts.empty()) result["contacts"] = contacts_json(comparison.contacts);
   result["reference_verified"] = comparison.unverified.empty();
   result["state"] = to_json(comparison.state);
@@ -177,61 +173,32 @@ Json comparison_json(const compare::Comparison& comparison) {
 }
 
 std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons) {
-  std::string text =
-      "scene,law,bookkeeping,points,gamma,rms_m,max_m,tip_m,rms_over_length,rms_over_movement,"
-      "effective_modulus_ratio,rms_at_effective_modulus_m,optimum,c_b,c_c,budget_twist_m,budget_"
-      "natural_curvature_m,"
-      "budget_law_m,budget_bookkeeping_m,budget_discretisation_m,budget_stretch_m,budget_contact_m,"
-      "budget_not_at_"
-      "rest_m,"
-      "budget_interaction_m,budget_parts_share,residual_over_movement,state_rank,states_stable,"
-      "force_steps,force_s,energy_evaluations,energy_s\n";
+  const compare::CsvTable table(
+      "scene,law,bookkeeping,points,gamma,rms_m=deviation/rms_m,max_m=deviation/max_m,"
+      "tip_m=deviation/tip_m,rms_over_length=deviation/rms_over_length,"
+      "rms_over_movement=deviation/rms_over_movement,effective_modulus_ratio,"
+      "rms_at_effective_modulus_m,optimum,c_b,c_c=parameters/c_c,budget_twist_m,"
+      "budget_natural_curvature_m,budget_law_m=budget/law_m,"
+      "budget_bookkeeping_m=budget/bookkeeping_m,budget_discretisation_m=budget/discretisation_m,"
+      "budget_stretch_m=budget/stretch_m,budget_contact_m=budget/contact_m,"
+      "budget_not_at_rest_m=budget/not_at_rest_m,budget_interaction_m=budget/interaction_m,"
+      "budget_parts_share,residual_over_movement,state_rank=state/rank_of_stable,"
+      "states_stable=state/stable_found,force_steps=cost/force_steps,force_s=cost/force_s:4,"
+      "energy_evaluations=cost/energy_evaluations,energy_s=cost/energy_s:4");
+  std::string text = table.header();
   for (const compare::Comparison& c : comparisons) {
-    const bool has_modulus = c.effective_modulus.optimum != compare::Optimum::none;
-    const std::string fields[] = {
-        csv_field(c.scene),
-        compare::to_string(c.settings.law),
-        compare::to_string(c.settings.bookkeeping),
-        std::to_string(c.settings.points),
-        csv_number(c.gamma),
-        csv_number(c.deviation.rms_m),
-        csv_number(c.deviation.max_m),
-        csv_number(c.deviation.tip_m),
-        csv_number(c.deviation.rms_over_length),
-        csv_number(c.deviation.rms_over_movement),
-        csv_number(c.effective_modulus.ratio),
-        csv_number(c.effective_modulus.rms_m),
-        has_modulus ? compare::to_string(c.effective_modulus.optimum) : "",
-        csv_number(c.force.parameters.c_b),
-        csv_number(c.force.parameters.c_c),
-        csv_number(c.budget.twist.rms_m),
-        csv_number(c.budget.natural_curvature.rms_m),
-        csv_number(c.budget.law.rms_m),
-        csv_number(c.budget.bookkeeping.rms_m),
-        csv_number(c.budget.discretisation.rms_m),
-        csv_number(c.budget.stretch.rms_m),
-        csv_number(c.budget.contact.rms_m),
-        csv_number(c.budget.not_at_rest.rms_m),
-        csv_number(c.budget.interaction.rms_m),
-        csv_number(1 - c.budget.interaction.share),
-        csv_number(c.residual_over_movement),
-        std::to_string(c.state.rank),
-        std::to_string(c.state.stable),
-        std::to_string(c.force.steps),
-        fmt::format("{:.4g}", c.force.seconds),
-        std::to_string(c.energy_evaluations),
-        fmt::format("{:.4g}", c.energy_seconds)};
-    append(text, "{}\n", fmt::join(fields, ","));
+    Json row = comparison_json(c);
+    row["c_b"] = c.force.parameters.c_b;
+    row["budget_twist_m"] = c.budget.twist.rms_m;
+    row["budget_natural_curvature_m"] = c.budget.natural_curvature.rms_m;
+    row["budget_parts_share"] = 1 - c.budget.interaction.share;
+    text += table.row(row);
   }
   return text;
 }
 
 Json comparisons_json(const std::vector<compare::Comparison>& comparisons) {
-  Json cases = Json::array();
-  for (const compare::Comparison& comparison : comparisons) {
-    cases.push_back(comparison_json(comparison));
-  }
-  return {{"schema", "dlo/compare/1"}, {"cases", std::move(cases)}};
+  return {{"schema", "dlo/compare/1"}, {"cases", json_list(comparisons, comparison_json)}};
 }
 
 }  // namespace dlo::cli

@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "base/quote.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "format/json.hpp"
 
@@ -20,6 +19,10 @@ namespace dlo::cli {
 /// One line a comparison.
 [[nodiscard]] std::string comparisons_csv(const std::vector<compare::Comparison>& comparisons);
 
+/// Rows of a shape's distance from another one: RMS and largest, up to where that is; the angles.
+void add_largest_and_rms(std::string& out, const compare::Deviation& d);
+void add_angle_and_curvature(std::string& out, const compare::Deviation& d);
+
 /// Which equilibrium was compared and which others there are.
 /// @param length  of the rod [m];  @param shape  what the shape that was compared is called
 void add_state(std::string& out, const compare::ComparedState& state, double length,
@@ -30,8 +33,5 @@ void add_state(std::string& out, const compare::ComparedState& state, double len
 /// @param of  what E stands for;  @param value  its E*, to be printed; NaN if not
 void add_modulus(std::string& out, const compare::EffectiveModulus& modulus, double movement_m,
                  const compare::NamedValue& of, double value);
-
-using compare::csv_field;
-using compare::csv_number;
 
 }  // namespace dlo::cli

@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "base/display.hpp"
-#include "base/quote.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "format/comparison.hpp"
 #include "option/help.hpp"
 #include "option/output.hpp"
+#include "record/csv_table.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -78,23 +78,18 @@ std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
 }
 
 std::string force_model_csv(const ForceModelFit& fit) {
-  const compare::ForceModelSettings& s = fit.settings;
-  std::string out = "scene,gamma,holdout,law,bookkeeping,points,c_c,c_F,c_h,l_s,c_b";
+  compare::CsvTable table(
+      "scene,gamma,holdout,law=parameters/law,bookkeeping=parameters/bookkeeping,"
+      "points=parameters/points,c_c=parameters/c_c,c_F=parameters/c_F,c_h=parameters/c_h,"
+      "l_s=parameters/l_s,c_b=parameters/c_b");
   for (const RuleDeviations& rule : fit.rules) {
-    append_csv(out, ",rms_over_length_{}", compare::to_string(rule.rule));
+    table.add(fmt::format("rms_over_length_{0}=rules/{0}/rms_over_length",
+                          compare::to_string(rule.rule)));
   }
-  out += ",rms_over_length_stepped,steps\n";
-  for (std::size_t i = 0; i < fit.scenes.size(); ++i) {
-    append_csv(out, "{},{:.10g},{},{},{},{},{:.10g},{:.10g},{:.10g},{:.10g},",
-               csv_field(fit.scenes[i]), fit.gammas[i], is_holdout(fit, i),
-               compare::to_string(s.law), compare::to_string(s.bookkeeping), s.points, *s.c_c,
-               *s.c_F, *s.c_h, *s.l_s);
-    if (s.c_b) append_csv(out, "{:.10g}", *s.c_b);
-    for (const RuleDeviations& rule : fit.rules)
-      append_csv(out, ",{:.10g}", rule.rms_over_length[i]);
-    append_csv(out, ",{:.10g},{}\n", fit.stepped_rms_over_length[i], fit.steps[i]);
-  }
-  return out;
+  table.add("rms_over_length_stepped=rms_over_length,steps");
+  Json document = force_model_json(fit);
+  for (Json& row : document["scenes"]) row["parameters"] = document["parameters"];
+  return table.text(document["scenes"]);
 }
 
 Json force_model_json(const ForceModelFit& fit) {

@@ -3,27 +3,16 @@
 namespace dlo::cli {
 namespace {
 
-struct OldKey {
-  const char* now;
-  const char* before;
-};
-
-/// What people read before 0.2, which takes the old names away.
-constexpr OldKey old_keys[] = {
-    {"neglected", "left_out"},
-    {"not_identified", "not_told"},
-    {"reference_verified", "reference_resolved"},
-    {"smallest_eigenvalue", "smallest_curvature"},
-    {"smallest_eigenvalue_before", "smallest_curvature_before"},
-};
-
 void add_old_keys(Json& document) {
   if (!document.is_structured()) return;
   for (Json& value : document) add_old_keys(value);
   if (!document.is_object()) return;
-  for (const OldKey& key : old_keys) {
-    if (document.contains(key.now)) document[key.before] = Json(document.at(key.now));
+  Json old = Json::object();
+  for (const auto& [key, value] : document.items()) {
+    const std::string before(compare::name_before(key));
+    if (!before.empty()) old[before] = value;
   }
+  document.update(old);
 }
 
 }  // namespace
@@ -45,25 +34,13 @@ Json modulus_json(const compare::EffectiveModulus& modulus) {
           {"why_no_effective_modulus", none ? Json(modulus.why_none) : Json()}};
 }
 
-Json deviation_json(const compare::Deviation& deviation) {
-  return {{"rms_m", deviation.rms_m},
-          {"max_m", deviation.max_m},
-          {"max_at_m", deviation.max_at_m},
-          {"tip_m", deviation.tip_m},
-          {"rms_over_length", deviation.rms_over_length},
-          {"rms_over_movement", deviation.rms_over_movement},
-          {"angle_rms_rad", deviation.angle_rms_rad},
-          {"curvature_rms_per_m", deviation.curvature_rms_per_m}};
-}
-
 Json to_json(const compare::ComparedState& state) {
-  Json others = Json::array();
-  for (const compare::OtherState& other : state.others) {
-    others.push_back({{"stable", other.stable},
-                      {"energy_difference_J", other.energy_difference_J},
-                      {"rms_from_compared_m", other.rms_from_compared_m},
-                      {"rms_from_shape_m", other.rms_from_shape_m}});
-  }
+  Json others = json_list(state.others, [&](const compare::OtherState& other) -> Json {
+    return {{"stable", other.stable},
+            {"energy_difference_J", other.energy_difference_J},
+            {"rms_from_compared_m", other.rms_from_compared_m},
+            {"rms_from_shape_m", other.rms_from_shape_m}};
+  });
   return {{"energy_J", state.energy_J},
           {"rank_of_stable", state.rank},
           {"stable_found", state.stable},
@@ -71,20 +48,16 @@ Json to_json(const compare::ComparedState& state) {
           {"others", std::move(others)}};
 }
 
-Json to_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
-
-Json points_json(const Eigen::Matrix3Xd& points) {
-  Json result = Json::array();
-  for (Eigen::Index i = 0; i < points.cols(); ++i) {
-    result.push_back(to_json(Eigen::Vector3d(points.col(i))));
-  }
-  return result;
+Json loads_json(const std::vector<compare::GripperLoad>& loads) {
+  return json_list(loads, [&](const compare::GripperLoad& load) -> Json {
+    return {{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}};
+  });
 }
 
 Json obstacles_json(const std::vector<Eigen::Vector3d>& forces) {
-  Json result = Json::array();
-  for (const Eigen::Vector3d& force : forces) result.push_back({{"force_N", to_json(force)}});
-  return result;
+  return json_list(forces, [&](const Eigen::Vector3d& force) -> Json {
+    return {{"force_N", to_json(force)}};
+  });
 }
 
 Json parameters_json(const compare::Solution& force, const compare::ForceModelSettings& settings) {

@@ -6,12 +6,12 @@
 #include <string_view>
 
 #include "base/display.hpp"
-#include "base/quote.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/error.hpp"
 #include "format/alignment.hpp"
 #include "format/comparison.hpp"
 #include "option/output.hpp"
+#include "record/csv_table.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -159,17 +159,15 @@ Json chains_json(const std::vector<compare::ChainSprings>& chains) {
 namespace {
 
 Json numbers_json(const compare::MaterialFit& fit) {
-  Json result = Json::array();
-  for (const compare::FittedNumber& number : fit.others) {
-    result.push_back({{"name", number.name},
-                      {"unit", number.unit},
-                      {"value", number.value},
-                      {"standard_deviation", number.deviation},
-                      {"known_before", number.known_before},
-                      {"seen", number.is_seen()},
-                      {"shape", number.shape ? Json(*number.shape) : Json(nullptr)}});
-  }
-  return result;
+  return json_list(fit.others, [&](const compare::FittedNumber& number) -> Json {
+    return {{"name", number.name},
+            {"unit", number.unit},
+            {"value", number.value},
+            {"standard_deviation", number.deviation},
+            {"known_before", number.known_before},
+            {"seen", number.is_seen()},
+            {"shape", number.shape ? Json(*number.shape) : Json(nullptr)}};
+  });
 }
 
 /// As a scene file has it [1/m].
@@ -181,11 +179,10 @@ std::string natural_curvature_text(const compare::MaterialFit& fit) {
   return "[" + out + "]";
 }
 
-Json scatter_json(const std::optional<compare::ScatterBetweenShapes>& scatter) {
-  if (!scatter) return nullptr;
-  return {{"relative_deviation", scatter->relative_deviation},
-          {"chance", scatter->chance},
-          {"interval_widened_by", scatter->widening}};
+Json scatter_json(const compare::ScatterBetweenShapes& scatter) {
+  return {{"relative_deviation", scatter.relative_deviation},
+          {"chance", scatter.chance},
+          {"interval_widened_by", scatter.widening}};
 }
 
 Json json_of(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
@@ -295,36 +292,21 @@ std::string material_text(const MaterialReport& report) {
 }
 
 std::string material_csv(const MaterialReport& report) {
-  const auto field = [](const std::optional<double>& value) {
-    return value ? compare::csv_number(*value) : std::string();
-  };
-  const compare::MaterialFit& fit = report.fit;
-  const FittedValue& E = fit.youngs_modulus;
-  const FittedValue density = fit.density.value_or(FittedValue());
   const Key stiffness = stiffness_key(report.scenes.front());
   const Key heaviness = heaviness_key(report.scenes.front());
-  std::string out = fmt::format("{0},low{1},high{1},{2},{3}_low,{3}_high,", stiffness.text(),
-                                stiffness.unit, heaviness.text(), heaviness.name);
-  out +=
-      "noise_m,"
-      "degrees_of_freedom,rms_m,not_identified,warning,errors_are_correlated,correlation_length_m,"
-      "correlation_share,interval_widened_by,effective_degrees_of_freedom,torsional_stiffness_Nm2,"
-      "torsional_stiffness_low,torsional_stiffness_high,not_told\n";  // its name before 0.2
-  append_csv(out, "{},{},{},{},{},{},{:.10g},{},{:.10g},{},{},", field(E.value), field(E.low),
-             field(E.high), field(density.value), field(density.low), field(density.high),
-             fit.noise_m, fit.degrees_of_freedom, fit.rms_m, csv_field(fit.not_identified),
-             csv_field(fit.warning));
-  if (fit.correlation) {
-    append_csv(out, "true,{:.10g},{:.10g},{:.10g},{:.10g}", fit.correlation->length_m,
-               fit.correlation->share, fit.correlation->widening,
-               fit.correlation->degrees_of_freedom);
-  } else {
-    append_csv(out, "{},,,,", fit.correlation_was_tested ? "false" : "");
-  }
-  const FittedValue torsion = fit.torsional_stiffness.value_or(FittedValue());
-  append_csv(out, ",{},{},{},{}\n", field(torsion.value), field(torsion.low), field(torsion.high),
-             csv_field(fit.not_identified));
-  return out;
+  compare::CsvTable table(fmt::format(
+      "{0},low{1}=interval_95{1}/0,high{1}=interval_95{1}/1,{2},{3}_low={3}_interval_95{4}/0,"
+      "{3}_high={3}_interval_95{4}/1",
+      stiffness.text(), stiffness.unit, heaviness.text(), heaviness.name, heaviness.unit));
+  table.add(
+      "noise_m,degrees_of_freedom,rms_m,not_identified,warning,errors_are_correlated,"
+      "correlation_length_m=correlation/length_m,correlation_share=correlation/share_of_variance,"
+      "interval_widened_by=correlation/interval_widened_by,"
+      "effective_degrees_of_freedom=correlation/effective_degrees_of_freedom");
+  table.add(fmt::format("{0}{1},{0}_low={0}_interval_95{1}/0,{0}_high={0}_interval_95{1}/1",
+                        torsion_key.name, torsion_key.unit));
+  table.add("not_told=not_identified");  // its name before 0.2
+  return table.header() + table.row(material_json(report));
 }
 
 Json material_json(const MaterialReport& report) {
@@ -346,19 +328,17 @@ Json material_json(const MaterialReport& report) {
   result["degrees_of_freedom"] = fit.degrees_of_freedom;
   result["errors_are_correlated"] =
       fit.correlation_was_tested ? Json(fit.correlation.has_value()) : Json(nullptr);
-  if (fit.correlation) {
-    result["correlation"] = {{"length_m", fit.correlation->length_m},
-                             {"share_of_variance", fit.correlation->share},
-                             {"interval_widened_by", fit.correlation->widening},
-                             {"effective_degrees_of_freedom", fit.correlation->degrees_of_freedom}};
-  } else {
-    result["correlation"] = nullptr;
-  }
+  result["correlation"] = json_or_null(fit.correlation, [](const auto& errors) -> Json {
+    return {{"length_m", errors.length_m},
+            {"share_of_variance", errors.share},
+            {"interval_widened_by", errors.widening},
+            {"effective_degrees_of_freedom", errors.degrees_of_freedom}};
+  });
   result["common_share"] = json_of(fit.common_share);
   result["alternatives"] = alternatives_json(report);
   result["others"] = numbers_json(fit);
   result["chains"] = chains_json(fit.chains);
-  result["scatter_between_shapes"] = scatter_json(fit.scatter);
+  result["scatter_between_shapes"] = json_or_null(fit.scatter, scatter_json);
   result["rms_m"] = fit.rms_m;
   Json shapes = Json::array();
   for (std::size_t i = 0; i < fit.shapes.size(); ++i) {

@@ -163,14 +163,12 @@ Json moving_json(const std::vector<MovingRow>& rows) {
 }
 
 Json moving_json(const std::vector<compare::MovingScanEntry>& scan) {
-  Json result = Json::array();
-  for (const compare::MovingScanEntry& entry : scan) {
-    result.push_back({{"varied", entry.varied},
-                      {"choices", moving_json(entry.choices)},
-                      {"distance", moving_json(entry.distance)},
-                      {"rows", moving_json(entry.rows)}});
-  }
-  return result;
+  return json_list(scan, [&](const compare::MovingScanEntry& entry) -> Json {
+    return {{"varied", entry.varied},
+            {"choices", moving_json(entry.choices)},
+            {"distance", moving_json(entry.distance)},
+            {"rows", moving_json(entry.rows)}};
+  });
 }
 
 }  // namespace
@@ -204,7 +202,8 @@ std::string moving_text(const compare::MovingReport& report) {
 std::string moving_csv(const compare::MovingReport& report) {
   std::string out;
   const auto add = [&](const std::string& item, const char* quantity, double value) {
-    append_csv(out, "moving,,{},{},{:.12g}\n", csv_field(item), quantity, value);
+    append(out, "moving,,{},{},{}\n", compare::csv_field(item), quantity,
+           compare::csv_number(value, 12));
   };
   const auto add_rows = [&](const std::string& varied, const std::vector<MovingRow>& rows) {
     for (const MovingRow& row : rows) {

@@ -161,16 +161,15 @@ std::string paper_text(const PaperReport& report) {
 }
 
 Json paper_json(const PaperReport& report) {
-  Json tables = Json::array();
-  for (const compare::TableRow& row : report.tables) {
-    tables.push_back({{"table", row.table},
-                      {"quantity", row.quantity},
-                      {"unit", row.unit},
-                      {"printed", row.printed},
-                      {"computed", row.computed},
-                      {"agrees", row.agrees},
-                      {"explanation", row.explanation}});
-  }
+  Json tables = json_list(report.tables, [&](const compare::TableRow& row) -> Json {
+    return {{"table", row.table},
+            {"quantity", row.quantity},
+            {"unit", row.unit},
+            {"printed", row.printed},
+            {"computed", row.computed},
+            {"agrees", row.agrees},
+            {"explanation", row.explanation}};
+  });
   Json cases = Json::array();
   for (const compare::PaperCase& entry : report.cases) {
     Json creep = Json::array();
@@ -215,8 +214,8 @@ std::string paper_csv(const PaperReport& report) {
   std::string out = "section,scene,item,quantity,value\n";
   const auto add = [&](const std::string& section, const std::string& scene,
                        const std::string& item, const std::string& quantity, double value) {
-    append_csv(out, "{},{},{},{},{:.12g}\n", section, csv_field(scene), csv_field(item), quantity,
-               value);
+    append(out, "{},{},{},{},{}\n", section, compare::csv_field(scene), compare::csv_field(item),
+           quantity, compare::csv_number(value, 12));
   };
   for (const compare::TableRow& row : report.tables) {
     add("table", "", "table " + row.table + " " + row.quantity, "printed",

@@ -111,26 +111,23 @@ std::string plan_text(const compare::Plan& plan, const compare::Scene& scene) {
 }
 
 Json plan_json(const compare::Plan& plan) {
-  Json spans = Json::array();
-  for (const compare::PlannedSpan& span : plan.spans) {
-    spans.push_back({{"begin_m", span.begin},
-                     {"end_m", span.end},
-                     {"begin_held", span.begin_held},
-                     {"end_held", span.end_held},
-                     {"inner_pins", span.inner_pins}});
-  }
-  Json obstacles = Json::array();
-  for (const compare::PlannedObstacle& obstacle : plan.obstacles) {
-    obstacles.push_back({{"in_reach", obstacle.in_reach}, {"clearance_m", obstacle.clearance}});
-  }
+  Json spans = json_list(plan.spans, [&](const compare::PlannedSpan& span) -> Json {
+    return {{"begin_m", span.begin},
+            {"end_m", span.end},
+            {"begin_held", span.begin_held},
+            {"end_held", span.end_held},
+            {"inner_pins", span.inner_pins}};
+  });
+  Json obstacles = json_list(plan.obstacles, [&](const compare::PlannedObstacle& obstacle) -> Json {
+    return {{"in_reach", obstacle.in_reach}, {"clearance_m", obstacle.clearance}};
+  });
   // No bound, which is infinity, is null in JSON.
-  Json neglected = Json::array();
-  for (const compare::Neglected& item : plan.neglected) {
-    neglected.push_back({{"what", item.what},
-                         {"by_models", item.models},
-                         {"bound_m", item.bound_m},
-                         {"why", item.why}});
-  }
+  Json neglected = json_list(plan.neglected, [&](const compare::Neglected& item) -> Json {
+    return {{"what", item.what},
+            {"by_models", item.models},
+            {"bound_m", item.bound_m},
+            {"why", item.why}};
+  });
   Json result = {{"gamma", plan.gamma},
                  {"target_over_length", plan.target},
                  {"geometry", plan.planar ? "planar" : "spatial"},
@@ -143,15 +140,13 @@ Json plan_json(const compare::Plan& plan) {
                  {"scene_points", plan.scene_points},
                  {"neglected", std::move(neglected)}};
   if (plan.frame_held) {
-    Json twist = Json::array();
-    for (const compare::PlannedTwist& part : plan.twist) {
+    result["twist"] = json_list(plan.twist, [&](const compare::PlannedTwist& part) -> Json {
       // What is not known is null.
-      twist.push_back({{"from_m", part.begin},
-                       {"to_m", part.end},
-                       {"turn_rad", part.turn},
-                       {"twist_rad", part.twist}});
-    }
-    result["twist"] = std::move(twist);
+      return {{"from_m", part.begin},
+              {"to_m", part.end},
+              {"turn_rad", part.turn},
+              {"twist_rad", part.twist}};
+    });
   }
   return result;
 }

@@ -7,14 +7,13 @@
 #include <utility>
 
 #include "base/display.hpp"
-#include "base/quote.hpp"
 #include "option/output.hpp"
 #include "option/terminal.hpp"
+#include "record/csv_table.hpp"
 
 namespace dlo::cli {
 namespace {
 
-using compare::csv_field;
 using compare::RegressionResult;
 using compare::RegressionVerdict;
 
@@ -72,38 +71,25 @@ std::string regression_text(const std::vector<RegressionResult>& results, const 
 }
 
 Json regression_json(const std::vector<RegressionResult>& results, bool good) {
-  Json cases = Json::array();
-  for (const RegressionResult& result : results) {
-    cases.push_back({{"case", result.name},
-                     {"verdict", compare::to_string(result.verdict)},
-                     {"baseline", errors_json(result.expected)},
-                     {"measured", errors_json(result.measured)},
-                     {"message", result.message}});
-  }
+  Json cases = json_list(results, [&](const RegressionResult& result) -> Json {
+    return {{"case", result.name},
+            {"verdict", compare::to_string(result.verdict)},
+            {"baseline", errors_json(result.expected)},
+            {"measured", errors_json(result.measured)},
+            {"message", result.message}};
+  });
   return {{"schema", "dlo/regress/1"},
           {"verdict", good ? "pass" : "fail"},
           {"cases", std::move(cases)}};
 }
 
 std::string regression_csv(const std::vector<RegressionResult>& results) {
-  std::string out =
-      "case,verdict,baseline_rms_over_length,baseline_max_over_length,baseline_tip_over_length,"
-      "rms_over_length,max_over_length,tip_over_length\n";
-  const auto add = [&](const std::optional<compare::ShapeErrors>& errors) {
-    if (!errors) {
-      out += ",,,";
-      return;
-    }
-    append_csv(out, ",{},{},{}", compare::csv_number(errors->rms), compare::csv_number(errors->max),
-               errors->tip ? compare::csv_number(*errors->tip) : "");
-  };
-  for (const RegressionResult& result : results) {
-    append_csv(out, "{},{}", csv_field(result.name), compare::to_string(result.verdict));
-    add(result.expected);
-    add(result.measured);
-    out += "\n";
-  }
-  return out;
+  const compare::CsvTable table(
+      "case,verdict,baseline_rms_over_length=baseline/rms_over_length,"
+      "baseline_max_over_length=baseline/max_over_length,"
+      "baseline_tip_over_length=baseline/tip_over_length,rms_over_length=measured/rms_over_length,"
+      "max_over_length=measured/max_over_length,tip_over_length=measured/tip_over_length");
+  return table.text(regression_json(results, true).at("cases"));
 }
 
 }  // namespace dlo::cli

@@ -2,17 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <vector>
 
 #include "base/display.hpp"
-#include "base/quote.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "format/alignment.hpp"
 #include "format/comparison.hpp"
 #include "format/solution.hpp"
 #include "option/output.hpp"
 #include "option/terminal.hpp"
+#include "record/csv_table.hpp"
+#include "record/solution_fields.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -108,16 +108,10 @@ std::string shape_check_text(const CheckPage& page) {
     }
   }
   const compare::Deviation& d = c.deviation;
-  append(out, "  deviation       RMS {:.4g} mm = {:.4g} % of l", d.rms_m * 1e3,
-         d.rms_over_length * 100);
-  if (std::isfinite(d.rms_over_movement)) {
-    append(out, " = {:.4g} % of the movement", d.rms_over_movement * 100);
-  }
+  add_largest_and_rms(out, d);
   const Eigen::Vector3d at = shown(c.worst_position, scene.length);
-  append(out,
-         "\n                  largest {:.4g} mm at s = {:.4f} m (point {} of the file, at "
-         "[{:.4g}, {:.4g}, {:.4g}] m)\n",
-         d.max_m * 1e3, d.max_at_m, c.worst_point, at.x(), at.y(), at.z());
+  append(out, " (point {} of the file, at [{:.4g}, {:.4g}, {:.4g}] m)\n", c.worst_point, at.x(),
+         at.y(), at.z());
   if (std::isfinite(d.tip_m)) append(out, "                  tip {:.4g} mm\n", d.tip_m * 1e3);
   if (c.whole_rms_m > d.rms_m * (1 + 1e-6)) {
     append(out,
@@ -125,10 +119,7 @@ std::string shape_check_text(const CheckPage& page) {
            "counts with its distance from the outermost point\n",
            c.whole_rms_m * 1e3, c.whole_max_m * 1e3);
   }
-  if (std::isfinite(d.angle_rms_rad)) {
-    append(out, "                  tangent RMS {:.4g} deg, curvature RMS {:.4g} 1/m\n",
-           d.angle_rms_rad * 57.29577951308232, d.curvature_rms_per_m);
-  }
+  if (std::isfinite(d.angle_rms_rad)) add_angle_and_curvature(out, d);
   if (std::isfinite(c.movement_m)) {
     append(out, "  movement        the rod is {:.4g} mm = {:.4g} % of l away from straight (RMS)\n",
            c.movement_m * 1e3, c.movement_m / scene.length * 100);
@@ -175,7 +166,8 @@ Json shape_check_json(const compare::CheckResult& report) {
                     {"largest_gap_at_m", c.largest_gap_at_m},
                     {"excess_m", c.excess_m}};
   result["hint"] = c.hint.empty() ? Json() : Json(c.hint);
-  result["deviation"] = deviation_json(c.deviation);
+  result["deviation"] =
+      compare::json_of(compare::numbers_of(compare::deviation_fields(), c.deviation));
   result["deviation"]["whole_rms_m"] = c.whole_rms_m;
   result["deviation"]["whole_max_m"] = c.whole_max_m;
   result["deviation"]["worst_point"] = c.worst_point;
@@ -195,13 +187,13 @@ Json shape_check_json(const compare::CheckResult& report) {
     result["verdict"] = verdict_of(*report.judgement);
     result["reason"] = report.judgement->reason;
   }
-  result["explanations"] = Json::array();
-  for (const compare::Explanation& explanation : report.explanations) {
-    result["explanations"].push_back({{"cause", explanation.cause},
-                                      {"kind", compare::to_string(explanation.kind)},
-                                      {"numbers", explanation.numbers},
-                                      {"rms_m", explanation.rms_m}});
-  }
+  result["explanations"] =
+      json_list(report.explanations, [](const compare::Explanation& explanation) -> Json {
+        return {{"cause", explanation.cause},
+                {"kind", compare::to_string(explanation.kind)},
+                {"numbers", explanation.numbers},
+                {"rms_m", explanation.rms_m}};
+      });
   result["state"] = to_json(c.state);
   if (report.friction) {
     result["neglected"] = {"friction"};
@@ -214,45 +206,16 @@ Json shape_check_json(const compare::CheckResult& report) {
 }
 
 std::string shape_check_csv(const compare::CheckResult& report) {
-  const compare::ShapeCheck& c = report.check;
-  const std::optional<compare::ShapeJudgement>& judgement = report.judgement;
-  const compare::Deviation& d = c.deviation;
-  std::string out =
-      "scene,shape,gamma,points,reversed,arc_lengths,from_m,to_m,rms_m,rms_over_length,"
-      "rms_over_movement,max_m,max_at_m,worst_point,tip_m,movement_m,effective_modulus_ratio,"
-      "rms_at_effective_modulus_m,optimum,tolerance_m,verdict,seen_share,reason,whole_rms_m,"
-      "whole_max_m,friction,friction_factor\n";
-  const std::vector<double>& s = c.reference.arc_length;
-  const bool has_modulus = c.effective_modulus.optimum != compare::Optimum::none;
-  const std::string fields[] = {csv_field(c.scene),
-                                csv_field(c.file),
-                                csv_number(c.gamma),
-                                std::to_string(s.size()),
-                                c.alignment.reversed ? "true" : "false",
-                                compare::to_string(c.alignment.arc_lengths),
-                                csv_number(s.front()),
-                                csv_number(s.back()),
-                                csv_number(d.rms_m),
-                                csv_number(d.rms_over_length),
-                                csv_number(d.rms_over_movement),
-                                csv_number(d.max_m),
-                                csv_number(d.max_at_m),
-                                std::to_string(c.worst_point),
-                                csv_number(d.tip_m),
-                                csv_number(c.movement_m),
-                                csv_number(c.effective_modulus.ratio),
-                                csv_number(c.effective_modulus.rms_m),
-                                has_modulus ? compare::to_string(c.effective_modulus.optimum) : "",
-                                judgement ? csv_number(report.tolerance->allowed_m) : "",
-                                judgement ? verdict_of(*judgement) : "",
-                                csv_number(c.seen_share),
-                                judgement ? csv_field(judgement->reason) : "",
-                                csv_number(c.whole_rms_m),
-                                csv_number(c.whole_max_m),
-                                report.friction ? compare::to_string(report.friction->verdict) : "",
-                                report.friction ? csv_number(report.friction->factor) : ""};
-  append(out, "{}\n", fmt::join(fields, ","));
-  return out;
+  const compare::CsvTable table(
+      "scene,shape,gamma,points,reversed,arc_lengths,from_m=seen/from_m,to_m=seen/to_m,"
+      "rms_m=deviation/rms_m,rms_over_length=deviation/rms_over_length,"
+      "rms_over_movement=deviation/rms_over_movement,max_m=deviation/max_m,"
+      "max_at_m=deviation/max_at_m,worst_point=deviation/worst_point,tip_m=deviation/tip_m,"
+      "movement_m,effective_modulus_ratio,rms_at_effective_modulus_m,optimum,"
+      "tolerance_m=tolerance/allowed_m,verdict,seen_share=seen/share,reason,"
+      "whole_rms_m=deviation/whole_rms_m,whole_max_m=deviation/whole_max_m,"
+      "friction=friction/verdict,friction_factor=friction/factor");
+  return table.header() + table.row(shape_check_json(report));
 }
 
 }  // namespace dlo::cli

@@ -8,9 +8,11 @@
 
 #include "base/display.hpp"
 #include "base/number.hpp"
+#include "base/quote.hpp"
 #include "format/plan.hpp"
 #include "option/output.hpp"
 #include "polygon/self_crossing.hpp"
+#include "record/solution_fields.hpp"
 #include "solve/linking.hpp"
 
 namespace dlo::cli {
@@ -35,64 +37,26 @@ Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
 }
 
 Json turns_json(const std::vector<compare::Linking>& parts) {
-  Json result = Json::array();
-  for (const compare::Linking& part : parts) {
-    result.push_back({{"from_m", part.begin},
-                      {"to_m", part.end},
-                      {"held", part.held},
-                      {"twist", part.twist},
-                      {"writhe", part.writhe}});
-  }
-  return result;
-}
-
-/// As far as it is known: a fold or bifurcation is a singular point.
-bool is_stable(const compare::Solution& solution) {
-  return solution.smallest_eigenvalue >= -1e-7 &&
-         solution.status != energy_model::SolveStatus::near_singular &&
-         solution.status != energy_model::SolveStatus::saddle;
+  return json_list(parts, [&](const compare::Linking& part) -> Json {
+    return {{"from_m", part.begin},
+            {"to_m", part.end},
+            {"held", part.held},
+            {"twist", part.twist},
+            {"writhe", part.writhe}};
+  });
 }
 
 const char* stability_of(const compare::Solution& solution) {
-  if (is_stable(solution)) return "stable";
+  if (compare::is_stable(solution)) return "stable";
   return solution.status == energy_model::SolveStatus::near_singular ? "singular" : "unstable";
 }
 
-bool lacks(const compare::Solution& solution, const char* what) {
-  const std::vector<std::string>& neglected = solution.neglected;
-  return std::find(neglected.begin(), neglected.end(), what) != neglected.end();
-}
-
 }  // namespace
-
-Magnitudes magnitudes(const compare::Scene& scene) {
-  const double l = scene.length;
-  double force = scene.softer_bending_stiffness() / (l * l) + scene.weight_between(0, l).norm();
-  for (const compare::PointLoad& load : scene.loads) force += load.force.norm();
-  return {.length = l, .force = force, .torque = force * l, .energy = force * l};
-}
 
 Eigen::Vector3d shown(const Eigen::Vector3d& vector, double magnitude) {
   const double scale = std::max(magnitude, vector.norm());
   return {compare::shown(vector.x(), scale), compare::shown(vector.y(), scale),
           compare::shown(vector.z(), scale)};
-}
-
-const char* status_name(energy_model::SolveStatus status) {
-  switch (status) {
-    case energy_model::SolveStatus::converged:
-      return "converged";
-    case energy_model::SolveStatus::roundoff_limited:
-      return "roundoff_limited";
-    case energy_model::SolveStatus::saddle:
-      return "saddle";
-    case energy_model::SolveStatus::near_singular:
-      return "near_singular";
-    case energy_model::SolveStatus::not_verified:
-      return "not_verified";
-    default:
-      return "failed";
-  }
 }
 
 std::string contact_text(const energy_model::ContactPart& contact) {
@@ -154,7 +118,7 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     append(out, "neglected  {}: the scene has it, model {} has not\n",
            fmt::join(solution.neglected, ", "), compare::to_string(solution.model));
   }
-  if (lacks(solution, "friction")) {
+  if (compare::neglects(solution, "friction")) {
     append(out,
            "           (without it this is one shape; friction could hold others beside it)\n");
   }
@@ -164,7 +128,7 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
            "is {:g} m: contact of the rod with itself is in no model\n",
            crossing->first, crossing->second, crossing->distance, scene.diameter);
   }
-  const Magnitudes large = magnitudes(scene);
+  const compare::Magnitudes large = compare::magnitudes(scene);
   compare::SceneEnergies e = solution.energy;
   for (double* part : {&e.bending, &e.twisting, &e.gravity, &e.load, &e.stretch}) {
     *part = compare::shown(*part, large.energy);
@@ -189,6 +153,7 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
     }
     append(out, "\n");
   }
+  out += compare::text_rows(compare::shape_numbers(), {scene, solution}, scene);
   for (const Eigen::Vector3d& exact : solution.obstacles) {
     const Eigen::Vector3d force = shown(exact, large.force);
     append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
@@ -219,42 +184,10 @@ std::string solution_text(const compare::Solution& solution, const compare::Scen
 
 Json solution_json(const compare::Solution& solution, const compare::Scene& scene,
                    const compare::Plan& plan) {
-  Json grippers = Json::array();
-  for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
-    const compare::GripperLoad& load = solution.grippers[i];
-    const compare::Gripper& gripper = scene.grippers[i];
-    Json entry = {{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}};
-    if (gripper.frame && gripper.direction && !lacks(solution, "twist") &&
-        !lacks(solution, "natural curvature")) {
-      entry["axial_torque_Nm"] = load.torque.dot(*gripper.direction);
-    }
-    grippers.push_back(std::move(entry));
-  }
-  const compare::SceneEnergies& energy = solution.energy;
-  Json result = {{"schema", "dlo/solve/1"},
-                 {"scene", scene.name},
-                 {"model", compare::to_string(solution.model)},
-                 {"converged", energy_model::succeeded(solution.status)},
-                 {"status", status_name(solution.status)},
-                 {"error_estimate_over_length", solution.error_estimate / scene.length},
-                 {"arc_length_m", solution.shape.arc_length},
-                 {"points_m", points_json(solution.shape.points)},
-                 {"energy_J",
-                  {{"bending", energy.bending},
-                   {"twisting", energy.twisting},
-                   {"gravity", energy.gravity},
-                   {"load", energy.load},
-                   {"stretch", energy.stretch},
-                   {"contact", energy.contact},
-                   {"total", energy.total()}}},
-                 {"grippers", std::move(grippers)},
-                 {"solver",
-                  {{"message", solution.message},
-                   {"evaluations", solution.evaluations},
-                   {"steps", solution.steps},
-                   {"terms", solution.terms},
-                   {"wall_s", solution.seconds}}},
-                 {"plan", plan_json(plan)}};
+  const compare::SolvedShape shape{scene, solution};
+  Json result = {{"schema", "dlo/solve/1"}};
+  compare::add_json(result, compare::solution_fields(), shape, scene);
+  result["plan"] = plan_json(plan);
   if (scene.assumes_torsion()) {
     result["assumed"] = {{"torsional_stiffness_Nm2", scene.twisting_stiffness()},
                          {"poisson_ratio", compare::assumed_poisson_ratio}};
@@ -280,6 +213,7 @@ Json solution_json(const compare::Solution& solution, const compare::Scene& scen
   if (solution.model == compare::Model::chain || solution.model == compare::Model::force) {
     result["parameters"] = parameters_json(solution, scene.force_model);
   }
+  compare::add_json(result, compare::shape_numbers(), shape, scene);
   return result;
 }
 
@@ -287,15 +221,15 @@ std::string solution_csv(const compare::Solution& solution) {
   std::string text = "x,y,z,s\n";
   for (std::size_t i = 0; i < solution.shape.arc_length.size(); ++i) {
     const auto point = solution.shape.points.col(static_cast<Eigen::Index>(i));
-    append_csv(text, "{:.17g},{:.17g},{:.17g},{:.17g}\n", point.x(), point.y(), point.z(),
-               solution.shape.arc_length[i]);
+    for (const double value : point) text += compare::csv_number(value, 17) + ",";
+    text += compare::csv_number(solution.shape.arc_length[i], 17) + "\n";
   }
   return text;
 }
 
 std::string equilibria_text(const compare::AllSolutions& all, const compare::Scene& scene) {
   std::string out;
-  const Magnitudes large = magnitudes(scene);
+  const compare::Magnitudes large = compare::magnitudes(scene);
   const std::vector<compare::Solution>& solutions = all.solutions;
   append(out, "\n{} equilibria found\n{:>16} {:>10} {:>20} {:>13} {:>13} {:>13}\n",
          solutions.size(), "energy [J]", "", "smallest eigenvalue", "x(l) [m]", "y(l) [m]",
@@ -321,22 +255,19 @@ Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& sce
                      const compare::Plan& plan) {
   const std::vector<compare::Solution>& solutions = all.solutions;
   Json document = solution_json(solutions.front(), scene, plan);
-  Json equilibria = Json::array();
-  for (const compare::Solution& solution : solutions) {
-    equilibria.push_back({{"stable", is_stable(solution)},
-                          {"status", status_name(solution.status)},
-                          {"smallest_eigenvalue", solution.smallest_eigenvalue},
-                          {"energy_J", solution.energy.total()},
-                          {"points_m", points_json(solution.shape.points)}});
-  }
-  document["equilibria"] = std::move(equilibria);
-  Json looked_from = Json::array();
-  for (const energy_model::SearchStrategy& strategy : all.looked_from) {
-    looked_from.push_back({{"strategy", strategy.name},
-                           {"starts", strategy.tried},
-                           {"found_first", strategy.found_first}});
-  }
-  document["looked_from"] = std::move(looked_from);
+  document["equilibria"] = json_list(solutions, [&](const compare::Solution& solution) -> Json {
+    return {{"stable", compare::is_stable(solution)},
+            {"status", compare::status_name(solution.status)},
+            {"smallest_eigenvalue", solution.smallest_eigenvalue},
+            {"energy_J", solution.energy.total()},
+            {"points_m", points_json(solution.shape.points)}};
+  });
+  document["looked_from"] =
+      json_list(all.looked_from, [&](const energy_model::SearchStrategy& strategy) -> Json {
+        return {{"strategy", strategy.name},
+                {"starts", strategy.tried},
+                {"found_first", strategy.found_first}};
+      });
   document["not_looked"] = all.not_looked;
   return document;
 }

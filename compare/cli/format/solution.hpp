@@ -12,16 +12,6 @@
 
 namespace dlo::cli {
 
-/// How large a scene's results are: what is far below is rounding (compare::shown).
-struct Magnitudes {
-  double length = 0;  ///< l [m]
-  double force = 0;   ///< its weight, its loads and EI/l^2 [N]
-  double torque = 0;  ///< that force times l [N m]
-  double energy = 0;  ///< likewise [J]
-};
-
-[[nodiscard]] Magnitudes magnitudes(const compare::Scene& scene);
-
 /// compare::shown() of each component, beside the vector's own norm.
 [[nodiscard]] Eigen::Vector3d shown(const Eigen::Vector3d& vector, double magnitude);
 
@@ -31,9 +21,6 @@ struct Magnitudes {
 
 /// The same of all, by arc length; obstacles count from zero.
 [[nodiscard]] Json contacts_json(const std::vector<energy_model::ContactPart>& contacts);
-
-/// A status as documents spell it.
-[[nodiscard]] const char* status_name(energy_model::SolveStatus status);
 
 /// A shape as a person reads it.
 [[nodiscard]] std::string solution_text(const compare::Solution& solution,

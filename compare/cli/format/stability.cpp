@@ -5,15 +5,14 @@
 #include <utility>
 
 #include "base/display.hpp"
-#include "base/quote.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "option/output.hpp"
 #include "polygon/step_constants.hpp"
+#include "record/csv_table.hpp"
 
 namespace dlo::cli {
 namespace {
 
-using compare::csv_field;
 using compare::MapColumn;
 using compare::Outcome;
 using compare::StabilityResult;
@@ -89,28 +88,22 @@ std::string hard_cases_text(const std::vector<StabilityResult>& results, std::si
 }
 
 Json hard_cases_json(const std::vector<StabilityResult>& results) {
-  Json cases = Json::array();
-  for (const StabilityResult& r : results) {
-    cases.push_back({{"case", r.name},
-                     {"what", r.what},
-                     {"stepper", compare::to_string(r.stepper)},
-                     {"outcome", compare::to_string(r.outcome)},
-                     {"steps", r.steps},
-                     {"error_over_length", r.error_over_length},
-                     {"at_rest", r.at_rest},
-                     {"note", r.note}});
-  }
+  Json cases = json_list(results, [&](const StabilityResult& r) -> Json {
+    return {{"case", r.name},
+            {"what", r.what},
+            {"stepper", compare::to_string(r.stepper)},
+            {"outcome", compare::to_string(r.outcome)},
+            {"steps", r.steps},
+            {"error_over_length", r.error_over_length},
+            {"at_rest", r.at_rest},
+            {"note", r.note}};
+  });
   return {{"schema", "dlo/stability/1"}, {"cases", std::move(cases)}};
 }
 
 std::string hard_cases_csv(const std::vector<StabilityResult>& results) {
-  std::string text = "case,stepper,outcome,steps,error_over_length,at_rest,note\n";
-  for (const StabilityResult& r : results) {
-    append(text, "{},{},{},{},{},{},{}\n", csv_field(r.name), compare::to_string(r.stepper),
-           compare::to_string(r.outcome), r.steps, compare::csv_number(r.error_over_length),
-           r.at_rest, csv_field(r.note));
-  }
-  return text;
+  const compare::CsvTable table("case,stepper,outcome,steps,error_over_length,at_rest,note");
+  return table.text(hard_cases_json(results).at("cases"));
 }
 
 std::string stability_map_text(const compare::StabilityMap& map) {
@@ -136,19 +129,17 @@ std::string stability_map_text(const compare::StabilityMap& map) {
 }
 
 Json stability_map_json(const compare::StabilityMap& map) {
-  Json columns = Json::array();
-  for (const MapColumn& c : map.columns) {
-    columns.push_back({{"c_c", c.c_c},
-                       {"c_h", c.c_h},
-                       {"fastest_mode_N_per_m", c.fastest_mode},
-                       {"c_F_predicted", c.predicted},
-                       {"c_F_measured", c.measured},
-                       {"c_F_table_1", c.table_1}});
-  }
-  Json points = Json::array();
-  for (const compare::MapPoint& p : map.points) {
-    points.push_back({{"c_c", p.c_c}, {"c_h", p.c_h}, {"c_F", p.c_F}, {"state", state(p.outcome)}});
-  }
+  Json columns = json_list(map.columns, [&](const MapColumn& c) -> Json {
+    return {{"c_c", c.c_c},
+            {"c_h", c.c_h},
+            {"fastest_mode_N_per_m", c.fastest_mode},
+            {"c_F_predicted", c.predicted},
+            {"c_F_measured", c.measured},
+            {"c_F_table_1", c.table_1}};
+  });
+  Json points = json_list(map.points, [&](const compare::MapPoint& p) -> Json {
+    return {{"c_c", p.c_c}, {"c_h", p.c_h}, {"c_F", p.c_F}, {"state", state(p.outcome)}};
+  });
   return {{"schema", "dlo/stability-map/1"},
           {"scene", map.scene},
           {"columns", std::move(columns)},
@@ -156,16 +147,15 @@ Json stability_map_json(const compare::StabilityMap& map) {
 }
 
 std::string stability_map_csv(const compare::StabilityMap& map) {
+  const compare::CsvTable table(
+      "c_c,c_h,c_F,state,fastest_mode=column/fastest_mode_N_per_m,"
+      "c_F_predicted=column/c_F_predicted,c_F_measured=column/c_F_measured");
   const std::size_t rows = map.points.size() / map.columns.size();
-  std::string text = "c_c,c_h,c_F,state,fastest_mode,c_F_predicted,c_F_measured\n";
-  for (std::size_t i = 0; i < map.points.size(); ++i) {
-    const compare::MapPoint& p = map.points[i];
-    const MapColumn& c = map.columns[i / rows];
-    append(text, "{},{},{},{},{},{},{}\n", compare::csv_number(p.c_c), compare::csv_number(p.c_h),
-           compare::csv_number(p.c_F), state(p.outcome), compare::csv_number(c.fastest_mode),
-           compare::csv_number(c.predicted), compare::csv_number(c.measured));
-  }
-  return text;
+  Json document = stability_map_json(map);
+  Json& points = document["points"];
+  for (std::size_t i = 0; i < points.size(); ++i)
+    points[i]["column"] = document["columns"][i / rows];
+  return table.text(points);
 }
 
 }  // namespace dlo::cli

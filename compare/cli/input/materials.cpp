@@ -1,12 +1,12 @@
 #include <memory>
 
-#include "base/quote.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/material.hpp"
 #include "format/json.hpp"
 #include "option/help.hpp"
 #include "option/output.hpp"
 #include "option/scene_options.hpp"
+#include "record/csv_table.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -32,24 +32,19 @@ std::string text(const std::vector<Material>& materials) {
   return out;
 }
 
-std::string csv(const std::vector<Material>& materials) {
-  std::string out = "material,youngs_modulus_Pa,density_kg_per_m3,source\n";
-  for (const Material& material : materials) {
-    append_csv(out, "{},{:.10g},{:.10g},{}\n", compare::csv_field(material.name),
-               material.youngs_modulus, material.density, compare::csv_field(material.source));
-  }
-  return out;
+Json json(const std::vector<Material>& materials) {
+  return {{"schema", "dlo/materials/1"},
+          {"materials", json_list(materials, [&](const Material& material) -> Json {
+             return {{"material", material.name},
+                     {"youngs_modulus_Pa", material.youngs_modulus},
+                     {"density_kg_per_m3", material.density},
+                     {"source", material.source}};
+           })}};
 }
 
-Json json(const std::vector<Material>& materials) {
-  Json list = Json::array();
-  for (const Material& material : materials) {
-    list.push_back({{"material", material.name},
-                    {"youngs_modulus_Pa", material.youngs_modulus},
-                    {"density_kg_per_m3", material.density},
-                    {"source", material.source}});
-  }
-  return {{"schema", "dlo/materials/1"}, {"materials", std::move(list)}};
+std::string csv(const std::vector<Material>& materials) {
+  const compare::CsvTable table("material,youngs_modulus_Pa,density_kg_per_m3,source");
+  return table.text(json(materials).at("materials"));
 }
 
 void run(const MaterialsOptions& options) {

@@ -2,18 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <concepts>
 #include <functional>
 #include <iterator>
 #include <mutex>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "base/quote.hpp"
 #include "dlo/compare/choice.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own
@@ -26,26 +22,6 @@ namespace dlo::cli {
 template <typename... Arguments>
 void append(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
   fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
-}
-
-/// A number on its way into CSV; "{:.6g}" chooses the digits of compare::csv_number(), nothing else
-/// can be chosen.
-struct CsvNumber {
-  double value = 0;
-
-  explicit CsvNumber(double number) : value(number) {}
-};
-
-/// Numbers become CsvNumber, anything else stays what it is.
-template <typename T>
-using CsvArgument = std::conditional_t<std::floating_point<std::remove_cvref_t<T>>, CsvNumber, T>;
-
-/// append() for lines of CSV: what is not finite leaves its field empty.
-template <typename... Arguments>
-void append_csv(std::string& text, fmt::format_string<CsvArgument<Arguments>...> format,
-                Arguments&&... arguments) {
-  fmt::format_to(std::back_inserter(text), format,
-                 static_cast<CsvArgument<Arguments>>(std::forward<Arguments>(arguments))...);
 }
 
 enum class Format { text, json, csv };
@@ -145,29 +121,3 @@ void check_outputs(const CLI::App& command);
 [[nodiscard]] std::vector<std::string> input_files(const CLI::App& command);
 
 }  // namespace dlo::cli
-
-template <>
-struct fmt::formatter<dlo::cli::CsvNumber> {
-  /// ".6g"
-  constexpr auto parse(fmt::format_parse_context& context) {
-    const auto* at = context.begin();
-    if (at == context.end() || *at == '}') return at;
-    if (*at++ != '.') throw fmt::format_error("a CSV number is {} or {:.Ng}");
-    digits_ = 0;
-    for (; at != context.end() && *at >= '0' && *at <= '9'; ++at) {
-      digits_ = 10 * digits_ + (*at - '0');
-    }
-    if (at == context.end() || *at++ != 'g') {
-      throw fmt::format_error("a CSV number is {} or {:.Ng}");
-    }
-    return at;
-  }
-  template <typename Context>
-  auto format(const dlo::cli::CsvNumber& number, Context& context) const {
-    const std::string text = dlo::compare::csv_number(number.value, digits_);
-    return std::copy(text.begin(), text.end(), context.out());
-  }
-
- private:
-  int digits_ = 10;
-};

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/display.hpp"
 #include "base/number.hpp"
@@ -19,7 +18,6 @@ using compare::TrackErrors;
 
 /// Rows of the table in text, at most.
 constexpr std::size_t dynamic_rows = 11;
-constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 Json errors_json(const TrackErrors& errors) {
   return {{"mean_error_over_length", errors.mean},
@@ -30,31 +28,6 @@ Json errors_json(const TrackErrors& errors) {
 std::string errors_text(const TrackErrors& errors) {
   return fmt::format("mean {:.4g} % of l, largest {:.4g} % at {:.6g} s", errors.mean * 100,
                      errors.largest * 100, errors.largest_time);
-}
-
-Json moving_frame_json(const DynamicFrame& frame, bool points) {
-  Json grippers = Json::array();
-  for (const compare::GripperLoad& load : frame.grippers) {
-    grippers.push_back({{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}});
-  }
-  const energy_model::EnergyBalance& energy = frame.energy;
-  Json result = {{"time_s", frame.time},
-                 {"grippers", std::move(grippers)},
-                 {"energy_J",
-                  {{"kinetic", energy.kinetic},
-                   {"bending", energy.bending},
-                   {"gravity", energy.gravity},
-                   {"load", energy.load},
-                   {"obstacles", energy.obstacles},
-                   {"total", energy.total()},
-                   {"dissipated", energy.dissipated},
-                   {"lost", energy.lost},
-                   {"work", energy.work}}},
-                 {"obstacles", obstacles_json(frame.obstacles)},
-                 {"quasi_static_error_over_length", frame.quasi_static_error}};
-  result["force_error_over_length"] = frame.force_error ? Json(*frame.force_error) : Json(nullptr);
-  if (points) result["points_m"] = points_json(frame.points);
-  return result;
 }
 
 std::string moving_table(const DynamicTrack& dynamic) {
@@ -75,6 +48,27 @@ std::string moving_table(const DynamicTrack& dynamic) {
 }
 
 }  // namespace
+
+Json moving_frame_json(const DynamicFrame& frame, bool points) {
+  const energy_model::EnergyBalance& energy = frame.energy;
+  Json result = {{"time_s", frame.time},
+                 {"grippers", loads_json(frame.grippers)},
+                 {"energy_J",
+                  {{"kinetic", energy.kinetic},
+                   {"bending", energy.bending},
+                   {"gravity", energy.gravity},
+                   {"load", energy.load},
+                   {"obstacles", energy.obstacles},
+                   {"total", energy.total()},
+                   {"dissipated", energy.dissipated},
+                   {"lost", energy.lost},
+                   {"work", energy.work}}},
+                 {"obstacles", obstacles_json(frame.obstacles)},
+                 {"quasi_static_error_over_length", frame.quasi_static_error}};
+  result["force_error_over_length"] = frame.force_error ? Json(*frame.force_error) : Json(nullptr);
+  if (points) result["points_m"] = points_json(frame.points);
+  return result;
+}
 
 std::string dynamic_text(const DynamicTrack& dynamic) {
   std::string out;
@@ -122,66 +116,18 @@ Json dynamic_json(const DynamicTrack& dynamic, const compare::Track& track,
                  {"fewer_terms", dynamic.fewer_terms},
                  {"fewer_terms_change_over_length", dynamic.term_difference},
                  {"quasi_static", errors_json(dynamic.quasi_static)}};
-  if (dynamic.force) {
-    result["force_model"] = errors_json(*dynamic.force);
-    result["force_model"]["lag_s"] = dynamic.force_lag;
-    result["force_model"]["error_without_lag_over_length"] = dynamic.force_error_without_lag;
-  } else {
-    result["force_model"] = nullptr;
-  }
-  if (dynamic.stopped) {
-    result["stopped"] = {{"time_s", dynamic.stopped->time}, {"why", dynamic.stopped->why}};
-  } else {
-    result["stopped"] = nullptr;
-  }
-  Json list = Json::array();
-  for (const std::size_t i : frames.of(track)) {
-    if (i < dynamic.frames.size()) {
-      list.push_back(moving_frame_json(dynamic.frames[i], frames.points));
-    }
-  }
-  result["frames"] = std::move(list);
+  result["force_model"] = json_or_null(dynamic.force, [&](const TrackErrors& errors) {
+    Json entry = errors_json(errors);
+    entry["lag_s"] = dynamic.force_lag;
+    entry["error_without_lag_over_length"] = dynamic.force_error_without_lag;
+    return entry;
+  });
+  result["stopped"] = json_or_null(dynamic.stopped, stop_json);
+  std::vector<std::size_t> listed = frames.of(track);
+  std::erase_if(listed, [&](std::size_t i) { return i >= dynamic.frames.size(); });
+  result["frames"] = json_list(
+      listed, [&](std::size_t i) { return moving_frame_json(dynamic.frames[i], frames.points); });
   return result;
-}
-
-std::string dynamic_csv_header(std::size_t grippers, std::size_t obstacles) {
-  std::string out =
-      ",dynamic_energy_J,kinetic_J,dynamic_work_J,dissipated_J,lost_J,quasi_static_error_over_"
-      "length,"
-      "force_error_over_length";
-  for (std::size_t i = 1; i <= grippers; ++i) {
-    append(out,
-           ",dynamic_fx_{0}_N,dynamic_fy_{0}_N,dynamic_fz_{0}_N,dynamic_tx_{0}_Nm,"
-           "dynamic_ty_{0}_Nm,dynamic_tz_{0}_Nm",
-           i);
-  }
-  for (std::size_t i = 1; i <= obstacles; ++i) {
-    append(out, ",dynamic_obstacle_fx_{0}_N,dynamic_obstacle_fy_{0}_N,dynamic_obstacle_fz_{0}_N",
-           i);
-  }
-  return out;
-}
-
-std::string dynamic_csv_fields(const DynamicTrack& dynamic, std::size_t grippers,
-                               std::size_t obstacles, std::size_t index) {
-  std::string out;
-  if (index >= dynamic.frames.size()) {
-    constexpr std::size_t of_frame = 7, of_gripper = 6, of_obstacle = 3;
-    out.assign(of_frame + of_gripper * grippers + of_obstacle * obstacles, ',');
-    return out;
-  }
-  const DynamicFrame& frame = dynamic.frames[index];
-  append_csv(out, ",{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}", frame.energy.total(),
-             frame.energy.kinetic, frame.energy.work, frame.energy.dissipated, frame.energy.lost,
-             frame.quasi_static_error, frame.force_error.value_or(no_value));
-  for (const compare::GripperLoad& load : frame.grippers) {
-    for (const double value : load.force) append_csv(out, ",{:.10g}", value);
-    for (const double value : load.torque) append_csv(out, ",{:.10g}", value);
-  }
-  for (const Eigen::Vector3d& force : frame.obstacles) {
-    for (const double value : force) append_csv(out, ",{:.10g}", value);
-  }
-  return out;
 }
 
 }  // namespace dlo::cli

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
-#include <vector>
 
 #include "dlo/compare/scene.hpp"
 #include "format/json.hpp"
@@ -18,11 +16,7 @@ namespace dlo::cli {
 [[nodiscard]] Json dynamic_json(const compare::DynamicTrack& dynamic, const compare::Track& track,
                                 const TrackFrames& frames);
 
-/// Columns of CSV behind those of its track, each with a comma before it.
-[[nodiscard]] std::string dynamic_csv_header(std::size_t grippers, std::size_t obstacles);
-/// The same of a frame; empty fields behind the last one. @param index  of the track's frames
-[[nodiscard]] std::string dynamic_csv_fields(const compare::DynamicTrack& dynamic,
-                                             std::size_t grippers, std::size_t obstacles,
-                                             std::size_t index);
+/// A frame of it. @param points  whether its shape too
+[[nodiscard]] Json moving_frame_json(const compare::DynamicFrame& frame, bool points);
 
 }  // namespace dlo::cli

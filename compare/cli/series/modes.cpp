@@ -3,14 +3,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "base/display.hpp"
 #include "base/number.hpp"
-#include "base/quote.hpp"
 #include "format/solution.hpp"
 #include "option/output.hpp"
+#include "record/csv_table.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -59,13 +58,11 @@ Json mode_json(const SceneMode& mode, const std::vector<double>& s) {
   result["polygon_frequency_Hz"] =
       mode.polygon_omega ? Json(hertz(*mode.polygon_omega)) : Json(nullptr);
   result["polygon_likeness"] = mode.polygon_omega ? Json(mode.polygon_likeness) : Json(nullptr);
-  if (mode.stepped) {
-    result["stepped"] = {{"frequency_Hz", hertz(mode.stepped->omega)},
-                         {"damping_ratio", mode.stepped->damping},
-                         {"stable", mode.stepped->is_stable}};
-  } else {
-    result["stepped"] = nullptr;
-  }
+  result["stepped"] = json_or_null(mode.stepped, [](const auto& stepped) -> Json {
+    return {{"frequency_Hz", hertz(stepped.omega)},
+            {"damping_ratio", stepped.damping},
+            {"stable", stepped.is_stable}};
+  });
   result["shape_m"] = points_json(mode.rod.shape(s));
   return result;
 }
@@ -100,38 +97,36 @@ std::string modes_text(const compare::SceneModes& modes, const compare::Scene& s
 Json modes_json(const compare::SceneModes& modes, const compare::Scene& scene, double rate,
                 int samples) {
   const std::vector<double> s = energy_model::equal_arc_lengths(scene.length, samples);
-  Json list = Json::array();
-  for (const SceneMode& mode : modes.modes) list.push_back(mode_json(mode, s));
-  Json result = {{"schema", "dlo/modes/1"},  {"scene", scene.name},
-                 {"model", "energy"},        {"status", to_string(modes.status)},
-                 {"steps_per_second", rate}, {"arc_length_m", s},
-                 {"modes", std::move(list)}};
+  Json result = {{"schema", "dlo/modes/1"},
+                 {"scene", scene.name},
+                 {"model", "energy"},
+                 {"status", to_string(modes.status)},
+                 {"steps_per_second", rate},
+                 {"arc_length_m", s},
+                 {"modes", json_list(modes.modes, [&](const SceneMode& mode) -> Json {
+                    return mode_json(mode, s);
+                  })}};
   result["tension_N"] = modes.tension ? Json(*modes.tension) : Json(nullptr);
   result["no_polygon"] = modes.no_polygon.empty() ? Json(nullptr) : Json(modes.no_polygon);
   result["mass_of_steps_kg"] = modes.mass_of_steps ? Json(*modes.mass_of_steps) : Json(nullptr);
-  if (modes.physical) {
-    result["physical"] = {{"point_mass_kg", modes.physical->point_mass},
-                          {"c_F_m_per_N", modes.physical->c_F},
-                          {"c_h", modes.physical->c_h},
-                          {"least_steps_per_second", modes.physical->least_rate}};
-  } else {
-    result["physical"] = nullptr;
-  }
+  result["physical"] = json_or_null(modes.physical, [](const auto& physical) -> Json {
+    return {{"point_mass_kg", physical.point_mass},
+            {"c_F_m_per_N", physical.c_F},
+            {"c_h", physical.c_h},
+            {"least_steps_per_second", physical.least_rate}};
+  });
   return result;
 }
 
 std::string modes_csv(const compare::SceneModes& modes) {
-  std::string out =
+  const compare::CsvTable table(
       "mode,frequency_Hz,omega_squared_per_s2,plane,from_m,to_m,polygon_frequency_Hz,"
-      "stepped_frequency_Hz,stepped_damping_ratio\n";
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+      "stepped_frequency_Hz=stepped/frequency_Hz,stepped_damping_ratio=stepped/damping_ratio");
+  std::string out = table.header();
   for (std::size_t i = 0; i < modes.modes.size(); ++i) {
-    const SceneMode& mode = modes.modes[i];
-    append_csv(out, "{},{:.10g},{:.10g},{},{:.10g},{:.10g},{:.10g},{:.10g},{:.10g}\n", i + 1,
-               hertz(mode.rod.omega()), mode.rod.omega_squared, to_string(mode.rod.plane),
-               mode.rod.begin, mode.rod.end, mode.polygon_omega ? hertz(*mode.polygon_omega) : none,
-               mode.stepped ? hertz(mode.stepped->omega) : none,
-               mode.stepped ? mode.stepped->damping : none);
+    Json row = mode_json(modes.modes[i], {0.0});
+    row["mode"] = i + 1;
+    out += table.row(row);
   }
   return out;
 }

@@ -27,7 +27,8 @@ void write_series(const compare::Track& track, const compare::Scene& scene,
   for (const std::size_t i : frames.of(track)) {
     if (dynamic != nullptr && i >= dynamic->frames.size()) break;
     const compare::TrackFrame& frame = track.frames[i];
-    const Eigen::Matrix3Xd& points = dynamic != nullptr ? dynamic->frames[i].points : frame.points;
+    const Eigen::Matrix3Xd& points =
+        dynamic != nullptr ? dynamic->frames[i].points : frame.shape.points;
     const std::string name = fmt::format("{}_{:05}.vtk", stem, i);
     write((folder / name).string(),
           compare::vtk_polyline({track.arc_length, points}, {},

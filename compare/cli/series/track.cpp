@@ -4,14 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/display.hpp"
 #include "base/number.hpp"
-#include "base/quote.hpp"
 #include "format/json.hpp"
 #include "format/solution.hpp"
 #include "option/output.hpp"
+#include "record/csv_table.hpp"
+#include "record/solution_fields.hpp"
 #include "series/dynamic_track.hpp"
 
 namespace dlo::cli {
@@ -51,7 +51,8 @@ std::string state_text(const TrackFrame& frame, const char* separator) {
   return text.empty() ? "-" : text;
 }
 
-std::string event_text(const Track& track, const TrackEvent& event, const Magnitudes& large) {
+std::string event_text(const Track& track, const TrackEvent& event,
+                       const compare::Magnitudes& large) {
   const TrackFrame& after = track.frames[event.frame];
   const TrackFrame& before = track.frames[event.frame - 1];
   std::string out = fmt::format("{:11.6g} s  {:8}", after.time, to_string(event.kind));
@@ -110,7 +111,7 @@ std::string force_text(const Track& track, const compare::Scene& scene,
   return out;
 }
 
-std::string table_text(const Track& track, const Magnitudes& large) {
+std::string table_text(const Track& track, const compare::Magnitudes& large) {
   std::string out;
   append(out, "\n{:>10} {:>14} {:>12} {:>12}   {}\n", "t [s]", "energy [J]", "force 1 [N]",
          "error/l", "touches");
@@ -168,34 +169,42 @@ Json frame_json(const TrackFrame& frame, const compare::Scene& scene, bool point
   for (std::size_t i = 0; i < frame.grippers.size(); ++i) {
     grippers.push_back(gripper_json(now.grippers[i], frame.grippers[i]));
   }
-  const compare::SceneEnergies& energy = frame.energy;
+  Json energy = compare::json_of(compare::numbers_of(compare::energy_fields(), frame.energy));
+  energy["work"] = frame.work;
+  energy["released"] = frame.released;
   Json result = {{"time_s", frame.time},
                  {"followed", frame.followed},
                  {"smallest_eigenvalue", frame.smallest_eigenvalue},
                  {"grippers", std::move(grippers)},
                  {"contacts", contacts_json(frame.contacts)},
                  {"obstacles", obstacles_json(frame.obstacles)},
-                 {"energy_J",
-                  {{"bending", energy.bending},
-                   {"twisting", energy.twisting},
-                   {"gravity", energy.gravity},
-                   {"load", energy.load},
-                   {"contact", energy.contact},
-                   {"total", energy.total()},
-                   {"work", frame.work},
-                   {"released", frame.released}}}};
+                 {"energy_J", std::move(energy)}};
+  compare::add_json(result, compare::shape_numbers(), {scene, frame}, scene);
   result["error_over_length"] = frame.force ? Json(frame.force->error_over_length) : Json(nullptr);
-  if (frame.force) {
-    Json loads = Json::array();
-    for (const compare::GripperLoad& load : frame.force->grippers) {
-      loads.push_back({{"force_N", to_json(load.force)}, {"torque_Nm", to_json(load.torque)}});
-    }
-    result["force_grippers"] = std::move(loads);
-  }
+  if (frame.force) result["force_grippers"] = loads_json(frame.force->grippers);
   if (!points) return result;
-  result["points_m"] = points_json(frame.points);
+  result["points_m"] = points_json(frame.shape.points);
   if (frame.force) result["force_points_m"] = points_json(frame.force->points);
   return result;
+}
+
+/// Columns of what grippers and obstacles exert. @param name, path  that theirs begin with
+void add_forces(compare::CsvTable& table, const std::string& name, const std::string& path,
+                const compare::Scene& scene) {
+  const auto add = [&](const std::string& what, const char* unit, const std::string& of,
+                       std::size_t i) {
+    for (int axis = 0; axis < 3; ++axis) {
+      table.add(fmt::format("{}{}{}_{}_{}={}{}_{}/{}", name, what, "xyz"[axis], i + 1, unit, path,
+                            of, unit, axis));
+    }
+  };
+  for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
+    add("f", "N", fmt::format("grippers/{}/force", i), i);
+    add("t", "Nm", fmt::format("grippers/{}/torque", i), i);
+  }
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    add("obstacle_f", "N", fmt::format("obstacles/{}/force", i), i);
+  }
 }
 
 Json force_json(const compare::ForceTrackSummary& force, const compare::Scene& scene,
@@ -227,12 +236,16 @@ std::vector<std::size_t> TrackFrames::of(const Track& track) const {
   return result;
 }
 
+Json stop_json(const compare::TrackStop& stop) {
+  return {{"time_s", stop.time}, {"why", stop.why}};
+}
+
 std::string track_text(const Track& track, const compare::Scene& scene,
                        const TrackOptions& options) {
   std::string out;
   const TrackFrame& first = track.frames.front();
   const TrackFrame& last = track.frames.back();
-  const Magnitudes large = magnitudes(scene);
+  const compare::Magnitudes large = compare::magnitudes(scene);
   append(out, "scene       {}\n", compare::display(scene.name));
   append(out, "motion      {:.6g} to {:.6g} s, {} frames at {:g} Hz{}\n", first.time, last.time,
          track.frames.size(), options.rates.frames,
@@ -275,59 +288,48 @@ std::string track_json(const Track& track, const compare::Scene& scene, const Tr
                  {"frame_s", track.median_seconds},
                  {"frames_lost", track.lost},
                  {"frames_repeated", track.repeated}};
-  if (track.stopped) {
-    result["stopped"] = {{"time_s", track.stopped->time}, {"why", track.stopped->why}};
-  } else {
-    result["stopped"] = nullptr;
-  }
-  if (track.frames.front().force) {
-    result["force_model"] = force_json(track.force, scene, options);
-  } else {
-    result["force_model"] = nullptr;
-  }
+  result["stopped"] = json_or_null(track.stopped, stop_json);
+  result["force_model"] = json_or_null(track.frames.front().force, [&](const auto& /*first*/) {
+    return force_json(track.force, scene, options);
+  });
   result["no_force_model"] = track.force.none.empty() ? Json(nullptr) : Json(track.force.none);
   if (dynamic != nullptr) result["dynamic"] = dynamic_json(*dynamic, track, frames);
-  Json events = Json::array();
-  for (const TrackEvent& event : track.events) events.push_back(event_json(track, event));
-  result["events"] = std::move(events);
+  result["events"] = json_list(
+      track.events, [&](const TrackEvent& event) -> Json { return event_json(track, event); });
   if (frames.points) result["arc_length_m"] = track.arc_length;
-  Json list = Json::array();
-  for (const std::size_t i : frames.of(track)) {
-    list.push_back(frame_json(track.frames[i], scene, frames.points));
-  }
-  result["frames"] = std::move(list);
+  result["frames"] = json_list(frames.of(track), [&](const std::size_t i) -> Json {
+    return frame_json(track.frames[i], scene, frames.points);
+  });
   return json_text(result);
 }
 
 std::string track_csv(const Track& track, const compare::Scene& scene, const TrackFrames& frames,
                       const compare::DynamicTrack* dynamic) {
-  std::string out = "time_s,energy_J,work_J,released_J,touches,error_over_length";
-  for (std::size_t i = 1; i <= scene.grippers.size(); ++i) {
-    append(out, ",fx_{0}_N,fy_{0}_N,fz_{0}_N,tx_{0}_Nm,ty_{0}_Nm,tz_{0}_Nm", i);
+  compare::CsvTable table(
+      "time_s,energy_J=energy_J/total,work_J=energy_J/work,released_J=energy_J/released,touches,"
+      "error_over_length");
+  add_forces(table, "", "", scene);
+  if (dynamic != nullptr) {
+    table.add(
+        "dynamic_energy_J=dynamic/energy_J/total,kinetic_J=dynamic/energy_J/kinetic,"
+        "dynamic_work_J=dynamic/energy_J/work,dissipated_J=dynamic/energy_J/dissipated,"
+        "lost_J=dynamic/energy_J/lost,"
+        "quasi_static_error_over_length=dynamic/quasi_static_error_over_length,"
+        "force_error_over_length=dynamic/force_error_over_length");
+    add_forces(table, "dynamic_", "dynamic/", scene);
   }
-  const std::size_t grippers = scene.grippers.size();
-  const std::size_t obstacles = scene.obstacles.size();
-  for (std::size_t i = 1; i <= obstacles; ++i) {
-    append(out, ",obstacle_fx_{0}_N,obstacle_fy_{0}_N,obstacle_fz_{0}_N", i);
+  for (const auto& number : fields_in(compare::in_csv, compare::shape_numbers(), scene)) {
+    table.add(number.key() + "=" + number.json_path());
   }
-  if (dynamic != nullptr) out += dynamic_csv_header(grippers, obstacles);
-  out += "\n";
-  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  std::string out = table.header();
   for (const std::size_t i : frames.of(track)) {
     const TrackFrame& frame = track.frames[i];
-    const std::string state = frame.contacts.empty() ? "" : state_text(frame, "; ");
-    append_csv(out, "{:.10g},{:.10g},{:.10g},{:.10g},{},{:.10g}", frame.time, frame.energy.total(),
-               frame.work, frame.released, state,
-               frame.force ? frame.force->error_over_length : none);
-    for (const compare::GripperLoad& load : frame.grippers) {
-      for (const double value : load.force) append_csv(out, ",{:.10g}", value);
-      for (const double value : load.torque) append_csv(out, ",{:.10g}", value);
+    Json row = frame_json(frame, scene, false);
+    row["touches"] = frame.contacts.empty() ? "" : state_text(frame, "; ");
+    if (dynamic != nullptr && i < dynamic->frames.size()) {
+      row["dynamic"] = moving_frame_json(dynamic->frames[i], false);
     }
-    for (const Eigen::Vector3d& force : frame.obstacles) {
-      for (const double value : force) append_csv(out, ",{:.10g}", value);
-    }
-    if (dynamic != nullptr) out += dynamic_csv_fields(*dynamic, grippers, obstacles, i);
-    out += "\n";
+    out += table.row(row);
   }
   return out;
 }

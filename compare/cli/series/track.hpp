@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
+#include "format/json.hpp"
 #include "motion/dynamic_track.hpp"
 #include "motion/track.hpp"
 
@@ -30,5 +31,8 @@ struct TrackFrames {
 [[nodiscard]] std::string track_csv(const compare::Track& track, const compare::Scene& scene,
                                     const TrackFrames& frames,
                                     const compare::DynamicTrack* dynamic = nullptr);
+
+/// Why it has stopped, and when.
+[[nodiscard]] Json stop_json(const compare::TrackStop& stop);
 
 }  // namespace dlo::cli

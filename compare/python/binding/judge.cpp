@@ -12,6 +12,7 @@
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "errors.hpp"
+#include "fields.hpp"
 #include "format/comparison.hpp"
 #include "format/force_model_fit.hpp"
 #include "format/json.hpp"
@@ -20,6 +21,7 @@
 #include "long_call.hpp"
 #include "module.hpp"
 #include "option/share.hpp"
+#include "record/solution_fields.hpp"
 #include "result.hpp"
 #include "scene.hpp"
 #include "solve_options.hpp"
@@ -29,16 +31,6 @@ namespace {
 
 using compare::CheckResult;
 using compare::Comparison;
-
-py::dict deviation_of(const compare::Deviation& deviation) {
-  using namespace py::literals;  // NOLINT(google-build-using-namespace): of names alone
-  return py::dict("rms_m"_a = deviation.rms_m, "max_m"_a = deviation.max_m,
-                  "max_at_m"_a = deviation.max_at_m, "tip_m"_a = deviation.tip_m,
-                  "rms_over_length"_a = deviation.rms_over_length,
-                  "rms_over_movement"_a = deviation.rms_over_movement,
-                  "angle_rms_rad"_a = deviation.angle_rms_rad,
-                  "curvature_rms_per_m"_a = deviation.curvature_rms_per_m);
-}
 
 compare::MeasuredShape measured(const py::object& points, const py::object& arc_length,
                                 const std::string& name) {
@@ -167,6 +159,17 @@ void bind_check(py::module_& module) {
   py::class_<Report, std::shared_ptr<Report>> bound(
       module, "Check", "A shape against its scene's energy model; of check(). Arrays are views.");
   bind_result(bound);
+  bind_array(
+      bound, "arc_length",
+      [](const Report& r) -> const auto& { return r.check.reference.arc_length; },
+      "Where the points are along the rod [m], shape (M,), read only.");
+  bind_array(
+      bound, "points",
+      [](const Report& r) -> const auto& { return r.check.alignment.shape.points; },
+      "The points as laid on the rod, by arc length [m], shape (M, 3), read only.");
+  bind_array(
+      bound, "reference", [](const Report& r) -> const auto& { return r.check.reference.points; },
+      "The energy model there [m], shape (M, 3), read only.");
   bound
       .def_property_readonly(
           "passed",
@@ -185,9 +188,11 @@ void bind_check(py::module_& module) {
                              "Largest distance of a point [m].")
       .def_property_readonly("worst_point", of([](const Report& r) { return r.check.worst_point; }),
                              "Number of that point, from 1.")
-      .def_property_readonly("deviation",
-                             of([](const Report& r) { return deviation_of(r.check.deviation); }),
-                             "All deviations by name, in the names' units.")
+      .def_property_readonly(
+          "deviation", of([](const Report& r) {
+            return dict_of(compare::numbers_of(compare::deviation_fields(), r.check.deviation));
+          }),
+          "All deviations by name, in the names' units.")
       .def_property_readonly(
           "modulus_ratio", of([](const Report& r) { return r.check.effective_modulus.ratio; }),
           "E*/E at which the energy model comes nearest to the points; NaN without one.")
@@ -199,24 +204,6 @@ void bind_check(py::module_& module) {
             return list;
           }),
           "Of a shape that fails: (cause, RMS distance were it so [m]), the best first.")
-      .def_property_readonly(
-          "arc_length",
-          [](const py::object& self) {
-            return values_view(self.cast<const Report&>().check.reference.arc_length, self);
-          },
-          "Where the points are along the rod [m], shape (M,), read only.")
-      .def_property_readonly(
-          "points",
-          [](const py::object& self) {
-            return points_view(self.cast<const Report&>().check.alignment.shape.points, self);
-          },
-          "The points as laid on the rod, by arc length [m], shape (M, 3), read only.")
-      .def_property_readonly(
-          "reference",
-          [](const py::object& self) {
-            return points_view(self.cast<const Report&>().check.reference.points, self);
-          },
-          "The energy model there [m], shape (M, 3), read only.")
       .def("to_json", of([](const Report& r) { return cli::json_text(cli::shape_check_json(r)); }),
            "The document of `dlo check --format json`, as text.")
       .def("__str__", of([](const Report& r) {
@@ -228,31 +215,27 @@ void bind_comparison(py::module_& module) {
   py::class_<Comparison, std::shared_ptr<Comparison>> bound(
       module, "Comparison", "Force model and energy model of a scene; of compare().");
   bind_result(bound);
+  bind_array(
+      bound, "arc_length",
+      [](const Comparison& r) -> const auto& { return r.reference.arc_length; },
+      "Arc lengths of the force model's points [m], shape (N,), read only.");
+  bind_array(
+      bound, "force_points",
+      [](const Comparison& r) -> const auto& { return r.force.shape.points; },
+      "The force model at rest [m], shape (N, 3), read only.");
+  bind_array(
+      bound, "energy_points", [](const Comparison& r) -> const auto& { return r.reference.points; },
+      "The energy model there [m], shape (N, 3), read only.");
   bound
       .def_property_readonly(
-          "deviation", [](const Comparison& c) { return deviation_of(c.deviation); },
+          "deviation",
+          [](const Comparison& c) {
+            return dict_of(compare::numbers_of(compare::deviation_fields(), c.deviation));
+          },
           "Deviations by name, in the names' units.")
       .def_property_readonly(
           "modulus_ratio", [](const Comparison& c) { return c.effective_modulus.ratio; },
           "E*/E; NaN without one.")
-      .def_property_readonly(
-          "arc_length",
-          [](const py::object& self) {
-            return values_view(self.cast<const Comparison&>().reference.arc_length, self);
-          },
-          "Arc lengths of the force model's points [m], shape (N,), read only.")
-      .def_property_readonly(
-          "force_points",
-          [](const py::object& self) {
-            return points_view(self.cast<const Comparison&>().force.shape.points, self);
-          },
-          "The force model at rest [m], shape (N, 3), read only.")
-      .def_property_readonly(
-          "energy_points",
-          [](const py::object& self) {
-            return points_view(self.cast<const Comparison&>().reference.points, self);
-          },
-          "The energy model there [m], shape (N, 3), read only.")
       .def(
           "to_json", [](const Comparison& c) { return cli::json_text(cli::comparisons_json({c})); },
           "The document of `dlo compare --format json`, as text.")

@@ -4,18 +4,19 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "array.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/plan.hpp"
 #include "errors.hpp"
+#include "fields.hpp"
 #include "format/json.hpp"
 #include "format/plan.hpp"
 #include "format/solution.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
+#include "record/solution_fields.hpp"
 #include "result.hpp"
 #include "scene.hpp"
 #include "solve_options.hpp"
@@ -107,14 +108,6 @@ std::shared_ptr<SolvedStates> solve_all(const SharedScene& scene, int samples,
   return solved;
 }
 
-py::dict energies(const compare::SceneEnergies& energy) {
-  using namespace py::literals;  // NOLINT(google-build-using-namespace): of names alone
-  return py::dict("bending"_a = energy.bending, "twisting"_a = energy.twisting,
-                  "gravity"_a = energy.gravity, "load"_a = energy.load,
-                  "stretch"_a = energy.stretch, "contact"_a = energy.contact,
-                  "total"_a = energy.total());
-}
-
 /// A field of a GripperLoad of all grippers, without copies. @param get  of one
 template <typename Get>
 py::array gripper_rows(const py::object& self, const Get& get) {
@@ -125,31 +118,26 @@ py::array gripper_rows(const py::object& self, const Get& get) {
 }
 
 template <typename Class>
-void bind_arrays(Class& solution) {
-  const auto of = [](const py::object& self) -> const Solution& {
-    return self.cast<const SolvedScene&>().solution;
-  };
-  solution
-      .def_property_readonly(
-          "arc_length",
-          [of](const py::object& self) { return values_view(of(self).shape.arc_length, self); },
-          "Arc lengths of the points [m], shape (M,), read only.")
-      .def_property_readonly(
-          "points",
-          [of](const py::object& self) { return points_view(of(self).shape.points, self); },
-          "Positions [m], shape (M, 3), read only.")
-      .def_property_readonly(
-          "curvature",
-          [of](const py::object& self) { return values_view(of(self).curvature, self); },
-          "Curvature at the points [1/m], shape (M,), read only.")
-      .def_property_readonly(
-          "tension", [of](const py::object& self) { return values_view(of(self).tension, self); },
-          "Tension at the points, > 0 where the rod is pulled [N], shape (M,), or (0,) where\n"
-          "the model has none; read only.")
-      .def_property_readonly(
-          "d1", [of](const py::object& self) { return points_view(of(self).d1, self); },
-          "First directors of the rod's frame [-], shape (M, 3), or (0, 3) where the model has\n"
-          "none; read only.")
+void bind_arrays(Class& bound) {
+  using S = const SolvedScene&;
+  bind_array(
+      bound, "arc_length", [](S s) -> const auto& { return s.solution.shape.arc_length; },
+      "Arc lengths of the points [m], shape (M,), read only.");
+  bind_array(
+      bound, "points", [](S s) -> const auto& { return s.solution.shape.points; },
+      "Positions [m], shape (M, 3), read only.");
+  bind_array(
+      bound, "curvature", [](S s) -> const auto& { return s.solution.curvature; },
+      "Curvature at the points [1/m], shape (M,), read only.");
+  bind_array(
+      bound, "tension", [](S s) -> const auto& { return s.solution.tension; },
+      "Tension at the points, > 0 where the rod is pulled [N], shape (M,), or (0,) where\n"
+      "the model has none; read only.");
+  bind_array(
+      bound, "d1", [](S s) -> const auto& { return s.solution.d1; },
+      "First directors of the rod's frame [-], shape (M, 3), or (0, 3) where the model has\n"
+      "none; read only.");
+  bound
       .def_property_readonly(
           "gripper_forces",
           [](const py::object& self) {
@@ -166,8 +154,8 @@ void bind_arrays(Class& solution) {
           "The same about each gripper's position [N m], shape (G, 3), read only.")
       .def_property_readonly(
           "obstacle_forces",
-          [of](const py::object& self) {
-            const auto& forces = of(self).obstacles;
+          [](const py::object& self) {
+            const auto& forces = self.cast<const SolvedScene&>().solution.obstacles;
             return rows_view(forces.empty() ? nullptr : forces.front().data(),
                              static_cast<py::ssize_t>(forces.size()), self);
           },
@@ -201,56 +189,18 @@ compare::SolveOptions solve_options(const py::dict& given) {
 }
 
 void bind_solve(py::module_& module) {
-  const auto of = [](auto get) {
-    return [get](const SolvedScene& solved) { return get(solved.solution); };
-  };
   py::class_<SolvedScene, std::shared_ptr<SolvedScene>> solution(
       module, "Solution",
       "A shape of a scene's rod in balance, and what it cost; of solve() and solve_all().\n\n"
       "Arrays are views into it, read only; they keep it alive.");
   bind_arrays(solution);
   bind_result(solution);
-  solution
-      .def_property_readonly(
-          "scene", [](const SolvedScene& s) { return s.scene->scene.name; }, "The scene's name.")
-      .def_property_readonly("model",
-                             of([](const Solution& s) { return compare::to_string(s.model); }),
-                             "\"energy\", \"chain\", \"exact\" or \"force\".")
-      .def_property_readonly("status",
-                             of([](const Solution& s) { return cli::status_name(s.status); }),
-                             "\"converged\", \"roundoff_limited\", \"saddle\", \"near_singular\" "
-                             "or\n\"not_verified\".")
-      .def_property_readonly(
-          "converged", of([](const Solution& s) { return energy_model::succeeded(s.status); }),
-          "Whether it is an equilibrium, proven stable.")
-      .def_property_readonly("message", of([](const Solution& s) { return s.message; }),
-                             "How the solver ended.")
-      .def_property_readonly("energy", of([](const Solution& s) { return energies(s.energy); }),
-                             "Energies [J]: bending, twisting, gravity, load, stretch, contact, "
-                             "total.")
-      .def_property_readonly(
-          "smallest_eigenvalue", of([](const Solution& s) { return s.smallest_eigenvalue; }),
-          "Smallest eigenvalue of the reduced Hessian over EI/l, < 0 if unstable; NaN where no\n"
-          "search looked.")
-      .def_property_readonly("smallest_curvature",
-                             of([](const Solution& s) { return s.smallest_eigenvalue; }),
-                             "smallest_eigenvalue by its name before 0.2, which takes it away.")
-      .def_property_readonly("error_estimate",
-                             of([](const Solution& s) { return s.error_estimate; }),
-                             "What the points may be off [m]; NaN: not known.")
-      .def_property_readonly("evaluations", of([](const Solution& s) { return s.evaluations; }),
-                             "Of the minimiser, or shots of exact.")
-      .def_property_readonly("steps", of([](const Solution& s) { return s.steps; }),
-                             "Of the force model.")
-      .def_property_readonly("terms", of([](const Solution& s) { return s.terms; }),
-                             "Curvature coefficients of the energy model.")
-      .def_property_readonly("seconds", of([](const Solution& s) { return s.seconds; }),
-                             "Wall time of the solver [s].")
-      .def_property_readonly("neglected", of([](const Solution& s) { return s.neglected; }),
-                             "What the scene has and the model neglects.")
-      .def_property_readonly("left_out", of([](const Solution& s) { return s.neglected; }),
-                             "neglected by its name before 0.2, which takes it away.")
-      .def("to_json", &solution_document, "The document of `dlo solve --format json`, as text.")
+  const auto of = [](const SolvedScene& solved) {
+    return compare::SolvedShape{solved.scene->scene, solved.solution};
+  };
+  bind_fields(solution, compare::solution_fields(), of);
+  bind_fields(solution, compare::shape_numbers(), of);
+  solution.def("to_json", &solution_document, "The document of `dlo solve --format json`, as text.")
       .def("__str__", [](const SolvedScene& solved) {
         return cli::solution_text(solved.solution, solved.scene->scene);
       });

@@ -25,8 +25,7 @@ def _lines(result: Any) -> list[tuple[Any, dict[str, Any]]]:
     if isinstance(result, _dlo.Equilibria):
         lines = []
         for number, state in enumerate(result):
-            unstable = state.status == "saddle" or state.smallest_eigenvalue < -1e-7
-            style = "--" if unstable else "-"
+            style = "-" if state.stable else "--"
             label = f"{number + 1}: {state.energy['total']:.4g} J"
             lines.append((state.points, {"linestyle": style, "label": label}))
         return lines

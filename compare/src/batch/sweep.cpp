@@ -29,7 +29,7 @@ namespace {
 /// So many rows may wait for a slow one before them.
 constexpr std::size_t rows_per_thread = 256;
 
-std::string result_columns(SweepModel model) {
+std::string model_columns(SweepModel model) {
   std::string columns = "tip_x_m,tip_y_m,tip_z_m,energy_J,";
   switch (model) {
     case SweepModel::energy:
@@ -81,7 +81,7 @@ Sweep::Sweep(SceneTemplate scene, Grid grid, SweepModel model, const SolveOption
   require_one_scene();
 }
 
-void Sweep::require_one_scene() const {
+void Sweep::require_one_scene() {
   constexpr std::int64_t most_tries = 1000;
   const std::int64_t tries = std::min(grid_.size(), most_tries);
   // A step near the golden section of the grid that has no divisor in common with it visits every
@@ -92,7 +92,7 @@ void Sweep::require_one_scene() const {
   std::int64_t row = 0;
   for (std::int64_t i = 0; i < tries; ++i, row = (row + step) % grid_.size()) {
     try {
-      (void)scene(row);
+      numbers_ = fields_in(in_csv, shape_numbers(), scene(row));
       return;
     } catch (const InputError& error) {
       if (first_problem.empty()) first_problem = error.what();
@@ -127,7 +127,13 @@ std::string Sweep::header() const {
   std::string line = "row,";
   for (const Axis& axis : grid_.axes()) line += csv_field(axis.column()) + ",";
   if (!gamma_varied_) line += "gamma,";
-  return line + result_columns(model_) + "status\n";
+  return line + result_columns() + "status\n";
+}
+
+std::string Sweep::result_columns() const {
+  std::string columns = model_columns(model_);
+  for (const Field<SolvedShape>& number : numbers_) columns += number.key() + ",";
+  return columns;
 }
 
 std::string Sweep::row_start(std::int64_t row) const {
@@ -142,14 +148,19 @@ std::string Sweep::row_start(std::int64_t row) const {
 std::string Sweep::results(const Scene& scene) const {
   const bool comparing = model_ == SweepModel::compare || model_ == SweepModel::compare_chain;
   const Model model = solver_of(model_);
-  // A comparison needs all points, a tip does not.
-  const std::vector<double> samples = comparing ? std::vector<double>{} : std::vector{scene.length};
-  const Solution solution = solve(scene, model, options_, samples);
+  // A comparison and numbers of a shape need all points, a tip does not.
+  const bool is_whole = comparing || !numbers_.empty();
+  const Solution solution =
+      solve(scene, model, options_, is_whole ? std::vector<double>{} : std::vector{scene.length});
   std::string line = gamma_varied_ ? "" : csv_number(scene.gamma()) + ",";
   line += tip_and_energy(solution);
   line += fmt::format("{},", model == Model::force ? solution.steps : solution.evaluations);
   if (model == Model::energy || model == Model::exact) line += fmt::format("{},", solution.terms);
-  return comparing ? line + compared(scene, solution) : line;
+  if (comparing) line += compared(scene, solution);
+  for (const Field<SolvedShape>& number : numbers_) {
+    line += csv_value(value_of(number, {scene, solution})) + ",";
+  }
+  return line;
 }
 
 std::string Sweep::compared(const Scene& scene, const Solution& solution) const {
@@ -164,7 +175,7 @@ std::string Sweep::compared(const Scene& scene, const Solution& solution) const 
 }
 
 std::string Sweep::without_results(const std::string& status) const {
-  const std::string columns = (gamma_varied_ ? "" : "gamma,") + result_columns(model_);
+  const std::string columns = (gamma_varied_ ? "" : "gamma,") + result_columns();
   const auto empty = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ','));
   return std::string(empty, ',') + csv_field(display(status)) + "\n";
 }

@@ -8,6 +8,7 @@
 #include "batch/sweep_grid.hpp"
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/solution.hpp"
+#include "record/solution_fields.hpp"
 #include "scene/scene_template.hpp"
 
 namespace dlo::compare {
@@ -66,7 +67,7 @@ class Sweep {
   /// energy_J, evaluations (force, compare: steps). energy, exact: terms. compare and
   /// compare-chain, of the force model or the chain against the energy model: rms_over_length,
   /// max_over_length, tip_over_length (empty without a free end), effective_modulus_ratio,
-  /// rms_at_effective_modulus_over_length, optimum, energy_evaluations.
+  /// rms_at_effective_modulus_over_length, optimum, energy_evaluations. Then shape_numbers().
   [[nodiscard]] std::string header() const;
 
   /// How a row begins: its number and its fields, each with a comma behind it.
@@ -90,12 +91,14 @@ class Sweep {
   [[nodiscard]] std::string results(const Scene& scene) const;
   [[nodiscard]] std::string compared(const Scene& scene, const Solution& solution) const;
   [[nodiscard]] std::string without_results(const std::string& status) const;
-  void require_one_scene() const;
+  [[nodiscard]] std::string result_columns() const;
+  void require_one_scene();
 
   SceneTemplate scene_;
   Grid grid_;
   SweepModel model_;
   SolveOptions options_;
+  std::vector<Field<SolvedShape>> numbers_;  // of a shape, those of such scenes
   bool gamma_varied_ = false;
 };
 

@@ -106,7 +106,7 @@ DynamicFrame frame_of(const energy_model::MovingFrame& moving, const TrackFrame&
     frame.grippers.push_back({reaction.force, reaction.torque});
   }
   frame.points = moving.sample(arc_length).points;
-  frame.quasi_static_error = rms(arc_length, at_rest.points - frame.points) / length;
+  frame.quasi_static_error = rms(arc_length, at_rest.shape.points - frame.points) / length;
   if (at_rest.force) frame.force_error = distance(at_rest.force->shape, moving.sample) / length;
   return frame;
 }

@@ -11,14 +11,13 @@
 
 #include "dlo/compare/discretise.hpp"
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/solve.hpp"
 #include "motion/branch.hpp"
 #include "motion/frame_clock.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {
 namespace {
-
-using energy_model::Equilibrium;
 
 class Tracker {
  public:
@@ -58,15 +57,12 @@ class Tracker {
     const double time = clock_.time(index);
     const auto begin = std::chrono::steady_clock::now();
     Passage passage;
-    Eigen::Matrix3Xd points;
     try {
       if (index == 0) {
         branch_.begin();
       } else {
         passage = branch_.next();
       }
-      const Equilibrium& rod = branch_.now().rod;
-      if (rod.sample) points = rod.sample(result_.arc_length).points;
     } catch (const std::invalid_argument& error) {
       if (index == 0) throw InputError(fmt::format("{}: {}", scene_.file, error.what()));
       return stop(time, error.what());
@@ -74,8 +70,6 @@ class Tracker {
       if (index == 0) throw;
       return stop(time, error.what());
     }
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     const Moment& now = branch_.now();
     if (!energy_model::succeeded(now.rod.status)) {
       const std::string why = fmt::format("the energy model did not converge: {} ({} evaluations)",
@@ -83,22 +77,13 @@ class Tracker {
       if (index > 0) return stop(time, why);
       throw ConvergenceError(fmt::format("{}: at {:g} s {}", scene_.file, time, why));
     }
-    TrackFrame frame;
+    TrackFrame frame{
+        solution_of(now.scene, Model::energy, now.rod, result_.arc_length, branch_.obstacles())};
+    frame.energy = energies_of(now);
     frame.time = time;
     frame.followed = passage.kept;
-    frame.smallest_eigenvalue = now.rod.smallest_eigenvalue;
-    frame.seconds = seconds;
-    if (index > 0 && !passage.stands) seconds_.push_back(seconds);
-    frame.points = std::move(points);
-    frame.energy = energies_of(now);
-    for (const energy_model::Reaction& reaction : now.rod.grips) {
-      frame.grippers.push_back({reaction.force, reaction.torque});
-    }
-    frame.obstacles = forces_of_all(scene_, branch_.obstacles(), now.rod.obstacles);
-    frame.contacts = now.rod.contacts;
-    for (energy_model::ContactPart& contact : frame.contacts) {
-      contact.obstacle = branch_.obstacles()[contact.obstacle];
-    }
+    frame.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (index > 0 && !passage.stands) seconds_.push_back(frame.seconds);
     if (index > 0 && !add_balance(passage, frame)) return false;
     add_contact_events(frame);
     add_force(now, frame);
@@ -193,7 +178,7 @@ class Tracker {
     double sum = 0;
     for (const TrackFrame& frame : result_.frames) {
       if (!frame.force) continue;
-      leader.push_back(frame.points);
+      leader.push_back(frame.shape.points);
       follower.push_back(frame.force->points);
       const double error = frame.force->error_over_length;
       sum += error;

@@ -23,23 +23,15 @@ struct TrackOptions {
   SolveOptions solve;
 };
 
-/// The rod at one time, at rest.
-struct TrackFrame {
+/// The rod at one time, at rest: its solution by `energy`, at Track::arc_length. Gravity and loads
+/// are zero at the origin, which does not move; `seconds` is what the frame took.
+struct TrackFrame : Solution {
   double time = 0;        ///< [s]
   bool followed = false;  ///< on the branch of the frame before
-  /// As Solution's: it comes to zero where a branch ends at a fold [-].
-  double smallest_eigenvalue = std::numeric_limits<double>::quiet_NaN();
-  /// Of the shape; gravity and loads are zero at the origin, which does not move [J].
-  SceneEnergies energy;
-  double work = 0;  ///< of grippers and obstacles on the rod, since the first frame [J]
+  double work = 0;        ///< of grippers and obstacles on the rod, since the first frame [J]
   /// That work since the frame before less what the energy has grown by, and what it may be with
   /// forces between those of the two frames [J]. NaN where clamps turn the rod about itself.
   double released = 0, released_bound = 0;
-  std::vector<GripperLoad> grippers;                ///< in the scene's order
-  std::vector<energy_model::ContactPart> contacts;  ///< with rigid obstacles, by arc length
-  std::vector<Eigen::Vector3d> obstacles;  ///< force of each on the rod, as the scene's [N]
-  Eigen::Matrix3Xd points;                 ///< at Track::arc_length [m]
-  double seconds = 0;                      ///< what it took
   std::optional<ForceFrame> force;
 };
 

@@ -9,6 +9,7 @@
 #include "base/quote.hpp"
 #include "figure/shape_panels.hpp"
 #include "picture/comparison_figure.hpp"
+#include "record/solution_fields.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -18,24 +19,31 @@ constexpr int row_pixels = 42;  // a line of text and a bar
 }  // namespace
 
 bool neglects(const Comparison& comparison, const char* what) {
-  const std::vector<std::string>& neglected = comparison.force.neglected;
-  return std::find(neglected.begin(), neglected.end(), what) != neglected.end();
+  return neglects(comparison.force, what);
+}
+
+std::span<const NamedPart> budget_parts() {
+  static const NamedPart parts[] = {
+      {"twist", "twist", &Budget::twist, true},
+      {"natural curvature", "natural curvature", &Budget::natural_curvature, true},
+      {"law", "the law", &Budget::law},
+      {"bookkeeping", "the bookkeeping", &Budget::bookkeeping},
+      {"discretisation", "discretisation", &Budget::discretisation},
+      {"stretch", "stretch", &Budget::stretch},
+      {"contact", "obstacles that give way", &Budget::contact},
+      {"not at rest", "not being at rest", &Budget::not_at_rest},
+      {"interaction", "law and bookkeeping together", &Budget::interaction}};
+  return parts;
 }
 
 std::vector<std::pair<const char*, const BudgetPart*>> shown_parts(const Comparison& comparison) {
-  const Budget& b = comparison.budget;
   std::vector<std::pair<const char*, const BudgetPart*>> parts;
-  if (neglects(comparison, "twist")) parts.emplace_back("twist", &b.twist);
-  if (neglects(comparison, "natural curvature")) {
-    parts.emplace_back("natural curvature", &b.natural_curvature);
+  for (const NamedPart& part : budget_parts()) {
+    const BudgetPart& value = comparison.budget.*part.of;
+    const bool absent = part.is_neglected ? !neglects(comparison, part.name)
+                                          : part.of == &Budget::contact && value.rms_m == 0;
+    if (!absent) parts.emplace_back(part.name, &value);
   }
-  parts.emplace_back("law", &b.law);
-  parts.emplace_back("bookkeeping", &b.bookkeeping);
-  parts.emplace_back("discretisation", &b.discretisation);
-  parts.emplace_back("stretch", &b.stretch);
-  if (b.contact.rms_m != 0) parts.emplace_back("contact", &b.contact);
-  parts.emplace_back("not at rest", &b.not_at_rest);
-  parts.emplace_back("interaction", &b.interaction);
   return parts;
 }
 

@@ -40,7 +40,7 @@ Eigen::Matrix3Xd points_of(const TrackShapes& shapes, const std::vector<std::siz
   std::vector<const Eigen::Matrix3Xd*> parts;
   for (const std::size_t i : frames) {
     const TrackFrame& frame = shapes.track.frames[i];
-    parts.push_back(&frame.points);
+    parts.push_back(&frame.shape.points);
     if (frame.force) parts.push_back(&frame.force->shape.points);
     if (shapes.has_moving(i)) parts.push_back(&shapes.moving->frames[i].points);
   }
@@ -134,7 +134,7 @@ std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::
   const std::vector<double>& arc_length = shapes.track.arc_length;
   const TrackFrame& frame = shapes.track.frames[index];
   std::vector<Series> all;
-  for (Series& outline : obstacle_series(now, {view}, frame.points)) {
+  for (Series& outline : obstacle_series(now, {view}, frame.shape.points)) {
     Series seen = within_cell(std::move(outline), view, cells);
     if (!seen.arc_length.empty()) all.push_back(std::move(seen));
   }
@@ -155,9 +155,9 @@ std::vector<Series> series_of(const Scene& now, const TrackShapes& shapes, std::
   all.push_back({.id = "energy",
                  .title = "energy model (the rod itself), at rest",
                  .style = "with lines linecolor rgb 'black' linewidth 2 dashtype 1",
-                 .points = frame.points,
+                 .points = frame.shape.points,
                  .arc_length = arc_length});
-  const Shape shape{.arc_length = arc_length, .points = frame.points};
+  const Shape& shape = frame.shape;
   const RodPoints points = [&](const std::vector<double>& s) { return resample(shape, s).points; };
   if (auto contact = contact_series(frame.contacts, points, now.length)) {
     all.push_back(std::move(*contact));

@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/number.hpp"
 #include "figure/series.hpp"
 #include "picture/comparison_figure.hpp"
+#include "record/field.hpp"
 
 namespace dlo::compare {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// Five significant digits: a thousandth of what a screen shows.
 Json number(double value) {
@@ -23,9 +21,7 @@ Json number(double value) {
 
 template <typename Values>
 Json numbers(const Values& values) {
-  Json all = Json::array();
-  for (const double value : values) all.push_back(number(value));
-  return all;
+  return json_list(values, [&](const double value) -> Json { return number(value); });
 }
 
 /// Of a rod of some length [1/m]; what is rounding at an end without moment is none.
@@ -92,9 +88,7 @@ Json scene_json(const SceneReport& report) {
 /// Whole ten thousandths.
 template <typename Values>
 Json grid_row(const Values& values) {
-  Json all = Json::array();
-  for (const double value : values) all.push_back(std::lround(value * 1e4));
-  return all;
+  return json_list(values, [&](const double value) -> Json { return std::lround(value * 1e4); });
 }
 
 Json grid_points(const Eigen::Matrix2Xd& points) {
@@ -102,11 +96,9 @@ Json grid_points(const Eigen::Matrix2Xd& points) {
 }
 
 Json grid_json(const ShapeGrid& grid) {
-  Json models = Json::array();
-  for (const GridModel& model : grid.models) {
-    models.push_back(
-        {{"law", to_string(model.law)}, {"bookkeeping", to_string(model.bookkeeping)}});
-  }
+  Json models = json_list(grid.models, [&](const GridModel& model) -> Json {
+    return {{"law", to_string(model.law)}, {"bookkeeping", to_string(model.bookkeeping)}};
+  });
   Json cells = Json::array();
   for (const GridCell& cell : grid.cells) {
     if (!cell.failure.empty()) {

@@ -8,6 +8,7 @@
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/force_model_settings.hpp"
+#include "picture/budget_figure.hpp"
 #include "report/html.hpp"
 #include "report/tables.hpp"
 
@@ -62,21 +63,10 @@ std::vector<std::vector<const Comparison*>> groups_of(const Report& report) {
 }
 
 std::string largest_part(const Budget& b) {
-  const std::pair<const char*, const BudgetPart*> parts[] = {
-      {"twist", &b.twist},
-      {"natural curvature", &b.natural_curvature},
-      {"the law", &b.law},
-      {"the bookkeeping", &b.bookkeeping},
-      {"discretisation", &b.discretisation},
-      {"stretch", &b.stretch},
-      {"obstacles that give way", &b.contact},
-      {"not being at rest", &b.not_at_rest},
-      {"law and bookkeeping together", &b.interaction}};
-  const auto* largest = std::max_element(
-      std::begin(parts), std::end(parts),
-      [](const auto& a, const auto& other) { return a.second->share < other.second->share; });
-  return fmt::format("{}, with {:.0f}\u00a0% of the deviation", largest->first,
-                     largest->second->share * 100);
+  const NamedPart& largest = *std::ranges::max_element(
+      budget_parts(), {}, [&](const NamedPart& part) { return (b.*part.of).share; });
+  return fmt::format("{}, with {:.0f}\u00a0% of the deviation", largest.words,
+                     (b.*largest.of).share * 100);
 }
 
 void say_shapes(const Report& report, std::vector<std::string>& verdict) {

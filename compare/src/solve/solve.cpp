@@ -45,8 +45,11 @@ bool touches_yielding_obstacle(const Scene& scene, const std::vector<Eigen::Vect
   return false;
 }
 
-Solution sampled(const Scene& scene, Model model, const energy_model::Equilibrium& equilibrium,
-                 const std::vector<double>& arc_lengths) {
+}  // namespace
+
+Solution solution_of(const Scene& scene, Model model, const energy_model::Equilibrium& equilibrium,
+                     const std::vector<double>& arc_lengths,
+                     const std::vector<std::size_t>& obstacles) {
   constexpr int default_samples = 101;
   const std::vector<double> samples =
       arc_lengths.empty() ? equal_arc_lengths(scene.length, default_samples) : arc_lengths;
@@ -67,12 +70,15 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   for (const energy_model::Reaction& reaction : equilibrium.grips) {
     solution.grippers.push_back({reaction.force, reaction.torque});
   }
-  solution.obstacles = forces_of_all(scene, obstacles_in_reach(scene), equilibrium.obstacles);
+  solution.obstacles = forces_of_all(scene, obstacles, equilibrium.obstacles);
   solution.twists = equilibrium.twists;
   solution.linking = linking_of(scene, equilibrium);
   if (scene.holds_twist() && solution.twists.empty()) solution.neglected = {"twist"};
   if (touches_with_friction(scene, solution.obstacles)) solution.neglected.emplace_back("friction");
-  solution.contacts = contacts_of(scene, equilibrium);
+  solution.contacts = equilibrium.contacts;
+  for (energy_model::ContactPart& contact : solution.contacts) {
+    contact.obstacle = obstacles[contact.obstacle];
+  }
   const bool sinks_in = touches_yielding_obstacle(scene, solution.obstacles);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
@@ -90,12 +96,11 @@ Solution sampled(const Scene& scene, Model model, const energy_model::Equilibriu
   return solution;
 }
 
-}  // namespace
-
 Solution solve(const Scene& scene, Model model, const SolveOptions& options,
                const std::vector<double>& arc_lengths) {
   if (model == Model::energy || model == Model::exact) {
-    return sampled(scene, model, solve_reference(scene, model, options), arc_lengths);
+    return solution_of(scene, model, solve_reference(scene, model, options), arc_lengths,
+                       obstacles_in_reach(scene));
   }
   Solution solution = model == Model::chain ? solve_chain(scene, scene.force_model, options)
                                             : solve_force(scene, scene.force_model, options);
@@ -113,8 +118,9 @@ AllSolutions solve_all(const Scene& scene, const SolveOptions& options,
   AllSolutions all;
   all.looked_from = std::move(search.looked_from);
   all.not_looked = std::move(search.not_looked);
+  const std::vector<std::size_t> obstacles = obstacles_in_reach(scene);
   for (const energy_model::Equilibrium& state : search.equilibria) {
-    all.solutions.push_back(sampled(scene, Model::energy, state, arc_lengths));
+    all.solutions.push_back(solution_of(scene, Model::energy, state, arc_lengths, obstacles));
   }
   return all;
 }

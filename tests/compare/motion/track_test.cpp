@@ -145,7 +145,7 @@ TEST(Track, TellsASnapByTheEnergyThatIsMissing) {
     EXPECT_EQ(snaps.size(), 1U);
     const TrackFrame& after = result.frames[snaps.at(0).frame];
     EXPECT_FALSE(after.followed);
-    EXPECT_LT(after.points.row(1).minCoeff(), -0.4);
+    EXPECT_LT(after.shape.points.row(1).minCoeff(), -0.4);
     EXPECT_TRUE(after.contacts.empty());
     return std::pair(snaps.at(0), after.time);
   };
@@ -209,7 +209,7 @@ TEST(Track, RepeatsAFrameThatItHasLostInSmallerSteps) {
   for (std::size_t i = 0; i < coarse.frames.size(); ++i) {
     const TrackFrame& same = fine.frames[std::min(20 * i, fine.frames.size() - 1)];
     ASSERT_NEAR(same.time, coarse.frames[i].time, 1e-12);
-    EXPECT_LT((same.points - coarse.frames[i].points).norm(), 1e-8) << same.time;
+    EXPECT_LT((same.shape.points - coarse.frames[i].shape.points).norm(), 1e-8) << same.time;
     EXPECT_TRUE(coarse.frames[i].followed);
   }
 }
@@ -227,7 +227,7 @@ TEST(Track, GoesOnAtRestBeyondTheLastPose) {
   EXPECT_NEAR(result.frames.back().time, 1.5, 1e-12);
   const TrackFrame& last_pose = result.frames[20];
   for (std::size_t i = 21; i < result.frames.size(); ++i) {
-    EXPECT_LT((result.frames[i].points - last_pose.points).norm(), 1e-9) << i;
+    EXPECT_LT((result.frames[i].shape.points - last_pose.shape.points).norm(), 1e-9) << i;
     EXPECT_NEAR(result.frames[i].work, last_pose.work, 1e-12) << i;
     ASSERT_TRUE(result.frames[i].force) << result.force.none;
   }
@@ -287,7 +287,7 @@ TEST(Track, ErrorsOfTheForceModelAreSharesOfTheLength) {
   ASSERT_EQ(result.force.none, "");
   double sum = 0;
   for (const TrackFrame& frame : result.frames) {
-    const Eigen::Matrix3Xd apart = frame.force->points - frame.points;
+    const Eigen::Matrix3Xd apart = frame.force->points - frame.shape.points;
     const double share = std::sqrt(apart.colwise().squaredNorm().mean()) / scene.length;
     // Points of the rod and of the polygon's segments, at other arc lengths than its own.
     EXPECT_NEAR(frame.force->error_over_length, share, 0.1 * share + 1e-4) << frame.time;
@@ -396,7 +396,7 @@ TEST(Track, TheForceModelsLagIsTheDelayAtWhichItIsNearest) {
     std::vector<Eigen::Matrix3Xd> follower;
     for (const TrackFrame& frame : result.frames) {
       ASSERT_TRUE(frame.force) << result.force.none;
-      leader.push_back(frame.points);
+      leader.push_back(frame.shape.points);
       follower.push_back(frame.force->points);
     }
     const double delay = nearest_delay(leader, follower, 1 / rate);

@@ -69,8 +69,8 @@ TEST(TrackFigures, StripHasTheShapesOfItsFrames) {
   Eigen::Index point = 0;
   for (const auto& row : rows_of(strip.csv)) {
     if (row.front() != "energy_5") continue;
-    EXPECT_NEAR(std::stod(row[2]), middle.points(0, point), 1e-9);
-    EXPECT_NEAR(std::stod(row[3]), middle.points(1, point), 1e-9);
+    EXPECT_NEAR(std::stod(row[2]), middle.shape.points(0, point), 1e-9);
+    EXPECT_NEAR(std::stod(row[3]), middle.shape.points(1, point), 1e-9);
     ++point;
   }
   EXPECT_THAT(strip.panels.front().script, testing::HasSubstr("'t = 1 s'"));

@@ -16,6 +16,13 @@ namespace dlo::compare {
 [[nodiscard]] Solution solve(const Scene& scene, Model model, const SolveOptions& options = {},
                              const std::vector<double>& arc_lengths = {});
 
+/// An equilibrium of `energy` or `exact` as solve() gives it.
+/// @param obstacles  of the scene, those that the model was given
+[[nodiscard]] Solution solution_of(const Scene& scene, Model model,
+                                   const energy_model::Equilibrium& equilibrium,
+                                   const std::vector<double>& arc_lengths,
+                                   const std::vector<std::size_t>& obstacles);
+
 /// What a search for all equilibria has found, and as energy_model::EnergySearch from where.
 struct AllSolutions {
   std::vector<Solution> solutions;                        ///< stable ones first, by energy

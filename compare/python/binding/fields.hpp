@@ -1,0 +1,75 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "array.hpp"
+#include "record/field.hpp"
+
+namespace dlo::python {
+
+namespace py = pybind11;
+
+/// Numbers as a dict.
+[[nodiscard]] inline py::dict dict_of(const compare::Numbers& numbers) {
+  py::dict dict;
+  for (const auto& [name, value] : numbers) dict[py::str(name)] = value;
+  return dict;
+}
+
+/// An array as an attribute: a view into the object, which it keeps alive.
+/// @param of  the array's numbers or points, of an object of the class
+template <typename Object, typename... Options, typename Of>
+void bind_array(py::class_<Object, Options...>& bound, const char* name, const Of& of,
+                const char* words) {
+  bound.def_property_readonly(
+      name,
+      [of](const py::object& self) {
+        const auto& values = of(self.cast<const Object&>());
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(values)>, std::vector<double>>) {
+          return values_view(values, self);
+        } else {
+          return points_view(values, self);
+        }
+      },
+      words);
+}
+
+/// The attributes of a record, and those that had another name before 0.2.
+/// @param of  a result of the record's type, of an object of the class
+template <typename Object, typename... Options, typename T, typename Of>
+void bind_fields(py::class_<Object, Options...>& bound, std::span<const compare::Field<T>> fields,
+                 const Of& of) {
+  for (const compare::Field<T>& field : fields) {
+    if ((field.places & compare::in_python) == 0) continue;
+    const auto bind = [&](auto get) {
+      using Value = decltype(get(std::declval<const T&>()));
+      if constexpr (!std::is_same_v<Value, compare::Json>) {
+        const auto value = [get, of](const Object& object) {
+          if constexpr (std::is_same_v<Value, compare::Numbers>) {
+            return dict_of(get(of(object)));
+          } else {
+            return get(of(object));
+          }
+        };
+        const std::string name(field.name);
+        bound.def_property_readonly(name.c_str(), value, field.python_words().c_str());
+        const std::string before(compare::name_before(name));
+        if (before.empty()) return;
+        bound.def_property_readonly(
+            before.c_str(), value,
+            (name + " by its name before 0.2, which takes it away.").c_str());
+      }
+    };
+    std::visit(bind, field.get);
+  }
+}
+
+}  // namespace dlo::python

@@ -1,0 +1,72 @@
+#include "record/field.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/number.hpp"
+#include "base/quote.hpp"
+
+namespace dlo::compare {
+
+std::string_view name_before(std::string_view name) {
+  constexpr std::pair<std::string_view, std::string_view> names[] = {
+      {"neglected", "left_out"},
+      {"not_identified", "not_told"},
+      {"reference_verified", "reference_resolved"},
+      {"smallest_eigenvalue", "smallest_curvature"},
+      {"smallest_eigenvalue_before", "smallest_curvature_before"},
+  };
+  for (const auto& [now, before] : names) {
+    if (now == name) return before;
+  }
+  return {};
+}
+
+Json json_of(const Numbers& numbers) {
+  Json object = Json::object();
+  for (const auto& [name, value] : numbers) object[name] = value;
+  return object;
+}
+
+std::string csv_value(const Json& value, int digits) {
+  if (value.is_null()) return "";
+  if (value.is_number_float()) return csv_number(value.get<double>(), digits);
+  return value.is_string() ? csv_field(value.get<std::string>()) : value.dump();
+}
+
+double Magnitudes::of(std::string_view unit) const {
+  if (unit == "m") return length;
+  if (unit == "N") return force;
+  if (unit == "Nm") return torque;
+  return unit == "J" ? energy : 0;
+}
+
+Magnitudes magnitudes(const Scene& scene) {
+  const double l = scene.length;
+  double force = scene.softer_bending_stiffness() / (l * l) + scene.weight_between(0, l).norm();
+  for (const PointLoad& load : scene.loads) force += load.force.norm();
+  return {.length = l, .force = force, .torque = force * l, .energy = force * l};
+}
+
+std::string text_row(std::string_view name, std::string_view unit, const Json& value,
+                     const Magnitudes& large) {
+  std::string label(name);
+  std::ranges::replace(label, '_', ' ');
+  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  if (value.is_number_float()) {
+    const auto number = value.get<double>();
+    if (!std::isfinite(number)) return "";
+    text = fmt::format("{:.6g}", shown(number, large.of(unit)));
+  }
+  return fmt::format("{:<10} {}{}{}\n", label, text, unit.empty() ? "" : " ", unit);
+}
+
+Json to_json(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+Json points_json(const Eigen::Matrix3Xd& points) {
+  return json_list(points.colwise(), [](const Eigen::Vector3d& point) { return to_json(point); });
+}
+
+}  // namespace dlo::compare

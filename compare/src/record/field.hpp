@@ -1,0 +1,158 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "dlo/compare/scene.hpp"
+
+namespace dlo::compare {
+
+using Json = nlohmann::ordered_json;
+
+/// Numbers by their names, in order.
+using Numbers = std::vector<std::pair<std::string, double>>;
+
+/// Where a field is shown; several are put together by |.
+enum Place : unsigned {
+  in_text = 1,    ///< in a row of its own, with six digits and its unit
+  in_json = 2,    ///< by its path
+  in_csv = 4,     ///< in a column
+  in_python = 8,  ///< as an attribute
+  everywhere = in_text | in_json | in_csv | in_python
+};
+
+/// One thing that a result T says, described once: its row of text, its key in JSON, its column in
+/// CSV, its attribute in Python with the line of the stub, and its row in a page's table of keys
+/// are made of this.
+template <typename T>
+struct Field {
+  /// What it is worth; NaN is none.
+  using Get = std::variant<double (*)(const T&), long (*)(const T&), bool (*)(const T&),
+                           std::string (*)(const T&), std::vector<std::string> (*)(const T&),
+                           Numbers (*)(const T&), Json (*)(const T&)>;
+
+  std::string_view name = {};   ///< words joined by "_"
+  std::string_view unit = {};   ///< as keys end with; empty: a pure number, or none at all
+  std::string_view words = {};  ///< what it is, for people
+  Get get = {};
+  unsigned places = everywhere;          ///< of Place
+  std::string_view path = {};            ///< in JSON, such as "solver/wall_s"; empty: key()
+  bool (*when)(const Scene&) = nullptr;  ///< of which scenes; null: of all
+
+  /// Name and unit, as a column is called.
+  [[nodiscard]] std::string key() const {
+    return std::string(name) + (unit.empty() ? "" : "_") + std::string(unit);
+  }
+  [[nodiscard]] std::string json_path() const { return path.empty() ? key() : std::string(path); }
+  /// What it is, with its unit.
+  [[nodiscard]] std::string python_words() const {
+    return std::string(words) + (unit.empty() ? "." : " [" + std::string(unit) + "].");
+  }
+};
+
+/// The name before 0.2 of a key of JSON or an attribute of Python, which takes it away; empty:
+/// none.
+[[nodiscard]] std::string_view name_before(std::string_view name);
+
+/// As JSON has a value of a field's type.
+[[nodiscard]] Json json_of(const Numbers& numbers);
+template <typename Value>
+[[nodiscard]] Json json_of(const Value& value) {
+  return Json(value);
+}
+
+template <typename T>
+[[nodiscard]] Json value_of(const Field<T>& field, const T& result) {
+  return std::visit([&](auto get) { return json_of(get(result)); }, field.get);
+}
+
+/// The numbers among the fields, by their keys.
+template <typename T>
+[[nodiscard]] Numbers numbers_of(std::span<const Field<T>> fields, const T& result) {
+  Numbers numbers;
+  for (const Field<T>& field : fields) {
+    if (const auto* get = std::get_if<double (*)(const T&)>(&field.get)) {
+      numbers.emplace_back(field.key(), (*get)(result));
+    }
+  }
+  return numbers;
+}
+
+/// Puts the fields that JSON has into a document, at their paths.
+template <typename T>
+void add_json(Json& document, std::span<const Field<T>> fields, const T& result,
+              const Scene& scene) {
+  for (const Field<T>& field : fields_in(in_json, fields, scene)) {
+    document[Json::json_pointer("/" + field.json_path())] = value_of(field, result);
+  }
+}
+
+/// A value as CSV has it; what is none leaves its field empty.
+[[nodiscard]] std::string csv_value(const Json& value, int digits = 10);
+
+/// The fields that a place has, of a scene.
+template <typename T>
+[[nodiscard]] std::vector<Field<T>> fields_in(Place place, std::span<const Field<T>> fields,
+                                              const Scene& scene) {
+  std::vector<Field<T>> chosen;
+  for (const Field<T>& field : fields) {
+    const bool applies = field.when == nullptr || field.when(scene);
+    if (applies && (field.places & place) != 0) chosen.push_back(field);
+  }
+  return chosen;
+}
+
+/// How large a scene's results are: what is far below is rounding (shown()).
+struct Magnitudes {
+  double length = 0;  ///< l [m]
+  double force = 0;   ///< its weight, its loads and EI/l^2 [N]
+  double torque = 0;  ///< that force times l [N m]
+  double energy = 0;  ///< likewise [J]
+
+  /// Of what has that unit.
+  [[nodiscard]] double of(std::string_view unit) const;
+};
+
+[[nodiscard]] Magnitudes magnitudes(const Scene& scene);
+
+/// A row of text, as people read it. @param name  of a field
+[[nodiscard]] std::string text_row(std::string_view name, std::string_view unit, const Json& value,
+                                   const Magnitudes& large);
+
+/// Rows of the fields that text has and that are known.
+template <typename T>
+[[nodiscard]] std::string text_rows(std::span<const Field<T>> fields, const T& result,
+                                    const Scene& scene) {
+  std::string rows;
+  const Magnitudes large = magnitudes(scene);
+  for (const Field<T>& field : fields_in(in_text, fields, scene)) {
+    rows += text_row(field.name, field.unit, value_of(field, result), large);
+  }
+  return rows;
+}
+
+/// A list, of each element what `make` makes of it.
+template <typename List, typename Make>
+[[nodiscard]] Json json_list(const List& list, const Make& make) {
+  Json result = Json::array();
+  for (const auto& element : list) result.push_back(make(element));
+  return result;
+}
+
+/// What `make` makes of it; null where there is none.
+template <typename Value, typename Make>
+[[nodiscard]] Json json_or_null(const std::optional<Value>& value, const Make& make) {
+  return value ? Json(make(*value)) : Json();
+}
+
+[[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
+[[nodiscard]] Json points_json(const Eigen::Matrix3Xd& points);
+
+}  // namespace dlo::compare

@@ -1,0 +1,43 @@
+// Prints what the record says of a solution, for tests/record: an array of JSON.
+
+#include <cstdio>
+#include <iterator>
+#include <string>
+
+#include "record/solution_fields.hpp"
+
+namespace {
+
+using dlo::compare::Field;
+using dlo::compare::Json;
+using dlo::compare::SolvedShape;
+
+/// In the order of Field::Get.
+constexpr const char* python_types[] = {
+    "float", "int", "bool", "str", "list[str]", "dict[str, float]", ""};
+static_assert(std::size(python_types) == std::variant_size_v<Field<SolvedShape>::Get>);
+
+void add(Json& list, std::span<const Field<SolvedShape>> fields, bool everywhere) {
+  for (const Field<SolvedShape>& field : fields) {
+    const auto in = [&](unsigned place, const std::string& name) {
+      return (field.places & place) != 0 ? name : "";
+    };
+    list.push_back({{"key", field.key()},
+                    {"type", python_types[field.get.index()]},
+                    {"words", field.python_words()},
+                    {"json", in(dlo::compare::in_json, field.json_path())},
+                    {"csv", in(dlo::compare::in_csv, field.key())},
+                    {"python", in(dlo::compare::in_python, std::string(field.name))},
+                    {"before", dlo::compare::name_before(field.name)},
+                    {"everywhere", everywhere}});
+  }
+}
+
+}  // namespace
+
+int main() {
+  Json list = Json::array();
+  add(list, dlo::compare::solution_fields(), false);
+  add(list, dlo::compare::shape_numbers(), true);
+  return std::puts(list.dump(1).c_str()) < 0 ? 1 : 0;
+}

@@ -1,0 +1,168 @@
+// Each thing that a result says is described once: it stands wherever the record says so.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "command_fixture.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "record/field.hpp"
+#include "record/solution_fields.hpp"
+#include "scenes.hpp"
+
+namespace {
+
+using dlo::compare::Deviation;
+using dlo::compare::Field;
+using dlo::compare::Json;
+using dlo::compare::Place;
+using dlo::compare::Scene;
+using dlo::compare::Solution;
+using dlo::compare::SolvedShape;
+using dlo::test::Command;
+using dlo::test::Outcome;
+
+class Record : public Command {
+ protected:
+  /// A scene that twists its rod, whose clamp moves as a file says.
+  static std::string wire() { return std::string(DLO_DATA) + "/scenes/twisted_wire.toml"; }
+  std::string moving_wire() {
+    std::ofstream(path("move.csv")) << "time,x,y,z\n0,0.42,0,0\n0.2,0.40,0.01,0\n";
+    return scene(read(wire()) + "trajectory = \"move.csv\"\n");
+  }
+  static std::vector<std::string> fields(const std::string& line) {
+    std::vector<std::string> list;
+    std::istringstream stream(line);
+    for (std::string field; std::getline(stream, field, ',');) list.push_back(field);
+    return list;
+  }
+  /// What the first row of a table has in a column.
+  static std::string in_first_row(const std::string& csv, const std::string& column) {
+    std::istringstream lines(csv);
+    std::string header;
+    std::string row;
+    std::getline(lines, header);
+    std::getline(lines, row);
+    const std::vector<std::string> names = fields(header);
+    const std::vector<std::string> values = fields(row);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i] == column) return values.at(i);
+    }
+    return "no column " + column + " in " + header;
+  }
+  [[nodiscard]] std::string out(const std::string& command) const {
+    const Outcome outcome = run(command);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  }
+};
+
+TEST_F(Record, ANumberOfAShapeStandsInEachCommandsOutput) {
+  const std::string moving = moving_wire();
+  const std::string text = out(words({"solve", wire()}));
+  const Json solved = Json::parse(out(words({"solve", wire(), "--format json"})));
+  const std::string swept = out(words({"sweep", wire(), "--vary gamma=1"}));
+  const std::string track = words({"track", moving, "--no-force --frame-rate 10"});
+  const std::string tracked = out(track + "--format csv");
+  const Json frame = Json::parse(out(track + "--format json")).at("frames").at(0);
+  int places = 0;
+  for (const Field<SolvedShape>& number : dlo::compare::shape_numbers()) {
+    const double value = solved.at(number.key()).get<double>();
+    EXPECT_TRUE(std::isfinite(value)) << number.key();
+    EXPECT_NEAR(frame.at(number.key()).get<double>(), value, 1e-6) << number.key();
+    EXPECT_NEAR(std::stod(in_first_row(tracked, number.key())), value, 1e-6) << number.key();
+    EXPECT_TRUE(std::isfinite(std::stod(in_first_row(swept, number.key())))) << number.key();
+    if ((number.places & dlo::compare::in_text) != 0) {
+      EXPECT_NE(text.find(std::string(number.words)), std::string::npos) << number.key();
+    }
+    ++places;
+  }
+  EXPECT_GE(places, 3);
+  // Half a turn is held, part of which is writhe.
+  EXPECT_NEAR(solved.at("link_turns").get<double>(), 0.5, 1e-3);
+  EXPECT_NEAR(solved.at("twist_turns").get<double>() + solved.at("writhe_turns").get<double>(), 0.5,
+              1e-3);
+  EXPECT_NE(text.find("turns      0.500 = twist "), std::string::npos) << text;
+}
+
+TEST_F(Record, AShapeWithoutFramesHasNoTurns) {
+  const std::string rod = std::string(DLO_DATA) + "/scenes/spring_steel_175.toml";
+  EXPECT_EQ(out(words({"solve", rod, "--format json"})).find("turns"), std::string::npos);
+  EXPECT_EQ(out(words({"sweep", rod, "--vary gamma=1"})).substr(0, 66),
+            "row,gamma,tip_x_m,tip_y_m,tip_z_m,energy_J,evaluations,terms,statu");
+}
+
+/// Its largest force, which nothing else says.
+const Field<SolvedShape> mean_tension[] = {
+    {"mean_tension", "N", "Mean of the tension along the rod", [](const SolvedShape& shape) {
+       double sum = 0;
+       for (const double tension : shape.solution.tension) sum += tension;
+       return sum / static_cast<double>(shape.solution.tension.size());
+     }}};
+
+TEST_F(Record, OneDescriptionMakesRowKeyAndColumn) {
+  const Scene scene = dlo::test::heavy_scene(1, 0);
+  Solution solution;
+  solution.tension = {1, 2.5};
+  const SolvedShape shape{scene, solution};
+  const std::span<const Field<SolvedShape>> fields = mean_tension;
+  EXPECT_EQ(dlo::compare::text_rows(fields, shape, scene), "mean tension 1.75 N\n");
+  Json document = {{"schema", "test"}};
+  dlo::compare::add_json(document, fields, shape, scene);
+  EXPECT_EQ(document.dump(), R"({"schema":"test","mean_tension_N":1.75})");
+  EXPECT_EQ(fields[0].key(), "mean_tension_N");
+  EXPECT_EQ(dlo::compare::csv_value(dlo::compare::value_of(fields[0], shape)), "1.75");
+  EXPECT_EQ(fields[0].name, "mean_tension");
+  EXPECT_EQ(fields[0].python_words(), "Mean of the tension along the rod [N].");
+  // What is rounding beside the scene's own forces is 0, what is unknown has no row.
+  solution.tension = {1e-30};
+  EXPECT_EQ(dlo::compare::text_rows(fields, shape, scene), "mean tension 0 N\n");
+  solution.tension.clear();
+  EXPECT_EQ(dlo::compare::text_rows(fields, shape, scene), "");
+  EXPECT_EQ(dlo::compare::csv_value(dlo::compare::value_of(fields[0], shape)), "");
+}
+
+TEST_F(Record, AFieldStandsWhereItSaysAndAtItsPath) {
+  const Scene scene = dlo::test::heavy_scene(1, 0);
+  const Field<Deviation> all[] = {{.name = "a",
+                                   .get = [](const Deviation& d) { return d.rms_m; },
+                                   .places = dlo::compare::in_json,
+                                   .path = "in/a"},
+                                  {.name = "b",
+                                   .unit = "m",
+                                   .get = [](const Deviation&) -> std::string { return "x, y"; },
+                                   .places = dlo::compare::in_csv},
+                                  {.name = "c",
+                                   .get = [](const Deviation&) { return true; },
+                                   .when = [](const Scene& s) { return s.holds_twist(); }}};
+  const std::span<const Field<Deviation>> fields = all;
+  Json document;
+  dlo::compare::add_json(document, fields, {.rms_m = 2}, scene);
+  EXPECT_EQ(document.dump(), R"({"in":{"a":2.0}})");
+  const auto columns = dlo::compare::fields_in(dlo::compare::in_csv, fields, scene);
+  ASSERT_EQ(columns.size(), 1U);
+  EXPECT_EQ(columns[0].key(), "b_m");
+  EXPECT_EQ(dlo::compare::csv_value(dlo::compare::value_of(columns[0], {})), "\"x, y\"");
+}
+
+TEST_F(Record, ADeviationIsSaidByItsKeys) {
+  const Deviation deviation{.rms_m = 1,
+                            .max_m = 2,
+                            .max_at_m = 3,
+                            .tip_m = 4,
+                            .rms_over_length = 5,
+                            .rms_over_movement = 6,
+                            .angle_rms_rad = 7,
+                            .curvature_rms_per_m = 8};
+  EXPECT_EQ(
+      dlo::compare::json_of(dlo::compare::numbers_of(dlo::compare::deviation_fields(), deviation))
+          .dump(),
+      R"({"rms_m":1.0,"max_m":2.0,"max_at_m":3.0,"tip_m":4.0,"rms_over_length":5.0,)"
+      R"("rms_over_movement":6.0,"angle_rms_rad":7.0,"curvature_rms_per_m":8.0})");
+}
+
+}  // namespace
