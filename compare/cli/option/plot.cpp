@@ -35,9 +35,8 @@ class DrawingFolder {
   [[nodiscard]] const fs::path& path() const { return folder_.path(); }
 
  private:
-  fs::path prefix_ = compare::temporary_directory() / "dlo_plot";
-  compare::TemporaryFolder folder_{
-      fmt::format("--plot: no folder to draw in: {}", prefix_.string()), prefix_};
+  compare::TemporaryFolder folder_{"--plot: no folder to draw in: " +
+                                   compare::temporary_directory().string()};
 };
 
 std::optional<compare::PictureFormat> format_of(const std::string& file) {

@@ -3,13 +3,11 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <optional>
@@ -78,25 +76,6 @@ OutputTarget regular_target(const fs::path& path, const std::string& file) {
   return {OutputTarget::Kind::file, path.string(), -1};
 }
 
-/// A name beside a file that nothing has, opened for writing. The kernel applies the umask, which
-/// mkstemp would not.
-int open_new_file(const fs::path& beside, std::string& path,
-                  std::unique_ptr<TemporaryPath>& temporary) {
-  for (;;) {
-    std::uint64_t random = 0;
-    if (::getrandom(&random, sizeof random, 0) != sizeof random) return -1;
-    // Not made of the file's own name, which may be as long as a name can be.
-    path = beside.parent_path() / fmt::format(".dlo-{:016x}.tmp", random);
-    temporary = std::make_unique<TemporaryPath>(path);
-    const int descriptor = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor >= 0) return descriptor;
-    const int error = errno;
-    temporary.reset();
-    errno = error;
-    if (error != EEXIST) return -1;
-  }
-}
-
 }  // namespace
 
 OutputTarget output_target(const std::string& file) {
@@ -160,8 +139,7 @@ struct OutputFile::State {
   std::string file;  ///< as the user wrote it
   OutputTarget target;
   int descriptor = -1;
-  std::string temporary_name;
-  std::unique_ptr<TemporaryPath> temporary;
+  std::optional<TemporaryFile> temporary;  ///< beside the target, whose name it gets in the end
 
   explicit State(const std::string& name) : file(name), target(output_target(name)) {
     switch (target.kind) {
@@ -172,14 +150,13 @@ struct OutputFile::State {
         descriptor = ::open(target.path.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
         break;
       case OutputTarget::Kind::file:
-        descriptor = open_new_file(target.path, temporary_name, temporary);
+        descriptor = temporary.emplace(fs::path(target.path).parent_path()).descriptor();
         break;
     }
     if (descriptor < 0) fail_to_write_output(file, errno);
   }
   ~State() {
     if (target.kind != OutputTarget::Kind::descriptor && descriptor >= 0) ::close(descriptor);
-    if (temporary) ::unlink(temporary_name.c_str());
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
@@ -212,7 +189,7 @@ struct OutputFile::State {
       fail_to_write_output(file, errno);
     }
     close_checked();
-    if (::rename(temporary_name.c_str(), target.path.c_str()) != 0) {
+    if (::rename(temporary->path().c_str(), target.path.c_str()) != 0) {
       fail_to_write_output(file, errno);
     }
     temporary.reset();

@@ -4,7 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <stdlib.h>  // NOLINT(modernize-deprecated-headers): mkdtemp is not in cstdlib
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
@@ -143,13 +143,18 @@ extern "C" void remove_and_end(int number) {
   (void)std::raise(number);
 }
 
-std::string made(const std::string& failure, const std::filesystem::path& prefix) {
-  // What mkdtemp replaces by letters that are not taken.
-  std::string path = prefix.string() + ".XXXXXX";
-  if (::mkdtemp(path.data()) == nullptr) {
-    throw OutputError(fmt::format("{} ({})", failure, std::strerror(errno)));
+/// The path by which `make(path)` has made something in a folder that nothing there had; empty
+/// where that cannot be, errno says why.
+template <typename Make>
+std::string made_in(const std::filesystem::path& folder, const Make& make) {
+  for (;;) {
+    std::uint64_t random = 0;
+    if (::getrandom(&random, sizeof random, 0) != sizeof random) return {};
+    // Not made of another file's name, which may be as long as a name can be.
+    std::string path = folder / fmt::format(".dlo-{:016x}.tmp", random);
+    if (make(path.c_str())) return path;
+    if (errno != EEXIST) return {};
   }
-  return path;
 }
 
 }  // namespace
@@ -235,13 +240,31 @@ SignalsHeld::SignalsHeld() {
 
 SignalsHeld::~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
-TemporaryFolder::TemporaryFolder(const std::string& failure, const std::filesystem::path& prefix)
-    // A signal between making and noting it would leave it behind.
-    : TemporaryFolder(SignalsHeld(), failure, prefix) {}
+// A signal between making and noting what is made would leave it behind.
+TemporaryFile::TemporaryFile(const std::filesystem::path& folder)
+    : TemporaryFile(SignalsHeld(), folder) {}
+
+TemporaryFile::TemporaryFile(const SignalsHeld& /*held*/, const std::filesystem::path& folder)
+    : path_(made_in(folder,
+                    [this](const char* path) {
+                      // The kernel applies the umask, which mkstemp would not.
+                      constexpr int flags = O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC;
+                      descriptor_ = ::open(path, flags, 0666);
+                      return descriptor_ >= 0;
+                    })),
+      at_signals_(path_) {}
+
+TemporaryFile::~TemporaryFile() { ::unlink(path_.c_str()); }
+
+TemporaryFolder::TemporaryFolder(const std::string& failure, const std::filesystem::path& folder)
+    : TemporaryFolder(SignalsHeld(), failure, folder) {}
 
 TemporaryFolder::TemporaryFolder(const SignalsHeld& /*held*/, const std::string& failure,
-                                 const std::filesystem::path& prefix)
-    : path_(made(failure, prefix)), at_signals_(path_.string()) {}
+                                 const std::filesystem::path& folder)
+    : path_(made_in(folder, [](const char* path) { return ::mkdir(path, S_IRWXU) == 0; })),
+      at_signals_(path_.string()) {
+  if (path_.empty()) throw OutputError(fmt::format("{} ({})", failure, std::strerror(errno)));
+}
 
 TemporaryFolder::~TemporaryFolder() { remove_tree(path_.c_str()); }
 

@@ -63,13 +63,41 @@ class SignalsHeld {
   sigset_t before_{};
 };
 
+/// Where the environment wants temporary files: TMPDIR, or /tmp if that names no folder.
+[[nodiscard]] std::filesystem::path temporary_directory();
+
+/// A new file, open for writing, with the permissions that the umask leaves. Gone when it is left
+/// or a signal ends the process, unless it has got another name by then.
+class TemporaryFile {
+ public:
+  /// @param folder  that it is made in
+  explicit TemporaryFile(const std::filesystem::path& folder);
+  ~TemporaryFile();
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  TemporaryFile(TemporaryFile&&) = delete;
+  TemporaryFile& operator=(TemporaryFile&&) = delete;
+
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// For whom it is made to close; -1: it could not be made, errno says why.
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
+ private:
+  TemporaryFile(const SignalsHeld& held, const std::filesystem::path& folder);
+
+  int descriptor_ = -1;
+  std::string path_;
+  TemporaryPath at_signals_;
+};
+
 /// A new folder for nobody else, gone with all that is in it when it is left or a signal ends the
 /// process.
 class TemporaryFolder {
  public:
-  /// @param prefix  of its path; six letters that are not taken follow
+  /// @param folder  that it is made in
   /// @throws OutputError with this message and the reason if it cannot be made
-  TemporaryFolder(const std::string& failure, const std::filesystem::path& prefix);
+  explicit TemporaryFolder(const std::string& failure,
+                           const std::filesystem::path& folder = temporary_directory());
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
@@ -82,13 +110,10 @@ class TemporaryFolder {
 
  private:
   TemporaryFolder(const SignalsHeld& held, const std::string& failure,
-                  const std::filesystem::path& prefix);
+                  const std::filesystem::path& folder);
 
   std::filesystem::path path_;
   TemporaryPath at_signals_;
 };
-
-/// Where the environment wants temporary files: TMPDIR, or /tmp if that names no folder.
-[[nodiscard]] std::filesystem::path temporary_directory();
 
 }  // namespace dlo::compare

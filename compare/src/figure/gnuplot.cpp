@@ -1,52 +1,25 @@
 #include "figure/gnuplot.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <system_error>
 
 #include "base/quote.hpp"
+#include "foreign/child_process.hpp"
 
 namespace dlo::compare {
 namespace {
 
-/// A child process's end.
-struct Child {
-  int error = 0;   ///< of starting it, as errno; 0: it ran
-  int status = 0;  ///< as waitpid gives it
+/// Minutes beyond what the largest figure takes, also on a busy machine [s].
+constexpr double drawing_limit = 300;
 
-  [[nodiscard]] bool good() const { return error == 0 && status == 0; }
-};
-
-/// Runs gnuplot in a folder, with its output and messages going to files. Its start-up files, which
-/// are the user's, are not read.
-Child run_gnuplot(const std::filesystem::path& folder, const std::string& argument,
-                  const std::string& out, const std::string& err) {
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
-  constexpr mode_t mode = 0644;
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), flags, mode);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), flags, mode);
-  std::string words[] = {"gnuplot", "--default-settings", argument};
-  char* arguments[] = {words[0].data(), words[1].data(), words[2].data(), nullptr};
-  pid_t child = 0;
-  Child result;
-  result.error = ::posix_spawnp(&child, "gnuplot", &actions, nullptr, arguments, environ);
-  posix_spawn_file_actions_destroy(&actions);
-  while (result.error == 0 && ::waitpid(child, &result.status, 0) < 0) {
-    if (errno != EINTR) result.error = errno;
-  }
-  return result;
+/// Its start-up files, which are the user's, are not read.
+ChildOutcome run_gnuplot(const std::string& argument, const ChildFiles& files) {
+  return run_child({"gnuplot", "--default-settings", argument}, files, drawing_limit);
 }
 
 std::string text_of(const std::filesystem::path& file) {
@@ -75,8 +48,8 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 
 std::string gnuplot_version(const std::filesystem::path& folder) {
   const std::string out = "gnuplot_version.out";
-  const Child child = run_gnuplot(folder, "--version", out, "/dev/null");
-  std::string version = child.good() ? joined_lines(text_of(folder / out)) : "";
+  const ChildOutcome outcome = run_gnuplot("--version", {.folder = folder, .output = out});
+  std::string version = outcome.problem.empty() ? joined_lines(text_of(folder / out)) : "";
   std::error_code ignored;
   std::filesystem::remove(folder / out, ignored);
   return version;
@@ -85,19 +58,17 @@ std::string gnuplot_version(const std::filesystem::path& folder) {
 std::string run_script(const std::string& script, const std::string& output,
                        const std::filesystem::path& folder) {
   const std::string messages = script + ".err";
-  const Child child = run_gnuplot(folder, script, "/dev/null", messages);
+  std::string problem = run_gnuplot(script, {.folder = folder, .error = messages}).problem;
   const std::string message = joined_lines(text_of(folder / messages));
   std::error_code ignored;
   std::filesystem::remove(folder / messages, ignored);
-  if (child.error != 0) {
-    return fmt::format("gnuplot cannot be started ({})", std::strerror(child.error));
-  }
   const std::string drawn = text_of(folder / output);
   const bool whole =
       output.ends_with(".svg") ? drawn.find("</svg>") != std::string::npos : !drawn.empty();
-  if (child.status == 0 && whole) return {};
+  if (problem.empty() && whole) return {};
   std::filesystem::remove(folder / output, ignored);
-  return "gnuplot failed: " + (message.empty() ? "it does not say why" : message);
+  if (problem.empty()) problem = "it does not say why";
+  return "gnuplot failed: " + (message.empty() ? problem : message);
 }
 
 std::string inline_svg(const std::string& svg, const Figure& figure) {

@@ -23,7 +23,7 @@ namespace {
 /// default (this program ignores SIGXFSZ).
 class SpawnSettings {
  public:
-  explicit SpawnSettings(const std::string& error_file) {
+  explicit SpawnSettings(const ChildFiles& files) {
     ::posix_spawnattr_init(&attributes_);
     ::posix_spawn_file_actions_init(&actions_);
     ::posix_spawnattr_setpgroup(&attributes_, 0);
@@ -35,10 +35,12 @@ class SpawnSettings {
     ::posix_spawnattr_setsigmask(&attributes_, &none);
     ::posix_spawnattr_setflags(
         &attributes_, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+    ::posix_spawn_file_actions_addchdir_np(&actions_, files.folder.c_str());
     ::posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    ::posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    ::posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, error_file.c_str(),
-                                       O_WRONLY | O_CREAT | O_TRUNC, S_IRUSR | S_IWUSR);
+    constexpr int flags = O_WRONLY | O_CREAT | O_TRUNC;
+    constexpr mode_t mode = S_IRUSR | S_IWUSR;
+    ::posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, files.output.c_str(), flags, mode);
+    ::posix_spawn_file_actions_addopen(&actions_, STDERR_FILENO, files.error.c_str(), flags, mode);
   }
   ~SpawnSettings() {
     ::posix_spawn_file_actions_destroy(&actions_);
@@ -92,7 +94,7 @@ std::string problem_of(int status) {
 
 }  // namespace
 
-ChildOutcome run_child(const std::vector<std::string>& words, const std::string& error_file,
+ChildOutcome run_child(const std::vector<std::string>& words, const ChildFiles& files,
                        double time_limit) {
   ChildOutcome result;
   pid_t process = 0;
@@ -100,7 +102,7 @@ ChildOutcome run_child(const std::vector<std::string>& words, const std::string&
   {
     // A signal that ends this process in between would leave the child alone.
     const SignalsHeld held;
-    const int error = SpawnSettings(error_file).spawn(words, process);
+    const int error = SpawnSettings(files).spawn(words, process);
     if (error != 0) {
       result.problem = fmt::format("could not be started: {}", std::strerror(error));
       return result;

@@ -12,13 +12,19 @@ struct ChildOutcome {
   bool too_long = false;  ///< it was killed at the time limit
 };
 
+/// Where a program runs, and where what it writes goes.
+struct ChildFiles {
+  std::string folder = ".";          ///< that it runs in
+  std::string output = "/dev/null";  ///< file of its standard output, as seen from there
+  std::string error = "/dev/null";   ///< the same of its standard error
+};
+
 /// Runs a program, looked for in PATH, as a process group of its own and waits for it. Its standard
-/// input and output are /dev/null. When it has ended, or at the time limit, or when a signal ends
-/// this process, whatever is left of the group is killed.
+/// input is /dev/null. When it has ended, or at the time limit, or when a signal ends this process,
+/// whatever is left of the group is killed.
 /// @param words       program and arguments, one or more
-/// @param error_file  what it writes to standard error goes into this file
 /// @param time_limit  [s], > 0
-[[nodiscard]] ChildOutcome run_child(const std::vector<std::string>& words,
-                                     const std::string& error_file, double time_limit);
+[[nodiscard]] ChildOutcome run_child(const std::vector<std::string>& words, const ChildFiles& files,
+                                     double time_limit);
 
 }  // namespace dlo::compare

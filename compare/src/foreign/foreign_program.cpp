@@ -86,8 +86,7 @@ class ProgramFolder {
   }
 
  private:
-  std::filesystem::path prefix_ = temporary_directory() / "dlo_foreign";
-  TemporaryFolder folder_{prefix_.string(), prefix_};
+  TemporaryFolder folder_{temporary_directory().string()};
 };
 
 /// The last line that is not blank, as a message shows it.
@@ -181,7 +180,7 @@ ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, d
     words.push_back(with_places(word, folder.file("scene.json"), fmt::format("{}", points),
                                 folder.file("shape")));
   }
-  const ChildOutcome outcome = run_child(words, folder.file("stderr"), time_limit);
+  const ChildOutcome outcome = run_child(words, {.error = folder.file("stderr")}, time_limit);
   ForeignRun result;
   result.seconds = outcome.seconds;
   result.too_long = outcome.too_long;

@@ -74,7 +74,8 @@ std::string foreign_file(const fs::path& folder) {
 class FolderInMaking {
  public:
   explicit FolderInMaking(const fs::path& target)
-      : folder_(fmt::format("report: {}: cannot be written", target.string()), target) {
+      : folder_(fmt::format("report: {}: cannot be written", target.string()),
+                target.parent_path()) {
     std::error_code error;
     fs::create_directory(report(), error);
     if (error) fail_to_write(target, error.message());
