@@ -3,10 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
+#include <system_error>
 
 #include "base/input_file.hpp"
+#include "base/output_file.hpp"
 #include "base/quote.hpp"
+#include "batch/locked_file.hpp"
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/solution.hpp"
 #include "toml/strict_table.hpp"
@@ -78,6 +82,31 @@ std::vector<BaselineCase> read_baseline(const std::string& text, const std::stri
 
 std::vector<BaselineCase> load_baseline(const std::string& path) {
   return read_baseline(read_file(path), path);
+}
+
+std::vector<BaselineCase> present_baseline(const std::string& path) {
+  std::error_code unknown;  // writing tells what is wrong with a name
+  if (!std::filesystem::exists(path, unknown)) return {};
+  return load_baseline(path);
+}
+
+void replace_baseline(const std::string& path, const std::vector<BaselineCase>& read,
+                      const std::vector<BaselineCase>& cases) {
+  LockedFile lock(path + ".lock", LockedFile::Held::wait);
+  try {
+    if (baseline_text(present_baseline(path)) != baseline_text(read)) {
+      throw OutputError(path +
+                        ": left as it is: another process has changed it since it was read "
+                        "(allowed: one update at a time)");
+    }
+    OutputFile file(path);
+    file.append(baseline_text(cases));
+    file.finish();
+  } catch (...) {
+    lock.remove();
+    throw;
+  }
+  lock.remove();
 }
 
 std::string baseline_text(std::vector<BaselineCase> cases) {

@@ -43,6 +43,14 @@ struct BaselineCase {
 /// Reads a baseline file. @throws InputError as read_baseline, or if it cannot be read
 [[nodiscard]] std::vector<BaselineCase> load_baseline(const std::string& path);
 
+/// The same of a file that may not be there yet: no cases.
+[[nodiscard]] std::vector<BaselineCase> present_baseline(const std::string& path);
+
+/// Replaces a baseline file that is still as it was read.
+/// @throws OutputError if another process has changed it, or it cannot be written
+void replace_baseline(const std::string& path, const std::vector<BaselineCase>& read,
+                      const std::vector<BaselineCase>& cases);
+
 /// A baseline's text, sorted by name, errors with 6 significant digits: what does not change reads
 /// the same.
 [[nodiscard]] std::string baseline_text(std::vector<BaselineCase> cases);

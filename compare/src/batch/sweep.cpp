@@ -14,6 +14,7 @@
 
 #include "base/display.hpp"
 #include "base/fingerprint.hpp"
+#include "base/number.hpp"
 #include "base/quote.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/deviation.hpp"
@@ -29,32 +30,52 @@ namespace {
 /// So many rows may wait for a slow one before them.
 constexpr std::size_t rows_per_thread = 256;
 
-std::string model_columns(SweepModel model) {
-  std::string columns = "tip_x_m,tip_y_m,tip_z_m,energy_J,";
-  switch (model) {
-    case SweepModel::energy:
-    case SweepModel::exact:
-      return columns + "evaluations,terms,";
-    case SweepModel::chain:
-      return columns + "evaluations,";
-    case SweepModel::force:
-      return columns + "steps,";
-    case SweepModel::compare:
-      columns += "steps,";
-      break;
-    case SweepModel::compare_chain:
-      columns += "evaluations,";
-      break;
-  }
-  return columns +
-         "rms_over_length,max_over_length,tip_over_length,effective_modulus_ratio,"
-         "rms_at_effective_modulus_over_length,optimum,energy_evaluations,";
+bool compares(SweepModel model) {
+  return model == SweepModel::compare || model == SweepModel::compare_chain;
 }
 
-std::string tip_and_energy(const Solution& solution) {
-  const Eigen::Vector3d tip = solution.shape.points.rightCols<1>();
-  return fmt::format("{},{},{},{},", csv_number(tip.x()), csv_number(tip.y()), csv_number(tip.z()),
-                     csv_number(solution.energy.total()));
+CellKind kind_of(const Axis& axis) {
+  if (axis.spacing != Spacing::list) return CellKind::number;
+  const bool numbers = std::all_of(axis.values.begin(), axis.values.end(), [](const auto& value) {
+    return as_number<double>(value).has_value();
+  });
+  return numbers ? CellKind::number : CellKind::text;
+}
+
+SweepCell cell_of(const Json& value) {
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  if (value.is_number()) return value.get<double>();
+  if (value.is_string()) return value.get<std::string>();
+  return {};
+}
+
+struct CsvCell {
+  std::string operator()(std::monostate /*none*/) const { return ""; }
+  std::string operator()(std::int64_t count) const { return fmt::format("{}", count); }
+  std::string operator()(double number) const { return csv_number(number); }
+  std::string operator()(const std::string& text) const { return csv_field(text); }
+};
+
+/// Makes rows on several threads and hands them over in order.
+template <typename Make, typename Take>
+void run_rows(RowRange rows, int threads, const Make& make, const Take& take) {
+  using Row = decltype(make(rows.first));
+  const int workers = threads > 0 ? threads : tbb::info::default_concurrency();
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                  static_cast<std::size_t>(workers));
+  tbb::task_arena arena(workers);
+  const std::size_t window = rows_per_thread * static_cast<std::size_t>(workers);
+  std::int64_t next = rows.first;
+  const auto next_row = [&](tbb::flow_control& control) {
+    if (next == rows.last) control.stop();
+    return next++;
+  };
+  execute(arena, [&] {
+    tbb::parallel_pipeline(
+        window, tbb::make_filter<void, std::int64_t>(tbb::filter_mode::serial_in_order, next_row) &
+                    tbb::make_filter<std::int64_t, Row>(tbb::filter_mode::parallel, make) &
+                    tbb::make_filter<Row, void>(tbb::filter_mode::serial_in_order, take));
+  });
 }
 
 Model solver_of(SweepModel model) {
@@ -77,7 +98,10 @@ Model solver_of(SweepModel model) {
 
 Sweep::Sweep(SceneTemplate scene, Grid grid, SweepModel model, const SolveOptions& options)
     : scene_(std::move(scene)), grid_(std::move(grid)), model_(model), options_(options) {
-  for (const Axis& axis : grid_.axes()) gamma_varied_ = gamma_varied_ || axis.field == "gamma";
+  for (const Axis& axis : grid_.axes()) {
+    gamma_varied_ = gamma_varied_ || axis.field == "gamma";
+    kinds_.push_back(kind_of(axis));
+  }
   require_one_scene();
 }
 
@@ -123,17 +147,41 @@ std::string Sweep::identity() const {
                      fingerprint(grid), to_string(model_), fingerprint(options));
 }
 
-std::string Sweep::header() const {
-  std::string line = "row,";
-  for (const Axis& axis : grid_.axes()) line += csv_field(axis.column()) + ",";
-  if (!gamma_varied_) line += "gamma,";
-  return line + result_columns() + "status\n";
+std::vector<SweepColumn> Sweep::result_columns() const {
+  const Model model = solver_of(model_);
+  std::vector<SweepColumn> columns;
+  if (!gamma_varied_) columns.push_back({"gamma"});
+  for (const char* name : {"tip_x_m", "tip_y_m", "tip_z_m", "energy_J"}) columns.push_back({name});
+  columns.push_back({model == Model::force ? "steps" : "evaluations"});
+  if (model == Model::energy || model == Model::exact) columns.push_back({"terms"});
+  if (compares(model_)) {
+    for (const char* name : {"rms_over_length", "max_over_length", "tip_over_length",
+                             "effective_modulus_ratio", "rms_at_effective_modulus_over_length"}) {
+      columns.push_back({name});
+    }
+    columns.push_back({"optimum", CellKind::text});
+    columns.push_back({"energy_evaluations"});
+  }
+  for (const Field<SolvedShape>& number : numbers_) columns.push_back({number.key()});
+  columns.push_back({"status", CellKind::text});
+  return columns;
 }
 
-std::string Sweep::result_columns() const {
-  std::string columns = model_columns(model_);
-  for (const Field<SolvedShape>& number : numbers_) columns += number.key() + ",";
+std::vector<SweepColumn> Sweep::columns() const {
+  std::vector<SweepColumn> columns = {{"row", CellKind::whole}};
+  for (std::size_t i = 0; i < kinds_.size(); ++i) {
+    columns.push_back({grid_.axes()[i].column(), kinds_[i]});
+  }
+  for (SweepColumn& column : result_columns()) columns.push_back(std::move(column));
   return columns;
+}
+
+std::string Sweep::header() const {
+  std::string line;
+  for (const SweepColumn& column : columns()) {
+    line += (line.empty() ? "" : ",") + csv_field(column.name);
+  }
+  return line + "\n";
 }
 
 std::string Sweep::row_start(std::int64_t row) const {
@@ -145,80 +193,105 @@ std::string Sweep::row_start(std::int64_t row) const {
   return line;
 }
 
-std::string Sweep::results(const Scene& scene) const {
-  const bool comparing = model_ == SweepModel::compare || model_ == SweepModel::compare_chain;
+std::vector<SweepCell> Sweep::solved(const Scene& scene) const {
   const Model model = solver_of(model_);
   // A comparison and numbers of a shape need all points, a tip does not.
-  const bool is_whole = comparing || !numbers_.empty();
-  const Solution solution =
-      solve(scene, model, options_, is_whole ? std::vector<double>{} : std::vector{scene.length});
-  std::string line = gamma_varied_ ? "" : csv_number(scene.gamma()) + ",";
-  line += tip_and_energy(solution);
-  line += fmt::format("{},", model == Model::force ? solution.steps : solution.evaluations);
-  if (model == Model::energy || model == Model::exact) line += fmt::format("{},", solution.terms);
-  if (comparing) line += compared(scene, solution);
-  for (const Field<SolvedShape>& number : numbers_) {
-    line += csv_value(value_of(number, {scene, solution})) + ",";
+  const bool is_whole = compares(model_) || !numbers_.empty();
+  const std::vector<double> samples = is_whole ? std::vector<double>{} : std::vector{scene.length};
+  const Solution solution = solve(scene, model, options_, samples);
+  std::vector<SweepCell> cells;
+  if (!gamma_varied_) cells.emplace_back(scene.gamma());
+  const Eigen::Vector3d tip = solution.shape.points.rightCols<1>();
+  for (const double number : {tip.x(), tip.y(), tip.z(), solution.energy.total()}) {
+    cells.emplace_back(number);
   }
-  return line;
+  const bool stepped = model == Model::force;
+  cells.emplace_back(std::int64_t{stepped ? solution.steps : solution.evaluations});
+  if (model == Model::energy || model == Model::exact) {
+    cells.emplace_back(std::int64_t{solution.terms});
+  }
+  if (compares(model_)) compare_to_energy(scene, solution, cells);
+  for (const Field<SolvedShape>& number : numbers_) {
+    cells.push_back(cell_of(value_of(number, {scene, solution})));
+  }
+  return cells;
 }
 
-std::string Sweep::compared(const Scene& scene, const Solution& solution) const {
+void Sweep::compare_to_energy(const Scene& scene, const Solution& solution,
+                              std::vector<SweepCell>& cells) const {
   const energy_model::Equilibrium energy = solve_reference(scene, Model::energy, options_);
   const Deviation d = shape_deviation(scene, solution.shape, energy.sample);
   const EffectiveModulus modulus =
       fit_effective_modulus(scene, distance_from(solution.shape), energy, options_);
-  return fmt::format("{},{},{},{},{},{},{},", csv_number(d.rms_over_length),
-                     csv_number(d.max_m / scene.length), csv_number(d.tip_m / scene.length),
-                     csv_number(modulus.ratio), csv_number(modulus.rms_m / scene.length),
-                     to_string(modulus.optimum), energy.evaluations);
+  for (const double number : {d.rms_over_length, d.max_m / scene.length, d.tip_m / scene.length,
+                              modulus.ratio, modulus.rms_m / scene.length}) {
+    cells.emplace_back(number);
+  }
+  cells.emplace_back(std::string(to_string(modulus.optimum)));
+  cells.emplace_back(std::int64_t{energy.evaluations});
 }
 
-std::string Sweep::without_results(const std::string& status) const {
-  const std::string columns = (gamma_varied_ ? "" : "gamma,") + result_columns();
-  const auto empty = static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ','));
-  return std::string(empty, ',') + csv_field(display(status)) + "\n";
+std::vector<SweepCell> Sweep::without_results(const std::string& status) const {
+  std::vector<SweepCell> cells(result_columns().size());
+  cells.back() = display(status);
+  return cells;
 }
 
-std::string Sweep::row(std::int64_t row) const {
-  const std::string start = row_start(row);
+std::vector<SweepCell> Sweep::results(std::int64_t row) const {
   try {
-    return start + results(scene(row)) + "ok\n";
+    std::vector<SweepCell> cells = solved(scene(row));
+    cells.emplace_back(std::string("ok"));
+    return cells;
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::system_error&) {
     throw;  // no threads: the machine's, not the scene's
   } catch (const InputError& error) {
-    return start + without_results(error.what());
+    return without_results(error.what());
   } catch (const ConvergenceError& error) {
-    return start + without_results(error.what());
+    return without_results(error.what());
   } catch (const std::invalid_argument& error) {
-    return start + without_results(error.what());
+    return without_results(error.what());
   } catch (const std::exception& error) {
-    return start + without_results(std::string("internal error: ") + error.what());
+    return without_results(std::string("internal error: ") + error.what());
   }
+}
+
+std::vector<SweepCell> Sweep::cells(std::int64_t row) const {
+  std::vector<SweepCell> cells = {row};
+  const std::vector<std::int64_t> indices = grid_.indices(row);
+  for (std::size_t i = 0; i < indices.size(); ++i) {
+    const std::string text = grid_.axes()[i].number(indices[i]);
+    if (kinds_[i] == CellKind::text) {
+      cells.emplace_back(text);
+    } else {
+      cells.emplace_back(as_number<double>(text).value());
+    }
+  }
+  for (SweepCell& cell : results(row)) cells.push_back(std::move(cell));
+  return cells;
+}
+
+std::string Sweep::row(std::int64_t row) const {
+  std::string line = row_start(row);
+  const char* separator = "";
+  for (const SweepCell& cell : results(row)) {
+    line += separator + std::visit(CsvCell(), cell);
+    separator = ",";
+  }
+  return line + "\n";
 }
 
 void Sweep::run(RowRange rows, int threads,
                 const std::function<void(const std::string& line)>& take) const {
-  const int workers = threads > 0 ? threads : tbb::info::default_concurrency();
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
-                                  static_cast<std::size_t>(workers));
-  tbb::task_arena arena(workers);
-  const std::size_t window = rows_per_thread * static_cast<std::size_t>(workers);
-  std::int64_t next = rows.first;
-  const auto next_row = [&](tbb::flow_control& control) {
-    if (next == rows.last) control.stop();
-    return next++;
-  };
-  const auto compute = [this](std::int64_t number) { return row(number); };
-  execute(arena, [&] {
-    tbb::parallel_pipeline(
-        window,
-        tbb::make_filter<void, std::int64_t>(tbb::filter_mode::serial_in_order, next_row) &
-            tbb::make_filter<std::int64_t, std::string>(tbb::filter_mode::parallel, compute) &
-            tbb::make_filter<std::string, void>(tbb::filter_mode::serial_in_order, take));
-  });
+  run_rows(
+      rows, threads, [this](std::int64_t number) { return row(number); }, take);
+}
+
+void Sweep::run_cells(RowRange rows, int threads,
+                      const std::function<void(const std::vector<SweepCell>& cells)>& take) const {
+  run_rows(
+      rows, threads, [this](std::int64_t number) { return cells(number); }, take);
 }
 
 }  // namespace dlo::compare

@@ -19,6 +19,7 @@
 #include "figure/gnuplot.hpp"
 #include "report/figures.hpp"
 #include "report/page.hpp"
+#include "trajectory/trajectory_files.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -171,6 +172,26 @@ PageFigure draw_into(FolderInMaking& folder, Figure figure) {
 }
 
 }  // namespace
+
+void refuse_scenes_inside(const std::string& folder, const std::vector<std::string>& scenes) {
+  std::error_code error;
+  const fs::path inside = fs::canonical(folder, error);
+  if (error) return;
+  std::vector<std::string> inputs = scenes;
+  for (const std::string& scene : scenes) {
+    for (std::string& file : trajectory_files(scene)) inputs.push_back(std::move(file));
+  }
+  for (const std::string& input : inputs) {
+    const fs::path read = fs::canonical(input, error);
+    if (error) continue;
+    if (std::mismatch(inside.begin(), inside.end(), read.begin(), read.end()).first !=
+        inside.end()) {
+      continue;
+    }
+    throw InputError(fmt::format(
+        "report: -o {}: holds {}, which is read too (allowed: another folder)", folder, input));
+  }
+}
 
 void check_report_folder(const std::string& folder) {
   const fs::path path = target_folder(folder);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "report/report.hpp"
 
@@ -26,6 +27,11 @@ struct WrittenReport {
 /// is computed: it makes a folder beside that one and removes it, as proof that it can be done.
 /// @throws InputError naming the folder, what is in the way and what is allowed
 void check_report_folder(const std::string& folder);
+
+/// A report replaces what is in its folder: none of what it reads may be there.
+/// @param scenes  files or folders that it is about; what their scenes name is read too
+/// @throws InputError naming both
+void refuse_scenes_inside(const std::string& folder, const std::vector<std::string>& scenes);
 
 /// Writes a report: index.html, which needs no other file; the scenes as scenes/NAME; for each
 /// figure NAME.gp, which gnuplot draws, NAME.svg, and a CSV file with its numbers; files.txt, the

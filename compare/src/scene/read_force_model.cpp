@@ -1,8 +1,11 @@
 #include "scene/read_force_model.hpp"
 
+#include "scene/scene_keys.hpp"
+
 namespace dlo::compare {
 
 ForceModelSettings read_force_model(StrictTable& table) {
+  table.only(scene_keys("force_model"));
   ForceModelSettings settings;
   settings.points = table.optional_integer("points", 4, 1'000'000).value_or(settings.points);
   settings.law = table.optional_choice<BendingLaw>("law").value_or(settings.law);

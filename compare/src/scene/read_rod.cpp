@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/words.hpp"
+#include "scene/scene_keys.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -20,7 +21,7 @@ constexpr double same_place_share = 1e-12;
 Material read_material(StrictTable& rod, const std::vector<Material>& known_materials) {
   if (rod.is_table("material")) {
     StrictTable own = rod.table("material");
-    own.only({"density", "youngs_modulus"});
+    own.only(scene_keys("material"));
     Material material{.name = "own", .source = "scene file"};
     material.youngs_modulus = own.number("youngs_modulus", Dimension::pressure, Range::positive());
     material.density = own.number("density", Dimension::density, Range::not_negative());
@@ -139,7 +140,7 @@ void require_finite_rod(const Scene& scene, const StrictTable& rod) {
 Section read_section(StrictTable& table, const Scene& scene) {
   const Range on_rod = Range::between(0, scene.length, " m, the rod's length");
   Section section;
-  table.only({"bending_stiffness", "from", "mass_per_length", "to", "torsional_stiffness"});
+  table.only(scene_keys("section"));
   section.from = table.number("from", Dimension::length, on_rod);
   section.to = table.number("to", Dimension::length, on_rod);
   if (!(section.to > section.from)) {
@@ -199,9 +200,7 @@ void read_sections(std::vector<StrictTable>& tables, Scene& scene) {
 
 void read_rod(StrictTable& rod, std::vector<StrictTable>& sections,
               const std::vector<Material>& known_materials, Scene& scene) {
-  rod.only({"bending_stiffness", "diameter", "joint_spacing", "joint_stiffness", "length",
-            "mass_per_length", "material", "natural_curvature", "natural_twist",
-            "torsional_stiffness"});
+  rod.only(scene_keys("rod"));
   scene.length = rod.number("length", Dimension::length, Range::between(1e-6, 1e6, " m"));
   read_stiffness(rod, known_materials, scene);
   scene.torsional_stiffness =

@@ -14,6 +14,7 @@
 #include "dlo/energy_model/turns.hpp"
 #include "scene/read_force_model.hpp"
 #include "scene/read_rod.hpp"
+#include "scene/scene_keys.hpp"
 #include "scene/scene_problem.hpp"
 #include "toml/strict_table.hpp"
 #include "trajectory/read_trajectory.hpp"
@@ -136,8 +137,7 @@ Eigen::Vector3d read_place(StrictTable& table, const char* key, const Trajectory
 
 Gripper read_gripper(StrictTable& table, double length, const std::string& file) {
   Gripper gripper;
-  table.only({"at", "direction", "frame", "hold", "pose", "position", "quaternion", "roll",
-              "trajectory", "turns"});
+  table.only(scene_keys("gripper"));
   gripper.at = read_arc_length(table, length);
   const std::string hold = table.has("hold") ? table.choice("hold", {"clamp", "pin"}) : "clamp";
   PoseKeys keys;
@@ -236,8 +236,7 @@ obstacle::Body read_box(StrictTable& table, const Eigen::Vector3d& centre) {
 /// @param radius  of the rod [m]
 Obstacle read_obstacle(StrictTable& table, double radius, const std::string& file) {
   Obstacle obstacle;
-  table.only({"axis", "friction", "length", "normal", "point", "pose", "radius", "shape", "size",
-              "stiffness", "touches", "trajectory"});
+  table.only(scene_keys("obstacle"));
   obstacle.trajectory = read_trajectory(table, {.position = "point", .direction = nullptr}, file);
   const Eigen::Vector3d point = read_place(table, "point", obstacle.trajectory);
   const std::string shape =
@@ -297,7 +296,7 @@ void require_clear(const Scene& scene, const StrictTable& entry) {
 
 PointLoad read_load(StrictTable& table, const Scene& scene) {
   PointLoad load;
-  table.only({"at", "force", "mass"});
+  table.only(scene_keys("load"));
   load.at = read_arc_length(table, scene.length);
   const std::optional<double> mass =
       table.optional_number("mass", Dimension::mass, Range::positive());
@@ -316,8 +315,7 @@ PointLoad read_load(StrictTable& table, const Scene& scene) {
 Scene read_scene(const toml::table& root, const std::string& file,
                  const std::vector<Material>& known_materials) {
   StrictTable table(root, "", file);
-  table.only(
-      {"force_model", "gravity", "gripper", "load", "name", "obstacle", "rod", "section", "track"});
+  table.only(scene_keys(""));
   Scene scene;
   scene.file = file;
   scene.name = table.optional_text("name").value_or(valid_utf8(file));
@@ -354,6 +352,7 @@ Scene read_scene(const toml::table& root, const std::string& file,
     check(scene.force_model, settings->where());
   }
   if (auto rates = table.optional_table("track")) {
+    rates->only(scene_keys("track"));
     const auto rate = [&rates](const char* key) {
       return rates->optional_number(key, Dimension::frequency, Range::positive());
     };

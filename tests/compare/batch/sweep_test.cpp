@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "batch/shard.hpp"
@@ -221,6 +223,13 @@ TEST(Sweep, EveryModelFillsItsColumns) {
         << name;
     EXPECT_EQ(row.find(",,"), std::string::npos) << row;
     EXPECT_EQ(row.substr(row.size() - 4), ",ok\n") << row;
+    const std::vector<dlo::compare::SweepColumn> columns = one.columns();
+    const std::vector<dlo::compare::SweepCell> cells = one.cells(0);
+    ASSERT_EQ(cells.size(), columns.size()) << name;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const bool text = columns[i].kind == dlo::compare::CellKind::text;
+      EXPECT_EQ(std::holds_alternative<std::string>(cells[i]), text) << columns[i].name;
+    }
   }
 }
 

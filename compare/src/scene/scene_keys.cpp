@@ -1,0 +1,41 @@
+#include "scene/scene_keys.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace dlo::compare {
+
+const std::vector<SceneTable>& scene_tables() {
+  static const std::vector<SceneTable> tables = {
+      {"",
+       {"force_model", "gravity", "gripper", "load", "name", "obstacle", "rod", "section",
+        "track"}},
+      {"rod",
+       {"bending_stiffness", "diameter", "joint_spacing", "joint_stiffness", "length",
+        "mass_per_length", "material", "natural_curvature", "natural_twist",
+        "torsional_stiffness"}},
+      {"material", {"density", "youngs_modulus"}},
+      {"gripper",
+       {"at", "direction", "frame", "hold", "pose", "position", "quaternion", "roll", "trajectory",
+        "turns"}},
+      {"load", {"at", "force", "mass"}},
+      {"obstacle",
+       {"axis", "friction", "length", "normal", "point", "pose", "radius", "shape", "size",
+        "stiffness", "touches", "trajectory"}},
+      {"section", {"bending_stiffness", "from", "mass_per_length", "to", "torsional_stiffness"}},
+      {"force_model",
+       {"bending_rule", "bookkeeping", "c_F", "c_b", "c_c", "c_h", "design_curvature", "l_s", "law",
+        "point_weight", "points", "stepper"}},
+      {"track", {"frame_rate", "obstacle_rate", "step_rate"}}};
+  return tables;
+}
+
+const std::vector<std::string>& scene_keys(std::string_view table) {
+  const std::vector<SceneTable>& all = scene_tables();
+  const auto found = std::find_if(all.begin(), all.end(),
+                                  [&](const SceneTable& one) { return one.name == table; });
+  if (found == all.end()) throw std::out_of_range("no table " + std::string(table));
+  return found->keys;
+}
+
+}  // namespace dlo::compare
