@@ -393,6 +393,51 @@ TEST(HighLoad, LowestStateIsRightAtEveryAngle) {
   }
 }
 
+// Of a rod that clamps cut into spans, wherever they are: both models and the points themselves.
+TEST(Clamps, LiftTheWeightOfEverySpan) {
+  Problem problem = heavy_cantilever(6, 0);
+  problem.grips.push_back({0.5, {0.4, 0.15, 0.05}, Eigen::Vector3d(1, 0.3, 0)});
+  problem.grips.push_back({1, {0.8, -0.1, 0}, Eigen::Vector3d(1, -0.2, 0.1)});
+  const Equilibrium found = solve_energy(problem);
+  ASSERT_EQ(found.status, SolveStatus::converged) << found.message;
+  constexpr Eigen::Index intervals = 2000;
+  const std::vector<double> s = equal_arc_lengths(1, intervals + 1);
+  const Eigen::RowVectorXd height = found.sample(s).points.row(1);
+  // Trapezoids, whose error is below theta' h^2 / 12.
+  const double mean = (height.sum() - (height[0] + height[intervals]) / 2) / intervals;
+  EXPECT_NEAR(found.energy.gravity, 6 * mean, 1e-5);
+  EXPECT_NEAR(found.energy.gravity, solve_exact(problem).energy.gravity, 1e-8);
+}
+
+TEST(Clamps, ASpanThatGivesWayMakesTheRodUnstable) {
+  // The rod comes down to its clamp, at last too heavy to stand on it, and hangs below.
+  Problem problem = heavy_cantilever(40, -90);
+  problem.grips[0].at = 0.5;
+  const Equilibrium light = solve_exact(problem);
+  EXPECT_EQ(light.status, SolveStatus::converged) << light.message;
+  problem.weight_per_length *= 2;
+  const Equilibrium heavy = solve_exact(problem, {.start = &light});
+  EXPECT_EQ(heavy.status, SolveStatus::saddle) << heavy.message;
+  EXPECT_LT(heavy.smallest_eigenvalue, -1e-3);
+}
+
+TEST(Pin, CarriesTheLoadThatActsOnIt) {
+  Problem problem = heavy_cantilever(6, 0);
+  problem.grips.push_back({0.6, {0.5, 0.1, 0}});
+  const Eigen::Vector3d load(1, -2, 0.5);
+  Problem loaded = problem;
+  loaded.loads = {{0.6, load}};
+  for (const auto& solve : {+[](const Problem& p) { return solve_energy(p); },
+                            +[](const Problem& p) { return solve_exact(p); }}) {
+    const Equilibrium without = solve(problem);
+    const Equilibrium with = solve(loaded);
+    ASSERT_EQ(without.status, SolveStatus::converged) << without.message;
+    ASSERT_EQ(with.status, SolveStatus::converged) << with.message;
+    EXPECT_LT((with.grips[1].force + load - without.grips[1].force).norm(), 1e-6);
+    EXPECT_LT((with.grips[0].force - without.grips[0].force).norm(), 1e-6);
+  }
+}
+
 TEST(Arch, ThatIsUnstableOutOfPlaneLeavesThePlane) {
   // An upright rod above self-buckling whose tip is pinned right above the clamp, pressed down: it
   // buckles in any plane; a tall arch between clamps that point up and down leans over.
