@@ -184,6 +184,51 @@ def test_calibrate_finds_the_modulus_it_was_given(cable):
     assert "calibrated" in fit.to_toml()
 
 
+def test_a_fit_of_a_stiffness_is_no_modulus(cable):
+    wire = dlo.Scene(
+        length=1,
+        bending_stiffness=cable.bending_stiffness,
+        mass_per_length=cable.mass,
+        grippers=cable.grippers,
+    )
+    points = dlo.solve(wire, model="exact", samples=15).points
+    fit = dlo.calibrate(wire, [points])
+    assert fit.youngs_modulus is None
+    assert fit.bending_stiffness == pytest.approx(cable.bending_stiffness, rel=1e-3)
+    assert fit.interval[0] <= fit.bending_stiffness <= fit.interval[1]
+    assert dlo.calibrate(cable, [points]).bending_stiffness is None
+
+
+def test_two_points_are_points(cable):
+    tip = dlo.solve(cable, samples=2).points
+    for two in (tip.tolist(), tuple(map(tuple, tip)), tip[:, :2].tolist(), tuple(tip)):
+        assert len(dlo.check(cable, two, modulus=False).points) == 2
+        fit = dlo.calibrate(cable, [two, two])
+        assert fit["shapes"][0]["points"] == 2
+    s = dlo.solve(cable, samples=3).arc_length
+    pair = (dlo.solve(cable, samples=3).points, s)
+    assert dlo.calibrate(cable, [pair])["shapes"][0]["points"] == 3
+
+
+def test_a_shape_may_be_the_name_of_a_file(root, cable, command):
+    scene, shape = root / "data/scenes/cable.toml", root / "data/shapes/cable.csv"
+    for name in (shape, str(shape)):
+        assert dlo.check(scene, name, tolerance="1%").json == command_json(
+            command, "check", scene, "--shape", shape, "--tolerance", "1%"
+        )
+    fit = dlo.calibrate(scene, [shape])
+    points = numpy.loadtxt(shape, delimiter=",", skiprows=3)
+    assert fit.youngs_modulus == dlo.calibrate(scene, [points]).youngs_modulus
+    for call, words in [
+        (lambda: dlo.check(cable, shape, arc_length=[0, 1]), "arc_length: given besides the name of a file"),
+        (lambda: dlo.check(cable, "none.csv"), "none.csv"),
+        (lambda: dlo.check(cable, points, arc_length="s.csv"), r"arc_length: the name of a file \(allowed: an arr"),
+        (lambda: dlo.ForceModel(cable, shape), r"points: the name of a file .*numpy.loadtxt\(.*cable.csv"),
+    ]:
+        with pytest.raises(dlo.InputError, match=words):
+            call()
+
+
 def test_calibrate_gives_parameters_that_a_scene_takes(steel):
     fit = dlo.calibrate(steel, target=1e-3)
     assert fit["reached"]
@@ -211,10 +256,11 @@ def test_sweep_has_the_rows_of_the_command(root, command):
         capture_output=True, text=True, check=True,
     )
     header, *rows = [line.split(",") for line in done.stdout.splitlines()]
+    assert list(columns) == header
     assert columns["row"].tolist() == [0, 1, 2, 3]
     for name in ("gamma", "tip_x_m", "tip_y_m", "energy_J", "terms"):
-        expected = [float(row[header.index(name)]) for row in rows]
-        assert columns[name].tolist() == expected
+        # Which writes ten digits.
+        assert [f"{value:.10g}" for value in columns[name]] == [row[header.index(name)] for row in rows]
     assert columns["status"].tolist() == ["ok"] * 4
 
 
@@ -223,6 +269,35 @@ def test_sweep_takes_arrays_and_says_what_is_no_scene(cable):
     assert columns["status"][0] == "ok"
     assert "rod.length" in columns["status"][1]
     assert numpy.isnan(columns["energy_J"][1])
+
+
+def test_a_sweep_has_all_digits_and_the_types_it_says(cable):
+    table = dlo.sweep(cable, {"rod.length": [1, 1 / 3], "gripper.0.direction": ["30 deg", 0.5]})
+    assert table["rod.length"].tolist() == [1, 1, 1 / 3, 1 / 3]
+    tip = dlo.solve(cable).points[-1]
+    assert [table[f"tip_{axis}_m"][0] for axis in "xy"] == tip[:2].tolist()
+    assert table["gripper.0.direction"].tolist() == ["30 deg", "0.5"] * 2
+    kinds = {name: column.dtype.kind for name, column in table.items()}
+    assert kinds.pop("row") == "i"
+    assert kinds.pop("gripper.0.direction") == kinds.pop("status") == "U"
+    assert set(kinds.values()) == {"f"}
+    # The same whatever is in the rows: nothing where there is no result.
+    table = dlo.sweep(cable, {"rod.length": [1, -1], "force_model.points": [12]}, model="compare-chain")
+    assert {name: table[name].dtype.kind for name in ("optimum", "evaluations", "tip_over_length")} == {
+        "optimum": "U", "evaluations": "f", "tip_over_length": "f",
+    }
+    assert table["optimum"][1] == "" and numpy.isnan(table["evaluations"][1])
+    pinned = cable.replace(grippers=[*cable.grippers, dlo.pin(at=1, position=(0.6, 0, 0))])
+    table = dlo.sweep(pinned, {"force_model.points": [12]}, model="compare-chain")
+    assert numpy.isnan(table["tip_over_length"]).all()
+
+
+def test_compare_plans_when_it_is_asked(steel):
+    steel.force_model = {"points": 12}
+    quick, planned = dlo.compare(steel, modulus=False), dlo.compare(steel, modulus=False, plan=True)
+    assert "plan" not in quick.json["cases"][0]
+    assert planned.json["cases"][0]["plan"]["geometry"] == "planar"
+    assert str(planned).endswith(str(quick)) and str(dlo.plan(steel)) in str(planned)
 
 
 def test_stability_and_bench(steel):

@@ -208,3 +208,147 @@ def test_values_that_no_file_has_name_their_key(cable):
     ]:
         with pytest.raises(dlo.InputError, match=words):
             cable.gravity = value
+
+
+@pytest.mark.parametrize(
+    "write, words",
+    [
+        (lambda s: setattr(s, "lenght", 2), r"a dlo.Scene has no lenght, did you mean length\?"),
+        (
+            lambda s: setattr(s.grippers[0], "postion", (0, 0, 0)),
+            r"a dlo.Gripper has no postion, did you mean position\? \(allowed: at, ",
+        ),
+        (lambda s: setattr(s.force_model, "pionts", 9), r"ForceModelSettings has no pionts, did you mean poin"),
+        (lambda s: setattr(s.track, "frame_rat", 9), r"TrackRates has no frame_rat, did you mean frame_rate\?"),
+        (lambda s: setattr(s, "copy", 3), r"a dlo.Scene has no copy"),
+        (lambda s: setattr(s, "gamma", 3), r"gamma"),
+    ],
+)
+def test_what_nobody_reads_cannot_be_set(steel, write, words):
+    before = steel.to_toml()
+    with pytest.raises(AttributeError, match=words):
+        write(steel)
+    assert steel.to_toml() == before
+
+
+@pytest.mark.parametrize(
+    "write, key",
+    [
+        (lambda s: setattr(s, "force_model", {"pionts": 20}), "force_model.pionts"),
+        (lambda s: setattr(s, "track", {"framerate": 20}), "track.framerate"),
+        (lambda s: setattr(s, "material", {"youngs_moduls": 1e9}), "rod.material.youngs_moduls"),
+        (lambda s: dlo.Gripper(at=0, postion=(0, 0, 0)), "gripper.postion"),
+        (lambda s: dlo.Load(att=0), "load.att"),
+        (lambda s: setattr(s.grippers[0], "pose", [{"tme": 0, "position": (0, 0, 0)}]), "gripper.pose.tme"),
+    ],
+)
+def test_unknown_keys_of_tables_are_input_errors(steel, write, key):
+    with pytest.raises(dlo.InputError, match=r"unknown key, did you mean \w+\?") as caught:
+        write(steel)
+    assert caught.value.key == key
+
+
+def test_a_field_that_replace_does_not_know_is_named(steel):
+    with pytest.raises(TypeError, match=r"no lenght, did you mean length\?"):
+        steel.replace(lenght=1)
+
+
+def test_what_would_be_lost_cannot_be_written(steel):
+    steel.material = {"youngs_modulus": "100 GPa", "density": 8000}
+    for write in (
+        lambda: steel.material.update(density=1),
+        lambda: steel.material.__setitem__("density", 1),
+        lambda: steel.material.pop("density"),
+    ):
+        with pytest.raises(TypeError, match="a copy of what the scene has"):
+            write()
+    other = steel.replace(length=1)
+    other.material = steel.material
+    assert other.material == {"youngs_modulus": "100 GPa", "density": 8000}
+    assert pickle.loads(pickle.dumps(other.material)) == other.material
+
+
+def test_every_key_of_a_scene_file_has_a_field(steel):
+    python = {"from": "start", "to": "end"}
+    kinds = [dlo.Gripper, dlo.Load, dlo.Obstacle, dlo.Section, dlo.ForceModelSettings, dlo.TrackRates]
+    for kind in kinds:
+        fields = {key for key in dir(kind) if isinstance(getattr(kind, key), property)}
+        assert fields == {python.get(key, key) for key in dlo._dlo.scene_keys[kind._name]}
+    for key in dlo._dlo.scene_keys["rod"]:
+        assert isinstance(getattr(dlo.Scene, key), property)
+
+
+MOVING = """
+[rod]
+length = 1
+diameter = 0.01
+material = "silicone"
+[[gripper]]
+at = 0
+direction = "0 deg"
+[[gripper.pose]]
+time = 0
+position = [0, 0, 0]
+[[gripper.pose]]
+time = 1
+position = [0, 0.5, 0]
+[track]
+frame_rate = 20
+step_rate = 900
+"""
+
+
+def test_how_a_scene_is_tracked_survives_its_changes():
+    scene = dlo.Scene.from_text(MOVING)
+    scene.gravity = (0, -1, 0)
+    for one in (scene, scene.copy(), scene.replace(length="90 cm"), pickle.loads(pickle.dumps(scene))):
+        assert (one.track.frame_rate, one.track.obstacle_rate, one.track.step_rate) == (20, None, 900)
+        assert "frame_rate" in one.to_toml()
+    scene.track.frame_rate = 4
+    assert dlo.track(scene, force=False).time.tolist() == [0, 0.25, 0.5, 0.75, 1]
+    with pytest.raises(dlo.InputError, match="track.frame_rate = -1"):
+        scene.track.frame_rate = -1
+    scene.track = None
+    assert scene.track.frame_rate == 1000
+    assert dlo.Scene.from_text(MOVING).grippers[0].pose[1]["position"] == (0, 0.5, 0)
+
+
+def test_a_scene_that_moves_is_taken_as_it_is_at_a_time(cable):
+    scene = dlo.Scene.from_text(MOVING)
+    for time, height in ((None, 0), (1.0, 0.5), (9, 0.5)):
+        solution = dlo.solve(scene, samples=3, time=time)
+        assert solution.points[0, 1] == height
+        assert dlo.solve_all(scene, samples=3, time=time)[0].points[0, 1] == height
+    assert dlo.compare(scene, modulus=False, time=1).energy_points[0, 1] == 0.5
+    assert dlo.plan(scene, time=1)["geometry"] == "planar"
+    assert dlo.modes(scene, count=1, samples=3, time=1).frequencies.shape == (1,)
+    with pytest.raises(dlo.InputError, match=r"time = 1: nothing moves \(allowed: None"):
+        dlo.solve(cable, time=1)
+    with pytest.raises(dlo.InputError, match=r"time = '1 s': a str \(allowed: a number"):
+        dlo.solve(scene, time="1 s")
+
+
+def test_names_of_materials_are_those_of_a_file(tmp_path):
+    file = tmp_path / "mine.toml"
+    file.write_text(
+        '[[material]]\nname = "silicone"\nyoungs_modulus = "7 MPa"\ndensity = 1000\nsource = "me"\n'
+        '[[material]]\nname = "goo"\nyoungs_modulus = "1 MPa"\ndensity = 900\nsource = "me"\n'
+    )
+    assert [one["name"] for one in dlo.materials(file)] == ["silicone", "goo"]
+    path = tmp_path / "scene.toml"
+    path.write_text(MOVING)
+    read = dlo.Scene.from_file(path, materials=file)
+    built = dlo.Scene(1, diameter=0.01, material="goo", grippers=[dlo.clamp(0, (0, 0, 0), 0)], materials=file)
+    assert (read.youngs_modulus, built.youngs_modulus) == (7e6, 1e6)
+    read.material = "goo"
+    for one in (read, read.copy(), pickle.loads(pickle.dumps(read)), read.replace(length=2)):
+        assert one.youngs_modulus == 1e6
+    assert dlo.Scene.from_file(path) != dlo.Scene.from_file(path, materials=file)
+    tip = dlo.solve(path, samples=2, materials=file).points[1, 1]
+    assert tip > dlo.solve(path, samples=2).points[1, 1] + 0.01
+    table = dlo.sweep(path, {"rod.material": ["goo", "silicone"]}, materials=file)
+    assert table["tip_y_m"][1] == pytest.approx(tip, rel=1e-12)
+    with pytest.raises(dlo.InputError, match="none.toml"):
+        dlo.solve(read, materials=tmp_path / "none.toml")
+    with pytest.raises(dlo.InputError, match=r"materials: a int \(allowed: the name of a file"):
+        dlo.solve(path, materials=3)

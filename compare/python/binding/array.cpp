@@ -24,7 +24,16 @@ std::string shape_text(const py::array& array) {
 /// More than any function takes, asked of what is an array before it is copied.
 constexpr py::ssize_t most_numbers = 3'000'000;
 
+/// Where a file is read, its name has been taken before.
+void refuse_file_name(py::handle values, const std::string& name) {
+  if (!py::isinstance<py::str>(values) && !py::hasattr(values, "__fspath__")) return;
+  throw compare::InputError(fmt::format(
+      "{0}: the name of a file (allowed: an array, such as numpy.loadtxt({1}, delimiter=\",\"))",
+      name, py::repr(values).cast<std::string>()));
+}
+
 Numbers numbers_from(py::handle values, const std::string& name) {
+  refuse_file_name(values, name);
   if (py::isinstance<py::array>(values)) {
     const py::ssize_t size = py::reinterpret_borrow<py::array>(values).size();
     if (size > most_numbers) {

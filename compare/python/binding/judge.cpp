@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "array.hpp"
+#include "base/display.hpp"
+#include "base/input_file.hpp"
 #include "dlo/compare/check.hpp"
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/force_model_fit.hpp"
@@ -17,10 +19,12 @@
 #include "format/force_model_fit.hpp"
 #include "format/json.hpp"
 #include "format/material_fit.hpp"
+#include "format/plan.hpp"
 #include "format/shape_check.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "option/share.hpp"
+#include "picture.hpp"
 #include "record/solution_fields.hpp"
 #include "result.hpp"
 #include "scene.hpp"
@@ -30,10 +34,23 @@ namespace dlo::python {
 namespace {
 
 using compare::CheckResult;
-using compare::Comparison;
 
+/// With the scene, for its picture.
+struct Comparison : compare::Comparison {
+  SharedScene of;
+};
+
+/// @param points  or, as bytes, the name of a file
 compare::MeasuredShape measured(const py::object& points, const py::object& arc_length,
                                 const std::string& name) {
+  if (py::isinstance<py::bytes>(points)) {
+    if (!arc_length.is_none()) {
+      throw compare::InputError(
+          "arc_length: given besides the name of a file (allowed: the file's own column s)");
+    }
+    const auto path = points.cast<std::string>();
+    return compare::parse_shape(compare::read_file(path), compare::valid_utf8(path));
+  }
   return compare::shape_of(
       points_from(points, name),
       arc_length.is_none() ? std::vector<double>{} : values_from(arc_length, "arc_length"), name);
@@ -79,12 +96,16 @@ std::shared_ptr<CheckResult> check(const SharedScene& scene, const py::object& p
       run_long([&](Signals& /*signals*/) { return compare::check(scene->scene, shape, request); }));
 }
 
-py::object compare_scene(const SharedScene& scene, bool modulus, const py::dict& limits) {
+py::object compare_scene(const SharedScene& scene, bool modulus, bool plan,
+                         const py::dict& limits) {
   const compare::SolveOptions options = solve_options(limits);
-  auto comparison = std::make_shared<Comparison>(run_long([&](Signals& /*signals*/) {
-    return compare::compare(scene->scene, options, compare::PlanOptions{},
+  auto comparison = std::make_shared<Comparison>();
+  comparison->of = scene;
+  static_cast<compare::Comparison&>(*comparison) = run_long([&](Signals& /*signals*/) {
+    return compare::compare(scene->scene, options,
+                            plan ? std::optional(compare::PlanOptions{}) : std::nullopt,
                             modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no);
-  }));
+  });
   py::object result = py::cast(comparison);
   if (!comparison->unverified.empty()) {
     raise_convergence(
@@ -109,7 +130,9 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
   std::vector<compare::MeasuredShape> measured_shapes;
   for (const py::handle& entry : shapes) {
     const auto pair = entry.cast<py::tuple>();
-    report.files.push_back(fmt::format("shapes[{}]", measured_shapes.size()));
+    const bool file = py::isinstance<py::bytes>(pair[0]);
+    report.files.push_back(file ? compare::valid_utf8(pair[0].cast<std::string>())
+                                : fmt::format("shapes[{}]", measured_shapes.size()));
     measured_shapes.push_back(measured(pair[0], pair[1], report.files.back()));
   }
   if (report.scenes.size() == 1) report.scenes.resize(measured_shapes.size(), report.scenes[0]);
@@ -170,6 +193,9 @@ void bind_check(py::module_& module) {
   bind_array(
       bound, "reference", [](const Report& r) -> const auto& { return r.check.reference.points; },
       "The energy model there [m], shape (M, 3), read only.");
+  bind_picture(bound, [](const Report& r) {
+    return compare::views_of(r.scene, r.check.alignment.shape.points);
+  });
   bound
       .def_property_readonly(
           "passed",
@@ -226,6 +252,9 @@ void bind_comparison(py::module_& module) {
   bind_array(
       bound, "energy_points", [](const Comparison& r) -> const auto& { return r.reference.points; },
       "The energy model there [m], shape (N, 3), read only.");
+  bind_picture(bound, [](const Comparison& c) {
+    return compare::views_of(c.of->scene, c.force.shape.points);
+  });
   bound
       .def_property_readonly(
           "deviation",
@@ -239,7 +268,9 @@ void bind_comparison(py::module_& module) {
       .def(
           "to_json", [](const Comparison& c) { return cli::json_text(cli::comparisons_json({c})); },
           "The document of `dlo compare --format json`, as text.")
-      .def("__str__", &cli::comparison_text);
+      .def("__str__", [](const Comparison& c) {
+        return (c.plan ? cli::plan_text(*c.plan, c.of->scene) : "") + cli::comparison_text(c);
+      });
 }
 
 }  // namespace
@@ -250,7 +281,8 @@ void bind_judge(py::module_& module) {
   module.def("check", &check, py::arg("scene"), py::arg("points"), py::arg("arc_length"),
              py::arg("tolerance"), py::arg("pose"), py::arg("arc_lengths"), py::arg("modulus"),
              py::arg("limits"));
-  module.def("compare", &compare_scene, py::arg("scene"), py::arg("modulus"), py::arg("limits"));
+  module.def("compare", &compare_scene, py::arg("scene"), py::arg("modulus"), py::arg("plan"),
+             py::arg("limits"));
   module.def("calibrate_material", &calibrate_material, py::arg("scenes"), py::arg("shapes"),
              py::arg("what"), py::arg("limits"));
   module.def("calibrate_force_model", &calibrate_force_model, py::arg("scenes"),

@@ -45,7 +45,7 @@ void refuse_new(Class& bound, const char* maker) {
       py::reinterpret_steal<py::object>(PyStaticMethod_New(py::object(refuse).ptr()));
 }
 
-/// What all results have besides to_json(): the same as a dict, and a picture.
+/// What all results have besides to_json(): the same as a dict.
 template <typename Class>
 void bind_result(Class& bound) {
   refuse_pickle(bound, "pickled", "its to_json(), its arrays");
@@ -61,15 +61,7 @@ void bind_result(Class& bound) {
           [](const py::object& self) {
             return py::module_::import("json").attr("loads")(self.attr("to_json")());
           },
-          "The command's document, as a dict.")
-      .def(
-          "plot",
-          [](const py::object& self, const py::object& ax) {
-            return py::module_::import("dlo._plot").attr("plot")(self, ax);
-          },
-          py::arg("ax") = py::none(),
-          "Draws the shape with matplotlib, at equal aspect. ax: the axes to draw into, new ones\n"
-          "for None; returned.");
+          "The command's document, as a dict.");
 }
 
 }  // namespace dlo::python

@@ -1,25 +1,29 @@
 #include "scene.hpp"
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include <sstream>
 
 #include "array.hpp"
 #include "base/input_file.hpp"
+#include "base/words.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/material.hpp"
 #include "document.hpp"
 #include "module.hpp"
 #include "result.hpp"
 #include "scene/read_scene.hpp"
+#include "scene/scene_keys.hpp"
 #include "toml/quantity.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::python {
 namespace {
 
-SharedScene scene_from(const toml::table& root, const std::string& file) {
-  SceneData data{compare::read_scene(root, file, compare::materials()), {}};
+SharedScene scene_from(const toml::table& root, const std::string& file,
+                       const MaterialsFile& materials) {
+  SceneData data{compare::read_scene(root, file, materials_of(materials)), {}};
   if (const toml::array* obstacles = root["obstacle"].as_array()) {
     for (const toml::node& obstacle : *obstacles) {
       const bool axis = obstacle.as_table()->at_path("touches").value_or("") == std::string("axis");
@@ -29,9 +33,10 @@ SharedScene scene_from(const toml::table& root, const std::string& file) {
   return std::make_shared<SceneData>(std::move(data));
 }
 
-py::tuple parse_scene(const std::string& text, const std::string& file) {
+py::tuple parse_scene(const std::string& text, const std::string& file,
+                      const MaterialsFile& materials) {
   const toml::table root = compare::parse_toml(text, file);
-  SharedScene scene = scene_from(root, file);
+  SharedScene scene = scene_from(root, file, materials);
   return py::make_tuple(std::move(scene), to_python(root));
 }
 
@@ -80,9 +85,37 @@ py::dict settings_of(const SceneData& data) {
   return result;
 }
 
-py::list material_list() {
+py::dict rates_of(const SceneData& data) {
+  const compare::TrackRates& rates = data.scene.track;
+  py::dict result;
+  result["frame_rate"] = rates.frames;
+  result["obstacle_rate"] = rates.obstacles;
+  result["step_rate"] = rates.steps;
+  return result;
+}
+
+SharedScene scene_at(const SharedScene& data, double time) {
+  if (!compare::motion_of(data->scene)) {
+    throw compare::InputError(
+        fmt::format("{}: time = {:g}: nothing moves (allowed: None, or a scene with "
+                    "[[gripper.pose]] or [[obstacle.pose]])",
+                    data->scene.file, time));
+  }
+  return std::make_shared<SceneData>(
+      SceneData{compare::scene_at(data->scene, time), data->obstacle_offsets});
+}
+
+py::dict table_keys() {
+  py::dict keys;
+  for (const compare::SceneTable& table : compare::scene_tables()) {
+    keys[py::str(table.name)] = py::cast(table.keys);
+  }
+  return keys;
+}
+
+py::list material_list(const MaterialsFile& file) {
   py::list list;
-  for (const compare::Material& material : compare::materials()) {
+  for (const compare::Material& material : materials_of(file)) {
     using namespace py::literals;  // NOLINT(google-build-using-namespace): of names alone
     list.append(py::dict("name"_a = material.name, "youngs_modulus"_a = material.youngs_modulus,
                          "density"_a = material.density, "source"_a = material.source));
@@ -91,6 +124,10 @@ py::list material_list() {
 }
 
 }  // namespace
+
+std::vector<compare::Material> materials_of(const MaterialsFile& file) {
+  return file ? compare::read_materials(file->first, file->second) : compare::materials();
+}
 
 void bind_scene(py::module_& module) {
   const auto of = [](auto get) { return [get](const SceneData& data) { return get(data.scene); }; };
@@ -115,18 +152,22 @@ void bind_scene(py::module_& module) {
       .def_property_readonly("mass", of([](const Scene& s) { return s.mass(); }))
       .def_property_readonly("gamma", of([](const Scene& s) { return s.gamma(); }))
       .def_property_readonly("planar", of([](const Scene& s) { return s.planar(); }))
-      .def_property_readonly("force_model", settings_of);
+      .def_property_readonly("force_model", settings_of)
+      .def_property_readonly("track", rates_of);
+  module.attr("scene_keys") = table_keys();
+  module.def("did_you_mean", &compare::did_you_mean, py::arg("written"), py::arg("words"));
   module.def(
       "read_scene",
-      [](const py::dict& document, const std::string& file) {
-        return scene_from(to_toml(document, ""), file);
+      [](const py::dict& document, const std::string& file, const MaterialsFile& materials) {
+        return scene_from(to_toml(document, ""), file, materials);
       },
-      py::arg("document"), py::arg("file"));
-  module.def("parse_scene", &parse_scene, py::arg("text"), py::arg("file"));
+      py::arg("document"), py::arg("file"), py::arg("materials"));
+  module.def("parse_scene", &parse_scene, py::arg("text"), py::arg("file"), py::arg("materials"));
+  module.def("scene_at", &scene_at, py::arg("scene"), py::arg("time"));
   module.def("read_file", &compare::read_file, py::arg("path"));
   module.def("toml_text", &toml_text, py::arg("document"));
   module.def("quantity", &quantity, py::arg("text"), py::arg("dimension"));
-  module.def("materials", &material_list);
+  module.def("materials", &material_list, py::arg("file"));
 }
 
 }  // namespace dlo::python

@@ -1,8 +1,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "dlo/compare/material.hpp"
 #include "dlo/compare/scene.hpp"
 
 namespace dlo::python {
@@ -17,5 +21,11 @@ struct SceneData {
 };
 
 using SharedScene = std::shared_ptr<SceneData>;
+
+/// Text and name of a file of materials; none: the built-in one.
+using MaterialsFile = std::optional<std::pair<std::string, std::string>>;
+
+/// What it has. @throws compare::InputError
+[[nodiscard]] std::vector<compare::Material> materials_of(const MaterialsFile& file);
 
 }  // namespace dlo::python

@@ -16,6 +16,8 @@
 #include "format/solution.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
+#include "picture.hpp"
+#include "picture/solution_figure.hpp"
 #include "record/solution_fields.hpp"
 #include "result.hpp"
 #include "scene.hpp"
@@ -108,6 +110,16 @@ std::shared_ptr<SolvedStates> solve_all(const SharedScene& scene, int samples,
   return solved;
 }
 
+Eigen::Matrix3Xd all_points(const SolvedStates& solved) {
+  std::vector<Eigen::Vector3d> points;
+  for (const Solution& solution : solved.all.solutions) {
+    for (const auto& point : solution.shape.points.colwise()) points.emplace_back(point);
+  }
+  if (points.empty()) points.emplace_back(Eigen::Vector3d::Zero());
+  return Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3,
+                                            static_cast<Eigen::Index>(points.size()));
+}
+
 /// A field of a GripperLoad of all grippers, without copies. @param get  of one
 template <typename Get>
 py::array gripper_rows(const py::object& self, const Get& get) {
@@ -195,6 +207,9 @@ void bind_solve(py::module_& module) {
       "Arrays are views into it, read only; they keep it alive.");
   bind_arrays(solution);
   bind_result(solution);
+  bind_picture(solution, [](const SolvedScene& solved) {
+    return compare::views_of(solved.scene->scene, solved.solution.shape.points);
+  });
   const auto of = [](const SolvedScene& solved) {
     return compare::SolvedShape{solved.scene->scene, solved.solution};
   };
@@ -208,6 +223,9 @@ void bind_solve(py::module_& module) {
       module, "Equilibria",
       "Every equilibrium that was found: a sequence of Solution, stable ones first, by energy.");
   bind_result(equilibria);
+  bind_picture(equilibria, [](const SolvedStates& solved) {
+    return compare::views_of(solved.scene->scene, all_points(solved));
+  });
   equilibria.def("__len__", [](const SolvedStates& solved) { return solved.all.solutions.size(); })
       .def(
           "__getitem__",

@@ -51,25 +51,26 @@ compare::Grid grid_of(
 }
 
 py::dict sweep(
-    const std::string& text, const std::string& file,
+    const std::string& text, const std::string& file, const MaterialsFile& materials,
     const std::vector<std::pair<std::string, std::variant<std::vector<std::string>, std::string>>>&
         fields,
     const std::string& model, int threads, const py::dict& limits) {
   compare::SolveOptions options = solve_options(limits);
   options.accept_unverified = false;
   const Table table = run_long([&](Signals& signals) {
-    const compare::Sweep sweep(compare::SceneTemplate(text, file), grid_of(fields),
-                               compare::from_name<compare::SweepModel>(model), options);
+    const compare::Sweep sweep(compare::SceneTemplate(text, file, materials_of(materials)),
+                               grid_of(fields), compare::from_name<compare::SweepModel>(model),
+                               options);
     if (sweep.grid().size() > largest_table) {
       throw compare::InputError(
           fmt::format("sweep: {} combinations (allowed: {} in a table; more in parts, or by the "
                       "command dlo sweep)",
                       sweep.grid().size(), largest_table));
     }
-    Table rows(sweep.header());
-    sweep.run({0, sweep.grid().size()}, threads, [&](const std::string& line) {
+    Table rows(sweep.columns());
+    sweep.run_cells({0, sweep.grid().size()}, threads, [&](const auto& cells) {
       signals.throw_if_stopped();
-      rows.add(line);
+      rows.add(cells);
     });
     return rows;
   });
@@ -153,8 +154,8 @@ py::object modes(const SharedScene& scene, int count, double rate, double dampin
 
 void bind_studies(py::module_& module) {
   module.attr("largest_table") = largest_table;
-  module.def("sweep", &sweep, py::arg("text"), py::arg("file"), py::arg("fields"), py::arg("model"),
-             py::arg("threads"), py::arg("limits"));
+  module.def("sweep", &sweep, py::arg("text"), py::arg("file"), py::arg("materials"),
+             py::arg("fields"), py::arg("model"), py::arg("threads"), py::arg("limits"));
   module.def("hard_cases", &hard_cases, py::arg("name_contains"), py::arg("steppers"),
              py::arg("max_steps"), py::arg("threads"));
   module.def("stability_map", &stability_map, py::arg("scene"), py::arg("axis"), py::arg("columns"),

@@ -1,77 +1,61 @@
 #include "table.hpp"
 
-#include <fmt/format.h>
 #include <pybind11/numpy.h>
 #include <pybind11/stl.h>
 
-#include <cmath>
-#include <functional>
 #include <limits>
-
-#include "base/number.hpp"
+#include <variant>
 
 namespace dlo::python {
 namespace {
 
-/// Calls `take` with every field; a field in quotes may hold commas, and quotes that are doubled.
-void each_field(const std::string& line, const std::function<void(const std::string&)>& take) {
-  std::string field;
-  bool quoted = false;
-  for (std::size_t i = 0; i < line.size() && (quoted || line[i] != '\n'); ++i) {
-    const char c = line[i];
-    if (c == '"') {
-      const bool is_doubled = quoted && i + 1 < line.size() && line[i + 1] == '"';
-      if (is_doubled) {
-        field += line[++i];
-      } else {
-        quoted = !quoted;
-      }
-    } else if (c == ',' && !quoted) {
-      take(field);
-      field.clear();
-    } else {
-      field += c;
-    }
-  }
-  take(field);
+using compare::CellKind;
+
+double number_of(const compare::SweepCell& cell) {
+  if (const auto* number = std::get_if<double>(&cell)) return *number;
+  if (const auto* count = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*count);
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+template <typename Number>
+py::array array_of(const std::vector<Number>& numbers) {
+  return py::array_t<Number>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
 }
 
 }  // namespace
 
-Table::Table(const std::string& header) {
-  each_field(header, [this](const std::string& name) { columns_.push_back({name, {}, {}}); });
+Table::Table(const std::vector<compare::SweepColumn>& columns) {
+  for (const compare::SweepColumn& column : columns) columns_.push_back({column, {}, {}, {}});
 }
 
-void Table::add(const std::string& line) {
-  std::size_t column = 0;
-  each_field(line, [&](const std::string& field) { add_field(columns_.at(column++), field); });
+void Table::add(const std::vector<compare::SweepCell>& cells) {
+  for (std::size_t i = 0; i < columns_.size(); ++i) add_cell(columns_[i], cells.at(i));
 }
 
-void Table::add_field(Column& column, const std::string& field) {
-  if (!column.words.empty()) {
-    column.words.push_back(field);
-    return;
+void Table::add_cell(Column& column, const compare::SweepCell& cell) {
+  switch (column.is.kind) {
+    case CellKind::whole:
+      column.whole.push_back(std::get<std::int64_t>(cell));
+      break;
+    case CellKind::number:
+      column.numbers.push_back(number_of(cell));
+      break;
+    case CellKind::text: {
+      const auto* text = std::get_if<std::string>(&cell);
+      column.words.push_back(text != nullptr ? *text : std::string());
+      break;
+    }
   }
-  const auto number =
-      field.empty() ? std::numeric_limits<double>::quiet_NaN() : compare::as_number<double>(field);
-  if (number) {
-    column.numbers.push_back(*number);
-    return;
-  }
-  // Fields are written with ten digits; what was read so far is written so again.
-  for (const double before : column.numbers) {
-    column.words.push_back(std::isnan(before) ? "" : fmt::format("{:.10g}", before));
-  }
-  column.words.push_back(field);
 }
 
 py::dict Table::arrays() const {
   py::dict result;
   for (const Column& column : columns_) {
-    const py::str name(column.name);
-    if (column.words.empty()) {
-      result[name] = py::array_t<double>(static_cast<py::ssize_t>(column.numbers.size()),
-                                         column.numbers.data());
+    const py::str name(column.is.name);
+    if (column.is.kind == CellKind::whole) {
+      result[name] = array_of(column.whole);
+    } else if (column.is.kind == CellKind::number) {
+      result[name] = array_of(column.numbers);
     } else {
       result[name] = py::array(py::cast(column.words));
     }

@@ -2,33 +2,36 @@
 
 #include <pybind11/pybind11.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
+
+#include "batch/sweep.hpp"
 
 namespace dlo::python {
 
 namespace py = pybind11;
 
-/// Columns of a CSV table as it is written by a sweep, filled line by line.
+/// A sweep's table, column by column.
 class Table {
  public:
-  /// @param header  the names of the columns, with the line's end
-  explicit Table(const std::string& header);
+  explicit Table(const std::vector<compare::SweepColumn>& columns);
 
-  /// @param line  as many fields, with the line's end
-  void add(const std::string& line);
+  /// @param cells  of a row, one for each column
+  void add(const std::vector<compare::SweepCell>& cells);
 
-  /// A dict of arrays: float64 where every field is a number or empty (NaN), else of str. With the
-  /// GIL.
+  /// A dict of arrays: int64 of what is whole, float64 of numbers (NaN where there is none), str of
+  /// text ("" there). With the GIL.
   [[nodiscard]] py::dict arrays() const;
 
  private:
   struct Column {
-    std::string name;
+    compare::SweepColumn is;
+    std::vector<std::int64_t> whole;  // only the one that `is` says is filled
     std::vector<double> numbers;
-    std::vector<std::string> words;  // of all rows, once a field is no number
+    std::vector<std::string> words;
   };
-  static void add_field(Column& column, const std::string& field);
+  static void add_cell(Column& column, const compare::SweepCell& cell);
 
   std::vector<Column> columns_;
 };

@@ -7,14 +7,14 @@
 
 Scenes       Scene, clamp, pin, load, obstacle, section, materials
 One shape    solve, solve_all, check, compare, plan, calibrate
-Many         sweep, bench, stability, modes
+Many         sweep, regress, report, bench, stability, modes
 Motion       track
 In a loop    ForceModel, Batch
 Errors       InputError (a ValueError), ConvergenceError (a RuntimeError)
 
 Numbers are in SI units, or text with a unit. Wherever a scene is asked for, the name of a scene file
 will do. Results have NumPy arrays, json (the document of the command dlo), to_json(), str() (its
-text), and those with a shape plot(). Long calls let other threads run, and Ctrl-C ends them.
+text), and those with a shape plot(); a notebook shows verdict, picture and text. Long calls let other threads run, and Ctrl-C ends them.
 """
 
 from ._dlo import Check, Comparison, Equilibria, Solution, __version__
@@ -25,38 +25,29 @@ from ._documents import (
     MaterialFit,
     Modes,
     Plan,
+    Regression,
+    Report,
     Stability,
     Track,
 )
 from ._errors import ConvergenceError, InputError
-from ._functions import (
-    bench,
-    calibrate,
-    check,
-    compare,
-    modes,
-    plan,
-    solve,
-    solve_all,
-    stability,
-    sweep,
-    track,
-)
+from ._functions import calibrate, check, compare, plan, solve, solve_all
 from ._loops import Batch, ForceModel
-from ._scene import (
+from ._parts import (
     ForceModelSettings,
     Gripper,
     Load,
     Obstacle,
-    Scene,
     Section,
+    TrackRates,
     clamp,
     load,
-    materials,
     obstacle,
     pin,
     section,
 )
+from ._scene import Scene, materials
+from ._studies import bench, modes, regress, report, stability, sweep, track
 
 __all__ = [
     "Batch",
@@ -76,11 +67,14 @@ __all__ = [
     "Modes",
     "Obstacle",
     "Plan",
+    "Regression",
+    "Report",
     "Scene",
     "Section",
     "Solution",
     "Stability",
     "Track",
+    "TrackRates",
     "__version__",
     "bench",
     "calibrate",
@@ -93,6 +87,8 @@ __all__ = [
     "obstacle",
     "pin",
     "plan",
+    "regress",
+    "report",
     "section",
     "solve",
     "solve_all",

@@ -8,6 +8,7 @@ import operator
 import reprlib
 from typing import Any, Callable, Mapping, Optional, TypeVar
 
+from . import _dlo
 from ._errors import InputError
 
 Function = TypeVar("Function", bound=Callable[..., Any])
@@ -134,6 +135,21 @@ def checked(**kinds: Kind) -> Callable[[Function], Function]:
         return call  # type: ignore[return-value]
 
     return decorate
+
+
+class Strict:
+    """What has the attributes of its class, and no others."""
+
+    def _no_field(self, name: str) -> str:
+        fields = [key for key in dir(type(self)) if isinstance(getattr(type(self), key), property)]
+        near = _dlo.did_you_mean(name, fields)
+        return f"a dlo.{type(self).__name__} has no {name}{near} (allowed: {', '.join(fields)})"
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        known = getattr(type(self), name, None)
+        if name[0] != "_" and (known is None or callable(known)):
+            raise AttributeError(self._no_field(name))
+        object.__setattr__(self, name, value)
 
 
 def told(method: Function, **kinds: Kind) -> Function:

@@ -8,6 +8,7 @@ from typing import Any, Optional
 import numpy
 from numpy.typing import NDArray
 
+from . import _plot, _show
 from ._errors import InputError
 
 
@@ -35,6 +36,12 @@ class Document:
 
     def __str__(self) -> str:
         return self._text
+
+    def __repr__(self) -> str:
+        return _show.line(self)
+
+    def _repr_html_(self) -> str:
+        return _show.html(self)
 
 
 class Plan(Document):
@@ -70,6 +77,16 @@ class Modes(Document):
 
 class Track(Document):
     """A rod while its grippers move, frame by frame; of track()."""
+
+    _views: list[tuple[int, int]] = []
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws some of the frames with matplotlib, at equal aspect. ax: the axes to draw into, new
+        ones for None; returned."""
+        return _plot.plot(self, ax)
+
+    def _repr_svg_(self) -> Optional[str]:
+        return _show.svg(self)
 
     @property
     def arc_length(self) -> NDArray[numpy.float64]:
@@ -127,6 +144,62 @@ class Track(Document):
         )
 
 
+class Regression(Document):
+    """Shape errors against a baseline; of regress()."""
+
+    def __init__(self, text: str, json_text: str, junit: str) -> None:
+        super().__init__(text, json_text)
+        self._junit = junit
+
+    @property
+    def passed(self) -> bool:
+        """Whether no case fails; of an update, whether every scene was solved."""
+        return bool(self["verdict"] == "pass")
+
+    @property
+    def reason(self) -> str:
+        """How many cases have become what."""
+        return self._text.splitlines()[-1]
+
+    def to_junit(self) -> str:
+        """What `dlo regress --junit` writes: JUnit XML."""
+        return self._junit
+
+
+class Report:
+    """A page that was written; of report(). str() is what the command prints."""
+
+    def __init__(
+        self,
+        page: str,
+        verdict: list[str],
+        failures: list[str],
+        figures_missing: int,
+        why_missing: str,
+        seconds: float,
+    ) -> None:
+        self.page = page
+        """Path of its index.html."""
+        self.verdict = verdict
+        """What it comes to, a sentence each, the most important first."""
+        self.failures = failures
+        """What did not converge."""
+        self.figures_missing = figures_missing
+        """That the page has no picture of; why_missing says why."""
+        self.why_missing = why_missing
+        self.seconds = seconds
+        """That it took [s]."""
+
+    def __str__(self) -> str:
+        return "\n".join([*self.verdict, "", self.page])
+
+    def __repr__(self) -> str:
+        return _show.line(self)
+
+    def _repr_html_(self) -> str:
+        return _show.html(self)
+
+
 class Calibration(Document):
     """Parameters that were fitted; of calibrate()."""
 
@@ -143,15 +216,23 @@ class Calibration(Document):
 class MaterialFit(Calibration):
     """Young's modulus from measured shapes; of calibrate()."""
 
-    @property
-    def youngs_modulus(self) -> Optional[float]:
-        """E [Pa], of a rod that is given by its EI that [N m^2]; None if it is not identifiable."""
-        value = self.json.get("youngs_modulus_Pa", self.json.get("bending_stiffness_Nm2"))
+    def _number(self, key: str) -> Optional[float]:
+        value = self.json.get(key)
         return None if value is None else float(value)
 
     @property
+    def youngs_modulus(self) -> Optional[float]:
+        """E [Pa]; None if it is not identifiable, or the rod is given by its bending_stiffness."""
+        return self._number("youngs_modulus_Pa")
+
+    @property
+    def bending_stiffness(self) -> Optional[float]:
+        """EI [N m^2] of a rod that is given by it; None if it is not identifiable, or E is fitted."""
+        return self._number("bending_stiffness_Nm2")
+
+    @property
     def interval(self) -> tuple[Optional[float], Optional[float]]:
-        """Its 95 % interval; an end is None where it is open."""
+        """The 95 % interval of what is fitted; an end is None where it is open."""
         unit = "_Pa" if "youngs_modulus_Pa" in self.json else "_Nm2"
         low, high = self["interval_95" + unit]
         return low, high

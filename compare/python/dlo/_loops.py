@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from . import _dlo
 from ._arguments import COUNT, INDEX, INTEGER, LIST, NUMBER, require, told
-from ._scene import SceneLike, as_scene
+from ._scene import SceneLike, data_of
 
 
 class ForceModel(_dlo.ForceModel):
@@ -38,7 +38,7 @@ class ForceModel(_dlo.ForceModel):
     ) -> None:
         if grip_stiffness is not None:
             require("grip_stiffness", grip_stiffness, NUMBER)
-        super().__init__(as_scene(scene)._data, points, grip_stiffness)
+        super().__init__(data_of(scene), points, grip_stiffness)
 
     step = told(_dlo.ForceModel.step, count=COUNT)
     rest = told(_dlo.ForceModel.rest, tolerance=NUMBER, max_steps=COUNT, time_limit=NUMBER)
@@ -56,7 +56,7 @@ class Batch(_dlo.Batch):
     def __init__(self, scenes: Iterable[SceneLike], *, threads: int = 0) -> None:
         require("scenes", scenes, LIST)
         require("threads", threads, INTEGER)
-        super().__init__([as_scene(scene)._data for scene in scenes], threads)
+        super().__init__([data_of(scene) for scene in scenes], threads)
 
     step = told(_dlo.Batch.step, count=COUNT)
     move_gripper = told(_dlo.Batch.move_gripper, rod=INDEX, gripper=INDEX)

@@ -1,0 +1,340 @@
+"""What a scene is made of: tables of its file, whose keys are fields."""
+
+from __future__ import annotations
+
+import copy
+import math
+from typing import TYPE_CHECKING, Any, Callable, Optional, Sequence, Union
+
+import numpy
+from numpy.typing import ArrayLike, NDArray
+
+from . import _dlo
+from ._arguments import Strict
+from ._errors import InputError
+
+if TYPE_CHECKING:
+    from ._scene import Scene
+
+Quantity = Union[float, str]
+"""A number in SI units, or text with a unit: 0.006 or "6 mm"."""
+
+Vector = Union[Sequence[Quantity], NDArray[Any]]
+"""Three of these, or a NumPy array of shape (3,)."""
+
+Direction = Union[Quantity, Vector]
+"""An angle in the x-y plane from +x ("30 deg", or a number in rad), or a vector of any length."""
+
+class _Fixed(dict[str, Any]):
+    """A copy of a table that a scene has: what would be put into it would be lost."""
+
+    def _refuse(self, *_: Any, **__: Any) -> Any:
+        raise TypeError("a copy of what the scene has (allowed: to set the field to a whole new value)")
+
+    __setitem__ = __delitem__ = __ior__ = update = _refuse  # type: ignore[assignment]
+    setdefault = pop = popitem = clear = _refuse  # type: ignore[assignment]
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> dict[str, Any]:
+        return {key: copy.deepcopy(value, memo) for key, value in self.items()}
+
+    def __reduce__(self) -> Any:
+        return dict, (dict(self),)
+
+
+def copied(key: str, value: Any) -> Any:
+    """A value that is the scene's own."""
+    try:
+        return copy.deepcopy(value)
+    except RecursionError:
+        raise InputError(f"scene: {key}: nested too deep (allowed: 32 levels)", key) from None
+    except (TypeError, copy.Error):
+        raise InputError(
+            f"scene: {key}: a {type(value).__name__} (allowed: a number, text, a list, a table)", key
+        ) from None
+
+
+def number_of(value: Any, dimension: str) -> Any:
+    """What a document says in SI units; of a list each of its numbers, as an array."""
+    if isinstance(value, str):
+        return _dlo.quantity(value, dimension)
+    if isinstance(value, (list, tuple, numpy.ndarray)):
+        array = numpy.array([number_of(one, dimension) for one in value], dtype=float)
+        array.flags.writeable = False
+        return array
+    return None if value is None else float(value)
+
+
+def _direction(value: Any) -> Any:
+    if value is None:
+        return None
+    if isinstance(value, (list, tuple, numpy.ndarray)):
+        vector = number_of(value, "number")
+        unit = vector / numpy.linalg.norm(vector)
+    else:
+        angle = number_of(value, "angle")
+        unit = numpy.array([math.cos(angle), math.sin(angle), 0.0])
+    unit.flags.writeable = False
+    return unit
+
+
+def as_it_is(value: Any) -> Any:
+    """The same, not to be written into."""
+    if isinstance(value, dict):
+        return _Fixed({key: as_it_is(one) for key, one in value.items()})
+    return tuple(map(as_it_is, value)) if isinstance(value, (list, tuple)) else value
+
+
+def _field(key: str, read: Callable[[Any], Any], doc: str) -> property:
+    """A key of an element: read in SI units, set as Part._set does."""
+
+    def get(self: "Part") -> Any:
+        return read(self._table.get(key))
+
+    def put(self: "Part", value: Any) -> None:
+        self._set(key, value)
+
+    return property(get, put, doc=doc)
+
+
+def _of(dimension: str) -> Callable[[Any], Any]:
+    return lambda value: number_of(value, dimension)
+
+
+class Part(Strict):
+    """An element of a scene: a table of its file.
+
+    A part is read in SI units. Set, it takes numbers in SI units or text with a unit; a scene that
+    holds it is read anew at once, so that a value out of range is an InputError that names the key,
+    and the scene stays as it was. None takes a key out.
+    """
+
+    _name = ""  # of the table in a scene file
+
+    def __init__(self, **table: Any) -> None:
+        self._owner: Optional[Scene] = None
+        self._table: dict[str, Any] = {}
+        known = _dlo.scene_keys[self._name]
+        for key, value in table.items():
+            if key not in known:
+                near = _dlo.did_you_mean(key, known)
+                name = f"{self._name}.{key}"
+                raise InputError(
+                    f"scene: {name}: unknown key{near} (allowed: {', '.join(known)})", name
+                )
+            if value is not None:
+                self._table[key] = copied(key, value)
+
+    def _set(self, key: str, value: Any) -> None:
+        before = dict(self._table)
+        if value is None:
+            self._table.pop(key, None)
+        else:
+            self._table[key] = copied(key, value)
+        if self._owner is None:
+            return
+        try:
+            self._owner._read_anew()
+        except InputError:
+            self._table.clear()
+            self._table.update(before)
+            raise
+
+    def __repr__(self) -> str:
+        inside = ", ".join(f"{key}={value!r}" for key, value in self._table.items())
+        return f"dlo.{type(self).__name__}({inside})"
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and repr(self) == repr(other)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+class Gripper(Part):
+    """What holds a point of the rod; clamp() and pin() make one."""
+
+    _name = "gripper"
+    at = _field("at", _of("length"), "Arc length that is held [m].")
+    position = _field("position", _of("length"), "Where [m], shape (3,).")
+    hold = _field("hold", lambda value: value or "clamp", '"clamp" or "pin".')
+    direction = _field(
+        "direction", _direction, "Of a clamp: unit vector along growing arc length, shape (3,)."
+    )
+    roll = _field("roll", _of("angle"), "Rotation about the direction that the clamp holds [rad].")
+    frame = _field("frame", _of("number"), "Rows d1, d2, d3 that the clamp holds, shape (3, 3).")
+    quaternion = _field("quaternion", _of("number"), "The same as [w, x, y, z], shape (4,).")
+    turns = _field("turns", as_it_is, "Whole turns more than the least, beside a frame.")
+    pose = _field("pose", as_it_is, "How it moves: tables of time, position and, of a clamp, direction.")
+    trajectory = _field("trajectory", as_it_is, "A CSV file of poses, beside the scene's.")
+
+
+class Load(Part):
+    """A force that keeps its direction, or a mass that hangs; load() makes one."""
+
+    _name = "load"
+    at = _field("at", _of("length"), "Arc length [m].")
+    force = _field("force", _of("force"), "[N], shape (3,).")
+    mass = _field("mass", _of("mass"), "[kg], instead of a force.")
+
+
+class Obstacle(Part):
+    """A body that the rod cannot pass; obstacle() makes one."""
+
+    _name = "obstacle"
+    point = _field("point", _of("length"), "Of a plane, or the body's centre [m], shape (3,).")
+    shape = _field(
+        "shape", lambda value: value or "plane", '"plane", "sphere", "cylinder", "capsule", "box".'
+    )
+    normal = _field("normal", _direction, "Of a plane, to the free side; of a box an edge.")
+    axis = _field("axis", _direction, "Of a cylinder, a capsule or a box.")
+    radius = _field("radius", _of("length"), "[m]; of a box that of its edges.")
+    length = _field("length", _of("length"), "Of a capsule, between its centres [m].")
+    size = _field("size", _of("length"), "Of a box [m], shape (3,).")
+    stiffness = _field("stiffness", _of("foundation"), "Force per depth and length [N/m^2].")
+    friction = _field("friction", _of("number"), "Coulomb's coefficient [-]; no model has it.")
+    touches = _field("touches", lambda value: value or "surface", '"surface" or "axis" of the rod.')
+    pose = _field("pose", as_it_is, "How it moves: tables of time and point.")
+    trajectory = _field("trajectory", as_it_is, "A CSV file of poses, beside the scene's.")
+
+
+class Section(Part):
+    """A part of the rod that is another one; section() makes one."""
+
+    _name = "section"
+    start = _field("from", _of("length"), "Where it begins [m] (`from` in a file).")
+    end = _field("to", _of("length"), "Where it ends [m] (`to` in a file).")
+    bending_stiffness = _field("bending_stiffness", _of("section_stiffness"), "EI [N m^2].")
+    mass_per_length = _field("mass_per_length", _of("mass_per_length"), "rho A [kg/m].")
+    torsional_stiffness = _field("torsional_stiffness", _of("section_stiffness"), "GJ [N m^2].")
+
+
+def _setting(key: str, doc: str) -> property:
+    """A key of what a scene always has: read as the scene's reader has it."""
+
+    def get(self: "Settings") -> Any:
+        if self._owner is not None:
+            return getattr(self._owner._data, self._name)[key]
+        return self._table.get(key)
+
+    return property(get, lambda self, value: self._set(key, value), doc=doc)
+
+
+class Settings(Part):
+    """Of which a scene has one; a dict will do. What is not set is read as it is derived."""
+
+
+class ForceModelSettings(Settings):
+    """How a scene is stepped: scene.force_model."""
+
+    _name = "force_model"
+    points = _setting("points", "N.")
+    law = _setting("law", '"hooke" (linear) or "paper" (cubic).')
+    bookkeeping = _setting("bookkeeping", '"consistent" or "paper".')
+    stepper = _setting("stepper", '"auto", or one of the paper\'s.')
+    bending_rule = _setting("bending_rule", "Of the law paper.")
+    design_curvature = _setting("design_curvature", "k of Formula 21 [1/m]; None: derived.")
+    point_weight = _setting("point_weight", "Of every point [N]; None: derived.")
+    c_b = _setting("c_b", "[N]; None: derived.")
+    c_c = _setting("c_c", "[N]; None: derived.")
+    c_F = _setting("c_F", "[m/N]; None: derived.")
+    c_h = _setting("c_h", "[-]; None: derived.")
+    l_s = _setting("l_s", "[m]; None: derived.")
+
+
+class TrackRates(Settings):
+    """How a scene that moves is looked at: scene.track."""
+
+    _name = "track"
+    frame_rate = _setting("frame_rate", "Frames a second [Hz].")
+    obstacle_rate = _setting("obstacle_rate", "How often obstacles move [Hz]; None: with every frame.")
+    step_rate = _setting("step_rate", "Steps of the force model a second [Hz].")
+
+
+def clamp(
+    at: Quantity,
+    position: Vector,
+    direction: Optional[Direction] = None,
+    *,
+    roll: Optional[Quantity] = None,
+    frame: Optional[ArrayLike] = None,
+    quaternion: Optional[ArrayLike] = None,
+    turns: Optional[int] = None,
+) -> Gripper:
+    """A gripper that holds position [m] and direction of the rod at an arc length [m].
+
+    direction may be left out beside a frame or a quaternion, whose d3 it is. roll (an angle), frame
+    (rows d1, d2, d3) or quaternion [w, x, y, z] also keep the rod from rotating about itself; turns
+    are whole turns more than the least.
+    """
+    return Gripper(
+        at=at,
+        position=position,
+        direction=direction,
+        roll=roll,
+        frame=frame,
+        quaternion=quaternion,
+        turns=turns,
+    )
+
+
+def pin(at: Quantity, position: Vector) -> Gripper:
+    """A gripper that holds the position [m] of the rod at an arc length [m]."""
+    return Gripper(at=at, position=position, hold="pin")
+
+
+def load(
+    at: Quantity, force: Optional[Vector] = None, *, mass: Optional[Quantity] = None
+) -> Load:
+    """A force [N], or a mass [kg] that hangs, at an arc length [m]."""
+    return Load(at=at, force=force, mass=mass)
+
+
+def obstacle(
+    point: Vector,
+    normal: Optional[Vector] = None,
+    *,
+    shape: Optional[str] = None,
+    axis: Optional[Vector] = None,
+    radius: Optional[Quantity] = None,
+    length: Optional[Quantity] = None,
+    size: Optional[Vector] = None,
+    stiffness: Optional[Quantity] = None,
+    friction: Optional[float] = None,
+    touches: Optional[str] = None,
+) -> Obstacle:
+    """A plane (point [m], normal to the free side), or another shape with what it needs.
+
+    shape: "sphere" (radius), "cylinder" (axis, radius), "capsule" (axis, length, radius) or "box"
+    (size, axis, normal, radius of its edges). stiffness [N/m^2]: of one that yields.
+    """
+    return Obstacle(
+        point=point,
+        normal=normal,
+        shape=shape,
+        axis=axis,
+        radius=radius,
+        length=length,
+        size=size,
+        stiffness=stiffness,
+        friction=friction,
+        touches=touches,
+    )
+
+
+def section(
+    start: Quantity,
+    end: Quantity,
+    *,
+    bending_stiffness: Optional[Union[Quantity, Sequence[Quantity]]] = None,
+    mass_per_length: Optional[Quantity] = None,
+    torsional_stiffness: Optional[Quantity] = None,
+) -> Section:
+    """A part of the rod, from an arc length to another [m], that is stiffer or heavier."""
+    return Section(
+        **{
+            "from": start,
+            "to": end,
+            "bending_stiffness": bending_stiffness,
+            "mass_per_length": mass_per_length,
+            "torsional_stiffness": torsional_stiffness,
+        }
+    )

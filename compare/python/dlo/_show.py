@@ -1,0 +1,40 @@
+"""How results show themselves, in the words of the library."""
+
+from __future__ import annotations
+
+import html as _html
+from typing import Any, Optional
+
+from . import _plot
+
+
+def words(result: Any) -> str:
+    """One line: the verdict, where there is one."""
+    passed = getattr(result, "passed", None)
+    if passed is not None:
+        return f"{'pass' if passed else 'fail'}: {result.reason}"
+    deviation = getattr(result, "deviation", None)
+    if deviation is not None:
+        return f"RMS {1e3 * deviation['rms_m']:.4g} mm"
+    lines = [" ".join(text.split()) for text in str(result).splitlines() if text.strip()]
+    # Where the first line names the scene, the next one says what it is of.
+    return ", ".join(lines[: 2 if lines[0].startswith("scene ") else 1])
+
+
+def line(result: Any) -> str:
+    """Of __repr__."""
+    return f"<dlo.{type(result).__name__} {words(result)}>"
+
+
+def svg(result: Any) -> Optional[str]:
+    """The picture of what has a shape; None without matplotlib."""
+    return _plot.svg(result) if hasattr(result, "_views") else None
+
+
+def html(result: Any) -> str:
+    """The verdict, the picture and all numbers."""
+    picture = svg(result) or ""
+    return (
+        f"<div><p><b>{_html.escape(words(result))}</b></p>{picture[picture.find('<svg'):]}"
+        f"<pre>{_html.escape(str(result))}</pre></div>"
+    )

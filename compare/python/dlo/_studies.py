@@ -1,0 +1,257 @@
+"""What the command dlo does with many scenes, and with what moves."""
+
+from __future__ import annotations
+
+import itertools
+import os
+from typing import Any, Iterable, Mapping, Optional, Sequence, Union
+
+import numpy
+from numpy.typing import NDArray
+
+from . import _dlo
+from ._arguments import COUNT, INTEGER, LIST, NUMBER, TABLE, TEXT, TEXTS, TRUTH, checked, require
+from ._documents import Benchmark, Modes, Regression, Report, Stability, Track
+from ._errors import InputError
+from ._files import FileName, file_name
+from ._functions import is_file, many
+from ._scene import SceneLike, as_scene, data_of
+
+
+def _spelled(field: str, value: Any, depth: int = 0) -> str:
+    """As a scene file has it."""
+    if isinstance(value, str):
+        require(field, value, TEXT)
+        return value
+    if isinstance(value, (list, tuple, numpy.ndarray)):
+        if depth > 32:
+            raise InputError(f"sweep: {field}: nested too deep (allowed: 32 levels)")
+        return "[" + ", ".join(_spelled(field, one, depth + 1) for one in value) + "]"
+    if isinstance(value, (bool, numpy.bool_)):
+        raise InputError(f"sweep: {value} (allowed: numbers, vectors and text)")
+    require(field, value, NUMBER)
+    return repr(value.item() if isinstance(value, numpy.generic) else value)
+
+
+def _axis(field: str, values: Union[str, Iterable[Any]]) -> tuple[str, Union[str, list[str]]]:
+    """A field and its values, which may be without end: one more than allowed is enough."""
+    require("vary: a field", field, TEXT)
+    if isinstance(values, str):
+        require(f"vary: {field}", values, TEXT)
+        return field, values
+    require(f"vary: {field}", values, LIST)
+    some = itertools.islice(values, _dlo.largest_table + 1)
+    return field, [_spelled(f"vary: {field}", value) for value in some]
+
+
+@checked(vary=TABLE, model=TEXT, threads=INTEGER)
+def sweep(
+    scene: SceneLike,
+    vary: Mapping[str, Union[str, Iterable[Any]]],
+    *,
+    model: str = "energy",
+    threads: int = 0,
+    materials: Optional[FileName] = None,
+    **limits: Any,
+) -> dict[str, NDArray[Any]]:
+    """All combinations of the values of some fields, as columns: `dlo sweep`.
+
+    vary: of each field (a path in the scene file such as "rod.length" or "gripper.0.direction", or
+    "gamma", which scales gravity) its values, numbers, vectors or text, or a range as the command
+    takes it, "log:0.1:10:5". The last field changes fastest. model: "energy", "exact", "chain",
+    "force", "compare" or "compare-chain". threads: 0: all cores. materials: as of solve().
+
+    Returns a dict of arrays of shape (rows,), at most a million, by the names of the command's columns:
+    "row" int64; "status", "optimum" and a field with a value that is no number str ("" where there is
+    none); all others float64, with all digits (NaN where there is none). A row whose column "status"
+    is not "ok" has no results.
+    """
+    made = as_scene(scene, materials)
+    fields = [_axis(field, values) for field, values in vary.items()]
+    return _dlo.sweep(made.to_toml(), made._file, made._materials, fields, model, threads, limits)
+
+
+@checked(
+    map=TEXT,
+    case=TEXT,
+    steppers=TEXTS,
+    max_steps=COUNT,
+    columns=INTEGER,
+    rows=INTEGER,
+    map_steps=COUNT,
+    threads=INTEGER,
+)
+def stability(
+    scene: Optional[SceneLike] = None,
+    *,
+    map: Optional[str] = None,
+    case: str = "",
+    steppers: Sequence[str] = (),
+    max_steps: Optional[int] = None,
+    columns: int = 16,
+    rows: int = 32,
+    map_steps: int = 20000,
+    threads: int = 0,
+) -> Stability:
+    """Where the force model's steppers break: `dlo stability`.
+
+    Without map: hard cases, those whose name contains `case`, with these steppers (all), of at most
+    max_steps. map: "cF-cc" or "cF-ch", the largest stable c_F of a scene (None: the hard cases' rod),
+    predicted and measured, on columns x rows rods of map_steps steps each.
+    """
+    if map is None:
+        if scene is not None:
+            raise InputError("stability: only a map takes a scene (allowed: map=\"cF-cc\")")
+        return Stability(*_dlo.hard_cases(case, list(steppers), max_steps, threads))
+    data = None if scene is None else data_of(scene)
+    return Stability(*_dlo.stability_map(data, map, columns, rows, map_steps, threads))
+
+
+@checked(seconds=NUMBER, repeats=INTEGER)
+def bench(
+    scenes: Union[SceneLike, Iterable[SceneLike]] = (), *, seconds: float = 40.0, repeats: int = 5
+) -> Benchmark:
+    """What accuracy costs with every model: `dlo bench`.
+
+    scenes: one or more; none: a steel rod and one a hundred times softer. seconds: of all runs.
+    repeats: that a median is taken of.
+    """
+    return Benchmark(*_dlo.bench(list(map(data_of, many(scenes))), seconds, repeats))
+
+
+@checked(
+    update=TRUTH, model=TEXT, relative=NUMBER, absolute=NUMBER, programs=TEXTS, time=NUMBER
+)
+def regress(
+    scenes: Union[SceneLike, Iterable[SceneLike]],
+    baseline: FileName,
+    *,
+    update: bool = False,
+    model: str = "force",
+    relative: float = 0.01,
+    absolute: float = 1e-6,
+    programs: Sequence[str] = (),
+    time: Optional[float] = None,
+    materials: Optional[FileName] = None,
+    **limits: Any,
+) -> Regression:
+    """Shape errors against a baseline under version control: `dlo regress`.
+
+    baseline: a file's name; update: write it anew, of these scenes and no others. model: "force" or
+    "chain". An error may change by relative of it and absolute of the rod's length. programs: somebody
+    else's, "NAME=COMMAND" as the command's --with. time, materials: as of solve().
+
+    Raises InputError, or ConvergenceError where a scene of an update is not solved and the baseline is
+    left as it was.
+    """
+    data = [data_of(scene, materials, time) for scene in many(scenes)]
+    what = {
+        "model": model,
+        "programs": list(programs),
+        "relative": float(relative),
+        "absolute": float(absolute),
+    }
+    file = file_name(baseline, "baseline")
+    found: Regression = _dlo.regress(data, file, bool(update), what, Regression, limits)
+    return found
+
+
+@checked(tolerance=NUMBER, quick=TRUTH, threads=INTEGER)
+def report(
+    scenes: Union[FileName, Iterable[FileName]] = (),
+    *,
+    folder: FileName,
+    tolerance: float = 0.01,
+    quick: bool = False,
+    threads: int = 0,
+) -> Report:
+    """Writes a page for people, with verdict, shapes, errors, speed, stability: `dlo report`.
+
+    scenes: names of scene files, or of folders with *.toml; none: the paper's three scenes and two that
+    tell more. folder: to make; a report in it is replaced, anything else refused. tolerance: RMS up to
+    which a shape counts as right, share of the length. quick: a benchmark of 1 s, a coarse map, no hard
+    cases. threads: 0: as many as the machine has.
+
+    Raises InputError, or ConvergenceError where something did not converge: its result is the page with
+    the rest.
+    """
+    names: Any = [scenes] if is_file(scenes) else scenes
+    require("scenes", names, LIST)
+    files = [file_name(name, "scenes", "the name of a file or of a folder") for name in names]
+    call = f"dlo.report({[os.fsdecode(name) for name in files]}, folder={os.fspath(folder)!r}"
+    if quick:
+        call += ", quick=True"
+    what = {"tolerance": float(tolerance), "quick": bool(quick), "threads": threads}
+    made: Report = _dlo.report(files, file_name(folder, "folder"), what, call + ")", Report)
+    return made
+
+
+@checked(count=INTEGER, rate=NUMBER, damping=NUMBER, samples=INTEGER, time=NUMBER)
+def modes(
+    scene: SceneLike,
+    *,
+    count: int = 6,
+    rate: float = 4000.0,
+    damping: float = 0.01,
+    samples: int = 41,
+    time: Optional[float] = None,
+    materials: Optional[FileName] = None,
+    **limits: Any,
+) -> Modes:
+    """Natural frequencies about a scene's shape: `dlo modes`.
+
+    count: of modes, the slowest ones. rate: steps of the force model a second. damping: ratio of the
+    slowest mode that the material has [-]. samples: points of each mode's shape. time, materials: as
+    of solve().
+    """
+    found: Modes = _dlo.modes(
+        data_of(scene, materials, time), count, rate, damping, samples, Modes, limits
+    )
+    return found
+
+
+@checked(
+    begin=NUMBER,
+    end=NUMBER,
+    frame_rate=NUMBER,
+    obstacle_rate=NUMBER,
+    step_rate=NUMBER,
+    force=TRUTH,
+    dynamic=TRUTH,
+    damping=NUMBER,
+    drag=NUMBER,
+    samples=INTEGER,
+)
+def track(
+    scene: SceneLike,
+    *,
+    begin: Optional[float] = None,
+    end: Optional[float] = None,
+    frame_rate: Optional[float] = None,
+    obstacle_rate: Optional[float] = None,
+    step_rate: Optional[float] = None,
+    force: bool = True,
+    dynamic: bool = False,
+    damping: float = 0.0,
+    drag: float = 0.0,
+    samples: int = 41,
+    materials: Optional[FileName] = None,
+    **limits: Any,
+) -> Track:
+    """The rod of a scene that moves, at rest at every time: `dlo track`.
+
+    begin, end: of the motion [s]; None: the first and the last pose. frame_rate, obstacle_rate,
+    step_rate: frames, moves of obstacles and steps of the force model a second; None: as the scene
+    says. force: the force model beside it. dynamic: the rod with inertia too, from rest at the first
+    pose; damping: its material's Kelvin-Voigt time [s], drag: the air's force per length and velocity
+    [N s/m^2]. samples: M points of each frame. materials: as of solve().
+
+    Raises InputError, or ConvergenceError where it had to stop, whose result is what was before.
+    """
+    if not dynamic and (damping != 0 or drag != 0):
+        raise InputError("track: damping and drag are those of a rod with inertia (allowed: dynamic=True)")
+    part = [begin, end, frame_rate, obstacle_rate, step_rate]
+    loss = (damping, drag) if dynamic else None
+    data = data_of(scene, materials)
+    found: Track = _dlo.track(data, part, bool(force), loss, samples, Track, limits)
+    return found

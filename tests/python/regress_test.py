@@ -1,0 +1,81 @@
+"""Baselines and reports: what the command does, from Python."""
+
+import json
+import subprocess
+import xml.etree.ElementTree
+
+import pytest
+
+import dlo
+
+SCENE = "data/scenes/spring_steel_175.toml"
+
+
+def run(command, *arguments):
+    return subprocess.run([command, *map(str, arguments)], capture_output=True, text=True)
+
+
+@pytest.fixture
+def scene(root):
+    scene = dlo.Scene.from_file(root / SCENE)
+    scene.force_model = {"points": 12}
+    return scene
+
+
+def test_regress_is_the_commands(root, command, tmp_path):
+    ours, theirs = tmp_path / "ours.toml", tmp_path / "theirs.toml"
+    written = dlo.regress(root / SCENE, ours, model="chain", update=True)
+    done = run(command, "regress", root / SCENE, "--baseline", theirs, "--model", "chain", "--update")
+    assert done.returncode == 0, done.stderr
+    assert ours.read_text() == theirs.read_text()
+    assert str(written) == done.stdout and written.passed
+    found = dlo.regress([root / SCENE], theirs, model="chain")
+    done = run(command, "regress", root / SCENE, "--baseline", ours, "--model", "chain", "--format", "json",
+               "--junit", tmp_path / "dlo.xml")
+    assert found.json == json.loads(done.stdout)
+    assert found.to_junit() == (tmp_path / "dlo.xml").read_text()
+    assert xml.etree.ElementTree.fromstring(found.to_junit()) is not None
+    assert found.passed and found.reason == "1 same" and repr(found) == "<dlo.Regression pass: 1 same>"
+
+
+def test_regress_fails_what_has_changed(scene, tmp_path):
+    baseline = tmp_path / "shapes.toml"
+    with pytest.raises(dlo.InputError, match="shapes.toml"):
+        dlo.regress(scene, baseline, model="chain")
+    dlo.regress(scene, baseline, model="chain", update=True)
+    scene.gravity = (0, -9, 0)
+    found = dlo.regress(scene, baseline, model="chain")
+    assert not found.passed and found["cases"][0]["verdict"] == "changed"
+    assert dlo.regress(scene, baseline, model="chain", update=True).passed
+    assert dlo.regress(scene, baseline, model="chain").passed
+    before = baseline.read_text()
+    with pytest.raises(dlo.ConvergenceError, match="left as it was") as caught:
+        dlo.regress(scene, baseline, update=True, max_steps=10)
+    assert not caught.value.result.passed
+    assert baseline.read_text() == before
+    for call, words in [
+        (lambda: dlo.regress(scene, baseline, model="exact"), "allowed: force, chain"),
+        (lambda: dlo.regress(scene, 3), r"baseline: a int \(allowed: the name of a file"),
+        (lambda: dlo.regress(scene, baseline, time=1), "nothing moves"),
+        (lambda: dlo.regress(scene, baseline, relative="1%"), r"relative = '1%': a str \(allowed: a number"),
+    ]:
+        with pytest.raises(dlo.InputError, match=words):
+            call()
+
+
+def test_report_is_the_commands(root, tmp_path):
+    folder = tmp_path / "page"
+    made = dlo.report(root / "data/scenes/cable.toml", folder=folder, quick=True)
+    page = folder / "index.html"
+    assert made.page == str(page)
+    text = page.read_text()
+    assert made.failures == [] and made.verdict and "dlo.report([" in text
+    assert str(made).startswith(made.verdict[0]) and repr(made) == f"<dlo.Report {made.verdict[0]}>"
+    with pytest.raises(dlo.InputError, match="which is read too"):
+        dlo.report(folder / "scenes/cable.toml", folder=folder)
+    with pytest.raises(dlo.InputError, match="allowed: a new or empty folder"):
+        dlo.report(root / SCENE, folder=root / "data")
+    with pytest.raises(dlo.InputError, match="0 < tolerance < 1"):
+        dlo.report(root / SCENE, folder=folder, tolerance=2)
+    with pytest.raises(dlo.InputError, match=r"scenes: a Scene \(allowed: the name"):
+        dlo.report([dlo.Scene.from_file(root / SCENE)], folder=folder)
