@@ -2,11 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "problem/split.hpp"
-#include "problems.hpp"
-#include "span/nearby_equilibria.hpp"
 #include "span/span_solver.hpp"
-#include "strain/point_on_span.hpp"
 
 namespace dlo::energy_model {
 namespace {
@@ -112,32 +108,6 @@ TEST(Certify, AFollowedShapeIsTheOneThatIsSearchedFor) {
   EXPECT_NEAR(followed.energy, searched.energy, 1e-9);
   EXPECT_NEAR(followed.smallest_eigenvalue, searched.smallest_eigenvalue,
               0.02 * searched.smallest_eigenvalue);
-}
-
-// Where a planar rod gives way out of its plane the second variation in space is negative along the
-// direction that is told.
-TEST(NegativeCurvature, IsThatOfTheRodInSpace) {
-  Problem problem = test::heavy_cantilever(200, 90);
-  problem.grips.push_back({1, {0.1, 0, 0}, Eigen::Vector3d(0, -1, 0)});
-  const Span span = split(problem).front().span;
-  ASSERT_TRUE(span.planar);
-  SpanWorkspace workspace;
-  SearchLog log;
-  SpanOptions options;
-  options.log = &log;
-  int out_of_plane = 0;
-  for (const SpanSolution& found : solve_span(span, options, workspace)) {
-    if (found.status != SolveStatus::saddle || !found.model->span().planar) continue;
-    const std::optional<NegativeCurvature> way = negative_curvature(found);
-    if (!way || way->span.planar) continue;
-    ++out_of_plane;
-    const std::shared_ptr<SpanEnergy> model = workspace.model(way->span, found.terms);
-    const SecondDerivatives at =
-        second_derivatives(*model, model->adopt(*found.model, found.x),
-                           model->adopt_multipliers(*found.model, found.multipliers));
-    EXPECT_LT(way->direction.dot(at.hessian * way->direction), -1e-6);
-  }
-  EXPECT_GE(out_of_plane, 1);
 }
 
 }  // namespace
