@@ -301,6 +301,17 @@ TEST(ExactContact, ARodOverABallFallsOffWhereItsCentreIsAboveTheClampsAxis) {
   }
 }
 
+TEST(ExactContact, NoRodWithinAnObstacleIsConfirmed) {
+  // The start is at rest without the floor, and says that nothing touches.
+  Problem problem = heavy_cantilever(8, 0);
+  const Equilibrium free = solve_energy(problem);
+  const double tip = free.sample(std::vector<double>{1}).points(1, 0);
+  problem.obstacles = {{obstacle::Body::half_space({0, tip + 1e-3, 0}, {0, 1, 0})}};
+  const Equilibrium found = solve_exact(problem, {.start = &free});
+  EXPECT_EQ(found.status, SolveStatus::not_verified) << found.message;
+  EXPECT_NEAR(found.penetration, 1e-3, 1e-9);
+}
+
 // From a shape that touches, on what has been moved away: with its contact there is an equilibrium,
 // which no obstacle can hold.
 TEST(ExactContact, NoObstacleIsConfirmedToPull) {
