@@ -28,7 +28,7 @@ def test_regress_is_the_commands(root, command, tmp_path):
     done = run(command, "regress", root / SCENE, "--baseline", theirs, "--model", "chain", "--update")
     assert done.returncode == 0, done.stderr
     assert ours.read_text() == theirs.read_text()
-    assert str(written) == done.stdout and written.passed
+    assert str(written) == done.stdout and written.passed and written.reason == f"{ours} written"
     found = dlo.regress([root / SCENE], theirs, model="chain")
     done = run(command, "regress", root / SCENE, "--baseline", ours, "--model", "chain", "--format", "json",
                "--junit", tmp_path / "dlo.xml")

@@ -113,7 +113,7 @@ def test_no_legend_lies_on_a_plot(name, root, tmp_path):
 
 def test_results_show_themselves(cable, root):
     cable.force_model = {"points": 12}
-    check = dlo.check(cable, dlo.solve(cable, samples=9).points, tolerance="1%")
+    check = dlo.check(cable, dlo.solve(cable, samples=41).points, tolerance="1%")
     assert repr(check) == f"<dlo.Check pass: {check.reason}>"
     moved = root / "data/scenes/swung_rod.toml"
     results = [

@@ -147,9 +147,10 @@ class Track(Document):
 class Regression(Document):
     """Shape errors against a baseline; of regress()."""
 
-    def __init__(self, text: str, json_text: str, junit: str) -> None:
+    def __init__(self, text: str, json_text: str, junit: str, update: str = "") -> None:
         super().__init__(text, json_text)
         self._junit = junit
+        self._update = update
 
     @property
     def passed(self) -> bool:
@@ -158,8 +159,9 @@ class Regression(Document):
 
     @property
     def reason(self) -> str:
-        """How many cases have become what."""
-        return self._text.splitlines()[-1]
+        """How many cases have become what; of an update that the baseline is written."""
+        written = self._update and self.passed
+        return f"{self._update} written" if written else self._text.splitlines()[-1]
 
     def to_junit(self) -> str:
         """What `dlo regress --junit` writes: JUnit XML."""

@@ -152,7 +152,12 @@ def regress(
         "absolute": float(absolute),
     }
     file = file_name(baseline, "baseline")
-    found: Regression = _dlo.regress(data, file, bool(update), what, Regression, limits)
+    name = os.fsdecode(file) if update else ""
+
+    def told(text: str, json_text: str, junit: str) -> Regression:
+        return Regression(text, json_text, junit, name)
+
+    found: Regression = _dlo.regress(data, file, bool(update), what, told, limits)
     return found
 
 
