@@ -1,12 +1,8 @@
-
 #include <algorithm>
-#include <filesystem>
 #include <memory>
-#include <system_error>
 #include <utility>
 
-#include "base/output_file.hpp"
-#include "batch/locked_file.hpp"
+#include "batch/baseline.hpp"
 #include "batch/regression.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
@@ -82,36 +78,10 @@ std::vector<MeasuredCase> measure_all(const RegressOptions& options) {
   return measured;
 }
 
-/// Of a baseline that may not be there yet: no cases.
-std::vector<compare::BaselineCase> present_baseline(const std::string& file) {
-  std::error_code unknown;  // writing tells what is wrong with a name
-  if (!std::filesystem::exists(file, unknown)) return {};
-  return compare::load_baseline(file);
-}
-
-/// Replaces a baseline that is still as it was read.
-void write_baseline(const std::string& file, const std::vector<compare::BaselineCase>& read,
-                    const std::vector<compare::BaselineCase>& cases) {
-  compare::LockedFile lock(file + ".lock", compare::LockedFile::Held::wait);
-  try {
-    if (compare::baseline_text(present_baseline(file)) != compare::baseline_text(read)) {
-      throw compare::OutputError(
-          file +
-          ": left as it is: another process has changed it since it was read (allowed: one update "
-          "at a time)");
-    }
-    write_output({.file = file}, compare::baseline_text(cases));
-  } catch (...) {
-    lock.remove();
-    throw;
-  }
-  lock.remove();
-}
-
 void run(const RegressOptions& options) {
   // An unreadable baseline is told before minutes of solving.
   const std::vector<compare::BaselineCase> baseline =
-      options.update ? present_baseline(options.baseline)
+      options.update ? compare::present_baseline(options.baseline)
                      : compare::load_baseline(options.baseline);
   const std::vector<MeasuredCase> measured = measure_all(options);
   const std::vector<RegressionResult> results =
@@ -131,7 +101,7 @@ void run(const RegressOptions& options) {
     std::vector<compare::BaselineCase> cases;
     cases.reserve(measured.size());
     for (const MeasuredCase& entry : measured) cases.push_back(entry.entry);
-    write_baseline(options.baseline, baseline, cases);
+    compare::replace_baseline(options.baseline, baseline, cases);
   }
   const bool updated = options.update && solved;
   write_output(options.output, {.text =

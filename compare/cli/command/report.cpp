@@ -3,10 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -20,7 +18,6 @@
 #include "option/terminal.hpp"
 #include "report/folder.hpp"
 #include "report/verdict.hpp"
-#include "trajectory/trajectory_files.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -43,29 +40,6 @@ std::string command_line(const ReportOptions& options) {
   return line + " -o " + compare::shell_word(options.folder);
 }
 
-/// A report replaces what is in its folder.
-void refuse_scenes_inside(const ReportOptions& options) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  const fs::path folder = fs::canonical(options.folder, error);
-  if (error) return;
-  std::vector<std::string> inputs = options.scenes;
-  for (const std::string& scene : options.scenes) {
-    for (std::string& file : compare::trajectory_files(scene)) inputs.push_back(std::move(file));
-  }
-  for (const std::string& input : inputs) {
-    const fs::path read = fs::canonical(input, error);
-    if (error) continue;
-    if (std::mismatch(folder.begin(), folder.end(), read.begin(), read.end()).first !=
-        folder.end()) {
-      continue;
-    }
-    throw compare::InputError(
-        fmt::format("report: -o {}: holds {}, which is read too (allowed: another folder)",
-                    options.folder, input));
-  }
-}
-
 compare::ReportOptions report_options(const ReportOptions& options) {
   compare::ReportOptions result =
       options.quick ? compare::quick_report_options() : compare::ReportOptions{};
@@ -75,7 +49,7 @@ compare::ReportOptions report_options(const ReportOptions& options) {
 }
 
 void run(const ReportOptions& options) {
-  refuse_scenes_inside(options);
+  compare::refuse_scenes_inside(options.folder, options.scenes);
   compare::check_report_folder(options.folder);
   const std::vector<compare::SceneFile> files = compare::load_scene_files(options.scenes);
   const compare::Report report = [&] {

@@ -72,7 +72,7 @@ py::object track(const SharedScene& shared, const std::vector<std::optional<doub
   if (dynamic != nullptr) text += cli::dynamic_text(*dynamic);
   std::vector<Eigen::Vector3d> points;
   for (const compare::TrackFrame& frame : found.frames) {
-    for (const auto& point : frame.points.colwise()) points.emplace_back(point);
+    for (const auto& point : frame.shape.points.colwise()) points.emplace_back(point);
   }
   const Eigen::Map<const Eigen::Matrix3Xd> all(points.front().data(), 3,
                                                static_cast<Eigen::Index>(points.size()));

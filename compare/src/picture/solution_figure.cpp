@@ -9,6 +9,7 @@
 
 #include "figure/series.hpp"
 #include "figure/shape_panels.hpp"
+#include "record/solution_fields.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -27,7 +28,7 @@ std::vector<double> signed_as_points(const Solution& solution, const Series& tur
 
 std::string title_of(const Solution& solution, std::size_t number, std::size_t count) {
   if (count == 1) return fmt::format("model {}", to_string(solution.model));
-  return fmt::format("{}: {}, {:.4g} J", number, is_unstable(solution) ? "unstable" : "stable",
+  return fmt::format("{}: {}, {:.4g} J", number, is_stable(solution) ? "stable" : "unstable",
                      solution.energy.total());
 }
 
@@ -38,14 +39,10 @@ std::string style_of(const Solution& solution, std::size_t i, std::size_t count)
   const int dashes = i < curve_colours ? 2 : 4;
   return fmt::format("with {} linecolor rgb '{}' linewidth {} dashtype {}",
                      polygon ? "linespoints pointtype 7 pointsize 0.5" : "lines", colour,
-                     is_unstable(solution) ? 1.5 : 2, is_unstable(solution) ? dashes : 1);
+                     is_stable(solution) ? 2 : 1.5, is_stable(solution) ? 1 : dashes);
 }
 
 }  // namespace
-
-bool is_unstable(const Solution& solution) {
-  return solution.status == energy_model::SolveStatus::saddle || solution.smallest_eigenvalue < 0;
-}
 
 Picture solution_picture(const Scene& scene, const std::vector<Solution>& solutions) {
   const std::vector<View> views = views_of(scene, solutions.front().shape.points);

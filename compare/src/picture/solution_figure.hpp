@@ -8,10 +8,6 @@
 
 namespace dlo::compare {
 
-/// Whether a solution is drawn as unstable: a saddle, or of a search one whose second variation has
-/// a negative eigenvalue.
-[[nodiscard]] bool is_unstable(const Solution& solution);
-
 /// Solutions of one scene: shapes at equal aspect with grippers, obstacles and contact, beside
 /// their curvature. Unstable ones are dashed.
 /// @param solutions  one or more, of one model

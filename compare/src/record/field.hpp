@@ -20,7 +20,7 @@ using Json = nlohmann::ordered_json;
 using Numbers = std::vector<std::pair<std::string, double>>;
 
 /// Where a field is shown; several are put together by |.
-enum Place : unsigned {
+enum FieldPlace : unsigned {
   in_text = 1,    ///< in a row of its own, with six digits and its unit
   in_json = 2,    ///< by its path
   in_csv = 4,     ///< in a column
@@ -42,7 +42,7 @@ struct Field {
   std::string_view unit = {};   ///< as keys end with; empty: a pure number, or none at all
   std::string_view words = {};  ///< what it is, for people
   Get get = {};
-  unsigned places = everywhere;          ///< of Place
+  unsigned places = everywhere;          ///< of FieldPlace
   std::string_view path = {};            ///< in JSON, such as "solver/wall_s"; empty: key()
   bool (*when)(const Scene&) = nullptr;  ///< of which scenes; null: of all
 
@@ -99,7 +99,7 @@ void add_json(Json& document, std::span<const Field<T>> fields, const T& result,
 
 /// The fields that a place has, of a scene.
 template <typename T>
-[[nodiscard]] std::vector<Field<T>> fields_in(Place place, std::span<const Field<T>> fields,
+[[nodiscard]] std::vector<Field<T>> fields_in(FieldPlace place, std::span<const Field<T>> fields,
                                               const Scene& scene) {
   std::vector<Field<T>> chosen;
   for (const Field<T>& field : fields) {

@@ -19,7 +19,6 @@ namespace {
 using dlo::compare::Deviation;
 using dlo::compare::Field;
 using dlo::compare::Json;
-using dlo::compare::Place;
 using dlo::compare::Scene;
 using dlo::compare::Solution;
 using dlo::compare::SolvedShape;
