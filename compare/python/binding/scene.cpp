@@ -14,8 +14,8 @@
 #include "module.hpp"
 #include "result.hpp"
 #include "scene/read_scene.hpp"
-#include "scene/scene_keys.hpp"
 #include "toml/quantity.hpp"
+#include "toml/scene_keys.hpp"
 #include "toml/strict_table.hpp"
 
 namespace dlo::python {

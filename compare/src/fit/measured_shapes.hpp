@@ -2,16 +2,24 @@
 
 #include <chrono>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/energy_model/energy.hpp"
-#include "fit/residual_series.hpp"
+#include "fit/error_correlation.hpp"
 #include "shape/aligner.hpp"
 #include "shape/curve.hpp"
 
 namespace dlo::compare {
+
+/// Points that lie in a plane to rounding: their third coordinate was not measured.
+[[nodiscard]] bool lies_in_a_plane(const Eigen::Matrix3Xd& points);
+
+/// How a fitted number moves the rod's points where the measured ones are [m per its unit], 3 x M,
+/// and its column.
+using Movement = std::pair<Eigen::Index, Eigen::Matrix3Xd>;
 
 /// Measured shapes against rods, each shape against those of its own scene: the residuals of every
 /// fit, and the energy model's solutions that it needs, within one time limit.
@@ -52,7 +60,10 @@ class MeasuredShapes {
   /// Sum of a shape's squared distances from a rod [m^2].
   [[nodiscard]] double squares(std::size_t shape, const energy_model::Equilibrium& rod) const;
 
-  /// Residuals of a shape where it lies on a rod, see residual_series().
+  /// Residuals of a shape as it lies on a rod, points less rod, with the columns of its own frame's
+  /// coordinates and of the fitted numbers; the others are zero. With given arc lengths a series
+  /// for each coordinate, else for each of the directions across the rod; none out of the plane of
+  /// a shape that lies in one.
   /// @param movements  by the fitted numbers, in columns after the frames';  @param numbers  fitted
   [[nodiscard]] std::vector<ResidualSeries> residuals(std::size_t shape, const Curve& curve,
                                                       const Alignment& alignment,

@@ -10,7 +10,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "explain/scene_change.hpp"
-#include "fit/residual_series.hpp"
+#include "fit/measured_shapes.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {

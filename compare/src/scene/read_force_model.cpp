@@ -1,6 +1,6 @@
 #include "scene/read_force_model.hpp"
 
-#include "scene/scene_keys.hpp"
+#include "toml/scene_keys.hpp"
 
 namespace dlo::compare {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/words.hpp"
-#include "scene/scene_keys.hpp"
+#include "toml/scene_keys.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -14,8 +14,8 @@
 #include "dlo/energy_model/turns.hpp"
 #include "scene/read_force_model.hpp"
 #include "scene/read_rod.hpp"
-#include "scene/scene_keys.hpp"
 #include "scene/scene_problem.hpp"
+#include "toml/scene_keys.hpp"
 #include "toml/strict_table.hpp"
 #include "trajectory/read_trajectory.hpp"
 

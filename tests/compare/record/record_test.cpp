@@ -31,7 +31,10 @@ class Record : public Command {
   static std::string wire() { return std::string(DLO_DATA) + "/scenes/twisted_wire.toml"; }
   std::string moving_wire() {
     std::ofstream(path("move.csv")) << "time,x,y,z\n0,0.42,0,0\n0.2,0.40,0.01,0\n";
-    return scene(read(wire()) + "trajectory = \"move.csv\"\n");
+    std::string text = read(wire());
+    const std::string still = "position = [\"42 cm\", 0, 0]\n";
+    text.erase(text.find(still), still.size());
+    return scene(text + "trajectory = \"move.csv\"\n");
   }
   static std::vector<std::string> fields(const std::string& line) {
     std::vector<std::string> list;

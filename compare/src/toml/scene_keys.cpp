@@ -1,4 +1,4 @@
-#include "scene/scene_keys.hpp"
+#include "toml/scene_keys.hpp"
 
 #include <algorithm>
 #include <stdexcept>
