@@ -76,7 +76,7 @@ def test_report_is_the_commands(root, tmp_path):
     with pytest.raises(dlo.InputError, match="which is read too"):
         dlo.report(folder / "scenes/cable.toml", folder=folder)
     with pytest.raises(dlo.InputError, match="allowed: a new or empty folder"):
-        dlo.report(root / SCENE, folder=root / "data")
+        dlo.report(root / SCENE, folder=tmp_path)
     with pytest.raises(dlo.InputError, match="0 < tolerance < 1"):
         dlo.report(root / SCENE, folder=folder, tolerance=2)
     with pytest.raises(dlo.InputError, match=r"scenes: a Scene \(allowed: the name"):

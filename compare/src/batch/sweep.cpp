@@ -260,8 +260,9 @@ std::vector<SweepCell> Sweep::results(std::int64_t row) const {
 std::vector<SweepCell> Sweep::cells(std::int64_t row) const {
   std::vector<SweepCell> cells = {row};
   const std::vector<std::int64_t> indices = grid_.indices(row);
+  std::string text;
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    const std::string text = grid_.axes()[i].number(indices[i]);
+    text = grid_.axes()[i].number(indices[i]);
     if (kinds_[i] == CellKind::text) {
       cells.emplace_back(text);
     } else {

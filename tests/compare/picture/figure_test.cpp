@@ -114,7 +114,8 @@ TEST(SolutionPicture, DashesWhatIsUnstable) {
 TEST(SolutionPicture, TellsElevenUnstableShapesApart) {
   const Scene scene = test::heavy_scene(2, 0);
   std::vector<Solution> all(12, solve(scene, Model::energy));
-  for (std::size_t i = 1; i < all.size(); ++i) all[i].status = dlo::energy_model::SolveStatus::saddle;
+  for (std::size_t i = 1; i < all.size(); ++i)
+    all[i].status = dlo::energy_model::SolveStatus::saddle;
   const Picture picture = solution_picture(scene, all);
   std::set<std::string> looks;
   for (std::size_t i = 0; i < all.size(); ++i) {
