@@ -42,6 +42,11 @@ CellKind kind_of(const Axis& axis) {
   return numbers ? CellKind::number : CellKind::text;
 }
 
+SweepCell field_cell(CellKind kind, const std::string& value) {
+  if (kind == CellKind::text) return value;
+  return as_number<double>(value).value();
+}
+
 SweepCell cell_of(const Json& value) {
   if (value.is_number_integer()) return value.get<std::int64_t>();
   if (value.is_number()) return value.get<double>();
@@ -260,14 +265,8 @@ std::vector<SweepCell> Sweep::results(std::int64_t row) const {
 std::vector<SweepCell> Sweep::cells(std::int64_t row) const {
   std::vector<SweepCell> cells = {row};
   const std::vector<std::int64_t> indices = grid_.indices(row);
-  std::string text;
   for (std::size_t i = 0; i < indices.size(); ++i) {
-    text = grid_.axes()[i].number(indices[i]);
-    if (kinds_[i] == CellKind::text) {
-      cells.emplace_back(text);
-    } else {
-      cells.emplace_back(as_number<double>(text).value());
-    }
+    cells.push_back(field_cell(kinds_[i], grid_.axes()[i].number(indices[i])));
   }
   for (SweepCell& cell : results(row)) cells.push_back(std::move(cell));
   return cells;
