@@ -19,7 +19,6 @@
 namespace dlo::cli {
 namespace {
 
-using compare::csv_field;
 using compare::PaperReport;
 using compare::PaperWeight;
 
