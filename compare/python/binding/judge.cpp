@@ -10,6 +10,7 @@
 #include "base/input_file.hpp"
 #include "dlo/compare/check.hpp"
 #include "dlo/compare/comparison.hpp"
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_fit.hpp"
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/shape_file.hpp"

@@ -1,8 +1,11 @@
 // Prints what the record says of a solution, for tests/record: an array of JSON.
 
 #include <cstdio>
+#include <exception>
 #include <iterator>
+#include <span>
 #include <string>
+#include <variant>
 
 #include "record/solution_fields.hpp"
 
@@ -36,8 +39,13 @@ void add(Json& list, std::span<const Field<SolvedShape>> fields, bool everywhere
 }  // namespace
 
 int main() {
-  Json list = Json::array();
-  add(list, dlo::compare::solution_fields(), false);
-  add(list, dlo::compare::shape_numbers(), true);
-  return std::puts(list.dump(1).c_str()) < 0 ? 1 : 0;
+  try {
+    Json list = Json::array();
+    add(list, dlo::compare::solution_fields(), false);
+    add(list, dlo::compare::shape_numbers(), true);
+    return std::puts(list.dump(1).c_str()) < 0 ? 1 : 0;
+  } catch (const std::exception& error) {
+    std::fputs(error.what(), stderr);
+    return 1;
+  }
 }
