@@ -2,6 +2,7 @@
 
 #include <pybind11/pybind11.h>
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "figure/series.hpp"
@@ -12,6 +13,18 @@ namespace py = pybind11;
 
 /// Pairs of the axes to the right and up, by number.
 [[nodiscard]] py::list view_list(const std::vector<compare::View>& views);
+
+/// The points of several results, at least one: what their picture has to hold.
+template <typename Results>
+[[nodiscard]] Eigen::Matrix3Xd all_points(const Results& results) {
+  std::vector<Eigen::Vector3d> points;
+  for (const auto& result : results) {
+    for (const auto& point : result.shape.points.colwise()) points.emplace_back(point);
+  }
+  if (points.empty()) points.emplace_back(Eigen::Vector3d::Zero());
+  return Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3,
+                                            static_cast<Eigen::Index>(points.size()));
+}
 
 /// How results with a shape show themselves.
 /// @param views  of a result, as the command draws it

@@ -110,16 +110,6 @@ std::shared_ptr<SolvedStates> solve_all(const SharedScene& scene, int samples,
   return solved;
 }
 
-Eigen::Matrix3Xd all_points(const SolvedStates& solved) {
-  std::vector<Eigen::Vector3d> points;
-  for (const Solution& solution : solved.all.solutions) {
-    for (const auto& point : solution.shape.points.colwise()) points.emplace_back(point);
-  }
-  if (points.empty()) points.emplace_back(Eigen::Vector3d::Zero());
-  return Eigen::Map<const Eigen::Matrix3Xd>(points.front().data(), 3,
-                                            static_cast<Eigen::Index>(points.size()));
-}
-
 /// A field of a GripperLoad of all grippers, without copies. @param get  of one
 template <typename Get>
 py::array gripper_rows(const py::object& self, const Get& get) {
@@ -224,7 +214,7 @@ void bind_solve(py::module_& module) {
       "Every equilibrium that was found: a sequence of Solution, stable ones first, by energy.");
   bind_result(equilibria);
   bind_picture(equilibria, [](const SolvedStates& solved) {
-    return compare::views_of(solved.scene->scene, all_points(solved));
+    return compare::views_of(solved.scene->scene, all_points(solved.all.solutions));
   });
   equilibria.def("__len__", [](const SolvedStates& solved) { return solved.all.solutions.size(); })
       .def(

@@ -70,15 +70,9 @@ py::object track(const SharedScene& shared, const std::vector<std::optional<doub
   const compare::DynamicTrack* dynamic = moving ? &*moving : nullptr;
   std::string text = cli::track_text(found, scene, options);
   if (dynamic != nullptr) text += cli::dynamic_text(*dynamic);
-  std::vector<Eigen::Vector3d> points;
-  for (const compare::TrackFrame& frame : found.frames) {
-    for (const auto& point : frame.shape.points.colwise()) points.emplace_back(point);
-  }
-  const Eigen::Map<const Eigen::Matrix3Xd> all(points.front().data(), 3,
-                                               static_cast<Eigen::Index>(points.size()));
   py::object result = make_result(
       text, cli::track_json(found, scene, options, {.every = 1, .points = true}, dynamic));
-  result.attr("_views") = view_list(compare::views_of(scene, all));
+  result.attr("_views") = view_list(compare::views_of(scene, all_points(found.frames)));
   const std::optional<compare::TrackStop>& stopped = moving ? moving->stopped : found.stopped;
   if (stopped) {
     raise_convergence(
