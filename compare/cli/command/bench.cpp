@@ -36,7 +36,6 @@ void run(const BenchOptions& options) {
     warn_of_polygons(scene);
     warn_of_no_twist(scene, "tracking by the force model");
   }
-  if (scenes.empty()) scenes = compare::benchmark_scenes();
   const compare::BenchmarkReport report = [&] {
     ProgressBar bar("bench");
     return compare::run_benchmark(scenes, benchmark,

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "command/commands.hpp"
 #include "dlo/compare/alignment.hpp"
@@ -63,48 +63,27 @@ std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
   return scenes;
 }
 
-/// What a report looks like in each format; toml is written to the file, if one is given, and the
-/// text to standard output.
-struct Report {
-  std::function<std::string()> text, csv, toml;
-  std::function<Json()> json;
-};
-
-void write_report(const Report& report, OutputOptions output, bool format_is_given) {
+/// Without --format a .toml file gets what can be read again, and the text is shown as well.
+void write_calibration(OutputOptions output, bool format_is_given, const Formats& formats) {
   const bool to_toml_file = !format_is_given && output.file.ends_with(".toml");
   if (!format_is_given) {
-    const std::string format = format_of_file(output.file, compare::names<Format>());
+    const std::string format = format_of_file(output.file, {"json", "csv", "toml"});
     if (!format.empty()) output.format = format;
   }
-  if (to_toml_file) {
-    write_output(output, report.toml());
-    write_output({}, report.text());
-  } else if (output.format == "json") {
-    write_output(output, json_text(report.json()));
-  } else if (output.format == "csv") {
-    write_output(output, report.csv());
-  } else if (output.format == "toml") {
-    write_output(output, report.toml());
-  } else {
-    write_output(output, report.text());
-  }
+  write_output(output, formats);
+  if (to_toml_file) write_output({}, formats.text());
 }
 
 void run_material(const CalibrateOptions& options, bool format_is_given) {
   constexpr int profile_points = 41;
   options.plot.require_drawable(options.output);
-  MaterialReport report;
-  report.scenes = load_all(options.scenes, options.overrides);
+  std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
   std::vector<compare::MeasuredShape> shapes;
   shapes.reserve(options.shapes.size());
   for (const std::string& path : options.shapes) {
     shapes.push_back(options.shape_options.load(path));
   }
-  for (const compare::Scene& scene : report.scenes) warn_of_friction(scene);
-  // Several measurements of one scene
-  if (report.scenes.size() == 1) report.scenes.resize(shapes.size(), report.scenes.front());
-  report.files = options.shapes;
-  report.frame_was_found = options.shape_options.pose() != compare::PoseFreedom::known;
+  for (const compare::Scene& scene : scenes) warn_of_friction(scene);
   using compare::Dimension;
   const compare::MaterialFitOptions fit_options{
       .pose = options.shape_options.pose(),
@@ -116,21 +95,19 @@ void run_material(const CalibrateOptions& options, bool format_is_given) {
           quantity_of("--clamp-angles", options.clamp_angles, Dimension::angle).value_or(0),
       .position_tolerance =
           quantity_of("--clamp-positions", options.clamp_positions, Dimension::length).value_or(0),
-      .alternatives = true,
       .chain_segments = options.segments,
       .profile_points = options.plot.draws() ? profile_points : 0,
       .noise = quantity_of("--noise", options.noise, Dimension::length),
       .solve = options.overrides.solve()};
-  report.fit = [&] {
-    const ProgressBar bar("calibrate");
-    return compare::fit_material(report.scenes, shapes, fit_options);
-  }();
-  write_report({.text = [&] { return material_text(report); },
-                .csv = [&] { return material_csv(report); },
-                .toml = [&] { return material_toml(report); },
-                .json = [&] { return material_json(report); }},
-               options.output, format_is_given);
-  options.plot.draw([&] { return compare::fit_picture(report.scenes, report.fit); });
+  const compare::Calibration found = with_progress("calibrate", [&](const auto& /*unknown*/) {
+    return compare::calibrate(std::move(scenes), shapes, fit_options);
+  });
+  write_calibration(options.output, format_is_given,
+                    {.text = [&] { return material_text(found); },
+                     .json = [&] { return json_text(material_json(found)); },
+                     .csv = [&] { return material_csv(found); },
+                     .toml = [&] { return material_toml(found); }});
+  options.plot.draw([&] { return compare::fit_picture(found.scenes, found.fit); });
 }
 
 /// Springs for chains of the scenes' own rods, nothing measured.
@@ -151,14 +128,14 @@ void run_chains(const CalibrateOptions& options, bool format_is_given) {
         "--segments: no scene's rod is like a plain chain of hinges (allowed: one section, "
         "intrinsically straight, not twisted, touching nothing)");
   }
-  write_report({.text = [&] { return chains_text(chains); },
-                .csv = [&] { return refuse("csv"); },
-                .toml = [&] { return refuse("toml"); },
-                .json =
-                    [&] {
-                      return Json{{"chains", chains_json(chains)}};
-                    }},
-               options.output, format_is_given);
+  write_calibration(options.output, format_is_given,
+                    {.text = [&] { return chains_text(chains); },
+                     .json =
+                         [&] {
+                           return json_text(Json{{"chains", chains_json(chains)}});
+                         },
+                     .csv = [&] { return refuse("csv"); },
+                     .toml = [&] { return refuse("toml"); }});
 }
 
 void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
@@ -171,16 +148,15 @@ void run_force_model(const CalibrateOptions& options, bool points_are_given, boo
   if (points_are_given) fit_options.points = scenes.front().force_model.points;
   if (options.target) fit_options.target = *options.target;
   fit_options.solve = options.overrides.solve();
-  const compare::ForceModelFit fit = [&] {
-    ProgressBar bar("calibrate");
-    fit_options.progress = [&](std::int64_t done, std::int64_t total) { bar.show(done, total); };
+  const compare::ForceModelFit fit = with_progress("calibrate", [&](const auto& progress) {
+    fit_options.progress = progress;
     return compare::fit_force_model(scenes, holdouts, fit_options);
-  }();
-  write_report({.text = [&] { return force_model_text(fit, options.target.has_value()); },
-                .csv = [&] { return force_model_csv(fit); },
-                .toml = [&] { return force_model_toml(fit); },
-                .json = [&] { return force_model_json(fit); }},
-               options.output, format_is_given);
+  });
+  write_calibration(options.output, format_is_given,
+                    {.text = [&] { return force_model_text(fit, options.target.has_value()); },
+                     .json = [&] { return json_text(force_model_json(fit)); },
+                     .csv = [&] { return force_model_csv(fit); },
+                     .toml = [&] { return force_model_toml(fit); }});
   // Nobody asked for the default.
   if (!fit.reached() && options.target) end_with(ExitStatus::outside_tolerance);
 }

@@ -14,6 +14,7 @@
 #include "option/scene_options.hpp"
 #include "option/shape_options.hpp"
 #include "option/share.hpp"
+#include "option/terminal.hpp"
 #include "picture/check_figure.hpp"
 
 namespace dlo::cli {
@@ -22,9 +23,7 @@ namespace {
 struct CheckOptions {
   std::string scene;
   std::string shape;
-  std::string tolerance;
-  std::string measure = "rms";
-  std::optional<double> min_seen;
+  ToleranceWords tolerance;
   bool no_modulus = false;
   bool no_explanation = false;
   ShapeOptions shapes;
@@ -60,16 +59,15 @@ void run(const CheckOptions& options) {
           .arc_lengths = options.shapes.arc_lengths(),
           .modulus = options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes,
           .solve = options.overrides.solve()}};
-  if (!options.tolerance.empty()) {
-    request.tolerance = {.allowed_m = tolerance_m("--tolerance", options.tolerance, scene.length),
-                         .largest = options.measure == "max",
-                         .part = options.min_seen.has_value()};
-    if (options.min_seen) request.tolerance->least_seen_share = *options.min_seen;
+  if (!options.tolerance.allowed.empty()) {
+    request.tolerance = shape_tolerance("--tolerance", options.tolerance, scene.length);
   }
   const compare::CheckResult result = compare::check(scene, shape, request);
-  const CheckPage page{result,
-                       options.shapes.unit_hint(result.check.polyline_length_m, scene.length),
-                       options.output.file};
+  const CheckPage page{
+      result, options.shapes.unit_hint(result.check.polyline_length_m, scene.length),
+      result.judgement
+          ? verdict_word(result.passes() ? "pass" : "fail", result.passes(), options.output.file)
+          : ""};
   if (options.output.is(Format::csv)) warn_of_friction(scene);
   write_output(options.output, {.text = [&] { return shape_check_text(page); },
                                 .json = [&] { return json_text(shape_check_json(result)); },
@@ -89,15 +87,16 @@ void add_check(CLI::App& app) {
       ->type_name("FILE")
       ->required();
   command->add_option(
-      "--tolerance", options->tolerance,
+      "--tolerance", options->tolerance.allowed,
       "largest deviation allowed, 1% or 0.01 of the length or \"2 mm\"; exit status 1 "
       "beyond it");
-  command->add_option("--measure", options->measure, "what is held against it: rms or max")
+  command
+      ->add_option("--measure", options->tolerance.measure, "what is held against it: rms or max")
       ->check(CLI::IsMember({"rms", "max"}))
       ->capture_default_str();
   command
       ->add_option(
-          "--min-seen", options->min_seen,
+          "--min-seen", options->tolerance.min_seen,
           "the file is a part of the rod: what it does not have is not judged, but less "
           "than this share such as 10% never passes. Without it the file is the whole rod, "
           "what is missing counts, and less than half never passes")

@@ -1,11 +1,8 @@
-#include <algorithm>
 #include <memory>
-#include <utility>
 
 #include "batch/baseline.hpp"
-#include "batch/regression.hpp"
+#include "batch/regression_run.hpp"
 #include "command/commands.hpp"
-#include "dlo/compare/error.hpp"
 #include "dlo/compare/solution.hpp"
 #include "format/json.hpp"
 #include "format/regression.hpp"
@@ -19,10 +16,6 @@
 namespace dlo::cli {
 namespace {
 
-using compare::MeasuredCase;
-using compare::RegressionResult;
-using compare::RegressionVerdict;
-
 struct RegressOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> programs;
@@ -35,83 +28,38 @@ struct RegressOptions {
   OutputOptions output;
 };
 
-MeasuredCase measure(const RegressOptions& options, const std::string& path) {
-  const compare::Scene scene = options.overrides.load(path);
-  warn_of_polygons(scene);
-  const auto model = compare::from_name<compare::Model>(options.model);
-  try {
-    return {compare::measure_case(scene, model, options.overrides.solve()), ""};
-  } catch (const compare::ConvergenceError& error) {
-    return {compare::case_of(scene, model), error.what()};
-  }
-}
-
-MeasuredCase measure_program(const RegressOptions& options, const std::string& path,
-                             const compare::ForeignProgram& program) {
-  const compare::Scene scene = options.overrides.load(path);
-  try {
-    return compare::measure_program(scene, program, options.overrides.solve());
-  } catch (const compare::ConvergenceError& error) {
-    compare::BaselineCase entry = compare::case_of(scene, compare::Model::force);
-    entry.program = program.name;
-    return {std::move(entry), error.what()};
-  }
-}
-
-std::vector<MeasuredCase> measure_all(const RegressOptions& options) {
-  const std::vector<compare::ForeignProgram> programs =
-      compare::parse_foreign_programs(options.programs);
-  std::vector<MeasuredCase> measured;
-  const std::size_t all = options.scenes.size() * (1 + programs.size());
-  measured.reserve(all);
-  ProgressBar bar("regress");
-  const auto take = [&](MeasuredCase entry) {
-    measured.push_back(std::move(entry));
-    bar.show(static_cast<std::int64_t>(measured.size()), static_cast<std::int64_t>(all));
-  };
-  for (const std::string& path : options.scenes) {
-    take(measure(options, path));
-    for (const compare::ForeignProgram& program : programs) {
-      take(measure_program(options, path, program));
-    }
-  }
-  return measured;
-}
-
 void run(const RegressOptions& options) {
   // An unreadable baseline is told before minutes of solving.
   const std::vector<compare::BaselineCase> baseline =
       options.update ? compare::present_baseline(options.baseline)
                      : compare::load_baseline(options.baseline);
-  const std::vector<MeasuredCase> measured = measure_all(options);
-  const std::vector<RegressionResult> results =
-      compare::judge_regression(baseline, measured, options.tolerance);
-  const bool solved = std::none_of(results.begin(), results.end(), [](const auto& result) {
-    return result.verdict == RegressionVerdict::not_solved;
+  const compare::RegressRequest request{
+      .model = compare::from_name<compare::Model>(options.model),
+      .programs = compare::parse_foreign_programs(options.programs),
+      .tolerance = options.tolerance,
+      .solve = options.overrides.solve()};
+  std::vector<compare::Scene> scenes;
+  for (const std::string& path : options.scenes) {
+    warn_of_polygons(scenes.emplace_back(options.overrides.load(path)));
+  }
+  const compare::Regression found = with_progress("regress", [&](const auto& progress) {
+    return compare::regress(scenes, baseline, request, progress);
   });
-  const bool good = options.update
-                        ? solved
-                        : std::none_of(results.begin(), results.end(), [](const auto& result) {
-                            return compare::failed(result.verdict);
-                          });
-  if (!options.junit.empty()) {
-    write_output({.file = options.junit}, compare::junit_xml(results));
-  }
-  if (options.update && solved) {
-    std::vector<compare::BaselineCase> cases;
-    cases.reserve(measured.size());
-    for (const MeasuredCase& entry : measured) cases.push_back(entry.entry);
-    compare::replace_baseline(options.baseline, baseline, cases);
-  }
+  const bool solved = found.solved();
+  const bool good = options.update ? solved : found.passes();
   const bool updated = options.update && solved;
-  write_output(options.output, {.text =
-                                    [&] {
-                                      return updated
-                                                 ? baseline_update_text(results)
-                                                 : regression_text(results, options.output.file);
-                                    },
-                                .json = [&] { return json_text(regression_json(results, good)); },
-                                .csv = [&] { return regression_csv(results); }});
+  if (!options.junit.empty()) {
+    write_output({.file = options.junit}, compare::junit_xml(found.results));
+  }
+  if (updated) compare::replace_baseline(options.baseline, baseline, found.cases);
+  write_output(options.output,
+               {.text =
+                    [&] {
+                      return updated ? baseline_update_text(found.results)
+                                     : regression_text(found.results, options.output.file);
+                    },
+                .json = [&] { return json_text(regression_json(found.results, good)); },
+                .csv = [&] { return regression_csv(found.results); }});
   if (options.update) {
     say("{} {}", options.baseline, solved ? "written" : "left as it was");
   }

@@ -52,11 +52,10 @@ void run_map(StabilityOptions& options) {
       options.scene.empty() ? compare::hard_case_scene() : compare::load_scene(options.scene);
   warn_of_polygons(scene);
   warn_of_no_twist(scene, "the map");
-  const compare::StabilityMap map = [&] {
-    ProgressBar bar("map");
-    options.grid.progress = [&](std::int64_t done, std::int64_t total) { bar.show(done, total); };
+  const compare::StabilityMap map = with_progress("map", [&](const auto& progress) {
+    options.grid.progress = progress;
     return compare::stability_map(scene, options.grid);
-  }();
+  });
   write_output(options.output, {.text = [&] { return stability_map_text(map); },
                                 .json = [&] { return json_text(stability_map_json(map)); },
                                 .csv = [&] { return stability_map_csv(map); }});
@@ -71,11 +70,10 @@ void run_cases(StabilityOptions& options) {
     }
   }
   options.cases.threads = options.threads;
-  const std::vector<StabilityResult> results = [&] {
-    ProgressBar bar("hard cases");
-    options.cases.progress = [&](std::int64_t done, std::int64_t total) { bar.show(done, total); };
+  const auto results = with_progress("hard cases", [&](const auto& progress) {
+    options.cases.progress = progress;
     return compare::stability(options.cases);
-  }();
+  });
   const std::size_t steppers = options.cases.steppers.size();
   write_output(options.output, {.text = [&] { return hard_cases_text(results, steppers); },
                                 .json = [&] { return json_text(hard_cases_json(results)); },

@@ -3,8 +3,9 @@
 #include <cstdlib>
 #include <memory>
 
-#include "base/input_file.hpp"
 #include "base/output_file.hpp"
+#include "base/words.hpp"
+#include "batch/read_sweep.hpp"
 #include "batch/sweep_file.hpp"
 #include "batch/sweep_merge.hpp"
 #include "command/commands.hpp"
@@ -62,14 +63,12 @@ void plot(const SweepOptions& options, const compare::Sweep& sweep,
 
 /// Rows of a finished sweep's file, behind its header.
 std::vector<std::string> rows_of_file(const std::string& path, const std::string& header) {
-  const std::string text = compare::read_file(path);
   std::vector<std::string> rows;
-  const std::size_t begin = text.find(header);
-  if (begin == std::string::npos) return rows;
-  for (std::size_t at = begin + header.size(); at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size() - 1);
-    rows.push_back(text.substr(at, end + 1 - at));
-    at = end + 1;
+  compare::LineReader reader(path);
+  bool behind_header = false;
+  for (std::string line; reader.next(line);) {
+    if (behind_header) rows.push_back(line + "\n");
+    behind_header = behind_header || line + "\n" == header;
   }
   return rows;
 }
@@ -84,15 +83,9 @@ std::optional<compare::Shard> chosen_shard(const std::string& text) {
 }
 
 /// {shard} in a file's name becomes 2-of-4, or "all" without shards.
-std::string output_path(std::string path, const std::optional<compare::Shard>& shard) {
-  const std::string placeholder = "{shard}";
-  const std::string name =
-      shard ? fmt::format("{}-of-{}", shard->index, shard->count) : std::string("all");
-  for (std::size_t at = path.find(placeholder); at != std::string::npos;
-       at = path.find(placeholder, at + name.size())) {
-    path.replace(at, placeholder.size(), name);
-  }
-  return path;
+std::string output_path(const std::string& path, const std::optional<compare::Shard>& shard) {
+  return compare::with_places(
+      path, {{"{shard}", shard ? fmt::format("{}-of-{}", shard->index, shard->count) : "all"}});
 }
 
 compare::Sweep sweep_of(const SweepOptions& options) {

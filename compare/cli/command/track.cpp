@@ -24,11 +24,10 @@ namespace {
 
 struct TrackCommand {
   std::string scene;
-  std::optional<double> from, to, frame_rate, obstacle_rate, step_rate;
+  compare::TrackRequest request;
   bool no_force = false;
   bool dynamic = false;
   compare::RodDamping damping;
-  int samples = 41;
   TrackFrames frames;
   std::string paraview;
   SceneOptions overrides;
@@ -49,40 +48,34 @@ void run(const TrackCommand& command) {
   command.plot.require_drawable(command.output);
   const compare::Scene scene = command.overrides.load(command.scene);
   warn_of_friction(scene);
-  compare::TrackOptions options;
-  options.from = command.from;
-  options.to = command.to;
-  options.rates = scene.track;
-  options.rates.frames = command.frame_rate.value_or(options.rates.frames);
-  options.rates.steps = command.step_rate.value_or(options.rates.steps);
-  if (command.obstacle_rate) options.rates.obstacles = command.obstacle_rate;
-  if (command.no_force) options.force = compare::ForceBeside::absent;
-  options.samples = command.samples;
-  options.solve = command.overrides.solve();
+  compare::TrackRequest request = command.request;
+  if (command.no_force) request.options.force = compare::ForceBeside::absent;
+  if (command.dynamic) request.damping = command.damping;
+  request.options.solve = command.overrides.solve();
   if (!command.no_force) warn_of_polygons(scene);
-  if (command.dynamic) compare::require_dynamic(scene, options);
-  const compare::Track track = [&] {
-    ProgressBar bar("track");
-    return compare::track(scene, options,
-                          [&](std::int64_t done, std::int64_t total) { bar.show(done, total); });
-  }();
-  std::optional<compare::DynamicTrack> moving;
-  if (command.dynamic) moving = compare::dynamic_track(scene, track, options, command.damping);
-  const compare::DynamicTrack* dynamic = moving ? &*moving : nullptr;
+  const compare::TrackResult result = with_progress(
+      "track", [&](const auto& progress) { return compare::follow(scene, request, progress); });
+  const compare::Track& track = result.track;
+  const compare::DynamicTrack* dynamic = result.moving();
   if (!command.paraview.empty()) {
     write_series(track, scene, command.frames, command.paraview, dynamic);
   }
-  write_output(command.output,
-               {.text =
-                    [&] {
-                      return track_text(track, scene, options) +
-                             (dynamic ? dynamic_text(*dynamic) : "");
-                    },
-                .json = [&] { return track_json(track, scene, options, command.frames, dynamic); },
-                .csv = [&] { return track_csv(track, scene, command.frames, dynamic); }});
-  command.plot.draw([&] { return compare::track_picture(scene, {track, dynamic}, options); });
+  write_output(
+      command.output,
+      {.text =
+           [&] {
+             return track_text(track, scene, result.options) +
+                    (dynamic ? dynamic_text(*dynamic) : "");
+           },
+       .json = [&] { return track_json(track, scene, result.options, command.frames, dynamic); },
+       .csv = [&] { return track_csv(track, scene, command.frames, dynamic); }});
+  command.plot.draw([&] {
+    return compare::track_picture(scene, {track, dynamic}, result.options);
+  });
   throw_if_stopped(scene, track.stopped, "", track.frames.size());
-  if (moving) throw_if_stopped(scene, moving->stopped, " the moving rod", moving->frames.size());
+  if (dynamic != nullptr) {
+    throw_if_stopped(scene, dynamic->stopped, " the moving rod", dynamic->frames.size());
+  }
 }
 
 }  // namespace
@@ -97,15 +90,17 @@ void add_track(CLI::App& app) {
     command->add_option(name, value, what)->check(number_between(1e-6, 1e9))->type_name("HZ");
   };
   const double most = std::numeric_limits<double>::max();
-  command->add_option("--from", options->from, "first time [s], default the first pose's")
+  command
+      ->add_option("--from", options->request.options.from,
+                   "first time [s], default the first pose's")
       ->check(number_between(-most, most));
-  command->add_option("--to", options->to, "last time [s], default the last pose's")
+  command->add_option("--to", options->request.options.to, "last time [s], default the last pose's")
       ->check(number_between(-most, most));
-  rate("--frame-rate", options->frame_rate,
+  rate("--frame-rate", options->request.frame_rate,
        "frames a second, default [track] frame_rate of the scene, or 1000");
-  rate("--obstacle-rate", options->obstacle_rate,
+  rate("--obstacle-rate", options->request.obstacle_rate,
        "how often obstacles move, default [track] obstacle_rate, or with every frame");
-  rate("--step-rate", options->step_rate,
+  rate("--step-rate", options->request.step_rate,
        "steps of the force model a second, default [track] step_rate, or 30000");
   command->add_flag("--no-force", options->no_force, "leave the force model out");
   CLI::Option* const dynamic = command->add_flag(
@@ -125,7 +120,7 @@ void add_track(CLI::App& app) {
       ->needs(dynamic)
       ->type_name("VALUE")
       ->capture_default_str();
-  command->add_option("--samples", options->samples, "points of a frame's shape")
+  command->add_option("--samples", options->request.options.samples, "points of a frame's shape")
       ->check(CLI::Range(2, 10000))
       ->capture_default_str();
   command

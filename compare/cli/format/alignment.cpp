@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "format/solution.hpp"
-#include "option/output.hpp"
 
 namespace dlo::cli {
 

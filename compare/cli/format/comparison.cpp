@@ -8,8 +8,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "format/plan.hpp"
 #include "format/solution.hpp"
-#include "option/output.hpp"
-#include "picture/budget_figure.hpp"
+#include "judge/budget_parts.hpp"
 #include "record/csv_table.hpp"
 #include "record/solution_fields.hpp"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "base/display.hpp"
+#include "base/quote.hpp"
+#include "base/words.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "format/comparison.hpp"
-#include "option/help.hpp"
-#include "option/output.hpp"
 #include "record/csv_table.hpp"
 
 namespace dlo::cli {
@@ -73,7 +73,8 @@ std::string force_model_text(const ForceModelFit& fit, bool target_was_given) {
   if (fit.holdouts > 0) append(out, ", of the hold-out scenes {}", percent(fit.worst_holdout()));
   append(out, ": the {} of {} is {}\n", target_was_given ? "target" : "default target",
          percent(fit.target), fit.reached() ? "reached" : "not reached");
-  for (const std::string& reason : fit.why_missed()) append(out, "  {}\n", wrap(reason, 2, 100));
+  for (const std::string& reason : fit.why_missed())
+    append(out, "  {}\n", compare::wrap(reason, 2, 100));
   return out;
 }
 

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "base/quote.hpp"
 #include "dlo/compare/compared_state.hpp"
 #include "dlo/compare/effective_modulus.hpp"
 #include "dlo/compare/force_model_settings.hpp"
@@ -11,6 +12,7 @@
 
 namespace dlo::cli {
 
+using compare::append;
 using compare::Json;
 using compare::json_list;
 using compare::json_or_null;

@@ -10,7 +10,6 @@
 #include "dlo/compare/error.hpp"
 #include "format/alignment.hpp"
 #include "format/comparison.hpp"
-#include "option/output.hpp"
 #include "record/csv_table.hpp"
 
 namespace dlo::cli {
@@ -38,7 +37,7 @@ std::optional<double> half_width(const FittedValue& value) {
 }
 
 /// What makes the interval wider than that of independent errors.
-std::string correlation_text(const MaterialReport& report) {
+std::string correlation_text(const compare::Calibration& report) {
   const compare::CorrelatedErrors& errors = *report.fit.correlation;
   const FittedValue& E = report.fit.youngs_modulus;
   const bool has_interval = E.low || E.high;
@@ -93,7 +92,7 @@ std::string words_of(const compare::FitAlternative& alternative) {
   return out;
 }
 
-std::string alternatives_text(const MaterialReport& report) {
+std::string alternatives_text(const compare::Calibration& report) {
   std::string out;
   const compare::NamedValue stiffness = report.scenes.front().stiffness();
   for (const compare::FitAlternative& alternative : report.fit.alternatives) {
@@ -223,7 +222,7 @@ void add_value(Json& result, const Key& key, const std::string& prefix, const Fi
   result[prefix + "interval_95" + key.unit] = {json_of(value.low), json_of(value.high)};
 }
 
-Json alternatives_json(const MaterialReport& report) {
+Json alternatives_json(const compare::Calibration& report) {
   Json result = Json::array();
   for (const compare::FitAlternative& alternative : report.fit.alternatives) {
     Json one = {{"options", words_of(alternative)},
@@ -238,7 +237,7 @@ Json alternatives_json(const MaterialReport& report) {
 
 }  // namespace
 
-std::string material_text(const MaterialReport& report) {
+std::string material_text(const compare::Calibration& report) {
   const compare::MaterialFit& fit = report.fit;
   std::string out;
   const auto add = [&](const compare::NamedValue& of, const FittedValue& value) {
@@ -291,7 +290,7 @@ std::string material_text(const MaterialReport& report) {
   return out;
 }
 
-std::string material_csv(const MaterialReport& report) {
+std::string material_csv(const compare::Calibration& report) {
   const Key stiffness = stiffness_key(report.scenes.front());
   const Key heaviness = heaviness_key(report.scenes.front());
   compare::CsvTable table(fmt::format(
@@ -309,7 +308,7 @@ std::string material_csv(const MaterialReport& report) {
   return table.header() + table.row(material_json(report));
 }
 
-Json material_json(const MaterialReport& report) {
+Json material_json(const compare::Calibration& report) {
   const compare::MaterialFit& fit = report.fit;
   Json result = {{"schema", "dlo/calibrate/1"}};
   add_value(result, stiffness_key(report.scenes.front()), "", fit.youngs_modulus);
@@ -354,7 +353,7 @@ Json material_json(const MaterialReport& report) {
   return result;
 }
 
-std::string material_toml(const MaterialReport& report) {
+std::string material_toml(const compare::Calibration& report) {
   const compare::MaterialFit& fit = report.fit;
   const FittedValue& E = fit.youngs_modulus;
   if (!E.value || (fit.density && !fit.density->value)) {

@@ -4,7 +4,6 @@
 #include <numbers>
 
 #include "base/display.hpp"
-#include "option/output.hpp"
 
 namespace dlo::cli {
 namespace {

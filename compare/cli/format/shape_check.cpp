@@ -9,8 +9,6 @@
 #include "format/alignment.hpp"
 #include "format/comparison.hpp"
 #include "format/solution.hpp"
-#include "option/output.hpp"
-#include "option/terminal.hpp"
 #include "record/csv_table.hpp"
 #include "record/solution_fields.hpp"
 
@@ -141,7 +139,7 @@ std::string shape_check_text(const CheckPage& page) {
   }
   if (report.judgement) {
     append(out, "  verdict         {}: {}\n",
-           verdict_word(verdict_of(*report.judgement), report.judgement->pass, page.file),
+           page.verdict.empty() ? verdict_of(*report.judgement) : page.verdict,
            report.judgement->reason);
   }
   return out;

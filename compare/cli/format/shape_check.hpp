@@ -10,8 +10,8 @@ namespace dlo::cli {
 /// A judged shape for the page.
 struct CheckPage {
   const compare::CheckResult& result;
-  std::string unit_hint;  ///< where the check itself has none
-  std::string file;       ///< of the text; empty: standard output, which may be a terminal
+  std::string unit_hint = {};  ///< where the check itself has none
+  std::string verdict = {};    ///< its word where that is shown otherwise, as in colour
 };
 
 [[nodiscard]] std::string shape_check_text(const CheckPage& page);

@@ -10,7 +10,6 @@
 #include "base/number.hpp"
 #include "base/quote.hpp"
 #include "format/plan.hpp"
-#include "option/output.hpp"
 #include "polygon/self_crossing.hpp"
 #include "record/solution_fields.hpp"
 #include "solve/linking.hpp"

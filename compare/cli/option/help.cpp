@@ -174,24 +174,6 @@ std::vector<const CLI::Option*> options_of(const CLI::App& app) {
   });
 }
 
-std::string wrap(const std::string& text, std::size_t indent, std::size_t width) {
-  std::istringstream words(text);
-  std::string out;
-  std::size_t column = indent;
-  for (std::string word; words >> word;) {
-    if (!out.empty() && column + 1 + word.size() > width) {
-      out += "\n" + std::string(indent, ' ');
-      column = indent;
-    } else if (!out.empty()) {
-      out += ' ';
-      ++column;
-    }
-    out += word;
-    column += word.size();
-  }
-  return out;
-}
-
 std::shared_ptr<CLI::FormatterBase> help_formatter() { return std::make_shared<HelpFormatter>(); }
 
 void require_known_command(const CLI::App& app, const std::string& written) {

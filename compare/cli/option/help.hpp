@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "base/words.hpp"
+
 namespace dlo::cli {
 
 /// An option or argument as help, manual page and completion tell it.
@@ -31,8 +33,7 @@ struct OptionText {
 [[nodiscard]] std::vector<const CLI::Option*> arguments_of(const CLI::App& app);
 [[nodiscard]] std::vector<const CLI::Option*> options_of(const CLI::App& app);
 
-/// Lines of at most `width`, all but the first indented.
-[[nodiscard]] std::string wrap(const std::string& text, std::size_t indent, std::size_t width = 80);
+using compare::wrap;
 
 /// Help in 80 columns.
 [[nodiscard]] std::shared_ptr<CLI::FormatterBase> help_formatter();

@@ -46,8 +46,6 @@ class WithoutBrokenPipes {
   }
   WithoutBrokenPipes(const WithoutBrokenPipes&) = delete;
   WithoutBrokenPipes& operator=(const WithoutBrokenPipes&) = delete;
-  WithoutBrokenPipes(WithoutBrokenPipes&&) = delete;
-  WithoutBrokenPipes& operator=(WithoutBrokenPipes&&) = delete;
 
  private:
   sigset_t pipe_{};
@@ -130,12 +128,11 @@ std::string format_of_file(const std::string& file, const std::vector<std::strin
 
 void write_output(const OutputOptions& options, const std::string& content) {
   if (options.file.empty()) return write_standard_output(content);
-  compare::OutputFile file(options.file);
-  file.append(content);
-  file.finish();
+  compare::write_file(options.file, content);
 }
 
 void write_output(const OutputOptions& options, const Formats& formats) {
+  if (formats.toml && options.format == "toml") return write_output(options, formats.toml());
   switch (compare::from_name<Format>(options.format)) {
     case Format::text:
       return write_output(options, formats.text());

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <functional>
-#include <iterator>
 #include <mutex>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "base/quote.hpp"
 #include "dlo/compare/choice.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): the library's own
@@ -18,11 +18,7 @@ class App;
 
 namespace dlo::cli {
 
-/// Formats onto the end of a text.
-template <typename... Arguments>
-void append(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
-  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
-}
+using compare::append;
 
 enum class Format { text, json, csv };
 
@@ -49,6 +45,7 @@ struct OutputOptions {
 /// A result in each of its formats, made when it is asked for.
 struct Formats {
   std::function<std::string()> text, json, csv;
+  std::function<std::string()> toml = {};  ///< of a command that has it
 };
 
 /// The format of a file's extension: "csv" of shape.csv; empty unless it is one of `formats`.
@@ -86,8 +83,6 @@ class RedirectedOutput {
   ~RedirectedOutput();
   RedirectedOutput(const RedirectedOutput&) = delete;
   RedirectedOutput& operator=(const RedirectedOutput&) = delete;
-  RedirectedOutput(RedirectedOutput&&) = delete;
-  RedirectedOutput& operator=(RedirectedOutput&&) = delete;
 
   /// The one that is in force, null if there is none.
   [[nodiscard]] static RedirectedOutput* current();

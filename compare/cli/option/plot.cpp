@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include "base/input_file.hpp"
@@ -20,24 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A new folder for nobody else, gone when it is left.
-class DrawingFolder {
- public:
-  void write(const std::string& name, const std::string& content) const {
-    std::ofstream stream(path() / name, std::ios::binary);
-    stream << content;
-    stream.close();
-    if (!stream) {
-      throw compare::OutputError(
-          fmt::format("--plot: {}: cannot be written", (path() / name).string()));
-    }
-  }
-  [[nodiscard]] const fs::path& path() const { return folder_.path(); }
-
- private:
-  compare::TemporaryFolder folder_{"--plot: no folder to draw in: " +
-                                   compare::temporary_directory().string()};
-};
+compare::TemporaryFolder drawing_folder() {
+  return compare::TemporaryFolder("--plot: no folder to draw in: " +
+                                  compare::temporary_directory().string());
+}
 
 std::optional<compare::PictureFormat> format_of(const std::string& file) {
   const std::string ending = fs::path(file).extension().string();
@@ -72,7 +57,7 @@ void PlotOptions::require_drawable(const OutputOptions& output) const {
                     ".png or .pdf{})",
                     file_, offers_sketch_ ? ", or - for a sketch" : ""));
   }
-  if (compare::gnuplot_version(DrawingFolder().path()).empty()) {
+  if (compare::gnuplot_version(drawing_folder().path()).empty()) {
     throw compare::InputError(
         fmt::format("--plot {}: needs the program gnuplot, which is not found (Debian: "
                     "gnuplot-nox){}",
@@ -88,23 +73,21 @@ void PlotOptions::draw(const std::function<compare::Picture()>& picture) const {
                   [](const compare::PictureRow& row) { return row.empty(); })) {
     throw compare::OutputError(fmt::format("--plot {}: there is nothing to draw", file_));
   }
-  const DrawingFolder folder;
+  const compare::TemporaryFolder folder = drawing_folder();
   for (const compare::PictureRow& row : drawn.rows) {
     for (const std::vector<compare::Figure>& column : row) {
       for (const compare::Figure& figure : column) {
-        if (!figure.csv.empty()) folder.write(figure.csv_file, figure.csv);
+        if (!figure.csv.empty()) compare::write_file(folder.path() / figure.csv_file, figure.csv);
       }
     }
   }
   const std::string output = "plot" + fs::path(file_).extension().string();
-  folder.write("plot.gp", compare::picture_script(drawn, format, output));
+  compare::write_file(folder.path() / "plot.gp", compare::picture_script(drawn, format, output));
   const std::string failure = compare::run_script("plot.gp", output, folder.path());
   if (!failure.empty()) {
     throw compare::OutputError(fmt::format("--plot {}: {}", file_, failure));
   }
-  compare::OutputFile file(file_);
-  file.append(compare::read_file((folder.path() / output).string()));
-  file.finish();
+  compare::write_file(file_, compare::read_file((folder.path() / output).string()));
 }
 
 void PlotOptions::sketch(const compare::Scene& scene,

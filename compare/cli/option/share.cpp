@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
 #include "toml/quantity.hpp"
 
@@ -39,28 +40,15 @@ CLI::Validator share_that(std::function<bool(double)> holds, std::string of, std
   return {read, "SHARE"};
 }
 
-}  // namespace
-
-CLI::Validator share_of_length() {
-  return share_that([](double share) { return share > 0 && share < 1; }, " of the length",
-                    "0.1% or 0.001, > 0, < 1");
-}
-
-CLI::Validator share_up_to(double high) {
-  return share_that([high](double share) { return share >= 0 && share <= high; }, "",
-                    fmt::format("1% or 0.01, 0 to {:g}", high));
-}
-
+/// In m. @throws compare::InputError if it is neither a share nor a length
 double tolerance_m(const std::string& name, const std::string& text, double length) {
-  const bool percent = text.ends_with('%');
-  const std::string number = percent ? text.substr(0, text.size() - 1) : text;
   double value = 0;
   try {
-    value = compare::parse_quantity(number, compare::Dimension::number) / (percent ? 100 : 1);
+    value = share_from(text);
     if (value > 0 && value < 1) return value * length;
   } catch (const compare::InputError&) {
     try {
-      value = percent ? 0 : compare::parse_quantity(text, compare::Dimension::length);
+      value = text.ends_with('%') ? 0 : compare::parse_quantity(text, compare::Dimension::length);
     } catch (const compare::InputError&) {
       throw compare::InputError(fmt::format(
           "{} = {}: neither a share of the length nor a length (allowed: such as 1%, 0.01 "
@@ -73,6 +61,30 @@ double tolerance_m(const std::string& name, const std::string& text, double leng
       "{} = {}: out of range (allowed: above 0, a share of the length below 1, a length "
       "with its unit)",
       name, text));
+}
+
+}  // namespace
+
+CLI::Validator share_of_length() {
+  return share_that([](double share) { return share > 0 && share < 1; }, " of the length",
+                    "0.1% or 0.001, > 0, < 1");
+}
+
+CLI::Validator share_up_to(double high) {
+  return share_that([high](double share) { return share >= 0 && share <= high; }, "",
+                    fmt::format("1% or 0.01, 0 to {:g}", high));
+}
+
+compare::ShapeTolerance shape_tolerance(const std::string& name, const ToleranceWords& words,
+                                        double length) {
+  if (words.measure != "rms" && words.measure != "max") {
+    compare::refuse_choice(words.measure, {"rms", "max"});
+  }
+  compare::ShapeTolerance tolerance{.allowed_m = tolerance_m(name, words.allowed, length),
+                                    .largest = words.measure == "max",
+                                    .part = words.min_seen.has_value()};
+  if (words.min_seen) tolerance.least_seen_share = *words.min_seen;
+  return tolerance;
 }
 
 }  // namespace dlo::cli

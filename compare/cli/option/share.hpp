@@ -1,7 +1,10 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
+
+#include "dlo/compare/shape_verdict.hpp"
 
 namespace dlo::cli {
 
@@ -12,8 +15,15 @@ namespace dlo::cli {
 /// For an option that takes "1%" and 0.01 alike, from 0 to `high`.
 [[nodiscard]] CLI::Validator share_up_to(double high);
 
-/// "1%" or 0.01 of the rod's length, or a length with a unit, in m. @param name  for messages
-/// @throws compare::InputError if it is neither
-[[nodiscard]] double tolerance_m(const std::string& name, const std::string& text, double length);
+/// What a shape is held against.
+struct ToleranceWords {
+  std::string allowed;             ///< "1%" or 0.01 of the rod's length, or a length with a unit
+  std::string measure = "rms";     ///< or "max"
+  std::optional<double> min_seen;  ///< share that a part of the rod has at least; none: a whole one
+};
+
+/// @param name  for messages. @throws compare::InputError
+[[nodiscard]] compare::ShapeTolerance shape_tolerance(const std::string& name,
+                                                      const ToleranceWords& words, double length);
 
 }  // namespace dlo::cli

@@ -13,8 +13,6 @@ class ProgressBar {
   ~ProgressBar();
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
-  ProgressBar(ProgressBar&&) = delete;
-  ProgressBar& operator=(ProgressBar&&) = delete;
 
   void show(std::int64_t done, std::int64_t total);
   /// Where no share is known: what is being done.
@@ -29,6 +27,13 @@ class ProgressBar {
   bool visible_;
   std::string drawn_;
 };
+
+/// What takes long, with a bar. @param run  is given what to call with (done, total)
+template <typename Run>
+auto with_progress(const std::string& what, const Run& run) {
+  ProgressBar bar(what);
+  return run([&bar](std::int64_t done, std::int64_t total) { bar.show(done, total); });
+}
 
 /// How wide the terminal of standard output is; 80 where it is none.
 [[nodiscard]] int columns_of_standard_output();

@@ -13,15 +13,14 @@
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/force_model_fit.hpp"
 #include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/result_text.hpp"
 #include "dlo/compare/shape_file.hpp"
 #include "errors.hpp"
 #include "fields.hpp"
-#include "format/comparison.hpp"
 #include "format/force_model_fit.hpp"
 #include "format/json.hpp"
 #include "format/material_fit.hpp"
 #include "format/plan.hpp"
-#include "format/shape_check.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "option/share.hpp"
@@ -57,42 +56,24 @@ compare::MeasuredShape measured(const py::object& points, const py::object& arc_
       arc_length.is_none() ? std::vector<double>{} : values_from(arc_length, "arc_length"), name);
 }
 
-struct Tolerance {
-  std::optional<std::string> allowed;
-  std::string measure;
-  std::optional<double> min_seen;
-  bool explain;
-};
-
-std::optional<compare::ShapeTolerance> tolerance_of(const Tolerance& asked, double length) {
-  if (!asked.allowed) return std::nullopt;
-  if (asked.measure != "rms" && asked.measure != "max") {
-    compare::refuse_choice(asked.measure, {"rms", "max"});
-  }
-  compare::ShapeTolerance tolerance{
-      .allowed_m = cli::tolerance_m("tolerance", *asked.allowed, length),
-      .largest = asked.measure == "max",
-      .part = asked.min_seen.has_value()};
-  if (asked.min_seen) tolerance.least_seen_share = *asked.min_seen;
-  return tolerance;
-}
-
 std::shared_ptr<CheckResult> check(const SharedScene& scene, const py::object& points,
                                    const py::object& arc_length, const py::tuple& tolerance,
                                    const std::string& pose, const std::string& arc_lengths,
                                    bool modulus, const py::dict& limits) {
   const compare::MeasuredShape shape = measured(points, arc_length, "points");
-  const Tolerance asked{tolerance[0].cast<std::optional<std::string>>(),
-                        tolerance[1].cast<std::string>(),
-                        tolerance[2].cast<std::optional<double>>(), tolerance[3].cast<bool>()};
   compare::CheckRequest request{
-      .tolerance = tolerance_of(asked, scene->scene.length),
-      .explaining = asked.explain ? compare::Explaining::yes : compare::Explaining::no,
+      .explaining = tolerance[3].cast<bool>() ? compare::Explaining::yes : compare::Explaining::no,
       .shape = {.pose = compare::from_name<compare::PoseFreedom>(pose),
                 .arc_lengths = compare::from_name<compare::ArcLengths>(arc_lengths),
                 .modulus = modulus ? compare::ModulusSearch::yes : compare::ModulusSearch::no,
                 .solve = solve_options(limits)}};
   request.shape.solve.accept_unverified = false;
+  if (const auto allowed = tolerance[0].cast<std::optional<std::string>>()) {
+    request.tolerance = cli::shape_tolerance(
+        "tolerance",
+        {*allowed, tolerance[1].cast<std::string>(), tolerance[2].cast<std::optional<double>>()},
+        scene->scene.length);
+  }
   return std::make_shared<CheckResult>(
       run_long([&](Signals& /*signals*/) { return compare::check(scene->scene, shape, request); }));
 }
@@ -115,28 +96,18 @@ py::object compare_scene(const SharedScene& scene, bool modulus, bool plan,
   return result;
 }
 
-std::vector<compare::Scene> scenes_of(const std::vector<SharedScene>& shared) {
-  std::vector<compare::Scene> scenes;
-  scenes.reserve(shared.size());
-  for (const SharedScene& scene : shared) scenes.push_back(scene->scene);
-  return scenes;
-}
-
 using FitDocuments = std::tuple<std::string, std::string, std::string>;  // text, JSON, TOML
 
 FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py::list& shapes,
                                 const py::dict& what, const py::dict& limits) {
-  cli::MaterialReport report;
-  report.scenes = scenes_of(scenes);
   std::vector<compare::MeasuredShape> measured_shapes;
   for (const py::handle& entry : shapes) {
     const auto pair = entry.cast<py::tuple>();
     const bool file = py::isinstance<py::bytes>(pair[0]);
-    report.files.push_back(file ? compare::valid_utf8(pair[0].cast<std::string>())
-                                : fmt::format("shapes[{}]", measured_shapes.size()));
-    measured_shapes.push_back(measured(pair[0], pair[1], report.files.back()));
+    measured_shapes.push_back(measured(pair[0], pair[1],
+                                       file ? compare::valid_utf8(pair[0].cast<std::string>())
+                                            : fmt::format("shapes[{}]", measured_shapes.size())));
   }
-  if (report.scenes.size() == 1) report.scenes.resize(measured_shapes.size(), report.scenes[0]);
   compare::SolveOptions solve = solve_options(limits);
   solve.accept_unverified = false;
   const compare::MaterialFitOptions options{
@@ -151,13 +122,12 @@ FitDocuments calibrate_material(const std::vector<SharedScene>& scenes, const py
       .chain_segments = what["segments"].cast<int>(),
       .noise = what["noise"].cast<std::optional<double>>(),
       .solve = solve};
-  report.frame_was_found = options.pose != compare::PoseFreedom::known;
-  report.fit = run_long([&](Signals& /*signals*/) {
-    return compare::fit_material(report.scenes, measured_shapes, options);
+  const compare::Calibration found = run_long([&](Signals& /*signals*/) {
+    return compare::calibrate(scenes_of(scenes), measured_shapes, options);
   });
-  const bool told = report.fit.youngs_modulus.value.has_value();
-  return {cli::material_text(report), cli::json_text(cli::material_json(report)),
-          told ? cli::material_toml(report) : std::string()};
+  const bool told = found.fit.youngs_modulus.value.has_value();
+  return {compare::to_text(found), compare::to_json(found),
+          told ? cli::material_toml(found) : std::string()};
 }
 
 FitDocuments calibrate_force_model(const std::vector<SharedScene>& scenes,
@@ -231,11 +201,9 @@ void bind_check(py::module_& module) {
             return list;
           }),
           "Of a shape that fails: (cause, RMS distance were it so [m]), the best first.")
-      .def("to_json", of([](const Report& r) { return cli::json_text(cli::shape_check_json(r)); }),
+      .def("to_json", of([](const Report& r) { return compare::to_json(r); }),
            "The document of `dlo check --format json`, as text.")
-      .def("__str__", of([](const Report& r) {
-             return cli::shape_check_text({r, "", ""});
-           }));
+      .def("__str__", of([](const Report& r) { return compare::to_text(r); }));
 }
 
 void bind_comparison(py::module_& module) {
@@ -267,10 +235,10 @@ void bind_comparison(py::module_& module) {
           "modulus_ratio", [](const Comparison& c) { return c.effective_modulus.ratio; },
           "E*/E; NaN without one.")
       .def(
-          "to_json", [](const Comparison& c) { return cli::json_text(cli::comparisons_json({c})); },
+          "to_json", [](const Comparison& c) { return compare::to_json(c); },
           "The document of `dlo compare --format json`, as text.")
       .def("__str__", [](const Comparison& c) {
-        return (c.plan ? cli::plan_text(*c.plan, c.of->scene) : "") + cli::comparison_text(c);
+        return (c.plan ? cli::plan_text(*c.plan, c.of->scene) : "") + compare::to_text(c);
       });
 }
 

@@ -24,8 +24,6 @@ class GilReleased {
   ~GilReleased();
   GilReleased(const GilReleased&) = delete;
   GilReleased& operator=(const GilReleased&) = delete;
-  GilReleased(GilReleased&&) = delete;
-  GilReleased& operator=(GilReleased&&) = delete;
 
   /// Takes the GIL before the scope's end; false if this thread will be stopped at that.
   [[nodiscard]] bool take_back();
@@ -62,8 +60,6 @@ class Signals {
   Signals();
   Signals(const Signals&) = delete;
   Signals& operator=(const Signals&) = delete;
-  Signals(Signals&&) = delete;
-  Signals& operator=(Signals&&) = delete;
   ~Signals();
 
   /// Whether a handler has raised an exception; looks ten times a second. From any thread.

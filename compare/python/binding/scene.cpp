@@ -129,6 +129,13 @@ std::vector<compare::Material> materials_of(const MaterialsFile& file) {
   return file ? compare::read_materials(file->first, file->second) : compare::materials();
 }
 
+std::vector<compare::Scene> scenes_of(const std::vector<SharedScene>& shared) {
+  std::vector<compare::Scene> scenes;
+  scenes.reserve(shared.size());
+  for (const SharedScene& scene : shared) scenes.push_back(scene->scene);
+  return scenes;
+}
+
 void bind_scene(py::module_& module) {
   const auto of = [](auto get) { return [get](const SceneData& data) { return get(data.scene); }; };
   using compare::Scene;

@@ -27,5 +27,7 @@ using MaterialsFile = std::optional<std::pair<std::string, std::string>>;
 
 /// What it has. @throws compare::InputError
 [[nodiscard]] std::vector<compare::Material> materials_of(const MaterialsFile& file);
+/// Copies.
+[[nodiscard]] std::vector<compare::Scene> scenes_of(const std::vector<SharedScene>& shared);
 
 }  // namespace dlo::python

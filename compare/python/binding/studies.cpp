@@ -30,11 +30,13 @@ using StudyDocuments = std::pair<std::string, std::string>;  // text and JSON
 /// Rows of a table, which is kept in memory as a whole: about half a gigabyte.
 constexpr std::int64_t largest_table = 1'000'000;
 
+/// Fields and their values.
+using Axes =
+    std::vector<std::pair<std::string, std::variant<std::vector<std::string>, std::string>>>;
+
 /// @param fields  of each axis the field, and either its values as a scene file spells them or what
 /// --vary takes
-compare::Grid grid_of(
-    const std::vector<std::pair<std::string, std::variant<std::vector<std::string>, std::string>>>&
-        fields) {
+compare::Grid grid_of(const Axes& fields) {
   std::vector<compare::Axis> axes;
   for (const auto& [field, values] : fields) {
     if (const auto* text = std::get_if<std::string>(&values)) {
@@ -119,13 +121,9 @@ StudyDocuments stability_map(const std::optional<SharedScene>& scene, const std:
 }
 
 StudyDocuments bench(const std::vector<SharedScene>& shared, double seconds, int repeats) {
-  std::vector<compare::Scene> scenes;
-  scenes.reserve(shared.size());
-  for (const SharedScene& scene : shared) scenes.push_back(scene->scene);
-  if (scenes.empty()) scenes = compare::benchmark_scenes();
   return run_long([&](Signals& signals) {
     const compare::BenchmarkReport report =
-        compare::run_benchmark(scenes, {.budget_s = seconds, .repeats = repeats},
+        compare::run_benchmark(scenes_of(shared), {.budget_s = seconds, .repeats = repeats},
                                [&signals](const auto&) { signals.throw_if_stopped(); });
     return StudyDocuments(cli::benchmark_text(report), cli::json_text(cli::benchmark_json(report)));
   });

@@ -158,10 +158,6 @@ struct OutputFile::State {
   ~State() {
     if (target.kind != OutputTarget::Kind::descriptor && descriptor >= 0) ::close(descriptor);
   }
-  State(const State&) = delete;
-  State& operator=(const State&) = delete;
-  State(State&&) = delete;
-  State& operator=(State&&) = delete;
 
   /// Owner and permissions of what is replaced, as far as this user may give them.
   void take_over_permissions() const {
@@ -204,5 +200,11 @@ void OutputFile::append(std::string_view text) {
 }
 
 void OutputFile::finish() { state_->finish(); }
+
+void write_file(const std::string& file, std::string_view text) {
+  OutputFile output(file);
+  output.append(text);
+  output.finish();
+}
 
 }  // namespace dlo::compare

@@ -51,8 +51,6 @@ class OutputFile {
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
-  OutputFile(OutputFile&&) = delete;
-  OutputFile& operator=(OutputFile&&) = delete;
 
   /// @throws OutputError naming the output, BrokenPipe if it is a pipe that nobody reads
   void append(std::string_view text);
@@ -63,6 +61,9 @@ class OutputFile {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// Writes a whole OutputFile. @throws as that does
+void write_file(const std::string& file, std::string_view text);
 
 /// Writes all of a text to a descriptor, however many calls that takes.
 /// @param name  of the output, for messages

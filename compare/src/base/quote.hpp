@@ -1,7 +1,11 @@
 #pragma once
 
+#include <fmt/format.h>
+
+#include <iterator>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace dlo::compare {
 
@@ -29,5 +33,11 @@ namespace dlo::compare {
 
 /// A piece of a file for a message: short, in quotes, printable.
 [[nodiscard]] std::string quoted_piece(std::string_view piece);
+
+/// Formats onto the end of a text.
+template <typename... Arguments>
+void append(std::string& text, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
+  fmt::format_to(std::back_inserter(text), format, std::forward<Arguments>(arguments)...);
+}
 
 }  // namespace dlo::compare

@@ -240,30 +240,24 @@ SignalsHeld::SignalsHeld() {
 
 SignalsHeld::~SignalsHeld() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
-// A signal between making and noting what is made would leave it behind.
-TemporaryFile::TemporaryFile(const std::filesystem::path& folder)
-    : TemporaryFile(SignalsHeld(), folder) {}
-
-TemporaryFile::TemporaryFile(const SignalsHeld& /*held*/, const std::filesystem::path& folder)
-    : path_(made_in(folder,
-                    [this](const char* path) {
-                      // The kernel applies the umask, which mkstemp would not.
-                      constexpr int flags = O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC;
-                      descriptor_ = ::open(path, flags, 0666);
-                      return descriptor_ >= 0;
-                    })),
-      at_signals_(path_) {}
+TemporaryFile::TemporaryFile(const std::filesystem::path& folder) {
+  // A signal between making and noting what is made would leave it behind.
+  const SignalsHeld held;
+  path_ = made_in(folder, [this](const char* path) {
+    // The kernel applies the umask, which mkstemp would not.
+    descriptor_ = ::open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    return descriptor_ >= 0;
+  });
+  at_signals_.emplace(path_);
+}
 
 TemporaryFile::~TemporaryFile() { ::unlink(path_.c_str()); }
 
-TemporaryFolder::TemporaryFolder(const std::string& failure, const std::filesystem::path& folder)
-    : TemporaryFolder(SignalsHeld(), failure, folder) {}
-
-TemporaryFolder::TemporaryFolder(const SignalsHeld& /*held*/, const std::string& failure,
-                                 const std::filesystem::path& folder)
-    : path_(made_in(folder, [](const char* path) { return ::mkdir(path, S_IRWXU) == 0; })),
-      at_signals_(path_.string()) {
+TemporaryFolder::TemporaryFolder(const std::string& failure, const std::filesystem::path& folder) {
+  const SignalsHeld held;
+  path_ = made_in(folder, [](const char* path) { return ::mkdir(path, S_IRWXU) == 0; });
   if (path_.empty()) throw OutputError(fmt::format("{} ({})", failure, std::strerror(errno)));
+  at_signals_.emplace(path_.string());
 }
 
 TemporaryFolder::~TemporaryFolder() { remove_tree(path_.c_str()); }

@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace dlo::compare {
@@ -15,8 +16,6 @@ class TemporaryPath {
   ~TemporaryPath();
   TemporaryPath(const TemporaryPath&) = delete;
   TemporaryPath& operator=(const TemporaryPath&) = delete;
-  TemporaryPath(TemporaryPath&&) = delete;
-  TemporaryPath& operator=(TemporaryPath&&) = delete;
 
   /// From now on a signal leaves it.
   void keep();
@@ -33,8 +32,6 @@ class TemporaryGroup {
   ~TemporaryGroup();
   TemporaryGroup(const TemporaryGroup&) = delete;
   TemporaryGroup& operator=(const TemporaryGroup&) = delete;
-  TemporaryGroup(TemporaryGroup&&) = delete;
-  TemporaryGroup& operator=(TemporaryGroup&&) = delete;
 };
 
 /// Removes a file, or a folder with all that is in it, however deep and whatever its permissions,
@@ -56,8 +53,6 @@ class SignalsHeld {
   ~SignalsHeld();
   SignalsHeld(const SignalsHeld&) = delete;
   SignalsHeld& operator=(const SignalsHeld&) = delete;
-  SignalsHeld(SignalsHeld&&) = delete;
-  SignalsHeld& operator=(SignalsHeld&&) = delete;
 
  private:
   sigset_t before_{};
@@ -75,19 +70,15 @@ class TemporaryFile {
   ~TemporaryFile();
   TemporaryFile(const TemporaryFile&) = delete;
   TemporaryFile& operator=(const TemporaryFile&) = delete;
-  TemporaryFile(TemporaryFile&&) = delete;
-  TemporaryFile& operator=(TemporaryFile&&) = delete;
 
   [[nodiscard]] const std::string& path() const { return path_; }
   /// For whom it is made to close; -1: it could not be made, errno says why.
   [[nodiscard]] int descriptor() const { return descriptor_; }
 
  private:
-  TemporaryFile(const SignalsHeld& held, const std::filesystem::path& folder);
-
   int descriptor_ = -1;
   std::string path_;
-  TemporaryPath at_signals_;
+  std::optional<TemporaryPath> at_signals_;
 };
 
 /// A new folder for nobody else, gone with all that is in it when it is left or a signal ends the
@@ -101,19 +92,14 @@ class TemporaryFolder {
   ~TemporaryFolder();
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  TemporaryFolder(TemporaryFolder&&) = delete;
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// From now on a signal leaves it.
-  void keep() { at_signals_.keep(); }
+  void keep() { at_signals_->keep(); }
 
  private:
-  TemporaryFolder(const SignalsHeld& held, const std::string& failure,
-                  const std::filesystem::path& folder);
-
   std::filesystem::path path_;
-  TemporaryPath at_signals_;
+  std::optional<TemporaryPath> at_signals_;
 };
 
 }  // namespace dlo::compare

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <sstream>
 
 namespace dlo::compare {
 namespace {
@@ -38,6 +39,36 @@ std::string nearest_word(std::string_view written, const std::vector<std::string
 std::string did_you_mean(std::string_view written, const std::vector<std::string>& words) {
   const std::string nearest = nearest_word(written, words);
   return nearest.empty() ? "" : ", did you mean " + nearest + "?";
+}
+
+std::string with_places(std::string_view text,
+                        const std::vector<std::pair<std::string_view, std::string>>& values) {
+  std::string result;
+  while (!text.empty()) {
+    const auto value = std::find_if(values.begin(), values.end(),
+                                    [&](const auto& one) { return text.starts_with(one.first); });
+    result += value != values.end() ? std::string_view(value->second) : text.substr(0, 1);
+    text.remove_prefix(value != values.end() ? value->first.size() : 1);
+  }
+  return result;
+}
+
+std::string wrap(const std::string& text, std::size_t indent, std::size_t width) {
+  std::istringstream words(text);
+  std::string out;
+  std::size_t column = indent;
+  for (std::string word; words >> word;) {
+    if (!out.empty() && column + 1 + word.size() > width) {
+      out += "\n" + std::string(indent, ' ');
+      column = indent;
+    } else if (!out.empty()) {
+      out += ' ';
+      ++column;
+    }
+    out += word;
+    column += word.size();
+  }
+  return out;
 }
 
 }  // namespace dlo::compare

@@ -17,8 +17,6 @@ class LockedFile {
   ~LockedFile();
   LockedFile(const LockedFile&) = delete;
   LockedFile& operator=(const LockedFile&) = delete;
-  LockedFile(LockedFile&&) = delete;
-  LockedFile& operator=(LockedFile&&) = delete;
 
   void cut(std::int64_t size);
   void append(std::string_view text);

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <regex>
 
 #include "base/number.hpp"
 #include "dlo/compare/error.hpp"
@@ -10,65 +10,8 @@
 namespace dlo::compare {
 namespace {
 
-/// Takes the parts of a sweep's first line one by one.
-class HeadReader {
- public:
-  explicit HeadReader(std::string_view line) : line_(line), rest_(line) {}
-
-  bool word(std::string_view expected) {
-    if (!rest_.starts_with(expected)) return false;
-    rest_.remove_prefix(expected.size());
-    return true;
-  }
-
-  /// 16 digits of a fingerprint.
-  bool hexadecimal() {
-    const std::string_view digits = rest_.substr(0, 16);
-    rest_.remove_prefix(digits.size());
-    return digits.size() == 16 && all_of(digits, "0123456789abcdef");
-  }
-
-  /// Of a model.
-  bool name() {
-    const std::string_view letters = rest_.substr(0, rest_.find(','));
-    rest_.remove_prefix(letters.size());
-    return !letters.empty() && all_of(letters, "abcdefghijklmnopqrstuvwxyz-");
-  }
-
-  /// "2/4"
-  bool shard(std::string& text) {
-    const std::string_view begin = rest_;
-    std::int64_t part = 0;
-    if (!number(part) || !word("/") || !number(part)) return false;
-    text = begin.substr(0, begin.size() - rest_.size());
-    return true;
-  }
-
-  /// At most 16 digits, so that sums do not overflow.
-  bool number(std::int64_t& value) {
-    const std::size_t digits = std::min(rest_.find_first_not_of("0123456789"), rest_.size());
-    if (digits == 0 || digits > 16) return false;
-    value = leading_number<std::int64_t>(rest_.substr(0, digits)).value;
-    rest_.remove_prefix(digits);
-    return true;
-  }
-
-  /// All that was read behind the `start` of the line.
-  bool since(std::string_view start, std::string& text) const {
-    text = line_.substr(start.size(), line_.size() - rest_.size() - start.size());
-    return true;
-  }
-
-  [[nodiscard]] bool at_end() const { return rest_.empty(); }
-
- private:
-  static bool all_of(std::string_view text, std::string_view characters) {
-    return text.find_first_not_of(characters) == std::string_view::npos;
-  }
-
-  std::string_view line_;
-  std::string_view rest_;
-};
+/// More than any first line of a sweep has: the stack that a match takes grows with the line.
+constexpr std::size_t longest_head = 400;
 
 }  // namespace
 
@@ -78,21 +21,19 @@ std::string SweepHead::line() const {
 }
 
 std::optional<SweepHead> parse_sweep_head(const std::string& line) {
-  HeadReader reader(line);
-  SweepHead head;
-  std::int64_t rows = 0;
-  const bool whole = reader.word("# dlo sweep 1: ") && reader.word("scene ") &&
-                     reader.hexadecimal() && reader.word(", grid ") && reader.hexadecimal() &&
-                     reader.word(", model ") && reader.name() && reader.word(", options ") &&
-                     reader.hexadecimal() && reader.since("# dlo sweep 1: ", head.identity) &&
-                     reader.word("; shard ") && reader.shard(head.shard) && reader.word("; ") &&
-                     reader.number(rows) && reader.word(" rows from ") &&
-                     reader.number(head.range.first) && reader.word(" of ") &&
-                     reader.number(head.rows) && reader.at_end();
-  if (!whole || head.range.first > head.rows || rows > head.rows - head.range.first) {
-    return std::nullopt;
-  }
-  head.range.last = head.range.first + rows;
+  // Numbers of at most 16 digits, so that sums do not overflow.
+  static const std::regex form(
+      "# dlo sweep 1: (scene [0-9a-f]{16}, grid [0-9a-f]{16}, model [a-z-]+, options "
+      "[0-9a-f]{16}); "
+      "shard ([0-9]{1,16}/[0-9]{1,16}); "
+      "([0-9]{1,16}) rows from ([0-9]{1,16}) of ([0-9]{1,16})");
+  std::smatch parts;
+  if (line.size() > longest_head || !std::regex_match(line, parts, form)) return std::nullopt;
+  const auto number = [&](std::size_t part) { return *as_number<std::int64_t>(parts[part].str()); };
+  const std::int64_t rows = number(3);
+  SweepHead head{parts[1], parts[2], {number(4), number(4)}, number(5)};
+  if (head.range.first > head.rows || rows > head.rows - head.range.first) return std::nullopt;
+  head.range.last += rows;
   return head;
 }
 

@@ -133,7 +133,7 @@ void Sweep::require_one_scene() {
 
 Scene Sweep::scene(std::int64_t row) const {
   const std::vector<std::int64_t> indices = grid_.indices(row);
-  std::vector<FieldValue> values;
+  std::vector<SceneField> values;
   for (std::size_t i = 0; i < indices.size(); ++i) {
     values.push_back({grid_.axes()[i].field, grid_.axes()[i].value(indices[i])});
   }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <stdexcept>
 #include <utility>
 
@@ -11,10 +10,6 @@
 
 namespace dlo::compare {
 namespace {
-
-/// What a sum of arc lengths may leave the rod by, as a share of its length: single precision
-/// rounds each of some segments by 6e-8.
-constexpr double arc_rounding = 1e-6;
 
 /// Points are counted from 1.
 std::string problem_of(const Shape& shape, double length) {
@@ -27,8 +22,7 @@ std::string problem_of(const Shape& shape, double length) {
     if (!shape.points.col(static_cast<Eigen::Index>(i)).allFinite()) {
       return fmt::format("is not finite at point {}, s = {:g} m", i + 1, s[i]);
     }
-    const double rounding = arc_rounding * length;
-    if (!(s[i] >= -rounding && s[i] <= length + rounding)) {
+    if (!on_rod(s[i], length)) {
       return fmt::format("leaves the rod at point {}, s = {:.9g} m (allowed: 0 to {:.9g} m)", i + 1,
                          s[i], length);
     }
@@ -53,10 +47,8 @@ ShapeNear near_by(const Shape& shape, const Scene& scene, double tolerance, bool
   if (const std::string problem = problem_of(shape, scene.length); !problem.empty()) {
     return {false, "the shape " + problem};
   }
-  std::vector<double> s = shape.arc_length;
-  for (double& at : s) at = std::clamp(at, 0.0, scene.length);
   const CheckResult result =
-      check(scene, shape_of(shape.points, s, "shape"),
+      check(scene, shape_of(shape.points, shape.arc_length, "shape"),
             {.tolerance = ShapeTolerance{.allowed_m = tolerance * scene.length, .largest = largest},
              .shape = {.modulus = ModulusSearch::no}});
   const ShapeCheck& c = result.check;

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "base/quote.hpp"
+#include "base/words.hpp"
 #include "foreign/child_process.hpp"
 
 namespace dlo::compare {
@@ -35,13 +36,6 @@ std::string joined_lines(std::string text) {
   const std::size_t first = text.find_first_not_of(' ');
   if (first == std::string::npos) return {};
   return text.substr(first, text.find_last_not_of(' ') - first + 1);
-}
-
-void replace_all(std::string& text, const std::string& from, const std::string& to) {
-  for (std::size_t at = text.find(from); at != std::string::npos;
-       at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
 }
 
 }  // namespace
@@ -84,11 +78,10 @@ std::string inline_svg(const std::string& svg, const Figure& figure) {
     const std::size_t to = body.find(close);
     if (from < to && to != std::string::npos) body.erase(from, to + close.size() - from);
   }
-  for (const char quote : {'\'', '"'}) {
-    replace_all(body, fmt::format(" id={}", quote), fmt::format(" id={}{}-", quote, figure.name));
-    replace_all(body, fmt::format("href={}#", quote),
-                fmt::format("href={}#{}-", quote, figure.name));
-  }
+  body = with_places(body, {{" id='", " id='" + figure.name + "-"},
+                            {" id=\"", " id=\"" + figure.name + "-"},
+                            {"href='#", "href='#" + figure.name + "-"},
+                            {"href=\"#", "href=\"#" + figure.name + "-"}});
   const std::size_t attributes = body.find('>');
   const std::string head =
       fmt::format(">\n<title id=\"{0}-title\">{1}</title>\n<desc id=\"{0}-desc\">{2}</desc>",

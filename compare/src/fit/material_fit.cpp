@@ -514,4 +514,17 @@ MaterialFit fit_material(const std::vector<Scene>& scenes, const std::vector<Mea
   return fit;
 }
 
+Calibration calibrate(std::vector<Scene> scenes, const std::vector<MeasuredShape>& shapes,
+                      MaterialFitOptions options) {
+  Calibration result{.scenes = std::move(scenes),
+                     .frame_was_found = options.pose != PoseFreedom::known};
+  if (result.scenes.size() == 1) {
+    result.scenes.resize(shapes.size(), Scene(result.scenes.front()));
+  }
+  for (const MeasuredShape& shape : shapes) result.files.push_back(shape.file);
+  options.alternatives = true;
+  result.fit = fit_material(result.scenes, shapes, options);
+  return result;
+}
+
 }  // namespace dlo::compare

@@ -48,8 +48,6 @@ class SpawnSettings {
   }
   SpawnSettings(const SpawnSettings&) = delete;
   SpawnSettings& operator=(const SpawnSettings&) = delete;
-  SpawnSettings(SpawnSettings&&) = delete;
-  SpawnSettings& operator=(SpawnSettings&&) = delete;
 
   /// 0, or the error.
   int spawn(const std::vector<std::string>& words, pid_t& process) const {

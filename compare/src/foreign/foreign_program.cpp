@@ -17,6 +17,7 @@
 #include "base/output_file.hpp"
 #include "base/quote.hpp"
 #include "base/temporary_path.hpp"
+#include "base/words.hpp"
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/choice.hpp"
 #include "dlo/compare/error.hpp"
@@ -38,26 +39,6 @@ bool is_mentioned(const std::vector<std::string>& words, std::string_view place)
   return std::any_of(words.begin(), words.end(), [place](const std::string& word) {
     return word.find(place) != std::string::npos;
   });
-}
-
-/// What is put in is not looked at again.
-std::string with_places(const std::string& word, const std::string& scene,
-                        const std::string& points, const std::string& shape) {
-  std::string result;
-  for (std::size_t at = 0; at < word.size();) {
-    const std::string_view rest = std::string_view(word).substr(at);
-    const auto take = [&](std::string_view place, const std::string& value) {
-      if (!rest.starts_with(place)) return false;
-      result += value;
-      at += place.size();
-      return true;
-    };
-    if (take(scene_place, scene) || take(points_place, points) || take(shape_place, shape)) {
-      continue;
-    }
-    result += word[at++];
-  }
-  return result;
 }
 
 /// A new folder that nobody else reads, gone with all that is in it at the end.
@@ -171,14 +152,13 @@ std::vector<ForeignProgram> parse_foreign_programs(const std::vector<std::string
 ForeignRun run_foreign(const ForeignProgram& program, Scene scene, int points, double time_limit) {
   scene.force_model.points = points;
   const ProgramFolder folder;
-  OutputFile document(folder.file("scene.json"));
-  document.append(scene_document_text(scene));
-  document.finish();
+  write_file(folder.file("scene.json"), scene_document_text(scene));
   std::vector<std::string> words;
   words.reserve(program.words.size());
   for (const std::string& word : program.words) {
-    words.push_back(with_places(word, folder.file("scene.json"), fmt::format("{}", points),
-                                folder.file("shape")));
+    words.push_back(with_places(word, {{scene_place, folder.file("scene.json")},
+                                       {points_place, fmt::format("{}", points)},
+                                       {shape_place, folder.file("shape")}}));
   }
   const ChildOutcome outcome = run_child(words, {.error = folder.file("stderr")}, time_limit);
   ForeignRun result;

@@ -208,4 +208,25 @@ DynamicTrack dynamic_track(const Scene& scene, const Track& track, const TrackOp
   return result;
 }
 
+TrackResult follow(const Scene& scene, const TrackRequest& request, const Progress& progress) {
+  TrackOptions options = request.options;
+  options.rates = {
+      .frames = request.frame_rate.value_or(scene.track.frames),
+      .obstacles = request.obstacle_rate ? request.obstacle_rate : scene.track.obstacles,
+      .steps = request.step_rate.value_or(scene.track.steps)};
+  constexpr double most = 1e9;
+  const auto rate = [](double value) { return value > 0 && value <= most; };
+  if (!rate(options.rates.frames) || !rate(options.rates.steps) ||
+      !rate(options.rates.obstacles.value_or(1)) || options.samples < 2) {
+    throw InputError("track: out of range (allowed: rates > 0, up to 1e9 Hz, samples >= 2)");
+  }
+  if (request.damping) require_dynamic(scene, options);
+  TrackResult result{std::move(options), {}, {}};
+  result.track = track(scene, result.options, progress);
+  if (request.damping) {
+    result.dynamic = dynamic_track(scene, result.track, result.options, *request.damping);
+  }
+  return result;
+}
+
 }  // namespace dlo::compare

@@ -74,4 +74,28 @@ void require_dynamic(const Scene& scene, const TrackOptions& options);
 [[nodiscard]] DynamicTrack dynamic_track(const Scene& scene, const Track& track,
                                          const TrackOptions& options, const RodDamping& damping);
 
+/// What is asked of a scene that moves.
+struct TrackRequest {
+  TrackOptions options;                 ///< but for the rates, which are the scene's
+  std::optional<double> frame_rate;     ///< instead of the scene's [Hz], > 0, up to 1e9
+  std::optional<double> obstacle_rate;  ///< the same [Hz]
+  std::optional<double> step_rate;      ///< the same [Hz]
+  std::optional<RodDamping> damping;    ///< of the rod with inertia; none: it is only at rest
+};
+
+/// A scene's motion: what `dlo track` says, and Python with it.
+struct TrackResult {
+  TrackOptions options;
+  Track track;                          ///< at rest
+  std::optional<DynamicTrack> dynamic;  ///< the rod with inertia
+
+  /// The rod with inertia, null without one.
+  [[nodiscard]] const DynamicTrack* moving() const { return dynamic ? &*dynamic : nullptr; }
+};
+
+/// @throws InputError, ConvergenceError as track() and dynamic_track(), and if a rate is out of
+/// range
+[[nodiscard]] TrackResult follow(const Scene& scene, const TrackRequest& request,
+                                 const Progress& progress = {});
+
 }  // namespace dlo::compare

@@ -54,8 +54,6 @@ class ForceTrack {
   ~ForceTrack();
   ForceTrack(const ForceTrack&) = delete;
   ForceTrack& operator=(const ForceTrack&) = delete;
-  ForceTrack(ForceTrack&&) = delete;
-  ForceTrack& operator=(ForceTrack&&) = delete;
 
   /// The steps of a frame.
   /// @param now  the scene at its end, standing

@@ -8,46 +8,13 @@
 
 #include "base/quote.hpp"
 #include "figure/shape_panels.hpp"
+#include "judge/budget_parts.hpp"
 #include "picture/comparison_figure.hpp"
-#include "record/solution_fields.hpp"
 
 namespace dlo::compare {
 namespace {
 
 constexpr int row_pixels = 42;  // a line of text and a bar
-
-}  // namespace
-
-bool neglects(const Comparison& comparison, const char* what) {
-  return neglects(comparison.force, what);
-}
-
-std::span<const NamedPart> budget_parts() {
-  static const NamedPart parts[] = {
-      {"twist", "twist", &Budget::twist, true},
-      {"natural curvature", "natural curvature", &Budget::natural_curvature, true},
-      {"law", "the law", &Budget::law},
-      {"bookkeeping", "the bookkeeping", &Budget::bookkeeping},
-      {"discretisation", "discretisation", &Budget::discretisation},
-      {"stretch", "stretch", &Budget::stretch},
-      {"contact", "obstacles that give way", &Budget::contact},
-      {"not at rest", "not being at rest", &Budget::not_at_rest},
-      {"interaction", "law and bookkeeping together", &Budget::interaction}};
-  return parts;
-}
-
-std::vector<std::pair<const char*, const BudgetPart*>> shown_parts(const Comparison& comparison) {
-  std::vector<std::pair<const char*, const BudgetPart*>> parts;
-  for (const NamedPart& part : budget_parts()) {
-    const BudgetPart& value = comparison.budget.*part.of;
-    const bool absent = part.is_neglected ? !neglects(comparison, part.name)
-                                          : part.of == &Budget::contact && value.rms_m == 0;
-    if (!absent) parts.emplace_back(part.name, &value);
-  }
-  return parts;
-}
-
-namespace {
 
 /// Two digits behind the point, without a sign where they are zero.
 std::string share_text(double percent) {

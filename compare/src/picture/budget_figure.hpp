@@ -1,33 +1,12 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "dlo/compare/comparison.hpp"
 #include "figure/layout.hpp"
 
 namespace dlo::compare {
-
-/// Whether the force model left something out that the scene has (Solution::neglected).
-[[nodiscard]] bool neglects(const Comparison& comparison, const char* what);
-
-/// A part of an error budget, by its name.
-struct NamedPart {
-  const char* name;
-  const char* words;  ///< in a sentence
-  BudgetPart Budget::*of;
-  bool is_neglected = false;  ///< it is there where the force model neglects what is called so
-};
-
-/// All of them.
-[[nodiscard]] std::span<const NamedPart> budget_parts();
-
-/// The parts of a comparison's error budget that are told, by name: without those that its scene
-/// has not. They point into the comparison.
-[[nodiscard]] std::vector<std::pair<const char*, const BudgetPart*>> shown_parts(
-    const Comparison& comparison);
 
 /// The error budgets of a scene's comparisons as bars, a part below the other: their share of the
 /// total with sign, and their RMS in words; `number` (from 1) is part of its name.

@@ -10,7 +10,7 @@
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/force_model_settings.hpp"
 #include "dlo/compare/solution.hpp"
-#include "picture/budget_figure.hpp"
+#include "judge/budget_parts.hpp"
 
 namespace dlo::compare {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "dlo/compare/deviation.hpp"
 #include "dlo/compare/force_model_settings.hpp"
-#include "picture/budget_figure.hpp"
+#include "judge/budget_parts.hpp"
 #include "report/html.hpp"
 #include "report/tables.hpp"
 

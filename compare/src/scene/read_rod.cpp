@@ -138,11 +138,10 @@ void require_finite_rod(const Scene& scene, const StrictTable& rod) {
 }
 
 Section read_section(StrictTable& table, const Scene& scene) {
-  const Range on_rod = Range::between(0, scene.length, " m, the rod's length");
   Section section;
   table.only(scene_keys("section"));
-  section.from = table.number("from", Dimension::length, on_rod);
-  section.to = table.number("to", Dimension::length, on_rod);
+  section.from = read_arc_length(table, "from", scene.length);
+  section.to = read_arc_length(table, "to", scene.length);
   if (!(section.to > section.from)) {
     table.fail("to", fmt::format("not behind from = {:g} m (allowed: more, up to {:g} m)",
                                  section.from, scene.length));
@@ -197,6 +196,13 @@ void read_sections(std::vector<StrictTable>& tables, Scene& scene) {
 }
 
 }  // namespace
+
+double read_arc_length(StrictTable& table, std::string_view key, double length) {
+  Range range = Range::between(0, length, " m, the rod's length");
+  range.low -= arc_rounding * length;
+  range.high += arc_rounding * length;
+  return *on_rod(table.number(key, Dimension::length, range), length);
+}
 
 void read_rod(StrictTable& rod, std::vector<StrictTable>& sections,
               const std::vector<Material>& known_materials, Scene& scene) {

@@ -121,10 +121,6 @@ void read_clamp(StrictTable& table, const std::optional<Eigen::Vector3d>& moving
                             .roll = 2 * std::numbers::pi * turns.value_or(0)};
 }
 
-double read_arc_length(StrictTable& table, double length) {
-  return table.number("at", Dimension::length, Range::between(0, length, " m, the rod's length"));
-}
-
 /// Where something is whose poses, if it has any, say so too: the first of them is where it is.
 Eigen::Vector3d read_place(StrictTable& table, const char* key, const Trajectory& trajectory) {
   if (trajectory.empty()) return table.vector(key, Dimension::length);
@@ -138,7 +134,7 @@ Eigen::Vector3d read_place(StrictTable& table, const char* key, const Trajectory
 Gripper read_gripper(StrictTable& table, double length, const std::string& file) {
   Gripper gripper;
   table.only(scene_keys("gripper"));
-  gripper.at = read_arc_length(table, length);
+  gripper.at = read_arc_length(table, "at", length);
   const std::string hold = table.has("hold") ? table.choice("hold", {"clamp", "pin"}) : "clamp";
   PoseKeys keys;
   if (hold == "clamp") keys.direction = read_direction;
@@ -297,7 +293,7 @@ void require_clear(const Scene& scene, const StrictTable& entry) {
 PointLoad read_load(StrictTable& table, const Scene& scene) {
   PointLoad load;
   table.only(scene_keys("load"));
-  load.at = read_arc_length(table, scene.length);
+  load.at = read_arc_length(table, "at", scene.length);
   const std::optional<double> mass =
       table.optional_number("mass", Dimension::mass, Range::positive());
   if (mass && table.has("force")) {

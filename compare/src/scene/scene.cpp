@@ -313,6 +313,12 @@ std::optional<TimeSpan> motion_of(const Scene& scene) {
   return span;
 }
 
+std::optional<double> on_rod(double s, double length) {
+  const double rounding = arc_rounding * length;
+  if (!(s >= -rounding && s <= length + rounding)) return std::nullopt;
+  return std::clamp(s, 0.0, length);
+}
+
 Scene scene_at(const Scene& scene, double time, double obstacle_time) {
   Scene result = scene;
   for (Gripper& gripper : result.grippers) {

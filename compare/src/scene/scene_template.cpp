@@ -13,6 +13,7 @@
 #include "base/fingerprint.hpp"
 #include "base/input_file.hpp"
 #include "base/number.hpp"
+#include "base/quote.hpp"
 #include "base/text_limits.hpp"
 #include "dlo/compare/error.hpp"
 #include "scene/read_scene.hpp"
@@ -23,15 +24,16 @@ namespace {
 
 /// Puts a value where `place(node)` wants it, with the type that a file would give it.
 template <typename Place>
-void place_value(const FieldValue& field, const std::string& file, const Place& place) {
-  if (const auto integer = as_number<std::int64_t>(field.value)) return place(*integer);
-  if (const auto number = as_number<double>(field.value)) return place(*number);
-  if (field.value.empty() || field.value.front() != '[') return place(field.value);
+void place_value(const SceneField& field, const std::string& file, const Place& place) {
+  const std::string& text = field.value.text();
+  if (const auto integer = as_number<std::int64_t>(text)) return place(*integer);
+  if (const auto number = as_number<double>(text)) return place(*number);
+  if (text.empty() || text.front() != '[') return place(text);
   const toml::table parsed =
-      parse_toml("value = " + field.value, fmt::format("{}, {}", file, field.field));
+      parse_toml("value = " + text, fmt::format("{}, {}", file, field.field));
   const toml::array* array = parsed["value"].as_array();
   if (array == nullptr || parsed.size() != 1) {
-    throw InputError(fmt::format("{}: {} = {}: no vector", file, field.field, field.value));
+    throw InputError(fmt::format("{}: {} = {}: no vector", file, field.field, text));
   }
   place(*array);
 }
@@ -55,10 +57,11 @@ constexpr std::pair<std::string_view, std::string_view> short_field_names[] = {
 
 class Overrider {
  public:
-  Overrider(toml::table& root, const std::string& file, const std::vector<Material>& materials)
-      : root_(root), file_(file), materials_(materials) {}
+  Overrider(toml::table& root, const std::string& file, const std::vector<Material>& materials,
+            MissingElements missing)
+      : root_(root), file_(file), materials_(materials), missing_(missing) {}
 
-  void set(const FieldValue& field) const {
+  void set(const SceneField& field) const {
     for (const auto& [written, meant] : short_field_names) {
       if (field.field == written) refuse(field.field, fmt::format("did you mean {}?", meant));
     }
@@ -69,8 +72,10 @@ class Overrider {
     toml::node* parent = &root_;
     std::string_view rest = field.field;
     for (std::size_t dot = rest.find('.'); dot != std::string_view::npos; dot = rest.find('.')) {
-      parent = &enter(*parent, rest.substr(0, dot), field.field);
+      const std::string_view step = rest.substr(0, dot);
       rest.remove_prefix(dot + 1);
+      if (missing_ == MissingElements::made) make(*parent, step, rest);
+      parent = &enter(*parent, step, field.field);
     }
     if (rest.empty()) refuse(field.field, "a part of the path is empty");
     if (toml::table* table = parent->as_table()) {
@@ -98,6 +103,16 @@ class Overrider {
                                                array.size() - 1));
     }
     return *index;
+  }
+
+  /// What is below `parent`: an array where a number follows, whose next element is a table.
+  static void make(toml::node& parent, std::string_view step, std::string_view rest) {
+    toml::array* array = parent.as_array();
+    if (array != nullptr && as_number<std::size_t>(step) == array->size()) {
+      array->push_back(toml::table());
+    } else if (array == nullptr && as_number<std::size_t>(rest.substr(0, rest.find('.')))) {
+      parent.as_table()->insert(step, toml::array());
+    }
   }
 
   /// The table or array below `parent`; a table that the file lacks is as good as empty.
@@ -133,6 +148,7 @@ class Overrider {
   toml::table& root_;
   const std::string& file_;
   const std::vector<Material>& materials_;
+  MissingElements missing_;
 };
 
 /// EI, or the mean that GJ goes with, of a scene whose GJ is given; none if the file is no scene
@@ -172,27 +188,29 @@ struct SceneTemplate::Parsed {
   std::vector<Material> materials;
   std::optional<double> bending_stiffness;  // with the file's own values, if it has a GJ
   std::string fingerprint;
+  MissingElements missing;
 };
 
 SceneTemplate::SceneTemplate(const std::string& text, std::string name,
-                             std::vector<Material> known_materials) {
+                             std::vector<Material> known_materials, MissingElements missing) {
   std::string all = name + '\n' + text;
   for (const Material& material : known_materials) {
     all += fmt::format("\n{} {} {}", material.name, material.youngs_modulus, material.density);
   }
   toml::table root = parse_toml(text, name);
   const std::optional<double> EI = bending_stiffness_with_torsion(root, name, known_materials);
-  parsed_ = std::make_shared<const Parsed>(Parsed{
-      std::move(root), std::move(name), std::move(known_materials), EI, compare::fingerprint(all)});
+  parsed_ = std::make_shared<const Parsed>(Parsed{std::move(root), std::move(name),
+                                                  std::move(known_materials), EI,
+                                                  compare::fingerprint(all), missing});
 }
 
 const std::string& SceneTemplate::fingerprint() const { return parsed_->fingerprint; }
 
-Scene SceneTemplate::with(const std::vector<FieldValue>& values) const {
+Scene SceneTemplate::with(const std::vector<SceneField>& values) const {
   toml::table root = parsed_->root;
-  const Overrider overrider(root, parsed_->name, parsed_->materials);
-  const FieldValue* gamma = nullptr;
-  for (const FieldValue& value : values) {
+  const Overrider overrider(root, parsed_->name, parsed_->materials, parsed_->missing);
+  const SceneField* gamma = nullptr;
+  for (const SceneField& value : values) {
     if (value.field == "gamma") {
       gamma = &value;
     } else {
@@ -201,10 +219,10 @@ Scene SceneTemplate::with(const std::vector<FieldValue>& values) const {
   }
   Scene scene = read_scene(root, parsed_->name, parsed_->materials);
   if (gamma != nullptr) {
-    root.insert_or_assign("gravity", scaled_gravity(scene, gamma->value));
+    root.insert_or_assign("gravity", scaled_gravity(scene, gamma->value.text()));
     scene = read_scene(root, parsed_->name, parsed_->materials);
   }
-  const bool gives_torsion = std::any_of(values.begin(), values.end(), [](const FieldValue& value) {
+  const bool gives_torsion = std::any_of(values.begin(), values.end(), [](const SceneField& value) {
     return value.field == "rod.torsional_stiffness";
   });
   if (scene.torsional_stiffness && parsed_->bending_stiffness && !gives_torsion) {
@@ -212,6 +230,21 @@ Scene SceneTemplate::with(const std::vector<FieldValue>& values) const {
     *scene.torsional_stiffness *= scene.mean_bending_stiffness() / *parsed_->bending_stiffness;
   }
   return scene;
+}
+
+std::string SceneValue::of_number(double number) { return fmt::format("{}", number); }
+
+SceneValue::SceneValue(std::initializer_list<SceneValue> list) : text_("[") {
+  for (const SceneValue& value : list) {
+    const bool quoted =
+        value.text_.empty() || (value.text_.front() != '[' && !as_number<double>(value.text_));
+    text_ += (quoted ? toml_string(value.text_) : value.text_) + ", ";
+  }
+  text_ += "]";
+}
+
+Scene make_scene(const std::vector<SceneField>& fields, const std::string& file) {
+  return SceneTemplate("", file, materials(), MissingElements::made).with(fields);
 }
 
 SceneTemplate load_scene_template(const std::string& path,

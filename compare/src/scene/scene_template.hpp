@@ -6,14 +6,14 @@
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
+#include "dlo/compare/scene_file.hpp"
 
 namespace dlo::compare {
 
-/// A field of a scene file and the value it gets, as the file would spell it.
-struct FieldValue {
-  std::string
-      field;  ///< dotted path; elements of arrays by number from 0, as in gripper.0.direction
-  std::string value;  ///< number, [vector], or any other text, quotes not needed: 210 GPa, paper
+/// What a field may be of that the scene file lacks.
+enum class MissingElements {
+  refused,  ///< no element of an array
+  made,     ///< the next element of an array
 };
 
 /// A scene file whose fields can be given other values. They go into its parsed TOML, and that goes
@@ -30,10 +30,11 @@ class SceneTemplate {
   /// @param name  of the file, for messages and Scene::file
   /// @throws InputError if the text is no TOML
   SceneTemplate(const std::string& text, std::string name,
-                std::vector<Material> known_materials = materials());
+                std::vector<Material> known_materials = materials(),
+                MissingElements missing = MissingElements::refused);
 
   /// The scene with other values. @throws InputError as parse_scene, and if a path leads nowhere
-  [[nodiscard]] Scene with(const std::vector<FieldValue>& values) const;
+  [[nodiscard]] Scene with(const std::vector<SceneField>& values) const;
 
   /// 16 hexadecimal digits that stand for the file's text and name and for the known materials.
   [[nodiscard]] const std::string& fingerprint() const;

@@ -299,13 +299,4 @@ Alignment Aligner::align(const Curve& curve) const {
   return along;
 }
 
-Alignment Aligner::align_near(const Curve& curve, const Alignment& previous) const {
-  const Way& way = ways_[previous.reversed ? 1 : 0];
-  const Placed placed =
-      has_free_arc_lengths() ? refine(way, curve, previous.pose) : place_given(way, curve);
-  Alignment result = finished(placed, previous.reversed, curve);
-  result.other_rms_m = previous.other_rms_m;
-  return result;
-}
-
 }  // namespace dlo::compare

@@ -16,8 +16,6 @@ class Aligner {
   Aligner(const MeasuredShape& shape, double length, const AlignOptions& options);
 
   [[nodiscard]] Alignment align(const Curve& curve) const;
-  /// From an alignment with a similar curve: its direction, and its motion to start from.
-  [[nodiscard]] Alignment align_near(const Curve& curve, const Alignment& previous) const;
 
   [[nodiscard]] Eigen::Index points() const { return ways_[0].points.cols(); }
   [[nodiscard]] ArcLengths arc_lengths() const { return rule_; }

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "dlo/compare/error.hpp"
+#include "dlo/compare/scene.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -30,13 +31,14 @@ std::vector<double> file_arc_lengths(const MeasuredShape& shape, double length) 
   }
   std::vector<double> s = shape.arc_length;
   for (std::size_t i = 0; i < s.size(); ++i) {
-    if (s[i] < -1e-6 * length || s[i] > (1 + 1e-6) * length) {
+    const std::optional<double> at = on_rod(s[i], length);
+    if (!at) {
       throw InputError(
           fmt::format("{}: point {}: s = {:g} m (allowed: 0 to {:g} m, the rod; "
                       "--unit if the file is not in metres)",
                       shape.file, i + 1, s[i], length));
     }
-    s[i] = std::clamp(s[i], 0.0, length);
+    s[i] = *at;
   }
   return s;
 }

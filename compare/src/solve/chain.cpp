@@ -31,17 +31,21 @@ GripperLoad balancing_load(const Discretisation& discretisation, const Eigen::Ma
   return result;
 }
 
-Solution solve_rigid_chain(const Scene& scene, const ForceModelSettings& settings,
-                           const Discretisation& discretisation, const ChainScene& chain,
-                           const SolveOptions& options) {
-  energy_model::ChainOptions chain_options;
-  chain_options.max_evaluations = options.max_evaluations;
-  chain_options.time_limit = options.time_limit;
-  const energy_model::ChainResult result = energy_model::solve_chain(chain.problem, chain_options);
+template <typename Result>
+void require_converged(const Scene& scene, const Result& result) {
   if (!energy_model::succeeded(result.status)) {
     throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
                                        scene.file, result.message, result.evaluations));
   }
+}
+
+Solution solve_rigid_chain(const Scene& scene, const ForceModelSettings& settings,
+                           const Discretisation& discretisation, const ChainScene& chain,
+                           const SolveOptions& options) {
+  const energy_model::ChainResult result = energy_model::solve_chain(
+      chain.problem,
+      {.max_evaluations = options.max_evaluations, .time_limit = options.time_limit});
+  require_converged(scene, result);
   Eigen::Matrix3Xd points = chain.to_space(result.points);
   if (discretisation.rod.grips.front().first_point != 0) {
     points = points.rowwise().reverse().eval();
@@ -111,15 +115,10 @@ Shape chain_from(const Scene& scene, const ForceModelSettings& settings, const S
   const force_model::Rod rod = takes_twist(scene, settings)
                                    ? lowest_polygon(scene, settings, discretisation, options).rod
                                    : discretisation.rod;
-  energy_model::PolygonOptions polygon_options;
-  polygon_options.max_evaluations = options.max_evaluations;
-  polygon_options.time_limit = options.time_limit;
-  const energy_model::PolygonResult result =
-      energy_model::solve_polygon(polygon_problem(rod), points, polygon_options);
-  if (!energy_model::succeeded(result.status)) {
-    throw ConvergenceError(fmt::format("{}: the chain model did not converge: {} ({} evaluations)",
-                                       scene.file, result.message, result.evaluations));
-  }
+  const energy_model::PolygonResult result = energy_model::solve_polygon(
+      polygon_problem(rod), points,
+      {.max_evaluations = options.max_evaluations, .time_limit = options.time_limit});
+  require_converged(scene, result);
   require_unstrained(scene, settings, discretisation, result.points, "chain");
   return discretisation.shape(result.points);
 }

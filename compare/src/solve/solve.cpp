@@ -4,9 +4,11 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "dlo/compare/chain.hpp"
+#include "dlo/compare/error.hpp"
 #include "dlo/compare/force.hpp"
 #include "dlo/compare/plan.hpp"
 #include "dlo/compare/reference.hpp"
@@ -45,14 +47,27 @@ bool touches_yielding_obstacle(const Scene& scene, const std::vector<Eigen::Vect
   return false;
 }
 
+/// @throws InputError for an arc length that is not on the rod
+std::vector<double> all_on_rod(std::vector<double> arc_lengths, double length) {
+  for (double& s : arc_lengths) {
+    const std::optional<double> at = on_rod(s, length);
+    if (!at) {
+      throw InputError(fmt::format("solve: s = {:.9g} m (allowed: 0 to {:.9g} m)", s, length));
+    }
+    s = *at;
+  }
+  return arc_lengths;
+}
+
 }  // namespace
 
 Solution solution_of(const Scene& scene, Model model, const energy_model::Equilibrium& equilibrium,
                      const std::vector<double>& arc_lengths,
                      const std::vector<std::size_t>& obstacles) {
   constexpr int default_samples = 101;
-  const std::vector<double> samples =
-      arc_lengths.empty() ? equal_arc_lengths(scene.length, default_samples) : arc_lengths;
+  const std::vector<double> samples = arc_lengths.empty()
+                                          ? equal_arc_lengths(scene.length, default_samples)
+                                          : all_on_rod(arc_lengths, scene.length);
   Solution solution;
   solution.model = model;
   solution.status = equilibrium.status;
@@ -106,8 +121,9 @@ Solution solve(const Scene& scene, Model model, const SolveOptions& options,
                                             : solve_force(scene, scene.force_model, options);
   solution.curvature = joint_curvatures(solution.shape);
   if (!arc_lengths.empty()) {
-    solution.curvature = interpolated(solution.curvature, solution.shape.arc_length, arc_lengths);
-    solution.shape = resample(solution.shape, arc_lengths);
+    const std::vector<double> s = all_on_rod(arc_lengths, scene.length);
+    solution.curvature = interpolated(solution.curvature, solution.shape.arc_length, s);
+    solution.shape = resample(solution.shape, s);
   }
   return solution;
 }

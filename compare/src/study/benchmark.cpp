@@ -109,6 +109,7 @@ BenchmarkReport run_benchmark(const std::vector<Scene>& scenes, const BenchmarkO
                     options.budget_s, options.repeats, options.gripper_speed, options.frames,
                     options.program_time_limit));
   }
+  if (scenes.empty()) return run_benchmark(benchmark_scenes(), options, progress);
   BenchmarkReport report;
   report.options = options;
   Stopwatch watch(options, report.skipped);

@@ -180,7 +180,7 @@ TEST(SceneTemplate, SetsTheFrameOfAClamp) {
 
 TEST(SceneTemplate, ErrorsNameFileFieldAndValue) {
   const SceneTemplate base(sweep_scene, "swept.toml");
-  const std::pair<dlo::compare::FieldValue, const char*> cases[] = {
+  const std::pair<dlo::compare::SceneField, const char*> cases[] = {
       {{"rod.lenght", "1"}, "unknown key"},
       {{"rod.length", "-1"}, "1e-06 to"},
       {{"gripper.1.at", "0"}, "0 to 0"},

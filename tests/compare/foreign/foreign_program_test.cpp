@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -9,9 +10,12 @@
 #include <fstream>
 #include <string>
 
+#include "base/input_file.hpp"
+#include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/compare/reference.hpp"
 #include "dlo/compare/scene_file.hpp"
+#include "foreign/child_process.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -90,6 +94,21 @@ TEST_F(ForeignFolder, SaysWhatFailedWithTheLastLineOfItsStandardError) {
   EXPECT_THAT(run_shell("touch $2.csv $2.vtk").problem, HasSubstr("wrote no shape"));
   EXPECT_THAT(run_foreign({"none", {"no such program", "{shape}"}}, soft_cable(), 16, 20).problem,
               StartsWith("could not be started: "));
+}
+
+TEST(Child, RunsInItsFolderAndIsEndedWithAllItStarted) {
+  const TemporaryFolder folder("no folder");
+  const TemporaryFile beside(folder.path());
+  EXPECT_GE(beside.descriptor(), 0);
+  ::close(beside.descriptor());
+  const ChildFiles files{.folder = folder.path(), .output = "out", .error = "err"};
+  EXPECT_EQ(run_child({"sh", "-c", "pwd; echo no >&2"}, files, 20).problem, "");
+  EXPECT_EQ(read_file(folder.path() / "out"), folder.path().string() + "\n");
+  EXPECT_EQ(read_file(folder.path() / "err"), "no\n");
+  const ChildOutcome late = run_child({"sh", "-c", "sleep 60 & sleep 60"}, files, 0.2);
+  EXPECT_TRUE(late.too_long);
+  EXPECT_EQ(late.problem, "killed after the time limit of 0.2 s");
+  EXPECT_LT(late.seconds, 20);
 }
 
 TEST_F(ForeignFolder, ReadsNothingButRegularFiles) {

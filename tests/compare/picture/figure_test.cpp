@@ -16,6 +16,7 @@
 #include "figure/gnuplot.hpp"
 #include "figure/series.hpp"
 #include "figure/shape_panels.hpp"
+#include "judge/budget_parts.hpp"
 #include "picture/budget_figure.hpp"
 #include "picture/check_figure.hpp"
 #include "picture/comparison_figure.hpp"

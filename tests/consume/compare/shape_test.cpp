@@ -1,9 +1,7 @@
 // What a program does with all three libraries: read a scene, solve it, compare, and test shapes.
 
-#include <dlo/compare/comparison.hpp>
+#include <dlo/compare.hpp>
 #include <dlo/compare/gtest.hpp>
-#include <dlo/compare/scene_file.hpp>
-#include <dlo/compare/solve.hpp>
 
 namespace {
 

@@ -17,46 +17,39 @@
 /// `tolerance` the RMS deviation that is allowed, as a share of the rod's length: what `dlo check`
 /// calls pass is near, and a failure gives its reason. EXPECT_SHAPE_WITHIN and IsShapeWithin hold
 /// the largest distance of a point against the tolerance, as `dlo check --measure max` does.
-#define EXPECT_SHAPE_NEAR(shape, scene, tolerance) \
-  EXPECT_PRED_FORMAT3(::dlo::compare::assert_shape_near, shape, scene, tolerance)
-#define ASSERT_SHAPE_NEAR(shape, scene, tolerance) \
-  ASSERT_PRED_FORMAT3(::dlo::compare::assert_shape_near, shape, scene, tolerance)
-#define EXPECT_SHAPE_WITHIN(shape, scene, tolerance) \
-  EXPECT_PRED_FORMAT3(::dlo::compare::assert_shape_within, shape, scene, tolerance)
-#define ASSERT_SHAPE_WITHIN(shape, scene, tolerance) \
-  ASSERT_PRED_FORMAT3(::dlo::compare::assert_shape_within, shape, scene, tolerance)
+#define EXPECT_SHAPE_NEAR(shape, scene, tolerance)                                              \
+  EXPECT_PRED_FORMAT3(::dlo::compare::ShapeAssertion{::dlo::compare::shape_near}, shape, scene, \
+                      tolerance)
+#define ASSERT_SHAPE_NEAR(shape, scene, tolerance)                                              \
+  ASSERT_PRED_FORMAT3(::dlo::compare::ShapeAssertion{::dlo::compare::shape_near}, shape, scene, \
+                      tolerance)
+#define EXPECT_SHAPE_WITHIN(shape, scene, tolerance)                                              \
+  EXPECT_PRED_FORMAT3(::dlo::compare::ShapeAssertion{::dlo::compare::shape_within}, shape, scene, \
+                      tolerance)
+#define ASSERT_SHAPE_WITHIN(shape, scene, tolerance)                                              \
+  ASSERT_PRED_FORMAT3(::dlo::compare::ShapeAssertion{::dlo::compare::shape_within}, shape, scene, \
+                      tolerance)
 
 namespace dlo::compare {
 
 /// What a matcher asks of a shape: shape_near or shape_within.
 using ShapeTest = ShapeNear (*)(const Shape& shape, const Scene& scene, double tolerance);
 
-/// The outcome of a test, with the arguments as written.
-inline testing::AssertionResult assert_shape(ShapeTest test, const char* shape_text,
-                                             const char* scene_text, const char* tolerance_text,
-                                             const Shape& shape, const Scene& scene,
-                                             double tolerance) {
-  const ShapeNear result = test(shape, scene, tolerance);
-  if (result.near) return testing::AssertionSuccess();
-  return testing::AssertionFailure()
-         << shape_text << " is not the shape of " << scene_text << " (" << scene.name << ") within "
-         << tolerance_text << ":\n  " << result.explanation;
-}
+/// What EXPECT_SHAPE_NEAR and EXPECT_SHAPE_WITHIN call.
+struct ShapeAssertion {
+  ShapeTest test;  ///< shape_near or shape_within
 
-/// What EXPECT_SHAPE_NEAR calls.
-inline testing::AssertionResult assert_shape_near(const char* shape_text, const char* scene_text,
-                                                  const char* tolerance_text, const Shape& shape,
-                                                  const Scene& scene, double tolerance) {
-  return assert_shape(shape_near, shape_text, scene_text, tolerance_text, shape, scene, tolerance);
-}
-
-/// What EXPECT_SHAPE_WITHIN calls.
-inline testing::AssertionResult assert_shape_within(const char* shape_text, const char* scene_text,
-                                                    const char* tolerance_text, const Shape& shape,
-                                                    const Scene& scene, double tolerance) {
-  return assert_shape(shape_within, shape_text, scene_text, tolerance_text, shape, scene,
-                      tolerance);
-}
+  /// The outcome of a test, with the arguments as written.
+  testing::AssertionResult operator()(const char* shape_text, const char* scene_text,
+                                      const char* tolerance_text, const Shape& shape,
+                                      const Scene& scene, double tolerance) const {
+    const ShapeNear result = test(shape, scene, tolerance);
+    if (result.near) return testing::AssertionSuccess();
+    return testing::AssertionFailure()
+           << shape_text << " is not the shape of " << scene_text << " (" << scene.name
+           << ") within " << tolerance_text << ":\n  " << result.explanation;
+  }
+};
 
 /// What IsShapeOf and IsShapeWithin give.
 class ShapeMatcher {

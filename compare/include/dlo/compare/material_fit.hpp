@@ -242,4 +242,18 @@ struct MaterialFit {
                                        const std::vector<MeasuredShape>& shapes,
                                        const MaterialFitOptions& options = {});
 
+/// Measured shapes of a rod and what they say of its material: what `dlo calibrate --shape` says,
+/// and Python with it.
+struct Calibration {
+  std::vector<Scene> scenes;       ///< of each shape one
+  std::vector<std::string> files;  ///< the shapes' names
+  bool frame_was_found = false;    ///< what is unknown of the shapes' frames was fitted as well
+  MaterialFit fit;                 ///< with its alternatives
+};
+
+/// @param scenes  of each shape one, or one of them all; else as fit_material()
+[[nodiscard]] Calibration calibrate(std::vector<Scene> scenes,
+                                    const std::vector<MeasuredShape>& shapes,
+                                    MaterialFitOptions options = {});
+
 }  // namespace dlo::compare

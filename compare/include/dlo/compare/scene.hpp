@@ -217,6 +217,14 @@ struct Scene {
   bool operator==(const Scene&) const = default;
 };
 
+/// What a sum of arc lengths may leave the rod by, as a share of its length: single precision
+/// rounds each of some segments by 6e-8.
+inline constexpr double arc_rounding = 1e-6;
+
+/// An arc length that somebody gives, on the rod: one beyond an end by rounding is that end [m].
+/// None of one that is farther away.
+[[nodiscard]] std::optional<double> on_rod(double s, double length);
+
 /// First and last time of all poses of a scene [s].
 struct TimeSpan {
   double begin = 0;  ///< [s]

@@ -1,0 +1,182 @@
+// Scenes made in code: they are what a file with the same fields is, and refused as that is.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "dlo/compare.hpp"
+
+namespace dlo::compare {
+namespace {
+
+const std::string text = R"(name = "led over a peg"
+gravity = [0, 0, "-9.81 m/s^2"]
+
+[rod]
+length = "30 cm"
+diameter = 0.5e-3
+material = { youngs_modulus = "117 GPa", density = 8960 }
+natural_curvature = [[1, 0], [0.5, 0.25]]
+
+[[gripper]]
+at = 0
+position = [0, "5 cm", 0]
+frame = [[0, 1, 0], [0, 0, 1], [1, 0, 0]]
+
+[[gripper]]
+at = "30 cm"
+position = [0.1, 0.1, 0.15]
+hold = "pin"
+
+[[obstacle]]
+shape = "sphere"
+point = [0, -1, 0]
+radius = "10 cm"
+
+[force_model]
+points = 32
+law = "hooke"
+)";
+
+const std::vector<SceneField> fields = {{"name", "led over a peg"},
+                                        {"gravity", {0, 0, "-9.81 m/s^2"}},
+                                        {"rod.length", "30 cm"},
+                                        {"rod.diameter", 0.5e-3},
+                                        {"rod.material.youngs_modulus", "117 GPa"},
+                                        {"rod.material.density", 8960},
+                                        {"rod.natural_curvature", {{1, 0}, {0.5, 0.25}}},
+                                        {"gripper.0.at", 0},
+                                        {"gripper.0.position", {0, "5 cm", 0}},
+                                        {"gripper.0.frame", {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}},
+                                        {"gripper.1.at", std::string("30 cm")},
+                                        {"gripper.1.position", Eigen::Vector3d(0.1, 0.1, 0.15)},
+                                        {"gripper.1.hold", "pin"},
+                                        {"obstacle.0.shape", "sphere"},
+                                        {"obstacle.0.point", {0, -1, 0}},
+                                        {"obstacle.0.radius", "10 cm"},
+                                        {"force_model.points", 32},
+                                        {"force_model.law", "hooke"}};
+
+Scene copper_wire() {
+  return make_scene({{"rod.length", "30 cm"},
+                     {"rod.diameter", "0.5 mm"},
+                     {"rod.material", "copper"},
+                     {"gripper.0.at", 0},
+                     {"gripper.0.position", {0, 0, 0}},
+                     {"gripper.0.direction", "30 deg"}});
+}
+
+/// Where in the file something stood is not known of a scene that was made in code.
+Scene without_lines(Scene scene) {
+  for (Gripper& gripper : scene.grippers) gripper.where.clear();
+  return scene;
+}
+
+template <typename Make>
+std::string refusal_of(const Make& make) {
+  try {
+    (void)make();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(MakeScene, IsTheSceneOfAFileWithTheSameFields) {
+  EXPECT_EQ(without_lines(make_scene(fields, "my.toml")),
+            without_lines(parse_scene(text, "my.toml")));
+}
+
+TEST(MakeScene, TakesPosesAndAllElementsOfAList) {
+  std::vector<SceneField> moving = fields;
+  for (const int pose : {0, 1}) {
+    const std::string path = "gripper.2.pose." + std::to_string(pose) + ".";
+    moving.push_back({path + "time", pose});
+    moving.push_back({path + "position", {0.1 * pose, 0.1, 0.1}});
+  }
+  moving.push_back({"gripper.2.at", "15 cm"});
+  moving.push_back({"gripper.2.hold", "pin"});
+  const Scene scene = make_scene(moving);
+  ASSERT_EQ(scene.grippers.size(), 3U);
+  EXPECT_EQ(motion_of(scene)->end, 1);
+  EXPECT_EQ(scene.file, "scene");
+}
+
+TEST(MakeScene, RefusesWhatAFileMayNotSayInTheSameWords) {
+  struct Wrong {
+    SceneField field;
+    std::string said;   ///< in the file
+    std::string meant;  ///< by it
+  };
+  const std::vector<Wrong> all = {
+      {{"rod.length", "30 inch"}, "length = \"30 cm\"", "length = \"30 inch\""},
+      {{"rod.diameter", -1}, "diameter = 0.5e-3", "diameter = -1"},
+      {{"rod.colour", "red"}, "diameter = 0.5e-3", "diameter = 0.5e-3\ncolour = \"red\""},
+      {{"gripper.1.hold", "glue"}, "hold = \"pin\"", "hold = \"glue\""},
+      {{"gripper.0.position", {0, 0}}, "position = [0, \"5 cm\", 0]", "position = [0, 0]"}};
+  for (const auto& [field, said, meant] : all) {
+    std::string wrong = text;
+    wrong.replace(wrong.find(said), said.size(), meant);
+    std::vector<SceneField> made = fields;
+    made.push_back(field);
+    const std::string of_file = refusal_of([&] { return parse_scene(wrong, "scene"); });
+    const std::string of_code = refusal_of([&] { return make_scene(made); });
+    // But for the line, from the key on.
+    const std::string key = field.field.substr(field.field.rfind('.') + 1);
+    ASSERT_NE(of_file.find(key), std::string::npos) << of_file;
+    ASSERT_NE(of_code.find(key), std::string::npos) << of_code;
+    EXPECT_EQ(of_code.substr(of_code.find(key)), of_file.substr(of_file.find(key)));
+    EXPECT_EQ(of_code.rfind("scene", 0), 0U) << of_code;
+  }
+}
+
+TEST(MakeScene, SaysWhichElementIsMissing) {
+  std::vector<SceneField> made = fields;
+  made.push_back({"gripper.4.at", 0});
+  EXPECT_NE(refusal_of([&] { return make_scene(made); }).find("allowed: 0 to 1"),
+            std::string::npos);
+  EXPECT_NE(refusal_of([] { return make_scene({}); }).find("rod"), std::string::npos);
+}
+
+// As a sum of segments rounds it.
+TEST(ArcLengths, ARoundingBeyondAnEndAreThatEnd) {
+  std::vector<SceneField> rounded = fields;
+  rounded.push_back({"gripper.1.at", 0.30000001});
+  EXPECT_EQ(make_scene(rounded).grippers[1].at, 0.3);
+  rounded.push_back({"gripper.0.at", -1e-8});
+  EXPECT_EQ(make_scene(rounded).grippers[0].at, 0);
+  rounded.push_back({"gripper.1.at", 0.3001});
+  EXPECT_NE(refusal_of([&] { return make_scene(rounded); }).find("allowed: 0 to 0.3 m"),
+            std::string::npos);
+  EXPECT_EQ(*on_rod(0.3 + 1e-8, 0.3), 0.3);
+  EXPECT_FALSE(on_rod(0.3 + 1e-6, 0.3));
+  EXPECT_FALSE(on_rod(std::nan(""), 0.3));
+
+  const Scene wire = copper_wire();
+  for (const Model model : {Model::energy, Model::exact, Model::chain}) {
+    const Shape shape = solve(wire, model, {}, {-1e-8, 0.15, 0.3 + 1e-8}).shape;
+    EXPECT_EQ(shape.arc_length, (std::vector<double>{0, 0.15, 0.3})) << to_string(model);
+    EXPECT_EQ(refusal_of([&] {
+                return solve(wire, model, {}, {0, 0.31});
+              }),
+              "solve: s = 0.31 m (allowed: 0 to 0.3 m)");
+  }
+}
+
+TEST(Documents, AreOfEveryResult) {
+  const Scene wire = copper_wire();
+  const Solution solution = solve(wire, Model::energy);
+  EXPECT_NE(to_text(solution, wire).find("model      energy"), std::string::npos);
+  EXPECT_NE(to_json(solution, wire).find("\"plan\""), std::string::npos);
+  const CheckResult judged = check(
+      wire, shape_of(solution.shape.points, solution.shape.arc_length, "mine"),
+      {.tolerance = ShapeTolerance{.allowed_m = 1e-3}, .shape = {.modulus = ModulusSearch::no}});
+  EXPECT_TRUE(judged.passes());
+  EXPECT_NE(to_text(judged).find("verdict         pass"), std::string::npos);
+  EXPECT_NE(to_json(judged).find("\"verdict\": \"pass\""), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dlo::compare
