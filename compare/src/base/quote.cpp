@@ -87,23 +87,19 @@ std::string csv_number(double value, int digits) {
 }
 
 std::string toml_string(const std::string& text) {
-  std::string result = "\"";
-  const std::string valid = valid_utf8(text);
-  for (std::size_t i = 0; i < valid.size(); ++i) {
-    const char c = valid[i];
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '"' || c == '\\') {
-      result += '\\';
-      result += c;
-    } else if (code < 0x20 || code == 0x7f) {
-      result += fmt::format("\\u{:04x}", code);
-    } else if (code == 0xc2 && static_cast<unsigned char>(valid[i + 1]) < 0xa0) {
-      result += fmt::format("\\u{:04x}", static_cast<unsigned char>(valid[++i]));
-    } else {
-      result += c;
+  // JSON's escapes are TOML's; of the control characters JSON leaves those above 0x7e as they are.
+  const std::string json = json_string(text);
+  std::string result;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const std::size_t bytes = control_bytes(json, i);
+    if (bytes == 0) {
+      result += json[i];
+      continue;
     }
+    i += bytes - 1;
+    result += fmt::format("\\u{:04x}", static_cast<unsigned char>(json[i]));
   }
-  return result + "\"";
+  return result;
 }
 
 std::string shell_word(const std::string& word) {

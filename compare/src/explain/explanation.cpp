@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -14,7 +13,9 @@
 #include "explain/file_causes.hpp"
 #include "explain/own_polygon.hpp"
 #include "explain/scene_causes.hpp"
+#include "least_squares/gauss_newton.hpp"
 #include "shape/aligner.hpp"
+#include "shape/arc_lengths.hpp"
 #include "shape/shape_measure.hpp"
 
 namespace dlo::compare {
@@ -27,13 +28,12 @@ constexpr double worth_of_a_number = 0.5;
 /// What is nearer than this share of the deviation, or of the length, is the same.
 constexpr double same_share = 0.02;
 constexpr double same_length = 1e-5;
+/// Share of its mean square that a step towards the shape has to take away.
+constexpr double least_gain = 0.1;
 /// Deviation beyond which a shape is just another one, in lengths.
 constexpr double another_shape = 0.05;
 /// By how much a rod that has left its plane is out of it, in lengths.
 constexpr double another_shape_out = 1e-3;
-constexpr int most_steps = 10;
-/// What a step has to leave less of to be gone, and to be followed by another one.
-constexpr double hardly_better = 0.95;
 
 /// What is left and the numbers that it takes, in one: the less the better. What is left below the
 /// rest that is the same counts as that.
@@ -66,7 +66,7 @@ class Search {
     look_at_unstable();
     if (!is_found(0)) look_at_chains(Springs::as_the_rod);
     for (const SceneCause& cause :
-         scene_causes(scene_, check_.alignment.shape, check_.polyline_length_m, lies_in_plane())) {
+         scene_causes(scene_, check_.alignment.shape, length_of_shape(), lies_in_plane())) {
       if (!is_found(static_cast<int>(cause.start.size())) && !is_over()) fit(cause, rod);
     }
     if (!is_found(1)) look_at_chains(Springs::fitted);
@@ -88,6 +88,13 @@ class Search {
   /// Whether nothing with so many numbers could be better than what has been found.
   [[nodiscard]] bool is_found(int numbers) const {
     return best_ && price(*best_) <= price({"", 0, numbers, ExplanationKind::scene});
+  }
+
+  /// Of the shape, if the way between two points is as much longer as on the rod [m].
+  [[nodiscard]] double length_of_shape() const {
+    const std::vector<double>& s = check_.alignment.shape.arc_length;
+    const double chords = lengths_along(check_.reference.points).back();
+    return check_.polyline_length_m * (s.back() - s.front()) / chords;
   }
 
   void look_at_chains(Springs springs) {
@@ -204,78 +211,75 @@ class Search {
          0, ExplanationKind::file});
   }
 
-  /// A scene's rod against the file.
-  struct Trial {
-    energy_model::Equilibrium rod;
-    double rms = std::numeric_limits<double>::infinity();
-    Eigen::VectorXd residual;  // weighted, of all points
-  };
-
-  [[nodiscard]] std::optional<Trial> attempt(const Scene& scene,
-                                             const energy_model::Equilibrium* start) const {
-    SolveOptions solve = options_.solve;
-    solve.start = start;
-    try {
-      Trial trial;
-      trial.rod = solve_reference(scene, Model::energy, solve);
-      const Aligner aligner(shape_, scene.length, align_);
-      const Alignment laid = aligner.align(Curve(trial.rod.sample, scene.length));
-      const Measured measured = measure(laid, trial.rod.sample, scene.length);
-      trial.rms = whole_of(measured, laid, trial.rod.sample, scene.length).rms_m;
-      const Eigen::VectorXd weights = point_weights(measured.arc_length, laid.shape.points);
-      const Eigen::Matrix3Xd gaps =
-          (laid.shape.points - measured.reference) * weights.cwiseSqrt().asDiagonal();
-      trial.residual = gaps.reshaped();
-      return trial;
-    } catch (const ConvergenceError&) {
-      return std::nullopt;
-    } catch (const InputError&) {
-      return std::nullopt;
-    }
+  /// RMS deviation of the whole rod, in the state that a cause leads to [m].
+  [[nodiscard]] double rms_of(const Scene& scene, const energy_model::Equilibrium& rod) const {
+    const Alignment laid =
+        Aligner(shape_, scene.length, align_).align(Curve(rod.sample, scene.length));
+    return whole_of(measure(laid, rod.sample, scene.length), laid, rod.sample, scene.length).rms_m;
   }
 
   void fit(const SceneCause& cause, const energy_model::Equilibrium& rod) {
-    Eigen::VectorXd p = cause.start;
-    const bool from_here = p.isZero();
-    std::optional<Trial> best = attempt(cause.changed(p), from_here ? &rod : nullptr);
-    if (cause.other_state) {
-      std::optional<Trial> lowest = attempt(cause.changed(p), nullptr);
-      if (lowest && !(best && best->rms <= lowest->rms)) best = std::move(lowest);
-    }
-    if (best && p.size() == 0) return add_fit(cause, p, *best);
-    for (int step = 0; best && step < most_steps && !is_over(); ++step) {
-      Eigen::MatrixXd jacobian(best->residual.size(), p.size());
-      for (Eigen::Index i = 0; i < p.size(); ++i) {
-        Eigen::VectorXd moved = p;
-        moved[i] += cause.stride[i];
-        const std::optional<Trial> beside = attempt(cause.changed(moved), &best->rod);
-        if (!beside) return add_fit(cause, p, *best);
-        jacobian.col(i) = (beside->residual - best->residual) / cause.stride[i];
+    try {
+      const std::vector<Scene> scene = {cause.changed(cause.start)};
+      MeasuredShapes measured(scene, {shape_},
+                              {.pose = options_.pose,
+                               .arc_lengths = options_.arc_lengths,
+                               .weights = PointWeights::by_length,
+                               .solve = options_.solve,
+                               .flat = FlatShapes::measured},
+                              begin_);
+      std::vector<Unknown> unknowns;
+      for (const double stride : cause.stride) {
+        unknowns.push_back({.stride = stride, .longest_step = cause.longest_step});
       }
-      Eigen::VectorXd way = -jacobian.completeOrthogonalDecomposition().solve(best->residual);
-      const double longest = way.cwiseAbs().maxCoeff();
-      if (!std::isfinite(longest)) break;
-      way *= std::min(1.0, cause.longest_step / longest);
-      // What hardly changes the shape would have to go far.
-      const double expected = (best->residual + jacobian * way).norm();
-      if (!(expected < hardly_better * best->residual.norm())) break;
-      bool better = false;
-      for (double share = 1; share > 0.05 && !better; share /= 2) {
-        std::optional<Trial> next = attempt(cause.changed(p + share * way), &best->rod);
-        if (!next || !(next->rms < best->rms)) continue;
-        better = true;
-        const bool done = next->rms > hardly_better * best->rms;
-        p += share * way;
-        best = std::move(next);
-        if (done) return add_fit(cause, p, *best);
-      }
-      if (!better) break;
+      FittedRods rods(
+          measured, [&](std::size_t, const Eigen::VectorXd& p) { return cause.changed(p); },
+          unknowns);
+      if (!goes_to_state(cause, rod, rods)) return;
+      add_fit(cause, best_numbers(cause, rods), *rods.rods()[0]);
+    } catch (const ConvergenceError&) {
+      // No time is left.
+    } catch (const InputError&) {
+      // No scene, or a shape of too few points for one.
     }
-    if (best) add_fit(cause, p, *best);
   }
 
-  void add_fit(const SceneCause& cause, const Eigen::VectorXd& p, const Trial& best) {
-    add({cause.words(p), best.rms, static_cast<int>(p.size()), ExplanationKind::scene},
+  /// To the state near the one that was compared with, or, where the rod is held in another way, to
+  /// the lowest if that is nearer to the shape; false if there is none.
+  [[nodiscard]] static bool goes_to_state(const SceneCause& cause,
+                                          const energy_model::Equilibrium& rod, FittedRods& rods) {
+    if (cause.start.isZero()) rods.go_on_from({rod});
+    FittedRods::State state = rods.state(cause.start);
+    if (cause.other_state) {
+      rods.go_on_from({std::nullopt});
+      FittedRods::State lowest = rods.state(cause.start);
+      if (lowest.squares[0] < state.squares[0]) state = std::move(lowest);
+    }
+    rods.go_on_from(state.rods);
+    return state.rods[0].has_value();
+  }
+
+  /// Numbers of a cause whose rod, that of `rods` then, is nearest to the shape.
+  [[nodiscard]] Eigen::VectorXd best_numbers(const SceneCause& cause, FittedRods& rods) const {
+    if (cause.stride.isZero()) return cause.start;
+    const double noise = std::max(same_share * std::min(before_, another_shape * scene_.length),
+                                  same_length * scene_.length);
+    GaussNewton fit(rods, cause.start,
+                    {.noise = noise, .last_step = 0.05, .least_gain = least_gain});
+    const FittedRods::Rods start = rods.rods();
+    try {
+      (void)fit.descend();
+    } catch (const ConvergenceError&) {
+      // No time is left for more.
+    }
+    rods.go_on_from(fit.rods().empty() ? start : fit.rods());
+    return fit.values();
+  }
+
+  void add_fit(const SceneCause& cause, const Eigen::VectorXd& p,
+               const energy_model::Equilibrium& rod) {
+    add({cause.words(p), rms_of(cause.changed(p), rod), static_cast<int>(p.size()),
+         ExplanationKind::scene},
         cause.same_as);
   }
 

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "explain/scene_change.hpp"
+#include "least_squares/scene_change.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -54,9 +54,9 @@ SceneCause gravity(const Scene& scene, const Eigen::Vector3d& down) {
           }};
 }
 
-SceneCause length(const Scene& scene, double polyline) {
-  return {Eigen::VectorXd::Constant(1, std::log(polyline / scene.length)),
-          Eigen::VectorXd::Constant(1, 0.01), 0.3,
+/// The shape's own, which nothing needs to be fitted for.
+SceneCause length(const Scene& scene, double of_shape) {
+  return {Eigen::VectorXd::Constant(1, std::log(of_shape / scene.length)), zeros(1), 0,
           [scene](const Eigen::VectorXd& p) {
             Scene changed = scene;
             const double factor = std::exp(p[0]);
@@ -243,7 +243,7 @@ SceneCause twist(const Scene& scene, std::size_t last) {
 
 }  // namespace
 
-std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, double polyline,
+std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, double length_of_shape,
                                      bool flat) {
   std::vector<SceneCause> causes = {stiffness(scene)};
   std::size_t last = 0;
@@ -257,10 +257,10 @@ std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape, dou
   if (clamps > 0 && says_which_way && !scene.holds_twist()) {
     causes.push_back(natural_curvature(scene));
   }
-  // Another length shows in the polyline.
+  // Another length shows in the points.
   constexpr double seen = 0.005;
-  const double longer = std::abs(std::log(polyline / scene.length));
-  if (longer > seen && longer < 1) causes.push_back(length(scene, polyline));
+  const double longer = std::abs(std::log(length_of_shape / scene.length));
+  if (longer > seen && longer < 1) causes.push_back(length(scene, length_of_shape));
   const std::optional<Eigen::Vector3d> normal = flat ? scene.plane_normal() : std::nullopt;
   for (std::size_t i = 0; i < scene.grippers.size(); ++i) {
     const Gripper& gripper = scene.grippers[i];

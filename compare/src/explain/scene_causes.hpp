@@ -13,7 +13,7 @@ namespace dlo::compare {
 /// A way in which a scene may be another one, by some numbers that are zero if it is not.
 struct SceneCause {
   Eigen::VectorXd start;    ///< of the search
-  Eigen::VectorXd stride;   ///< of differences
+  Eigen::VectorXd stride;   ///< of differences; zero: the start is it
   double longest_step = 0;  ///< of any number
   std::function<Scene(const Eigen::VectorXd&)> changed;
   std::function<std::string(const Eigen::VectorXd&)> words;
@@ -25,9 +25,9 @@ struct SceneCause {
 
 /// All that can be wrong with this scene, what takes longest last.
 /// @param shape     that it is held against, in the scene's frame
-/// @param polyline  its length [m]
+/// @param length_of_shape  along its points [m]
 /// @param flat      the shape lies in the scene's plane: nothing leads out of it
 [[nodiscard]] std::vector<SceneCause> scene_causes(const Scene& scene, const Shape& shape,
-                                                   double polyline, bool flat);
+                                                   double length_of_shape, bool flat);
 
 }  // namespace dlo::compare

@@ -7,7 +7,7 @@
 
 #include "dlo/compare/material_fit.hpp"
 #include "dlo/compare/shape.hpp"
-#include "fit/error_correlation.hpp"
+#include "least_squares/error_correlation.hpp"
 
 namespace dlo::compare {
 

@@ -14,11 +14,11 @@
 #include "dlo/compare/error.hpp"
 #include "fit/between_shapes.hpp"
 #include "fit/chain_springs.hpp"
-#include "fit/error_correlation.hpp"
 #include "fit/log_profile.hpp"
 #include "fit/shape_misfit.hpp"
 #include "fit/wire_fit.hpp"
 #include "fit/wire_numbers.hpp"
+#include "least_squares/error_correlation.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -36,6 +36,8 @@ constexpr double surely_common = 0.7;
 constexpr double worth_naming = 0.7;
 constexpr double too_much = 0.5;
 constexpr double next_to_nothing = 0.02;
+/// Step in the logarithm of a material for derivatives; shapes are right to 1e-10 l.
+constexpr double derivative_step = 1e-3;
 /// Of a fitted rod that is to be drawn.
 constexpr int drawn_samples = 201;
 
@@ -173,7 +175,10 @@ class MaterialFitter {
       : scenes_(scenes),
         shapes_(shapes),
         options_(options),
-        measured_(scenes, shapes, options, std::chrono::steady_clock::now()),
+        measured_(
+            scenes, shapes,
+            {.pose = options.pose, .arc_lengths = options.arc_lengths, .solve = options.solve},
+            std::chrono::steady_clock::now()),
         misfit_(scenes, measured_),
         forced_(std::any_of(scenes.begin(), scenes.end(), is_forced)),
         both_(options.density &&
@@ -234,9 +239,9 @@ class MaterialFitter {
     const auto points = static_cast<double>(measured_.points());
     result_.rms_m = std::sqrt(least / points);
     result_.warning = warning_of(least, points, freedom(), scenes_.front().length, options_.noise);
-    const std::vector<Alignment> alignments = misfit_.alignments(best);
-    for (std::size_t i = 0; i < alignments.size(); ++i) {
-      result_.shapes.push_back({scenes_[i].name, alignments[i], {}});
+    const FittedRods::Rods rods = misfit_.rods(best);
+    for (std::size_t i = 0; i < rods.size() && rods[i]; ++i) {
+      result_.shapes.push_back({scenes_[i].name, measured_.alignment(i, *rods[i]), {}});
     }
     if (options_.alternatives) look_for_alternatives(best);
     if (options_.profile_points > 0) draw_profile(found, best, least);
@@ -254,10 +259,39 @@ class MaterialFitter {
     return fit;
   }
 
+  /// The rods at equal arc lengths, up to the first that there is not.
+  [[nodiscard]] std::vector<Shape> sampled(const MaterialPoint& material, int samples) {
+    std::vector<Shape> result;
+    const FittedRods::Rods rods = misfit_.rods(material);
+    for (std::size_t i = 0; i < rods.size() && rods[i]; ++i) {
+      const std::vector<double> s = equal_arc_lengths(scenes_[i].length, samples);
+      result.push_back({.arc_length = s, .points = rods[i]->sample(s).points});
+    }
+    return result;
+  }
+
+  /// Residuals with their derivatives by the frames, by log E and, if both are fitted, by the
+  /// logarithm of the density; none if a shape is missing beside this material.
+  [[nodiscard]] std::vector<ResidualSeries> residuals(const MaterialPoint& material) {
+    FittedRods rods(
+        measured_,
+        [this](std::size_t shape, const Eigen::VectorXd& values) {
+          Scene scene = scenes_[shape];
+          scene.scale_modulus(std::exp(values[0]));
+          if (both_) scene.scale_density(std::exp(values[1]));
+          return scene;
+        },
+        std::vector<Unknown>(both_ ? 2 : 1, Unknown{.stride = derivative_step}));
+    rods.go_on_from(misfit_.rods(material));
+    const Eigen::Vector2d values(material.log_modulus, material.log_density);
+    return rods.residuals(values.head(both_ ? 2 : 1), FittedRods::Columns::all)
+        .value_or(std::vector<ResidualSeries>());
+  }
+
   /// What of the residuals all shapes have in common; nothing without a plane.
   [[nodiscard]] std::optional<double> common_to_shapes(const MaterialPoint& best) {
     constexpr int samples = 1001;
-    const std::vector<Shape> rods = misfit_.rods(best, samples);
+    const std::vector<Shape> rods = sampled(best, samples);
     if (rods.size() != result_.shapes.size()) return std::nullopt;
     std::vector<AcrossRod> across;
     std::optional<Eigen::Vector3d> first;
@@ -350,7 +384,7 @@ class MaterialFitter {
       const double squares = both_ ? over_density(x).value : misfit_({x, 0});
       result_.profile.push_back({unit * std::exp(x), (squares - least) / limit});
     }
-    const std::vector<Shape> rods = misfit_.rods(best, drawn_samples);
+    const std::vector<Shape> rods = sampled(best, drawn_samples);
     for (std::size_t i = 0; i < rods.size(); ++i) result_.shapes[i].rod = rods[i];
   }
 
@@ -392,7 +426,7 @@ class MaterialFitter {
     if (!(least / std::max(1.0, freedom()) > std::pow(least_noise * scenes_.front().length, 2))) {
       return;
     }
-    const std::vector<ResidualSeries> series = misfit_.residuals(best, both_);
+    const std::vector<ResidualSeries> series = residuals(best);
     if (series.empty()) return;
     const CorrelationEstimate estimate = correlation_of(series);
     result_.correlation_was_tested = estimate.tested;

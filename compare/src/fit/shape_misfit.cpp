@@ -13,8 +13,6 @@ namespace {
 constexpr int most_searches = 4;
 /// Equilibria kept to start from; a scan over the modulus has some thirty.
 constexpr std::size_t most_kept = 64;
-/// Step in the logarithm of a material for derivatives; shapes are right to 1e-10 l.
-constexpr double derivative_step = 1e-3;
 
 /// How deep a shape sinks into the scene's rigid obstacles [m].
 double depth_in_obstacles(const Scene& scene, const energy_model::Equilibrium& equilibrium) {
@@ -168,52 +166,11 @@ bool ShapeMisfit::search_at(const MaterialPoint& material) {
   return true;
 }
 
-std::vector<Alignment> ShapeMisfit::alignments(const MaterialPoint& material) {
-  std::vector<Alignment> result;
+FittedRods::Rods ShapeMisfit::rods(const MaterialPoint& material) {
+  FittedRods::Rods result;
   for (std::size_t i = 0; i < scenes_.size(); ++i) {
     const std::shared_ptr<const Solved> shape = solved(i, material);
-    if (!shape) break;
-    result.push_back(measured_.alignment(i, shape->equilibrium));
-  }
-  return result;
-}
-
-std::vector<Shape> ShapeMisfit::rods(const MaterialPoint& material, int samples) {
-  std::vector<Shape> result;
-  for (std::size_t i = 0; i < scenes_.size(); ++i) {
-    const std::shared_ptr<const Solved> shape = solved(i, material);
-    if (!shape) break;
-    const std::vector<double> s = equal_arc_lengths(scenes_[i].length, samples);
-    result.push_back({.arc_length = s, .points = shape->equilibrium.sample(s).points});
-  }
-  return result;
-}
-
-std::vector<ResidualSeries> ShapeMisfit::residuals(const MaterialPoint& material, bool both) {
-  std::vector<MaterialPoint> beside = {
-      {material.log_modulus + derivative_step, material.log_density}};
-  if (both) beside.push_back({material.log_modulus, material.log_density + derivative_step});
-  const Eigen::Index frames = measured_.frame_columns();
-  std::vector<ResidualSeries> result;
-  for (std::size_t i = 0; i < scenes_.size(); ++i) {
-    const std::shared_ptr<const Solved> shape = solved(i, material);
-    if (!shape) return {};
-    const Curve curve = measured_.curve(i, shape->equilibrium);
-    const Alignment alignment = measured_.alignment(i, shape->equilibrium);
-    const std::vector<double>& s = alignment.shape.arc_length;
-    const Eigen::Matrix3Xd here = curve.points(s);
-    std::vector<Movement> movements;
-    for (const MaterialPoint& other : beside) {
-      const std::shared_ptr<const Solved> there = solved(i, other);
-      if (!there) return {};
-      movements.emplace_back(
-          frames + static_cast<Eigen::Index>(movements.size()),
-          (measured_.curve(i, there->equilibrium).points(s) - here) / derivative_step);
-    }
-    const auto numbers = static_cast<Eigen::Index>(beside.size());
-    for (ResidualSeries& series : measured_.residuals(i, curve, alignment, movements, numbers)) {
-      result.push_back(std::move(series));
-    }
+    result.push_back(shape ? std::optional(shape->equilibrium) : std::nullopt);
   }
   return result;
 }

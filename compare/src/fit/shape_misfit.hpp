@@ -9,7 +9,8 @@
 
 #include "dlo/compare/alignment.hpp"
 #include "dlo/compare/material_fit.hpp"
-#include "fit/measured_shapes.hpp"
+#include "least_squares/fitted_rods.hpp"
+#include "least_squares/measured_shapes.hpp"
 
 namespace dlo::compare {
 
@@ -44,17 +45,8 @@ class ShapeMisfit {
   /// and lies nearer to its points; all that was known of other materials is then forgotten.
   bool search_at(const MaterialPoint& material);
 
-  /// How the shapes lie at a material where there is a shape.
-  [[nodiscard]] std::vector<Alignment> alignments(const MaterialPoint& material);
-
-  /// The rods at a material where there is a shape, at equal arc lengths.
-  [[nodiscard]] std::vector<Shape> rods(const MaterialPoint& material, int samples);
-
-  /// Residuals at a material where there is a shape, with their derivatives by each shape's free
-  /// coordinates, then by log modulus (by log density too, if `both`). With given arc lengths a
-  /// series for each coordinate, else for each of the directions across the rod; none out of the
-  /// plane of a shape that lies in one. No series if a shape is missing beside this material.
-  [[nodiscard]] std::vector<ResidualSeries> residuals(const MaterialPoint& material, bool both);
+  /// The equilibria at a material where there is a shape.
+  [[nodiscard]] FittedRods::Rods rods(const MaterialPoint& material);
 
   /// A material whose shapes may, for all that is known, come as near as `level` [m^2], though its
   /// equilibrium on rigid obstacles was not verified.

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "dlo/compare/material_fit.hpp"
-#include "fit/measured_shapes.hpp"
 #include "fit/shape_misfit.hpp"
+#include "least_squares/measured_shapes.hpp"
 
 namespace dlo::compare {
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "dlo/compare/error.hpp"
-#include "explain/scene_change.hpp"
-#include "fit/measured_shapes.hpp"
+#include "least_squares/measured_shapes.hpp"
+#include "least_squares/scene_change.hpp"
 #include "scene/reach.hpp"
 
 namespace dlo::compare {

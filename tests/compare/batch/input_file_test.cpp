@@ -279,7 +279,8 @@ TEST_F(Reading, AForgedShardIsRefused) {
                        model + ", options " + fingerprint + "; shard 1/1; " + rows + "\nrow\n");
     return input_error_of([&] { (void)dlo::compare::merge_sweep({path("shard")}, path("o")); });
   };
-  EXPECT_NE(merge(std::string(300'000, 'a'), "1 rows from 0 of 1").find("not finished"),
+  EXPECT_NE(merge("energy", "1 rows from 0 of 1").find("not finished"), std::string::npos);
+  EXPECT_NE(merge(std::string(300'000, 'a'), "1 rows from 0 of 1").find("is no shard of a sweep"),
             std::string::npos);
   EXPECT_NE(merge(std::string(1'200'000, 'a'), "1 rows from 0 of 1").find("the line is too long"),
             std::string::npos);

@@ -19,7 +19,7 @@
 #include "dlo/compare/shape.hpp"
 #include "dlo/compare/solution.hpp"
 #include "fit/between_shapes.hpp"
-#include "fit/error_correlation.hpp"
+#include "least_squares/error_correlation.hpp"
 #include "measured_shapes.hpp"
 #include "scenes.hpp"
 
@@ -329,7 +329,8 @@ TEST(WireFit, ItsTimeBeganBeforeIt) {
   const std::vector<Scene> scenes = {picture.said};
   const std::vector<MeasuredShape> shapes = {picture.seen};
   const auto fit_after = [&](std::chrono::seconds spent) {
-    MeasuredShapes measured(scenes, shapes, options, std::chrono::steady_clock::now() - spent);
+    MeasuredShapes measured(scenes, shapes, {.solve = options.solve},
+                            std::chrono::steady_clock::now() - spent);
     return fit_wire(scenes, shapes, measured, options, {}, false);
   };
   EXPECT_NO_THROW((void)fit_after(std::chrono::seconds(10)));

@@ -1,4 +1,4 @@
-#include "fit/measured_shapes.hpp"
+#include "least_squares/measured_shapes.hpp"
 
 #include <fmt/format.h>
 
@@ -10,6 +10,7 @@
 
 #include "dlo/compare/error.hpp"
 #include "polygon/energy_problems.hpp"
+#include "shape/shape_measure.hpp"
 
 namespace dlo::compare {
 namespace {
@@ -89,20 +90,19 @@ bool lies_in_a_plane(const Eigen::Matrix3Xd& points) {
 }
 
 MeasuredShapes::MeasuredShapes(const std::vector<Scene>& scenes,
-                               const std::vector<MeasuredShape>& shapes,
-                               const MaterialFitOptions& options,
+                               const std::vector<MeasuredShape>& shapes, MeasuredOptions options,
                                std::chrono::steady_clock::time_point begin)
-    : options_(options), begin_(begin) {
+    : options_(std::move(options)), begin_(begin) {
   for (std::size_t i = 0; i < scenes.size(); ++i) {
-    const Eigen::Vector3d up = up_of(scenes[i], options.pose);
+    const Eigen::Vector3d up = up_of(scenes[i], options_.pose);
     Aligner aligner(shapes[i], scenes[i].length,
-                    {.pose = options.pose,
-                     .arc_lengths = options.arc_lengths,
-                     .weights = PointWeights::equal,
+                    {.pose = options_.pose,
+                     .arc_lengths = options_.arc_lengths,
+                     .weights = options_.weights,
                      .up = up});
     const Eigen::Index columns = aligner.free_coordinates();
-    shapes_.push_back({std::move(aligner), scenes[i].length, lies_in_a_plane(shapes[i].points), up,
-                       frame_columns_});
+    const bool flat = options_.flat == FlatShapes::unmeasured && lies_in_a_plane(shapes[i].points);
+    shapes_.push_back({std::move(aligner), scenes[i].length, flat, up, frame_columns_});
     frame_columns_ += columns;
   }
 }
@@ -153,6 +153,12 @@ double MeasuredShapes::squares(std::size_t shape, const energy_model::Equilibriu
   return alignment(shape, rod).mean_square * static_cast<double>(shapes_[shape].aligner.points());
 }
 
+Eigen::VectorXd MeasuredShapes::root_weights(const std::vector<double>& s,
+                                             const Eigen::Matrix3Xd& points) const {
+  if (options_.weights == PointWeights::equal) return Eigen::VectorXd::Ones(points.cols());
+  return (point_weights(s, points) * static_cast<double>(points.cols())).cwiseSqrt();
+}
+
 std::vector<ResidualSeries> MeasuredShapes::residuals(std::size_t shape, const Curve& curve,
                                                       const Alignment& alignment,
                                                       const std::vector<Movement>& movements,
@@ -166,6 +172,7 @@ std::vector<ResidualSeries> MeasuredShapes::residuals(std::size_t shape, const C
   std::vector<ResidualSeries> result(static_cast<std::size_t>(directions.front().cols()),
                                      {shape, s, Eigen::VectorXd::Zero(points.cols()),
                                       Eigen::MatrixXd::Zero(points.cols(), columns)});
+  const Eigen::VectorXd scale = root_weights(s, points);
   for (Eigen::Index row = 0; row < points.cols(); ++row) {
     const auto at = static_cast<std::size_t>(row);
     Eigen::Matrix3Xd derivatives = Eigen::Matrix3Xd::Zero(3, columns);
@@ -177,8 +184,8 @@ std::vector<ResidualSeries> MeasuredShapes::residuals(std::size_t shape, const C
     const Eigen::VectorXd values = directions[at].transpose() * gap;
     const Eigen::MatrixXd slopes = directions[at].transpose() * derivatives;
     for (std::size_t k = 0; k < result.size(); ++k) {
-      result[k].residual[row] = values[static_cast<Eigen::Index>(k)];
-      result[k].design.row(row) = slopes.row(static_cast<Eigen::Index>(k));
+      result[k].residual[row] = scale[row] * values[static_cast<Eigen::Index>(k)];
+      result[k].design.row(row) = scale[row] * slopes.row(static_cast<Eigen::Index>(k));
     }
   }
   return result;

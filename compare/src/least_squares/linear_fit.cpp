@@ -1,4 +1,4 @@
-#include "fit/linear_fit.hpp"
+#include "least_squares/linear_fit.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>

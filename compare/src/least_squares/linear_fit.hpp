@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "fit/error_correlation.hpp"
+#include "least_squares/error_correlation.hpp"
 
 namespace dlo::compare {
 

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "dlo/compare/alignment.hpp"
-#include "dlo/compare/material_fit.hpp"
+#include "dlo/compare/shape_file.hpp"
+#include "dlo/compare/solution.hpp"
 #include "dlo/energy_model/energy.hpp"
-#include "fit/error_correlation.hpp"
+#include "least_squares/error_correlation.hpp"
 #include "shape/aligner.hpp"
 #include "shape/curve.hpp"
 
@@ -16,6 +17,21 @@ namespace dlo::compare {
 
 /// Points that lie in a plane to rounding: their third coordinate was not measured.
 [[nodiscard]] bool lies_in_a_plane(const Eigen::Matrix3Xd& points);
+
+/// What points that lie in a plane say of the third coordinate.
+enum class FlatShapes {
+  unmeasured,  ///< nothing: it is a photograph
+  measured,    ///< that it is nought
+};
+
+/// How shapes lie, and how far the rods that they are held against may be looked for.
+struct MeasuredOptions {
+  PoseFreedom pose = PoseFreedom::known;  ///< what is unknown of their frames
+  ArcLengths arc_lengths = ArcLengths::automatic;
+  PointWeights weights = PointWeights::equal;
+  SolveOptions solve;  ///< limits; the time is that of each shape
+  FlatShapes flat = FlatShapes::unmeasured;
+};
 
 /// How a fitted number moves the rod's points where the measured ones are [m per its unit], 3 x M,
 /// and its column.
@@ -28,10 +44,10 @@ class MeasuredShapes {
   /// @param begin  from when on the time limit is
   /// @throws InputError as align()
   MeasuredShapes(const std::vector<Scene>& scenes, const std::vector<MeasuredShape>& shapes,
-                 const MaterialFitOptions& options, std::chrono::steady_clock::time_point begin);
+                 MeasuredOptions options, std::chrono::steady_clock::time_point begin);
 
   [[nodiscard]] std::size_t size() const { return shapes_.size(); }
-  /// A shape that lies_in_a_plane().
+  /// A shape of which only two coordinates are measured.
   [[nodiscard]] bool is_flat(std::size_t shape) const { return shapes_[shape].flat; }
   /// Points of all shapes.
   [[nodiscard]] Eigen::Index points() const;
@@ -57,7 +73,7 @@ class MeasuredShapes {
   [[nodiscard]] Alignment alignment(std::size_t shape, const energy_model::Equilibrium& rod) const {
     return shapes_[shape].aligner.align(curve(shape, rod));
   }
-  /// Sum of a shape's squared distances from a rod [m^2].
+  /// Sum of a shape's squared distances from a rod, weighted [m^2].
   [[nodiscard]] double squares(std::size_t shape, const energy_model::Equilibrium& rod) const;
 
   /// Residuals of a shape as it lies on a rod, points less rod, with the columns of its own frame's
@@ -78,15 +94,19 @@ class MeasuredShapes {
   [[nodiscard]] long evaluations() const { return evaluations_; }
 
  private:
+  /// Roots of the points' weights, whose mean is 1.
+  [[nodiscard]] Eigen::VectorXd root_weights(const std::vector<double>& s,
+                                             const Eigen::Matrix3Xd& points) const;
+
   struct OneShape {
     Aligner aligner;
     double length;         // of its rod [m]
-    bool flat;             // see lies_in_a_plane
+    bool flat;             // only two coordinates are measured
     Eigen::Vector3d up;    // as in AlignOptions
     Eigen::Index columns;  // before its frame's first
   };
 
-  const MaterialFitOptions& options_;
+  MeasuredOptions options_;
   std::vector<OneShape> shapes_;
   Eigen::Index frame_columns_ = 0;
   long solves_ = 0;

@@ -1,4 +1,4 @@
-#include "fit/error_correlation.hpp"
+#include "least_squares/error_correlation.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/QR>

@@ -1,4 +1,4 @@
-#include "explain/scene_change.hpp"
+#include "least_squares/scene_change.hpp"
 
 #include <Eigen/Geometry>
 

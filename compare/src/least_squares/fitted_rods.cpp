@@ -1,0 +1,110 @@
+#include "least_squares/fitted_rods.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+/// A movement below this share of the length is the solver's error (1e-10 l), not the number's.
+constexpr double least_movement = 1e-9;
+
+}  // namespace
+
+std::optional<energy_model::Equilibrium> FittedRods::solve(std::size_t shape,
+                                                           const Eigen::VectorXd& values) {
+  try {
+    const Scene changed = scene_(shape, values);
+    const bool follows = last_[shape].has_value();
+    energy_model::Equilibrium rod = measured_.solve(changed, follows ? &*last_[shape] : nullptr);
+    if (follows && !energy_model::succeeded(rod.status)) rod = measured_.solve(changed, nullptr);
+    if (!energy_model::succeeded(rod.status)) return std::nullopt;
+    return rod;
+  } catch (const InputError&) {
+    // Grippers that a step moved farther apart than the rod between them.
+    return std::nullopt;
+  }
+}
+
+std::optional<std::vector<Movement>> FittedRods::movements(std::size_t shape,
+                                                           const Eigen::VectorXd& values,
+                                                           const Curve& here,
+                                                           const std::vector<double>& s) {
+  std::vector<Movement> result;
+  const Eigen::Matrix3Xd points = here.points(s);
+  for (std::size_t k = 0; k < unknowns_.size(); ++k) {
+    const Unknown& unknown = unknowns_[k];
+    if (unknown.shape && *unknown.shape != shape) continue;
+    const auto number = static_cast<Eigen::Index>(k);
+    if (unknown.stride == 0) {
+      result.emplace_back(measured_.frame_columns() + number,
+                          Eigen::Matrix3Xd::Zero(3, points.cols()));
+      continue;
+    }
+    // The side on which there is a shape: a straight rod's grippers come nearer, not farther.
+    for (const double stride : {unknown.stride, -unknown.stride}) {
+      Eigen::VectorXd beside = values;
+      beside[number] += stride;
+      const std::optional<energy_model::Equilibrium> rod = solve(shape, beside);
+      if (!rod) {
+        if (stride < 0) return std::nullopt;
+        continue;
+      }
+      Eigen::Matrix3Xd way = measured_.curve(shape, *rod).points(s) - points;
+      if (way.colwise().norm().maxCoeff() < least_movement * here.length()) way.setZero();
+      result.emplace_back(measured_.frame_columns() + number, way / stride);
+      break;
+    }
+  }
+  return result;
+}
+
+std::optional<std::vector<ResidualSeries>> FittedRods::residuals(const Eigen::VectorXd& values,
+                                                                 Columns columns) {
+  std::vector<ResidualSeries> result;
+  for (std::size_t i = 0; i < measured_.size(); ++i) {
+    std::optional<energy_model::Equilibrium> rod = solve(i, values);
+    if (!rod) return std::nullopt;
+    last_[i] = std::move(rod);
+    const Curve curve = measured_.curve(i, *last_[i]);
+    const Alignment alignment = measured_.alignment(i, *last_[i]);
+    std::vector<Movement> moved;
+    if (columns == Columns::all) {
+      const std::vector<double>& s = alignment.shape.arc_length;
+      std::optional<std::vector<Movement>> found = movements(i, values, curve, s);
+      if (!found) return std::nullopt;
+      moved = std::move(*found);
+    }
+    const auto count = static_cast<Eigen::Index>(unknowns_.size());
+    for (ResidualSeries& series : measured_.residuals(i, curve, alignment, moved, count)) {
+      result.push_back(std::move(series));
+    }
+  }
+  return result;
+}
+
+FittedRods::State FittedRods::state(const Eigen::VectorXd& values) {
+  State result;
+  for (std::size_t i = 0; i < measured_.size(); ++i) {
+    result.rods.push_back(solve(i, values));
+    result.squares.push_back(INFINITY);
+    if (!result.rods[i]) continue;
+    last_[i] = result.rods[i];
+    result.squares[i] = measured_.squares(i, *result.rods[i]);
+  }
+  return result;
+}
+
+std::vector<Alignment> FittedRods::alignments(const Eigen::VectorXd& values) {
+  std::vector<Alignment> result;
+  for (std::size_t i = 0; i < measured_.size(); ++i) {
+    const std::optional<energy_model::Equilibrium> rod = solve(i, values);
+    if (!rod) break;
+    result.push_back(measured_.alignment(i, *rod));
+  }
+  return result;
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,150 @@
+#include "least_squares/gauss_newton.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dlo/compare/error.hpp"
+
+namespace dlo::compare {
+namespace {
+
+constexpr int most_steps = 30;
+constexpr int most_halvings = 8;
+/// A deviance is known if it changes by no more.
+constexpr double deviance_tolerance = 0.05;
+
+}  // namespace
+
+GaussNewton::GaussNewton(FittedRods& rods, Eigen::VectorXd values,
+                         const GaussNewtonOptions& options)
+    : rods_(rods), options_(options), before_(values.size()), values_(std::move(values)) {
+  for (Eigen::Index k = 0; k < before_.size(); ++k) {
+    before_[k] = 1 / rods.unknowns()[static_cast<std::size_t>(k)].known_before;
+  }
+}
+
+double GaussNewton::penalty(const Eigen::VectorXd& values) const {
+  return values.cwiseProduct(before_).squaredNorm();
+}
+
+double GaussNewton::deviance() const {
+  return linear_.residual.squaredNorm() / variance_ + penalty(values_);
+}
+
+double GaussNewton::deviance_at(const Eigen::VectorXd& values) {
+  const std::optional<std::vector<ResidualSeries>> series =
+      rods_.residuals(values, FittedRods::Columns::frames);
+  if (!series) return INFINITY;
+  const LinearFit there = linear_fit(*series, covariance_, rods_.measured().frame_columns());
+  return there.residual.squaredNorm() / variance_ + penalty(values);
+}
+
+void GaussNewton::measure_variance() {
+  if (options_.noise) {
+    variance_ = std::pow(*options_.noise, 2);
+    freedom_ = static_cast<double>(linear_.freedom);
+    return;
+  }
+  const double floor = std::pow(options_.least_noise, 2);
+  const double squares = linear_.residual.squaredNorm();
+  if (!(variance_ > 0)) {
+    variance_ = std::max(floor, squares / static_cast<double>(linear_.freedom));
+  }
+  // What was known before is no number found.
+  const Eigen::VectorXd kept =
+      posterior(linear_, variance_, before_).diagonal().cwiseProduct(before_.cwiseAbs2());
+  freedom_ = static_cast<double>(linear_.freedom - before_.size()) + kept.sum();
+  if (!(freedom_ >= 1)) {
+    throw InputError(
+        fmt::format("calibrate: {} numbers measured beside the frames, {} to be found (allowed: "
+                    "more measured than found, so more points, or a given noise)",
+                    linear_.freedom, before_.size()));
+  }
+  variance_ = std::max(floor, squares / freedom_);
+}
+
+bool GaussNewton::descend() {
+  for (int i = 0; i < most_steps; ++i) {
+    std::optional<std::vector<ResidualSeries>> series =
+        rods_.residuals(values_, FittedRods::Columns::all);
+    if (!series) return false;
+    series_ = std::move(*series);
+    here_ = rods_.rods();
+    linear_ = linear_fit(series_, covariance_, rods_.measured().frame_columns());
+    measure_variance();
+    posterior_ = posterior(linear_, variance_, before_);
+    Eigen::VectorXd step = next_step();
+    const Eigen::VectorXd deviations = posterior_.diagonal().cwiseSqrt();
+    if ((step.array().abs() <= options_.last_step * deviations.array()).all()) return true;
+    const double here = deviance();
+    const double promised = (linear_.residual - linear_.design * step).squaredNorm() / variance_ +
+                            penalty(values_ + step);
+    if (here - promised < options_.least_gain * here) return true;
+    // Every trial follows from here, not from where a longer one has led.
+    int halvings = 0;
+    while (halvings < most_halvings && !(deviance_at(values_ + step) < here)) {
+      rods_.go_on_from(here_);
+      step /= 2;
+      ++halvings;
+    }
+    // Nothing less along a direction of descent but rounding.
+    if (halvings == most_halvings) return true;
+    values_ += step;
+  }
+  return true;
+}
+
+/// To the least deviance of the linear problem with the first number near: where that is hardly
+/// seen it would be far away, and take the others with it.
+Eigen::VectorXd GaussNewton::next_step() const {
+  const std::vector<Unknown>& unknowns = rods_.unknowns();
+  const Eigen::VectorXd down = slope(linear_, variance_, before_, values_);
+  Eigen::VectorXd step = posterior_ * down;
+  const double longest = unknowns.front().longest_step;
+  const double there = std::clamp(values_[0] + std::clamp(step[0], -longest, longest),
+                                  options_.lowest, options_.highest);
+  if (values_[0] + step[0] != there) {
+    step[0] = there - values_[0];
+    if (step.size() > 1) {
+      step.tail(step.size() - 1) = step_of_others(linear_, variance_, before_, down, step[0]);
+    }
+  }
+  double share = 1;
+  for (Eigen::Index k = 1; k < step.size(); ++k) {
+    const double longest_step = unknowns[static_cast<std::size_t>(k)].longest_step;
+    if (std::abs(step[k]) > longest_step) {
+      share = std::min(share, longest_step / std::abs(step[k]));
+    }
+  }
+  return share * step;
+}
+
+double GaussNewton::profile(double first) {
+  const Eigen::Index others = before_.size() - 1;
+  Eigen::VectorXd values = values_ + posterior_.col(0) / posterior_(0, 0) * (first - values_[0]);
+  double least = deviance_at(values);
+  if (others == 0) return least;
+  LinearFit chord = linear_;
+  constexpr int most_chords = 4;
+  for (int i = 0; i < most_chords && std::isfinite(least); ++i) {
+    const std::optional<std::vector<ResidualSeries>> series =
+        rods_.residuals(values, FittedRods::Columns::frames);
+    if (!series) break;
+    chord.residual = linear_fit(*series, covariance_, rods_.measured().frame_columns()).residual;
+    const Eigen::VectorXd down = slope(chord, variance_, before_, values);
+    Eigen::VectorXd next = values;
+    next.tail(others) += step_of_others(chord, variance_, before_, down, 0);
+    const double deviance_there = deviance_at(next);
+    if (!(deviance_there < least)) break;
+    const bool done = least - deviance_there < deviance_tolerance;
+    least = deviance_there;
+    values = next;
+    if (done) break;
+  }
+  return least;
+}
+
+}  // namespace dlo::compare

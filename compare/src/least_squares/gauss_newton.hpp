@@ -1,0 +1,76 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "least_squares/fitted_rods.hpp"
+#include "least_squares/linear_fit.hpp"
+
+namespace dlo::compare {
+
+/// How Gauss-Newton steps are made.
+struct GaussNewtonOptions {
+  std::optional<double> noise;  ///< standard deviation of a coordinate [m]; none: of the residuals
+  double least_noise = 0;       ///< it is taken to be no less [m]
+  double lowest = -std::numeric_limits<double>::infinity();  ///< of the first number
+  double highest = std::numeric_limits<double>::infinity();  ///< of the first number
+  double last_step = 0.01;  ///< share of every number's standard deviation below which it ends
+  double least_gain = 0;    ///< share of the deviance that a step has to promise to be made
+};
+
+/// The least deviance of measured shapes over numbers that change their scenes: generalised least
+/// squares under the covariance of the errors along the rod, with what was known of the numbers
+/// before (Gauss-Newton steps, each shortened until the deviance is less). Every fit to shapes is
+/// made by it: those of a wire's numbers, and the explanations of a shape that is wrong.
+class GaussNewton {
+ public:
+  /// @param rods     outlives this; they go on from where they are
+  /// @param values   to begin with
+  GaussNewton(FittedRods& rods, Eigen::VectorXd values, const GaussNewtonOptions& options);
+
+  /// Goes to the least deviance nearby.
+  /// @return whether there; false: at its values, or beside them, a shape has no equilibrium
+  /// @throws ConvergenceError if the time limit is over
+  /// @throws InputError if there are no more numbers measured than found
+  [[nodiscard]] bool descend();
+
+  /// Takes errors to be correlated so.
+  void assume(const ErrorCovariance& covariance) { covariance_ = covariance; }
+  [[nodiscard]] const ErrorCovariance& covariance() const { return covariance_; }
+
+  // At the values, after descend():
+  [[nodiscard]] const Eigen::VectorXd& values() const { return values_; }
+  [[nodiscard]] const FittedRods::Rods& rods() const { return here_; }
+  [[nodiscard]] const std::vector<ResidualSeries>& series() const { return series_; }
+  [[nodiscard]] const LinearFit& linear() const { return linear_; }
+  [[nodiscard]] const Eigen::MatrixXd& covariance_of_numbers() const { return posterior_; }
+  [[nodiscard]] double variance() const { return variance_; }  ///< of a coordinate's error [m^2]
+  [[nodiscard]] double freedom() const { return freedom_; }    ///< degrees, of the residuals
+  [[nodiscard]] const Eigen::VectorXd& before() const { return before_; }  ///< see posterior()
+  /// Sum of squares over the variance, and of what was known before.
+  [[nodiscard]] double deviance() const;
+
+  /// Least deviance over all other numbers with the first at some value, by chords of the
+  /// derivatives at the values; infinite where there is no shape.
+  [[nodiscard]] double profile(double first);
+
+ private:
+  [[nodiscard]] double penalty(const Eigen::VectorXd& values) const;
+  [[nodiscard]] double deviance_at(const Eigen::VectorXd& values);
+  void measure_variance();
+  [[nodiscard]] Eigen::VectorXd next_step() const;
+
+  FittedRods& rods_;
+  GaussNewtonOptions options_;
+  Eigen::VectorXd before_;
+  Eigen::VectorXd values_;
+  ErrorCovariance covariance_;
+  double variance_ = 0;
+  double freedom_ = 0;
+  FittedRods::Rods here_;
+  std::vector<ResidualSeries> series_;
+  LinearFit linear_;
+  Eigen::MatrixXd posterior_;
+};
+
+}  // namespace dlo::compare
