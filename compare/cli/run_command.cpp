@@ -16,9 +16,9 @@
 #include "command/commands.hpp"
 #include "dlo/compare/error.hpp"
 #include "option/help.hpp"
+#include "option/manual.hpp"
 #include "option/option_values.hpp"
 #include "option/output.hpp"
-#include "option/reference.hpp"
 
 namespace dlo::cli {
 namespace {

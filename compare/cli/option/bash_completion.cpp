@@ -2,8 +2,8 @@
 
 #include "dlo/compare/material.hpp"
 #include "option/help.hpp"
+#include "option/manual.hpp"
 #include "option/output.hpp"
-#include "option/reference.hpp"
 
 namespace dlo::cli {
 namespace {

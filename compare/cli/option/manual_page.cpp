@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "option/help.hpp"
-#include "option/reference.hpp"
+#include "option/manual.hpp"
 
 namespace dlo::cli {
 namespace {

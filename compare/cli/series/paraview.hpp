@@ -3,7 +3,7 @@
 #include <string>
 
 #include "motion/dynamic_track.hpp"
-#include "series/track.hpp"
+#include "series/track_series.hpp"
 
 namespace dlo::cli {
 

@@ -11,13 +11,13 @@
 #include <optional>
 
 #include "array.hpp"
+#include "bind_scene.hpp"
 #include "chain_rod.hpp"
 #include "dlo/compare/error.hpp"
 #include "long_call.hpp"
 #include "module.hpp"
 #include "parallel/threads.hpp"
 #include "result.hpp"
-#include "scene.hpp"
 
 namespace dlo::python {
 namespace {

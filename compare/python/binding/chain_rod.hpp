@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include "bind_scene.hpp"
 #include "dlo/compare/discretise.hpp"
 #include "dlo/force_model/batch.hpp"
-#include "scene.hpp"
 
 namespace dlo::python {
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "array.hpp"
+#include "bind_scene.hpp"
 #include "chain_rod.hpp"
 #include "dlo/compare/error.hpp"
 #include "dlo/force_model/simulation.hpp"
@@ -14,7 +15,6 @@
 #include "long_call.hpp"
 #include "module.hpp"
 #include "result.hpp"
-#include "scene.hpp"
 
 namespace dlo::python {
 namespace {

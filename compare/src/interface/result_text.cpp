@@ -1,12 +1,12 @@
 #include "dlo/compare/result_text.hpp"
 
 #include "dlo/compare/plan.hpp"
-#include "format/comparison.hpp"
-#include "format/force_model_fit.hpp"
+#include "format/comparison_output.hpp"
+#include "format/force_model_fit_output.hpp"
 #include "format/json.hpp"
-#include "format/material_fit.hpp"
-#include "format/shape_check.hpp"
-#include "format/solution.hpp"
+#include "format/material_fit_output.hpp"
+#include "format/shape_check_output.hpp"
+#include "format/solution_output.hpp"
 
 namespace dlo::compare {
 

@@ -27,7 +27,7 @@
 #include "command_fixture.hpp"
 #include "dlo/compare/error.hpp"
 #include "format/json.hpp"
-#include "format/solution.hpp"
+#include "format/solution_output.hpp"
 
 namespace {
 

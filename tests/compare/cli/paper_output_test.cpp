@@ -1,5 +1,7 @@
 // What `dlo paper` writes of a report, without the minutes that it takes to make one.
 
+#include "format/paper_output.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,8 +14,7 @@
 
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "format/moving.hpp"
-#include "format/paper.hpp"
+#include "format/moving_output.hpp"
 
 namespace dlo::cli {
 namespace {

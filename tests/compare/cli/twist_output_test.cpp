@@ -10,8 +10,8 @@
 
 #include "command_fixture.hpp"
 #include "dlo/compare/scene_file.hpp"
-#include "format/plan.hpp"
-#include "format/solution.hpp"
+#include "format/plan_output.hpp"
+#include "format/solution_output.hpp"
 #include "scenes.hpp"
 
 namespace {

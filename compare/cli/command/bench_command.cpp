@@ -1,0 +1,91 @@
+#include <memory>
+
+#include "command/commands.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "dlo/compare/solution.hpp"
+#include "format/benchmark_output.hpp"
+#include "format/json.hpp"
+#include "option/exit_status.hpp"
+#include "option/option_values.hpp"
+#include "option/output.hpp"
+#include "option/plot.hpp"
+#include "option/program_options.hpp"
+#include "option/scene_options.hpp"
+#include "option/terminal.hpp"
+#include "picture/front_figure.hpp"
+#include "study/benchmark.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct BenchOptions {
+  std::vector<std::string> scenes;
+  std::vector<std::string> programs;
+  compare::BenchmarkOptions benchmark;
+  OutputOptions output;
+  PlotOptions plot;
+};
+
+void run(const BenchOptions& options) {
+  options.plot.require_drawable(options.output);
+  compare::BenchmarkOptions benchmark = options.benchmark;
+  benchmark.programs = compare::parse_foreign_programs(options.programs);
+  std::vector<compare::Scene> scenes;
+  for (const std::string& path : options.scenes) scenes.push_back(compare::load_scene(path));
+  for (const compare::Scene& scene : scenes) {
+    warn_of_polygons(scene);
+    warn_of_no_twist(scene, "tracking by the force model");
+  }
+  const compare::BenchmarkReport report = [&] {
+    ProgressBar bar("bench");
+    return compare::run_benchmark(scenes, benchmark,
+                                  [&](const std::string& what) { bar.stage(what); });
+  }();
+  write_output(options.output, {.text = [&] { return benchmark_text(report); },
+                                .json = [&] { return json_text(benchmark_json(report)); },
+                                .csv = [&] { return benchmark_csv(report); }});
+  options.plot.draw([&] {
+    compare::PictureRow fronts;
+    for (const compare::SceneBenchmark& scene : report.scenes) {
+      if (compare::has_run(scene.runs)) {
+        fronts.push_back({compare::front_figure(scene, fronts.size() + 1)});
+      }
+    }
+    return compare::Picture{{fronts}};
+  });
+  if (!report.failures.empty()) end_with(ExitStatus::not_converged);
+}
+
+}  // namespace
+
+void add_bench(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("bench", "speed against error of all models");
+  const auto options = std::make_shared<BenchOptions>();
+  command->add_option("SCENE", options->scenes,
+                      "scene files (TOML); none: a steel rod and one a hundred times softer");
+  command->add_option("--seconds", options->benchmark.budget_s, "time for all runs together")
+      ->check(number_between(0.1, 86400))
+      ->capture_default_str();
+  command->add_option("--repeats", options->benchmark.repeats, "runs that a median is taken of")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  command->add_option("--speed", options->benchmark.gripper_speed, "of the moving gripper [m/s]")
+      ->check(number_between(1e-9, 1e3))
+      ->capture_default_str();
+  add_program_options(*command, options->programs);
+  command
+      ->add_option("--time-limit", options->benchmark.program_time_limit,
+                   "of each run of a program [s]")
+      ->check(number_between(1e-3, 1e9))
+      ->capture_default_str();
+  add_output_options(*command, options->output);
+  options->plot.add_to(*command, "error against time, with the front,", Sketches::none);
+  command->footer(
+      "Examples:\n"
+      "  dlo bench data/scenes/spring_steel_175.toml --seconds 2 --plot front.svg\n"
+      "  dlo bench data/scenes/cable.toml --seconds 2 --with mine='dlo solve "
+      "data/scenes/cable.toml --model chain --points {points} --format csv -o {shape}'");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,267 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "command/commands.hpp"
+#include "dlo/compare/alignment.hpp"
+#include "dlo/compare/error.hpp"
+#include "fit/chain_springs.hpp"
+#include "format/force_model_fit_output.hpp"
+#include "format/json.hpp"
+#include "format/material_fit_output.hpp"
+#include "option/exit_status.hpp"
+#include "option/output.hpp"
+#include "option/plot.hpp"
+#include "option/scene_options.hpp"
+#include "option/shape_options.hpp"
+#include "option/share.hpp"
+#include "option/terminal.hpp"
+#include "picture/fit_figure.hpp"
+#include "toml/quantity.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct CalibrateOptions {
+  std::vector<std::string> scenes;
+  std::vector<std::string> shapes;
+  bool density = false;
+  bool torsional_stiffness = false;
+  std::string noise;
+  int natural_curvature_terms = 0;
+  int segments = 0;
+  std::string clamp_angles;
+  std::string clamp_positions;
+  std::vector<std::string> holdouts;
+  std::optional<double> target;
+  ShapeOptions shape_options;
+  SceneOptions overrides;
+  OutputOptions output;
+  PlotOptions plot;
+};
+
+/// A quantity > 0 that an option has, if it is given.
+std::optional<double> quantity_of(const char* option, const std::string& text,
+                                  compare::Dimension dimension) {
+  if (text.empty()) return std::nullopt;
+  try {
+    const double value = compare::parse_quantity(text, dimension);
+    if (value > 0) return value;
+  } catch (const compare::InputError& error) {
+    throw compare::InputError(fmt::format("{} = {}: {}", option, text, error.what()));
+  }
+  throw compare::InputError(fmt::format("{} = {}: out of range (allowed: > 0)", option, text));
+}
+
+std::vector<compare::Scene> load_all(const std::vector<std::string>& paths,
+                                     const SceneOptions& overrides) {
+  std::vector<compare::Scene> scenes;
+  scenes.reserve(paths.size());
+  for (const std::string& path : paths) scenes.push_back(overrides.load(path));
+  return scenes;
+}
+
+/// Without --format a .toml file gets what can be read again, and the text is shown as well.
+void write_calibration(OutputOptions output, bool format_is_given, const Formats& formats) {
+  const bool to_toml_file = !format_is_given && output.file.ends_with(".toml");
+  if (!format_is_given) {
+    const std::string format = format_of_file(output.file, {"json", "csv", "toml"});
+    if (!format.empty()) output.format = format;
+  }
+  write_output(output, formats);
+  if (to_toml_file) write_output({}, formats.text());
+}
+
+void run_material(const CalibrateOptions& options, bool format_is_given) {
+  constexpr int profile_points = 41;
+  options.plot.require_drawable(options.output);
+  std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
+  std::vector<compare::MeasuredShape> shapes;
+  shapes.reserve(options.shapes.size());
+  for (const std::string& path : options.shapes) {
+    shapes.push_back(options.shape_options.load(path));
+  }
+  for (const compare::Scene& scene : scenes) warn_of_friction(scene);
+  using compare::Dimension;
+  const compare::MaterialFitOptions fit_options{
+      .pose = options.shape_options.pose(),
+      .arc_lengths = options.shape_options.arc_lengths(),
+      .density = options.density,
+      .torsional_stiffness = options.torsional_stiffness,
+      .natural_curvature_terms = options.natural_curvature_terms,
+      .direction_tolerance =
+          quantity_of("--clamp-angles", options.clamp_angles, Dimension::angle).value_or(0),
+      .position_tolerance =
+          quantity_of("--clamp-positions", options.clamp_positions, Dimension::length).value_or(0),
+      .chain_segments = options.segments,
+      .profile_points = options.plot.draws() ? profile_points : 0,
+      .noise = quantity_of("--noise", options.noise, Dimension::length),
+      .solve = options.overrides.solve()};
+  const compare::Calibration found = with_progress("calibrate", [&](const auto& /*unknown*/) {
+    return compare::calibrate(std::move(scenes), shapes, fit_options);
+  });
+  write_calibration(options.output, format_is_given,
+                    {.text = [&] { return material_text(found); },
+                     .json = [&] { return json_text(material_json(found)); },
+                     .csv = [&] { return material_csv(found); },
+                     .toml = [&] { return material_toml(found); }});
+  options.plot.draw([&] { return compare::fit_picture(found.scenes, found.fit); });
+}
+
+/// Springs for chains of the scenes' own rods, nothing measured.
+void run_chains(const CalibrateOptions& options, bool format_is_given) {
+  const auto refuse = [](const char* format) -> std::string {
+    throw compare::InputError(fmt::format(
+        "--segments without --shape: has no format {} (allowed: text, json, or a shape)", format));
+  };
+  std::vector<compare::ChainSprings> chains;
+  for (const compare::Scene& scene : load_all(options.scenes, options.overrides)) {
+    for (compare::ChainSprings& chain :
+         compare::chain_springs(scene, options.segments, options.overrides.solve())) {
+      chains.push_back(std::move(chain));
+    }
+  }
+  if (chains.empty()) {
+    throw compare::InputError(
+        "--segments: no scene's rod is like a plain chain of hinges (allowed: one section, "
+        "intrinsically straight, not twisted, touching nothing)");
+  }
+  write_calibration(options.output, format_is_given,
+                    {.text = [&] { return chains_text(chains); },
+                     .json =
+                         [&] {
+                           return json_text(Json{{"chains", chains_json(chains)}});
+                         },
+                     .csv = [&] { return refuse("csv"); },
+                     .toml = [&] { return refuse("toml"); }});
+}
+
+void run_force_model(const CalibrateOptions& options, bool points_are_given, bool format_is_given) {
+  const std::vector<compare::Scene> scenes = load_all(options.scenes, options.overrides);
+  const std::vector<compare::Scene> holdouts = load_all(options.holdouts, options.overrides);
+  for (const auto* list : {&scenes, &holdouts}) {
+    for (const compare::Scene& scene : *list) warn_of_polygons(scene);
+  }
+  compare::ForceModelFitOptions fit_options;
+  if (points_are_given) fit_options.points = scenes.front().force_model.points;
+  if (options.target) fit_options.target = *options.target;
+  fit_options.solve = options.overrides.solve();
+  const compare::ForceModelFit fit = with_progress("calibrate", [&](const auto& progress) {
+    fit_options.progress = progress;
+    return compare::fit_force_model(scenes, holdouts, fit_options);
+  });
+  write_calibration(options.output, format_is_given,
+                    {.text = [&] { return force_model_text(fit, options.target.has_value()); },
+                     .json = [&] { return json_text(force_model_json(fit)); },
+                     .csv = [&] { return force_model_csv(fit); },
+                     .toml = [&] { return force_model_toml(fit); }});
+  // Nobody asked for the default.
+  if (!fit.reached() && options.target) end_with(ExitStatus::outside_tolerance);
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "calibrate",
+      "parameters of the force model from physics, or Young's modulus from measured shapes");
+  const auto options = std::make_shared<CalibrateOptions>();
+  command->add_option("SCENE", options->scenes, "scene files (TOML)")->required();
+  const std::string parameters = "Parameters of the force model";
+  CLI::Option* holdout =
+      command->add_option("--holdout", options->holdouts, "hold-out scenes: judged, not fitted")
+          ->type_name("SCENE ...")
+          ->group(parameters);
+  CLI::Option* target =
+      command
+          ->add_option("--target", options->target,
+                       "RMS deviation wanted, share of the length such as 0.1%; law hooke takes N "
+                       "from it unless --points is given. Exit status 1 if it is missed; without "
+                       "--target the default is 0.1%, and status is 0")
+          ->transform(share_of_length())
+          ->group(parameters);
+  const std::string measured = "Young's modulus from measured shapes";
+  CLI::Option* shape =
+      command->add_option("--shape", options->shapes, "one per scene, or several of one scene")
+          ->type_name("FILE ...")
+          ->excludes(holdout)
+          ->excludes(target)
+          ->group(measured);
+  command->add_flag("--density", options->density, "fit the density as well")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_flag("--torsional-stiffness", options->torsional_stiffness,
+                 "fit GJ as well, from shapes whose clamps twist the wire")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--noise", options->noise,
+                   "standard deviation of one coordinate such as \"0.5 mm\"; default: estimated")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--natural-curvature", options->natural_curvature_terms,
+                   "fit this many terms of the wire's natural curvature as well (1: the same all "
+                   "along; Legendre's polynomials)")
+      ->check(CLI::Range(0, 24))
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--clamp-angles", options->clamp_angles,
+                   "how well the clamps' directions are known, as standard deviation such as \"5 "
+                   "deg\"; each shape's own are fitted as well")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option("--clamp-positions", options->clamp_positions,
+                   "the same of the grippers' positions, such as \"2 mm\"")
+      ->needs(shape)
+      ->group(measured);
+  command
+      ->add_option(
+          "--segments", options->segments,
+          "of your simulator's chain: the stiffness of its joints with which it comes nearest to "
+          "the rod, for three ways to hold it; with --shape: to the fitted one")
+      ->check(CLI::Range(4, 200))
+      ->excludes(target)
+      ->excludes(holdout)
+      ->group(measured);
+  options->plot
+      .add_to(*command, "points on the fitted rod, and E's profile likelihood,", Sketches::none)
+      ->needs(shape)
+      ->group(measured);
+  options->shape_options.add_to(*command, ChordLengths::not_exact_enough);
+  options->overrides.add_to(*command);
+  std::vector<std::string> formats = compare::names<Format>();
+  formats.emplace_back("toml");
+  command->add_option("--format", options->output.format, "text, json, csv or toml")
+      ->check(CLI::IsMember(formats))
+      ->capture_default_str();
+  command
+      ->add_option("-o,--output", options->output.file,
+                   "write to FILE instead of standard output; .json and .csv are formats, a .toml "
+                   "gets what --parameters (with "
+                   "--shape: --materials) reads, and the text still goes to standard output")
+      ->type_name("FILE");
+  command->footer(
+      "Examples:\n  dlo calibrate data/scenes/spring_steel_135.toml --law hooke --bookkeeping "
+      "consistent --target 0.1% --holdout data/scenes/spring_steel_215.toml -o params.toml\n  dlo "
+      "solve data/scenes/spring_steel_135.toml --model exact --samples 12 --format csv -o "
+      "seen.csv\n  dlo calibrate data/scenes/spring_steel_135.toml --shape seen.csv --plot "
+      "fit.svg");
+  command->callback([options, command] {
+    const bool format_is_given = command->count("--format") > 0;
+    if (options->shapes.empty() && options->segments > 0) {
+      run_chains(*options, format_is_given);
+    } else if (options->shapes.empty()) {
+      run_force_model(*options, command->count("--points") > 0, format_is_given);
+    } else {
+      run_material(*options, format_is_given);
+    }
+  });
+}
+
+}  // namespace dlo::cli

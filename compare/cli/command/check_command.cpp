@@ -1,0 +1,118 @@
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "command/commands.hpp"
+#include "dlo/compare/check.hpp"
+#include "format/json.hpp"
+#include "format/shape_check_output.hpp"
+#include "option/exit_status.hpp"
+#include "option/output.hpp"
+#include "option/plot.hpp"
+#include "option/scene_options.hpp"
+#include "option/shape_options.hpp"
+#include "option/share.hpp"
+#include "option/terminal.hpp"
+#include "picture/check_figure.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct CheckOptions {
+  std::string scene;
+  std::string shape;
+  ToleranceWords tolerance;
+  bool no_modulus = false;
+  bool no_explanation = false;
+  ShapeOptions shapes;
+  SceneOptions overrides;
+  OutputOptions output;
+  PlotOptions plot;
+};
+
+void plot(const CheckOptions& options, const compare::CheckResult& report) {
+  const compare::Scene& scene = report.scene;
+  options.plot.draw([&] {
+    const auto allowed =
+        report.tolerance ? std::optional(report.tolerance->allowed_m) : std::nullopt;
+    return compare::check_picture(scene, report.check, allowed);
+  });
+  options.plot.sketch(scene, [&] {
+    constexpr int samples = 201;
+    const std::vector<double> s = compare::equal_arc_lengths(scene.length, samples);
+    return std::vector<compare::SpatialLine>{
+        {.points = report.check.rod.sample(s).points},
+        {.points = report.check.alignment.shape.points, .joined = false}};
+  });
+}
+
+void run(const CheckOptions& options) {
+  options.plot.require_drawable(options.output);
+  const compare::Scene scene = options.overrides.load(options.scene);
+  const compare::MeasuredShape shape = options.shapes.load(options.shape);
+  compare::CheckRequest request{
+      .explaining = options.no_explanation ? compare::Explaining::no : compare::Explaining::yes,
+      .shape = {
+          .pose = options.shapes.pose(),
+          .arc_lengths = options.shapes.arc_lengths(),
+          .modulus = options.no_modulus ? compare::ModulusSearch::no : compare::ModulusSearch::yes,
+          .solve = options.overrides.solve()}};
+  if (!options.tolerance.allowed.empty()) {
+    request.tolerance = shape_tolerance("--tolerance", options.tolerance, scene.length);
+  }
+  const compare::CheckResult result = compare::check(scene, shape, request);
+  const CheckPage page{
+      result, options.shapes.unit_hint(result.check.polyline_length_m, scene.length),
+      result.judgement
+          ? verdict_word(result.passes() ? "pass" : "fail", result.passes(), options.output.file)
+          : ""};
+  if (options.output.is(Format::csv)) warn_of_friction(scene);
+  write_output(options.output, {.text = [&] { return shape_check_text(page); },
+                                .json = [&] { return json_text(shape_check_json(result)); },
+                                .csv = [&] { return shape_check_csv(result); }});
+  plot(options, result);
+  if (result.judgement && !result.judgement->pass) end_with(ExitStatus::outside_tolerance);
+}
+
+}  // namespace
+
+void add_check(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "check", "how far a shape of your own simulator or camera is from the energy model");
+  const auto options = std::make_shared<CheckOptions>();
+  command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
+  command->add_option("--shape", options->shape, "CSV, JSON or legacy VTK polyline")
+      ->type_name("FILE")
+      ->required();
+  command->add_option(
+      "--tolerance", options->tolerance.allowed,
+      "largest deviation allowed, 1% or 0.01 of the length or \"2 mm\"; exit status 1 "
+      "beyond it");
+  command
+      ->add_option("--measure", options->tolerance.measure, "what is held against it: rms or max")
+      ->check(CLI::IsMember({"rms", "max"}))
+      ->capture_default_str();
+  command
+      ->add_option(
+          "--min-seen", options->tolerance.min_seen,
+          "the file is a part of the rod: what it does not have is not judged, but less "
+          "than this share such as 10% never passes. Without it the file is the whole rod, "
+          "what is missing counts, and less than half never passes")
+      ->transform(share_of_length());
+  command->add_flag("--no-modulus", options->no_modulus, "leave E*/E out");
+  command->add_flag("--no-explanation", options->no_explanation,
+                    "do not look for causes where a shape fails");
+  options->shapes.add_to(*command, ChordLengths::offered);
+  options->overrides.add_solvers_to(*command);
+  add_output_options(*command, options->output);
+  options->plot.add_to(*command, "the points on the rod, and their distances along it",
+                       Sketches::offered);
+  command->footer(
+      "Example, with dlo in place of your simulator:\n"
+      "  dlo solve data/scenes/cable.toml --model force --points 32 --format csv -o mine.csv\n"
+      "  dlo check data/scenes/cable.toml --shape mine.csv --tolerance 1% --plot check.svg");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

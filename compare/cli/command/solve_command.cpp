@@ -1,0 +1,182 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/solve.hpp"
+#include "format/json.hpp"
+#include "format/plan_output.hpp"
+#include "format/solution_output.hpp"
+#include "option/output.hpp"
+#include "option/plot.hpp"
+#include "option/scene_options.hpp"
+#include "picture/solution_figure.hpp"
+#include "shape/write_vtk.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct SolveOptions {
+  std::string scene;
+  std::string model = "energy";
+  int samples = 0;
+  bool all = false;
+  SceneOptions overrides;
+  PlanOptions plan;
+  OutputOptions output;
+  PlotOptions plot;
+};
+
+/// What a format cannot say is not dropped in silence.
+void warn_of_neglected(const SolveOptions& options, const compare::Solution& solution,
+                       const compare::Scene& scene) {
+  if (options.output.is(Format::text) || options.output.is(Format::json)) return;
+  for (const std::string& what : solution.neglected) {
+    say("{}: model {} neglects the {} that the scene has", scene.file, options.model, what);
+  }
+}
+
+/// The same of options.
+void require_format_for(const SolveOptions& options) {
+  const std::string& format = options.output.format;
+  if (format != "csv" && format != "vtk") return;
+  if (options.all) {
+    throw compare::InputError(
+        fmt::format("--all: format {} holds one shape (allowed: text or json)", format));
+  }
+  if (options.plan.explain()) {
+    throw compare::InputError(
+        fmt::format("--explain: format {} holds no plan (allowed: text or json)", format));
+  }
+}
+
+void warn_of_force_model_options(const SolveOptions& options) {
+  const std::string names = options.overrides.force_model_options();
+  if (names.empty()) return;
+  say("{}: no effect on the shape of model {} (only on force and chain)", names, options.model);
+}
+
+/// A shape that is not verified, at a singular point or, as the first of all that are found,
+/// unstable has been shown, which is no success.
+void require_verified(const compare::Solution& solution, const compare::Scene& scene) {
+  if (energy_model::succeeded(solution.status)) return;
+  throw compare::ConvergenceError(fmt::format(
+      "{}: the {} model: {}", scene.file, compare::to_string(solution.model), solution.message));
+}
+
+/// What is drawn: what was solved, of a rod at enough points for a smooth line.
+std::vector<compare::Solution> drawn_solutions(const SolveOptions& options,
+                                               const compare::SolveOptions& solve,
+                                               const compare::Scene& scene,
+                                               const std::vector<compare::Solution>& solved) {
+  constexpr std::size_t enough = 101;
+  const compare::Solution& first = solved.front();
+  const bool continuous =
+      first.model == compare::Model::energy || first.model == compare::Model::exact;
+  if (!continuous || first.shape.arc_length.size() >= enough) return solved;
+  constexpr int samples = 201;
+  const std::vector<double> s = compare::equal_arc_lengths(scene.length, samples);
+  if (options.all) return compare::solve_all(scene, solve, s).solutions;
+  return {compare::solve(scene, first.model, solve, s)};
+}
+
+void plot(const SolveOptions& options, const compare::SolveOptions& solve,
+          const compare::Scene& scene, const std::vector<compare::Solution>& solved) {
+  options.plot.draw([&] {
+    return compare::solution_picture(scene, drawn_solutions(options, solve, scene, solved));
+  });
+  options.plot.sketch(scene, [&] {
+    std::vector<compare::SpatialLine> lines;
+    for (const compare::Solution& solution : drawn_solutions(options, solve, scene, solved)) {
+      lines.push_back({.points = solution.shape.points});
+    }
+    return lines;
+  });
+}
+
+void run(const SolveOptions& options) {
+  require_format_for(options);
+  options.plot.require_drawable(options.output);
+  const compare::Scene scene = options.overrides.load(options.scene);
+  const auto model = compare::from_name<compare::Model>(options.model);
+  constexpr int text_samples = 11;
+  int samples = options.samples;
+  const bool continuous = model == compare::Model::energy || model == compare::Model::exact;
+  if (continuous) warn_of_force_model_options(options);
+  if (samples == 0 && continuous && options.output.is(Format::text)) samples = text_samples;
+  const std::vector<double> arc_lengths =
+      samples > 0 ? compare::equal_arc_lengths(scene.length, samples) : std::vector<double>{};
+  if (options.all && model != compare::Model::energy) {
+    throw compare::InputError("--all: only model energy searches for all equilibria");
+  }
+  compare::SolveOptions solve = options.overrides.solve();
+  solve.accept_unverified = true;
+  compare::AllSolutions all;
+  if (options.all) {
+    all = compare::solve_all(scene, solve, arc_lengths);
+  } else {
+    all.solutions.push_back(compare::solve(scene, model, solve, arc_lengths));
+  }
+  const compare::Solution& solution = all.solutions.front();
+  warn_of_neglected(options, solution, scene);
+  if (options.output.format == "vtk") {
+    write_output(options.output, compare::vtk_polyline(solution.shape,
+                                                       {.curvature = solution.curvature,
+                                                        .tension = solution.tension,
+                                                        .d1 = solution.d1},
+                                                       scene.name));
+    plot(options, solve, scene, all.solutions);
+    return require_verified(solution, scene);
+  }
+  const auto plan = [&] {
+    compare::PlanOptions plan_options = options.plan.plan();
+    plan_options.time_limit = std::min(plan_options.time_limit, solve.time_limit);
+    return compare::make_plan(scene, plan_options);
+  };
+  write_output(options.output,
+               {.text =
+                    [&] {
+                      return (options.plan.explain() ? plan_text(plan(), scene) : "") +
+                             solution_text(solution, scene) +
+                             (options.all ? equilibria_text(all, scene) : "");
+                    },
+                .json =
+                    [&] {
+                      return json_text(options.all ? equilibria_json(all, scene, plan())
+                                                   : solution_json(solution, scene, plan()));
+                    },
+                .csv = [&] { return solution_csv(solution); }});
+  plot(options, solve, scene, all.solutions);
+  require_verified(solution, scene);
+}
+
+}  // namespace
+
+void add_solve(CLI::App& app) {
+  CLI::App* command = app.add_subcommand("solve", "the shape of one scene with one model");
+  const auto options = std::make_shared<SolveOptions>();
+  command->add_option("SCENE", options->scene, "scene file (TOML)")->required();
+  command->add_option("--model", options->model, compare::meanings<compare::Model>())
+      ->check(CLI::IsMember(compare::names<compare::Model>()))
+      ->capture_default_str();
+  command->add_option("--samples", options->samples, "M points at equal arc lengths from 0 to l")
+      ->check(CLI::Range(2, 1000000));
+  command->add_flag("--all", options->all, "every equilibrium that is found, with its stability");
+  options->overrides.add_to(*command);
+  options->plan.add_to(*command);
+  std::vector<std::string> formats = compare::names<Format>();
+  formats.emplace_back("vtk");
+  add_output_options(*command, options->output, formats);
+  options->plot.add_to(*command, "shape and curvature (with --all: of every equilibrium)",
+                       Sketches::offered);
+  command->footer(
+      "Examples:\n"
+      "  dlo solve data/scenes/spring_steel_175.toml --model exact --samples 5\n"
+      "  dlo solve data/scenes/cable.toml --format vtk -o cable.vtk   # for ParaView\n"
+      "  dlo solve data/scenes/cable.toml --plot cable.svg");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/force_model_settings.hpp"
+#include "dlo/compare/scene_file.hpp"
+#include "format/json.hpp"
+#include "format/stability_output.hpp"
+#include "option/exit_status.hpp"
+#include "option/output.hpp"
+#include "option/plot.hpp"
+#include "option/scene_options.hpp"
+#include "option/terminal.hpp"
+#include "picture/map_figure.hpp"
+#include "study/hard_case.hpp"
+#include "study/stability.hpp"
+#include "study/stability_map.hpp"
+
+namespace dlo::cli {
+namespace {
+
+using compare::Outcome;
+using compare::StabilityResult;
+
+struct StabilityOptions {
+  std::string scene;
+  std::string map;
+  std::vector<std::string> steppers;
+  compare::StabilityOptions cases;
+  compare::StabilityMapOptions grid;
+  int threads = 0;
+  OutputOptions output;
+  PlotOptions plot;
+};
+
+/// The paper's steppers may fail, `auto` and `implicit` may not.
+bool fails(const StabilityResult& result) {
+  const bool may_not =
+      result.stepper == compare::Stepper::automatic || result.stepper == compare::Stepper::implicit;
+  return may_not && result.outcome != Outcome::pass && result.outcome != Outcome::refused;
+}
+
+void run_map(StabilityOptions& options) {
+  options.plot.require_drawable(options.output);
+  options.grid.axis = options.map == "cF-cc" ? compare::MapAxis::c_c : compare::MapAxis::c_h;
+  options.grid.threads = options.threads;
+  const compare::Scene scene =
+      options.scene.empty() ? compare::hard_case_scene() : compare::load_scene(options.scene);
+  warn_of_polygons(scene);
+  warn_of_no_twist(scene, "the map");
+  const compare::StabilityMap map = with_progress("map", [&](const auto& progress) {
+    options.grid.progress = progress;
+    return compare::stability_map(scene, options.grid);
+  });
+  write_output(options.output, {.text = [&] { return stability_map_text(map); },
+                                .json = [&] { return json_text(stability_map_json(map)); },
+                                .csv = [&] { return stability_map_csv(map); }});
+  options.plot.draw([&] { return compare::Picture{{{{compare::map_figure(map)}}}}; });
+}
+
+void run_cases(StabilityOptions& options) {
+  if (!options.steppers.empty()) {
+    options.cases.steppers.clear();
+    for (const std::string& name : options.steppers) {
+      options.cases.steppers.push_back(compare::from_name<compare::Stepper>(name));
+    }
+  }
+  options.cases.threads = options.threads;
+  const auto results = with_progress("hard cases", [&](const auto& progress) {
+    options.cases.progress = progress;
+    return compare::stability(options.cases);
+  });
+  const std::size_t steppers = options.cases.steppers.size();
+  write_output(options.output, {.text = [&] { return hard_cases_text(results, steppers); },
+                                .json = [&] { return json_text(hard_cases_json(results)); },
+                                .csv = [&] { return hard_cases_csv(results); }});
+  if (std::any_of(results.begin(), results.end(), fails)) {
+    end_with(ExitStatus::outside_tolerance);
+  }
+}
+
+}  // namespace
+
+void add_stability(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "stability", "where the force model's steppers break: hard cases, or a map of c_F");
+  const auto options = std::make_shared<StabilityOptions>();
+  command->add_option("SCENE", options->scene,
+                      "scene file (TOML) of a map; without it the hard cases' rod");
+  CLI::Option* map_option =
+      command
+          ->add_option("--map", options->map,
+                       "cF-cc or cF-ch: where steps stop being stable, predicted and measured")
+          ->check(CLI::IsMember({"cF-cc", "cF-ch"}));
+  command->add_option("--threads", options->threads, "at most; 0: as many as the machine has")
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  const std::string table = "Hard cases";
+  command->add_option("--case", options->cases.name_contains, "only cases whose name contains this")
+      ->group(table);
+  command->add_option("--stepper", options->steppers, "only these steppers")
+      ->check(CLI::IsMember(compare::names<compare::Stepper>()))
+      ->group(table);
+  const auto steps = CLI::Range(1L, 1000000000000L);
+  command->add_option("--max-steps", options->cases.max_steps, "of the paper's steppers and verlet")
+      ->check(steps)
+      ->capture_default_str()
+      ->group(table);
+  command
+      ->add_option("--max-steps-auto", options->cases.max_steps_auto,
+                   "of steppers auto and implicit")
+      ->check(steps)
+      ->capture_default_str()
+      ->group(table);
+  command
+      ->add_option("--steps-at-rest", options->cases.steps_at_rest,
+                   "of the case at rest; implicit: a hundredth")
+      ->check(steps)
+      ->capture_default_str()
+      ->group(table);
+  const std::string map = "Map";
+  command->add_option("--columns", options->grid.columns, "values of c_c or c_h")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str()
+      ->group(map);
+  command->add_option("--rows", options->grid.rows, "values of c_F")
+      ->check(CLI::Range(2, 1000))
+      ->capture_default_str()
+      ->group(map);
+  command->add_option("--map-steps", options->grid.steps, "of each rod")
+      ->check(steps)
+      ->capture_default_str()
+      ->group(map);
+  add_output_options(*command, options->output);
+  options->plot.add_to(*command, "the map", Sketches::none)->needs(map_option)->group(map);
+  command->footer(
+      "Exit status 1: stepper auto or implicit does not pass a case.\n"
+      "Examples:\n  dlo stability --case folded\n  dlo stability --map cF-cc --columns 8 --plot "
+      "map.svg");
+  command->callback([options] {
+    if (!options->map.empty()) return run_map(*options);
+    if (!options->scene.empty()) {
+      throw compare::InputError(fmt::format(
+          "stability: SCENE = {}: only a map takes a scene (allowed with --map cF-cc or cF-ch)",
+          options->scene));
+    }
+    run_cases(*options);
+  });
+}
+
+}  // namespace dlo::cli

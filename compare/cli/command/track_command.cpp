@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "command/commands.hpp"
+#include "dlo/compare/error.hpp"
+#include "motion/track.hpp"
+#include "option/option_values.hpp"
+#include "option/output.hpp"
+#include "option/plot.hpp"
+#include "option/scene_options.hpp"
+#include "option/terminal.hpp"
+#include "picture/track_figure.hpp"
+#include "series/dynamic_track_series.hpp"
+#include "series/paraview.hpp"
+#include "series/track_series.hpp"
+
+namespace dlo::cli {
+namespace {
+
+struct TrackCommand {
+  std::string scene;
+  compare::TrackRequest request;
+  bool no_force = false;
+  bool dynamic = false;
+  compare::RodDamping damping;
+  TrackFrames frames;
+  std::string paraview;
+  SceneOptions overrides;
+  PlotOptions plot;
+  OutputOptions output;
+};
+
+void throw_if_stopped(const compare::Scene& scene, const std::optional<compare::TrackStop>& stopped,
+                      const char* what, std::size_t frames) {
+  if (!stopped) return;
+  throw compare::ConvergenceError(
+      fmt::format("{}:{} stopped at {:g} s: {} ({} frames before it "
+                  "are written)",
+                  scene.file, what, stopped->time, stopped->why, frames));
+}
+
+void run(const TrackCommand& command) {
+  command.plot.require_drawable(command.output);
+  const compare::Scene scene = command.overrides.load(command.scene);
+  warn_of_friction(scene);
+  compare::TrackRequest request = command.request;
+  if (command.no_force) request.options.force = compare::ForceBeside::absent;
+  if (command.dynamic) request.damping = command.damping;
+  request.options.solve = command.overrides.solve();
+  if (!command.no_force) warn_of_polygons(scene);
+  const compare::TrackResult result = with_progress(
+      "track", [&](const auto& progress) { return compare::follow(scene, request, progress); });
+  const compare::Track& track = result.track;
+  const compare::DynamicTrack* dynamic = result.moving();
+  if (!command.paraview.empty()) {
+    write_series(track, scene, command.frames, command.paraview, dynamic);
+  }
+  write_output(
+      command.output,
+      {.text =
+           [&] {
+             return track_text(track, scene, result.options) +
+                    (dynamic ? dynamic_text(*dynamic) : "");
+           },
+       .json = [&] { return track_json(track, scene, result.options, command.frames, dynamic); },
+       .csv = [&] { return track_csv(track, scene, command.frames, dynamic); }});
+  command.plot.draw([&] {
+    return compare::track_picture(scene, {track, dynamic}, result.options);
+  });
+  throw_if_stopped(scene, track.stopped, "", track.frames.size());
+  if (dynamic != nullptr) {
+    throw_if_stopped(scene, dynamic->stopped, " the moving rod", dynamic->frames.size());
+  }
+}
+
+}  // namespace
+
+void add_track(CLI::App& app) {
+  CLI::App* command = app.add_subcommand(
+      "track", "follow the rod while grippers and obstacles move: forces, contacts, snaps, lag");
+  const auto options = std::make_shared<TrackCommand>();
+  command->add_option("SCENE", options->scene, "scene file (TOML) with poses")->required();
+  const auto rate = [&](const std::string& name, std::optional<double>& value,
+                        const std::string& what) {
+    command->add_option(name, value, what)->check(number_between(1e-6, 1e9))->type_name("HZ");
+  };
+  const double most = std::numeric_limits<double>::max();
+  command
+      ->add_option("--from", options->request.options.from,
+                   "first time [s], default the first pose's")
+      ->check(number_between(-most, most));
+  command->add_option("--to", options->request.options.to, "last time [s], default the last pose's")
+      ->check(number_between(-most, most));
+  rate("--frame-rate", options->request.frame_rate,
+       "frames a second, default [track] frame_rate of the scene, or 1000");
+  rate("--obstacle-rate", options->request.obstacle_rate,
+       "how often obstacles move, default [track] obstacle_rate, or with every frame");
+  rate("--step-rate", options->request.step_rate,
+       "steps of the force model a second, default [track] step_rate, or 30000");
+  command->add_flag("--no-force", options->no_force, "leave the force model out");
+  CLI::Option* const dynamic = command->add_flag(
+      "--dynamic", options->dynamic,
+      "the rod with its inertia too, from rest at the first pose; the force model against it");
+  command
+      ->add_option("--damping", options->damping.material,
+                   "with --dynamic: Kelvin-Voigt time tau of the material [s]")
+      ->check(number_between(0, most))
+      ->needs(dynamic)
+      ->type_name("TIME")
+      ->capture_default_str();
+  command
+      ->add_option("--drag", options->damping.air,
+                   "with --dynamic: drag of the air per length and velocity [N s/m^2]")
+      ->check(number_between(0, most))
+      ->needs(dynamic)
+      ->type_name("VALUE")
+      ->capture_default_str();
+  command->add_option("--samples", options->request.options.samples, "points of a frame's shape")
+      ->check(CLI::Range(2, 10000))
+      ->capture_default_str();
+  command
+      ->add_option("--every", options->frames.every,
+                   "write every so many-th frame to JSON, CSV and ParaView, and those of events")
+      ->check(CLI::Range(1, 100000000))
+      ->capture_default_str();
+  command->add_flag("--shapes", options->frames.points, "in JSON the frames' points too");
+  command
+      ->add_option(
+          "--paraview", options->paraview,
+          "write FILE such as rod.vtk.series for ParaView, and rod_00000.vtk, .. beside it")
+      ->type_name("FILE");
+  options->overrides.add_moving_to(*command);
+  options->plot.add_to(*command, "shapes over time and the grippers' forces", Sketches::none);
+  add_output_options(*command, options->output);
+  command->footer(
+      "Exit status 3: the motion asks for what cannot be, such as grippers farther apart than\n"
+      "the rod; what was before it is written.\n"
+      "Examples:\n"
+      "  dlo track data/scenes/corner_routing.toml --frame-rate 100 --no-force\n"
+      "  dlo track data/scenes/buckling_wire.toml --frame-rate 50 --format csv\n"
+      "  dlo track data/scenes/swung_rod.toml --frame-rate 50 --dynamic --damping 0.01");
+  command->callback([options] { run(*options); });
+}
+
+}  // namespace dlo::cli

@@ -1,0 +1,219 @@
+#include "format/shape_check_output.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "base/display.hpp"
+#include "dlo/compare/deviation.hpp"
+#include "format/alignment_output.hpp"
+#include "format/comparison_output.hpp"
+#include "format/solution_output.hpp"
+#include "record/csv_table.hpp"
+#include "record/solution_fields.hpp"
+
+namespace dlo::cli {
+namespace {
+
+const char* rule_text(compare::ArcLengths rule) {
+  switch (rule) {
+    case compare::ArcLengths::file:
+      return "the file's own";
+    case compare::ArcLengths::chord:
+      return "chord lengths of the whole rod";
+    case compare::ArcLengths::nearest:
+    case compare::ArcLengths::automatic:
+      break;
+  }
+  return "nearest points, so differences along the rod do not show";
+}
+
+void add_friction(std::string& out, const compare::FrictionCheck& friction) {
+  append(out, "  neglected       friction that the scene has: all above is without it\n");
+  const auto needed = [&] {
+    std::string text =
+        fmt::format("{:.3g} +- {:.2g} times the scene's", friction.factor, friction.factor_error);
+    if (std::isfinite(friction.coefficient)) {
+      append(text, ", a coefficient of {:.3g}", friction.coefficient);
+    }
+    return text;
+  };
+  switch (friction.verdict) {
+    case compare::FrictionVerdict::none_needed:
+      append(out, "  friction        none is needed: an equilibrium without it is {:.3g} mm away\n",
+             friction.rms_m * 1e3);
+      return;
+    case compare::FrictionVerdict::inside:
+      append(out, "  friction        can hold this shape: it needs {}\n", needed());
+      return;
+    case compare::FrictionVerdict::outside:
+      append(out, "  friction        cannot hold this shape: it needs {}\n", needed());
+      return;
+    case compare::FrictionVerdict::not_identified:
+      break;
+  }
+  append(out, "  friction        not identified: {}\n", friction.reason);
+  if (std::isfinite(friction.factor)) {
+    append(out, "                  (between {:.3g} and {:.3g} times the scene's, each +- {:.2g})\n",
+           friction.least_factor, friction.factor, friction.factor_error);
+  }
+}
+
+Json friction_json(const compare::FrictionCheck& friction) {
+  return {{"verdict", compare::to_string(friction.verdict)},
+          {"reason", friction.reason.empty() ? Json() : Json(friction.reason)},
+          {"factor", friction.factor},
+          {"least_factor", friction.least_factor},
+          {"factor_error", friction.factor_error},
+          {"coefficient", friction.coefficient},
+          {"rms_m", friction.rms_m}};
+}
+
+const char* verdict_of(const compare::ShapeJudgement& judgement) {
+  return judgement.pass ? "pass" : "fail";
+}
+
+}  // namespace
+
+std::string shape_check_text(const CheckPage& page) {
+  const compare::CheckResult& report = page.result;
+  const compare::ShapeCheck& c = report.check;
+  const compare::Scene& scene = report.scene;
+  std::string out;
+  const compare::Alignment& a = c.alignment;
+  const std::vector<double>& s = c.reference.arc_length;
+  append(out, "{}   Gamma = {:.4g}\n", compare::display(c.scene), c.gamma);
+  append(out, "  shape           {}: {} points, {}\n", compare::display(c.file), s.size(),
+         range_text(a, scene.length));
+  if (!c.direction_is_clear) append(out, "                  (the other direction fits as well)\n");
+  append(out, "  arc lengths     {}\n", rule_text(a.arc_lengths));
+  append(out,
+         "  seen            s = {:.4g} to {:.4g} m, {:.4g} % of l; polyline {:.4g} m; largest gap "
+         "{:.4g} m at s = {:.4g} m\n",
+         s.front(), s.back(), c.seen_share * 100, c.polyline_length_m, c.largest_gap_m,
+         c.largest_gap_at_m);
+  const std::string hint = c.hint.empty() ? page.unit_hint : c.hint;
+  if (!hint.empty()) append(out, "                  ({})\n", hint);
+  if (report.pose == compare::PoseFreedom::known) {
+    append(out, "  frame           the scene's\n");
+  } else {
+    append(out, "  frame           found ({}): {}\n", compare::to_string(report.pose),
+           pose_text(a.pose, scene.length));
+    if (!c.turn_is_clear) {
+      append(out,
+             "                  (the rotation about the rod's own line is not identifiable from "
+             "these points)\n");
+    }
+  }
+  const compare::Deviation& d = c.deviation;
+  add_largest_and_rms(out, d);
+  const Eigen::Vector3d at = shown(c.worst_position, scene.length);
+  append(out, " (point {} of the file, at [{:.4g}, {:.4g}, {:.4g}] m)\n", c.worst_point, at.x(),
+         at.y(), at.z());
+  if (std::isfinite(d.tip_m)) append(out, "                  tip {:.4g} mm\n", d.tip_m * 1e3);
+  if (c.whole_rms_m > d.rms_m * (1 + 1e-6)) {
+    append(out,
+           "                  as the whole rod RMS {:.4g} mm, largest {:.4g} mm: what is missing "
+           "counts with its distance from the outermost point\n",
+           c.whole_rms_m * 1e3, c.whole_max_m * 1e3);
+  }
+  if (std::isfinite(d.angle_rms_rad)) add_angle_and_curvature(out, d);
+  if (std::isfinite(c.movement_m)) {
+    append(out, "  movement        the rod is {:.4g} mm = {:.4g} % of l away from straight (RMS)\n",
+           c.movement_m * 1e3, c.movement_m / scene.length * 100);
+  }
+  add_modulus(out, c.effective_modulus, NAN, c.stiffness, c.modulus);
+  add_state(out, c.state, scene.length, "the shape");
+  if (report.friction) add_friction(out, *report.friction);
+  constexpr std::size_t most_explanations = 3;
+  for (std::size_t i = 0; i < std::min(most_explanations, report.explanations.size()); ++i) {
+    const compare::Explanation& explanation = report.explanations[i];
+    append(out, "  {}  RMS {:.4g} mm if {}{}\n", i == 0 ? "explained by  " : "              ",
+           explanation.rms_m * 1e3,
+           explanation.kind == compare::ExplanationKind::discretisation ? "it is " : "",
+           explanation.cause);
+  }
+  if (report.supersedes_modulus) {
+    append(out,
+           "                  (better than any stiffness: E* is no measure of the material)\n");
+  }
+  if (report.judgement) {
+    append(out, "  verdict         {}: {}\n",
+           page.verdict.empty() ? verdict_of(*report.judgement) : page.verdict,
+           report.judgement->reason);
+  }
+  return out;
+}
+
+Json shape_check_json(const compare::CheckResult& report) {
+  const compare::ShapeCheck& c = report.check;
+  const std::vector<double>& s = c.reference.arc_length;
+  Json result = {{"schema", "dlo/check/1"},
+                 {"scene", c.scene},
+                 {"shape", c.file},
+                 {"gamma", c.gamma},
+                 {"points", s.size()}};
+  result.update(to_json(c.alignment));
+  result["direction_is_clear"] = c.direction_is_clear;
+  result["turn_is_clear"] = c.turn_is_clear;
+  result["seen"] = {{"from_m", s.front()},
+                    {"to_m", s.back()},
+                    {"share", c.seen_share},
+                    {"polyline_length_m", c.polyline_length_m},
+                    {"largest_gap_m", c.largest_gap_m},
+                    {"largest_gap_at_m", c.largest_gap_at_m},
+                    {"excess_m", c.excess_m}};
+  result["hint"] = c.hint.empty() ? Json() : Json(c.hint);
+  result["deviation"] =
+      compare::json_of(compare::numbers_of(compare::deviation_fields(), c.deviation));
+  result["deviation"]["whole_rms_m"] = c.whole_rms_m;
+  result["deviation"]["whole_max_m"] = c.whole_max_m;
+  result["deviation"]["worst_point"] = c.worst_point;
+  result["deviation"]["worst_position_m"] = to_json(c.worst_position);
+  result["movement_m"] = c.movement_m;
+  result.update(modulus_json(c.effective_modulus));
+  const bool given_by_EI = report.scene.given_bending_stiffness.has_value();
+  result[given_by_EI ? "effective_bending_stiffness_Nm2" : "effective_modulus_Pa"] = c.modulus;
+  result["superseded_by"] =
+      report.supersedes_modulus ? Json(report.supersedes_modulus->cause) : Json();
+  if (report.judgement) {
+    result["tolerance"] = {{"measure", report.tolerance->largest ? "max" : "rms"},
+                           {"allowed_m", report.tolerance->allowed_m},
+                           {"least_seen_share", report.tolerance->least_seen_share},
+                           {"part", report.tolerance->part}};
+    result["judged_m"] = report.judgement->judged_m;
+    result["verdict"] = verdict_of(*report.judgement);
+    result["reason"] = report.judgement->reason;
+  }
+  result["explanations"] =
+      json_list(report.explanations, [](const compare::Explanation& explanation) -> Json {
+        return {{"cause", explanation.cause},
+                {"kind", compare::to_string(explanation.kind)},
+                {"numbers", explanation.numbers},
+                {"rms_m", explanation.rms_m}};
+      });
+  result["state"] = to_json(c.state);
+  if (report.friction) {
+    result["neglected"] = {"friction"};
+    result["friction"] = friction_json(*report.friction);
+  }
+  result["arc_length_m"] = s;
+  result["points_m"] = points_json(c.alignment.shape.points);
+  result["reference_points_m"] = points_json(c.reference.points);
+  return result;
+}
+
+std::string shape_check_csv(const compare::CheckResult& report) {
+  const compare::CsvTable table(
+      "scene,shape,gamma,points,reversed,arc_lengths,from_m=seen/from_m,to_m=seen/to_m,"
+      "rms_m=deviation/rms_m,rms_over_length=deviation/rms_over_length,"
+      "rms_over_movement=deviation/rms_over_movement,max_m=deviation/max_m,"
+      "max_at_m=deviation/max_at_m,worst_point=deviation/worst_point,tip_m=deviation/tip_m,"
+      "movement_m,effective_modulus_ratio,rms_at_effective_modulus_m,optimum,"
+      "tolerance_m=tolerance/allowed_m,verdict,seen_share=seen/share,reason,"
+      "whole_rms_m=deviation/whole_rms_m,whole_max_m=deviation/whole_max_m,"
+      "friction=friction/verdict,friction_factor=friction/factor");
+  return table.header() + table.row(shape_check_json(report));
+}
+
+}  // namespace dlo::cli

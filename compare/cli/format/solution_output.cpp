@@ -1,0 +1,274 @@
+#include "format/solution_output.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/display.hpp"
+#include "base/number.hpp"
+#include "base/quote.hpp"
+#include "format/plan_output.hpp"
+#include "polygon/self_crossing.hpp"
+#include "record/solution_fields.hpp"
+#include "solve/linking.hpp"
+
+namespace dlo::cli {
+namespace {
+
+/// Eight decimals; what rounds to zero has no sign.
+std::string coordinate(double value) {
+  return fmt::format("{:.8f}", std::abs(value) < 0.5e-8 ? 0.0 : value);
+}
+
+Json twist_json(const std::vector<energy_model::TwistedPart>& twists) {
+  double total = 0;
+  Json parts = Json::array();
+  for (const energy_model::TwistedPart& part : twists) {
+    total += part.angle;
+    parts.push_back({{"from_m", part.begin},
+                     {"to_m", part.end},
+                     {"angle_rad", part.angle},
+                     {"torque_Nm", part.torque}});
+  }
+  return {{"total_rad", total}, {"parts", std::move(parts)}};
+}
+
+Json turns_json(const std::vector<compare::Linking>& parts) {
+  return json_list(parts, [&](const compare::Linking& part) -> Json {
+    return {{"from_m", part.begin},
+            {"to_m", part.end},
+            {"held", part.held},
+            {"twist", part.twist},
+            {"writhe", part.writhe}};
+  });
+}
+
+const char* stability_of(const compare::Solution& solution) {
+  if (compare::is_stable(solution)) return "stable";
+  return solution.status == energy_model::SolveStatus::near_singular ? "singular" : "unstable";
+}
+
+}  // namespace
+
+Eigen::Vector3d shown(const Eigen::Vector3d& vector, double magnitude) {
+  const double scale = std::max(magnitude, vector.norm());
+  return {compare::shown(vector.x(), scale), compare::shown(vector.y(), scale),
+          compare::shown(vector.z(), scale)};
+}
+
+std::string contact_text(const energy_model::ContactPart& contact) {
+  std::string out;
+  const Eigen::Vector3d force = shown(contact.force, 0);
+  append(out, "obstacle {}, {}", contact.obstacle + 1, energy_model::to_string(contact.kind));
+  if (contact.kind == energy_model::ContactKind::lying) {
+    append(out, " from s = {:.6g} to {:.6g} m", contact.begin, contact.end);
+  } else {
+    append(out, " at s = {:.6g} m", contact.begin);
+  }
+  append(out, ": force [{:.6g}, {:.6g}, {:.6g}] N", force.x(), force.y(), force.z());
+  if (contact.kind == energy_model::ContactKind::lying) {
+    // Both are differences of what the rod carries beside them.
+    constexpr double cancelled = 100;
+    const double large = cancelled * force.norm();
+    append(out, ", of it {:.4g} N and {:.4g} N where it begins and ends",
+           compare::shown(contact.begin_force, large), compare::shown(contact.end_force, large));
+  }
+  return out;
+}
+
+Json contacts_json(const std::vector<energy_model::ContactPart>& contacts) {
+  Json result = Json::array();
+  for (const energy_model::ContactPart& contact : contacts) {
+    Json entry = {{"obstacle", contact.obstacle},
+                  {"kind", energy_model::to_string(contact.kind)},
+                  {"from_m", contact.begin},
+                  {"to_m", contact.end},
+                  {"force_N", to_json(contact.force)}};
+    if (contact.kind == energy_model::ContactKind::lying) {
+      entry["from_force_N"] = contact.begin_force;
+      entry["to_force_N"] = contact.end_force;
+      entry["largest_pressure_N_per_m"] = contact.largest_pressure;
+    }
+    result.push_back(std::move(entry));
+  }
+  return result;
+}
+
+std::string solution_text(const compare::Solution& solution, const compare::Scene& scene) {
+  std::string out;
+  append(out, "scene      {}\n", compare::display(scene.name));
+  append(out, "model      {}, {}\n", compare::to_string(solution.model), solution.message);
+  append(out, "Gamma      {:.6g}   (w l^3 / EI)\n", scene.gamma());
+  if (scene.assumes_torsion()) append(out, "assumed    {}\n", assumption_text(scene));
+  if (solution.steps > 0) {
+    append(out, "steps      {}", solution.steps);
+    // Steps in time and Newton's have neither.
+    if (solution.c_F > 0) append(out, "   c_F {:.4g} m/N, c_h {:.6f}", solution.c_F, solution.c_h);
+    append(out, "\n");
+  } else {
+    append(out, "solver     {} evaluations", solution.evaluations);
+    if (solution.terms > 0) append(out, ", {} terms", solution.terms);
+    append(out, "\n");
+  }
+  append(out, "wall time  {:.3g} ms\n", solution.seconds * 1e3);
+  if (!solution.neglected.empty()) {
+    append(out, "neglected  {}: the scene has it, model {} has not\n",
+           fmt::join(solution.neglected, ", "), compare::to_string(solution.model));
+  }
+  if (compare::neglects(solution, "friction")) {
+    append(out,
+           "           (without it this is one shape; friction could hold others beside it)\n");
+  }
+  if (const auto crossing = compare::self_crossing(solution.shape, scene.diameter)) {
+    append(out,
+           "crossing   at s = {:.4g} m and {:.4g} m the rod's axis is {:.2g} m apart, its diameter "
+           "is {:g} m: contact of the rod with itself is in no model\n",
+           crossing->first, crossing->second, crossing->distance, scene.diameter);
+  }
+  const compare::Magnitudes large = compare::magnitudes(scene);
+  compare::SceneEnergies e = solution.energy;
+  for (double* part : {&e.bending, &e.twisting, &e.gravity, &e.load, &e.stretch}) {
+    *part = compare::shown(*part, large.energy);
+  }
+  append(out, "energy     bending {:.9g} J, ", e.bending);
+  if (!solution.twists.empty()) append(out, "twisting {:.9g} J, ", e.twisting);
+  append(out, "gravity {:.9g} J, load {:.9g} J, stretch {:.3g} J", e.gravity, e.load, e.stretch);
+  out += e.contact > 0 ? fmt::format(", contact {:.9g} J\n", e.contact) : "\n";
+  for (const energy_model::TwistedPart& part : solution.twists) {
+    append(out, "twist      {:.6g} rad, torque {:.6g} Nm from s = {:.4g} to {:.4g} m\n",
+           compare::shown(part.angle, 1), compare::shown(part.torque, large.torque), part.begin,
+           part.end);
+  }
+  for (const compare::Linking& part : solution.linking) {
+    const double turns = part.twist + part.writhe;
+    append(out, "turns      {:.3f} = twist {:.3f} + writhe {:.3f} from s = {:.4g} to {:.4g} m",
+           compare::unsigned_zero(turns), compare::unsigned_zero(part.twist),
+           compare::unsigned_zero(part.writhe), part.begin, part.end);
+    constexpr double tolerance = 0.02;  // of the writhe
+    if (std::abs(turns - part.held) > tolerance) {
+      append(out, ", by the grips alone {:.3f}", part.held);
+    }
+    append(out, "\n");
+  }
+  out += compare::text_rows(compare::shape_numbers(), {scene, solution}, scene);
+  for (const Eigen::Vector3d& exact : solution.obstacles) {
+    const Eigen::Vector3d force = shown(exact, large.force);
+    append(out, "obstacle   force [{:.6g}, {:.6g}, {:.6g}] N on the rod\n", force.x(), force.y(),
+           force.z());
+  }
+  for (const energy_model::ContactPart& contact : solution.contacts) {
+    append(out, "contact    {}\n", contact_text(contact));
+  }
+  for (std::size_t i = 0; i < solution.grippers.size(); ++i) {
+    const Eigen::Vector3d force = shown(solution.grippers[i].force, large.force);
+    const Eigen::Vector3d torque = shown(solution.grippers[i].torque, large.torque);
+    const compare::Gripper& gripper = scene.grippers[i];
+    append(out,
+           "gripper {} at s = {:.4g} m ({}): force [{:.6g}, {:.6g}, {:.6g}] N, torque [{:.6g}, "
+           "{:.6g}, {:.6g}] Nm on the "
+           "rod\n",
+           i + 1, gripper.at, gripper.direction ? "clamp" : "pin", force.x(), force.y(), force.z(),
+           torque.x(), torque.y(), torque.z());
+  }
+  append(out, "\n{:>12} {:>13} {:>13} {:>13}\n", "s [m]", "x [m]", "y [m]", "z [m]");
+  for (std::size_t i = 0; i < solution.shape.arc_length.size(); ++i) {
+    const auto point = solution.shape.points.col(static_cast<Eigen::Index>(i));
+    append(out, "{:12.6f} {:>13} {:>13} {:>13}\n", solution.shape.arc_length[i],
+           coordinate(point.x()), coordinate(point.y()), coordinate(point.z()));
+  }
+  return out;
+}
+
+Json solution_json(const compare::Solution& solution, const compare::Scene& scene,
+                   const compare::Plan& plan) {
+  const compare::SolvedShape shape{scene, solution};
+  Json result = {{"schema", "dlo/solve/1"}};
+  compare::add_json(result, compare::solution_fields(), shape, scene);
+  result["plan"] = plan_json(plan);
+  if (scene.assumes_torsion()) {
+    result["assumed"] = {{"torsional_stiffness_Nm2", scene.twisting_stiffness()},
+                         {"poisson_ratio", compare::assumed_poisson_ratio}};
+  }
+  if (solution.status == energy_model::SolveStatus::near_singular &&
+      solution.model == compare::Model::energy) {
+    result["neutral_directions"] = solution.neutral_directions;
+  }
+  if (!solution.twists.empty()) result["twist"] = twist_json(solution.twists);
+  if (!solution.linking.empty()) result["turns"] = turns_json(solution.linking);
+  if (!solution.neglected.empty()) result["neglected"] = solution.neglected;
+  if (!solution.obstacles.empty()) {
+    result["obstacles"] = obstacles_json(solution.obstacles);
+    if (solution.model == compare::Model::energy || solution.model == compare::Model::exact) {
+      result["penetration_m"] = solution.penetration;
+      result["contacts"] = contacts_json(solution.contacts);
+    }
+  }
+  if (const auto crossing = compare::self_crossing(solution.shape, scene.diameter)) {
+    result["self_crossing"] = {{"s_m", {crossing->first, crossing->second}},
+                               {"distance_m", crossing->distance}};
+  }
+  if (solution.model == compare::Model::chain || solution.model == compare::Model::force) {
+    result["parameters"] = parameters_json(solution, scene.force_model);
+  }
+  compare::add_json(result, compare::shape_numbers(), shape, scene);
+  return result;
+}
+
+std::string solution_csv(const compare::Solution& solution) {
+  std::string text = "x,y,z,s\n";
+  for (std::size_t i = 0; i < solution.shape.arc_length.size(); ++i) {
+    const auto point = solution.shape.points.col(static_cast<Eigen::Index>(i));
+    for (const double value : point) text += compare::csv_number(value, 17) + ",";
+    text += compare::csv_number(solution.shape.arc_length[i], 17) + "\n";
+  }
+  return text;
+}
+
+std::string equilibria_text(const compare::AllSolutions& all, const compare::Scene& scene) {
+  std::string out;
+  const compare::Magnitudes large = compare::magnitudes(scene);
+  const std::vector<compare::Solution>& solutions = all.solutions;
+  append(out, "\n{} equilibria found\n{:>16} {:>10} {:>20} {:>13} {:>13} {:>13}\n",
+         solutions.size(), "energy [J]", "", "smallest eigenvalue", "x(l) [m]", "y(l) [m]",
+         "z(l) [m]");
+  for (const compare::Solution& solution : solutions) {
+    const Eigen::Vector3d tip = shown(solution.shape.points.rightCols<1>(), large.length);
+    append(out, "{:16.9g} {:>10} {:20.6g} {:13.6f} {:13.6f} {:13.6f}\n",
+           compare::shown(solution.energy.total(), large.energy), stability_of(solution),
+           compare::shown(solution.smallest_eigenvalue, 1), tip.x(), tip.y(), tip.z());
+  }
+  append(out, "\nlooked from (a search: there may be others)\n{:>8} {:>12}\n", "starts",
+         "found first");
+  for (const energy_model::SearchStrategy& strategy : all.looked_from) {
+    append(out, "{:8} {:12}   {}\n", strategy.tried, strategy.found_first, strategy.name);
+  }
+  for (std::size_t i = 0; i < all.not_looked.size(); ++i) {
+    append(out, "{:<11}{}\n", i == 0 ? "not looked" : "", all.not_looked[i]);
+  }
+  return out;
+}
+
+Json equilibria_json(const compare::AllSolutions& all, const compare::Scene& scene,
+                     const compare::Plan& plan) {
+  const std::vector<compare::Solution>& solutions = all.solutions;
+  Json document = solution_json(solutions.front(), scene, plan);
+  document["equilibria"] = json_list(solutions, [&](const compare::Solution& solution) -> Json {
+    return {{"stable", compare::is_stable(solution)},
+            {"status", compare::status_name(solution.status)},
+            {"smallest_eigenvalue", solution.smallest_eigenvalue},
+            {"energy_J", solution.energy.total()},
+            {"points_m", points_json(solution.shape.points)}};
+  });
+  document["looked_from"] =
+      json_list(all.looked_from, [&](const energy_model::SearchStrategy& strategy) -> Json {
+        return {{"strategy", strategy.name},
+                {"starts", strategy.tried},
+                {"found_first", strategy.found_first}};
+      });
+  document["not_looked"] = all.not_looked;
+  return document;
+}
+
+}  // namespace dlo::cli

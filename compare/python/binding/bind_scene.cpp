@@ -1,0 +1,180 @@
+#include "bind_scene.hpp"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <sstream>
+
+#include "array.hpp"
+#include "base/input_file.hpp"
+#include "base/words.hpp"
+#include "dlo/compare/error.hpp"
+#include "dlo/compare/material.hpp"
+#include "document.hpp"
+#include "module.hpp"
+#include "result.hpp"
+#include "scene/read_scene.hpp"
+#include "toml/quantity.hpp"
+#include "toml/scene_keys.hpp"
+#include "toml/strict_table.hpp"
+
+namespace dlo::python {
+namespace {
+
+SharedScene scene_from(const toml::table& root, const std::string& file,
+                       const MaterialsFile& materials) {
+  SceneData data{compare::read_scene(root, file, materials_of(materials)), {}};
+  if (const toml::array* obstacles = root["obstacle"].as_array()) {
+    for (const toml::node& obstacle : *obstacles) {
+      const bool axis = obstacle.as_table()->at_path("touches").value_or("") == std::string("axis");
+      data.obstacle_offsets.push_back(axis ? 0 : data.scene.diameter / 2);
+    }
+  }
+  return std::make_shared<SceneData>(std::move(data));
+}
+
+py::tuple parse_scene(const std::string& text, const std::string& file,
+                      const MaterialsFile& materials) {
+  const toml::table root = compare::parse_toml(text, file);
+  SharedScene scene = scene_from(root, file, materials);
+  return py::make_tuple(std::move(scene), to_python(root));
+}
+
+std::string toml_text(const py::dict& document) {
+  std::ostringstream text;
+  text << to_toml(document, "") << "\n";
+  return text.str();
+}
+
+double quantity(const std::string& text, const std::string& dimension) {
+  using compare::Dimension;
+  constexpr std::pair<const char*, Dimension> dimensions[] = {
+      {"number", Dimension::number},
+      {"length", Dimension::length},
+      {"angle", Dimension::angle},
+      {"force", Dimension::force},
+      {"acceleration", Dimension::acceleration},
+      {"curvature", Dimension::curvature},
+      {"foundation", Dimension::foundation},
+      {"section_stiffness", Dimension::section_stiffness},
+      {"joint_stiffness", Dimension::joint_stiffness},
+      {"mass", Dimension::mass},
+      {"mass_per_length", Dimension::mass_per_length},
+      {"twist", Dimension::twist}};
+  for (const auto& [name, value] : dimensions) {
+    if (dimension == name) return compare::parse_quantity(text, value);
+  }
+  throw std::out_of_range("no dimension " + dimension);
+}
+
+py::dict settings_of(const SceneData& data) {
+  const compare::ForceModelSettings& settings = data.scene.force_model;
+  py::dict result;
+  result["points"] = settings.points;
+  result["law"] = compare::to_string(settings.law);
+  result["bookkeeping"] = compare::to_string(settings.bookkeeping);
+  result["stepper"] = compare::to_string(settings.stepper);
+  result["bending_rule"] = compare::to_string(settings.bending_rule);
+  result["design_curvature"] = settings.design_curvature;
+  result["point_weight"] = settings.point_weight;
+  result["c_b"] = settings.c_b;
+  result["c_c"] = settings.c_c;
+  result["c_F"] = settings.c_F;
+  result["c_h"] = settings.c_h;
+  result["l_s"] = settings.l_s;
+  return result;
+}
+
+py::dict rates_of(const SceneData& data) {
+  const compare::TrackRates& rates = data.scene.track;
+  py::dict result;
+  result["frame_rate"] = rates.frames;
+  result["obstacle_rate"] = rates.obstacles;
+  result["step_rate"] = rates.steps;
+  return result;
+}
+
+SharedScene scene_at(const SharedScene& data, double time) {
+  if (!compare::motion_of(data->scene)) {
+    throw compare::InputError(
+        fmt::format("{}: time = {:g}: nothing moves (allowed: None, or a scene with "
+                    "[[gripper.pose]] or [[obstacle.pose]])",
+                    data->scene.file, time));
+  }
+  return std::make_shared<SceneData>(
+      SceneData{compare::scene_at(data->scene, time), data->obstacle_offsets});
+}
+
+py::dict table_keys() {
+  py::dict keys;
+  for (const compare::SceneTable& table : compare::scene_tables()) {
+    keys[py::str(table.name)] = py::cast(table.keys);
+  }
+  return keys;
+}
+
+py::list material_list(const MaterialsFile& file) {
+  py::list list;
+  for (const compare::Material& material : materials_of(file)) {
+    using namespace py::literals;  // NOLINT(google-build-using-namespace): of names alone
+    list.append(py::dict("name"_a = material.name, "youngs_modulus"_a = material.youngs_modulus,
+                         "density"_a = material.density, "source"_a = material.source));
+  }
+  return list;
+}
+
+}  // namespace
+
+std::vector<compare::Material> materials_of(const MaterialsFile& file) {
+  return file ? compare::read_materials(file->first, file->second) : compare::materials();
+}
+
+std::vector<compare::Scene> scenes_of(const std::vector<SharedScene>& shared) {
+  std::vector<compare::Scene> scenes;
+  scenes.reserve(shared.size());
+  for (const SharedScene& scene : shared) scenes.push_back(scene->scene);
+  return scenes;
+}
+
+void bind_scene(py::module_& module) {
+  const auto of = [](auto get) { return [get](const SceneData& data) { return get(data.scene); }; };
+  using compare::Scene;
+  py::class_<SceneData, std::shared_ptr<SceneData>> bound(
+      module, "SceneData", "A scene as the reader has it, in SI units.");
+  refuse_pickle(bound, "pickled or copied", "the dlo.Scene");
+  refuse_new(bound, "dlo.Scene");
+  bound.def_property_readonly("name", of([](const Scene& s) { return s.name; }))
+      .def_property_readonly("gravity", of([](const Scene& s) { return vector_copy(s.gravity); }))
+      .def_property_readonly("length", of([](const Scene& s) { return s.length; }))
+      .def_property_readonly("diameter", of([](const Scene& s) { return s.diameter; }))
+      .def_property_readonly("youngs_modulus",
+                             of([](const Scene& s) { return s.material.youngs_modulus; }))
+      .def_property_readonly("density", of([](const Scene& s) { return s.material.density; }))
+      .def_property_readonly("bending_stiffness",
+                             of([](const Scene& s) { return s.bending_stiffness(); }))
+      .def_property_readonly("axial_stiffness",
+                             of([](const Scene& s) { return s.axial_stiffness(); }))
+      .def_property_readonly("mass_per_length",
+                             of([](const Scene& s) { return s.mass_per_length(); }))
+      .def_property_readonly("mass", of([](const Scene& s) { return s.mass(); }))
+      .def_property_readonly("gamma", of([](const Scene& s) { return s.gamma(); }))
+      .def_property_readonly("planar", of([](const Scene& s) { return s.planar(); }))
+      .def_property_readonly("force_model", settings_of)
+      .def_property_readonly("track", rates_of);
+  module.attr("scene_keys") = table_keys();
+  module.def("did_you_mean", &compare::did_you_mean, py::arg("written"), py::arg("words"));
+  module.def(
+      "read_scene",
+      [](const py::dict& document, const std::string& file, const MaterialsFile& materials) {
+        return scene_from(to_toml(document, ""), file, materials);
+      },
+      py::arg("document"), py::arg("file"), py::arg("materials"));
+  module.def("parse_scene", &parse_scene, py::arg("text"), py::arg("file"), py::arg("materials"));
+  module.def("scene_at", &scene_at, py::arg("scene"), py::arg("time"));
+  module.def("read_file", &compare::read_file, py::arg("path"));
+  module.def("toml_text", &toml_text, py::arg("document"));
+  module.def("quantity", &quantity, py::arg("text"), py::arg("dimension"));
+  module.def("materials", &material_list, py::arg("file"));
+}
+
+}  // namespace dlo::python

@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bind_scene.hpp"
+#include "errors.hpp"
+#include "long_call.hpp"
+#include "module.hpp"
+#include "motion/dynamic_track.hpp"
+#include "picture.hpp"
+#include "series/dynamic_track_series.hpp"
+#include "series/track_series.hpp"
+#include "solve_options.hpp"
+
+namespace dlo::python {
+namespace {
+
+/// @param part     begin, end, rates of frames, obstacles and steps; None for what the scene says
+/// @param damping  of a rod with inertia, of the material and of the air; none: it is at rest
+py::object track(const SharedScene& shared, const std::vector<std::optional<double>>& part,
+                 bool force, const std::optional<std::pair<double, double>>& damping, int samples,
+                 const py::object& make_result, const py::dict& limits) {
+  const compare::Scene& scene = shared->scene;
+  compare::TrackRequest request{
+      .options = {.from = part.at(0),
+                  .to = part.at(1),
+                  .force = force ? compare::ForceBeside::runs : compare::ForceBeside::absent,
+                  .samples = samples,
+                  .solve = solve_options(limits)},
+      .frame_rate = part.at(2),
+      .obstacle_rate = part.at(3),
+      .step_rate = part.at(4)};
+  if (damping) request.damping = {damping->first, damping->second};
+  request.options.solve.accept_unverified = false;
+  const compare::TrackResult found = run_long([&](Signals& signals) {
+    return compare::follow(scene, request, [&](auto, auto) { signals.throw_if_stopped(); });
+  });
+  const compare::DynamicTrack* dynamic = found.moving();
+  std::string text = cli::track_text(found.track, scene, found.options);
+  if (dynamic != nullptr) text += cli::dynamic_text(*dynamic);
+  py::object result = make_result(text, cli::track_json(found.track, scene, found.options,
+                                                        {.every = 1, .points = true}, dynamic));
+  result.attr("_views") = view_list(compare::views_of(scene, all_points(found.track.frames)));
+  const std::optional<compare::TrackStop>& stopped =
+      dynamic != nullptr ? dynamic->stopped : found.track.stopped;
+  if (stopped) {
+    raise_convergence(
+        fmt::format("{}: stopped at {:g} s: {}", scene.file, stopped->time, stopped->why), result);
+  }
+  return result;
+}
+
+}  // namespace
+
+void bind_track(py::module_& module) {
+  module.def("track", &track, py::arg("scene"), py::arg("part"), py::arg("force"),
+             py::arg("damping"), py::arg("samples"), py::arg("make_result"), py::arg("limits"));
+}
+
+}  // namespace dlo::python
