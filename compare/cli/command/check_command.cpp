@@ -1,10 +1,13 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <optional>
+#include <string>
+#include <vector>
 
+#include "base/output_file.hpp"
 #include "command/commands.hpp"
 #include "dlo/compare/check.hpp"
+#include "dlo/compare/error.hpp"
 #include "format/json.hpp"
 #include "format/shape_check_output.hpp"
 #include "option/exit_status.hpp"
@@ -15,6 +18,7 @@
 #include "option/share.hpp"
 #include "option/terminal.hpp"
 #include "picture/check_figure.hpp"
+#include "report/check_page.hpp"
 
 namespace dlo::cli {
 namespace {
@@ -29,15 +33,29 @@ struct CheckOptions {
   SceneOptions overrides;
   OutputOptions output;
   PlotOptions plot;
+  std::string report;
 };
+
+compare::Picture picture_of(const compare::CheckResult& report) {
+  return compare::check_picture(report.scene, report.check, report.tolerance.allowed_m);
+}
+
+/// The page of a check, whole without a picture where gnuplot is missing.
+void write_page(const CheckOptions& options, const compare::CheckResult& result,
+                const std::string& text) {
+  compare::CheckPageParts parts{.text = text, .version = DLO_VERSION};
+  try {
+    const std::string option = "--report " + options.report;
+    parts.svg = drawn_picture(picture_of(result), compare::PictureFormat::svg, option);
+  } catch (const compare::OutputError& error) {
+    parts.why_no_picture = error.what();
+  }
+  compare::write_file(options.report, compare::check_page(result, parts));
+}
 
 void plot(const CheckOptions& options, const compare::CheckResult& report) {
   const compare::Scene& scene = report.scene;
-  options.plot.draw([&] {
-    const auto allowed =
-        report.tolerance ? std::optional(report.tolerance->allowed_m) : std::nullopt;
-    return compare::check_picture(scene, report.check, allowed);
-  });
+  options.plot.draw([&] { return picture_of(report); });
   options.plot.sketch(scene, [&] {
     constexpr int samples = 201;
     const std::vector<double> s = compare::equal_arc_lengths(scene.length, samples);
@@ -64,15 +82,18 @@ void run(const CheckOptions& options) {
   const compare::CheckResult result = compare::check(scene, shape, request);
   const CheckPage page{
       result, options.shapes.unit_hint(result.check.polyline_length_m, scene.length),
-      result.judgement
-          ? verdict_word(result.passes() ? "pass" : "fail", result.passes(), options.output.file)
-          : ""};
+      verdict_word(result.passes() ? "pass" : "fail", result.passes(), options.output.file)};
   if (options.output.is(Format::csv)) warn_of_friction(scene);
   write_output(options.output, {.text = [&] { return shape_check_text(page); },
                                 .json = [&] { return json_text(shape_check_json(result)); },
-                                .csv = [&] { return shape_check_csv(result); }});
+                                .csv = [&] { return shape_check_csv(result); },
+                                .markdown = [&] { return shape_check_markdown(result); }});
   plot(options, result);
-  if (result.judgement && !result.judgement->pass) end_with(ExitStatus::outside_tolerance);
+  if (!options.report.empty()) {
+    write_page(options, result, shape_check_text({result, page.unit_hint}));
+  }
+  const bool was_asked = !options.tolerance.allowed.empty();
+  if (was_asked && !result.passes()) end_with(ExitStatus::outside_tolerance);
 }
 
 }  // namespace
@@ -87,8 +108,8 @@ void add_check(CLI::App& app) {
       ->required();
   command->add_option(
       "--tolerance", options->tolerance.allowed,
-      "largest deviation allowed, 1% or 0.01 of the length or \"2 mm\"; exit status 1 "
-      "beyond it");
+      "the deviation allowed, 1% or 0.01 of the length or \"2 mm\"; exit status 1 beyond it. "
+      "Without it the verdict is that of 1%, and the exit status 0");
   command
       ->add_option("--measure", options->tolerance.measure, "what is held against it: rms or max")
       ->check(CLI::IsMember({"rms", "max"}))
@@ -105,7 +126,13 @@ void add_check(CLI::App& app) {
                     "do not look for causes where a shape fails");
   options->shapes.add_to(*command, ChordLengths::offered);
   options->overrides.add_solvers_to(*command);
-  add_output_options(*command, options->output);
+  std::vector<std::string> formats = compare::names<Format>();
+  formats.emplace_back("markdown");
+  add_output_options(*command, options->output, formats);
+  command
+      ->add_option("--report", options->report,
+                   "write a page of one screen, FILE.html: verdict, picture, cause, numbers")
+      ->type_name("FILE");
   options->plot.add_to(*command, "the points on the rod, and their distances along it",
                        Sketches::offered);
   command->footer(

@@ -69,6 +69,16 @@ Json friction_json(const compare::FrictionCheck& friction) {
           {"rms_m", friction.rms_m}};
 }
 
+/// A text as one cell of a table of Markdown, none of its characters a mark.
+std::string markdown(const std::string& text) {
+  std::string out;
+  for (const char c : compare::display(text)) {
+    if (std::string_view("\\`*_[]<>|#&").find(c) != std::string_view::npos) out += '\\';
+    out += c;
+  }
+  return out;
+}
+
 const char* verdict_of(const compare::ShapeJudgement& judgement) {
   return judgement.pass ? "pass" : "fail";
 }
@@ -137,11 +147,11 @@ std::string shape_check_text(const CheckPage& page) {
     append(out,
            "                  (better than any stiffness: E* is no measure of the material)\n");
   }
-  if (report.judgement) {
-    append(out, "  verdict         {}: {}\n",
-           page.verdict.empty() ? verdict_of(*report.judgement) : page.verdict,
-           report.judgement->reason);
-  }
+  append(out, "  verdict         {}: {}\n",
+         page.verdict.empty() ? verdict_of(report.judgement) : page.verdict,
+         report.judgement.reason);
+  const std::string both = compare::other_stiffness_within(report);
+  if (!both.empty()) append(out, "                  ({})\n", both);
   return out;
 }
 
@@ -176,15 +186,14 @@ Json shape_check_json(const compare::CheckResult& report) {
   result[given_by_EI ? "effective_bending_stiffness_Nm2" : "effective_modulus_Pa"] = c.modulus;
   result["superseded_by"] =
       report.supersedes_modulus ? Json(report.supersedes_modulus->cause) : Json();
-  if (report.judgement) {
-    result["tolerance"] = {{"measure", report.tolerance->largest ? "max" : "rms"},
-                           {"allowed_m", report.tolerance->allowed_m},
-                           {"least_seen_share", report.tolerance->least_seen_share},
-                           {"part", report.tolerance->part}};
-    result["judged_m"] = report.judgement->judged_m;
-    result["verdict"] = verdict_of(*report.judgement);
-    result["reason"] = report.judgement->reason;
-  }
+  result["tolerance"] = {{"measure", report.tolerance.largest ? "max" : "rms"},
+                         {"allowed_m", report.tolerance.allowed_m},
+                         {"least_seen_share", report.tolerance.least_seen_share},
+                         {"part", report.tolerance.part},
+                         {"default", report.tolerance.by_default}};
+  result["judged_m"] = report.judgement.judged_m;
+  result["verdict"] = verdict_of(report.judgement);
+  result["reason"] = report.judgement.reason;
   result["explanations"] =
       json_list(report.explanations, [](const compare::Explanation& explanation) -> Json {
         return {{"cause", explanation.cause},
@@ -201,6 +210,28 @@ Json shape_check_json(const compare::CheckResult& report) {
   result["points_m"] = points_json(c.alignment.shape.points);
   result["reference_points_m"] = points_json(c.reference.points);
   return result;
+}
+
+std::string shape_check_markdown(const compare::CheckResult& report) {
+  const compare::ShapeCheck& c = report.check;
+  std::string out = fmt::format("### {} {}: {}\n\n{}\n\n", report.passes() ? "\u2705" : "\u274c",
+                                verdict_of(report.judgement), markdown(c.scene),
+                                markdown(report.judgement.reason));
+  append(out, "| | |\n|---|---|\n");
+  append(out, "| shape | {} |\n", markdown(c.file));
+  append(out, "| RMS | {:.4g} mm = {:.3g} % of l |\n", c.deviation.rms_m * 1e3,
+         c.deviation.rms_over_length * 100);
+  append(out, "| largest | {:.4g} mm at s = {:.4g} m |\n", c.deviation.max_m * 1e3,
+         c.deviation.max_at_m);
+  if (compare::is_identified(c.effective_modulus.optimum)) {
+    append(out, "| E\\*/E | {:.4g} |\n", c.effective_modulus.ratio);
+  }
+  for (const compare::Explanation& explanation : report.explanations) {
+    append(out, "| RMS {:.3g} mm if | {} |\n", explanation.rms_m * 1e3,
+           markdown(explanation.cause));
+  }
+  const std::string both = compare::other_stiffness_within(report);
+  return both.empty() ? out : out + "\n" + markdown(both) + "\n";
 }
 
 std::string shape_check_csv(const compare::CheckResult& report) {

@@ -18,6 +18,9 @@ struct CheckPage {
 
 [[nodiscard]] Json shape_check_json(const compare::CheckResult& report);
 
+/// A summary for a page of Markdown, such as that of a job of continuous integration.
+[[nodiscard]] std::string shape_check_markdown(const compare::CheckResult& report);
+
 [[nodiscard]] std::string shape_check_csv(const compare::CheckResult& report);
 
 }  // namespace dlo::cli

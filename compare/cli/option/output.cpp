@@ -133,6 +133,9 @@ void write_output(const OutputOptions& options, const std::string& content) {
 
 void write_output(const OutputOptions& options, const Formats& formats) {
   if (formats.toml && options.format == "toml") return write_output(options, formats.toml());
+  if (formats.markdown && options.format == "markdown") {
+    return write_output(options, formats.markdown());
+  }
   switch (compare::from_name<Format>(options.format)) {
     case Format::text:
       return write_output(options, formats.text());

@@ -38,14 +38,15 @@ struct OutputOptions {
   std::string format = "text";
   std::string file;
 
-  /// Whether it is one that every command has; `vtk` and `toml` are none of them.
+  /// Whether it is one that every command has; `vtk`, `toml` and `markdown` are none of them.
   [[nodiscard]] bool is(Format wanted) const { return format == compare::to_string(wanted); }
 };
 
 /// A result in each of its formats, made when it is asked for.
 struct Formats {
   std::function<std::string()> text, json, csv;
-  std::function<std::string()> toml = {};  ///< of a command that has it
+  std::function<std::string()> toml = {};      ///< of a command that has it
+  std::function<std::string()> markdown = {};  ///< of a command that has it
 };
 
 /// The format of a file's extension: "csv" of shape.csv; empty unless it is one of `formats`.

@@ -19,9 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-compare::TemporaryFolder drawing_folder() {
-  return compare::TemporaryFolder("--plot: no folder to draw in: " +
-                                  compare::temporary_directory().string());
+compare::TemporaryFolder drawing_folder(const std::string& option) {
+  return compare::TemporaryFolder(
+      option + ": no folder to draw in: " + compare::temporary_directory().string());
 }
 
 std::optional<compare::PictureFormat> format_of(const std::string& file) {
@@ -57,7 +57,7 @@ void PlotOptions::require_drawable(const OutputOptions& output) const {
                     ".png or .pdf{})",
                     file_, offers_sketch_ ? ", or - for a sketch" : ""));
   }
-  if (compare::gnuplot_version(drawing_folder().path()).empty()) {
+  if (compare::gnuplot_version(drawing_folder("--plot").path()).empty()) {
     throw compare::InputError(
         fmt::format("--plot {}: needs the program gnuplot, which is not found (Debian: "
                     "gnuplot-nox){}",
@@ -67,27 +67,29 @@ void PlotOptions::require_drawable(const OutputOptions& output) const {
 
 void PlotOptions::draw(const std::function<compare::Picture()>& picture) const {
   if (!draws()) return;
-  const compare::PictureFormat format = *format_of(file_);
-  const compare::Picture drawn = picture();
-  if (std::all_of(drawn.rows.begin(), drawn.rows.end(),
+  compare::write_file(file_, drawn_picture(picture(), *format_of(file_), "--plot " + file_));
+}
+
+std::string drawn_picture(const compare::Picture& picture, compare::PictureFormat format,
+                          const std::string& option) {
+  if (std::all_of(picture.rows.begin(), picture.rows.end(),
                   [](const compare::PictureRow& row) { return row.empty(); })) {
-    throw compare::OutputError(fmt::format("--plot {}: there is nothing to draw", file_));
+    throw compare::OutputError(option + ": there is nothing to draw");
   }
-  const compare::TemporaryFolder folder = drawing_folder();
-  for (const compare::PictureRow& row : drawn.rows) {
+  const compare::TemporaryFolder folder = drawing_folder(option);
+  for (const compare::PictureRow& row : picture.rows) {
     for (const std::vector<compare::Figure>& column : row) {
       for (const compare::Figure& figure : column) {
         if (!figure.csv.empty()) compare::write_file(folder.path() / figure.csv_file, figure.csv);
       }
     }
   }
-  const std::string output = "plot" + fs::path(file_).extension().string();
-  compare::write_file(folder.path() / "plot.gp", compare::picture_script(drawn, format, output));
+  constexpr const char* outputs[] = {"plot.svg", "plot.png", "plot.pdf"};
+  const std::string output = outputs[static_cast<std::size_t>(format)];
+  compare::write_file(folder.path() / "plot.gp", compare::picture_script(picture, format, output));
   const std::string failure = compare::run_script("plot.gp", output, folder.path());
-  if (!failure.empty()) {
-    throw compare::OutputError(fmt::format("--plot {}: {}", file_, failure));
-  }
-  compare::write_file(file_, compare::read_file((folder.path() / output).string()));
+  if (!failure.empty()) throw compare::OutputError(option + ": " + failure);
+  return compare::read_file((folder.path() / output).string());
 }
 
 void PlotOptions::sketch(const compare::Scene& scene,

@@ -15,6 +15,11 @@ namespace dlo::cli {
 /// Whether a command also sketches in characters, with --plot -.
 enum class Sketches { offered, none };
 
+/// A picture drawn by gnuplot, as the bytes of its file.
+/// @throws compare::OutputError, which says `option`
+[[nodiscard]] std::string drawn_picture(const compare::Picture& picture,
+                                        compare::PictureFormat format, const std::string& option);
+
 /// --plot FILE: a picture of the result, beside the result itself.
 class PlotOptions {
  public:

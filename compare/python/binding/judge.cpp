@@ -169,16 +169,10 @@ void bind_check(py::module_& module) {
   });
   bound
       .def_property_readonly(
-          "passed",
-          [](const Report& report) -> py::object {
-            if (!report.judgement) return py::none();
-            return py::bool_(report.judgement->pass);
-          },
-          "Whether the shape is within the tolerance; None without one.")
-      .def_property_readonly("reason", of([](const Report& r) {
-                               return r.judgement ? r.judgement->reason : std::string();
-                             }),
-                             "Why, in words; \"\" without a tolerance.")
+          "passed", of([](const Report& r) { return r.judgement.pass; }),
+          "Whether the shape is within the tolerance, 1 % of the length if none was given.")
+      .def_property_readonly("reason", of([](const Report& r) { return r.judgement.reason; }),
+                             "Why, in words.")
       .def_property_readonly("rms", of([](const Report& r) { return r.check.deviation.rms_m; }),
                              "RMS distance of the points from the rod [m].")
       .def_property_readonly("largest", of([](const Report& r) { return r.check.deviation.max_m; }),

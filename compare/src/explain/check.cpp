@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -54,25 +55,37 @@ ShapeNear near_by(const Shape& shape, const Scene& scene, double tolerance, bool
   const ShapeCheck& c = result.check;
   return {result.passes(),
           fmt::format("{}\n  largest {:.4g} mm at s = {:.4g} m (point {}), {} m instead of {} m",
-                      result.judgement->reason, c.deviation.max_m * 1e3, c.deviation.max_at_m,
+                      result.judgement.reason, c.deviation.max_m * 1e3, c.deviation.max_at_m,
                       c.worst_point, point_text(c.worst_position),
                       point_text(c.rod.sample(std::vector{c.deviation.max_at_m}).points.col(0)))};
 }
 
 }  // namespace
 
+std::string other_stiffness_within(const CheckResult& result) {
+  const EffectiveModulus& modulus = result.check.effective_modulus;
+  constexpr double hardly_another = 0.05;
+  if (!result.passes() || !is_identified(modulus.optimum) ||
+      std::abs(modulus.ratio - 1) < hardly_another) {
+    return {};
+  }
+  return fmt::format(
+      "E*/E = {:.3g} is no contradiction: {:.3g} mm away at E* and {:.3g} mm at E, both are within "
+      "the tolerance",
+      modulus.ratio, modulus.rms_m * 1e3, result.check.whole_rms_m * 1e3);
+}
+
 CheckResult check(const Scene& scene, const MeasuredShape& shape, const CheckRequest& request) {
   CheckResult result{.scene = scene,
                      .check = check_shape(scene, shape, request.shape),
-                     .tolerance = request.tolerance,
+                     .tolerance = request.tolerance.value_or(default_tolerance(scene.length)),
                      .pose = request.shape.pose};
   if (friction_in_reach(scene)) result.friction = check_friction(scene, result.check);
-  if (!request.tolerance) return result;
-  result.judgement = judge_with_chains(scene, result.check, *request.tolerance);
-  const bool is_near = judge(result.check, *request.tolerance).pass;
+  result.judgement = judge_with_chains(scene, result.check, result.tolerance);
+  const bool is_near = judge(result.check, result.tolerance).pass;
   if (is_near || request.explaining == Explaining::no) return result;
   result.explanations = explain_shape(scene, shape, result.check, request.shape);
-  result.judgement = with_explanation(*result.judgement, result.explanations);
+  result.judgement = with_explanation(result.judgement, result.explanations);
   result.supersedes_modulus = better_than_stiffness(result.check, result.explanations);
   return result;
 }

@@ -27,6 +27,11 @@ std::string missing_parts(const ShapeCheck& check, double least) {
 
 }  // namespace
 
+ShapeTolerance default_tolerance(double length) {
+  constexpr double share = 0.01;
+  return {.allowed_m = share * length, .by_default = true};
+}
+
 ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
   ShapeJudgement result;
   const double rms = tolerance.part ? check.deviation.rms_m : check.whole_rms_m;
@@ -57,6 +62,7 @@ ShapeJudgement judge(const ShapeCheck& check, const ShapeTolerance& tolerance) {
   std::string deviation = fmt::format(
       "{} {:.4g} mm, allowed {:.4g} mm = {:.4g} % of l", tolerance.largest ? "largest" : "RMS",
       result.judged_m * 1e3, tolerance.allowed_m * 1e3, tolerance.allowed_m / check.length_m * 100);
+  if (tolerance.by_default) deviation += ", the default";
   if (!missing.empty()) {
     deviation += tolerance.part ? "; not judged: " : ", with ";
     deviation += missing + ", which the file does not have";

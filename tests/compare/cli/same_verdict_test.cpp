@@ -76,10 +76,10 @@ TEST_F(SameVerdict, OfFiftyShapesFromCommandLibraryAndMatchers) {
         const compare::ShapeNear near =
             (largest ? compare::shape_within : compare::shape_near)(shape, scene, 0.01);
         EXPECT_EQ(document["verdict"] == "pass", result.passes());
-        EXPECT_EQ(document["reason"], result.judgement->reason);
+        EXPECT_EQ(document["reason"], result.judgement.reason);
         EXPECT_EQ(near.near, result.passes());
         EXPECT_EQ(near.explanation.substr(0, near.explanation.find('\n')),
-                  result.judgement->reason);
+                  result.judgement.reason);
         ++shapes;
         passes += result.passes() ? 1 : 0;
       }

@@ -19,7 +19,7 @@ enum class Explaining { yes, no };
 
 /// What is asked of a shape.
 struct CheckRequest {
-  std::optional<ShapeTolerance> tolerance;  ///< none: there is no verdict
+  std::optional<ShapeTolerance> tolerance;  ///< none: default_tolerance()
   Explaining explaining = Explaining::yes;  ///< pass and fail do not depend on it
   ShapeCheckOptions shape;                  ///< how it is compared
 };
@@ -27,18 +27,22 @@ struct CheckRequest {
 /// A shape against its scene's energy model, judged: what `dlo check` says, and Python and
 /// GoogleTest with it.
 struct CheckResult {
-  Scene scene;                              ///< that it was held against
-  ShapeCheck check;                         ///< how far it is away
-  std::optional<ShapeTolerance> tolerance;  ///< as asked for
-  std::optional<ShapeJudgement> judgement;  ///< pass or fail with its reason; where a tolerance is
-  std::vector<Explanation> explanations;    ///< of a shape that is not near, the best first
+  Scene scene;                                    ///< that it was held against
+  ShapeCheck check;                               ///< how far it is away
+  ShapeTolerance tolerance;                       ///< that it was judged by
+  ShapeJudgement judgement;                       ///< pass or fail, with its reason
+  std::vector<Explanation> explanations;          ///< of a shape that is not near, the best first
   std::optional<Explanation> supersedes_modulus;  ///< what explains it better than any stiffness
   std::optional<FrictionCheck> friction;          ///< where an obstacle in reach has friction
   PoseFreedom pose = PoseFreedom::known;          ///< what was unknown of the shape's frame
 
-  /// Within the tolerance; false if none was asked for.
-  [[nodiscard]] bool passes() const { return judgement && judgement->pass; }
+  /// Within the tolerance.
+  [[nodiscard]] bool passes() const { return judgement.pass; }
 };
+
+/// Of a shape that passes though another stiffness would come nearer by far: why both hold. Empty
+/// where that is not so.
+[[nodiscard]] std::string other_stiffness_within(const CheckResult& result);
 
 /// Compares, judges and, where the shape is not within the tolerance, explains.
 /// @throws InputError, ConvergenceError

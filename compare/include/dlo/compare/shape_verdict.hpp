@@ -16,7 +16,12 @@ struct ShapeTolerance {
   /// The file is said to be a part of the rod: only what it has is judged. Else it is the whole
   /// rod, and what is missing counts.
   bool part = false;
+  bool by_default = false;  ///< nobody has asked for it: default_tolerance()
 };
+
+/// What a shape is judged by where no tolerance is given: 1 % of the length, RMS.
+/// @param length  of the rod [m]
+[[nodiscard]] ShapeTolerance default_tolerance(double length);
 
 /// Whether a shape is right.
 struct ShapeJudgement {

@@ -1,0 +1,124 @@
+#include "report/check_page.hpp"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "base/quote.hpp"
+#include "figure/gnuplot.hpp"
+#include "report/html.hpp"
+#include "report/style.hpp"
+
+namespace dlo::compare {
+namespace {
+
+std::string millimetres(double metres) { return page_number(metres * 1e3) + "\u00a0mm"; }
+
+/// What would explain a shape that fails; empty if nothing does.
+std::string cause_of(const CheckResult& result) {
+  if (result.passes() || result.explanations.empty()) return {};
+  const Explanation& best = result.explanations.front();
+  return fmt::format("It would be {} away if {}{}.", millimetres(best.rms_m),
+                     best.kind == ExplanationKind::discretisation ? "it were " : "", best.cause);
+}
+
+std::string number(const std::string& name, const std::string& value, const std::string& beside) {
+  return fmt::format("<div><dt>{}</dt><dd><strong>{}</strong> <span>{}</span></dd></div>\n",
+                     escape_markup(name), escape_markup(value), escape_markup(beside));
+}
+
+std::string three_numbers(const CheckResult& result) {
+  const ShapeCheck& check = result.check;
+  const Deviation& d = check.deviation;
+  const EffectiveModulus& modulus = check.effective_modulus;
+  const bool told = is_identified(modulus.optimum);
+  const std::string why_not = modulus.why_none.empty() ? "not identified" : modulus.why_none;
+  return "<dl class=\"three\">\n" +
+         number("RMS distance", millimetres(d.rms_m),
+                page_percent(d.rms_over_length) + " of the length") +
+         number("largest", millimetres(d.max_m), fmt::format("at s = {:.4g} m", d.max_at_m)) +
+         number("E*/E", told ? page_number(modulus.ratio) : "\u2013",
+                told ? millimetres(modulus.rms_m) + " away with it" : why_not) +
+         "</dl>\n";
+}
+
+/// escape_markup() of lines, which stay lines.
+std::string escape_lines(const std::string& text) {
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) out += escape_markup(line) + "\n";
+  return out;
+}
+
+HtmlTable causes(const CheckResult& result) {
+  HtmlTable table{"What would explain it", {{"cause", HtmlCell::text}, {"RMS then"}}, {}};
+  for (const Explanation& explanation : result.explanations) {
+    table.rows.push_back({explanation.cause, millimetres(explanation.rms_m)});
+  }
+  return table;
+}
+
+std::string figure_of(const CheckResult& result, const CheckPageParts& parts) {
+  if (parts.svg.empty()) {
+    return fmt::format("<p class=\"missing\">There is no picture: {}.</p>\n",
+                       escape_markup(parts.why_no_picture));
+  }
+  Figure drawn;
+  drawn.name = "check";
+  drawn.title = fmt::format("{}, and the rod of {}", result.check.file, result.check.scene);
+  drawn.description = fmt::format(
+      "The points of the shape beside the energy model's rod, and their distances along it: RMS "
+      "{}, largest {}.",
+      millimetres(result.check.deviation.rms_m), millimetres(result.check.deviation.max_m));
+  return "<figure>\n" + inline_svg(parts.svg, drawn) + "</figure>\n";
+}
+
+constexpr const char* page_style = R"~~~(
+.screen { display: grid; grid-template-columns: 1fr; gap: 1rem 2rem; }
+@media (min-width: 70rem) { .screen { grid-template-columns: 2fr 3fr; } }
+.badge { display: inline-block; margin: 0.4rem 0; padding: 0.2rem 1rem; border-radius: 6px; font-size: 1.6rem;
+  font-weight: 700; color: #ffffff; background: #1a7f37; }
+.badge.fail { background: #b3261e; }
+.screen p { margin: 0.5rem 0; font-size: 1.05rem; }
+.screen .badge { font-size: 1.6rem; }
+.three { display: flex; flex-wrap: wrap; gap: 0.6rem 2rem; }
+.three strong { display: block; font-size: 1.4rem; font-variant-numeric: tabular-nums; }
+.three span, .three dt { color: var(--faint); font-size: 0.9rem; }
+figure svg { max-width: 60rem; }
+pre { overflow-x: auto; font: 0.8rem/1.4 ui-monospace, monospace; background: var(--card); padding: 0.8rem; }
+)~~~";
+
+}  // namespace
+
+std::string check_page(const CheckResult& result, const CheckPageParts& parts) {
+  const ShapeTolerance& tolerance = result.tolerance;
+  const char* const word = result.passes() ? "pass" : "fail";
+  std::string out = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"generator\" content=\"dlo check\">\n<link rel=\"icon\" href=\"data:,\">\n"
+      "<title>{0}: {1}</title>\n<style>{2}{3}</style>\n</head>\n<body>\n<main>\n"
+      "<h1>{0}</h1>\n<div class=\"screen\">\n<div>\n",
+      escape_markup(result.check.scene), word, report_style, page_style);
+  out += fmt::format("<p class=\"badge {0}\">{1} {0}</p>\n", word,
+                     result.passes() ? "\u2713" : "\u2717");
+  out +=
+      fmt::format("<p>{} is {} away from the rod ({}). Allowed: {}{}.</p>\n",
+                  escape_markup(result.check.file), millimetres(result.judgement.judged_m),
+                  tolerance.largest ? "largest distance" : "RMS", millimetres(tolerance.allowed_m),
+                  tolerance.by_default ? ", 1\u00a0% of the length, by default" : "");
+  const std::string cause = cause_of(result);
+  if (!cause.empty()) out += "<p><strong>" + escape_markup(cause) + "</strong></p>\n";
+  const std::string both = other_stiffness_within(result);
+  if (!both.empty()) out += "<p>" + escape_markup(both) + ".</p>\n";
+  out += three_numbers(result) + "</div>\n" + figure_of(result, parts) + "</div>\n";
+  out += "<details><summary>Reason and causes</summary>\n<p>" +
+         escape_markup(result.judgement.reason) + ".</p>\n";
+  if (!result.explanations.empty()) out += to_html(causes(result));
+  out += "</details>\n<details><summary>All that dlo check says</summary>\n<pre tabindex=\"0\">" +
+         escape_lines(parts.text) + "</pre>\n</details>\n";
+  return out + fmt::format("<p class=\"faint\">dlo {}</p>\n</main>\n</body>\n</html>\n",
+                           escape_markup(parts.version));
+}
+
+}  // namespace dlo::compare

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+
+#include "dlo/compare/check.hpp"
+
+namespace dlo::compare {
+
+/// What a page has beside the result.
+struct CheckPageParts {
+  std::string svg = {};             ///< file of check_picture(), drawn; empty: there is none
+  std::string why_no_picture = {};  ///< then
+  std::string text = {};            ///< all that `dlo check` says
+  std::string version = {};         ///< of dlo
+};
+
+/// A judged shape as a page of one screen: verdict, cause, the three numbers and the picture;
+/// below, folded, all that is known. One file, nothing to be fetched, no script.
+[[nodiscard]] std::string check_page(const CheckResult& result, const CheckPageParts& parts);
+
+}  // namespace dlo::compare
