@@ -59,10 +59,12 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/dloConfig.cmake
   ${CMAKE_CURRENT_BINARY_DIR}/dloConfigVersion.cmake
   DESTINATION ${dlo_cmake_dir} COMPONENT force_model)
 
-install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)
+install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command)
 foreach(folder obstacle force_model energy_model compare compare/python data tests)  # to which README.md leads
   install(FILES ${folder}/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT command)
 endforeach()
+install(DIRECTORY doc DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT command
+  PATTERN "*.py" EXCLUDE PATTERN "__pycache__" EXCLUDE)
 install(DIRECTORY compare/doc DESTINATION ${CMAKE_INSTALL_DOCDIR}/compare COMPONENT command)
 install(DIRECTORY compare/python/examples DESTINATION ${CMAKE_INSTALL_DOCDIR}/compare/python
   COMPONENT command)

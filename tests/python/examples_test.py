@@ -9,7 +9,9 @@ import re
 import pytest
 
 ROOT = pathlib.Path(os.environ["DLO_ROOT"])
-PAGES = ["README.md", "compare/python/README.md"]
+PAGES = sorted(str(path.relative_to(ROOT)) for folder in (".", "doc", "compare", "force_model", "energy_model", "data")
+               for path in (ROOT.glob("*.md") if folder == "." else (ROOT / folder).rglob("*.md"))
+               if "node_modules" not in path.parts and "```python\n" in path.read_text())
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "compare/python/examples").glob("*.py")),

@@ -1,4 +1,4 @@
-// An array of points is judged, in a scene made in code: compare/doc/regress.md shows this.
+// An array of points is judged, in a scene made in code: doc/tutorial/ci.md shows this.
 
 // [page]
 #include <dlo/compare.hpp>
