@@ -31,6 +31,7 @@ except ModuleNotFoundError:
 
 WIDTHS = (375, 400, 800, 1280, 1920)
 USED_AT = (400, 1280)
+HEIGHT = 900
 SCHEMES = ("light", "dark")
 LARGEST = 3_000_000  # bytes
 
@@ -87,7 +88,7 @@ def open_browser(chromedriver):
 
 def set_view(browser, width, scheme, media=""):
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
-                            {"width": width, "height": 900, "deviceScaleFactor": 1,
+                            {"width": width, "height": HEIGHT, "deviceScaleFactor": 1,
                              "mobile": width < 600})
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia",
                             {"media": media,
@@ -131,26 +132,72 @@ def problems_of(seen):
             yield f"{name}: text {figure['smallest']:.1f} pixels high"
 
 
-def check(page, chromedriver, screenshots):
+def looks(browser, page, screenshots):
+    """What is wrong with a page at all widths, light and dark."""
     size = page.stat().st_size
     problems = [f"the page has {size} bytes"] if size >= LARGEST else []
+    browser.execute_cdp_cmd("Network.enable", {})
+    for width in WIDTHS:
+        for scheme in SCHEMES:
+            set_view(browser, width, scheme)
+            browser.get(page.as_uri())
+            where = f"{width} {scheme}"
+            seen = browser.execute_script(MEASURE)
+            problems += [f"{where}: {problem}" for problem in problems_of(seen)]
+            for url in requests_of(browser):
+                if url != page.as_uri() and not url.startswith("data:"):
+                    problems.append(f"{where}: request of {url}")
+            problems += [f"{where}: console: {entry['message']}"
+                         for entry in browser.get_log("browser")]
+            if screenshots:
+                screenshot(browser, screenshots / f"{page.stem}_{width}_{scheme}.png")
+    return problems
+
+
+def first_screen(browser, page):
+    """What somebody who only opens a page does not see: the badge, the cause, the numbers, the picture."""
+    for width in (1280, 1920):
+        set_view(browser, width, "light")
+        browser.get(page.as_uri())
+        for what in (".badge", ".three", "figure svg", "h1"):
+            below = browser.execute_script(
+                "return [...document.querySelectorAll(arguments[0])].map("
+                "e => e.getBoundingClientRect().bottom)", what)
+            if len(below) != 1 or below[0] > HEIGHT:
+                yield f"{page.name} at {width}: {what}: {len(below)}, down to {below}"
+
+
+def check_shape_pages(dlo, folder, chromedriver, screenshots):
+    """The pages of a shape that passes, and of one that fails."""
+    data = pathlib.Path(__file__).resolve().parents[2] / "data"
+    problems = []
     browser = open_browser(chromedriver)
     try:
-        browser.execute_cdp_cmd("Network.enable", {})
-        for width in WIDTHS:
-            for scheme in SCHEMES:
-                set_view(browser, width, scheme)
-                browser.get(page.as_uri())
-                where = f"{width} {scheme}"
-                seen = browser.execute_script(MEASURE)
-                problems += [f"{where}: {problem}" for problem in problems_of(seen)]
-                for url in requests_of(browser):
-                    if url != page.as_uri() and not url.startswith("data:"):
-                        problems.append(f"{where}: request of {url}")
-                problems += [f"{where}: console: {entry['message']}"
-                             for entry in browser.get_log("browser")]
-                if screenshots:
-                    screenshot(browser, screenshots / f"{width}_{scheme}.png")
+        for model, tolerance in (("chain", "5%"), ("force", "0.01%")):
+            scene = data / "scenes" / "cable.toml"
+            shape = folder / f"{model}.csv"
+            page = folder / f"{model}.html"
+            subprocess.run([dlo, "solve", str(scene), "--model", model, "--points", "24",
+                            "--format", "csv", "-o", str(shape)], check=True)
+            status = subprocess.run([dlo, "check", str(scene), "--shape", str(shape), "--tolerance",
+                                     tolerance, "--report", str(page)],
+                                    stdout=subprocess.DEVNULL, check=False).returncode
+            if status not in (0, 1):
+                return [f"dlo check --report: status {status}"]
+            problems += [f"{page.name}: {problem}" for problem in looks(browser, page, screenshots)]
+            problems += list(first_screen(browser, page))
+            badge = browser.execute_script("return document.querySelector('.badge').textContent")
+            if badge.split()[-1] != ("pass", "fail")[status]:
+                problems.append(f"{page.name}: badge {badge}, status {status}")
+    finally:
+        browser.quit()
+    return problems
+
+
+def check(page, chromedriver, screenshots):
+    browser = open_browser(chromedriver)
+    try:
+        problems = looks(browser, page, screenshots)
         for width in USED_AT:
             set_view(browser, width, "light")
             problems += [f"{width} used: {problem}"
@@ -200,6 +247,8 @@ def main():
                            check=True, stdout=subprocess.DEVNULL)
         problems = check((report / "index.html").resolve(), options.chromedriver,
                          options.screenshots)
+        problems += check_shape_pages(options.dlo, pathlib.Path(folder), options.chromedriver,
+                                      options.screenshots)
     for problem in problems:
         print(problem)
     return 1 if problems else 0
