@@ -11,7 +11,7 @@
 #include "base/temporary_path.hpp"
 #include "dlo/compare/error.hpp"
 #include "figure/gnuplot.hpp"
-#include "figure/layout.hpp"
+#include "figure/gnuplot_script.hpp"
 #include "option/terminal.hpp"
 
 namespace dlo::cli {
@@ -74,13 +74,6 @@ void PlotOptions::draw(const std::function<compare::Picture()>& picture) const {
     throw compare::OutputError(fmt::format("--plot {}: there is nothing to draw", file_));
   }
   const compare::TemporaryFolder folder = drawing_folder();
-  for (const compare::PictureRow& row : drawn.rows) {
-    for (const std::vector<compare::Figure>& column : row) {
-      for (const compare::Figure& figure : column) {
-        if (!figure.csv.empty()) compare::write_file(folder.path() / figure.csv_file, figure.csv);
-      }
-    }
-  }
   const std::string output = "plot" + fs::path(file_).extension().string();
   compare::write_file(folder.path() / "plot.gp", compare::picture_script(drawn, format, output));
   const std::string failure = compare::run_script("plot.gp", output, folder.path());

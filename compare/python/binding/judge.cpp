@@ -25,6 +25,8 @@
 #include "module.hpp"
 #include "option/share.hpp"
 #include "picture.hpp"
+#include "picture/check_figure.hpp"
+#include "picture/comparison_figure.hpp"
 #include "record/solution_fields.hpp"
 #include "result.hpp"
 #include "scene.hpp"
@@ -164,9 +166,11 @@ void bind_check(py::module_& module) {
   bind_array(
       bound, "reference", [](const Report& r) -> const auto& { return r.check.reference.points; },
       "The energy model there [m], shape (M, 3), read only.");
-  bind_picture(bound, [](const Report& r) {
-    return compare::views_of(r.scene, r.check.alignment.shape.points);
-  });
+  bind_picture(
+      bound, [](const Report& r) { return compare::views_of(r.scene, r.check.reference.points); },
+      [](const Report& r, const std::vector<compare::View>& views) {
+        return compare::check_series(r.scene, r.check, views);
+      });
   bound
       .def_property_readonly(
           "passed",
@@ -221,9 +225,11 @@ void bind_comparison(py::module_& module) {
   bind_array(
       bound, "energy_points", [](const Comparison& r) -> const auto& { return r.reference.points; },
       "The energy model there [m], shape (N, 3), read only.");
-  bind_picture(bound, [](const Comparison& c) {
-    return compare::views_of(c.of->scene, c.force.shape.points);
-  });
+  bind_picture(
+      bound, [](const Comparison& c) { return compare::views_of(c.of->scene, c.reference.points); },
+      [](const Comparison& c, const std::vector<compare::View>& views) {
+        return compare::comparison_series(c.of->scene, {c}, views);
+      });
   bound
       .def_property_readonly(
           "deviation",

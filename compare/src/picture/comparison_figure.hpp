@@ -6,11 +6,17 @@
 #include "dlo/compare/comparison.hpp"
 #include "dlo/compare/scene.hpp"
 #include "figure/layout.hpp"
+#include "figure/series.hpp"
 
 namespace dlo::compare {
 
 /// "law paper, bookkeeping paper, N = 16".
 [[nodiscard]] std::string setting_name(const ForceModelSettings& settings);
+
+/// What a picture shows of a scene's shapes, behind first.
+[[nodiscard]] std::vector<Series> comparison_series(const Scene& scene,
+                                                    const std::vector<Comparison>& comparisons,
+                                                    const std::vector<View>& views);
 
 /// What figures show of a scene's comparisons.
 struct ComparisonFigures {
