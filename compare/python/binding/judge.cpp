@@ -166,11 +166,7 @@ void bind_check(py::module_& module) {
   bind_array(
       bound, "reference", [](const Report& r) -> const auto& { return r.check.reference.points; },
       "The energy model there [m], shape (M, 3), read only.");
-  bind_picture(
-      bound, [](const Report& r) { return compare::views_of(r.scene, r.check.reference.points); },
-      [](const Report& r, const std::vector<compare::View>& views) {
-        return compare::check_series(r.scene, r.check, views);
-      });
+  bind_picture(bound, of([](const Report& r) { return compare::check_drawing(r.scene, r.check); }));
   bound
       .def_property_readonly(
           "passed",
@@ -225,11 +221,8 @@ void bind_comparison(py::module_& module) {
   bind_array(
       bound, "energy_points", [](const Comparison& r) -> const auto& { return r.reference.points; },
       "The energy model there [m], shape (N, 3), read only.");
-  bind_picture(
-      bound, [](const Comparison& c) { return compare::views_of(c.of->scene, c.reference.points); },
-      [](const Comparison& c, const std::vector<compare::View>& views) {
-        return compare::comparison_series(c.of->scene, {c}, views);
-      });
+  bind_picture(bound,
+               [](const Comparison& c) { return compare::comparison_drawing(c.of->scene, {c}); });
   bound
       .def_property_readonly(
           "deviation",

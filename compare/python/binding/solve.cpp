@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <utility>
-#include <vector>
 
 #include "array.hpp"
 #include "dlo/compare/error.hpp"
@@ -198,14 +197,9 @@ void bind_solve(py::module_& module) {
       "Arrays are views into it, read only; they keep it alive.");
   bind_arrays(solution);
   bind_result(solution);
-  bind_picture(
-      solution,
-      [](const SolvedScene& solved) {
-        return compare::views_of(solved.scene->scene, solved.solution.shape.points);
-      },
-      [](const SolvedScene& solved, const std::vector<compare::View>& views) {
-        return compare::solution_series(solved.scene->scene, {solved.solution}, views);
-      });
+  bind_picture(solution, [](const SolvedScene& solved) {
+    return compare::solution_drawing(solved.scene->scene, {solved.solution});
+  });
   const auto of = [](const SolvedScene& solved) {
     return compare::SolvedShape{solved.scene->scene, solved.solution};
   };
@@ -219,14 +213,9 @@ void bind_solve(py::module_& module) {
       module, "Equilibria",
       "Every equilibrium that was found: a sequence of Solution, stable ones first, by energy.");
   bind_result(equilibria);
-  bind_picture(
-      equilibria,
-      [](const SolvedStates& solved) {
-        return compare::views_of(solved.scene->scene, compare::points_of(solved.all.solutions));
-      },
-      [](const SolvedStates& solved, const std::vector<compare::View>& views) {
-        return compare::solution_series(solved.scene->scene, solved.all.solutions, views);
-      });
+  bind_picture(equilibria, [](const SolvedStates& solved) {
+    return compare::solution_drawing(solved.scene->scene, solved.all.solutions);
+  });
   equilibria.def("__len__", [](const SolvedStates& solved) { return solved.all.solutions.size(); })
       .def(
           "__getitem__",

@@ -165,7 +165,7 @@ class Script {
     constexpr double gap = 10;
     int number = 1000;
     const double from = left + from_the_left;
-    double at = top;
+    double at = top + key_row_pixels / 2.0;
     for (const Curve& curve : panel.curves) {
       if (!panel.has_legend || curve.title.empty()) continue;
       const Look& look = curve.look;
@@ -198,7 +198,7 @@ class Script {
     for (const Tic& tic : *axis.tics) {
       tics.push_back(fmt::format("{} {:.10g}", gnuplot_string(tic.label), tic.at));
     }
-    if (!tics.empty()) add("set {}tics ({})\n", name, fmt::join(tics, ", "));
+    if (!tics.empty()) add("set {}tics nomirror ({})\n", name, fmt::join(tics, ", "));
   }
 
   void add_texts(const Panel& panel) {
@@ -300,6 +300,11 @@ std::string terminal(PictureFormat format, const Canvas& canvas) {
   return {};
 }
 
+std::string whole_script(const std::string& head, const std::string& output, const Script& script) {
+  return head + "set encoding utf8\nset output " + gnuplot_string(output) + "\nset multiplot\n" +
+         script.text() + "unset multiplot\n";
+}
+
 }  // namespace
 
 std::string gnuplot_string(const std::string& text) {
@@ -323,16 +328,12 @@ std::string figure_script(const Figure& figure) {
   const Canvas canvas{.height = height_of(figure)};
   Script script(canvas);
   script.add_panels(figure, 0, 0);
-  const bool several = figure.panels.size() > 1;
-  return fmt::format(
+  const std::string head = fmt::format(
       "# gnuplot {0}.gp draws {0}.svg; its numbers are in {1}, too\n"
       "set terminal svg size {2},{3} dynamic noenhanced font 'sans-serif,16' rounded linewidth "
-      "1.3\n"
-      "set encoding utf8\n"
-      "set output '{0}.svg'\n"
-      "{4}{5}{6}",
-      figure.name, figure.csv_file, canvas.width, canvas.height, several ? "set multiplot\n" : "",
-      script.text(), several ? "unset multiplot\n" : "");
+      "1.3\n",
+      figure.name, figure.csv_file, canvas.width, canvas.height);
+  return whole_script(head, figure.name + ".svg", script);
 }
 
 std::string picture_script(const Picture& picture, PictureFormat format,
@@ -358,8 +359,7 @@ std::string picture_script(const Picture& picture, PictureFormat format,
     }
     top += height_of(row);
   }
-  return terminal(format, canvas) + "set encoding utf8\nset output " + gnuplot_string(output) +
-         "\nset multiplot\n" + script.text() + "unset multiplot\n";
+  return whole_script(terminal(format, canvas), output, script);
 }
 
 }  // namespace dlo::compare

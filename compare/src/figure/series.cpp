@@ -51,6 +51,15 @@ std::optional<Eigen::Vector3d> normal_to_reader(const Scene& scene, const View& 
 
 }  // namespace
 
+Eigen::Matrix3Xd side_by_side(const std::vector<const Eigen::Matrix3Xd*>& parts) {
+  Eigen::Matrix3Xd all(3, 0);
+  for (const Eigen::Matrix3Xd* part : parts) {
+    all.conservativeResize(3, all.cols() + part->cols());
+    all.rightCols(part->cols()) = *part;
+  }
+  return all;
+}
+
 bool stays_in_plane(const Scene& scene, const Eigen::Matrix3Xd& points) {
   return plane_through(scene, points).has_value();
 }

@@ -34,6 +34,15 @@ struct View {
   int up = 1;
 };
 
+/// Shapes, and from where they are seen.
+struct Drawing {
+  std::vector<View> views;
+  std::vector<Series> series;  ///< those behind first
+};
+
+/// The points of all of them.
+[[nodiscard]] Eigen::Matrix3Xd side_by_side(const std::vector<const Eigen::Matrix3Xd*>& parts);
+
 /// Whether points lie in a plane that the scene has: rods leave it where they buckle out of it.
 /// @param points  of the rod [m]
 [[nodiscard]] bool stays_in_plane(const Scene& scene, const Eigen::Matrix3Xd& points);

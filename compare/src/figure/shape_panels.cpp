@@ -49,7 +49,8 @@ PlotAxis axis_of(int axis, const std::array<double, 2>& limits) {
 
 }  // namespace
 
-std::vector<Panel> shape_panels(const std::vector<Series>& all, const std::vector<View>& views) {
+std::vector<Panel> shape_panels(const Drawing& drawing) {
+  const auto& [views, all] = drawing;
   constexpr double margin = 1.08;
   const std::array<double, 2> right = range_of(all, views.front().right);
   double width = extent(right) * margin;
@@ -84,9 +85,10 @@ std::vector<Panel> shape_panels(const std::vector<Series>& all, const std::vecto
   return panels;
 }
 
-Panel spatial_panel(const std::vector<Series>& all, int up) {
+Panel spatial_panel(const Drawing& drawing) {
+  const std::vector<Series>& all = drawing.series;
   constexpr double flattest = 0.6;  // of the longest side: its numbers have room
-  Panel panel{.upright = up, .equal_aspect = true};
+  Panel panel{.upright = drawing.views.front().up, .equal_aspect = true};
   double longest = 0;
   for (const int axis : {0, 1, 2}) longest = std::max(longest, extent(range_of(all, axis)));
   const auto limited = [&](int axis) {

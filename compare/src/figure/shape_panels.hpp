@@ -9,12 +9,10 @@ namespace dlo::compare {
 
 /// Shapes in one or two views at equal aspect, by construction: both axes have the same number of
 /// pixels a metre.
-[[nodiscard]] std::vector<Panel> shape_panels(const std::vector<Series>& all,
-                                              const std::vector<View>& views);
+[[nodiscard]] std::vector<Panel> shape_panels(const Drawing& drawing);
 
 /// The same in space, in one plot.
-/// @param up  the axis that is upright
-[[nodiscard]] Panel spatial_panel(const std::vector<Series>& all, int up);
+[[nodiscard]] Panel spatial_panel(const Drawing& drawing);
 
 /// Curvature of the series that have one against arc length.
 [[nodiscard]] Panel curvature_panel(const std::vector<Series>& all, bool planar);

@@ -87,8 +87,8 @@ Figure distance_figure(const Scene& scene, const ShapeCheck& check,
 
 }  // namespace
 
-std::vector<Series> check_series(const Scene& scene, const ShapeCheck& check,
-                                 const std::vector<View>& views) {
+Drawing check_drawing(const Scene& scene, const ShapeCheck& check) {
+  const std::vector<View> views = views_of(scene, check.reference.points);
   const Shape& file = check.alignment.shape;
   const Series rod = rod_series(check.rod.sample, scene, views.front());
   std::vector<Series> all = obstacle_series(scene, views, rod.points);
@@ -104,15 +104,13 @@ std::vector<Series> check_series(const Scene& scene, const ShapeCheck& check,
                  .arc_length = file.arc_length});
   for (Series& gripper : gripper_series(scene)) all.push_back(std::move(gripper));
   all.push_back(worst_point(check));
-  return all;
+  return {views, std::move(all)};
 }
 
 Picture check_picture(const Scene& scene, const ShapeCheck& check,
                       std::optional<double> allowed_m) {
-  const std::vector<View> views = views_of(scene, check.reference.points);
-  Figure shapes{.name = "shapes",
-                .title = scene.name,
-                .panels = shape_panels(check_series(scene, check, views), views)};
+  Figure shapes{
+      .name = "shapes", .title = scene.name, .panels = shape_panels(check_drawing(scene, check))};
   return {{{{shapes}, {distance_figure(scene, check, allowed_m)}}}};
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "dlo/compare/scene.hpp"
 #include "dlo/compare/shape_check.hpp"
@@ -10,9 +9,8 @@
 
 namespace dlo::compare {
 
-/// What a picture shows of a check's shapes, behind first.
-[[nodiscard]] std::vector<Series> check_series(const Scene& scene, const ShapeCheck& check,
-                                               const std::vector<View>& views);
+/// What a picture shows of a check's shapes.
+[[nodiscard]] Drawing check_drawing(const Scene& scene, const ShapeCheck& check);
 
 /// A measured shape on the rod of its scene, distances as whiskers from the rod to the points, the
 /// worst point circled; beside it the distances along the rod.

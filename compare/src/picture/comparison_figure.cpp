@@ -97,9 +97,8 @@ std::string setting_name(const ForceModelSettings& settings) {
                      to_string(settings.bookkeeping), settings.points);
 }
 
-std::vector<Series> comparison_series(const Scene& scene,
-                                      const std::vector<Comparison>& comparisons,
-                                      const std::vector<View>& views) {
+Drawing comparison_drawing(const Scene& scene, const std::vector<Comparison>& comparisons) {
+  const std::vector<View> views = views_of(scene, comparisons.front().reference.points);
   const View& view = views.front();
   const Series rod = rod_series(comparisons.front().reference_rod, scene, view);
   std::vector<Series> all = obstacle_series(scene, views, rod.points);
@@ -129,21 +128,20 @@ std::vector<Series> comparison_series(const Scene& scene,
   if (auto contact = contact_series(first.contacts, points, scene.length)) {
     all.push_back(std::move(*contact));
   }
-  return all;
+  return {views, std::move(all)};
 }
 
 ComparisonFigures comparison_figures(const Scene& scene, const std::vector<Comparison>& comparisons,
                                      std::size_t number) {
-  const std::vector<View> views = views_of(scene, comparisons.front().reference.points);
-  const std::vector<Series> all = comparison_series(scene, comparisons, views);
+  const Drawing drawing = comparison_drawing(scene, comparisons);
   ComparisonFigures figures;
   figures.shapes = {.name = fmt::format("shapes_{}", number),
                     .section = "shapes",
                     .title = scene.name + ": shapes",
-                    .description = shapes_description(scene, comparisons, views),
+                    .description = shapes_description(scene, comparisons, drawing.views),
                     .csv_file = fmt::format("shapes_{}.csv", number),
-                    .csv = series_csv(all)};
-  figures.shapes.panels = shape_panels(all, views);
+                    .csv = series_csv(drawing.series)};
+  figures.shapes.panels = shape_panels(drawing);
   figures.curvature = {
       .name = fmt::format("curvature_{}", number),
       .section = "shapes",
@@ -153,8 +151,8 @@ ComparisonFigures comparison_figures(const Scene& scene, const std::vector<Compa
           "force model's joints (turning angle over the mean length of both segments) as points.",
           scene.name),
       .csv_file = figures.shapes.csv_file,
-      .panels = {
-          curvature_panel(all, stays_in_plane(scene, comparisons.front().reference.points))}};
+      .panels = {curvature_panel(drawing.series,
+                                 stays_in_plane(scene, comparisons.front().reference.points))}};
   figures.deviation = deviation_figure(scene, comparisons, number);
   return figures;
 }

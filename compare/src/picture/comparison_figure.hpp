@@ -13,10 +13,9 @@ namespace dlo::compare {
 /// "law paper, bookkeeping paper, N = 16".
 [[nodiscard]] std::string setting_name(const ForceModelSettings& settings);
 
-/// What a picture shows of a scene's shapes, behind first.
-[[nodiscard]] std::vector<Series> comparison_series(const Scene& scene,
-                                                    const std::vector<Comparison>& comparisons,
-                                                    const std::vector<View>& views);
+/// What a picture shows of a scene's shapes.
+[[nodiscard]] Drawing comparison_drawing(const Scene& scene,
+                                         const std::vector<Comparison>& comparisons);
 
 /// What figures show of a scene's comparisons.
 struct ComparisonFigures {

@@ -28,7 +28,7 @@ Figure shape_figure(const Scene& scene, const FittedShape& shape, std::size_t nu
   for (Series& gripper : gripper_series(scene)) all.push_back(std::move(gripper));
   return {.name = fmt::format("shape_{}", number),
           .title = shape.scene,
-          .panels = shape_panels(all, views)};
+          .panels = shape_panels({views, std::move(all)})};
 }
 
 Figure profile_figure(const NamedValue& stiffness, const MaterialFit& fit) {

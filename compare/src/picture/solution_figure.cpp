@@ -51,21 +51,11 @@ bool are_planar(const Scene& scene, const std::vector<Solution>& solutions) {
 
 }  // namespace
 
-Eigen::Matrix3Xd points_of(const std::vector<Solution>& solutions) {
-  Eigen::Index count = 0;
-  for (const Solution& solution : solutions) count += solution.shape.points.cols();
-  Eigen::Matrix3Xd all(3, count);
-  count = 0;
-  for (const Solution& solution : solutions) {
-    all.middleCols(count, solution.shape.points.cols()) = solution.shape.points;
-    count += solution.shape.points.cols();
-  }
-  return all;
-}
-
-std::vector<Series> solution_series(const Scene& scene, const std::vector<Solution>& solutions,
-                                    const std::vector<View>& views) {
-  std::vector<Series> all = obstacle_series(scene, views, solutions.front().shape.points);
+Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& solutions) {
+  std::vector<const Eigen::Matrix3Xd*> points;
+  for (const Solution& solution : solutions) points.push_back(&solution.shape.points);
+  const std::vector<View> views = views_of(scene, side_by_side(points));
+  std::vector<Series> all = obstacle_series(scene, views, *points.front());
   if (auto unbent = unbent_series(scene)) all.push_back(std::move(*unbent));
   const bool planar = are_planar(scene, solutions);
   // The stable ones, which come first, on top.
@@ -90,18 +80,17 @@ std::vector<Series> solution_series(const Scene& scene, const std::vector<Soluti
     }
   }
   for (Series& gripper : gripper_series(scene)) all.push_back(std::move(gripper));
-  return all;
+  return {views, std::move(all)};
 }
 
 Picture solution_picture(const Scene& scene, const std::vector<Solution>& solutions) {
-  const std::vector<View> views = views_of(scene, points_of(solutions));
-  const std::vector<Series> all = solution_series(scene, solutions, views);
+  const Drawing drawing = solution_drawing(scene, solutions);
   Figure shapes{.name = "shapes",
                 .title = solutions.size() == 1 ? scene.name : scene.name + ": all equilibria found",
-                .panels = shape_panels(all, views)};
+                .panels = shape_panels(drawing)};
   Figure curvature{.name = "curvature",
                    .title = "Curvature along the rod",
-                   .panels = {curvature_panel(all, are_planar(scene, solutions))}};
+                   .panels = {curvature_panel(drawing.series, are_planar(scene, solutions))}};
   return {{{{shapes}, {curvature}}}};
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <vector>
 
 #include "dlo/compare/scene.hpp"
@@ -10,13 +9,8 @@
 
 namespace dlo::compare {
 
-/// Points of all of them, which their picture has to hold.
-[[nodiscard]] Eigen::Matrix3Xd points_of(const std::vector<Solution>& solutions);
-
-/// What a picture shows of their shapes, behind first.
-[[nodiscard]] std::vector<Series> solution_series(const Scene& scene,
-                                                  const std::vector<Solution>& solutions,
-                                                  const std::vector<View>& views);
+/// What a picture shows of their shapes.
+[[nodiscard]] Drawing solution_drawing(const Scene& scene, const std::vector<Solution>& solutions);
 
 /// Solutions of one scene: shapes at equal aspect with grippers, obstacles and contact, beside
 /// their curvature. Unstable ones are dashed.

@@ -43,15 +43,7 @@ Eigen::Matrix3Xd points_of(const TrackShapes& shapes, const std::vector<std::siz
     if (frame.force) parts.push_back(&frame.force->shape.points);
     if (shapes.has_moving(i)) parts.push_back(&shapes.moving->frames[i].points);
   }
-  Eigen::Index count = 0;
-  for (const Eigen::Matrix3Xd* part : parts) count += part->cols();
-  Eigen::Matrix3Xd all(3, count);
-  count = 0;
-  for (const Eigen::Matrix3Xd* part : parts) {
-    all.middleCols(count, part->cols()) = *part;
-    count += part->cols();
-  }
-  return all;
+  return side_by_side(parts);
 }
 
 /// Cells of one size, row by row, each with one shape at one scale.
